@@ -13,22 +13,23 @@
 namespace lf {
 namespace {
 
-constexpr double kBefore = 0.75, kBehind = 1.25;  // factors of the focus distance
+constexpr double kBefore = 0.75, kBehind = 1.25;  // assumed depths, in focus distances
 constexpr double kPlaces[] = {1.0 / 6, 0.5, 5.0 / 6};
 
-// The LF cameras around the lens, and their centres.
+// The LF cameras around the lens, and their positions.
 struct Around {
   std::vector<LfImageId> ids;
   std::vector<Vec3> centres_world;
 };
 
-// Returns the smallest distance from the lens centre at which an LF camera's ray to the element
-// passes the lens plane.
+// Returns the distance from the lens centre of the nearest ray that an LF camera has for the
+// element at (x_px, y_px), measured in the lens plane. Returns 0 if the element has no focus point,
+// infinity if there is no such ray.
 double NearestRay(const LightField& light_field, const Around& around, const RenderCamera& frame,
                   double x_px, double y_px) {
   double nearest_w = std::numeric_limits<double>::infinity();
   const std::optional<Vec3> focus = FocusPointOfElement(frame, x_px, y_px);
-  if (!focus) return 0;  // the element looks past the horizon of a tilted focus plane
+  if (!focus) return 0;  // beyond the horizon of a tilted focus plane
   for (size_t i = 0; i < around.ids.size(); ++i) {
     const double distance_w = LensPointOfLine(frame, around.centres_world[i], *focus).norm();
     // IsSeenBy() is slow, so it is called only for nearer rays.
@@ -48,7 +49,7 @@ DepthRange DepthsOfFrame(const DepthRange& depths, const Around& around,
   for (const Vec3& centre : around.centres_world)
     shift_w += frame.pinhole.ForwardWorld().dot(centre - frame.pinhole.CentreWorld()) /
                static_cast<double>(around.centres_world.size());
-  // Limits depths to at least a tenth of the nearest one.
+  // Depths are at least a tenth of the nearest recorded depth.
   const double least_w = 0.1 * depths.near_w;
   return {std::max(least_w, depths.near_w + shift_w), std::max(least_w, depths.far_w + shift_w)};
 }

@@ -1,14 +1,15 @@
-// Measures whether the LF cameras are dense enough for a frame, which a photographer should know
-// before a night's work.
+// Measures whether the LF cameras are dense enough for a frame, so that a photographer knows this
+// before hours of rendering.
 //
-// A point at depth z appears in a frame focused at z_f as many times as LF cameras look through the
-// lens. Two LF cameras whose rays cross the lens plane at a distance s show it
+// Every LF camera that looks through the lens shows a point at depth z once in a frame that is
+// focused at z_f. Two LF cameras whose rays meet the lens plane at a distance s from each other
+// show the point
 //
 //   delta(z) = f s |1 / z - 1 / z_f|
 //
-// elements apart (f: the frame's focal length in elements). This displacement is seen as blur up to
-// about one element, and as double edges above. It is reduced to one element if the LF cameras are
-// s / delta apart.
+// elements apart (f: the frame's focal length in elements). A displacement up to about one element
+// looks like blur, a larger one like double edges. It would be one element if the LF cameras were s
+// / delta apart.
 #pragma once
 
 #include <cstddef>
@@ -22,25 +23,28 @@
 namespace lf {
 
 struct FrameDensity {
-  size_t cameras_in_lens = 0;    // as seen from the middle of the plate
-  double camera_distance_w = 0;  // s, in the lens plane
-  LensCoverage coverage;         // bokeh are cut off where the lens is not covered
-  // Diameter of the smallest lens with which each of nine elements of the plate has a ray. Infinite
-  // if one of these is seen by none of the LF cameras around the lens.
+  // number of LF cameras in the lens, as seen from the middle of the plate
+  size_t cameras_in_lens = 0;
+  double camera_distance_w = 0;  // s, the distance of neighbouring LF cameras in the lens plane
+  LensCoverage coverage;         // bokeh is cut off where the lens is not covered
+  // Diameter of the smallest lens around the same centre through which each of nine elements,
+  // spread over the plate, has a ray. Infinite if none of the LF cameras around the lens sees one
+  // of these elements.
   double least_aperture_w = 0;
-  // Depths of the scene along the frame's axis, and delta(z) at their ends.
+  // The nearest and farthest depth of the scene along the frame's axis, and delta(z) at these
+  // depths.
   DepthRange depths;
   double near_displacement_px = 0;
   double far_displacement_px = 0;
 
-  // The larger displacement, and its depth.
+  // Return the larger of the two displacements, and the depth where it occurs.
   double MostDisplacement_px() const;
   double DepthOfMost_w() const;
 };
 
-// If the depths are not known, takes a quarter of the focus distance before and behind the focus
-// plane.
-//   depths  of the scene, along the optical axes of the LF cameras
+// Measures the density for a frame. If the depths are not known, or there are no LF cameras around
+// the lens, it assumes depths from 0.75 to 1.25 times the focus distance.
+//   depths  depths of the scene, along the optical axes of the LF cameras; unset: not known
 FrameDensity DensityOf(const ImageIndex& index, const RenderCamera& frame,
                        const std::optional<DepthRange>& depths);
 

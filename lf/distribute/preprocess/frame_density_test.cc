@@ -7,7 +7,7 @@
 namespace lf {
 namespace {
 
-// A grid of 41 x 41 cameras with pitch 0.01 in the plane z = 0.
+// Returns a grid of 41 x 41 LF cameras with pitch 0.01 in the plane z = 0.
 LightField Grid() {
   LightField field;
   field.intrinsics = {{200, 200, 100, 75, 0, 200, 150}};
@@ -42,7 +42,7 @@ TEST(FrameDensity, OfAGridInTheLensPlane) {
   EXPECT_NEAR(density.near_displacement_px, 400 * density.camera_distance_w * 0.5, 1e-9);
   EXPECT_NEAR(density.far_displacement_px, 400 * density.camera_distance_w * 0.25, 1e-9);
   EXPECT_EQ(density.DepthOfMost_w(), 1);
-  // At the centre of four cameras, the nearest is half a diagonal away.
+  // The lens is in the middle of four LF cameras: the nearest one is half a diagonal away.
   EXPECT_NEAR(DensityOf(index, Frame(0.03, 0.005, 0.005, 0), {}).least_aperture_w,
               0.01 * std::sqrt(2), 1e-9);
 }
@@ -50,8 +50,9 @@ TEST(FrameDensity, OfAGridInTheLensPlane) {
 TEST(FrameDensity, OfAFrameBeforeTheGrid) {
   const LightField grid = Grid();
   const ImageIndex index(grid);
-  // At half the distance to the focus plane, rays are half as far apart. A point that was at depth
-  // 1 is now at depth 0, which is limited to 0.1.
+  // The frame is half-way between the grid and the focus plane: in its lens plane, rays are half as
+  // far apart as the LF cameras. A point at depth 1 from the grid is at depth 0 from the frame,
+  // which is limited to 0.1.
   RenderCamera frame = Frame(0.0301, 0, 0, 1);
   frame.focus_distance_w = 1;
   frame.focus_plane = FocusPlane(frame.pinhole, 1, {});

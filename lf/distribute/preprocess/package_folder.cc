@@ -13,7 +13,7 @@ namespace {
 constexpr const char* kExtension = ".lfp";
 constexpr std::string_view kPrefix = "package-";
 
-// Returns the files of a folder that are packages by their extension.
+// Returns the files of a folder that have the extension of packages.
 std::vector<fs::path> FilesIn(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code error;
@@ -40,7 +40,7 @@ Result<PackageFolder> PackageFolder::Open(const fs::path& folder, const std::str
   LF_RETURN_IF_ERROR(CreateFolder(folder));
   LF_ASSIGN_OR_RETURN(FileLock lock, FileLock::Take(folder / ".packages.lock"));
   PackageFolder opened(folder, part, std::move(lock));
-  // The lock guarantees that no program, on this host or on others, still writes them.
+  // The lock guarantees that no process, on this host or another one, still writes these files.
   std::vector<fs::path> leftovers = FilesIn(folder);
   std::erase_if(leftovers, [](const fs::path& file) {
     const std::string name = file.filename().string();
@@ -74,14 +74,14 @@ Result<void> PackageFolder::Add(const std::string& name, const Package& package,
   const fs::path path = PathOf(name);
   renamings_.push_back({files_.emplace_back(path).path(), path});
   LF_RETURN_IF_ERROR(WritePackageAs(renamings_.back().from, path, package, notes));
-  return FlushToDisk(renamings_.back().from);  // flushed here, so that Publish() takes no time
+  return FlushToDisk(renamings_.back().from);  // flushed here, so that Publish() is quick
 }
 
 Result<void> PackageFolder::Publish() {
   RemoveFiles(Packages());
   const Result<void> renamed = RenameFlushed(renamings_);
   if (!renamed) {
-    // A part of the packages could be mistaken for all of them.
+    // No package is left, because some packages alone could be mistaken for all of them.
     for (const Renaming& file : renamings_) RemoveFiles({file.to});
     return renamed.error();
   }

@@ -1,4 +1,4 @@
-// The folder that receives all packages of a film at once.
+// A folder in which all packages of a film appear at the same time.
 #pragma once
 
 #include <filesystem>
@@ -14,16 +14,17 @@
 namespace lf {
 
 // Holds the lock DIR/.packages.lock during its lifetime. Packages are written under temporary
-// names, and renamed together when all are complete. After a kill, the folder has the previous
-// packages, or none. Only a kill within Publish(), which takes milliseconds, may leave a part of
-// them.
+// names. Publish() renames all of them when they are complete. If the process is killed before
+// Publish(), the folder has the previous packages, if any. Only if it is killed within Publish(),
+// which takes milliseconds, may some packages be missing.
 class PackageFolder {
  public:
-  // Creates the folder if it is missing, and removes temporary packages of killed programs.
-  //   part       only packages whose names end with it are considered; empty: all
-  //   overwrite  Publish() replaces existing packages
-  // kUsage: packages exist and may not be replaced. kOutput: the folder cannot be written, or
-  // another program is at work in it.
+  // Creates the folder if it is missing, and removes temporary packages that killed processes left.
+  //   part       only packages whose names end with this text count as existing ones, and are
+  //              replaced; empty: all packages
+  //   overwrite  true: Publish() replaces existing packages
+  // kUsage: packages exist already, and `overwrite` is false. kOutput: the folder cannot be
+  // written, or another process holds its lock.
   static Result<PackageFolder> Open(const std::filesystem::path& folder, const std::string& part,
                                     bool overwrite);
   ~PackageFolder();
@@ -32,10 +33,10 @@ class PackageFolder {
 
   // Returns the final path of a package.
   std::filesystem::path PathOf(const std::string& name) const;
-  // Writes a package under a temporary name. kOutput: it cannot be written.
+  // Writes a package under a temporary name. kOutput: the file cannot be written.
   Result<void> Add(const std::string& name, const Package& package, const PackageNotes& notes);
-  // Removes the previous packages, and renames the added ones to their final names. kOutput:
-  // renaming failed; no package is left then.
+  // Removes the previous packages, and gives the added packages their final names. kOutput: a file
+  // could not be renamed; the folder then has no packages.
   Result<void> Publish();
 
  private:

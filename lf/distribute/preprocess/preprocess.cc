@@ -21,15 +21,16 @@
 namespace lf {
 namespace {
 
-// Memory for kept needs; enough for 300 frames of 20,000 LF images each.
+// Largest memory for kept_needs_; enough for 300 frames with 20,000 LF images each.
 constexpr uint64_t kMostKeptBytes = uint64_t{256} << 20;
 
 double SecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// Returns the suffix for names of packages of a part of a film, such as -of-frames-1-4; empty for
-// the whole film. With it, packages, reports and states of different parts can share a folder.
+// Returns the suffix of the packages' names: "-of-frames-1-4", for example, if only some frames of
+// the film are packed; empty for the whole film. Because of the suffix, packages, reports and
+// states of different parts of a film can be in the same folder.
 std::string NameOfPart(const std::vector<FrameId>& frames, size_t film_frame_count) {
   if (frames.empty() || frames.size() == film_frame_count) return "";
   std::string ranges;
@@ -46,11 +47,11 @@ std::string NameOfPart(const std::vector<FrameId>& frames, size_t film_frame_cou
   return "-of-frames-" + ranges;
 }
 
-// The LF images of a package, gathered frame by frame.
+// Unites the needs of the frames of a package.
 class Gathering {
  public:
   struct Image {
-    PixelRect rect;  // bounds of the pixels that the frames read
+    PixelRect rect;  // bounds of the pixels that any frame reads
     uint32_t frame_count = 0;
     uint64_t ray_count = 0;
   };
@@ -63,7 +64,8 @@ class Gathering {
     }
     for (const LfImageId id : needs.neighbours) images_[id];
   }
-  // Returns the LF images by ascending ids. An image that no frame reads is a neighbour.
+  // Returns the LF images by ascending ids. If frame_count is 0, only the LF camera is needed (a
+  // neighbour).
   const std::map<LfImageId, Image>& images() const { return images_; }
 
  private:
@@ -109,7 +111,8 @@ class Preprocessor {
     if (options_.interrupted == nullptr || !*options_.interrupted) return {};
     return Error{ErrorKind::kInterrupted, "interrupted: no package is kept"};
   }
-  // Needs are incomplete if an interruption came while they were computed.
+  // Returns the needs of a frame, from kept_needs_ if they are there. They are not used after an
+  // interruption, because they may be incomplete.
   Result<FrameNeeds> Needs(FrameId frame) {
     FrameNeeds needs;
     if (const auto kept = kept_needs_.find(frame); kept != kept_needs_.end()) {
@@ -131,17 +134,18 @@ class Preprocessor {
   const std::function<void(size_t, size_t)>& progress_;
   NeedsOptions needs_;
   std::vector<FrameId> frames_;
-  std::optional<PackageFolder> folder_;  // none: nothing is written
-  std::unique_ptr<LfImageStore> store_;  // for sizes of files, and to check which pixels it keeps
+  std::optional<PackageFolder> folder_;  // unset: nothing is written
+  std::unique_ptr<LfImageStore> store_;  // to ask for file sizes and kept pixels
   LightFieldIdentity whole_;
   ImagePlaces places_;
   std::optional<ImageIndex> index_;
-  // Needs that the forecast computed and packages use again, up to kMostKeptBytes.
+  // Needs that were computed for the forecast, and that MakePackage() uses again; up to
+  // kMostKeptBytes.
   std::map<FrameId, FrameNeeds> kept_needs_;
   uint64_t kept_bytes_ = 0;
-  std::vector<FrameSurroundings> surroundings_;  // [frame - 1] of the film
+  std::vector<FrameSurroundings> surroundings_;  // index [frame - 1] in the film
   size_t done_ = 0;
-  std::vector<bool> is_counted_;  // LF images of finished packages
+  std::vector<bool> is_counted_;  // [LF image]: true if a finished package needs it
   PreprocessReport report_;
 };
 
@@ -208,8 +212,8 @@ Result<void> Preprocessor::MakeIndex() {
   return {};
 }
 
-// Slabs of rebinned rays are planned for the whole film, even if only some of its frames are
-// packed.
+// Stores the sampling of all frames of the film, even if only some frames are packed, because slabs
+// of rebinned rays are planned for the whole film.
 Result<void> Preprocessor::DescribeSurroundings(const std::map<FrameId, FrameSampling>& sampling) {
   if (!needs_.HasNeighbours()) return {};
   for (uint32_t n = 1; n <= path_.frame_count(); ++n) {
@@ -236,7 +240,7 @@ Result<void> Preprocessor::ForecastFrames() {
   LF_RETURN_IF_ERROR(DescribeSurroundings(sampling));
   report_.select_s += SecondsSince(start);
   const auto density_start = std::chrono::steady_clock::now();
-  // One frame takes little time, but only one thread.
+  // Each frame is measured by one thread.
   pool_.ForEach(frames_.size(), [this](size_t f) {
     if (options_.interrupted != nullptr && *options_.interrupted) return;
     report_.frames[f].density =
@@ -263,7 +267,7 @@ void Preprocessor::Keep(FrameId frame, FrameNeeds needs) {
   kept_needs_.emplace(frame, std::move(needs));
 }
 
-// Measures the rate on the frame that has the median number of rays.
+// Measures the rate with the frame that has the median number of rays.
 Result<void> Preprocessor::Measure() {
   std::vector<size_t> by_rays(frames_.size());
   std::iota(by_rays.begin(), by_rays.end(), size_t{0});
@@ -337,7 +341,7 @@ Result<void> Preprocessor::MakePackage(size_t number, const Section& section, si
   return {};
 }
 
-// Counts the missing files of the package and of the film.
+// Counts the missing files of the package, and adds those that are new to the totals of the film.
 Result<void> Preprocessor::CountMissing(const Package& package, PackageForecast* forecast) {
   is_counted_.resize(light_field_.size(), false);
   for (size_t i = 0; i < package.images.size(); ++i) {
@@ -375,7 +379,8 @@ Package Preprocessor::PackageOf(const Section& section, const Gathering& gatheri
   part.unit_m = light_field_.unit_m;
   part.depth_range = light_field_.depth_range;
   package.places.end = places_.end;
-  std::map<uint32_t, uint32_t> intrinsics;  // by index in the whole light field
+  // from index in the whole light field to index in the package
+  std::map<uint32_t, uint32_t> intrinsics;
   for (const auto& [id, gathered] : gathering.images()) {
     LfCamera camera = light_field_.cameras[id.value];
     const auto [known, is_new] = intrinsics.try_emplace(
@@ -399,7 +404,8 @@ Package Preprocessor::PackageOf(const Section& section, const Gathering& gatheri
   return package;
 }
 
-// Returns the sizes of the files; 0 for a missing file and for a neighbour, whose file is not read.
+// Returns the sizes of the image files; 0 for a missing file, and for a neighbour, because its file
+// is not read.
 std::vector<uint64_t> Preprocessor::FileSizes(const Package& package) const {
   constexpr size_t kTogether = 256;
   std::vector<uint64_t> sizes(package.images.size(), 0);

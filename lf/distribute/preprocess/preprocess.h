@@ -1,5 +1,5 @@
 // Makes packages from a light field and a camera path (thesis 4.2.1), and forecasts the cost of
-// rendering them.
+// rendering the packages.
 #pragma once
 
 #include <atomic>
@@ -25,83 +25,90 @@
 
 namespace lf {
 
-// Quantity of which packages get about equal shares.
+// The quantity that is about equal in all packages: tested rays, or frames.
 enum class PackageBalance { kRays, kFrames };
 
 struct PreprocessOptions {
-  std::optional<std::filesystem::path> output_folder;  // none: nothing is written
-  bool overwrite = false;                              // replace existing packages
-  std::vector<FrameId> frames;                         // ascending; empty: all of the path
+  std::optional<std::filesystem::path> output_folder;  // unset: only forecasts
+  bool overwrite = false;                              // true: existing packages are replaced
+  std::vector<FrameId> frames;                         // ascending; empty: all frames of the path
   ImageOrder order = ImageOrder::kShuffle;
   uint64_t seed = 0;
   std::optional<size_t> max_image_count;
   std::optional<double> max_angle_rad;
 
-  // Options of the later renders. Packages serve any estimator and any lens weights, but packages
-  // for kNone lack the neighbours that weights are measured against.
+  // Options of the renders that follow. Packages can be rendered with any estimator and any lens
+  // weights. Exception: packages for LensWeights::kNone can only be rendered without lens weights,
+  // because they lack the neighbours that weights are measured against.
   RayReading reading = {.estimator = Estimator::kBilinear};
   LensWeights lens_weights = LensWeights::kAuto;
-  // Determines what frames need, and thereby the forecast and what lfcompressor --needed-pixels
-  // keeps. Packages of whole LF images serve every mode.
+  // Mode of the renders that follow. It decides what frames need, and therefore the forecast, and
+  // which pixels lfcompressor --needed-pixels keeps. If whole LF images are kept, packages can be
+  // rendered in any mode, with the exception above.
   RenderMode mode = RenderMode::kCollect;
 
-  // Number of packages: package_count; or as many as frames_per_package requires; or, by default,
-  // as few as possible such that the plates of each fit into memory_bytes together.
+  // Number of packages: package_count if it is set; otherwise, if frames_per_package is set, as
+  // many as it requires; otherwise as few as possible such that all plates of a package fit into
+  // memory_bytes at the same time.
   size_t memory_bytes = size_t{8} << 30;
   std::optional<size_t> package_count;
   std::optional<size_t> frames_per_package;
   PackageBalance balance = PackageBalance::kRays;
 
-  std::optional<DepthRange> depths;  // of the scene; none: as the light field states
-  bool strict = false;               // a missing LF image is an error
-  std::string version;               // of the program
-  std::string light_field_name;      // LIGHTFIELD, as the user gave it
+  std::optional<DepthRange> depths;  // of the scene; unset: those of the light field
+  bool strict = false;               // true: a missing LF image is an error
+  std::string version;               // version of the program
+  std::string light_field_name;      // the argument LIGHTFIELD, as the user wrote it
   const std::atomic<bool>* interrupted = nullptr;
 };
 
 struct FrameForecast {
   FrameId frame;
-  size_t image_count = 0;  // approximate number of LF images with rays
-  uint64_t ray_count = 0;  // number of pixels of their rectangles
+  size_t image_count = 0;  // LF images that are read
+  uint64_t ray_count = 0;  // rays that are tested or rebinned
   FrameDensity density;
 };
 
 struct PackageForecast {
-  std::string name;  // package-0000; for a part of the film: package-0000-of-frames-1-4
+  std::string name;  // such as package-0000; for a part of the film package-0000-of-frames-1-4
   std::vector<FrameId> frames;
-  size_t image_count = 0;      // LF images to be read
-  size_t missing_count = 0;    // of these, files that are missing or empty
-  size_t neighbour_count = 0;  // further LF cameras against which lens weights are measured
-  uint64_t read_bytes = 0;     // size of their files
+  size_t image_count = 0;      // LF images that are read
+  size_t missing_count = 0;    // of these LF images, the number that is missing or empty
+  size_t neighbour_count = 0;  // other LF cameras, whose images are not read
+  uint64_t read_bytes = 0;     // size of the files of image_count LF images
   uint64_t ray_count = 0;
   size_t memory_bytes = 0;
-  size_t pass_count = 0;  // passes over the LF images; above 1 if the plates do not fit into the
-                          // memory together
-  double cpu_s = 0;       // for rendering; 0 without a rate
+  // passes over the LF images; above 1 if the plates do not all fit into the memory at the same
+  // time
+  size_t pass_count = 0;
+  double cpu_s = 0;  // CPU time to render; 0 without `rate`
 };
 
 struct PreprocessReport {
   size_t light_field_image_count = 0;
   size_t needed_count = 0;    // LF images that packages need, each counted once
-  size_t missing_count = 0;   // of these, files that are missing or empty
-  std::string first_missing;  // path of the first missing file
+  size_t missing_count = 0;   // of needed_count, the number that is missing or empty
+  std::string first_missing;  // path of the first of these
   std::vector<FrameForecast> frames;
   std::vector<PackageForecast> packages;
   std::optional<RenderRate> rate;
-  std::string rate_error;  // why there is no rate
-  double index_s = 0;      // time for the octree and the order
-  double select_s = 0;     // time for the needs of frames, computed twice: to divide the film, and
-                           // to make packages
+  std::string rate_error;  // reason why `rate` is unset; empty if it is set
+  double index_s = 0;      // time to compute the order and the octree
+  // time to compute the needs of frames: once to divide the film, and again to make packages,
+  // unless they fit in the memory for kept needs
+  double select_s = 0;
   double density_s = 0;
   double write_s = 0;
 };
 
-// Makes the packages. They get their final names together, when all are complete
-// (package_folder.h). kUsage: packages exist, kArea cannot weigh the lenses, lens weights are given
-// with RenderMode::kRebin, or max_image_count with rebinned rays. kInput: no LF image contributes
-// to any frame, or one is missing with `strict`. kOutput: the disk fails, another program is at
-// work in the folder, or one frame needs more than the memory. kInterrupted. After an error the
-// previous packages are there, or none.
+// Makes the packages. They appear under their final names at the same time, when all are complete
+// (package_folder.h). kUsage: packages exist already; the lens of a frame is a pinhole, but the
+// weights are kArea; the mode is kRebin, but lens_weights is not kNone; the mode rebins, but
+// max_image_count is set, or the LF images have opacity. kInput: no LF image contributes to any
+// frame; an LF image is missing and `strict` is set; a packed store lacks pixels. kOutput: the disk
+// fails; another process writes packages into the folder; one frame needs more than memory_bytes.
+// kInterrupted: *options.interrupted is true. After an error, the folder has the previous packages,
+// or none.
 Result<PreprocessReport> Preprocess(const LightField& light_field, const CameraPath& path,
                                     const PreprocessOptions& options, ThreadPool& pool,
                                     const std::function<void(size_t done, size_t total)>& progress);

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Returns frames that move over the noise field and past its border.
+// Returns frames that move across the noise field and beyond its border.
 CameraPath Film() {
   CameraPath film;
   for (int i = 0; i < 10; ++i) {
@@ -57,8 +57,8 @@ class PreprocessTest : public ::testing::Test {
     EXPECT_TRUE(package) << package.error().message;
     return *std::move(package);
   }
-  // Expects that the package's frames need the same LF images as in the whole light field, with
-  // equal weights.
+  // Expects that the frames of the package need the same LF images, with the same lens weights, as
+  // in the whole light field.
   void ExpectPackageIsAsGoodAsTheWhole(const Package& package, const NeedsOptions& needs);
 
   LightField field_;
@@ -74,7 +74,7 @@ void PreprocessTest::ExpectPackageIsAsGoodAsTheWhole(const Package& package,
   EXPECT_EQ(package.whole, IdentityOf(field_));
   for (size_t i = 0; i < package.images.size(); ++i)
     EXPECT_EQ(package.places.of_images[i], whole.PlaceOf(LfImageId{package.images[i].id}));
-  std::map<uint32_t, PackageImage> images;  // by the LF image's id in the whole light field
+  std::map<uint32_t, PackageImage> images;  // by id in the whole light field
   for (const PackageFrame& frame : package.frames) {
     const RenderCamera& camera = film_.Camera(frame.id);
     const FrameLens lens(whole, camera, needs.lens_weights, needs.select, pool_);
@@ -98,7 +98,7 @@ void PreprocessTest::ExpectPackageIsAsGoodAsTheWhole(const Package& package,
         for (int x = 0; x < 80; x += 9)
           ASSERT_EQ(lens.WeightsOf(image.id).At(x, y), again.WeightsOf(id).At(x, y));
     }
-    // The package has enough data to find the same needs again.
+    // The package contains all that is needed to compute the same needs.
     const std::optional<FrameSampling> sampling =
         package.surroundings.empty()
             ? std::nullopt
@@ -144,12 +144,13 @@ TEST_F(PreprocessTest, PackagesHaveWhatTheirFramesNeed) {
         }
       }
       EXPECT_EQ(frames.size(), film_.frame_count());
-      EXPECT_FALSE(report.rate);  // there are no image files
+      EXPECT_FALSE(report.rate);  // because there are no image files
       EXPECT_NE(report.rate_error, "");
     }
 }
 
-// Packages have the LF images of rebinned rays, even if no LF camera's rays pass the lens.
+// Packages have the LF images for rebinned rays, even if no ray of an LF camera passes through the
+// lens.
 TEST_F(PreprocessTest, PackagesHaveWhatTheModeNeeds) {
   for (RenderCamera& camera : film_.cameras) camera.aperture.radius_w *= 0.2;
   std::map<RenderMode, uint64_t> rays;
@@ -236,7 +237,7 @@ TEST_F(PreprocessTest, OrdersAreOfTheWholeFilm) {
     options_.order = order;
     options_.overwrite = true;
     const PreprocessReport report = Run();
-    std::map<uint32_t, uint32_t> places;  // by LF image
+    std::map<uint32_t, uint32_t> places;  // [LF image]
     for (const PackageForecast& forecast : report.packages) {
       const Package package = Read(forecast);
       EXPECT_EQ(package.choices.order, order);

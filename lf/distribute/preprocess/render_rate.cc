@@ -19,7 +19,8 @@ namespace {
 
 constexpr size_t kSampleImages = 16;
 
-// Returns a few LF images whose files exist, with ranks as if they were an order of their own.
+// Returns up to kSampleImages LF images whose files exist. Their ranks are their indices in
+// needs.images, which replace the order of the light field here.
 std::vector<SelectedImage> SampleOf(const FrameNeeds& needs, const LfImageStore& store) {
   constexpr size_t kMostAsked = 256;
   std::vector<SelectedImage> sample;
@@ -57,7 +58,7 @@ Result<RenderRate> MeasureRate(const ImageIndex& index, const RenderCamera& fram
             : fmt::format(
                   "{}: does not exist, nor does any other of the LF images that were searched",
                   light_field.ImagePath(needs.images.front().id).string()));
-  // Nothing else runs, so the CPU time of the process is that of the working threads.
+  // Nothing else runs in this process, so its CPU time is the time that the pool's threads work.
   const std::clock_t lens_start = std::clock();
   const FrameLens lens(index, frame, needs_options.lens_weights, needs_options.select, pool);
   const double lens_s = static_cast<double>(std::clock() - lens_start) / CLOCKS_PER_SEC;

@@ -1,4 +1,5 @@
-// Measures on a few LF images of a frame how fast this machine renders, for forecasts.
+// Measures how fast this machine renders a frame, with a few of its LF images. Forecasts use the
+// result.
 #pragma once
 
 #include <cstddef>
@@ -11,16 +12,16 @@
 
 namespace lf {
 
-// CPU seconds of the parts of a render.
+// CPU time of the parts of a render, in seconds.
 struct RenderRate {
-  double load_s = 0;     // for each LF image
-  double collect_s = 0;  // for each ray that is tested
-  double finish_s = 0;   // for each frame: its lens weights, developing, writing
+  double load_s = 0;     // to load one LF image
+  double collect_s = 0;  // to collect, for each tested ray
+  double finish_s = 0;   // for each frame: lens weights, developing, writing
 };
 
-// Weighs and loads a few of the images that the frame needs, collects their rays, develops the
-// plate and writes it into a temporary folder. kInput: none of the images can be loaded; kOutput:
-// the frame cannot be written.
+// Computes the lens weights of the frame, loads a few of the LF images that the frame needs,
+// collects their rays, develops the plate, and writes the picture into the system's temporary
+// folder. kInput: none of these LF images can be loaded. kOutput: the picture cannot be written.
 Result<RenderRate> MeasureRate(const ImageIndex& index, const RenderCamera& frame,
                                const NeedsOptions& needs, const RayReading& reading,
                                ThreadPool& pool);

@@ -13,8 +13,8 @@ std::vector<Section> SplitByCost(std::span<const uint64_t> costs, size_t count) 
   std::vector<Section> sections;
   size_t begin = 0;
   for (size_t k = 1; k <= count; ++k) {
-    // The target is a share of the remaining cost, so that one costly frame does not make the
-    // following sections small.
+    // `target` is the cost at which the section should end. It divides the remaining cost, not the
+    // total cost, equally, so that one costly frame does not make the following sections small.
     const double target = cost_before[begin] + (cost_before.back() - cost_before[begin]) /
                                                    static_cast<double>(count - k + 1);
     const auto first = cost_before.begin();
@@ -22,7 +22,8 @@ std::vector<Section> SplitByCost(std::span<const uint64_t> costs, size_t count) 
         std::lower_bound(first + static_cast<ptrdiff_t>(begin), cost_before.end(), target) - first);
     if (end > begin && target - cost_before[end - 1] < cost_before[end] - target) --end;
     end = k == count ? frame_count
-                     : std::clamp(end, begin + 1, frame_count - (count - k));  // one frame at least
+                     // at least one frame each
+                     : std::clamp(end, begin + 1, frame_count - (count - k));
     sections.push_back({begin, end});
     begin = end;
   }

@@ -1,4 +1,4 @@
-// Cuts a film into sections, one for each package.
+// Divides a film into sections, one for each package.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace lf {
 
-// Range [begin, end) of the given frames.
+// Range [begin, end) of indices of frames.
 struct Section {
   size_t begin = 0;
   size_t end = 0;
@@ -17,11 +17,12 @@ struct Section {
   friend bool operator==(const Section&, const Section&) = default;
 };
 
-// Returns `count` sections of about equal cost, in order; fewer if there are fewer frames. Sections
-// are contiguous, because neighbouring frames share LF images.
+// Divides frames into `count` sections of about equal cost; if there are fewer frames than `count`,
+// each frame is a section. Sections are contiguous, because neighbouring frames share LF images.
+//   costs  the cost of each frame, in any unit
 std::vector<Section> SplitByCost(std::span<const uint64_t> costs, size_t count);
 
-// Returns the smallest number of sections of about equal cost such that each has at most
+// Divides frames into sections of about equal cost, as few as possible so that each has at most
 // most_frames frames.
 std::vector<Section> SplitToFit(std::span<const uint64_t> costs, size_t most_frames);
 

@@ -38,7 +38,7 @@ TEST(SplitFilm, EqualFramesAreSharedOut) {
   EXPECT_TRUE(SplitByCost({}, 3).empty());
 }
 
-// The lens opens: the last frames cost a hundred times as much as the first.
+// As in a film whose lens opens, the last frames cost a hundred times as much as the first.
 TEST(SplitFilm, LongFilmsAreBalancedByCost) {
   std::vector<uint64_t> costs;
   for (uint64_t f = 0; f < 480; ++f) costs.push_back(1000 + f * f / 2 + RandomBits(1, 2, f) % 500);

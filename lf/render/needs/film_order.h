@@ -1,5 +1,5 @@
-// The order in which the LF images of a film are taken (selection/image_order.h), computed from the
-// needs of its frames.
+// Computes the order in which the LF images of a film are taken (selection/image_order.h) from the
+// needs of all its frames.
 #pragma once
 
 #include <cstdint>
@@ -14,17 +14,17 @@
 
 namespace lf {
 
-// Returns the ranks of all LF images in the order for all frames of the film, even if only some are
-// rendered, so that a number of ranks has one meaning for any choice of frames. LF images that no
-// frame sees, or that have no lens weight in any frame, come last.
-//   needs  of the later renders; max_image_count is ignored
-// kInterrupted.
+// Returns the rank of every LF image in the order. The order is computed for all frames of the
+// film, even if only some are rendered, so that a rank means the same for any choice of frames. LF
+// images that no frame sees, or that have no lens weight in any frame, come last.
+//   needs  options of the renders that follow; max_image_count is ignored
+// kInterrupted: *needs.select.interrupted is true.
 Result<ImagePlaces> PlacesOfFilm(ImageOrder order, uint64_t seed, const LightField& light_field,
                                  const CameraPath& path, const NeedsOptions& needs,
                                  ThreadPool& pool);
 
-// Returns how densely the light field was recorded around each frame of the film, [frame - 1].
-// kInterrupted.
+// Returns, for each frame of the film, how densely the light field was recorded around its lens;
+// index [frame - 1]. kInterrupted: *select.interrupted is true.
 Result<std::vector<FrameSampling>> SamplingOfFilm(const ImageIndex& index, const CameraPath& path,
                                                   const SelectOptions& select, ThreadPool& pool);
 

@@ -16,7 +16,7 @@
 namespace lf {
 namespace {
 
-// FrameLens::near() can replace a call of ImagesNearLens(), because both have this reach.
+// FrameLens::near() has the same reach as ImagesNearLens(), so that Near() may use it instead.
 static_assert(FrameLens::kReach_distances == kFarthestDistances);
 
 std::optional<double> DistanceOf(const std::optional<FrameSampling>& sampling) {
@@ -104,8 +104,9 @@ class NeedsFinder {
     needs_.images = std::move(joined);
   }
 
-  // Finds the LF cameras that are needed for lens weights, gaps of the lens and rebinned rays of
-  // the default options, for every mode and estimator, so that a package serves them all.
+  // Finds the LF cameras that are needed for lens weights, gaps of the lens, and rebinned rays with
+  // the default options. Includes what any mode and estimator needs, so that a package serves all
+  // of them.
   void FindNeighbours() {
     SelectOptions widest = options_.select;
     widest.reach = kWidestReach;
@@ -119,7 +120,7 @@ class NeedsFinder {
     }
     std::vector<LfImageId> all, read;
     for (const SelectedImage& image : near) all.push_back(image.id);
-    // Hats of LF cameras that are far apart reach further.
+    // If LF cameras are far apart, their hats reach farther than reach_w.
     if (lens_.camera().aperture.radius_w > frame_.aperture.radius_w + reach_w)
       for (const SelectedImage& image :
            SelectImages(index_, std::span(&lens_.camera(), 1), widest, pool_))

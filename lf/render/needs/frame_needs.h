@@ -1,8 +1,8 @@
-// Computes what one frame needs of a light field (thesis 4.2.1).
+// Computes which LF images, pixels and LF cameras of a light field one frame needs (thesis 4.2.1).
 //
-// All users get the same answer: packages contain these LF cameras, packed stores are cut to these
-// pixels, orders and limits count these LF images, forecasts count these rays, and a render reads
-// exactly these pixels (tests/needed_pixels_test.py).
+// All parts of the program use this result: packages contain these LF cameras, packed stores keep
+// these pixels, orders and limits count these LF images, forecasts count these rays, and a render
+// reads exactly these pixels (tests/needed_pixels_test.py).
 #pragma once
 
 #include <cstdint>
@@ -27,48 +27,52 @@ namespace lf {
 
 // The options of a render that determine what its frames need.
 struct NeedsOptions {
-  SelectOptions select;  // reach and max_angle_rad
-  // kNone with RenderMode::kRebin, which collects no rays that could be weighted.
+  SelectOptions select;  // only reach, max_angle_rad and interrupted are used
+  // Must be kNone if the mode is kRebin, because it collects no rays that could be weighted.
   LensWeights lens_weights = LensWeights::kAuto;
-  std::optional<size_t> max_image_count;  // only with RenderMode::kCollect
+  std::optional<size_t> max_image_count;  // must be unset unless the mode is kCollect
   RenderMode mode = RenderMode::kCollect;
-  RebinPassOptions rebin;  // query, previews and pixels around rays; not used with kCollect
+  RebinPassOptions rebin;  // its query, previews and margins; unused if the mode is kCollect
 
-  // Returns true if LF cameras other than those a frame reads influence its picture.
+  // Returns true if the picture of a frame depends on LF cameras whose LF images it does not read.
   bool HasNeighbours() const { return lens_weights != LensWeights::kNone || Rebins(mode); }
 };
 
 struct FrameNeeds {
   struct Image {
     LfImageId id;
-    PixelRect rect;          // bounds of all pixels that are read
-    uint64_t ray_count = 0;  // number of pixels that are tested as rays of the frame, or as rays to
-                             // be kept
+    PixelRect rect;  // bounds of all pixels that are read
+    // pixels that are tested as rays of the frame, plus pixels that are rebinned
+    uint64_t ray_count = 0;
   };
   std::vector<Image> images;  // the LF images that are read, by ascending ranks
-  // Other LF cameras against which `images` are measured, by ascending ids. With these, lens
-  // weights, limits in numbers of LF images, and rebinned rays of the default options are the same
-  // as with all LF cameras. Empty without HasNeighbours().
+  // Other LF cameras that are needed to compute lens weights and gaps, by ascending ids. With
+  // `images` and these LF cameras alone, lens weights, limits in numbers of LF images, and rebinned
+  // rays (for the default options) are the same as in the whole light field. Empty if
+  // HasNeighbours() is false.
   std::vector<LfImageId> neighbours;
-  // Density of the LF cameras around the lens; present with HasNeighbours().
+  // Density of the LF cameras around the lens; set if HasNeighbours() is true, or if NeedsOf() was
+  // given it.
   std::optional<FrameSampling> sampling;
 
   std::optional<double> camera_distance_w() const;
   uint64_t RayCount() const;
 };
 
-// Convert to and from the form that a package stores.
+// Convert a sampling to the form that a package stores, and back.
 FrameSurroundings SurroundingsOf(const FrameSampling& sampling);
 FrameSampling SamplingOf(const FrameSurroundings& surroundings);
 
-// Returns the needs of a frame.
-//   sampling  measured in the whole light field, if the index covers only a part of it
+// Returns what a frame needs.
+//   sampling  must be given, as measured in the whole light field, if the index covers only a part
+//             of it; unset: measured in `index`
 FrameNeeds NeedsOf(const ImageIndex& index, const RenderCamera& frame, const NeedsOptions& options,
                    ThreadPool& pool, const std::optional<FrameSampling>& sampling = {});
 
-// kInput if the frame reads pixels that were cut off when the packed store was made (lfcompressor
+// Returns kInput if the frame reads pixels that a packed store does not keep (lfcompressor
 // --needed-pixels). Missing or broken LF images are no error here.
-//   store  opened as it will be read: with mosaics to RGB if the estimator is bilinear
+//   store  must be opened in the same way as for rendering: with Mosaics::kToRgb if the estimator
+//          is bilinear
 Result<void> CheckKept(const LfImageStore& store, const LightField& light_field, FrameId frame,
                        const FrameNeeds& needs);
 
