@@ -9,14 +9,14 @@ namespace {
 
 double Cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-// Returns the area of the part of the triangle (origin, a, b) within the disk; negative if the
-// triangle is clockwise.
+// Returns the area of the intersection of the triangle (origin, a, b) with the disk; negative if
+// the triangle is clockwise.
 double TriangleAreaInDisk(const Vec2& a, const Vec2& b, double radius) {
   const double r2 = radius * radius;
   const auto sector = [r2](const Vec2& from, const Vec2& to) {
     return 0.5 * r2 * std::atan2(Cross(from, to), from.dot(to));
   };
-  // Parameters t at which the edge a + t (b - a) crosses the rim.
+  // Finds the parameters t at which the edge a + t (b - a) crosses the border of the disk.
   const Vec2 edge = b - a;
   const double length2 = edge.squaredNorm();
   if (length2 == 0) return 0;
@@ -42,7 +42,7 @@ ConvexPolygon ConvexPolygon::SquareAround(const Vec2& middle, double half_side) 
 }
 
 bool ConvexPolygon::Clip(const Vec2& normal, double offset) {
-  // A frame clips millions of times, so the memory is reused.
+  // The memory is reused, because Clip() is called millions of times for a frame.
   thread_local std::vector<double> past;
   thread_local std::vector<Vec2> kept;
   past.clear();

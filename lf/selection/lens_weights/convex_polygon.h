@@ -1,4 +1,4 @@
-// Convex polygons in the lens plane.
+// Convex polygons in the lens plane, in world units. Internal to lens_weights.
 #pragma once
 
 #include <vector>
@@ -17,15 +17,16 @@ class ConvexPolygon {
 
   bool empty() const { return vertices_.empty(); }
 
-  // Keeps the part where normal . p <= offset. Returns true if this is not the whole polygon.
+  // Keeps only the points p of the polygon with normal . p <= offset. Returns true if this removes
+  // a part of the polygon.
   bool Clip(const Vec2& normal, double offset);
 
-  // Distance of the farthest vertex from the point; 0 if there is none.
+  // Returns the distance of the farthest vertex from `point`; 0 if there are no vertices.
   double FarthestFrom(const Vec2& point) const;
 
   double Area() const;
 
-  // Area of the part within the disk with this radius around the origin.
+  // Returns the area of the intersection with the disk of this radius around the origin.
   double AreaInDisk(double radius) const;
 
  private:

@@ -10,8 +10,8 @@ namespace {
 
 double Cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-// Returns the corners counter-clockwise, without points between them; only one or two points if
-// there are no more. (Andrew's monotone chains.)
+// Returns the corners of the convex hull counter-clockwise, without points on its edges. If all
+// points are equal or on a line, returns one or two points. (Andrew's monotone chains.)
 std::vector<Vec2> ConvexHull(std::span<const Vec2> points) {
   std::vector<Vec2> sorted(points.begin(), points.end());
   std::sort(sorted.begin(), sorted.end(), [](const Vec2& a, const Vec2& b) {
@@ -28,7 +28,7 @@ std::vector<Vec2> ConvexHull(std::span<const Vec2> points) {
         hull.pop_back();
       hull.push_back(*it);
     }
-    hull.pop_back();  // it is the first point of the other chain
+    hull.pop_back();  // the other chain begins with it
   };
   add_chain(sorted.begin(), sorted.end());
   add_chain(sorted.rbegin(), sorted.rend());
@@ -49,7 +49,8 @@ CoveredRegion::CoveredRegion(std::span<const Vec2> points, double margin_w) {
     for (const Vec2& normal : {Vec2(1, 0), Vec2(0, 1), Vec2(-1, 0), Vec2(0, -1)}) add(normal);
     return;
   }
-  // A straight track of cameras covers a band around it, with square ends.
+  // If the hull has two points (the cameras are on a line), the region is a rectangle around the
+  // line.
   for (size_t i = 0; i < hull.size(); ++i) {
     const Vec2 along = (hull[(i + 1) % hull.size()] - hull[i]).normalized();
     add(Vec2(along.y(), -along.x()));

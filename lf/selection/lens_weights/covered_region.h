@@ -1,4 +1,4 @@
-// The part of the lens plane whose light is known. A lens may be wider than the capture.
+// The part of the lens plane whose light the LF cameras have recorded. A lens may extend beyond it.
 #pragma once
 
 #include <limits>
@@ -10,28 +10,30 @@
 
 namespace lf {
 
-// The convex hull of the points where rays of LF cameras meet the lens plane, and a margin around
-// it. No LF camera stands for the lens beyond it. Otherwise, the LF cameras at the rim of the
-// capture would stand for all of the rest, and be visible as bright outlines in areas out of focus.
+// The convex hull of the points where rays of LF cameras meet the lens plane, extended by a margin.
+// No LF camera represents the part of the lens beyond this region. Otherwise, the LF cameras at the
+// rim of the capture would represent all of that part, and out-of-focus areas would show them as
+// bright outlines.
 class CoveredRegion {
  public:
-  // Makes the whole plane.
+  // Makes a region that is the whole lens plane.
   CoveredRegion() = default;
-  //   points    lens coordinates; finite, at least one
-  //   margin_w  reach of LF cameras at the rim: half a camera distance, as between LF cameras
+  //   points    at least one, finite, in lens coordinates
+  //   margin_w  width of the margin: half the distance between LF cameras, because an LF camera
+  //             between others also represents the lens up to half this distance
   CoveredRegion(std::span<const Vec2> points, double margin_w);
 
-  // Keeps the part of the polygon within the region. Exact.
+  // Replaces the polygon by its exact intersection with the region.
   void Clip(ConvexPolygon* polygon) const;
   bool Contains(const Vec2& place) const;
 
-  // Radius of the largest disk around the lens centre within the region: 0 if the centre is
-  // outside, infinite for the whole plane.
+  // Returns the radius of the largest disk around the lens centre that is within the region: 0 if
+  // the centre is outside, infinity if the region is the whole plane.
   double LargestRadius_w() const;
 
  private:
   struct Side {
-    Vec2 normal;  // outwards, of length 1
+    Vec2 normal;  // points outwards, has length 1
     double offset_w;
   };
   std::vector<Side> sides_;

@@ -14,20 +14,21 @@
 namespace lf {
 namespace {
 
-// Largest movement of lens points from node to node, approximately, as a part of their distance.
+// Largest movement of lens points from one node to the next, about, as a share of the distance
+// between LF cameras.
 constexpr double kStepOfDistance = 1.0 / 3;
-constexpr int kMostNodes = 48;         // along an edge of the plate
-constexpr int kLeastNodeStep_px = 32;  // finer grids would cost more than the rays
-// If lens points move by less than this part of their distance, cameras stand in the lens plane
-// except for rounding.
+constexpr int kMostNodes = 48;         // columns or rows of nodes
+constexpr int kLeastNodeStep_px = 32;  // a finer grid would cost more time than the rays
+// If lens points move by less than this share of the distance between LF cameras, the LF cameras
+// are in the lens plane except for rounding errors.
 constexpr double kAtRest = 1e-6;
 
-constexpr double kLeastShare = 1e-9;  // of the lens: smaller shares are rounding errors
+constexpr double kLeastShare = 1e-9;  // smaller shares of the lens are rounding errors
 
-constexpr double kUnit = 256;  // value at a node for a weight of 1
+constexpr double kUnit = 256;  // value in weights_ for a weight of 1
 
-// For one element, the intersection of each camera's ray with the lens plane. Cameras whose ray is
-// parallel to it are left out.
+// For one element, the intersection of each camera's ray with the lens plane, and the index of the
+// camera. A camera whose ray is parallel to the lens plane is left out.
 struct LensPoints {
   std::vector<Vec2> points;
   std::vector<size_t> cameras;
@@ -45,8 +46,9 @@ LensPoints PointsAt(const RenderCamera& frame, std::span<const Vec3> centres_wor
   return seen;
 }
 
-// Returns the approximate distance between points around the lens: of the kCamerasAround nearest
-// ones, or of all within the lens if these are more.
+// Returns the approximate distance between neighbouring points around the lens. Considers the
+// kCamerasAround points nearest to the lens centre, or all points within the lens if these are
+// more.
 double DistanceAround(const LensPoints& seen, double radius) {
   std::vector<double> distances;
   for (const Vec2& point : seen.points) distances.push_back(point.norm());
@@ -95,8 +97,9 @@ int NodeCount(double movement, double distance, int size_px) {
   return static_cast<int>(std::min(2 + steps, static_cast<double>(most)));
 }
 
-// Returns the share up to which the smallest shares make up a tenth of all. Very many tiny shares,
-// as those of cameras at almost the same position, do not lower it much.
+// Returns the share s for which the smallest shares, up to s, sum up to a tenth of the sum of all
+// shares. Even very many tiny shares, such as those of cameras at almost the same position, do not
+// lower it much.
 double ShareOfFirstTenth(std::vector<double> shares) {
   std::sort(shares.begin(), shares.end());
   const double tenth = 0.1 * std::accumulate(shares.begin(), shares.end(), 0.0);
@@ -195,7 +198,7 @@ FrameWeights::Node FrameWeights::MakeNode(const RenderCamera& frame,
   Node node;
   const std::optional<Vec3> focus = FocusPointOfElement(
       frame, NodePosition(column, columns_, width_px_), NodePosition(row, rows_, height_px_));
-  if (!focus) return node;  // beyond the horizon of a tilted focus plane, where no ray goes
+  if (!focus) return node;  // no ray: beyond the horizon of a tilted focus plane
   const LensPoints seen = PointsAt(frame, centres_world, *focus);
   std::vector<double> shares(seen.points.size(), 0);
   const auto mix = [&](const std::vector<double>& part, double by) {
@@ -241,7 +244,7 @@ void FrameWeights::SetWeights(const std::vector<Node>& nodes) {
 
 void FrameWeights::SetPlaces() {
   const auto set = [](int count, int size_px, std::vector<Place>* places) {
-    // Blocks may begin before the plate and end beyond it.
+    // A block may begin before the plate or end beyond it.
     places->resize(static_cast<size_t>(size_px) + kWeightBlock + 1);
     if (count == 1) return;
     for (size_t end = 0; end < places->size(); ++end) {

@@ -17,7 +17,7 @@ ThreadPool& Pool() {
   return pool;
 }
 
-// Returns a camera at `z` that looks along z and is focused at z = 2.
+// Returns a camera at (0, 0, z) that looks along the z axis and is focused on the plane z = 2.
 RenderCamera Frame(double radius_w, double z = 0) {
   RenderCamera frame;
   frame.pinhole.intrinsics = {1200, 1200, 640, 400, 0, 1280, 800, {}};
@@ -38,7 +38,7 @@ std::vector<Vec3> JitteredGrid(int side, double spacing, double jitter, uint64_t
   return centres;
 }
 
-// Returns the shares at an element, computed there without interpolation.
+// Returns the shares of all cameras at a position of the plate, computed without interpolation.
 std::vector<double> ExactShares(const RenderCamera& frame, const std::vector<Vec3>& centres,
                                 double x, double y) {
   const Vec3 focus = *FocusPointOfElement(frame, x, y);
@@ -163,7 +163,8 @@ TEST(FrameWeights, BesideTheLensPlaneAreInterpolatedBetweenNodes) {
   }
 }
 
-// The weights of the camera in the middle of an even grid lie around the middle of the plate.
+// For the camera in the middle of an even grid, the elements with a weight are around the middle of
+// the plate.
 TEST(FrameWeights, BesideTheLensPlaneLieWhereTheCameraIsSeen) {
   const RenderCamera frame = Frame(0.06, 0.4);
   const auto centres = JitteredGrid(30, 0.015, 0, 3);
@@ -179,7 +180,7 @@ TEST(FrameWeights, BesideTheLensPlaneLieWhereTheCameraIsSeen) {
       place += weight * Vec2(x + 0.5, y + 0.5);
     }
   EXPECT_GT(sum, 0);
-  EXPECT_EQ(weights.At(middle, 10, 400), 0u);  // it is not seen all over the plate
+  EXPECT_EQ(weights.At(middle, 10, 400), 0u);  // only some elements see this camera
   EXPECT_NEAR(place.x() / sum, 640, 1);
   EXPECT_NEAR(place.y() / sum, 400, 1);
 }
@@ -214,12 +215,13 @@ TEST(FrameWeights, AreTheSameInBlocksOfEachCamerasOwn) {
 }
 
 TEST(FrameWeights, OneCameraWithAHugeShareLeavesTheOthersTheirs) {
-  std::vector<Vec3> centres = JitteredGrid(10, 0.002, 0.3, 6);  // moved into a corner of the lens
+  // to be moved into a corner of the lens
+  std::vector<Vec3> centres = JitteredGrid(10, 0.002, 0.3, 6);
   for (Vec3& c : centres) c += Vec3(0.1, 0.1, 0);
   centres.emplace_back(-0.1, -0.1, 0);
   const FrameWeights weights(Frame(0.2), centres, LensWeights::kArea, Pool());
   EXPECT_EQ(weights.At(centres.size() - 1, 0, 0), kMaxWeight);
-  // About half of the lens belongs to the last camera, and half to the cameras in the corner.
+  // The last camera represents about half of the lens, the cameras in the corner the other half.
   double others = 0;
   for (size_t i = 0; i + 1 < centres.size(); ++i) others += weights.At(i, 0, 0);
   EXPECT_NEAR(others / (others + kMaxWeight), 0.5, 0.15);
@@ -244,7 +246,8 @@ TEST(FrameWeights, ManyCamerasAtOnePlaceLeaveTheOthersTheirs) {
   }
 }
 
-// A trace of hats gives weights to many more cameras, and these must not change the others.
+// Even a tiny share of hats gives weights to many more cameras. They must not change the weights of
+// the others.
 TEST(FrameWeights, AutoIsSteadyWhereTheLastHatsGo) {
   constexpr double kSpacing = 0.01;
   const auto centres = JitteredGrid(6, kSpacing, 0.3, 10);
@@ -297,7 +300,7 @@ TEST(FrameWeights, AutoGoesFromHatsToCellsAsTheLensOpens) {
   EXPECT_GT(to_hats, 0.02);
   EXPECT_GT(to_cells, 0.02);
   EXPECT_NEAR(to_hats + to_cells, whole, 0.02);
-  // A pinhole has hats only.
+  // A pinhole has only hats.
   EXPECT_EQ(FrameWeights(Frame(0), centres, LensWeights::kAuto, Pool()).hat_share(), 1);
   double last = 1;
   for (double distances = 0; distances < 4; distances += 0.01) {

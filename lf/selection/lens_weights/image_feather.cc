@@ -31,7 +31,7 @@ ImageFeather::ImageFeather(const PinholeCamera& lf_camera, const RenderCamera& f
   const double sign = distance < 0 ? -1 : 1;
   const Mat3 direction = lens.cam_from_world.rotation.transpose() * lens.intrinsics.InverseMatrix();
   // X - c' = direction e distance / n.(direction e), where c' is the centre of the lens, and X - c
-  // is this minus `offset`. Both are multiplied by |n.(direction e)|.
+  // = X - c' - offset. to_focus e is X - c multiplied by |n.(direction e)|.
   const Mat3 to_focus = sign * (distance * Mat3::Identity() - offset * n.transpose()) * direction;
   to_focus_ = lf_camera.cam_from_world.rotation * to_focus;
   before_lens_ = (sign * n.transpose() * direction).transpose();
@@ -50,8 +50,8 @@ void ImageFeather::OfRow(int x, int y, int count, uint16_t* feather) const {
   }
 }
 
-// Returns the feather of a ray.
-//   direction  in axes of the LF camera, of any length
+// Returns the feather of a ray in the LF image.
+//   direction  direction of the ray, of any length, in the axes of the LF camera
 double ImageFeather::At(const Vec3& direction) const {
   const Intrinsics& k = intrinsics_;
   Vec2 distorted;

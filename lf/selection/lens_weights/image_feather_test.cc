@@ -13,7 +13,7 @@ namespace lf {
 namespace {
 
 TEST(ImageFeather, GrowsSmoothlyFromTheBorder) {
-  const Intrinsics k = {500, 500, 320, 160, 0, 640, 320};  // the border is 10 pixels wide
+  const Intrinsics k = {500, 500, 320, 160, 0, 640, 320};  // the feathered border is 10 pixels wide
   EXPECT_EQ(FeatherAt(k, 320, 160), 1);
   EXPECT_EQ(FeatherAt(k, 10.5, 160), 1);
   EXPECT_EQ(FeatherAt(k, 629.5, 309.5), 1);
@@ -32,8 +32,8 @@ TEST(ImageFeather, GrowsSmoothlyFromTheBorder) {
   }
 }
 
-// Computes the feather literally: at the position where the LF camera records the ray through the
-// focus point.
+// Computes the feather by its definition: at the position where the LF camera records the ray
+// through the focus point.
 double Literally(const testing::CameraPair& pair, double x, double y) {
   const auto focus = FocusPointOfElement(pair.render_camera, x, y);
   if (!focus) return 0;

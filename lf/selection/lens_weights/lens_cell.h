@@ -1,4 +1,4 @@
-// The Voronoi cell of one place among points of the lens plane. Internal to this folder.
+// Computes the Voronoi cell of one place among points of the lens plane. Internal to lens_weights.
 #pragma once
 
 #include <span>
@@ -9,12 +9,13 @@
 
 namespace lf {
 
-// Returns the part of `around` that is nearer to `place` than to any point. Calls met(i) for every
-// point that cuts it at some step, and same(i) for every point at `place`.
+// Returns the part of `around` that is nearer to `place` than to any of the points. Calls met(i)
+// for every point that cuts off a part of the polygon when it is considered, and same(i) for every
+// point that is exactly at `place`.
 template <class Met, class Same>
 ConvexPolygon CellOf(const Vec2& place, std::span<const Vec2> points, const PointGrid& grid,
                      ConvexPolygon around, const Met& met, const Same& same) {
-  double reach = 2 * around.FarthestFrom(place);  // largest distance of a point that may still cut
+  double reach = 2 * around.FarthestFrom(place);  // points farther than this cut nothing off
   for (int ring = 0; ring <= grid.ring_count() && !around.empty(); ++ring) {
     if (grid.LeastDistanceOf(ring) > reach) break;
     const double reach2 = reach * reach;

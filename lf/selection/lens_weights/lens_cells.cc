@@ -10,7 +10,8 @@
 namespace lf {
 namespace {
 
-// Finds the natural neighbours of a place, and the area that its cell takes from each.
+// Finds the natural neighbours of a place, and the area that a cell of this place would take from
+// each.
 class HatMaker {
  public:
   explicit HatMaker(std::span<const Vec2> points) : points_(points), grid_(points) {}
@@ -37,8 +38,8 @@ class HatMaker {
   }
 
  private:
-  // Adds points at the places of neighbours: they are also neighbours, although they cut nothing
-  // more.
+  // Adds the points that are at the same place as a neighbour. They are neighbours, too, although
+  // CellOf() does not report them, because they cut nothing more off.
   void AddThoseAtTheSamePlaces() {
     const size_t met_count = neighbours_.size();
     for (size_t k = 0; k < met_count; ++k)
@@ -49,15 +50,16 @@ class HatMaker {
       });
   }
 
-  // Returns a polygon that bounds the cell. Cells between cameras are smaller; cells beside the
-  // cameras would be infinite.
+  // Returns a polygon that limits the cell, because a cell beside all cameras would be infinite. A
+  // cell between cameras is smaller than the polygon.
   ConvexPolygon Surroundings(const Vec2& place) const {
     constexpr double kFar = 8;
     return ConvexPolygon::SquareAround(
         place, kFar * (grid_.DistanceToNearest(place) + grid_.bucket_size()));
   }
 
-  // Returns the area that the cell takes from neighbour i. Points at the same place share it.
+  // Returns the area that `cell` takes from neighbour i, divided by the number of points at the
+  // place of this neighbour.
   double TakenFrom(size_t i, const ConvexPolygon& cell) {
     int sharing = 1;
     part_ = cell;
@@ -80,8 +82,9 @@ class HatMaker {
   ConvexPolygon part_;  // a member, so that its memory is reused
 };
 
-// For a point beside the opening, returns the point that is nearest to the closest place of the
-// rim, among those around that place; none for a point in the opening.
+// For a point beside the opening, finds the closest place of the opening's rim, and returns one of
+// the points near that place: the nearest to it. Returns nullopt for a point in the opening, or if
+// there is no other point near that place.
 std::optional<Vec2> PointAtRim(const Vec2& point, std::span<const Vec2> points,
                                const PointGrid& grid, double radius) {
   const double distance = point.norm();
@@ -110,7 +113,8 @@ std::vector<double> CellShares(std::span<const Vec2> points, const Aperture& ape
   std::vector<double> shares;
   shares.reserve(points.size());
   for (const Vec2& point : points) {
-    // Most points beside the opening have no cell in it, because points at its rim are nearer.
+    // Most points beside the opening have no cell in it, because a point near its rim is nearer to
+    // all of it. This is tested first, because it is quick.
     ConvexPolygon around = opening;
     if (const std::optional<Vec2> rival = PointAtRim(point, points, grid, aperture.radius_w)) {
       const Vec2 across = *rival - point;
@@ -120,7 +124,7 @@ std::vector<double> CellShares(std::span<const Vec2> points, const Aperture& ape
         continue;
       }
     }
-    int sharing = 0;  // number of points at this place, itself included
+    int sharing = 0;  // number of points at this place, this one included
     const ConvexPolygon cell = CellOf(
         point, points, grid, around, [](size_t) {}, [&](size_t) { ++sharing; });
     const double area = is_disk ? cell.AreaInDisk(aperture.radius_w) : cell.Area();

@@ -1,5 +1,5 @@
-// The lens as an integral over its area (doc/ray.md, "What is added"): the share of it that each LF
-// camera stands for.
+// Computes the share of the lens that each LF camera represents, so that a sum over LF cameras
+// approximates the integral over the lens area (doc/ray.md, "What is added").
 #pragma once
 
 #include <span>
@@ -11,25 +11,27 @@
 
 namespace lf {
 
-// Returns the share of each cell: a camera stands for its Voronoi cell, the part of the opening
-// that is nearer to it than to any other camera, clipped by the covered region. Exact except for
-// rounding (1e-12). If there is a point, in the opening or beside it, the sum of shares is the
-// covered part of the opening, because cells of points beside it reach in. Points at the same place
-// have equal shares. Takes about a microsecond for each point.
-//   points    where rays of the LF cameras meet the lens plane, in lens coordinates; finite, any
-//             number and arrangement
-//   aperture  radius_w > 0
+// Returns, for each point, the area of its Voronoi cell divided by the area of the opening. The
+// cell is the part of the opening that is nearer to the point than to any other point, clipped by
+// the covered region. Exact except for rounding (1e-12). If there is at least one point, in the
+// opening or beside it, the shares sum up to the covered share of the opening, because the cells of
+// points beside the opening extend into it. Points at the same place have equal shares. Takes about
+// a microsecond for each point.
+//   points    the points where rays of the LF cameras meet the lens plane, in lens coordinates;
+//             finite, in any number and arrangement
+//   aperture  its radius_w must be above 0
 std::vector<double> CellShares(std::span<const Vec2> points, const Aperture& aperture,
                                const CoveredRegion& covered = {});
 
-// Returns the share of each hat: every point of the opening is seen by the cameras around it, in
-// the proportions in which a camera at that point would take its cell from theirs (natural
-// neighbours; Sibson 1981). The share of a camera is its mean over `sample_count` points of the
-// opening. These weights are for openings that are small compared with the distances of the
-// cameras, pinholes included: a picture between cameras is interpolated, and moves smoothly from
-// one to the next. Outside of all cameras, the nearest ones share the whole. The sum is 1 if there
-// is a point. Points at the same place have equal shares. Takes some microseconds for each sample.
-//   aperture  radius_w >= 0; one sample is used if it is 0
+// Returns, for each point, its natural-neighbour weight (Sibson 1981), as a mean over
+// `sample_count` sample points of the opening. The weights at a sample point are found as follows:
+// a new Voronoi cell there would take area from the cells of the cameras around it, and each
+// camera's weight is its share of this area. These weights are for openings that are small compared
+// with the distances between cameras, and for pinholes: a picture between cameras is interpolated,
+// and changes smoothly from one camera to the next. Outside of all cameras, the nearest cameras
+// share the whole weight. The sum is 1 if there is at least one point. Points at the same place
+// have equal shares. Takes some microseconds for each sample.
+//   aperture  its radius_w must be at least 0; if it is 0, only one sample is used
 std::vector<double> HatShares(std::span<const Vec2> points, const Aperture& aperture,
                               int sample_count = 64);
 

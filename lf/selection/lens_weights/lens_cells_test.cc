@@ -27,7 +27,7 @@ std::vector<Vec2> RandomPoints(size_t count, double reach, uint64_t seed) {
   return points;
 }
 
-// Returns the share of the opening's samples that are nearest to each point.
+// Returns, for each point, the share of the opening's samples that are nearest to it.
 std::vector<double> SharesBySampling(const std::vector<Vec2>& points, const Aperture& aperture,
                                      int samples) {
   std::vector<double> shares(points.size());
@@ -66,7 +66,7 @@ TEST(CellShares, AreThoseOfTheNearestPoints) {
   constexpr int kSamples = 200000;
   for (const Aperture& aperture : kOpenings)
     for (const uint64_t seed : {1, 2, 3}) {
-      // The points are uneven: two thirds of them are in a corner.
+      // The density of the points is uneven: two thirds of them are in a corner.
       std::vector<Vec2> points = RandomPoints(20, 1.5, seed);
       for (const Vec2& p : RandomPoints(40, 0.4, seed + 9)) points.push_back(p + Vec2(0.6, 0.5));
       const auto shares = CellShares(points, aperture);
@@ -88,8 +88,7 @@ TEST(CellShares, InTheMiddleOfAGridTheyAreItsSquares) {
           << points[i].transpose();
     }
   }
-  // Half of the square of the camera at (1, 0) reaches into the disk, minus the part that the rim
-  // cuts off.
+  // Half of the square around the camera at (1, 0) is in the disk, without the part beyond the rim.
   const auto shares = CellShares(points, kOpenings[0]);
   const double half_chord = 0.05, rim = std::asin(half_chord) + half_chord * std::sqrt(1 - 0.0025);
   EXPECT_NEAR(shares[12 * 25 + 22] * kPi, rim - 0.95 * 0.1, 1e-12);
@@ -119,7 +118,7 @@ TEST(CellShares, EveryImageOfABracketHasAnEqualPartOfTheCell) {
     for (size_t i = 0; i < brackets.size(); ++i) {
       EXPECT_NEAR(cells[i], single_cells[i % points.size()] / 3, 1e-12);
       EXPECT_NEAR(hats[i], hats[i % points.size()], 1e-12);
-      // The reach of hats beyond the outer cameras depends a little on the number of points.
+      // The reach of hats beyond the outer cameras depends slightly on the number of points.
       EXPECT_NEAR(hats[i], single_hats[i % points.size()] / 3, 1e-3);
     }
   }
@@ -130,7 +129,7 @@ TEST(CellShares, CamerasOnALineCutTheLensIntoStrips) {
     std::vector<Vec2> points;
     for (int i = -30; i <= 30; ++i) points.emplace_back(0.05 * i * along);
     const auto shares = CellShares(points, kOpenings[0]);
-    // The area between two chords is the difference of the areas below them.
+    // The area between two chords is the difference of the areas on one side of them.
     const auto below = [](double d) { return std::asin(d) + d * std::sqrt(1 - d * d); };
     for (int i = -19; i <= 19; ++i)
       EXPECT_NEAR(shares[static_cast<size_t>(i + 30)] * kPi,
@@ -151,7 +150,8 @@ TEST(CellShares, AreTheSameInAnyUnit) {
 
 constexpr Aperture kPinhole = {0, 0, 0};
 
-// Returns the sum of the points times their shares: the position that the picture is seen from.
+// Returns the mean of the points, weighted by their shares: the position from which the picture
+// appears to be seen.
 Vec2 MeanPlace(const std::vector<double>& shares, const std::vector<Vec2>& points) {
   Vec2 mean = Vec2::Zero();
   for (size_t i = 0; i < points.size(); ++i) mean += shares[i] * points[i];
@@ -163,7 +163,8 @@ std::vector<Vec2> Moved(std::vector<Vec2> points, const Vec2& by) {
   return points;
 }
 
-// This is Sibson's local coordinate property, which other hats do not have.
+// Tests the local coordinate property of Sibson's natural neighbours, which other hat functions
+// lack.
 TEST(HatShares, APinholeAmongCamerasIsSeenFromItsOwnPlace) {
   for (uint64_t seed = 1; seed < 40; ++seed) {
     const auto points = RandomPoints(300, 1, seed);
@@ -184,7 +185,7 @@ TEST(HatShares, APinholeAtACameraIsThatCamera) {
   EXPECT_NEAR(HatShares(points, kPinhole)[40], 1, 1e-12);
   points[41] = points[42] = points[40];
   for (const size_t i : {40, 41, 42}) EXPECT_NEAR(HatShares(points, kPinhole)[i], 1.0 / 3, 1e-12);
-  // A pinhole close to the camera is almost that camera.
+  // A pinhole close to a camera has almost only the weight of that camera.
   for (const double distance : {1e-9, 1e-6, 1e-4}) {
     const auto near = HatShares(Moved(points, {distance, 0}), kPinhole);
     EXPECT_NEAR(near[40] + near[41] + near[42], 1, 100 * distance);
@@ -213,7 +214,8 @@ TEST(HatShares, OnAGridTheyAreSymmetric) {
   for (const size_t i : {27, 28, 35, 36}) EXPECT_NEAR(middle[i], 0.25, 1e-12);
   const auto beside = HatShares(Moved(points, {0, 0.5}), kPinhole);
   EXPECT_NEAR(beside[27], beside[28], 1e-12);
-  EXPECT_NEAR(beside[27], 4.0 / 9, 1e-12);  // of a cell of area 9/16, 1/4 from each of the two
+  // the new cell has area 9/16; it takes 1/4 from each of these two
+  EXPECT_NEAR(beside[27], 4.0 / 9, 1e-12);
 }
 
 TEST(HatShares, MoveSmoothlyWithTheLens) {

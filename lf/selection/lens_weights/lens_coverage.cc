@@ -12,8 +12,8 @@
 namespace lf {
 namespace {
 
-// Returns one of each group of points that are close together compared with the distance between
-// points. A camera on a tripod is recorded many times, and trembles.
+// Returns one point of each group of points that are close together compared with `distance`. A
+// camera on a tripod, for example, is recorded many times at slightly different positions.
 std::vector<Vec2> OneOfEachPlace(std::span<const Vec2> points, double distance) {
   constexpr double kSamePlace = 1.0 / 16;
   std::vector<Vec2> kept;
@@ -26,8 +26,8 @@ std::vector<Vec2> OneOfEachPlace(std::span<const Vec2> points, double distance) 
   return kept;
 }
 
-// Returns the median distance to the nearest neighbour, weighted by the area that a point stands
-// for, so that cameras that crowd in a corner do not decide. 0 without two points.
+// Returns the median of the distances to the nearest neighbours, weighted by their squares, so that
+// cameras that crowd in a corner do not decide. 0 if there are no two points.
 double DistanceOfDistinct(const std::vector<Vec2>& points) {
   const PointGrid grid(points);
   std::vector<double> distances;
@@ -62,7 +62,7 @@ LensCoverage CoverageOf(std::span<const Vec2> points, const Aperture& aperture) 
   const double distance = DistanceOfMost(points);
   if (distance == 0) return {};
   const PointGrid grid(points);
-  // A lens narrower than that has hats, which are not clipped by the region.
+  // A lens that is narrower than `distance` is weighted by hats, which the region does not clip.
   const bool is_cut = 2 * aperture.radius_w > distance;
   const CoveredRegion region = CoveredBy(points);
   const double far = kFarDistances * distance;

@@ -1,5 +1,5 @@
-// Measures how well LF cameras cover a lens, which a photographer should know before a night's
-// work.
+// Measures how well LF cameras cover a lens, so that a photographer knows this before hours of
+// rendering.
 #pragma once
 
 #include <span>
@@ -10,32 +10,35 @@
 
 namespace lf {
 
-// The light at a point is unknown if it is farther than so many camera distances from every LF
-// camera.
+// The light at a point of the lens is unknown if the point is farther than this from every LF
+// camera, in distances between LF cameras.
 inline constexpr double kFarDistances = 2;
 
-// Returns the distance between LF cameras, for CoveredRegion: the median distance of points from
-// their nearest neighbour, weighted by the area that each point stands for. Points at almost the
-// same place count as one. 0 without two different points.
+// Returns the distance between LF cameras: the median of the distances of points from their nearest
+// neighbours, weighted by the squares of these distances (about the area that a point represents).
+// Points at almost the same place count as one. 0 if there are no two different points.
 double DistanceOfMost(std::span<const Vec2> points);
 
-// Returns the region with a margin of half that distance; the whole plane without two different
-// points.
+// Returns the covered region with a margin of DistanceOfMost() / 2; the whole plane if there are no
+// two different points.
 CoveredRegion CoveredBy(std::span<const Vec2> points);
 
-// Uncovered share from which on people are told.
+// Programs warn if the uncovered share is above this.
 inline constexpr double kMuchUncovered = 0.1;
 
 struct LensCoverage {
-  // Share of the opening that is farther from every point than kFarDistances * DistanceOfMost() or,
-  // if the opening is wider than DistanceOfMost(), beyond CoveredBy(points). For a pinhole, only
-  // its middle counts: 0 or 1. Exact to about 1 / 256. 1 without two different points.
+  // Share of the opening that is not covered: it is farther from every point than kFarDistances *
+  // DistanceOfMost() or, if the opening is wider than DistanceOfMost(), outside of
+  // CoveredBy(points). For a pinhole, only its middle is tested: 0 or 1. Exact to about 1 / 256. 1
+  // if there are no two different points.
   double uncovered_share = 1;
-  // Diameter of the largest aperture with the same centre that is within the region.
+  // Diameter of the largest aperture with the same centre that is within CoveredBy(points); 0 if
+  // there are no two different points.
   double fitting_diameter_w = 0;
 };
 
-//   points  where rays of the LF cameras meet the lens plane, in lens coordinates
+//   points  one for each LF camera, in lens coordinates: the intersection of its ray (through the
+//           focus point of the element, say) with the lens plane
 LensCoverage CoverageOf(std::span<const Vec2> points, const Aperture& aperture);
 
 }  // namespace lf

@@ -52,8 +52,8 @@ TEST(LensCoverage, CamerasRecordedTwiceDoNotMakeDistancesSmaller) {
   const std::vector<Vec2> again = points;
   points.insert(points.end(), again.begin(), again.end());
   EXPECT_EQ(UncoveredShare(points, {1, 0, 0}), 0);
-  // Distances are not smaller either if cameras tremble, if a pause has very many cameras at one
-  // place, or if some crowd.
+  // The measured distance also does not become smaller if cameras tremble, if very many cameras are
+  // at one place, or if some cameras crowd.
   for (size_t i = again.size(); i < points.size(); ++i) points[i].x() += 1e-5;
   EXPECT_EQ(UncoveredShare(points, {1, 0, 0}), 0);
   points = again;

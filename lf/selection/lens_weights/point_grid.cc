@@ -12,7 +12,8 @@ PointGrid::PointGrid(std::span<const Vec2> points) : points_(points) {
     corner_ = low;
     const Vec2 size = high - low;
     const auto count = static_cast<double>(points.size());
-    // The second term is for points on a line, whose box has no area.
+    // The second term matters if the points are on a line, because their bounding box then has no
+    // area.
     bucket_size_ = std::max(std::sqrt(size.x() * size.y() / count), size.maxCoeff() / count);
     if (bucket_size_ == 0) bucket_size_ = 1;
     columns_ = static_cast<int>(size.x() / bucket_size_) + 1;

@@ -1,5 +1,5 @@
-// Points of the plane in square buckets, about one in each, so that they can be visited roughly in
-// the order of their distance. Internal to this folder.
+// Sorts points of the plane into square buckets, about one in each, so that they can be visited
+// roughly in the order of their distance from a place. Internal to lens_weights.
 #pragma once
 
 #include <algorithm>
@@ -17,17 +17,17 @@ class PointGrid {
   //   points  must outlive the grid
   explicit PointGrid(std::span<const Vec2> points);
 
-  // Side of a bucket, which is about the distance between points.
+  // Side of a bucket: about the distance between neighbouring points.
   double bucket_size() const { return bucket_size_; }
 
-  // Number of the last ring that may have points. Ring 0 is the bucket nearest to a place, and ring
-  // k is the buckets k columns or rows away from it.
+  // Number of the last ring that may have points. Ring 0 of a place is the bucket nearest to it.
+  // Ring k consists of the buckets whose larger distance in columns or rows from this bucket is k.
   int ring_count() const { return std::max(columns_, rows_); }
 
-  // Points in this ring are at least so far away.
+  // Returns a lower bound of the distance of the points in a ring.
   double LeastDistanceOf(int ring) const { return std::max(0, ring - 1) * bucket_size_; }
 
-  // Calls use(i) for the points of a ring around `centre`, which may be anywhere.
+  // Calls use(i) for the points in a ring of `centre`, which may be anywhere in the plane.
   template <class Use>
   void ForEachInRing(const Vec2& centre, int ring, const Use& use) const {
     const int column = ColumnOf(centre), row = RowOf(centre);
@@ -42,8 +42,8 @@ class PointGrid {
     }
   }
 
-  // Returns the distance from a place to the nearest point; infinite if there is none.
-  //   leave_out_same  ignores points exactly at the place
+  // Returns the distance from a place to the nearest point; infinity if there is none.
+  //   leave_out_same  true: points exactly at the place are ignored
   double DistanceToNearest(const Vec2& place, bool leave_out_same = false) const {
     double nearest = INFINITY;
     for (int ring = 0; ring <= ring_count() && LeastDistanceOf(ring) < nearest; ++ring)
