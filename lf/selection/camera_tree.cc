@@ -12,7 +12,7 @@ namespace lf {
 namespace {
 
 constexpr size_t kMostInLeaf = 32;
-constexpr int kLevels = 21;  // bits of each coordinate; three times as many fit into 64
+constexpr int kLevels = 21;  // bits of each coordinate; three coordinates fit into 64 bits
 
 // Moves bit i of a 21-bit number to bit 3 i.
 uint64_t Spread(uint64_t v) {
@@ -30,7 +30,8 @@ double AngleBetween(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-// Returns the largest angle between the optical axis and a ray of the image; pi if it is unknown.
+// Returns the largest angle between the optical axis and a ray of the LF image; pi if it is
+// unknown.
 double ViewAngle(const Intrinsics& k) {
   const Mat3 to_camera = k.InverseMatrix();
   const auto angle_of = [&](const Vec3& ideal) {
@@ -38,7 +39,7 @@ double ViewAngle(const Intrinsics& k) {
   };
   double most = 0;
   const auto add_box = [&](const Vec3& low, const Vec3& high) {
-    // A cone is convex, so the corners of the box have the largest angle.
+    // The largest angle is at a corner of the box, because a cone is convex.
     for (int i = 0; i < 8; ++i)
       most =
           std::max(most, angle_of({(i & 1) != 0 ? high[0] : low[0], (i & 2) != 0 ? high[1] : low[1],
@@ -52,7 +53,7 @@ double ViewAngle(const Intrinsics& k) {
       add_box(cell.middle - cell.extent, cell.middle + cell.extent);
     }
   }
-  // Cones are convex only up to a right angle.
+  // The result is valid only below a right angle, because wider cones are not convex.
   return most < kPi / 2 ? most : kPi;
 }
 
@@ -91,12 +92,13 @@ struct CameraTree::Builder {
     if (!codes.empty()) Add(0, codes.size(), kLevels);
   }
 
-  // Adds the node of codes [begin, end), which agree above the lowest `levels` digits of three
-  // bits.
+  // Adds a node for codes [begin, end), and the nodes below it. A code has one octal digit for each
+  // level. The codes differ only in their lowest `levels` digits.
   void Add(size_t begin, size_t end, int levels) {
     const auto digit = [&](size_t i, int level) { return codes[i].first >> (3 * (level - 1)) & 7; };
     const bool is_leaf = end - begin <= kMostInLeaf || levels == 0;
-    // A node with a single child is replaced by that child.
+    // Skips levels at which all codes have the same digit, because such a node would have a single
+    // child.
     while (!is_leaf && levels > 0 && digit(begin, levels) == digit(end - 1, levels)) --levels;
     const size_t node = tree.nodes_.size();
     tree.nodes_.emplace_back();
@@ -157,9 +159,10 @@ CameraTree::CameraTree(const LightField& light_field) : light_field_(light_field
 void CameraTree::ForEachLeaf(const SeenRegion& region,
                              const std::function<void(size_t leaf, bool all_inside)>& visit) const {
   constexpr double kRounding = 1e-6;
-  // At larger angles, the LF camera and the frame have no ray direction in common.
+  // If the angle between the optical axes is larger, the LF camera and the frame have no ray
+  // direction in common.
   const double most_angle = region.ray_angle_rad() + view_angle_rad_ + kRounding;
-  uint32_t inside_until = 0;  // nodes before this one are inside, because a node above them is
+  uint32_t inside_until = 0;  // nodes before it are inside, as is a node above them
   for (uint32_t n = 0; n < nodes_.size();) {
     const Node& node = nodes_[n];
     const Vec3 axis = Eigen::Map<const Eigen::Vector3f>(node.axis).cast<double>();

@@ -1,4 +1,4 @@
-// Compares the octree and its region with a test of every single LF camera.
+// Compares the octree and SeenRegion with a test of every single LF camera.
 #include "lf/selection/camera_tree.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace lf {
 namespace {
 
-// Returns LF cameras of all kinds of scenes, many more than a leaf holds.
+// Returns LF cameras with random poses and intrinsics; usually many more than a leaf can contain.
 LightField RandomField(size_t count, bool is_distorted) {
   LightField field;
   for (uint64_t seed = 0; seed < count; ++seed) {
@@ -28,7 +28,7 @@ LightField RandomField(size_t count, bool is_distorted) {
   return field;
 }
 
-// Returns a wall of cameras that look along z, or at a point.
+// Returns side x side LF cameras, about in a plane. All look along z, or all look at one point.
 LightField Wall(int side, bool look_at_one_point) {
   LightField field;
   field.intrinsics = {{100, 100, 25, 17.5, 0, 50, 35, {}}};
@@ -94,7 +94,8 @@ TEST(CameraTree, LeavesOutNoCameraThatContributes) {
       visited += found.size();
       for (uint32_t i = 0; i < field.size(); ++i) {
         const PinholeCamera camera = field.Camera({i});
-        // The bounds of cells of distorted images are coarser than the region.
+        // For distorted LF images, ContributingRect() is coarser than the region, and is tested
+        // only if the region does not miss.
         if (is_distorted && region.Misses(camera.CentreWorld())) continue;
         if (ContributingRect(camera, frame, cells[i]).empty()) continue;
         ++contributing;
@@ -108,7 +109,8 @@ TEST(CameraTree, LeavesOutNoCameraThatContributes) {
   }
 }
 
-// Tests rays by the ray model itself, also those of distorted images, whose rectangles are coarser.
+// Tests single rays with the ray model, also for distorted LF images, because their rectangles are
+// too coarse for a test.
 TEST(SeenRegion, HoldsTheCameraOfEveryAcceptedRay) {
   size_t accepted = 0, missed_cameras = 0;
   for (uint64_t seed = 0; seed < 600; ++seed) {
@@ -145,7 +147,7 @@ TEST(CameraTree, AsksFewOfAWall) {
   EXPECT_GE(visited, 80u);  // about 10 x 10
   EXPECT_LE(visited, 400u);
   EXPECT_GT(inside, 0u);
-  // Cameras that look at the frame from before it have no ray for it.
+  // LF cameras in front of the frame that look at it have no ray for it.
   frame.pinhole.cam_from_world = *LookAlong({0, 0, 30}, -Vec3::UnitZ(), -Vec3::UnitY());
   frame.focus_plane = {Vec3::UnitZ(), 20};
   visited = 0;
@@ -153,8 +155,8 @@ TEST(CameraTree, AsksFewOfAWall) {
   EXPECT_EQ(visited, 0u);
 }
 
-// Uses more frames than are processed together, with a range of places for each. An image counts
-// every frame that takes it.
+// Uses more frames than SelectImages() processes together, and a range of places for each frame.
+// SelectedImage::frame_count must count all frames that take the LF image.
 TEST(Select, FindsWhatEveryCameraAskedAloneSays) {
   const LightField field = RandomField(300, false);
   const std::vector<RenderCamera> frames = RandomFrames(150);

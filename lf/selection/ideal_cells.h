@@ -1,5 +1,5 @@
-// Boxes around the ideal positions of the pixels of a distorted LF image, from which selection
-// tells quickly which parts of it may contribute.
+// Boxes around the ideal positions of the pixels of a distorted LF image. With them, selection
+// finds quickly which parts of the LF image may contribute.
 #pragma once
 
 #include <vector>
@@ -19,9 +19,9 @@ struct IdealCell {
   bool has_bounds = false;
 };
 
-// Divides the image into about 24 cells along its longer side. The bounds of a cell are those of
-// nine positions, plus twice their second differences: at least eight times what a smooth lens
-// bends between them.
+// Divides the LF image into cells, at most 24 along its longer side. The box of a cell contains the
+// ideal positions of nine pixels, and a margin of twice their second differences. The margin is at
+// least eight times the deviation between these positions that a smooth lens causes.
 std::vector<IdealCell> MakeIdealCells(const Intrinsics& k);
 
 }  // namespace lf

@@ -1,5 +1,5 @@
-// An index of a light field, made once for many selections: the positions of its LF cameras, and
-// the places of its LF images in the order.
+// An index of a light field, made once for many selections: an octree of the LF cameras, and the
+// place of each LF image in the order.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@
 
 namespace lf {
 
-// Refers to the light field, which must outlive it. Takes 12 bytes for each LF camera.
+// Refers to the light field, which must outlive the index. Takes about 12 bytes for each LF camera.
 class ImageIndex {
  public:
-  //   places  of all its LF images; the light field may be a part of a larger one
+  //   places  places of all LF images of light_field, which may be a part of a larger light field
   ImageIndex(const LightField& light_field, ImagePlaces places);
-  // Makes an index with shuffled places.
+  // Makes an index with the places of ShuffledPlaces().
   explicit ImageIndex(const LightField& light_field, uint64_t seed = 0);
 
   const LightField& light_field() const { return tree_.light_field(); }

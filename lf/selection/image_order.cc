@@ -42,7 +42,7 @@ std::vector<uint32_t> ByArea(std::vector<uint32_t> shuffled,
   return shuffled;
 }
 
-// The frames that take each LF image.
+// Finds the frames that take an LF image, and their rays.
 class Takers {
  public:
   Takers(size_t image_count, std::span<const std::vector<ImageRays>> frames)
@@ -68,7 +68,8 @@ std::vector<uint32_t> RoundRobin(const std::vector<uint32_t>& shuffled,
                                  std::span<const std::vector<ImageRays>> frames) {
   const Takers takers(shuffled.size(), frames);
   const ImagePlaces places = PlacesOf(shuffled);
-  std::vector<std::vector<uint32_t>> waiting(frames.size());  // [frame]: its next image is the last
+  // [frame]: the next LF image is at the end
+  std::vector<std::vector<uint32_t>> waiting(frames.size());
   for (size_t f = 0; f < frames.size(); ++f) {
     for (const ImageRays& image : frames[f]) waiting[f].push_back(image.id.value);
     std::sort(waiting[f].begin(), waiting[f].end(),
@@ -91,7 +92,7 @@ std::vector<uint32_t> RoundRobin(const std::vector<uint32_t>& shuffled,
     std::vector<uint32_t>& queue = waiting[f];
     while (!queue.empty() && is_taken[queue.back()]) queue.pop_back();
     if (queue.empty()) continue;
-    // If turns of other frames gave this frame rays in the meantime, it waits again.
+    // If the frame has got rays in turns of other frames since it was queued, it is queued again.
     if (had == rays[f]) take(queue.back());
     turns.emplace(rays[f], f);
   }

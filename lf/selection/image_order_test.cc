@@ -13,8 +13,8 @@ namespace {
 
 constexpr size_t kImages = 2000, kFrames = 20;
 
-// Returns the frames of a film whose lens opens: each takes a window of LF images, and later frames
-// take wider ones. No frame takes images 0 .. 99.
+// Returns, for each frame of a film whose lens opens, the LF images that it takes: a range of ids,
+// wider for later frames. No frame takes images 0 .. 99.
 std::vector<std::vector<ImageRays>> Film() {
   std::vector<std::vector<ImageRays>> frames(kFrames);
   for (uint32_t f = 0; f < kFrames; ++f) {
@@ -31,8 +31,8 @@ std::vector<uint32_t> Ids(const ImagePlaces& places) {
   return ids;
 }
 
-// Returns, for the rays of every frame after a tenth of the LF images that are taken at all, their
-// standard deviation divided by their mean.
+// Counts the rays of each frame after the first tenth of the LF images that any frame takes.
+// Returns the standard deviation of these counts divided by their mean.
 double SpreadAfterATenth(ImageOrder order, const std::vector<std::vector<ImageRays>>& frames) {
   const ImagePlaces places = PlacesInOrder(order, kImages, 3, frames);
   std::vector<uint32_t> taken;
@@ -60,7 +60,7 @@ TEST(ImageOrder, EveryOrderHasEachImageOnce) {
     EXPECT_EQ(places.end, kImages);
     std::vector<uint32_t> ids = Ids(places);
     if (order != ImageOrder::kShuffle) {
-      // The last images are those that no frame takes.
+      // The LF images at the end are those that no frame takes.
       std::vector<uint32_t> last(ids.end() - 100, ids.end());
       for (const uint32_t id : last) EXPECT_TRUE(id < 100 || id >= 100 + 60 * 19 + 670) << id;
     }
@@ -80,12 +80,12 @@ TEST(ImageOrder, TheShuffleDependsOnTheSeedAlone) {
 TEST(ImageOrder, RoundRobinFillsFramesEqually) {
   const double shuffled = SpreadAfterATenth(ImageOrder::kShuffle, Film());
   const double in_turn = SpreadAfterATenth(ImageOrder::kRoundRobin, Film());
-  EXPECT_GT(shuffled, 0.3);  // later frames are wider, and get more
+  EXPECT_GT(shuffled, 0.3);  // later frames have wider lenses, and get more rays
   EXPECT_LT(in_turn, 0.1);
 }
 
-// Each image must be taken by a frame that has the fewest rays of all frames whose images are not
-// all done. The rays are counted here from the film alone.
+// Among the frames that still need LF images, one with the fewest rays must be among those that
+// take the next LF image. The test counts the rays itself.
 TEST(ImageOrder, RoundRobinServesTheFrameWithTheFewestRays) {
   const auto frames = Film();
   const std::vector<uint32_t> ids = Ids(PlacesInOrder(ImageOrder::kRoundRobin, kImages, 3, frames));
@@ -103,7 +103,7 @@ TEST(ImageOrder, RoundRobinServesTheFrameWithTheFewestRays) {
           fewest_of_takers = std::min(fewest_of_takers, rays[f]);
           --waiting[f];
         }
-    if (fewest == UINT64_MAX) break;  // only images that no frame takes are left
+    if (fewest == UINT64_MAX) break;  // only LF images that no frame takes are left
     ASSERT_EQ(fewest_of_takers, fewest) << "image " << id << " at place " << taken;
     for (size_t f = 0; f < kFrames; ++f)
       for (const ImageRays& image : frames[f])
@@ -113,8 +113,8 @@ TEST(ImageOrder, RoundRobinServesTheFrameWithTheFewestRays) {
   EXPECT_GT(taken, kImages / 2);
 }
 
-// Frames 1 and 2 take 30 + 40 rays of image 3, 60 rays of image 0, 50 of image 2, and none of image
-// 1.
+// The two frames take 30 + 40 rays of image 3, 60 + 0 rays of image 0, 0 + 50 rays of image 2, and
+// no rays of image 1.
 TEST(ImageOrder, AreaCountsTheRaysOfAllFramesTogether) {
   const std::vector<std::vector<ImageRays>> frames = {{{LfImageId{3}, 30}, {LfImageId{0}, 60}},
                                                       {{LfImageId{2}, 50}, {LfImageId{3}, 40}}};

@@ -12,13 +12,14 @@ namespace {
 
 constexpr double kLensMargin = 1e-6;
 constexpr double kPlateMarginPx = 1e-6;
-constexpr double kPixelMarginPx = 1e-6;  // of a vertex computed by clipping
-constexpr int kNeighboursPx = 2;         // on each side of a ray between pixels
-constexpr double kZeroMargin = 1e-12;    // of a form's value at a vertex, relative to its terms
+constexpr double kPixelMarginPx = 1e-6;  // rounding error of a vertex
+constexpr int kNeighboursPx = 2;         // on each side of a ray
+constexpr double kZeroMargin = 1e-12;    // rounding error of a form, relative to its terms
 
 int NeighboursOf(PixelReach reach) { return reach == PixelReach::kNeighbours ? kNeighboursPx : 0; }
 
-// Returns the largest difference, within the image, of a form from its value in the middle.
+// Returns the largest difference, within the LF image, between a form and its value in the middle
+// of the image.
 double SpreadOf(const PixelForm& form, const Intrinsics& image) {
   return 0.5 * (std::abs(form[0]) * image.width_px + std::abs(form[1]) * image.height_px);
 }
@@ -27,13 +28,14 @@ double InMiddle(const PixelForm& form, const Intrinsics& image) {
   return Value(form, 0.5 * image.width_px, 0.5 * image.height_px);
 }
 
-// Returns true if the form is below 0 all over the image, by more than rounding.
+// Returns true if the form is below 0 in the whole LF image, by more than the rounding error.
 bool IsBelowZero(const PixelForm& form, const Intrinsics& image) {
   const double spread = SpreadOf(form, image), middle = InMiddle(form, image);
   return middle + spread < -kZeroMargin * (spread + std::abs(middle) + std::abs(form[2]));
 }
 
-// A convex polygon that half-planes cut (Sutherland, Hodgman 1974): each adds one vertex at most.
+// A convex polygon that is clipped by half-planes (Sutherland, Hodgman 1974). Each half-plane adds
+// at most one vertex.
 class Clipped {
  public:
   explicit Clipped(const Intrinsics& image) : image_(image) {
@@ -46,9 +48,10 @@ class Clipped {
 
   bool empty() const { return count_ == 0; }
 
-  // Keeps the part with form <= 0.
+  // Keeps the part of the polygon with form <= 0.
   void Clip(const PixelForm& form) {
-    // Almost all half-planes keep the whole image, or nothing of it.
+    // These tests are quick, and enough for almost all half-planes: they keep the whole LF image or
+    // nothing.
     if (IsBelowZero(form, image_)) return;
     if (IsBelowZero(-form, image_)) {
       count_ = 0;
@@ -77,8 +80,8 @@ class Clipped {
     count_ = kept_count;
   }
 
-  // Returns the pixels whose centres are in the polygon's bounding box; with kNeighbours, the
-  // pixels around any point of the box.
+  // Returns the bounds of the pixels whose centres are in the polygon's bounding box; with
+  // kNeighbours, the bounds of the pixels that a ray through any point of the box needs.
   PixelRect Pixels(const Intrinsics& image, PixelReach reach) const {
     if (empty()) return {};
     const int beyond = NeighboursOf(reach);
@@ -99,8 +102,8 @@ class Clipped {
   }
 
  private:
-  // 4 corners and up to 7 + blades half-planes, of which the first cut most; 64 blades fit. More
-  // blades are clipped by the circle's 16 edges instead (see ContributingRect).
+  // Enough for the 4 corners, and one vertex for each of 7 + blades half-planes, for up to 64
+  // blades. A lens with more blades is clipped by the 16 edges of a disk (FrameOutline).
   static constexpr size_t kCapacity = 96;
 
   static double ValueOrZero(const PixelForm& form, const Vec2& p) {
@@ -116,9 +119,9 @@ class Clipped {
   size_t count_ = 0;
 };
 
-// Returns true if all rays of the image pass a circle within the lens. The corners are the
-// farthest, because a projective map takes the image to the points where its rays pass the lens
-// plane.
+// Returns true if all rays of the LF image pass through a circle within the lens. It suffices to
+// test the corners of the image, because a projective map takes image positions to the points where
+// their rays meet the lens plane.
 bool LensHolds(const RayForms& forms, double inner_w, const Intrinsics& image) {
   const double w = image.width_px, h = image.height_px;
   for (const Vec2& corner : {Vec2(0, 0), Vec2(w, 0), Vec2(w, h), Vec2(0, h)}) {
@@ -138,7 +141,7 @@ PixelRect ClippedRect(const Intrinsics& image, std::span<const PixelForm> plate,
     region.Clip(form);
     if (region.empty()) return {};
   }
-  // This is true for most LF cameras in a wide lens, and saves the test of sixteen edges.
+  // This holds for most LF cameras in a wide lens, and saves clipping by sixteen edges.
   if (LensHolds(forms, frame.lens_inner_w, image)) return region.Pixels(image, reach);
   const double margin_w = kLensMargin * frame.camera.aperture.radius_w;
   for (const ApertureEdge& edge : frame.lens_edges) {
@@ -148,7 +151,7 @@ PixelRect ClippedRect(const Intrinsics& image, std::span<const PixelForm> plate,
   return region.Pixels(image, reach);
 }
 
-// Returns true if the half-plane keeps nothing of the cell.
+// Returns true if the half-plane form <= 0 contains no point of the cell's box.
 bool Excludes(const PixelForm& form, const IdealCell& cell) {
   return Value(form, cell.middle) > form.cwiseAbs().dot(cell.extent.transpose());
 }
@@ -166,7 +169,7 @@ PixelRect BoundsOfCells(std::span<const IdealCell> cells, std::span<const PixelF
   return rect;
 }
 
-// Returns a box around the ideal positions of all pixels.
+// Returns a cell whose box contains the ideal positions of all pixels.
 IdealCell BoundImage(const Intrinsics& image, std::span<const IdealCell> cells) {
   IdealCell whole;
   if (!image.has_distortion()) {
@@ -208,9 +211,10 @@ ImageOverlap::ImageOverlap(const PinholeCamera& lf_camera, std::span<const Ideal
   axes_world_ = direction_world_ * box.extent.asDiagonal();
 }
 
-// A ray of direction d passes the lens plane at M d / (f.d) (doc/ray.md, 5). The separating line is
-// normal to the direction from the lens centre to the point where the middle ray passes. It touches
-// a circle that contains every polygon by which Rect() clips, so that both agree.
+// A ray of direction d meets the lens plane at M d / (f.d) (doc/ray.md, 5). The separating line is
+// normal to the direction from the lens centre to the point where the middle ray meets the lens
+// plane. It touches a circle that contains every polygon by which Rect() clips, so that
+// PlainlyMisses() never contradicts Rect().
 bool ImageOverlap::PlainlyMisses(const RenderCamera& render_camera) const {
   if (!has_bounds_) return false;
   constexpr double kRounding = 1e-9;
@@ -237,7 +241,7 @@ bool ImageOverlap::PlainlyMisses(const RenderCamera& render_camera) const {
 }
 
 FrameOutline::FrameOutline(const RenderCamera& render_camera) : camera(render_camera) {
-  // A polygon of very many blades is almost a disk, and the disk's 16-gon contains it.
+  // A lens with very many blades is treated as a disk, whose 16-gon contains it.
   constexpr int kMostBlades = 64;
   if (camera.aperture.blades > kMostBlades) camera.aperture.blades = 0;
   lens_edges = Edges(camera.aperture);
@@ -261,7 +265,8 @@ PixelRect ImageOverlap::Rect(const FrameOutline& frame) const {
     rect = Bounds(rect, distorted ? BoundsOfCells(cells_, plate, lens)
                                   : ClippedRect(image, plate, forms, frame, reach_));
   }
-  // Rectangles of cells hold all of their pixels; only the neighbours beyond them are missing.
+  // The rectangle of a cell contains all pixels of the cell. With kNeighbours, the neighbours
+  // beyond the rectangle must be added.
   if (!distorted || reach_ == PixelReach::kOwn || rect.empty()) return rect;
   return Intersection({0, 0, image.width_px, image.height_px},
                       {rect.x_begin - kNeighboursPx, rect.y_begin - kNeighboursPx,

@@ -1,5 +1,5 @@
-// The pixels of an LF image that can contribute to a frame (thesis 4.2.1, "Extraction of Relevant
-// Area in Image Space", Fig. 4.5).
+// Finds the pixels of an LF image that can contribute to a frame (thesis 4.2.1, "Extraction of
+// Relevant Area in Image Space", Fig. 4.5).
 #pragma once
 
 #include <span>
@@ -13,49 +13,52 @@
 
 namespace lf {
 
-// The pixels that a ray takes its value from.
+// Which pixels the value of a ray is computed from.
 enum class PixelReach {
-  kOwn,         // the pixel whose centre it goes through
-  kNeighbours,  // the four or sixteen pixels around it: rays go through any point of the image
+  kOwn,         // one pixel: rays pass through pixel centres only
+  kNeighbours,  // 4 or 16 pixels around the ray, which may pass through any point
 };
 
-// Returns the smallest pixel rectangle that holds the overlap of the lens (for a disk, its
-// circumscribed 16-gon) and the plate's region on the focus plane, both as the LF camera sees them.
-// Empty if no ray of the image can be accepted.
+// Returns the smallest pixel rectangle that contains the overlap, as the LF camera sees it, of the
+// lens (for a disk, its circumscribed 16-gon) with the region of the focus plane that the plate
+// sees. Empty if no ray of the LF image can be accepted.
 //
-// The rectangle holds every accepted ray (doc/ray.md) for any position of the LF camera: before,
-// behind or in the lens plane, in the focus plane, with the lens behind its back, and with the
-// plate beyond the horizon of a tilted focus plane. The thesis projects rectangles and intersects
-// them. This function clips the image by the half-planes that bound them (camera/ray_forms.h),
-// which gives the same region without projecting points that lie in the plane of the LF camera.
+// The rectangle contains every accepted ray (doc/ray.md) for any position of the LF camera: in
+// front of, behind or in the lens plane, in the focus plane, or looking away from the lens; also if
+// the plate sees beyond the horizon of a tilted focus plane. The thesis projects the lens and the
+// region into the LF image as rectangles and intersects them. This function clips the LF image by
+// the half-planes that bound them (camera/ray_forms.h). The result is the same region, but no point
+// must be projected that may lie in the plane through the LF camera.
 //
-// With lens distortion, the image is not a plane of rays that could be clipped: the rectangle
-// bounds the cells that no half-plane excludes.
-//   cells  MakeIdealCells() of the LF camera's intrinsics; not used without distortion
+// An LF image with lens distortion cannot be clipped like this. For such an image, the rectangle
+// bounds all cells that no half-plane excludes.
+//   cells  MakeIdealCells() of the LF camera's intrinsics; may be empty if the LF camera has no
+//          lens distortion
 PixelRect ContributingRect(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
                            std::span<const IdealCell> cells = {},
                            PixelReach reach = PixelReach::kOwn);
 
-// The properties of a frame that are computed once for all LF images.
+// Properties of a frame that are computed once and used for all LF images.
 struct FrameOutline {
   explicit FrameOutline(const RenderCamera& render_camera);
 
   RenderCamera camera;
-  std::vector<ApertureEdge> lens_edges;  // of a polygon that contains the lens
+  std::vector<ApertureEdge> lens_edges;  // edges of a polygon that contains the lens
   double lens_inner_w = 0;               // radius of a circle within that polygon
 };
 
 // Computes ContributingRect() of one LF image for many frames. Values that depend only on the LF
-// image are computed once, and a frame that the image plainly misses takes about 30 ns instead of a
-// microsecond or more. A dense light field and a long path have millions of pairs of image and
-// frame, almost all of which are such misses.
+// image are computed once. If PlainlyMisses() is true, a frame takes about 30 ns instead of a
+// microsecond or more. This matters because a dense light field and a long path have millions of
+// pairs of LF image and frame, almost all of which plainly miss.
 class ImageOverlap {
  public:
   //   cells  must outlive this object
   ImageOverlap(const PinholeCamera& lf_camera, std::span<const IdealCell> cells, PixelReach reach);
 
-  // True if no ray of the image runs forward, or if a line beside the lens separates all rays from
-  // the lens. Rect() is then empty. Rect() may also be empty if this is false.
+  // Returns true if no ray of the LF image points forward (doc/ray.md, 2), or if a line in the lens
+  // plane separates all rays from the lens. Rect() is then empty. Rect() may also be empty if this
+  // returns false.
   bool PlainlyMisses(const RenderCamera& render_camera) const;
 
   PixelRect Rect(const RenderCamera& render_camera) const {

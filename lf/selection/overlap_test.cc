@@ -36,7 +36,8 @@ TEST(Overlap, NoContributingRayLiesOutsideTheRectangle) {
   }
   EXPECT_GT(contributing_images, 1000u);
   EXPECT_GT(plainly_idle_images, idle_images / 2);
-  // Few images are selected in vain, and rectangles are not much larger than the rays in them.
+  // Few LF images are selected in vain, and the rectangles have at most twice as many pixels as
+  // contributing rays.
   EXPECT_LE(selected_images, contributing_images + contributing_images * 3 / 100);
   EXPECT_LE(pixels, 2 * rays);
 }
@@ -49,7 +50,8 @@ TEST(Overlap, NoContributingRayOfADistortedImageLiesOutsideTheRectangle) {
     const PixelRect rect = ContributingRect(pair.lf_camera, pair.render_camera, cells);
     const DistortionMap map(pair.lf_camera.intrinsics.distortion);
     bool any = false;
-    // Tests every third pixel: over all seeds, this also hits the neighbours of rectangles.
+    // Tests every third pixel. The offset depends on the seed, so that pixels next to the
+    // rectangles are tested for some seeds.
     for (int y = static_cast<int>(seed % 3); y < 140; y += 3)
       for (int x = static_cast<int>(seed / 3 % 3); x < 200; x += 3)
         if (Contributes(pair.lf_camera, map, pair.render_camera, x, y)) {
@@ -88,7 +90,8 @@ TEST(Overlap, ImagesLookingTheOtherWayGiveNoPixels) {
 }
 
 TEST(Overlap, CamerasBeyondTheRimPlainlyMiss) {
-  // The rim is at 5 pitches, and the vertices of its circumscribed 16-gon are at 5.098.
+  // The rim of the lens is at 5 pitches, and the vertices of its circumscribed 16-gon are at 5.098
+  // pitches.
   for (const auto& [column, row, misses] :
        {std::tuple{5, 0, false}, {0, -5, false}, {4, 3, false}, {3, 5, true}, {-6, 0, true}}) {
     const testing::CameraPair pair = testing::ParallelPair(column, row, 0.01, 0.05);
@@ -100,9 +103,10 @@ TEST(Overlap, CamerasBeyondTheRimPlainlyMiss) {
 
 TEST(Overlap, ALensBehindTheBackOfTheCameraStillCounts) {
   testing::CameraPair pair = testing::ParallelPair(0, 0, 0.01, 0.2);
-  pair.lf_camera.cam_from_world.translation = {0, 0, -1};  // 1 in front of the lens, looking away
+  // 1 in front of the lens, looks away from it
+  pair.lf_camera.cam_from_world.translation = {0, 0, -1};
   const PixelRect rect = ContributingRect(pair.lf_camera, pair.render_camera);
-  EXPECT_EQ(rect.width(), 40);  // slopes up to 0.2 at 100 pixels
+  EXPECT_EQ(rect.width(), 40);  // slopes up to 0.2 to both sides, focal length 100 pixels
 }
 
 TEST(Overlap, ACameraInTheFocusPlaneContributes) {

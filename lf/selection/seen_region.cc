@@ -7,7 +7,7 @@
 namespace lf {
 namespace {
 
-// Several times the margins that overlap.cc adds to lens and plate.
+// These margins are several times larger than those that overlap.cc adds to lens and plate.
 constexpr double kLensGrowth = 1 + 1e-5;
 constexpr double kPlateMargin_px = 1e-3;
 constexpr double kRounding = 1e-9;
@@ -31,7 +31,8 @@ SeenRegion::SeenRegion(const RenderCamera& frame)
   const Intrinsics& k = frame.pinhole.intrinsics;
   const Mat3 to_camera = k.InverseMatrix();
   const double height = frame.focus_plane.offset_w - frame.focus_plane.normal.dot(centre_);
-  // Bounds at the corners of the plate: t and q are linear in the position on the plate.
+  // The bounds are found at the corners of the plate, because t and q are linear in the position on
+  // the plate.
   Vec2 t_low = Vec2::Constant(INFINITY), t_high = -t_low;
   q_low_ = INFINITY;
   q_high_ = -INFINITY;
@@ -51,7 +52,7 @@ SeenRegion::SeenRegion(const RenderCamera& frame)
     ray_angle_rad_ = kPi;
     return;
   }
-  // Focus points lie in front of the lens, up to the horizon of a tilted focus plane.
+  // Focus points are in front of the lens, up to the horizon of a tilted focus plane: q > 0.
   is_empty_ = q_high_ <= 0;
   q_low_ = std::max(0.0, q_low_ * (1 - kRounding));
   q_high_ *= 1 + kRounding;
@@ -63,7 +64,7 @@ SeenRegion::SeenRegion(const RenderCamera& frame)
     slope_[side] = bounds[side][0];
     other_slope_[side] = bounds[side][1];
   }
-  // Bound of the direction X - L at depth 1.
+  // Largest components of the direction X - L at depth 1.
   const Vec2 steepest =
       t_low.cwiseAbs().cwiseMax(t_high.cwiseAbs()) + Vec2::Constant(radius_w_ * q_high_);
   ray_angle_rad_ = std::atan(steepest.norm()) + kRounding;
@@ -104,7 +105,8 @@ bool SeenRegion::Misses(const WorldBox& box) const {
   return is_beyond[0] || is_beyond[1] || is_beyond[2] || is_beyond[3];
 }
 
-// Between two depths, the region is narrowest at one of them or where its bounds bend.
+// Tests the box at its two ends in depth, and at the depths in between where a bound has a kink:
+// the region is narrowest at one of these depths.
 bool SeenRegion::HoldsAll(const WorldBox& box) const {
   if (is_everything_) return true;
   if (is_empty_) return false;

@@ -1,5 +1,5 @@
-// The region of LF cameras whose rays a frame may take: the widened viewing frustum of thesis 4.2.1
-// ("Extraction of Relevant Images", Fig. 4.4).
+// The region in which LF cameras may have rays for a frame: the widened viewing frustum of thesis
+// 4.2.1 ("Extraction of Relevant Images", Fig. 4.4).
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace lf {
 
-// An axis-parallel box of the world.
+// An axis-parallel box in world coordinates; empty by default.
 struct WorldBox {
   Vec3 low = Vec3::Constant(INFINITY);
   Vec3 high = Vec3::Constant(-INFINITY);
@@ -20,25 +20,29 @@ struct WorldBox {
   }
 };
 
-// Every accepted ray goes through a point L of the lens and a point X of the focus plane that the
-// plate sees (doc/ray.md, 2-5). An LF camera with such a ray stands on the line through both,
-//   c = (1 - z q) L + z t,  z: its depth in front of the lens, negative behind it,
+// Every accepted ray passes through a point L of the lens and a point X of the focus plane that the
+// plate sees (doc/ray.md, 2-5). The position c of an LF camera with such a ray is on the line
+// through L and X,
+//   c = (1 - z q) L + z t,  z: depth of c in front of the lens, negative behind it,
 //                           t: direction of X at depth 1, q: 1 / depth of X.
 // With |L| <= r, t in a box and q in [q0, q1], each coordinate of c is at most
 //   max(z t0, z t1) + r max(|1 - z q0|, |1 - z q1|)
-// and this bound is a convex function of z. The set of points beyond it is therefore convex, on
-// each of four sides: a box whose eight corners are all beyond one side is wholly outside. The
-// region does not depend on the directions in which LF cameras look.
+// and this bound is a convex function of z. There is such a bound on each of four sides (right,
+// left, above, below), and the set of points beyond it is convex. A box whose eight corners are all
+// beyond one side is therefore completely outside of the region. The region does not depend on the
+// directions in which LF cameras look.
 class SeenRegion {
  public:
-  // Enlarges lens and plate a little, so that rounding excludes no camera that overlap.h includes.
+  // Enlarges lens and plate slightly, so that rounding errors exclude no LF camera for which
+  // ContributingRect() is not empty.
   explicit SeenRegion(const RenderCamera& frame);
 
-  // True if no camera at this position, or in the box, has a ray for the frame.
+  // Returns true if no LF camera at this position, or in this box, can have a ray for the frame.
   bool Misses(const Vec3& centre_world) const;
   bool Misses(const WorldBox& box) const;
 
-  // If true, Misses() is false for every position in the box. It may also be false for such a box.
+  // Returns true only if Misses() is false for every position in the box. May return false even if
+  // Misses() is false for every position.
   bool HoldsAll(const WorldBox& box) const;
 
   // Largest angle between the optical axis and a ray that the frame takes.
@@ -46,14 +50,14 @@ class SeenRegion {
   const Vec3& forward_world() const { return forward_; }
 
  private:
-  // Returns how far a position in axes of the lens is beyond a side (right, left, above, below);
-  // negative if it is inside.
+  // Returns the distance of a position (in lens axes) beyond the bound of a side (right, left,
+  // above, below); negative if it is inside.
   double Beyond(int side, const Vec3& place) const;
   Vec3 InLensAxes(const Vec3& world) const;
 
   Vec3 centre_, right_, up_, forward_;
   double radius_w_ = 0;
-  // Bounds of t towards each of the four sides, and towards the opposite side.
+  // Largest t towards each of the four sides, and smallest t towards the same side.
   double slope_[4] = {};
   double other_slope_[4] = {};
   double q_low_ = 0, q_high_ = 0;  // 1 / world units

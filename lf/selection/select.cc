@@ -12,11 +12,13 @@
 namespace lf {
 namespace {
 
-// Number of frames that are processed together: each leaf that a frame may take needs 8 bytes.
+// Number of frames that are processed together. It limits the memory: each pair of a frame and a
+// leaf that it visits takes 8 bytes.
 constexpr size_t kFramesTogether = 64;
 constexpr size_t kLeavesPerTask = 4;
 
-// Caches the cells of the last LF camera, because neighbours mostly share their intrinsics.
+// Caches the cells of the last LF camera, because neighbouring LF cameras mostly have the same
+// intrinsics.
 class CellsOfLast {
  public:
   const std::vector<IdealCell>& Of(const LightField& light_field, LfImageId id) {
@@ -41,14 +43,14 @@ void Prefetch(const LfCamera& camera) {
 
 PixelRect WholeImage(const Intrinsics& k) { return {0, 0, k.width_px, k.height_px}; }
 
-// A leaf from which a frame may take LF images.
+// A pair of a frame and a leaf whose LF cameras may have rays for the frame.
 struct Visit {
   uint32_t leaf;
   uint32_t frame : 31;
   uint32_t all_inside : 1;
 };
 
-// Returns the visits sorted by leaf, and for each leaf by ascending frames.
+// Returns the visits of all frames, sorted by leaf and then by frame.
 std::vector<Visit> VisitsOf(const CameraTree& tree, std::span<const SeenRegion> regions,
                             ThreadPool& pool) {
   std::vector<std::vector<Visit>> of_frames(regions.size());
@@ -68,7 +70,8 @@ std::vector<Visit> VisitsOf(const CameraTree& tree, std::span<const SeenRegion> 
   return sorted;
 }
 
-// Selects the LF images of some frames. Frame f is frame first_frame + f of all.
+// Selects the LF images of some frames. Its frame f has the index first_frame + f in the argument
+// of SelectImages().
 class Selector {
  public:
   Selector(const ImageIndex& index, std::span<const RenderCamera> frames, size_t first_frame,
@@ -87,14 +90,15 @@ class Selector {
     return VisitsOf(index_.tree(), regions_, pool);
   }
 
-  // Appends the LF images of one leaf that frames take. All visits are of this leaf.
+  // Appends the LF images of one leaf that at least one frame takes.
+  //   visits  all visits of this leaf
   void Examine(std::span<const Visit> visits, CellsOfLast* cells,
                std::vector<SelectedImage>* found) const {
     const LightField& light_field = index_.light_field();
     const std::span<const LfImageId> ids = index_.tree().Leaf(visits.front().leaf);
     for (size_t i = 0; i < ids.size(); ++i) {
       const LfImageId id = ids[i];
-      // Neighbours in space are scattered in memory.
+      // LF cameras that are neighbours in space are scattered in memory.
       if (i + 1 < ids.size()) Prefetch(light_field.cameras[ids[i + 1].value]);
       const LfCamera& lf_camera = light_field.cameras[id.value];
       const PinholeCamera camera = light_field.Camera(id);
@@ -135,7 +139,7 @@ bool IsInterrupted(const SelectOptions& options) {
   return options.interrupted != nullptr && *options.interrupted;
 }
 
-// Returns the index at which the visits of each leaf begin, and the end of the last.
+// Returns the index at which the visits of each leaf begin, and at last the number of visits.
 std::vector<size_t> LeavesOf(std::span<const Visit> visits) {
   std::vector<size_t> begin;
   for (size_t i = 0; i < visits.size(); ++i)
@@ -144,7 +148,8 @@ std::vector<size_t> LeavesOf(std::span<const Visit> visits) {
   return begin;
 }
 
-// Sorts by place, and joins the entries of one image, which were found for different frames.
+// Sorts by place, and joins the entries of the same LF image, which were found for different
+// frames.
 void JoinByPlace(std::vector<SelectedImage>* images) {
   std::sort(images->begin(), images->end(),
             [](const SelectedImage& a, const SelectedImage& b) { return a.place < b.place; });
@@ -207,7 +212,7 @@ std::vector<PlaceRange> PlacesOfFirst(size_t image_count, const ImageIndex& inde
                                       const SelectOptions& options, ThreadPool& pool) {
   const LightField& light_field = index.light_field();
   std::vector<PlaceRange> ranges(frames.size());
-  // Frames are independent: each follows the order on its own.
+  // Each frame goes through the order independently of the others.
   pool.ForEach(frames.size(), [&](size_t f) {
     const SeenRegion region(frames[f]);
     std::vector<std::pair<uint32_t, LfImageId>> places;

@@ -1,4 +1,4 @@
-// Selects the LF images that frames need, in their order (thesis 4.2.1).
+// Selects the LF images that frames need, by ascending places (thesis 4.2.1).
 #pragma once
 
 #include <atomic>
@@ -18,7 +18,7 @@
 
 namespace lf {
 
-// The LF images that a frame takes: those at places [begin, end) of the order.
+// A range [begin, end) of places in the order: a frame takes only the LF images in its range.
 struct PlaceRange {
   uint32_t begin = 0;
   uint32_t end = UINT32_MAX;
@@ -27,49 +27,50 @@ struct PlaceRange {
   friend bool operator==(const PlaceRange&, const PlaceRange&) = default;
 };
 
-// One LF image that contributes. Its rectangle for each frame is not kept: overlap.h computes it
-// again in about a microsecond, and faster for frames that the image misses.
+// One LF image that contributes to at least one frame. Its rectangle for each single frame is not
+// stored, because overlap.h computes it again in about a microsecond, or faster if the LF image
+// misses the frame.
 struct SelectedImage {
   LfImageId id;
-  uint32_t place = 0;        // in the order
-  PixelRect rect;            // bounds of its rectangles over all frames that take it
-  uint32_t frame_count = 0;  // frames that take it
-  uint64_t ray_count = 0;    // pixels of all its rectangles: rays to be tested
+  uint32_t place = 0;        // of the LF image in the order
+  PixelRect rect;            // bounds of its rectangles for all frames that take it
+  uint32_t frame_count = 0;  // number of frames that take it
+  uint64_t ray_count = 0;    // sum of the pixels of these rectangles: rays to be tested
 };
 
 struct SelectOptions {
-  PixelReach reach = PixelReach::kOwn;  // of the estimator
-  // If true, every LF image that may contribute is taken whole, and no rectangle is computed. For
-  // measuring the benefit of rectangles.
+  PixelReach reach = PixelReach::kOwn;  // which pixels the estimator needs
+  // If true, the rectangle of every LF image that may contribute is the whole image. Serves to
+  // measure the benefit of rectangles.
   bool whole_images = false;
-  // If set, LF cameras whose optical axis differs from the frame's by a larger angle are left out,
-  // although they may have rays. The thesis leaves out those that look at the render camera; here
-  // the user chooses.
+  // If set, an LF camera is left out if the angle between its optical axis and the frame's is
+  // larger than this, even if it has rays for the frame. (The thesis leaves out LF cameras that
+  // look at the render camera. Here the user chooses the angle.)
   std::optional<double> max_angle_rad = {};
-  // Returns false if the frame takes no ray of the LF image although the geometry would allow it,
-  // because the image has no lens weight there. Empty: no image is left out. Called by any thread.
-  //   frame  index into the frames that LF images are selected for
+  // Returns false if an LF image is to be left out for a frame because it has no lens weight there.
+  // Empty: no LF image is left out for this reason. Called by any thread.
+  //   frame  index of the frame in the argument `frames` of SelectImages()
   std::function<bool(size_t frame, LfImageId id)> takes = {};
-  // May be null. Once it is true, the rest is skipped and the result must not be used.
+  // May be null. Once it is true, the remaining work is skipped and the result must not be used.
   const std::atomic<bool>* interrupted = nullptr;
 };
 
-// Returns true if max_angle_rad does not leave out the LF camera.
+// Returns true if options.max_angle_rad is unset or does not leave out the LF camera.
 bool IsWithinAngle(const LfCamera& lf_camera, const RenderCamera& frame,
                    const SelectOptions& options);
 
-// Returns the LF images that contribute to some frame, in the order of places (thesis: "a more even
-// result among all rendered frames, even before all have been processed"). The result does not
+// Returns the LF images that contribute to at least one frame, by ascending places (thesis: "a more
+// even result among all rendered frames, even before all have been processed"). The result does not
 // depend on the number of threads.
-//   places  of the LF images that each frame takes; empty: every frame takes all
+//   places  one range for each frame; empty: every frame takes all places
 std::vector<SelectedImage> SelectImages(const ImageIndex& index,
                                         std::span<const RenderCamera> frames,
                                         const SelectOptions& options, ThreadPool& pool,
                                         std::span<const PlaceRange> places = {});
 
-// Returns, for each frame, the places [0, end) that hold its first `image_count` contributing LF
-// images. A frame with fewer takes all places. An LF image that options.takes leaves out is not
-// counted.
+// Returns, for each frame, the range [0, end) of places that contains exactly its first
+// `image_count` contributing LF images. If a frame has fewer, its range is all places. An LF image
+// that options.takes leaves out is not counted.
 std::vector<PlaceRange> PlacesOfFirst(size_t image_count, const ImageIndex& index,
                                       std::span<const RenderCamera> frames,
                                       const SelectOptions& options, ThreadPool& pool);

@@ -1,5 +1,5 @@
-// Measures selection in the band of the thesis: LF cameras on half a circle around the scene, all
-// at about the same height, that look at its middle (thesis 5.1).
+// Measures selection in the band of the thesis (5.1): the LF cameras are on half a circle around
+// the scene, at about the same height, and look at its middle.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -27,7 +27,7 @@ LightField Band(size_t count) {
   return field;
 }
 
-// Returns a path along the band, a tenth of it long.
+// Returns a path along a tenth of the band.
 std::vector<RenderCamera> Path(size_t count, double aperture_diameter_w) {
   std::vector<RenderCamera> frames;
   for (size_t f = 0; f < count; ++f) {
@@ -49,7 +49,8 @@ void BuildIndex(benchmark::State& state) {
 }
 BENCHMARK(BuildIndex)->Arg(10'000)->Arg(1'000'000)->Unit(benchmark::kMillisecond);
 
-// Arguments: number of LF cameras, number of frames, diameter of the aperture in thousandths.
+// Arguments: number of LF cameras, number of frames, diameter of the aperture in thousandths of a
+// world unit.
 void Select(benchmark::State& state) {
   const LightField field = Band(static_cast<size_t>(state.range(0)));
   const ImageIndex index(field);
@@ -77,8 +78,8 @@ BENCHMARK(Select)
     ->Args({1'000'000, 900, 30})
     ->Unit(benchmark::kMillisecond);
 
-// Selects without an octree: tests every LF camera for each frame, in full or, if kQuickly, after a
-// quick test whether it plainly misses the frame.
+// Selects without an octree: tests every LF camera for each frame. If kQuickly is true, an
+// ImageOverlap is made once for all frames; otherwise once for each frame.
 template <bool kQuickly>
 void AskEveryCamera(benchmark::State& state) {
   const LightField field = Band(static_cast<size_t>(state.range(0)));

@@ -10,7 +10,7 @@
 namespace lf {
 namespace {
 
-// Returns a 21 x 21 grid with pitch 0.01 in the plane z = 0.
+// Returns 21 x 21 LF cameras with pitch 0.01 in the plane z = 0.
 LightField Grid() {
   LightField field;
   field.intrinsics = {{100, 100, 25, 17.5, 0, 50, 35}};
@@ -90,7 +90,8 @@ TEST(Select, PlacesAreThoseOfTheWholeLightFieldWhateverTheFrames) {
   }
 }
 
-// A part of a light field with its places gives the same result as the whole light field.
+// An index of only the LF images that contribute, with their places, gives the same result as an
+// index of the whole light field.
 TEST(Select, APartWithItsPlacesIsAsGoodAsTheWhole) {
   ThreadPool pool(2);
   const LightField grid = Grid();
@@ -143,7 +144,7 @@ TEST(Select, EveryFrameTakesItsFirstImagesOnly) {
   const LightField grid = Grid();
   const std::vector<RenderCamera> frames = {Frame(0.05, 0), Frame(0.03, 0.08), Frame(0.0101, 0)};
   const std::vector<PlaceRange> places = PlacesOfFirst(10, ImageIndex(grid), frames, {}, pool);
-  EXPECT_EQ(places[2], PlaceRange{});  // it has only five LF images
+  EXPECT_EQ(places[2], PlaceRange{});  // this frame has only five LF images
   for (size_t f = 0; f < 2; ++f) {
     const auto alone = std::span(frames).subspan(f, 1);
     const auto all = SelectImages(ImageIndex(grid), alone, {}, pool);
@@ -151,7 +152,7 @@ TEST(Select, EveryFrameTakesItsFirstImagesOnly) {
         SelectImages(ImageIndex(grid), alone, {}, pool, std::span(places).subspan(f, 1));
     ASSERT_EQ(some.size(), 10u);
     for (size_t i = 0; i < some.size(); ++i) EXPECT_EQ(some[i].id, all[i].id);
-    // Selection from that place on gives the remaining LF images.
+    // Selecting from that place on returns the remaining LF images.
     const std::vector<PlaceRange> rest = {{places[f].end}};
     EXPECT_EQ(SelectImages(ImageIndex(grid), alone, {}, pool, rest).size(), all.size() - 10);
   }

@@ -1,4 +1,5 @@
-// Decides by the ray model alone which rays a frame takes: the reference in selection's tests.
+// Decides with the ray model alone which rays a frame accepts: the reference in the tests of
+// selection.
 #pragma once
 
 #include <optional>
@@ -11,7 +12,7 @@
 
 namespace lf::testing {
 
-// Returns true if the ray of pixel (x, y) is accepted (doc/ray.md, 1-5).
+// Returns true if the frame accepts the ray of pixel (x, y) (doc/ray.md, 1-5).
 inline bool Contributes(const PinholeCamera& lf_camera, const DistortionMap& map,
                         const RenderCamera& render, int x, int y) {
   const std::optional<Vec3> position = IdealPosition(lf_camera.intrinsics, map, x + 0.5, y + 0.5);
