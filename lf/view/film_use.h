@@ -1,4 +1,5 @@
-// Finds in the background what each frame of a film needs, while a person looks at the first.
+// Finds what each frame of a film needs, in the background, while a person looks at the first
+// frames.
 #pragma once
 
 #include <atomic>
@@ -19,18 +20,18 @@ namespace lf {
 class FilmUse {
  public:
   struct Facts {
-    size_t frames_done = 0;                 // frames counted below; the others are 0
-    std::vector<uint32_t> image_counts;     // number of LF images per frame
-    std::vector<uint64_t> ray_counts;       // number of pixels in the rectangles per frame
-    std::vector<uint16_t> frames_of_image;  // number of frames that use each LF image, at most
-                                            // 65535
+    size_t frames_done = 0;              // the first frames are done; counts of others are 0
+    std::vector<uint32_t> image_counts;  // [frame]: number of LF images
+    std::vector<uint64_t> ray_counts;    // [frame]: number of rays to be tested
+    // [LF image]: number of frames that use it, at most 65535
+    std::vector<uint16_t> frames_of_image;
   };
 
-  // Starts at once, in a thread of its own, which calls `on_progress` now and then and at the end.
-  // index and pool must outlive it.
+  // Starts counting at once in its own thread, which calls `on_progress` about four times a second
+  // and after the last frame. `index` and `pool` must outlive this object.
   FilmUse(const ImageIndex& index, std::shared_ptr<const CameraPath> path,
           const NeedsOptions& options, ThreadPool& pool, std::function<void()> on_progress);
-  ~FilmUse();  // stops early
+  ~FilmUse();  // ends the thread, even if frames are left
   FilmUse(const FilmUse&) = delete;
   FilmUse& operator=(const FilmUse&) = delete;
 

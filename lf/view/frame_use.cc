@@ -11,7 +11,7 @@ namespace {
 
 constexpr size_t kCamerasPerTask = 1024;
 
-// Finds out why a camera is not used, by the tests of selection.
+// Repeats the tests of selection to find out why an LF camera is not used.
 class Reasons {
  public:
   Reasons(const ImageIndex& index, const RenderCamera& frame, const NeedsOptions& options)
@@ -51,7 +51,7 @@ FrameUse UseOfCameras(const ImageIndex& index, const RenderCamera& frame,
   FrameUse use;
   use.camera_distance_w = needs.camera_distance_w();
   use.used = std::move(needs.images);
-  // If the limit was reached, it excludes the LF images that come after the last one used.
+  // If the frame has reached the limit, the LF images after the last used one are excluded by it.
   std::vector<bool> is_late(index.light_field().size(), false);
   if (options.max_image_count && !use.used.empty() && use.used.size() >= *options.max_image_count) {
     const uint32_t last = index.PlaceOf(use.used.back().id);

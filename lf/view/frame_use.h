@@ -1,5 +1,5 @@
-// Explains which LF cameras a frame uses and why it does not use the others: the decisions of
-// selection (thesis 4.2.1), for people to look at.
+// Finds which LF cameras a frame uses, and why it does not use the others: the decisions of
+// selection (thesis 4.2.1), to be shown to people.
 #pragma once
 
 #include <cstdint>
@@ -17,29 +17,32 @@
 
 namespace lf {
 
-// In the order of the tests: a camera has the first one that holds.
+// An LF camera gets the first of these values that applies.
 enum class CameraUse : uint8_t {
-  kUsed,      // pixels of its LF image are rays of the frame
-  kOutside,   // no ray through lens and sensor plate passes its position (Fig. 4.4)
-  kAngle,     // it looks along another direction than --max-angle allows
-  kSeesNone,  // its position is right, but no pixel of its LF image sees both the lens and the
-              // filmed scene (Fig. 4.5)
-  kLimit,     // it comes after the first --max-images of the order
-  kNoWeight,  // no point of the lens is nearest to it (doc/lens-integral.md)
+  kUsed,  // pixels of its LF image are read for the frame
+  // no ray that passes through the lens and hits the plate passes its position (Fig. 4.4)
+  kOutside,
+  // the angle between its optical axis and the frame's exceeds --max-angle
+  kAngle,
+  // its position would allow it, but no pixel of its LF image sees both the lens and the filmed
+  // region (Fig. 4.5)
+  kSeesNone,
+  kLimit,     // the frame has reached the limit --max-images before its place in the order
+  kNoWeight,  // it has no lens weight: no point of the lens is nearest to it (doc/lens-integral.md)
 };
 inline constexpr size_t kCameraUseCount = 6;
-// "used", "outside", "angle", "sees-none", "limit", "no-weight"
+// Returns "used", "outside", "angle", "sees-none", "limit" or "no-weight".
 std::string_view NameOf(CameraUse use);
 
 struct FrameUse {
-  std::vector<CameraUse> of_cameras;        // one per LF camera
-  std::vector<FrameNeeds::Image> used;      // in the order in which they are read
-  std::optional<double> camera_distance_w;  // approximate camera distance around the lens; set if
-                                            // there are lens weights
+  std::vector<CameraUse> of_cameras;    // [LF camera]
+  std::vector<FrameNeeds::Image> used;  // LF images that are read, in reading order
+  // distance between LF cameras around the lens, about; set if NeedsOptions::HasNeighbours()
+  std::optional<double> camera_distance_w;
 };
 
-// Decides as a render of the frame with these options would. Tests every LF camera, which takes
-// some milliseconds for a hundred thousand.
+// Returns the decisions that a render of the frame with these options makes. Tests every LF camera,
+// which takes some milliseconds for a hundred thousand LF cameras.
 FrameUse UseOfCameras(const ImageIndex& index, const RenderCamera& frame,
                       const NeedsOptions& options, ThreadPool& pool);
 

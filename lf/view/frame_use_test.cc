@@ -37,7 +37,7 @@ TEST(UseOfCameras, UsedAreThoseThatSelectionTakes) {
   EXPECT_EQ(Count(use, CameraUse::kLimit) + Count(use, CameraUse::kNoWeight), 0u);
 }
 
-// Figure 5.1 of the thesis: the lens is in the plane of the LF cameras.
+// As in Figure 5.1 of the thesis, the lens is in the plane of the LF cameras.
 TEST(UseOfCameras, OfATriangularApertureAreATriangle) {
   const LightField field = testing::GridField();
   const ImageIndex index(field);

@@ -11,7 +11,7 @@ namespace lf {
 namespace {
 
 constexpr uint8_t kMaskedGrey = 128;
-constexpr int kSteps = 8192;  // of linear light; the darkest steps are a twelfth of a display value
+constexpr int kSteps = 8192;  // of linear light; in the dark, a step is 0.4 display values
 
 uint8_t DisplayValue(double linear) {
   static const std::vector<uint8_t> values = [] {
@@ -24,7 +24,7 @@ uint8_t DisplayValue(double linear) {
   return values[static_cast<size_t>(std::clamp(linear, 0.0, 1.0) * kSteps + 0.5)];
 }
 
-// Returns sums over the unmasked pixels of a square: R, G, B, and their number.
+// Returns sums over the unmasked pixels of a square: R, G, B, and the number of these pixels.
 std::array<double, 4> SumOf(const LfPixels& pixels, const PixelRect& square) {
   std::array<double, 4> sum = {};
   for (int y = square.y_begin; y < square.y_end; ++y)

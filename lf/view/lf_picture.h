@@ -1,4 +1,4 @@
-// Shows LF images as pictures for people.
+// Makes pictures of LF images for people to look at.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,11 @@
 
 namespace lf {
 
-// Returns [height][width][3] sRGB, developed like frames (white balance, colour matrix, gain). If
-// the image is larger than max_side_px, each pixel is the mean of a square of its pixels. Masked
-// pixels are grey.
-//   store  must have Mosaics::kToRgb
+// Returns the LF image as sRGB, [height][width][3], developed like frames (white balance, colour
+// matrix, gain). If its longer side exceeds max_side_px, it is reduced: each pixel of the picture
+// is the mean of the unmasked pixels of a square. A pixel is grey if all pixels of its square are
+// masked.
+//   store  must be opened with Mosaics::kToRgb
 // kInput: errors of store.Load().
 Result<Image<uint8_t>> LfPicture(const LightField& light_field, const LfImageStore& store,
                                  LfImageId id, int max_side_px);

@@ -5,7 +5,7 @@
 namespace lf {
 namespace {
 
-// A store of red pixels with one v, whose upper left quarter is masked.
+// A store whose LF images are uniformly red, except for the upper left quarter, which is masked.
 class RedStore : public LfImageStore {
  public:
   explicit RedStore(const LightField& field) : field_(field) {}
@@ -44,7 +44,7 @@ TEST(LfPicture, IsShrunkenAndDeveloped) {
   ASSERT_TRUE(picture) << picture.error().message;
   EXPECT_EQ(picture->width(), 10);
   EXPECT_EQ(picture->height(), 5);
-  EXPECT_EQ(picture->at(9, 4, 0), 255);  // 0.5, balanced by 2
+  EXPECT_EQ(picture->at(9, 4, 0), 255);  // 0.5, times a white balance of 2
   EXPECT_EQ(picture->at(9, 4, 1), 0);
   EXPECT_EQ(picture->at(0, 0, 0), 128);  // masked
 }

@@ -11,8 +11,8 @@
 namespace lf {
 namespace {
 
-constexpr int kBorderSteps = 32;  // points per side at which a bent border is sampled
-constexpr int kEdgeSteps = 12;    // pieces into which an edge is bent
+constexpr int kBorderSteps = 32;  // steps per side of the image at which the border is sampled
+constexpr int kEdgeSteps = 12;    // straight pieces that approximate a bent edge
 
 using Polygon = std::vector<Vec2>;
 
@@ -33,8 +33,8 @@ Polygon Box(const Vec2& low, const Vec2& high) {
   return {low, {high.x(), low.y()}, high, {low.x(), high.y()}};
 }
 
-// Returns a box around the ideal positions of the image's border; nullopt if a border pixel has no
-// ray that a pinhole could have.
+// Returns a box around the ideal positions of the LF image's border; nullopt if a border pixel has
+// no ray, or a ray that does not point forward.
 std::optional<Polygon> IdealBox(const Intrinsics& k, const DistortionMap& map) {
   if (!k.has_distortion()) return Box({0, 0}, {k.width_px, k.height_px});
   Vec2 low = Vec2::Constant(INFINITY), high = Vec2::Constant(-INFINITY);
@@ -51,7 +51,7 @@ std::optional<Polygon> IdealBox(const Intrinsics& k, const DistortionMap& map) {
   return Box(low, high);
 }
 
-// Returns the polygon as the camera records it.
+// Returns a polygon in ideal positions as the LF camera records it, with its edges bent.
 Polygon Bent(const Polygon& ideal, const Intrinsics& k, const DistortionMap& map) {
   Polygon bent;
   const Mat3 inverse = k.InverseMatrix();

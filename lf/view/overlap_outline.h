@@ -9,10 +9,11 @@
 
 namespace lf {
 
-// Returns the part of the LF image that shows both the lens and what the plate sees on the focus
-// plane: convex polygons in continuous pixel coordinates, at most two (a tilted focus plane has two
-// sides). With lens distortion, straight edges are bent as the lens bends them; the result is empty
-// if the lens sees too wide for a bounding polygon.
+// Returns the part of the LF image that sees both the render lens and the region of the focus plane
+// that the plate sees: at most two convex polygons in continuous pixel coordinates (the LF camera
+// may see both sides of a tilted focus plane). If the LF camera has lens distortion, straight edges
+// are bent as its lens bends them. The result is empty if its field of view is too wide for a
+// bounding polygon.
 std::vector<std::vector<Vec2>> OverlapOutlines(const PinholeCamera& lf_camera,
                                                const RenderCamera& render_camera);
 

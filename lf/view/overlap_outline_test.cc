@@ -12,7 +12,7 @@
 namespace lf {
 namespace {
 
-// Returns the signed area, doubled; the corners of a convex polygon have one orientation.
+// Returns twice the signed area; its sign is the orientation of the polygon.
 double Area2(const std::vector<Vec2>& polygon) {
   double sum = 0;
   for (size_t i = 0; i < polygon.size(); ++i) {
@@ -34,8 +34,8 @@ bool Holds(const std::vector<Vec2>& polygon, const Vec2& p, double margin_px) {
   return true;
 }
 
-// Every pixel with an accepted ray lies inside the outline, and the outline lies inside the
-// rectangle that selection reads.
+// Every pixel with an accepted ray is inside an outline, and the outlines are inside the rectangle
+// that selection reads.
 TEST(OverlapOutlines, HoldAcceptedRaysAndFitTheirRectangle) {
   int polygons = 0;
   for (uint64_t seed = 0; seed < 60; ++seed) {

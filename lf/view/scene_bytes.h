@@ -1,5 +1,5 @@
-// Encodes what the page draws as arrays of numbers (little endian), which a browser can view
-// without parsing (doc/formats/page_data.md).
+// Encodes the data that the page draws as arrays of little-endian numbers, so that a browser can
+// use them without parsing (doc/formats/page_data.md).
 #pragma once
 
 #include <cstddef>
@@ -14,30 +14,34 @@
 
 namespace lf {
 
-// Returns the mean position of the LF cameras. The world's origin may be so far away that floats
-// relative to it could not tell the cameras apart.
+// Returns the mean position of the LF cameras. Positions are encoded relative to it, because the
+// world's origin may be so far away that floats relative to it would round all LF cameras to the
+// same position.
 Vec3 SceneOrigin(const LightField& light_field);
 
-// float x, y, z of every LF camera relative to SceneOrigin(), in world units: 12 bytes each.
+// Returns the position of every LF camera relative to SceneOrigin(), in world units: float x, y, z
+// (12 bytes each).
 std::string CamerasBytes(const LightField& light_field);
 
-// double numbers of every frame's camera: centre, right, up, forward (12); fx, fy, cx, cy; radius,
-// rotation and blades of the aperture; normal and offset of the focus plane (4); time, focal
-// length, sensor width, focus distance, horizontal and vertical tilt; width and height of the
-// plate.
+// FramesBytes() returns kFrameNumbers doubles for each frame, about its camera: centre, right, up,
+// forward (12); fx, fy, cx, cy; radius, rotation and blades of the aperture; normal and offset of
+// the focus plane (4); time, focal length, sensor width, focus distance, horizontal and vertical
+// tilt; width and height of the plate. Units are as in RenderCamera.
 inline constexpr size_t kFrameNumbers = 31;
 std::string FramesBytes(const CameraPath& path);
 
-// uint32 number of LF cameras, number of used ones; float camera distance (NaN: none); uint32 0.
-// Then, for all used LF images in reading order: uint32 ids, followed by float shares of their
-// pixels. Then one byte per LF camera: its CameraUse.
+// Returns a head of 16 bytes: uint32 number of LF cameras; uint32 number of used ones; float camera
+// distance (NaN if unset); uint32 0. Then, for all used LF images in reading order, their ids
+// (uint32), followed by the shares of their pixels that are read (float). Then one byte per LF
+// camera: its CameraUse.
 std::string FrameUseBytes(const LightField& light_field, const FrameUse& use);
 
-// uint16 per LF camera: number of frames that use its image.
+// Returns one uint16 per LF camera: the number of frames that use its image.
 std::string FilmUseBytes(const FilmUse::Facts& facts);
 
-// uint32 width and height, width and height of the full frame, 1 if ray counts are known, and 0
-// three times; then half floats R, G, B and ray count of each element, row by row.
+// Returns a head of eight uint32: width and height of the picture; width and height of the full
+// frame; 1 if ray counts are known, otherwise 0; 0, 0, 0. Then four half floats for each element,
+// row by row: R, G, B and ray count.
 std::string PictureBytes(const GrowingPicture& picture);
 
 }  // namespace lf

@@ -17,7 +17,7 @@ T At(const std::string& bytes, size_t offset) {
   return value;
 }
 
-// The cameras are 5 mm apart, and a thousand kilometres from the world's origin.
+// The LF cameras are 5 mm apart, and a thousand kilometres away from the world's origin.
 TEST(SceneBytes, CamerasAreWhereTheyAre) {
   LightField field = testing::GridField();
   for (LfCamera& camera : field.cameras) camera.cam_from_world.translation.x() -= 1e6;
@@ -36,7 +36,7 @@ TEST(SceneBytes, FramesHaveTheirNumbers) {
   const auto number = [&](size_t frame, size_t i) {
     return At<double>(bytes, 8 * (kFrameNumbers * frame + i));
   };
-  EXPECT_EQ(number(0, 11), 1);       // forward is z
+  EXPECT_EQ(number(0, 11), 1);       // the forward direction is z
   EXPECT_EQ(number(0, 12), 80);      // fx
   EXPECT_EQ(number(0, 16), 0.0301);  // radius
   EXPECT_EQ(number(0, 18), 5);       // blades

@@ -11,7 +11,7 @@ namespace {
 
 constexpr size_t kPartBytes = size_t{1} << 20;
 
-// Collects lines and passes them on in large parts.
+// Collects lines and passes them to `emit` in large parts.
 class Lines {
  public:
   explicit Lines(const std::function<Result<void>(const std::string&)>& emit) : emit_(emit) {}
@@ -31,7 +31,7 @@ class Lines {
   std::string text_;
 };
 
-// Adding zero removes the sign of negative zeros.
+// Returns the position of a camera. Adding zero removes the sign of negative zeros.
 Vec3 Place(const PinholeCamera& camera) { return camera.CentreWorld() + Vec3::Zero(); }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Writes light field, path and selection as plain text for plotting scripts (thesis 4.5).
+// Writes the light field, the path and the selected LF images as plain text, for scripts that plot
+// them (thesis 4.5).
 #pragma once
 
 #include <functional>
@@ -14,14 +15,14 @@
 
 namespace lf {
 
-// Writes lines of words. Numbers are in world units, with as many digits as restore the same bits:
+// Writes lines of words. Positions are in world units, with enough digits to restore the same bits:
 //
 //   lf_camera ID X Y Z                 every LF camera, ID from 0
 //   render_camera FRAME X Y Z          every requested frame
-//   collected FRAME ID SHARE           LF cameras that the frame uses, by ascending ID, and the
-//                                      share of the LF image's pixels in its rectangle
+//   collected FRAME ID SHARE           every LF camera that the frame uses, by ascending ID, and
+//                                      the share of the LF image's pixels that are read
 //
-//   emit  receives the text in parts; its first error ends the function
+//   emit  receives the text in parts; the function returns its first error
 Result<void> WriteSceneText(const LightField& light_field, const CameraPath& path,
                             const std::vector<FrameId>& frames, uint64_t seed,
                             const NeedsOptions& options, ThreadPool& pool,

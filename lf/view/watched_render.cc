@@ -21,10 +21,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostNested = 2;  // depth of partial/package-0000/
+constexpr int kMostNested = 2;  // as deep as partial/package-0000/
 constexpr size_t kMostDigits = 7;
 
-// Returns the number of the frame in frame_0001.exr or frame_0001.png.
+// Returns the frame number in a file name such as frame_0001.exr or frame_0001.png; nullopt for
+// other names.
 std::optional<FrameId> FrameOfName(const fs::path& path) {
   const std::string stem = path.stem().string(), extension = path.extension().string();
   constexpr std::string_view kPrefix = "frame_";
@@ -64,7 +65,7 @@ void AddFramesIn(const fs::path& folder, int nested, std::map<uint32_t, WatchedF
   }
 }
 
-// Returns the linear light of a stored value.
+// Returns the linear light of a stored value: floats are linear, integers sRGB.
 template <class T>
 float Linear(T value) {
   if constexpr (std::is_same_v<T, float>)
@@ -74,8 +75,9 @@ float Linear(T value) {
         LinearFromSrgb(static_cast<double>(value) / std::numeric_limits<T>::max()));
 }
 
-// Returns the factor from an element's stored colours to its light: alpha for integer files, whose
-// alpha is straight; otherwise 1.
+// Returns the factor by which the linear colours of an element are multiplied to show it over
+// black: alpha for integer files, whose colours are not multiplied by alpha; 1 for float files and
+// files without alpha.
 template <class T>
 float Covers(const Image<T>& image, int x, int y, int alpha_channel) {
   if (alpha_channel < 0 || std::is_same_v<T, float>) return 1;

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 class WatchedRenderTest : public FolderTest {
  protected:
-  // Writes elements (x, y) with R x, G y, B 1, and x + y rays.
+  // Writes a frame whose elements (x, y) have R = x, G = y, B = 1, and x + y rays.
   void Write(const std::string& name) {
     const int width = 6, height = 4;
     Image<float> colours(width, height, 3, 1.0f);
@@ -77,8 +77,8 @@ TEST_F(WatchedRenderTest, PngFilesTellNoRays) {
 }
 
 TEST_F(WatchedRenderTest, FramesWithAlphaAreShownOverBlack) {
-  // Two elements with light 0.25 and alpha 0.5, whose straight colours are 0.5, and two empty
-  // elements.
+  // Two elements have light 0.25 and alpha 0.5, so that their straight colours are 0.5. Two
+  // elements are empty.
   Image<uint16_t> straight(4, 1, 4);
   Image<float> light(4, 1, 3), alpha(4, 1);
   for (int x = 0; x < 2; ++x) {
