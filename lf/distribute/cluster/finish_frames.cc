@@ -50,8 +50,8 @@ bool IsFinished(const ClusterJob& job, FrameId frame) {
       job.output_folder / fmt::format("frame_{:04}{}", frame.value, job.frame_extension), ignored);
 }
 
-// Returns true if the package's checkpoint has rays of the frame: its plate, or rebinned rays,
-// which all frames share.
+// Returns true if the checkpoint of the package has rays of the frame: either a plate of the frame,
+// or rebinned rays, which all frames of the package share.
 bool HasRays(const ClusterJob& job, const JobPackage& package, FrameId frame) {
   const fs::path checkpoint = job.output_folder / "partial" / package.name;
   std::error_code ignored;

@@ -1,5 +1,5 @@
-// Frames of a job that are good enough for the user: they are finished with the rays they have,
-// while the other frames continue (lfrenderer --finish).
+// Frames of a job to finish early, because the user finds them good enough: they are finished with
+// the rays that they have, while the other frames continue (lfrenderer --finish).
 #pragma once
 
 #include <string>
@@ -11,12 +11,12 @@
 
 namespace lf {
 
-// Adds frames ("10-20", "7") to those to be finished early. Returns how many of them are not
-// finished. kUsage: other text; a frame that is not in the job, or that has no rays yet because it
-// was not started or has no checkpoint.
+// Adds frames ("10-20", "7") to the list of frames to finish early. Returns how many of them are
+// not finished yet. kUsage: the text has another form; a frame is not in the job, or has no rays
+// yet because it was not started or has no checkpoint.
 Result<size_t> AskToFinish(const ClusterJob& job, const std::string& frames_text);
 
-// Returns the frames of a package that are to be finished early, ascending. kInput: the file is
+// Returns the frames of a package that are on this list, ascending. kInput: the file of the list is
 // damaged.
 Result<std::vector<FrameId>> FramesToFinish(const ClusterJob& job, const JobPackage& package);
 

@@ -22,8 +22,8 @@ constexpr size_t kLimitBytes = size_t{64} << 20;
 constexpr const char* kFormat = "lfjob 1";
 constexpr size_t kMostFrames = 10'000'000;
 
-// Returns true if the text has control characters such as line breaks, which would begin another
-// line of a batch script.
+// Returns true if the text contains control characters, such as line breaks, which would start a
+// new line in a batch script.
 bool HasControls(std::string_view text) {
   return std::any_of(text.begin(), text.end(),
                      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
@@ -34,8 +34,8 @@ bool IsNumber(std::string_view text) {
          std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-// Checks the fields that go into batch scripts and calls of Slurm. Returns the fault, or an empty
-// text.
+// Checks the fields that are written into batch scripts and commands of Slurm, and the frame
+// extension. Returns a description of the first fault; empty if there is none.
 std::string FaultOf(const ClusterJob& job) {
   for (const std::string& option : job.sbatch_options)
     if (HasControls(option) || !option.starts_with('-'))
@@ -76,7 +76,7 @@ JobPackage PackageFromJson(const Json& json, std::string* fault) {
     package.frames = *parsed;
   else
     *fault = "\"frames\": " + parsed.error().message;
-  // The name is part of file names in the job's folder.
+  // The name is checked because it becomes a part of file names.
   if (package.name.empty() || package.name.find('/') != std::string::npos ||
       package.name.front() == '.' || HasControls(package.name))
     *fault = fmt::format("\"name\": expected the name of a package, found \"{}\"", package.name);
@@ -217,7 +217,8 @@ Result<ClusterJob> ReadJob(const fs::path& output_folder) {
         output_folder.string()));
   LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(file, kLimitBytes));
   LF_ASSIGN_OR_RETURN(ClusterJob job, ParseJob(text, file.string()));
-  // The folder may have been moved, or have another name on this machine.
+  // The stored path is not used, because the folder may have been moved, or be mounted elsewhere on
+  // this machine.
   job.output_folder = fs::absolute(output_folder);
   return job;
 }

@@ -1,5 +1,5 @@
-// Any text in a job's folder or from a batch system is parsed or refused; parsed values do not
-// change when they are written and read again.
+// The parsers of a job's files and of a batch system's output must accept or refuse any text.
+// Accepted jobs and states must not change when they are written and read again.
 #include <cstddef>
 #include <cstdint>
 #include <string>

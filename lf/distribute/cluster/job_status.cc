@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kLongQuiet_s = 10;
 
-// Returns the names in a folder with one listing, because a million single queries to a file server
-// are slow.
+// Returns the names of all files in a folder. One listing is faster than a million single queries
+// to a file server.
 std::set<std::string> NamesIn(const fs::path& folder) {
   std::set<std::string> names;
   std::error_code error;
@@ -26,7 +26,7 @@ std::set<std::string> NamesIn(const fs::path& folder) {
   return names;
 }
 
-// Returns the status that the files of a task state.
+// Returns the status of a task as far as its state file and log contain it.
 TaskStatus LookAtTask(const ClusterTask& task) {
   TaskStatus status;
   status.name = task.name;
@@ -44,7 +44,8 @@ TaskStatus LookAtTask(const ClusterTask& task) {
   status.image_done = progress.image_done;
   status.image_total = progress.image_total;
   if (state->phase != TaskPhase::kRunning) return status;
-  // lfrenderer reports progress every second; a batch system notices a dead node later than this.
+  // lfrenderer reports its progress every second. If it is silent for longer, its node may be dead,
+  // which a batch system notices only later.
   if (progress.quiet_s > kLongQuiet_s) {
     status.message = fmt::format("has not reported progress for {:.0f} s", progress.quiet_s);
     return status;
@@ -60,7 +61,7 @@ void TakeFacts(const ClusterJob& job, const JobPackage& package, const std::set<
                TaskStatus* status) {
   status->frame_total = package.frames.size();
   status->ray_total = package.ray_count;
-  if (status->state.start_count == 0) return;  // existing frames belong to another render
+  if (status->state.start_count == 0) return;  // existing frames are from another render
   for (const FrameId frame : package.frames)
     if (names.contains(fmt::format("frame_{:04}{}", frame.value, job.frame_extension)))
       ++status->frames_done;
@@ -75,7 +76,7 @@ void TakeQueue(const std::vector<QueuedTask>& queue, JobStatus* status) {
     task.queue = queued.state;
     if (queued.state == "PENDING") {
       task.message = queued.reason;
-      // A requeued task has not started again yet.
+      // The task was requeued, and has not started again yet.
       if (task.state.phase == TaskPhase::kRunning) task.state.phase = TaskPhase::kInterrupted;
     }
   }

@@ -1,5 +1,5 @@
-// The progress of a job, read from its files and the queue of a batch system; running programs are
-// not asked.
+// The progress of a job. It is read from the job's files and from the queue of the batch system,
+// without contact to running programs.
 #pragma once
 
 #include <optional>
@@ -13,17 +13,17 @@ namespace lf {
 
 struct TaskStatus {
   std::string name;
-  TaskState state;      // phase kInterrupted if the file says kRunning but no process runs
-  std::string queue;    // state in a batch system: "PENDING", ...; empty: not queued
-  std::string message;  // the latest known message
+  TaskState state;      // its phase is kInterrupted if the file says kRunning but no process runs
+  std::string queue;    // state in the batch system, such as "PENDING"; empty: not queued
+  std::string message;  // latest message of the task
   size_t frames_done = 0;
   size_t frame_total = 0;
-  std::optional<uint64_t> rays_left;  // as lfrenderer reported last
-  uint64_t rays_done = 0;             // out of ray_total, the forecast
+  std::optional<uint64_t> rays_left;  // last report of lfrenderer; unset: none
+  uint64_t rays_done = 0;             // of ray_total, which is a forecast
   uint64_t ray_total = 0;
-  uint64_t image_done = 0;  // LF images since the last start
+  uint64_t image_done = 0;  // LF images read since the last start
   uint64_t image_total = 0;
-  double rate = 0;  // `unit` per second, while the task runs
+  double rate = 0;  // in `unit` per second; 0 if the task does not run
   std::string unit;
   std::optional<double> seconds_left;
 
@@ -34,29 +34,30 @@ struct TaskStatus {
   }
 };
 
-// The phase of the whole job is kDone if all packages, all frames and the finishing task are done.
-// Otherwise it is kRunning while the engine or a task runs, or a task is queued after a start;
-// kFailed if a task failed; kInterrupted if a task was started; else kWaiting.
+// The phase of the whole job is the first that applies: kDone if all packages, all frames and the
+// finishing task are done; kRunning if the local engine or a task runs; if a task is queued,
+// kRunning if any task was ever started, otherwise kWaiting; kFailed if a task failed; kInterrupted
+// if any task was ever started; kWaiting.
 struct JobStatus {
   TaskPhase phase = TaskPhase::kWaiting;
   bool is_cancelled = false;
   std::vector<TaskStatus> packages;
   TaskStatus finishing;
-  std::string queue_error;  // why the batch system could not be asked
+  std::string queue_error;  // why the queue of the batch system could not be read; empty: no error
 
-  size_t Count(TaskPhase phase) const;  // number of packages
+  size_t Count(TaskPhase phase) const;  // number of packages in this phase
   size_t frames_done() const;
   size_t frame_total() const;
   uint64_t rays_done() const;
   uint64_t ray_total() const;
-  // Estimated from the rates of running tasks; nullopt if none has a rate.
+  // Returns an estimate from the rates of running tasks; nullopt if no task has a rate.
   std::optional<double> seconds_left() const;
 };
 
-// Reads the status. A damaged state becomes the message of its task.
+// Reads the status. If the state of a task is damaged, TaskStatus::message says so.
 JobStatus LookAtJob(const ClusterJob& job);
 
-// Returns the status for other programs.
+// Returns the status as JSON for other programs.
 std::string ToJson(const ClusterJob& job, const JobStatus& status);
 
 }  // namespace lf

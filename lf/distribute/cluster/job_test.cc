@@ -48,7 +48,7 @@ TEST(ClusterJob, IsRefusedWhereItsNamesWouldLeaveTheFolder) {
   EXPECT_FALSE(ParseJob(ToJson(job), "job").has_value());
 }
 
-// Batch scripts and calls of Slurm are made from these fields.
+// These fields become parts of batch scripts and of commands of Slurm.
 TEST(ClusterJob, IsRefusedWhereItWouldSlipInCommandsOrOptions) {
   for (const char* option : {"--partition=long\nrm -rf ~", "long", ""}) {
     ClusterJob job = SomeJob();

@@ -40,13 +40,13 @@ void RemoveFrames(const ClusterJob& job, const JobPackage& package) {
   fs::remove_all(job.output_folder / "partial" / package.name, ignored);
 }
 
-// Sleeps in short steps, so that a signal is noticed.
+// Sleeps in short steps, so that it returns soon after `stop` becomes true.
 void SleepOr(const std::atomic<bool>& stop, double seconds) {
   for (int i = 0; i < 10 * seconds && !stop; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
 }
 
-// Removes the job, but not the lock that we hold.
+// Removes all files of the job, except for the lock that the caller holds.
 void RemoveJob(const ClusterJob& job) {
   std::error_code ignored;
   std::vector<fs::path> files;
@@ -100,16 +100,16 @@ Result<std::vector<size_t>> PrepareResume(const ClusterJob& job) {
         task.state.phase == TaskPhase::kDone && task.frames_done == task.frame_total;
     if (is_done || task.IsQueued()) continue;
     numbers.push_back(i);
-    // A package that still runs is about to end, because its engine is gone; its lock is waited
-    // for.
+    // A package that still runs will end soon, because its engine has died. RunPackage() waits for
+    // its lock. Its state is not changed here.
     if (task.state.start_count == 0 || task.state.phase == TaskPhase::kRunning) continue;
     TaskState state = task.state;
     state.phase = TaskPhase::kInterrupted;
     state.crash_count = 0;
     LF_RETURN_IF_ERROR(WriteTaskState(state, PackageTask(job, i).state));
   }
-  // The film was finished before, but something of it is missing. It must not be called done until
-  // it is finished again.
+  // If the film was finished before, something of it is missing now. The state of the finishing
+  // task is removed, so that the job is not reported as done until the task has run again.
   if (status.finishing.state.phase == TaskPhase::kDone && !status.finishing.IsQueued()) {
     std::error_code error;
     fs::remove(FinishingTask(job).state, error);
@@ -133,7 +133,7 @@ Result<void> CancelJob(const ClusterJob& job, const std::atomic<bool>& stop) {
   JobStatus status = LookAtJob(job);
   for (double waited_s = 0; IsAtWork(status) && waited_s < kPatience_s && !stop; waited_s += 1) {
     SleepOr(stop, 1);
-    // Cancels tasks that were requeued in the meantime.
+    // Also cancels tasks that were requeued in the meantime.
     if (job.engine == ClusterEngine::kSlurm) LF_RETURN_IF_ERROR(CancelInSlurm(job));
     status = LookAtJob(job);
   }

@@ -1,4 +1,5 @@
-// Starts, resumes, cancels and waits for a job in a folder, from outside.
+// Prepares to start or resume a job in a folder, cancels it, or waits for it, without being its
+// engine.
 #pragma once
 
 #include <atomic>
@@ -11,26 +12,30 @@
 
 namespace lf {
 
-// Locks the job's folder, which is created if it is missing. Held by the program that submits,
-// resumes or locally renders the job. kOutput: the disk; another program holds the lock, and the
-// message names its process.
+// Creates the job's folder if it is missing, and locks it. A program holds this lock while it
+// submits, resumes or locally renders the job. kOutput: the disk fails; another process holds the
+// lock (the message names the process).
 Result<FileLock> TakeJob(const ClusterJob& job);
 
-// Makes sure that the folder holds no other job. With `overwrite`, removes the old job, and the
-// states and frames of these packages. To be called under TakeJob(). kUsage: there is a job, or one
-// that is running.
+// Makes sure that the folder contains no other job. If `overwrite` is true, removes the old job,
+// and the states and frames of the packages of `job`. The caller must hold the lock of TakeJob().
+// kUsage: there is a job and `overwrite` is false, or its tasks run or are queued.
 Result<void> MakeRoomForJob(const ClusterJob& job, bool overwrite);
 
 // Removes the request to cancel the job, and returns the packages to start: those that are neither
-// done nor queued. Their count of crashes is reset. To be called under TakeJob(). kOutput.
+// done nor queued. Resets the crash counts of those that do not run. If something must be rendered
+// again although the film was finished, the state of the finishing task is removed. The caller must
+// hold the lock of TakeJob(). kOutput: the batch system does not answer, or a file cannot be
+// written or removed.
 Result<std::vector<size_t>> PrepareResume(const ClusterJob& job);
 
-// Asks all packages to write a checkpoint and end, and waits for them or for `stop`.
+// Requests all packages to write a checkpoint and end, and waits until they have ended. kOutput:
+// some still run after three minutes, or when `stop` becomes true; they end later.
 Result<void> CancelJob(const ClusterJob& job, const std::atomic<bool>& stop);
 
-// Waits until no task of the job runs or is queued, or until `stop`, which leaves the job running.
-// Returns the error of the finishing task.
-//   look  called every few seconds
+// Waits until no task of the job runs or is queued, and returns the outcome of the finishing task
+// (OutcomeOf()). kInterrupted: `stop` became true; the job continues.
+//   look  called about every three seconds
 Result<void> WaitForJob(const ClusterJob& job, const std::atomic<bool>& stop,
                         const std::function<void()>& look);
 

@@ -31,13 +31,13 @@ Result<void> RunLocally(const ClusterJob& job, const FileLock& /*lock*/,
   const std::string node = NodeName();
   std::atomic<size_t> next = 0, working = 0;
   std::mutex error_mutex;
-  std::optional<Error> no_state;  // the first task whose state could not be read or written
+  std::optional<Error> no_state;  // first error of RunPackage()
   const auto work = [&] {
     for (size_t i = next++; i < numbers.size() && !stop && !job.IsCancelled(); i = next++) {
       const std::string name = PackageTask(job, numbers[i]).name;
       const Result<TaskState> state = RunPackage(job, numbers[i], node, stop);
       const Result<void> outcome = state ? OutcomeOf(name, *state) : state.error();
-      // Interruptions need no warning.
+      // An interruption needs no warning.
       if (!outcome && outcome.error().kind != ErrorKind::kInterrupted)
         LogWarning("{}{}", state ? "" : name + ": ", outcome.error().message);
       const std::lock_guard lock(error_mutex);

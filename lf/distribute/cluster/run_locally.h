@@ -1,4 +1,4 @@
-// Runs a job by processes of this machine.
+// Runs a job with processes of this machine.
 #pragma once
 
 #include <atomic>
@@ -11,17 +11,20 @@
 
 namespace lf {
 
-// Renders these packages, job.at_once at the same time, then finishes the film. Returns when all is
-// done. A failed package does not stop the others.
-//   lock  of TakeJob()
-//   look  called twice a second
-// kInterrupted: `stop` or --cancel. Otherwise the first error of RunPackage(), such as a state that
-// cannot be read or written, or the result of FinishFilm().
+// Renders these packages, at most job.at_once at the same time (at least one), then finishes the
+// film with FinishFilm(). Returns when everything is done. A failed package does not stop the
+// others.
+//   lock     the lock of TakeJob(), which the caller must hold
+//   numbers  indices of the packages in job.packages
+//   look     called about twice a second
+// kInterrupted: `stop` became true, or the job was cancelled. Otherwise returns the first error of
+// RunPackage(), such as a state that cannot be read or written; if there is none, the result of
+// FinishFilm().
 Result<void> RunLocally(const ClusterJob& job, const FileLock& lock,
                         const std::vector<size_t>& numbers, const std::atomic<bool>& stop,
                         const std::function<void()>& look);
 
-// Returns the name of this machine, or the node name that a batch system gave it.
+// Returns the node name that Slurm gave to this machine; outside of Slurm, the host name.
 std::string NodeName();
 
 }  // namespace lf

@@ -28,37 +28,38 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr auto kTick = std::chrono::milliseconds(50);
-constexpr int kTicksPerLook = 20;  // how often files are polled: others write them, perhaps over a
-                                   // network
+// files that other processes write are looked at once a second, because they may be on a file
+// server
+constexpr int kTicksPerLook = 20;
 
 double SecondsSince1970() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-// Returns a command in the syntax of a shell.
+// Returns a command as a line for a shell, for messages.
 std::string ShellLine(const std::vector<std::string>& words) {
   std::string line;
   for (const std::string& word : words) line += (line.empty() ? "" : " ") + ShellWord(word);
   return line;
 }
 
-// A running task: its lock, log and state.
+// A task that this process runs: holds its lock, and writes its log and state.
 class TaskRun {
  public:
   TaskRun(const ClusterJob& job, ClusterTask task, std::string node, const std::atomic<bool>& stop)
       : job_(job), task_(std::move(task)), node_(std::move(node)), stop_(stop) {}
 
-  // Takes the lock, then reads the state.
+  // Takes the task's lock, then reads its state.
   Result<void> Begin();
   TaskState& state() { return state_; }
   bool IsAskedToEnd() const { return stop_ || job_.IsCancelled(); }
   Result<void> End(TaskPhase phase, int exit_code, const std::string& message);
 
-  // Runs lfrenderer once. Its standard output goes to the file `output`, if that is not empty.
-  // `wants_restart` is called about once a second; if it returns true, lfrenderer is ended.
+  // Runs lfrenderer once. If `output` is not empty, standard output is written to this file.
+  // `wants_restart` is called about once a second; once it returns true, lfrenderer gets SIGTERM.
   Result<ProcessEnd> Run(const std::vector<std::string>& words, const fs::path& output,
                          const std::function<bool()>& wants_restart);
-  // Returns the last message of lfrenderer.
+  // Returns the last message of lfrenderer in the log.
   std::string LastMessage() const;
 
  private:
@@ -70,8 +71,8 @@ class TaskRun {
   TaskState state_;
 };
 
-// Waits for the lock: its last holder may have just died, while its lfrenderer still writes a
-// checkpoint.
+// Waits for the lock for up to two minutes. The process that held it may have just died, while its
+// lfrenderer still holds it to write a checkpoint.
 Result<void> TaskRun::Begin() {
   constexpr double kPatience_s = 120;
   const double begin_s = SecondsSince1970();
@@ -80,7 +81,7 @@ Result<void> TaskRun::Begin() {
     if (lock) {
       lock_ = *std::move(lock);
     } else if (!FileLock::IsHeld(task_.lock)) {
-      // It was released in the meantime, or cannot be created at all.
+      // Either it was released in the meantime, or the lock file cannot be created.
       lock = FileLock::Take(task_.lock);
       if (!lock && !FileLock::IsHeld(task_.lock)) return lock.error();
       if (lock) lock_ = *std::move(lock);
@@ -140,7 +141,7 @@ Result<ProcessEnd> TaskRun::Run(const std::vector<std::string>& words, const fs:
   state_.process = (*command)->process();
   state_.begin_s = SecondsSince1970();
   state_.message.clear();
-  // A running lfrenderer is more important than its state file.
+  // An error is only logged, because the running lfrenderer matters more than its state file.
   if (const auto written = WriteTaskState(state_, task_.state); !written)
     LogWarning("{}", written.error().message);
   bool is_told = false;
@@ -196,8 +197,8 @@ std::vector<FrameId> MissingFrames(const ClusterJob& job, const JobPackage& pack
   return missing;
 }
 
-// kInterrupted with the names of all packages that are not done, or the kind of the first that
-// failed.
+// Returns an error that names all packages that are not done. Its kind is that of the first failed
+// package, or kInterrupted if no package failed.
 Result<void> CheckAllDone(const ClusterJob& job) {
   std::string words;
   ErrorKind kind = ErrorKind::kInterrupted;
@@ -242,9 +243,9 @@ Result<TaskState> RunPackage(const ClusterJob& job, size_t number, const std::st
   TaskState& state = run.state();
   if (state.phase == TaskPhase::kDone) {
     if (MissingFrames(job, package).empty()) return state;
-    state.phase = TaskPhase::kInterrupted;  // its frames were removed to be rendered again
+    state.phase = TaskPhase::kInterrupted;  // the user removed frames to have them rendered again
   }
-  // No other process runs it, because we hold the lock.
+  // The process that wrote kRunning has died, because this process now holds the lock.
   if (state.phase == TaskPhase::kRunning) {
     ++state.crash_count;
     LF_RETURN_IF_ERROR(run.End(TaskPhase::kInterrupted, 0, "its node died"));
@@ -316,14 +317,15 @@ Result<void> FinishFilm(const ClusterJob& job, const std::string& node,
   if (!is_whole) words.insert(words.end(), {"--frames", FrameRangeText(frames)});
   if (job.video) words.insert(words.end(), {"--video", job.video->string()});
   if (!job.contact_sheet) words.emplace_back("--no-contact-sheet");
-  // If this finishing task fails, the report of an earlier one must not pass for its own.
+  // The report of an earlier finishing task is removed. Otherwise, if this one fails, that report
+  // would look like its result.
   const fs::path report = job.Folder() / "report.json";
   std::error_code ignored;
   fs::remove(report, ignored);
   TemporaryFile printed(report);
   const Result<ProcessEnd> end = run.Run(words, printed.path(), [] { return false; });
   if (!end) return fail(end.error());
-  // The signal that we passed on arrived before lfrenderer could catch it.
+  // The SIGTERM of Run() arrived before lfrenderer could catch it.
   if (end->signal == SIGTERM && run.IsAskedToEnd())
     return fail({ErrorKind::kInterrupted, "interrupted"});
   if (end->signal != 0) return fail(OutputError("the finishing task was " + WordsOf(*end)));

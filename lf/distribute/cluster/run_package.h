@@ -1,5 +1,5 @@
-// The tasks of a job: renders a package from its checkpoint to its last frame; when all packages
-// are done, makes a film of them.
+// Runs the tasks of a job: renders a package, from its checkpoint if there is one; when all
+// packages are done, makes the video and the contact sheet.
 #pragma once
 
 #include <atomic>
@@ -11,27 +11,31 @@
 
 namespace lf {
 
-// Renders the package with lfrenderer, which is restarted if it crashes; both processes hold the
-// task's lock. The output is appended to the task's log; every change is written to its state.
+// Renders a package with lfrenderer, and restarts lfrenderer if it crashes. This process and
+// lfrenderer both hold the task's lock. The output of lfrenderer is appended to the task's log.
+// Every change is written to the task's state file.
 //
-//   node  the name of this machine, for people
-//   stop  asks for the end: lfrenderer writes a checkpoint
+//   node  the name of this machine, for messages
+//   stop  true: lfrenderer writes a checkpoint and ends
 //
-// The phase of the result is kDone; kInterrupted by `stop` or the job's cancellation; or kFailed
-// (any other exit code, or more crashes than the job allows). A package that is done, with all its
-// frames, is not rendered again.
-// kOutput: another process holds the package for two minutes; the state cannot be written. kInput:
-// the state is damaged.
+// The phase of the result is kDone; kInterrupted, because of `stop` or because the job was
+// cancelled; or kFailed, because lfrenderer ended with another exit code or crashed more often than
+// the job allows. A package that is done and whose frames all exist is not rendered again.
+// kOutput: another process holds the task's lock for two minutes; the state cannot be written.
+// kInput: the state is damaged.
 Result<TaskState> RunPackage(const ClusterJob& job, size_t number, const std::string& node,
                              const std::atomic<bool>& stop);
 
-// Converts the end of a task to an error for the caller. kBelowRequired if it is done but
-// lfrenderer ended with that error; no error if it is done otherwise.
+// Converts the state of a task that has ended to a result. No error if the task is done and
+// lfrenderer succeeded; kBelowRequired if it is done, but lfrenderer ended with that error;
+// otherwise an error with the kind of lfrenderer's exit code, or kInterrupted.
+//   name  for messages
 Result<void> OutcomeOf(const std::string& name, const TaskState& state);
 
-// Checks that every frame exists, then writes contact sheet and video with lfrenderer. The error
-// names all packages that are not done, and has the kind of the first failed one, or kInterrupted
-// if none failed. kBelowRequired if lfrenderer ends with it.
+// Runs the finishing task: checks that every frame exists, then runs lfrenderer to write the
+// contact sheet and the video. If packages are not done, the error names them all; its kind is that
+// of the first failed package, or kInterrupted if no package failed. kBelowRequired if lfrenderer
+// ends with that error.
 Result<void> FinishFilm(const ClusterJob& job, const std::string& node,
                         const std::atomic<bool>& stop);
 

@@ -15,9 +15,9 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kPatience_s = 60;  // a busy slurmctld answers late
+constexpr double kPatience_s = 60;  // a busy slurmctld answers slowly
 
-// Returns the complaints of a program on one line.
+// Returns the error output of a program as one line; if it is empty, its standard output.
 std::string Complaints(const CommandAnswer& answer) {
   std::string words = answer.complaints.empty() ? answer.output : answer.complaints;
   constexpr size_t kShown = 2000;
@@ -44,7 +44,7 @@ std::string TimeText(double seconds) {
   return fmt::format("{}:{:02}:00", minutes / 60, minutes % 60);
 }
 
-// Returns the head of both scripts.
+// Returns the lines that begin both scripts.
 std::string Head(const ClusterJob& job, const char* name) {
   const std::string folder = job.output_folder.filename().string();
   std::string text = fmt::format(
@@ -55,7 +55,7 @@ std::string Head(const ClusterJob& job, const char* name) {
       "#SBATCH --nodes=1 --ntasks=1 --cpus-per-task={}\n",
       ShellWord("lf-" + (folder.empty() ? "film" : folder)),
       ShellWord((job.Folder() / fmt::format("slurm-{}.out", name)).string()), job.thread_count);
-  // Memory for lfrenderer's limit and the program itself.
+  // The limit of lfrenderer, and a margin for the other processes of the task.
   if (job.memory_bytes > 0)
     text += fmt::format("#SBATCH --mem={}M\n", (job.memory_bytes >> 20) + 256);
   if (job.time_limit_s > 0) text += fmt::format("#SBATCH --time={}\n", TimeText(job.time_limit_s));
@@ -68,9 +68,9 @@ std::string UserOptions(const ClusterJob& job) {
   return text;
 }
 
-// Returns the id in the answers "123" and "123;cluster" of sbatch.
+// Returns the job id of sbatch's output, which is "123" or "123;cluster".
 Result<std::string> JobId(const std::string& answer) {
-  constexpr size_t kMostDigits = 10, kShown = 80;  // Slurm counts jobs in 32 bits
+  constexpr size_t kMostDigits = 10, kShown = 80;  // Slurm's job ids have 32 bits
   const std::string id = answer.substr(0, answer.find_first_not_of("0123456789"));
   if (id.empty() || id.size() > kMostDigits)
     return OutputError(fmt::format("sbatch: expected the number of a job, found \"{}\"",
@@ -163,7 +163,7 @@ std::string ArrayText(const std::vector<size_t>& numbers) {
 Result<void> SubmitToSlurm(ClusterJob* job, const std::vector<size_t>& numbers) {
   const fs::path packages = job->Folder() / "packages.sbatch",
                  finish = job->Folder() / "finish.sbatch";
-  // Comments and #SBATCH lines end at a line break, even inside quotes.
+  // A line break in a path would end a comment or #SBATCH line, even inside quotes.
   for (const fs::path& path : {job->output_folder, job->submitter})
     if (const std::string text = path.string(); OneLine(text) != text)
       return UsageError(
@@ -193,7 +193,7 @@ Result<void> SubmitToSlurm(ClusterJob* job, const std::vector<size_t>& numbers) 
     LF_RETURN_IF_ERROR(WriteJob(*job));
   }
   if (!job->slurm_finishing_id.empty()) {
-    // The task may no longer exist.
+    // Errors are not checked, because the task may no longer exist.
     const auto ignored = RunCommand({"scancel", "--quiet", job->slurm_finishing_id}, kPatience_s);
     if (!ignored) LogWarning("{}", ignored.error().message);
     job->slurm_finishing_id.clear();
@@ -244,7 +244,7 @@ Result<std::vector<QueuedTask>> AskSlurm(const ClusterJob& job) {
                                           "--jobs=" + AllIds(job), "--format=%F|%K|%T|%N|%r"};
   const Result<CommandAnswer> answer = RunCommand(words, kPatience_s);
   if (!answer) return answer.error();
-  // Slurm complains about a single job that it has forgotten.
+  // squeue fails if it is asked about a single job that Slurm has forgotten.
   if (answer->exit_code != 0 && answer->complaints.find("Invalid job id") != std::string::npos)
     return std::vector<QueuedTask>();
   if (answer->exit_code != 0)
@@ -260,7 +260,7 @@ Result<void> CancelInSlurm(const ClusterJob& job) {
   if (words.size() == 3) return {};
   const Result<CommandAnswer> answer = RunCommand(words, kPatience_s);
   if (!answer) return answer.error();
-  // Without waiting tasks, scancel fails silently.
+  // If there are no waiting tasks, scancel fails without a message.
   if (answer->exit_code != 0 && !Complaints(*answer).empty())
     return OutputError(fmt::format("scancel failed with exit code {}: {}", answer->exit_code,
                                    Complaints(*answer)));

@@ -1,6 +1,6 @@
-// Slurm as the engine of a job: an array of tasks over the packages, followed by a finishing task.
-// It is controlled by sbatch, squeue and scancel only: sacct needs a database that many clusters
-// lack.
+// Slurm as the engine of a job: an array of tasks, one for each package, followed by a finishing
+// task. Slurm is controlled with sbatch, squeue, scancel and scontrol. sacct is not used, because
+// it needs a database that many clusters lack.
 #pragma once
 
 #include <string>
@@ -12,39 +12,44 @@
 
 namespace lf {
 
-// A task of ours in the answer of squeue.
+// A task of the job that squeue lists.
 struct QueuedTask {
   bool is_finishing = false;
-  size_t number = 0;   // of the package
+  size_t number = 0;   // index in job.packages; unused for the finishing task
   std::string state;   // "PENDING", "RUNNING", "COMPLETING", ...
-  std::string node;    // empty while it waits
-  std::string reason;  // why it waits
+  std::string node;    // where it runs; empty while it waits
+  std::string reason;  // why it waits, in Slurm's words
 };
 
-// The batch scripts, DIR/cluster/packages.sbatch and finish.sbatch. People may read and edit them
-// and give them to sbatch by hand.
+// Return the batch scripts DIR/cluster/packages.sbatch and finish.sbatch. People may edit them and
+// submit them with sbatch by hand.
 std::string PackagesScript(const ClusterJob& job);
 std::string FinishingScript(const ClusterJob& job);
 
-// Returns "0-3,7", the syntax of sbatch --array, for ascending numbers.
+// Returns a text such as "0-3,7", in the syntax of sbatch --array.
+//   numbers  ascending
 std::string ArrayText(const std::vector<size_t>& numbers);
 
-// Writes the scripts and submits these packages, then the finishing task, which replaces a waiting
-// one. It depends on the packages with afterany, because afterok would wait for ever after a
-// requeue. Stores the ids in the job and writes it. kUsage: a path with control characters.
-// kOutput: sbatch refuses; then waiting tasks are cancelled, and a job that never had a task is
-// removed.
+// Writes the scripts, and submits these packages and then the finishing task. A finishing task that
+// waits already is replaced. The finishing task depends on the packages with afterany, because
+// afterok would wait for ever if a task was requeued. Stores the ids of the submissions in the job
+// and writes job.json. kUsage: a path contains control characters. kOutput: sbatch fails. If it
+// refuses the packages of a new job, job.json is removed; if it refuses the finishing task, waiting
+// tasks are cancelled.
 Result<void> SubmitToSlurm(ClusterJob* job, const std::vector<size_t>& numbers);
 
-// Returns the tasks of the job that Slurm still knows, without those that are done. kOutput: squeue
-// fails.
+// Returns the tasks of the job that Slurm lists; tasks that are done are not listed. kOutput:
+// squeue fails.
 Result<std::vector<QueuedTask>> AskSlurm(const ClusterJob& job);
-// Parses lines "ARRAY_ID|INDEX|STATE|NODE|REASON" of squeue and skips others.
+// Parses lines "ARRAY_ID|INDEX|STATE|NODE|REASON" of squeue, and skips lines of other jobs or in
+// another form.
 std::vector<QueuedTask> ParseQueue(std::string_view text, const ClusterJob& job);
 
-// Cancels waiting tasks. Running ones see the job's cancel file, write a checkpoint and end.
+// Cancels the waiting tasks. Running tasks see ClusterJob::CancelFile(), write a checkpoint and
+// end. kOutput: scancel fails.
 Result<void> CancelInSlurm(const ClusterJob& job);
-// Lets requeued tasks start at once; Slurm would make them wait for two minutes.
+// Lets requeued packages start at once. Slurm would otherwise delay them by two minutes. kOutput: a
+// command of Slurm cannot be run.
 Result<void> ReleaseInSlurm(const ClusterJob& job);
 
 }  // namespace lf

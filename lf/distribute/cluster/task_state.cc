@@ -16,7 +16,7 @@ namespace {
 constexpr size_t kLimitBytes = size_t{1} << 20;
 constexpr const char* kFormat = "lftask 1";
 
-// Reads an entry [done, total] of "counts".
+// Reads the entry `name` of the object "counts", [done, total]. Changes nothing if there is none.
 void GetCount(const Json& line, const char* name, uint64_t* done, uint64_t* total) {
   const auto counts = line.find("counts");
   if (counts == line.end() || !counts->is_object()) return;
@@ -44,7 +44,7 @@ void TakeProgress(std::string_view line, TaskProgress* progress) {
   *progress = std::move(now);
 }
 
-// Returns the end of a log in whole lines.
+// Returns the last kMostBytes of a log, without a first line that is incomplete.
 std::string LastOf(const fs::path& log) {
   constexpr std::streamoff kMostBytes = 16384;
   std::ifstream file(log, std::ios::binary);
@@ -126,7 +126,7 @@ TaskProgress ParseProgress(std::string_view log) {
     const std::string_view line = log.substr(0, log.find('\n'));
     log.remove_prefix(std::min(log.size(), line.size() + 1));
     if (line.starts_with(kLogStart)) {
-      // A start continues with the progress at which the previous one ended.
+      // Unit, done and total are kept, because a start continues the work of the previous one.
       progress.rate = progress.seconds_left = 0;
       progress.image_done = progress.image_total = 0;
       progress.message.clear();

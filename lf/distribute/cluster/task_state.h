@@ -1,4 +1,5 @@
-// The progress of a task of a job: a small file, written by the process that runs the task.
+// The state of a task of a job, in a small file that the process that runs the task writes; and its
+// progress, read from the log of lfrenderer.
 #pragma once
 
 #include <cstdint>
@@ -13,56 +14,58 @@ namespace lf {
 
 enum class TaskPhase {
   kWaiting,      // never started
-  kRunning,      // running, or its node has died
+  kRunning,      // running, unless its process or node has died
   kInterrupted,  // resumes from its checkpoint when it is started again
   kDone,
-  kFailed,  // and would fail again
+  kFailed,  // would probably fail again if it were restarted
 };
 const char* NameOf(TaskPhase phase);
 
 struct TaskState {
   TaskPhase phase = TaskPhase::kWaiting;
-  std::string node;          // where it was started last
-  int64_t process = 0;       // process id of lfrenderer on the node
-  uint32_t start_count = 0;  // starts of lfrenderer
-  uint32_t crash_count = 0;  // crashes of lfrenderer or its node
-  int exit_code = 0;         // if kDone, 0 or 6
-  std::string message;       // why it is not running
-  double begin_s = 0;        // of the last start, in seconds since 1970
+  std::string node;          // name of the machine of the last start
+  int64_t process = 0;       // process id of lfrenderer on this node
+  uint32_t start_count = 0;  // number of starts of lfrenderer
+  uint32_t crash_count = 0;  // number of crashes of lfrenderer or its node
+  int exit_code = 0;         // of the last run; 0 or 6 if kDone
+  std::string message;       // why the task does not run
+  double begin_s = 0;        // time of the last start, in seconds since 1970
   double end_s = 0;
 
   uint32_t restart_count() const { return start_count > 0 ? start_count - 1 : 0; }
 };
 
 std::string ToJson(const TaskState& state);
-// kInput if the text is no state; messages call it `name`.
+// Parses the text of ToJson(). kInput if it is no valid state; the message begins with `name`.
 Result<TaskState> ParseTaskState(std::string_view text, const std::string& name);
 
-// A missing file is the state of a task that was never started. kInput: damaged.
+// Reads the state of a task; if the file is missing, returns the state of a task that was never
+// started. kInput: the file is damaged.
 Result<TaskState> ReadTaskState(const std::filesystem::path& path);
 Result<void> WriteTaskState(const TaskState& state, const std::filesystem::path& path);
 
-// The last progress that lfrenderer wrote to a log (--progress json).
+// The last progress that lfrenderer wrote to its log (--progress json).
 struct TaskProgress {
-  uint64_t done = 0, total = 0;  // of `unit`; after a resume, of what was left
+  uint64_t done = 0, total = 0;  // in `unit`; after a resume, only the work that was left
   std::string unit;
-  double rate = 0;  // per second
+  double rate = 0;  // in `unit` per second
   double seconds_left = 0;
   uint64_t image_done = 0, image_total = 0;  // LF images
-  double quiet_s = 0;                        // since the log last grew
-  std::string message;                       // the last line for people
+  double quiet_s = 0;                        // seconds since the log was last written
+  std::string message;                       // last line of the log that is a message
 };
 
-// Parses any bytes and skips what is not understood. The result is that of the last start; until it
-// reports its own, done and total are those of the previous start.
+// Returns the progress of the last start in a log. Until this start has reported progress, unit,
+// done and total are those of the previous start. The log may be any bytes; lines in an unknown
+// form count as messages.
 TaskProgress ParseProgress(std::string_view log);
-// Parses the last lines of a log; without a log, nothing is known.
+// Returns ParseProgress() of the last lines of a log file; an empty progress if there is no file.
 TaskProgress ReadProgress(const std::filesystem::path& log);
 
-// Returns the lines for people since the last start.
+// Returns the messages in a log since the last start.
 std::vector<std::string> LinesOfLastStart(const std::filesystem::path& log);
 
-// The line that separates starts in a log.
+// The beginning of the line that precedes each start in a log.
 inline constexpr std::string_view kLogStart = "-- ";
 
 }  // namespace lf
