@@ -1,4 +1,4 @@
-// Dialogs: the commands that make this film, the list of keys, a question.
+// The dialogs of the page: the commands that make this film, the list of keys, and a question to be confirmed.
 
 import { byId, element } from "./element";
 import { filmCommands, preprocessorCommand } from "./path/commands";
@@ -28,7 +28,7 @@ function lightFieldOptions(words: string[]): Record<string, string | number> {
   return options;
 }
 
-// Copies the text and says on the button if it was copied: a browser may refuse.
+// Copies the text. The label of the button then says whether it was copied, because a browser may refuse.
 async function copyText(text: string, button: HTMLElement): Promise<void> {
   try {
     await navigator.clipboard.writeText(text);

@@ -24,7 +24,7 @@ export function byId<T extends HTMLElement>(id: string): T {
   return found as T;
 }
 
-// Gives a canvas as many pixels as it covers on the screen.
+// Sets the size of a canvas to the number of screen pixels that it covers. Returns its context, scaled to CSS pixels.
 export function fitCanvas(canvas: HTMLCanvasElement): CanvasRenderingContext2D {
   const ratio = window.devicePixelRatio || 1;
   const width = Math.max(1, Math.round(canvas.clientWidth * ratio));

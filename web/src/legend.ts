@@ -1,4 +1,5 @@
-// The legend: the meaning of the colours of LF cameras, their counts, and which of them are shown.
+// The legend: explains the colours of LF cameras, counts the LF cameras of each kind, and chooses the kinds that are
+// shown.
 
 import { countsOf, IN_OTHER_FRAME, USED } from "./data/frame_use";
 import { element } from "./element";
@@ -55,7 +56,7 @@ export class Legend {
       });
     counts.forEach((count, kind) => {
       this.counts[kind].textContent = shortNumber(count);
-      // Kinds without an LF camera are hidden, except for the used ones.
+      // The row of a kind that no LF camera has is hidden, except for the used kind.
       this.rows[kind].style.display = count > 0 || kind === USED ? "" : "none";
     });
   }

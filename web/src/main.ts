@@ -97,7 +97,7 @@ function wireView(state: State, view: SpaceView): void {
       for (const key of position.keyframes) places.push(key.value as Vec3);
       if (position.baseIsKey) places.push(position.base as Vec3);
     } catch {
-      // The text is being edited and not valid at the moment.
+      // The text is being edited, and is not valid at the moment: there are no key points.
     }
     view.setKeyPoints(places);
   };
@@ -193,7 +193,7 @@ function wireKeys(
     const target = event.target as HTMLElement;
     const isTyped = /^(INPUT|TEXTAREA|SELECT)$/.test(target.tagName) && target.id !== "scrub";
     if (event.altKey || isTyped || byId<HTMLDialogElement>("dialog").open) return;
-    // The space bar presses a focused button.
+    // If a button has the focus, the browser presses it with the space bar.
     if (key === " " && target.tagName === "BUTTON") return;
     if (!state.scene.server && (key === "k" || key === "p")) return;
     const action = plain[key];
@@ -225,7 +225,7 @@ function wireTheme(state: State, view: SpaceView): void {
   try {
     chosen = localStorage.getItem("lfvisualizer-theme");
   } catch {
-    // Without storage, the theme of the system is used.
+    // The browser does not allow storage: the theme of the system is used.
   }
   const apply = () => {
     state.isDark = chosen ? chosen === "dark" : wished.matches;
@@ -239,7 +239,7 @@ function wireTheme(state: State, view: SpaceView): void {
     try {
       localStorage.setItem("lfvisualizer-theme", chosen);
     } catch {
-      // Without storage, the choice lasts as long as the page.
+      // The browser does not allow storage: the choice lasts until the page is closed.
     }
     apply();
   });

@@ -1,5 +1,5 @@
-// The state of the page: the light field, the path while it is edited, the frame, and the chosen LF
-// camera. Views listen to it and request all changes from it.
+// The state of the page: the light field, the path as edited so far, the current frame, and the chosen LF camera. Views
+// listen to its changes, and make all changes through it.
 
 import { readFrames, type FrameCamera } from "./data/frame_camera";
 import { readFrameUse, type FrameUse } from "./data/frame_use";
@@ -18,16 +18,16 @@ import { History } from "./path/history";
 import { PathDocument } from "./path/path_document";
 
 export type Change =
-  | "path" // the path is another: cameras of all frames
-  | "text" // its text is, whether it is a path or not
+  | "path" // a new valid path: the cameras of all frames may differ
+  | "text" // the text of the path, valid or not
   | "frame"
-  | "use" // of the frame has come
+  | "use" // the use of the current frame has been received
   | "film"
   | "density"
   | "selected"
   | "watch"
   | "preview"
-  | "saving" // is about to be: what is being typed belongs to it
+  | "saving" // the text is about to be saved: typed text must be taken over now
   | "theme"
   | "message";
 
@@ -38,7 +38,7 @@ export interface PreviewFacts {
   changed: string;
 }
 
-const MOST_USES_BYTES = 96 << 20; // data of visited frames that is kept
+const MOST_USES_BYTES = 96 << 20; // largest size of the kept use data of visited frames
 
 export class State {
   path!: PathHead;
@@ -54,11 +54,11 @@ export class State {
   message: { text: string; isError: boolean } | null = null;
   document!: PathDocument;
   history!: History;
-  invalid: string | null = null; // why the text is no path
+  invalid: string | null = null; // why the text is no valid path; null if it is valid
   isDark = true;
 
   private savedText = "";
-  // Points clicked so far, of the three that define the focus plane.
+  // The points clicked so far of three that define the focus plane, in `frame`.
   planePoints: { frame: number; points: Vec3[] } | null = null;
   private savedId = "";
   private readonly listeners = new Map<Change, (() => void)[]>();
@@ -67,12 +67,12 @@ export class State {
   private checking = 0;
   private taking = 0;
   private isSaving = false;
-  private broken: string | null = null; // why the typed text is no YAML
-  private news: PathNews | null = null; // a new version of the file, held back because of unsaved
-  // edits
+  private broken: string | null = null; // why the typed text is no YAML; null if it is
+  // A new version of the file that is not shown because there are unsaved edits; null: none.
+  private news: PathNews | null = null;
   private fileHasFault = false;
   private bytesThatSavingLoses = false;
-  private selectedId: number | null = null; // its facts may still be on the way
+  private selectedId: number | null = null; // `selected` may still lack its facts
   private filmAsked = "";
   private filmIsStale = false;
 
@@ -125,7 +125,7 @@ export class State {
   private async take(head: PathHead): Promise<void> {
     const number = ++this.taking;
     const cameras = readFrames(await getBytes(`path/${head.id}/frames.bin`));
-    if (number !== this.taking) return; // those of a later edit came first
+    if (number !== this.taking) return; // a later edit was faster
     this.path = head;
     this.cameras = cameras;
     this.frame = Math.min(this.frame, head.frames);
@@ -135,8 +135,9 @@ export class State {
     void this.askFilm();
   }
 
-  // Edits the path by `change`, which may throw, and then has the parser of the programs check it.
-  //   merge  one undo step with the previous edit of the same label
+  // Calls `change`, which edits the document and may throw. Then sends the text to the server, where the parser of the
+  // programs checks it.
+  //   merge  true: this edit and the previous one with the same label are one undo step
   // Returns false if `change` threw.
   edit(label: string, change: (document: PathDocument) => void, merge = false): boolean {
     try {
@@ -162,12 +163,13 @@ export class State {
     void this.check();
   }
 
-  // Takes over the text that a person has typed.
+  // Sets the document to a text that a person has typed. Returns false if it is no YAML; the document is then
+  // unchanged.
   setText(text: string): boolean {
     try {
       this.document = PathDocument.parse(text, this.scene.light_field.unit_m);
     } catch (error) {
-      ++this.checking; // answers on the way are for another text
+      ++this.checking; // pending answers are about another text
       this.broken = error instanceof Error ? error.message : String(error);
       this.invalid = this.broken;
       this.emit("text");
@@ -229,7 +231,8 @@ export class State {
     }
   }
 
-  // Shows the file that another program has written, unless unsaved edits would be lost.
+  // Handles an event: another program has changed the path's file. Shows the new text, unless there are unsaved edits;
+  // then only says that the file has changed.
   async fileHasChanged(news: PathNews): Promise<void> {
     this.news = null;
     if (news.id === this.savedId && this.fileHasFault) this.say("");
@@ -292,7 +295,7 @@ export class State {
       this.density = density;
       this.emit("density");
     } catch (error) {
-      // If the server has forgotten the path, it is sent again.
+      // Status 410: the server has forgotten the path, so the text is sent again.
       if (error instanceof SourceError && error.status === 410 && !isSecond)
         void this.check().then(() => (isStill() ? this.askFrame(true) : undefined));
       else if (isStill()) this.fail(error);
@@ -301,7 +304,7 @@ export class State {
 
   async askFilm(): Promise<void> {
     const { id } = this.path;
-    // News that arrive during a request may be newer than its answer.
+    // If a request runs already, its answer may be out of date, so the request is repeated afterwards.
     this.filmIsStale = this.filmAsked === id;
     if (this.filmIsStale) return;
     this.filmAsked = id;
@@ -313,7 +316,7 @@ export class State {
       this.framesOfCamera = new Uint16Array(counts);
       this.emit("film");
     } catch {
-      // The curves stay empty; the frame's own request shows the error.
+      // The curves stay empty. No message here, because the request of the frame's data shows the error.
     } finally {
       if (this.filmAsked === id) this.filmAsked = "";
       if (this.filmIsStale) void this.askFilm();
@@ -341,7 +344,7 @@ export class State {
     }
   }
 
-  // Chooses another LF camera of those that the frame uses.
+  // Chooses the next or previous LF camera, by ids, among those that the frame uses.
   selectNext(step: number): void {
     const ids = this.use ? [...this.use.ids].sort((a, b) => a - b) : [];
     if (ids.length === 0) return;

@@ -1,5 +1,5 @@
-// The timeline of the film: play and scrub, curves of what changes over the frames. Keys of the
-// path are diamonds that can be dragged.
+// The timeline of the film: plays and scrubs, and shows curves of quantities over the frames. Keys of the path are
+// diamonds that can be dragged.
 
 import { fNumber } from "./data/frame_camera";
 import { byId, cssColour, element, fitCanvas } from "./element";
@@ -10,13 +10,13 @@ import { millimetres, precise, seconds, shortNumber } from "./words";
 interface Row {
   label: string;
   colour: string;
-  quantities: string[]; // quantities whose keys the row shows
+  quantities: string[]; // names of the quantities whose keys the row shows
   fromZero: boolean;
   values(): (number | null)[];
   text(frame: number): string;
 }
 
-const LABELS = 118; // width to the left of the curves, pixels
+const LABELS = 118; // width of the labels to the left of the curves, CSS pixels
 const MARGIN = 12;
 
 interface Key {
@@ -29,8 +29,8 @@ interface Key {
 
 export class Timeline {
   private readonly canvas = byId<HTMLCanvasElement>("curves");
-  private readonly still = document.createElement("canvas"); // everything except the mark of the
-  // frame
+  // Holds the drawing of everything that does not change with the frame; drawMark() adds the rest.
+  private readonly still = document.createElement("canvas");
   private readonly play = byId<HTMLButtonElement>("play");
   private readonly range = byId<HTMLInputElement>("scrub");
   private readonly clock = byId("clock");
@@ -114,7 +114,7 @@ export class Timeline {
     ];
   }
 
-  // Returns the speed towards the next frame, in world units per second.
+  // Returns the camera's speed from a frame to the next one, in world units per second.
   private speed(index: number): number {
     const { cameras, path } = this.state;
     const a = cameras[Math.max(0, Math.min(index, cameras.length - 2))].centre;
@@ -212,7 +212,7 @@ export class Timeline {
         try {
           quantity = this.state.document.quantity(name);
         } catch {
-          continue; // the text is being edited and not valid
+          continue; // the text is being edited and is not valid
         }
         const keys = quantity.keyframes.map((key, index) => ({ index, time: key.time }));
         if (quantity.baseIsKey) keys.unshift({ index: -1, time: 0 });

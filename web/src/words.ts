@@ -27,7 +27,8 @@ export function seconds(value: number): string {
   return `${value.toFixed(2)} s`;
 }
 
-// length() formats world units; millimetres() formats lengths of the lens, in metres from 1 m on.
+// length() formats a length in world units. millimetres() formats a length in world units as millimetres, or as metres
+// from 1 m on.
 export function length(value: number): string {
   return precise(value, 4);
 }

@@ -68,14 +68,14 @@ export const add = (a: Vec3, b: Vec3, scale = 1): Vec3 => [
 ];
 export const dot = (a: Vec3, b: Vec3): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
-// Returns the ray of an element through the lens centre; its length along the optical axis is 1.
+// Returns the direction of an element's ray through the lens centre. Its component along the optical axis is 1.
 export function elementDirection(camera: FrameCamera, x: number, y: number): Vec3 {
   const sideways = add(camera.forward, camera.right, (x - camera.cx) / camera.fx);
   return add(sideways, camera.up, -(y - camera.cy) / camera.fy);
 }
 
-// Returns the point on the focus plane that an element sees. If the plane is tilted, points near
-// its horizon are drawn at `mostDepths` focus distances.
+// Returns the point on the focus plane that an element sees. Its depth is at most `mostDepths` focus distances.
+// Elements beyond the horizon of a tilted focus plane get this depth.
 export function focusPoint(camera: FrameCamera, x: number, y: number, mostDepths = 4): Vec3 {
   const direction = elementDirection(camera, x, y);
   const towards = dot(camera.normal, direction);
@@ -85,8 +85,8 @@ export function focusPoint(camera: FrameCamera, x: number, y: number, mostDepths
   return add(camera.centre, direction, depth);
 }
 
-// Returns the corners of the aperture (of a disk, points of its rim), counter-clockwise for the
-// photographer. At rotation 0 the first is at the top.
+// Returns the corners of the aperture (if it is a disk, `diskPoints` points of its rim), counter-clockwise as seen from
+// behind the lens. At rotation 0, the first is at the top.
 export function lensRim(camera: FrameCamera, diskPoints = 48): Vec3[] {
   const count = camera.blades >= 3 ? camera.blades : diskPoints;
   const rim: Vec3[] = [];

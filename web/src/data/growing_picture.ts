@@ -1,5 +1,5 @@
-// The picture of a frame while it grows: linear light and ray counts as half floats. It is shown
-// with a chosen exposure, or as a map of its ray counts.
+// The picture of a frame that is still being rendered: linear light and ray counts as half floats. It is shown with a
+// chosen exposure, or as a map of its ray counts.
 
 export interface GrowingPicture {
   width: number;
@@ -7,7 +7,7 @@ export interface GrowingPicture {
   fullWidth: number;
   fullHeight: number;
   hasRays: boolean;
-  halves: Uint16Array; // R, G, B, rays
+  halves: Uint16Array; // R, G, B and ray count of each element
 }
 
 export function readPicture(bytes: ArrayBuffer): GrowingPicture {
@@ -36,7 +36,7 @@ function displayValue(linear: number): number {
   return Math.round(255 * (linear <= 0.0031308 ? 12.92 * linear : 1.055 * linear ** (1 / 2.4) - 0.055));
 }
 
-// Returns the display value of every half float: a picture of a megapixel is then developed in some
+// Returns a table of the display values of all half floats. With it, a picture of a megapixel is developed in some
 // milliseconds.
 function displayTable(stops: number): Uint8ClampedArray {
   const table = new Uint8ClampedArray(65536);
@@ -64,8 +64,8 @@ export function develop(picture: GrowingPicture, stops: number): ImageData {
   return image;
 }
 
-// From dark violet over red to pale yellow (after magma): the order is visible with any colour
-// vision.
+// Colours from dark violet over red to pale yellow (similar to magma). Their order is visible with any colour vision,
+// because they become steadily brighter.
 const HEAT: [number, number, number][] = [
   [4, 3, 14],
   [59, 15, 112],
@@ -99,7 +99,7 @@ export function rayRange(picture: GrowingPicture): RayRange {
   };
 }
 
-// Elements without a ray are bright green, because they should not exist.
+// Returns a map of the ray counts, from 0 to `most`. Elements without a ray are bright green, so that they are noticed.
 export function heatMap(picture: GrowingPicture, most: number): ImageData {
   const image = new ImageData(picture.width, picture.height);
   const table = new Map<number, [number, number, number]>();

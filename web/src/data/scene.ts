@@ -1,4 +1,4 @@
-// The content of scene.json and of the data that it names (doc/formats/page_data.md).
+// Types of the JSON data that the page reads: scene.json and the others (doc/formats/page_data.md).
 
 export type Vec3 = [number, number, number];
 
@@ -11,10 +11,10 @@ export interface PathHead {
   height: number;
 }
 
-// The new state of the path's file.
+// An event: the path's file has changed.
 export interface PathNews {
   id: string;
-  fault: string; // empty: none
+  fault: string; // why the file is no valid path; empty if it is
 }
 
 export interface SceneFacts {

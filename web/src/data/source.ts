@@ -1,5 +1,5 @@
-// Reads the page's data by name, relative to the folder of the page: from a server or from exported
-// files.
+// Reads the page's data by their names, relative to the folder of the page. They come from the server of lfvisualizer
+// or from exported files.
 
 export class SourceError extends Error {
   constructor(
@@ -17,7 +17,7 @@ async function refusal(response: Response): Promise<SourceError> {
     const json = JSON.parse(text) as { error?: unknown };
     if (typeof json.error === "string") return new SourceError(json.error, response.status);
   } catch {
-    // The answer is not from our server; the error below says so.
+    // The answer is not JSON, so it is not from lfvisualizer: the error below has its status.
   }
   return new SourceError(`${response.status} ${response.statusText}`, response.status);
 }
@@ -43,7 +43,7 @@ export async function getText(name: string): Promise<string> {
 
 let bytesReceived = 0;
 
-// Returns the size of all arrays so far, for measurements.
+// Returns the total size of the arrays received so far, for measurements.
 export function receivedBytes(): number {
   return bytesReceived;
 }
@@ -54,7 +54,8 @@ export async function getBytes(name: string): Promise<ArrayBuffer> {
   return bytes;
 }
 
-// Throws a user's mistake, which the server reports as an answer, and not as an HTTP error.
+// Posts a request and returns its answer. Throws a SourceError also if the user made a mistake: the server then answers
+// without an HTTP error, but with a key "error".
 export async function post<T>(name: string, body: object): Promise<T> {
   const response = await ask(name, {
     method: "POST",
@@ -66,8 +67,9 @@ export async function post<T>(name: string, body: object): Promise<T> {
   return json;
 }
 
-// Receives server-sent events by their kind. The browser reconnects by itself. A hidden page closes
-// its connection, because browsers have only six for all pages of an address.
+// Receives server-sent events and calls the handler of their kind. If the connection breaks, the browser reconnects by
+// itself. A hidden page closes its connection, because a browser has only six connections to an address for all its
+// pages.
 export function listen(
   handlers: Record<string, (data: string) => void>,
   onConnection: (isThere: boolean) => void,

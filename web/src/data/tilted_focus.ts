@@ -1,20 +1,20 @@
-// Finds a focus plane through three points of the scene.
+// Finds the focus plane through three points of the scene.
 
 import type { FrameCamera } from "./frame_camera";
 import { add, dot } from "./frame_camera";
 import type { Vec3 } from "./scene";
 
 export interface TiltedFocus {
-  distance: number; // along the optical axis
+  distance: number; // from the lens, along the optical axis
   horizontal_deg: number;
   vertical_deg: number;
 }
 
 const MOST_TILT_DEG = 85;
 
-// A point x to the right of the axis and y above it is sharp at the depth distance + x
-// tan(horizontal) + y tan(vertical). Returns null if the points lie on a line, or if the plane is
-// tilted by more than 85 degrees or meets the axis behind the camera.
+// Returns the focus plane through three points. A point x to the right of the optical axis and y above it is in this
+// plane if its depth is distance + x tan(horizontal) + y tan(vertical). Returns null if the points are on a line as
+// seen along the axis, or if the plane is tilted by more than MOST_TILT_DEG or meets the axis behind the camera.
 export function focusThrough(camera: FrameCamera, points: readonly Vec3[]): TiltedFocus | null {
   const [a, b, c] = points.map((point) => {
     const offset = add(point, camera.centre, -1);

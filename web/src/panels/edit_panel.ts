@@ -1,4 +1,5 @@
-// Edits the path: values and keys of each quantity at this frame, whole movements, and the file.
+// The panel that edits the path: the value and keys of each quantity at this frame, whole movements, and the text of
+// the file.
 
 import { add } from "../data/frame_camera";
 import { element } from "../element";
@@ -10,10 +11,11 @@ import { precise, seconds, vector } from "../words";
 
 interface Field {
   label: string;
-  // Alternatives in the order of preference; the first one that the file has is shown.
+  // Names of alternative quantities. The first one that the file contains is shown; if it contains none, the first of
+  // the list.
   names: string[];
-  parts: string[]; // of a value; a number has one
-  // Returns the value at this frame, for quantities that the camera states between keys.
+  parts: string[]; // labels of a value's components; one for a number
+  // Returns the value at the current frame, for quantities that can be read from the evaluated camera between two keys.
   now?: (state: State, name: string) => PathValue | null;
 }
 
@@ -93,8 +95,8 @@ export class EditPanel {
   });
   private readonly verdict = element("p", { role: "status", id: "verdict" });
   private readonly opened = new Set<string>();
-  private typing = 0; // timer
-  private filledWith = ""; // the document's text that the field was filled with
+  private typing = 0; // timer that calls takeText() after a pause in typing; 0: nothing was typed
+  private filledWith = ""; // text of the document when the text area was last filled
   private isSettling = false;
 
   constructor(
@@ -129,7 +131,8 @@ export class EditPanel {
     this.draw();
   }
 
-  // Takes over the text typed since the last call. (A text area has line ends of its own.)
+  // Sets the document to the text in the text area, if something was typed since the last call. A text area always has
+  // line feeds as line ends; they are converted to the line ends of the file.
   private takeText(): void {
     if (this.typing === 0) return;
     clearTimeout(this.typing);
@@ -144,7 +147,7 @@ export class EditPanel {
     if (this.root.hidden || !state.scene.server || state.cameras.length === 0) return;
     this.verdict.textContent = state.invalid ?? "";
     this.verdict.className = state.invalid ? "bad" : "muted";
-    // Text that is being typed, or is invalid YAML, stays until the document changes.
+    // While text is being typed, or is invalid YAML, the text area is not filled again until the document changes.
     const text = state.document.text();
     if (this.typing === 0 && text !== this.filledWith) {
       this.text.value = text;
@@ -153,7 +156,7 @@ export class EditPanel {
     if (this.isSettling) return;
     const focused = document.activeElement;
     const isTyped = focused instanceof HTMLInputElement && focused.value !== focused.defaultValue;
-    if (isTyped && this.fields.contains(focused)) return; // typing continues
+    if (isTyped && this.fields.contains(focused)) return; // do not replace a field in which the user types
     this.redrawFields();
   }
 
@@ -190,7 +193,7 @@ export class EditPanel {
     return index < 0 ? null : index;
   }
 
-  // Returns the value at this frame, or null between keys if it is unknown.
+  // Returns the value at this frame; null if the frame is between keys and the value there is not known.
   private valueNow(field: Field, quantity: Quantity): PathValue | null {
     const key = this.keyNow(quantity);
     if (key !== null) return key < 0 ? quantity.base! : quantity.keyframes[key].value;
@@ -212,8 +215,8 @@ export class EditPanel {
     const known = this.valueNow(field, quantity);
     const value = known ?? quantity.keyframes[0].value;
     const key = this.keyNow(quantity);
-    // The edit applies to this frame, or to the key nearest to it, even if the timeline has moved
-    // on when the value is complete.
+    // The time of this frame, or of the key at this frame. It is stored now, because the timeline may have moved on
+    // when the user has finished typing the value.
     const time = key === null ? state.time : key < 0 ? 0 : quantity.keyframes[key].time;
     const isMoving = quantity.hasAccelerations || known === null;
     const inputs = partsOf(value).map(([name, x], i) => {
@@ -231,7 +234,7 @@ export class EditPanel {
       input.addEventListener("change", () => {
         if (input.value === "" || !Number.isFinite(input.valueAsNumber)) return;
         const changed = withPart(value, i, input.valueAsNumber);
-        // The fields are replaced only after the focus has moved.
+        // The fields are redrawn only after the browser has moved the focus.
         this.isSettling = true;
         setTimeout(() => {
           this.isSettling = false;

@@ -1,4 +1,4 @@
-// Shows this frame and what it needs: the lens, the LF images, and how densely they were captured.
+// The panel that shows facts about this frame: its lens, the LF images that it needs, and how dense the LF cameras are.
 
 import { fNumber } from "../data/frame_camera";
 import { element } from "../element";

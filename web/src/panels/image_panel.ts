@@ -1,4 +1,4 @@
-// Shows the image of the chosen LF camera, and the pixels that this frame may use.
+// The panel that shows the LF image of the chosen LF camera, and the pixels of it that this frame may use.
 
 import { USES } from "../data/frame_use";
 import type { OverlapFacts } from "../data/scene";
@@ -102,7 +102,7 @@ export class ImagePanel {
       const overlap = await getJson<OverlapFacts>(`path/${path.id}/overlap/${frame}/${selected.id}.json`);
       if (number === this.asked) this.drawShapes(overlap, selected.width, selected.height);
     } catch {
-      // The error of the frame's own request is shown instead.
+      // No message here, because the request of the frame's data fails with the same error and shows it.
       if (number === this.asked) this.drawing.replaceChildren();
     }
   }

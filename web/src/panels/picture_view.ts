@@ -1,4 +1,4 @@
-// A picture in which a click sets the focus.
+// Pictures in which a click sets the focus.
 
 import type { FrameCamera } from "../data/frame_camera";
 import type { PickedFocus } from "../data/scene";
@@ -11,12 +11,13 @@ import type { State } from "../state";
 import { length, percent, precise } from "../words";
 
 export interface PickRequest {
-  camera?: number; // an LF camera; default: the frame
+  camera?: number; // the LF camera whose image was clicked; unset: the frame's picture was clicked
   x: number;
   y: number;
 }
 
-// Sets a quantity of the focus at `time`: at a key if there are keys, otherwise for the whole film.
+// Sets a quantity of the focus. If it has keys, sets the key at `time` or adds one; otherwise sets its value for the
+// whole film, and removes a motion by speed or accelerations.
 function setFocus(document: PathDocument, name: string, time: number, value: PathValue): void {
   const quantity = document.quantity(name);
   if (quantity.keyframes.length > 0) document.setKeyframe(name, time, value);
@@ -24,7 +25,8 @@ function setFocus(document: PathDocument, name: string, time: number, value: Pat
   else document.setBase(name, value);
 }
 
-// Returns a text about the previous form of the focus, if it was replaced.
+// Sets the focus distance. If the file defines the focus in another way, or by a motion, replaces that and returns a
+// text that says so; otherwise returns "".
 function setFocusDistance(document: PathDocument, time: number, distance: number): string {
   const { given, hasAccelerations } = document.quantity("focus_distance");
   if (given) setFocus(document, "focus_distance", time, distance);
@@ -32,11 +34,11 @@ function setFocusDistance(document: PathDocument, time: number, distance: number
   return given && !hasAccelerations ? "" : ", instead of how the focus was given";
 }
 
-// Requests the distance of the point seen there, and focuses on it.
-//   isOfPlane  it is one of the three points that define the focus plane
+// Asks the server for the distance of the point at a position in a picture, and focuses on it.
+//   isOfPlane  true: the point is one of three that define the focus plane, so that only the third changes the focus
 export async function focusThere(state: State, request: PickRequest, isOfPlane: boolean): Promise<void> {
-  const { time, frame, camera } = state; // those of the click, even if the timeline has moved on
-  // when the answer arrives
+  // The values at the time of the click: the timeline may have moved on when the answer arrives.
+  const { time, frame, camera } = state;
   state.say("Comparing LF images …");
   try {
     const picked = await post<PickedFocus>("focus", {
@@ -59,7 +61,7 @@ export async function focusThere(state: State, request: PickRequest, isOfPlane: 
   }
 }
 
-// After the third point, tilts the focus plane so that it contains all three.
+// Stores a point of the focus plane. When there are three, tilts the focus plane so that it contains all of them.
 function addToPlane(state: State, picked: PickedFocus, time: number, frame: number, camera: FrameCamera): void {
   const before = state.planePoints?.frame === frame ? state.planePoints.points : [];
   const points = [...before, picked.point];
@@ -80,8 +82,8 @@ function addToPlane(state: State, picked: PickedFocus, time: number, frame: numb
     );
 }
 
-// Calls `pick` with a clicked position in the picture's own coordinates, and marks the position. A
-// click with Shift sets one of the three points of a focus plane.
+// Makes a picture clickable: a click marks the position and calls `pick` with it, in the coordinates that size() gives.
+// isOfPlane is true for a click with Shift, which sets one of three points of a focus plane.
 export function makePickable(
   frame: HTMLElement,
   size: () => [number, number],
@@ -100,7 +102,7 @@ export function makePickable(
   });
 }
 
-// Returns a button that shows the picture over the whole view, and back.
+// Returns a button that enlarges the picture over the whole view, and at the next click puts it back.
 export function enlargeButton(picture: HTMLElement): HTMLButtonElement {
   const place = document.createComment("");
   const button = element("button", { "aria-pressed": "false", title: "Esc: back" }, "Large");

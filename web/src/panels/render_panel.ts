@@ -1,4 +1,5 @@
-// Shows frames while they grow: those of a watched render, or a small preview of this frame.
+// The panel that shows frames while they are rendered: the frames of a watched render, or a small preview of this
+// frame.
 
 import type { FrameCamera } from "../data/frame_camera";
 import type { RenderFacts } from "../data/scene";
@@ -33,7 +34,7 @@ export class RenderPanel {
   private picture: GrowingPicture | null = null;
   private shownName = "";
   private wantedName = "";
-  private fault = ""; // why the last picture could not be read
+  private fault = ""; // why the last picture could not be read; empty if it could
   private previewed: FrameCamera | null = null;
   private isLoading = false;
   private readonly sources = element("div", { class: "row group" });
@@ -75,7 +76,7 @@ export class RenderPanel {
     this.update();
   }
 
-  // Focuses on a position in the picture, if the picture has the view of the current frame.
+  // Focuses on a position in the picture, if the picture shows the same view as the current frame.
   private focusAt(x: number, y: number, isOfPlane: boolean): void {
     const { state, picture, previewed } = this;
     const { camera } = state;
@@ -90,7 +91,7 @@ export class RenderPanel {
     void focusThere(state, { x, y }, isOfPlane);
   }
 
-  // Starts a render of this frame with a small plate, along the current path.
+  // Starts a preview: a render of this frame with a small plate, by the current text of the path.
   async start(): Promise<void> {
     const { state } = this;
     const document = PathDocument.parse(state.document.text(), state.scene.light_field.unit_m);
@@ -234,8 +235,8 @@ export class RenderPanel {
     this.wantedName = "";
   }
 
-  // Reads a picture, unless the same version is already shown. One picture is read at a time; if a
-  // newer version or another frame is wanted meanwhile, it is read afterwards.
+  // Reads a picture and shows it, unless this version is already shown. Only one picture is read at a time. If a newer
+  // version or another frame is requested while one is read, it is read afterwards.
   private async load(name: string, version: string): Promise<void> {
     const wanted = `${name}?${version}`;
     this.wantedName = wanted;
@@ -250,9 +251,10 @@ export class RenderPanel {
         this.drawPicture();
       }
     } catch (error) {
-      // A checkpoint may be replaced while it is read; its next version follows.
+      // If the server says "no such frame", the file was just being replaced, and an event about its next version
+      // follows.
       if (!(error instanceof Error && /no such frame/.test(error.message))) {
-        this.picture = null; // the picture is that of another frame
+        this.picture = null; // it would be that of another frame
         this.shownName = "";
         this.state.fail(error);
         this.fault = this.state.message?.text ?? "";
@@ -296,7 +298,7 @@ export class RenderPanel {
   }
 }
 
-// Returns true if positions in the pictures of both cameras correspond. Focus and lens may differ.
+// Returns true if the same position in the pictures of both cameras has the same view. Focus and aperture may differ.
 function seeAlike(a: FrameCamera, b: FrameCamera): boolean {
   const view = ({ centre, forward, up, fx, fy, cx, cy, width, height }: FrameCamera) => [
     ...centre,

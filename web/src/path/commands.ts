@@ -1,4 +1,5 @@
-// The shell commands that film a path. People copy them, so default values are left out.
+// Makes the shell commands that render a film. Options with default values are left out, so that people can read and
+// copy the commands.
 
 export interface LightFieldOptions {
   focalPx?: number;
@@ -6,7 +7,7 @@ export interface LightFieldOptions {
   images?: string;
 }
 
-// Options of both programs; `seed` decides the order of LF images.
+// Options of both programs. `seed` decides the order of the LF images.
 export interface SharedOptions extends LightFieldOptions {
   frames?: string;
   memory?: string;
@@ -45,7 +46,7 @@ export interface RendererOptions extends SharedOptions {
 export interface PreprocessorRequest {
   lightField: string;
   pathFile: string;
-  output?: string; // folder of the packages; without it --plan, which writes nothing
+  output?: string; // folder of the packages; unset: --plan, which writes nothing
   options?: PreprocessorOptions;
 }
 
@@ -72,7 +73,7 @@ export interface FilmRequest {
 
 type Value = string | number | boolean | readonly number[] | undefined;
 
-// An option; it is left out if it has its default.
+// An option of a program. It is left out if its value is unset or `initial`.
 interface Flag {
   flag: string;
   initial?: Value;
@@ -129,7 +130,8 @@ const kRenderer: Record<string, Flag> = {
   ...kCommon,
 };
 
-// Packages already have these from lfpreprocessor, and lfrenderer refuses some of them.
+// Options that are left out if packages are rendered, because the packages contain them already, and lfrenderer refuses
+// some of them.
 const kInPackages = ["focalPx", "fovDeg", "images", "seed", "maxImages", "maxAngle", "frames"];
 
 export function preprocessorCommand(request: PreprocessorRequest): string {
@@ -157,7 +159,7 @@ export function rendererCommand(request: RendererRequest | PackageRequest): stri
   ].join(" ");
 }
 
-// Returns one command, or two if a folder of packages is requested.
+// Returns the command of lfrenderer; if request.packageFolder is set, the commands of lfpreprocessor and lfrenderer.
 export function filmCommands(request: FilmRequest): string[] {
   const options = request.options ?? {};
   const folder = request.packageFolder;
@@ -174,7 +176,8 @@ export function quote(word: string): string {
   return `'${word.replace(/'/g, "'\\''")}'`;
 }
 
-// Returns a file name that is not mistaken for an option or, with brackets, for a list.
+// Returns a file name as one word of a shell. "./" is put before a name that a program would take for an option or a
+// list in brackets.
 export function quoteFile(name: string): string {
   return quote(/^[-[]/.test(name) ? `./${name}` : name);
 }

@@ -1,16 +1,17 @@
-// Writes whole movements into a path. They replace the former motion of a quantity and make the
-// film long enough. Each function returns the name of the edit.
+// Writes whole movements into a path. A movement replaces the previous motion of its quantity, and makes the film
+// longer if necessary. Each function returns the name of the edit.
 import type { PathDocument } from "./path_document";
 import type { Keyframe } from "./path_facts";
 
 type Vector = readonly [number, number, number] | readonly number[];
 
 export interface OrbitOptions {
-  centre: Vector; // world units; on the axis, and where the camera looks
-  axis: Vector; // any length; also the picture's up direction, unless the camera looks
-  // along it
-  startPosition: Vector; // of the camera, off the axis
-  degrees: number; // right-handed about the axis
+  centre: Vector; // world units; a point of the axis, at which the camera looks
+  // The axis of the orbit, of any length. The camera's `up` is set to this direction or to the opposite one, whichever
+  // is nearer to it.
+  axis: Vector;
+  startPosition: Vector; // of the camera; must not be on the axis
+  degrees: number; // right-handed around the axis
   seconds: number;
   start?: number; // seconds; default: 0
 }
@@ -25,16 +26,16 @@ export interface DollyOptions {
 export interface FocusPullOptions {
   from: number; // focus distances, world units
   to: number;
-  seconds: number; // of the pull itself
+  seconds: number; // duration of the pull, without `hold`
   hold?: number; // seconds before and after the pull
-  start?: number; // seconds before the pull, if not `hold`
+  start?: number; // time of the pull's beginning, seconds; default: `hold`
 }
 
-// With keys this far apart, the Catmull-Rom curve deviates from the circle by at most 0.13 % of the
-// radius. The first and the last segment decide, where the curve begins along the chord: 2/27
-// angle^2.
+// Angle between keys. With it, the Catmull-Rom curve through the keys deviates from the circle by at most 0.13 % of the
+// radius (2/27 angle^2). The deviation is largest in the first and the last segment, because the curve starts and ends
+// in the direction of the chord there.
 const kOrbitStep_deg = 7.5;
-const kResolution = 1e-5; // of a movement's size: the precision with which it is written
+const kResolution = 1e-5; // precision with which positions are written, as a share of the movement's size
 
 export function orbit(path: PathDocument, options: OrbitOptions): string {
   const { degrees, seconds, start = 0 } = options;
@@ -68,7 +69,7 @@ export function orbit(path: PathDocument, options: OrbitOptions): string {
   return `Orbit of ${round(degrees)}° in ${round(seconds)} s`;
 }
 
-// Moves straight at a constant speed.
+// Moves the camera along a straight line, at constant speed.
 export function dolly(path: PathDocument, options: DollyOptions): string {
   const { from, to, seconds, start = 0 } = options;
   checkDuration(seconds, start);
@@ -99,7 +100,7 @@ function refine(path: PathDocument, size_w: number): void {
   if (size_w > 0) path.resolution_w = Math.min(path.resolution_w, kResolution * size_w);
 }
 
-// Makes the film longer if necessary, but never shorter. Frame i is at (i - 1) / fps.
+// Makes the film long enough for a movement that ends at `seconds`, but never shorter. Frame i is at (i - 1) / fps.
 function coverSeconds(path: PathDocument, seconds: number): void {
   const fps = path.constant("fps");
   const frames = path.constant("frames");
@@ -108,8 +109,8 @@ function coverSeconds(path: PathDocument, seconds: number): void {
   if (typeof frames !== "number" || frames < needed) path.setConstant("frames", needed);
 }
 
-// Sets `up` along the axis, which an orbiting camera never looks along. Of the axis's two
-// directions, the one nearer to the former `up` is used.
+// Sets `up` to the direction of the axis, or to the opposite direction if that is nearer to the previous `up`. Does
+// nothing if `up` is already along the axis.
 function standUpright(path: PathDocument, axis: Vector): void {
   const given = path.constant("up");
   const up = Array.isArray(given) && Math.hypot(...given) > 0 ? given : [0, -1, 0];

@@ -1,17 +1,16 @@
-// The history of edits for undo: the texts of a path, each with the name of the edit that led to
-// it.
+// The history of edits, for undo and redo: the texts of a path, each with the name of the edit that made it.
 
 interface Entry {
   text: string;
   label: string;
-  open: boolean; // the next push of the same drag replaces its text
+  open: boolean; // true: the next push() of the same drag replaces the text
 }
 
 export class History {
   private entries: Entry[];
   private at = 0;
 
-  // most  number of edits that can be undone; older ones are forgotten
+  // most  largest number of edits that can be undone; older edits are forgotten
   constructor(
     text: string,
     private readonly most = 200,
@@ -23,9 +22,9 @@ export class History {
     return this.entries[this.at].text;
   }
 
-  // merge: the edit belongs to a drag. It replaces the previous edit if that was also pushed with
-  // `merge` and the same label, without seal(), undo() or redo() in between. Pushing the current
-  // text changes nothing.
+  // Adds an edit. merge: true if the edit belongs to a drag or to typing. It then replaces the previous edit, if that
+  // was also pushed with `merge` and the same label, and without seal(), undo() or redo() in between. Pushing the
+  // current text changes nothing.
   push(text: string, label: string, options: { merge?: boolean } = {}): void {
     const merge = options.merge ?? false;
     if (text === this.text) return;
@@ -41,7 +40,7 @@ export class History {
     this.at = this.entries.length - 1;
   }
 
-  // Ends a drag: the next edit is one of its own.
+  // Ends a drag: the next edit does not replace the current one.
   seal(): void {
     this.entries[this.at].open = false;
   }
@@ -54,7 +53,7 @@ export class History {
     return this.at + 1 < this.entries.length;
   }
 
-  // The name of the edit that undo() would take back; undefined if there is none.
+  // The name of the edit that undo() would undo; undefined if there is none.
   get undoLabel(): string | undefined {
     return this.canUndo ? this.entries[this.at].label : undefined;
   }
@@ -63,8 +62,7 @@ export class History {
     return this.entries[this.at + 1]?.label;
   }
 
-  // The names of all stored edits, the oldest first; the current text contains the first `done` of
-  // them.
+  // The names of all stored edits, oldest first. The current text contains the first `done` of them.
   get labels(): string[] {
     return this.entries.slice(1).map((entry) => entry.label);
   }
@@ -73,7 +71,7 @@ export class History {
     return this.at;
   }
 
-  // Returns the text to show now; undefined if there is nothing to undo.
+  // Goes back by one edit and returns its text; undefined if there is nothing to undo.
   undo(): string | undefined {
     if (!this.canUndo) return undefined;
     --this.at;

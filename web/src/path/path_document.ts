@@ -1,5 +1,5 @@
-// A camera path (doc/formats/path.md) that a person edits alternately as text and with the mouse.
-// Edits change only the lines that they concern; the rest of the file keeps its text and comments.
+// A camera path (doc/formats/path.md) that a person can edit as text and with the mouse. An edit changes only the lines
+// that it concerns; the rest of the file keeps its text and comments.
 import {
   checkValue,
   constantSpec,
@@ -19,7 +19,7 @@ import { YamlText } from "./yaml_text";
 const kLeastKeyDistance_s = 1e-6;
 
 export class PathDocument {
-  // Lengths are written at least with this precision, even far from the origin.
+  // Lengths are written with at least this precision, in world units, even far from the origin.
   resolution_w: number;
 
   private constructor(
@@ -29,9 +29,9 @@ export class PathDocument {
     this.resolution_w = 1e-4 / this.unitM();
   }
 
-  // unit_m  metres per world unit of the light field, for files that do not state it
-  // Throws an Error with line and column if the text is no YAML. Only the renderer's own parser
-  // decides if the path is valid.
+  // unit_m  metres per world unit of the light field; used if the file has no unit_m
+  // Throws an Error with line and column if the text is no YAML. Does not check whether the path is valid: the parser
+  // of the programs does that.
   static parse(text: string, unit_m = 1): PathDocument {
     return new PathDocument(new YamlText(text), unit_m);
   }
@@ -45,12 +45,12 @@ export class PathDocument {
     return typeof unit === "number" && unit > 0 ? unit : this.lightFieldUnit;
   }
 
-  // Returns the names of all quantities in the order of the format's tables.
+  // Returns the names of all quantities, in the order of the tables in doc/formats/path.md.
   static quantityNames(): string[] {
     return kQuantities.map((spec) => spec.name);
   }
 
-  // Returns a quantity by its name, with or without unit. Throws if the file's value is malformed.
+  // Returns the quantity with this name (with or without a unit). Throws if its value in the file has a wrong form.
   quantity(name: string): Quantity {
     const spec = quantitySpec(name);
     const section = this.keyIn([spec.section], spec.keys);
@@ -88,12 +88,12 @@ export class PathDocument {
   }
 
   // ------------------------------------------------------------------------------------ edits
-  // Each edit throws an Error that can be shown to the user, and has then changed nothing.
+  // If an edit fails, it throws an Error that can be shown to the user, and changes nothing.
 
-  // Sets the value of the key at this time, or adds a key. Times that differ by less than a
-  // thousandth of a second and a tenth of a frame are the same, so that a rounded time is found. At
-  // time 0 the value in the section is the key, if there is one. Without `interpolation` an
-  // existing key keeps its own, and a new one is smooth.
+  // Sets the value of the key at this time, or adds a key. Two times are taken to be the same if they differ by less
+  // than a thousandth of a second and less than a tenth of a frame, so that a rounded time is found. At time 0, the
+  // value in the section is set, if there is one. If `interpolation` is not given, an existing key keeps its
+  // interpolation, and a new key is smooth.
   setKeyframe(name: string, time: number, value: PathValue, interpolation?: Interpolation): void {
     this.edit(() => {
       const spec = quantitySpec(name);
@@ -109,14 +109,16 @@ export class PathDocument {
       } else if (base !== undefined && this.isSameTime(time, 0)) {
         this.writeBase(spec, name, value);
       } else {
-        // A quantity that defaults to 0 starts at 0, as if its section had this value.
+        // A quantity that defaults to 0 must start at 0: if it is not given yet and this key is later than time 0, 0 is
+        // written to its section.
         if (!given && spec.zeroIfNotGiven && !this.isSameTime(time, 0)) this.writeBase(spec, name, zeroOf(spec.shape));
         this.insertKeyframe(spec, { time, value, interpolation: interpolation ?? "smooth" });
       }
     });
   }
 
-  // Replaces all keyframes and the value in the section. There must be at least one; times ascend.
+  // Replaces all keys of the quantity, including the value in its section. There must be at least one key, and times
+  // must ascend.
   setKeyframes(name: string, keyframes: readonly Keyframe[]): void {
     this.edit(() => {
       const spec = quantitySpec(name);
@@ -140,8 +142,8 @@ export class PathDocument {
     });
   }
 
-  // Moves a key to another time, past other keys if necessary. index -1 is the base, if it is a
-  // key. Returns the key's new index. Throws if a key exists at that time.
+  // Moves a key to another time, which may be beyond other keys. Index -1 is the base, if it is a key. Returns the new
+  // index of the key. Throws if another key is at that time.
   moveKeyframe(name: string, index: number, time: number): number {
     let moved = index;
     this.edit(() => {
@@ -175,8 +177,8 @@ export class PathDocument {
     return moved;
   }
 
-  // Deletes a key; index -1 is the base, if it is a key. After the last key is gone, the quantity
-  // keeps its value, or that of the base if the base was a key.
+  // Deletes a key; index -1 is the base, if it is a key. If the last listed key is deleted, the quantity keeps the
+  // value of this key; if the base was a key, the value of the base.
   deleteKeyframe(name: string, index: number): void {
     this.edit(() => {
       const spec = quantitySpec(name);
@@ -194,7 +196,7 @@ export class PathDocument {
     });
   }
 
-  // Sets the value at time 0: that of the key there, or that in the section.
+  // Sets the value at time 0: if there is a listed key at time 0, its value; otherwise the value in the section.
   setBase(name: string, value: PathValue): void {
     this.edit(() => {
       const spec = quantitySpec(name);
@@ -231,7 +233,7 @@ export class PathDocument {
     });
   }
 
-  // Removes a constant that has a default.
+  // Removes a constant, so that its default holds.
   removeConstant(name: string): void {
     this.edit(() => {
       const spec = constantSpec(name);
@@ -239,8 +241,8 @@ export class PathDocument {
     });
   }
 
-  // Removes speed, accelerations and keyframes; the quantity stays at `value`, or at its value at
-  // time 0.
+  // Removes speed, accelerations and keys. The quantity then has the constant value `value`; if it is not given, the
+  // value at time 0.
   removeMotion(name: string, value?: PathValue): void {
     this.edit(() => {
       const spec = quantitySpec(name);
@@ -255,8 +257,8 @@ export class PathDocument {
     });
   }
 
-  // Each of these chooses one way to state focus, lens or direction, and removes the other ways
-  // with their motion. If the path uses that way already, it works as setBase().
+  // Each of the next functions chooses one of several quantities that define the focus, the lens or the direction, and
+  // removes its rivals with their motion. If the path has this quantity already, the function calls setBase().
   useFocusDistance(distance_w: number): void {
     this.use("focus_distance", distance_w);
   }
@@ -282,7 +284,7 @@ export class PathDocument {
     this.use("orientation", angles_deg);
   }
 
-  // Makes several edits as one: if one throws, none is made.
+  // Makes several edits as one edit: if one of them throws, nothing is changed.
   edit(edits: () => void): void {
     const before = this.yaml.text;
     try {
@@ -431,8 +433,8 @@ export class PathDocument {
     if (this.yaml.keys(["keyframes"]).length === 0) this.yaml.remove(["keyframes"]);
   }
 
-  // Removes a base that was hidden by a key at time 0, because it would become a key once that key
-  // is gone.
+  // Removes a base that had no effect because of a key at time 0. Without that key, the base would become a key.
+  //   before  the quantity before the edit that removed or moved the key
   private dropHiddenBase(spec: QuantitySpec, before: Quantity): void {
     if (before.base === undefined || before.baseIsKey) return;
     if (this.quantity(spec.name).baseIsKey) this.removeKey([spec.section], spec.keys);

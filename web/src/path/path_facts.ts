@@ -1,4 +1,4 @@
-// Facts that a path file states about quantities and constants, and the keys under which it states them.
+// Types of what a path file contains about quantities and constants, and the keys of these in the file.
 import type { ConstantSpec, ConstantValue, PathValue, QuantitySpec, Section, Shape, Unit } from "./path_quantities";
 
 export type Interpolation = "smooth" | "linear" | "step";
@@ -6,38 +6,39 @@ export type Interpolation = "smooth" | "linear" | "step";
 export interface Keyframe {
   time: number; // seconds
   value: PathValue;
-  interpolation: Interpolation; // from the previous key to this one
+  interpolation: Interpolation; // between the previous key and this one
 }
 
 export interface Acceleration {
   from: number; // seconds
   to: number;
-  value: PathValue; // per second squared
+  value: PathValue; // in units of the quantity per second squared
 }
 
-// Facts that the file states about a quantity. Lengths are in world units, whatever the file uses.
+// All that the file contains about a quantity. Lengths are in world units, even if the file has millimetres.
 export interface Quantity {
-  name: string; // without unit: "focus_distance"
-  key: string; // as in the file, or as it would be written: "focus_distance_mm"
+  name: string; // without unit, such as "focus_distance"
+  key: string; // as in the file, or as a new entry would be written, such as "focus_distance_mm"
   section: Section;
   unit: Unit;
   shape: Shape;
-  worldPerFile: number; // factor from numbers beside `key` in the file to those here
-  given: boolean; // the file states something about it
-  base?: PathValue; // the value in its section, at time 0
-  keyframes: Keyframe[]; // in the order of the file; without the base
-  baseIsKey: boolean; // the base is a key at time 0 before the listed ones: index -1
+  worldPerFile: number; // a number of `key` in the file times this factor is in world units
+  given: boolean; // true if the file contains a value, keys, a speed or accelerations
+  base?: PathValue; // the value in its section, which holds at time 0; undefined: none
+  keyframes: Keyframe[]; // the keys listed in the file, in its order
+  baseIsKey: boolean; // true if the base is a key at time 0, before the listed keys; its index is -1
   speed?: PathValue;
   accelerations: Acceleration[];
-  hasAccelerations: boolean; // it has a speed or accelerations: keyframes need removeMotion() first
+  hasAccelerations: boolean; // true if it has a speed or accelerations; keys can be added only after removeMotion()
 }
 
-// Returns a key for a file without one: in the requested unit, or in the most common one.
+// Returns the key of a new entry: `name` if it is a key with the unit mm, otherwise the most common key.
 export function newKey(keys: readonly string[], name: string): string {
   return name.endsWith("_mm") && keys.includes(name) ? name : keys[0];
 }
 
-// The speed of "position" is "speed", that of other quantities "<name>_speed".
+// Returns the keys of a quantity's speed: "speed" for "position", "<name>_speed" for other quantities, with the endings
+// of their units.
 export function speedKeys(spec: QuantitySpec): string[] {
   const speed = spec.name === "position" ? "speed" : `${spec.name}_speed`;
   return spec.keys.map((key) => speed + key.slice(spec.name.length));

@@ -1,26 +1,26 @@
-// The content of a path file (doc/formats/path.md): quantities, which may move, and constants.
-// Checks and writes their values.
+// Describes the contents of a path file (doc/formats/path.md): quantities, which may change over time, and constants.
+// Reads, checks and writes their values.
 
 export type Section = "camera" | "lens";
 export type Unit = "length" | "degrees" | "none";
 export type Shape = "number" | "point" | "tilt" | "angles" | "quaternion";
 
-// A number, [x, y, z] or [w, x, y, z], {horizontal, vertical} or {yaw, pitch, roll}. Lengths are in
+// A value by its shape: a number, [x, y, z], [w, x, y, z], {horizontal, vertical} or {yaw, pitch, roll}. Lengths are in
 // world units, angles in degrees.
 export type PathValue = number | number[] | Record<string, number>;
 
 export interface QuantitySpec {
-  name: string; // without the ending of a unit
-  keys: string[]; // as in a file; the first is used for a new entry
+  name: string; // without the unit at its end
+  keys: string[]; // possible keys in a file; the first is used for a new entry
   section: Section;
   unit: Unit;
   shape: Shape;
-  above?: number; // exclusive minimum of every component
+  above?: number; // every component must be above this
   below?: number;
-  least?: number; // inclusive minimum
+  least?: number; // every component must be at least this
   zeroIfNotGiven?: boolean;
-  rivals: string[]; // alternatives to this quantity, of which only one may be given
-  freeWithoutSensor?: boolean; // all rivals may be given if the sensor's width is not
+  rivals: string[]; // alternatives: only one of them and this quantity may be in a file
+  freeWithoutSensor?: boolean; // rivals are allowed if the file has no sensor_width
 }
 
 interface SpecOptions {
@@ -46,7 +46,7 @@ function plain(section: Section, name: string, options: SpecOptions): QuantitySp
   return { name, keys: [name], section, unit: "none", shape: "number", rivals: [], ...options };
 }
 
-// In the order in which they are written.
+// All quantities, in the order of doc/formats/path.md.
 export const kQuantities: readonly QuantitySpec[] = [
   length("camera", "position", false, { shape: "point" }),
   length("camera", "look_at", false, { shape: "point", rivals: ["orientation", "quaternion"] }),
@@ -65,10 +65,10 @@ export const kQuantities: readonly QuantitySpec[] = [
 
 export interface ConstantSpec {
   keys: string[];
-  section?: Section; // default: the root
+  section?: Section; // unset: the root of the file
   unit: Unit;
   kind: "number" | "integer" | "numbers" | "word" | "boolean";
-  count?: number; // of numbers
+  count?: number; // number of components, if kind is "numbers"
 }
 
 export type ConstantValue = number | number[] | string | boolean;
@@ -102,7 +102,7 @@ export function constantSpec(name: string): ConstantSpec {
   return spec;
 }
 
-// Returns the names of a value's components: none for a number, indices for a list.
+// Returns the names of a value's components: an empty list for a number, indices for a list.
 export function componentNames(shape: Shape): string[] {
   switch (shape) {
     case "number":
@@ -125,8 +125,8 @@ export function zeroOf(shape: Shape): PathValue {
   return Object.fromEntries(names.map((name) => [name, 0]));
 }
 
-// Reads a value of a file and multiplies every number by `scale`. Throws if the shape is wrong.
-// Missing components of tilts and angles are 0.
+// Returns a value of a file with every number multiplied by `scale`. Throws if it has another shape; the message begins
+// with `label`. Missing components of tilts and angles are 0.
 export function readValue(raw: unknown, label: string, shape: Shape, scale: number): PathValue {
   const number = (x: unknown): number => {
     if (typeof x !== "number" || !Number.isFinite(x))
@@ -146,7 +146,7 @@ export function readValue(raw: unknown, label: string, shape: Shape, scale: numb
   return Object.fromEntries(names.map((name) => [name, number(given[name] ?? 0)]));
 }
 
-// Throws an error for people if the renderer would refuse the value.
+// Throws an Error, with a message for people, if the programs would refuse the value.
 export function checkValue(value: PathValue, spec: QuantitySpec): void {
   const read = readValue(value, spec.name, spec.shape, 1);
   const components = typeof read === "number" ? [read] : Object.values(read);
@@ -167,22 +167,22 @@ export function checkValue(value: PathValue, spec: QuantitySpec): void {
     throw new Error("quaternion: a rotation [w, x, y, z] has length 1");
 }
 
-// Writes six significant digits, or more if they are needed for the resolution.
+// Returns a number with six significant digits, or with up to 15 if the resolution needs them.
 export function writeNumber(x: number, resolution = 0): string {
   const digits = resolution > 0 && x !== 0 ? Math.ceil(Math.log10(Math.abs(x) / resolution)) : 0;
   const rounded = Number(x.toPrecision(Math.min(15, Math.max(6, digits))));
   return rounded === 0 ? "0" : String(rounded); // not "-0"
 }
 
-// Writes a time to the microsecond, which is the least distance of two keyframes.
+// Returns a time rounded to a microsecond, the least distance between two keys.
 export function writeTime(time: number): string {
   return String(Number(time.toFixed(6)));
 }
 
-// Writes a value in brackets, every number divided by `scale`.
+// Returns a value as YAML, every number divided by `scale`; lists and maps are in brackets.
 export function writeValue(value: PathValue, scale = 1, resolution = 0): string {
   const number = (x: number, largest: number): string =>
-    // Rounding errors of sines and cosines of right angles.
+    // Writes 0 for the rounding errors of sines and cosines of right angles.
     Math.abs(x) < 1e-9 * largest ? "0" : writeNumber(x / scale, resolution / scale);
   if (typeof value === "number") return number(value, 0);
   const components = Object.values(value);

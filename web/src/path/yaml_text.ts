@@ -1,10 +1,10 @@
-// A YAML text that is edited in place: bytes that an edit does not concern do not change. The
-// package `yaml` provides positions only. Writing its document would move comments and change the
-// format of numbers, so edits replace parts of the text instead.
+// A YAML text that is edited in place: an edit changes only the characters that it concerns. The package `yaml` is used
+// only to find the positions of values. Its own output would move comments and change the format of numbers; therefore
+// edits replace parts of the text.
 import { Alias, Document, isAlias, isMap, isScalar, isSeq, parseDocument, visit } from "yaml";
 import type { Node, Pair, Scalar, YAMLMap, YAMLSeq } from "yaml";
 
-// Keys of maps and indices of lists, from the root.
+// A path to a value: keys of maps and indices of lists, from the root.
 export type YamlPath = readonly (string | number)[];
 
 interface Change {
@@ -13,8 +13,8 @@ interface Change {
   text: string;
 }
 
-const kLongestLine = 100; // a list in brackets that grows beyond this is split into one line per
-// item
+// A list in brackets that would become longer than this is converted to one line per item.
+const kLongestLine = 100;
 
 type Container = YAMLMap<Node, Node | null> | YAMLSeq<Node>;
 
@@ -22,7 +22,7 @@ export class YamlText {
   private current = "";
   private document!: Document.Parsed;
 
-  // Throws an Error with line and column if the text is no YAML with keys at its root.
+  // Throws an Error if the text is no YAML (the message has line and column), or if its root is no map.
   constructor(text: string) {
     this.set(text);
   }
@@ -31,7 +31,7 @@ export class YamlText {
     return this.current;
   }
 
-  // Replaces the text only if the new one is valid.
+  // Replaces the text. Throws like the constructor if the new text is not valid, and then keeps the old text.
   set(text: string): void {
     const document = parseDocument(text);
     if (document.errors.length > 0) throw new Error(document.errors[0].message);
@@ -44,8 +44,7 @@ export class YamlText {
     return this.find(path) !== undefined;
   }
 
-  // Returns the value as plain numbers, strings, arrays and objects; undefined if the path does not
-  // exist.
+  // Returns the value at a path as plain numbers, strings, arrays and objects; undefined if there is none.
   value(path: YamlPath): unknown {
     const node = this.find(path);
     return node === undefined ? undefined : node === null ? null : node.toJS(this.document);
@@ -56,7 +55,8 @@ export class YamlText {
     return isMap(map) ? map.items.map((pair) => keyOf(pair as Pair<Node, Node>)) : [];
   }
 
-  // Replaces an existing value. An anchor before it stays, so that its aliases change with it.
+  // Replaces an existing value. An anchor before the value stays, so that the aliases of this anchor also get the new
+  // value.
   replace(path: YamlPath, text: string): void {
     this.own(path.slice(0, -1));
     const node = this.find(path);
@@ -73,8 +73,8 @@ export class YamlText {
     }
   }
 
-  // Adds a key to the map at `path`, after the key `after` or at the end. A value with many items
-  // becomes a list with one line per item if the map has one line per key.
+  // Adds a key to the map at `path`, after the key `after` if that exists, otherwise at the end. If `value` is an
+  // array, it becomes a list with one line per item; in a map in braces, a list in brackets.
   add(path: YamlPath, key: string, value: string | readonly string[], after?: string): void {
     this.own(path);
     const node = this.find(path);
@@ -97,7 +97,7 @@ export class YamlText {
     this.insertLines(this.lineEnd(end), this.pairLines(indent, key, value));
   }
 
-  // Removes a key with its value; a map without keys becomes {}.
+  // Removes a key with its value. A map that loses its last key becomes {}.
   remove(path: YamlPath): void {
     const parent = path.slice(0, -1);
     this.own(parent);
@@ -119,7 +119,7 @@ export class YamlText {
     this.apply([{ begin, end: this.nextLine(this.endOfPair(pair)), text: "" }]);
   }
 
-  // Inserts an item before the one that has this index now.
+  // Inserts an item into a list, before the item that has this index now.
   insertItem(path: YamlPath, index: number, text: string): void {
     this.own(path);
     const list = this.list(path);
@@ -130,7 +130,7 @@ export class YamlText {
     const column = this.column(list.range![0]);
     const line = `${" ".repeat(column)}- ${text}`;
     if (index > 0) {
-      // Comments above the next item stay with that item.
+      // The new line is put directly after the previous item, so that comments above the next item stay there.
       this.insertLines(this.lineEnd(this.endOf(list.items[index - 1])), [line]);
     } else {
       const begin = this.dashLine(list, 0);
@@ -138,7 +138,7 @@ export class YamlText {
     }
   }
 
-  // Removes an item; the list's key is removed with its last item.
+  // Removes an item of a list. If the list has no other item, its key is also removed.
   removeItem(path: YamlPath, index: number): void {
     this.own(path);
     const list = this.list(path);
@@ -152,7 +152,7 @@ export class YamlText {
     }
   }
 
-  // Returns a value as it is written, on one line: values of several lines are put in brackets.
+  // Returns the text of a value on one line. A value of several lines is converted to the form in brackets.
   flowText(path: YamlPath): string {
     const node = this.find(path);
     if (!node) return "null";
@@ -161,7 +161,8 @@ export class YamlText {
 
   // -------------------------------------------------------------------------- positions
 
-  // Returns the node as written, which may be an alias; null for a key without a value.
+  // Returns the node at a path as it is written, which may be an alias; null for a key without a value; undefined if
+  // there is none.
   private find(path: YamlPath): Node | null | undefined {
     let node: Node | null | undefined = this.document.contents;
     for (const step of path) {
@@ -193,14 +194,14 @@ export class YamlText {
     return node as YAMLSeq<Node>;
   }
 
-  // Includes the anchor, which is outside a node's range.
+  // Returns the offset where a node begins, including its anchor, which is not in the node's range.
   private startOf(node: Node): number {
     const begin = node.range![0];
     const anchor = isAlias(node) ? undefined : (node as Scalar).anchor;
     return anchor ? this.current.lastIndexOf(`&${anchor}`, begin) : begin;
   }
 
-  // The end of the content, without the comments and blank lines that follow it.
+  // Returns the offset where the content of a node ends, without the comments and blank lines after it.
   private endOf(node: Node): number {
     if (isBlock(node)) {
       const last = (node as Container).items[(node as Container).items.length - 1];
@@ -222,7 +223,7 @@ export class YamlText {
     return this.current.lastIndexOf("\n", offset - 1) + 1;
   }
 
-  // The end of the line's characters, before its line break.
+  // Returns the offset of the line break that ends the line; at the last line, the end of the text.
   private lineEnd(offset: number): number {
     const end = this.current.indexOf("\n", offset);
     if (end < 0) return this.current.length;
@@ -242,7 +243,7 @@ export class YamlText {
     return this.current.includes("\r\n") ? "\r\n" : "\n";
   }
 
-  // The start of the line with the dash of an item.
+  // Returns the offset where the line with the dash of an item begins.
   private dashLine(list: YAMLSeq<Node>, index: number): number {
     const column = this.column(list.range![0]);
     let line = this.lineStart(this.startOf(list.items[index]));
@@ -255,7 +256,7 @@ export class YamlText {
 
   // --------------------------------------------------------------------------------- changes
 
-  // Inserts lines after the one that ends at `end`.
+  // Inserts lines after the line that ends at offset `end`.
   private insertLines(end: number, lines: readonly string[]): void {
     const text = lines.map((line) => this.eol() + line).join("");
     this.apply([{ begin: end, end, text }]);
@@ -283,7 +284,7 @@ export class YamlText {
     this.insertLines(this.lineEnd(key_node.range![1]), this.pairLines(this.column(key_node.range![0]) + 2, key, value));
   }
 
-  // Replaces a value of several lines by one beside its key.
+  // Returns the changes that replace a value of several lines by a text on the line of its key.
   private blockToFlow(path: YamlPath, node: Node, text: string): Change[] {
     let end = this.current.indexOf(":", this.pair(path).key.range![1]) + 1;
     const anchor = (node as Container).anchor;
@@ -306,7 +307,8 @@ export class YamlText {
     const before = this.endOfItem(items[index - 1]);
     const between = this.current.slice(before, begin);
     if (!between.includes("\n")) return [{ begin: before, end, text: "" }];
-    // The item has its own line: text behind the previous item stays, except for the comma.
+    // The item is on another line than the previous item. Comments after the previous item stay; only the comma is
+    // removed.
     const comma = between.indexOf(",");
     return [
       { begin: before + comma, end: before + comma + 1, text: "" },
@@ -329,7 +331,7 @@ export class YamlText {
       const end = this.endOf(list);
       this.apply(
         [
-          // A comment behind the list stays on the line of its key.
+          // Removes the list, but not a comment after it, which stays on the line of the key.
           { begin: begin - (this.current[begin - 1] === " " ? 1 : 0), end, text: "" },
           {
             begin: this.lineEnd(end),
@@ -352,7 +354,7 @@ export class YamlText {
     }
   }
 
-  // Returns true if the key begins its line, and only a comment may follow its value.
+  // Returns true if the key is the first on its line, and nothing but a comment follows its value.
   private ownsItsLine(path: YamlPath): boolean {
     const pair = this.pair(path);
     const begin = pair.key.range![0];
@@ -363,7 +365,8 @@ export class YamlText {
     );
   }
 
-  // Turns every alias on the path into a copy, so that an edit below it does not change its anchor.
+  // Replaces every alias on the path by a copy of its value, so that an edit below it does not change the value of the
+  // anchor.
   private own(path: YamlPath): void {
     for (let length = 1; length <= path.length; ++length) {
       const node = this.find(path.slice(0, length));
@@ -380,7 +383,8 @@ export class YamlText {
     return copy.toString({ collectionStyle: "flow", flowCollectionPadding: false, lineWidth: 0 }).trim();
   }
 
-  // Turns aliases of removed nodes into copies, unless the changes only move those nodes.
+  // Applies changes to the text. If a change removes a node with an anchor, its aliases are replaced by copies;
+  // keepsAnchors must be true if the changes only move such nodes.
   private apply(changes: Change[], keepsAnchors = false): void {
     const all = keepsAnchors ? changes : [...changes, ...this.orphans(changes)];
     all.sort((a, b) => b.begin - a.begin || b.end - a.end);

@@ -1,5 +1,5 @@
-// Shows LF cameras as points, a million in one draw call. Two bytes per camera change with the
-// frame: its use and the share of its pixels.
+// Draws LF cameras as points; one draw call draws a million. When the frame changes, only two bytes per LF camera
+// change: its use, and the share of its pixels that are read.
 
 import * as THREE from "three";
 
@@ -80,8 +80,8 @@ export class LfPoints {
     this.material.uniforms.pixelRatio.value = ratio;
   }
 
-  // spacing: approximate distance of neighbours on the screen, CSS pixels. Points fill only a part
-  // of it: a crowd looks like a texture, and single points can be clicked.
+  // Sets the size of the points by `spacing`, the approximate distance between neighbouring points on the screen in CSS
+  // pixels. A point fills only a part of this distance, so that single points can be seen and clicked.
   setSpacing(spacing: number): void {
     this.material.uniforms.room.value = Math.max(0.3, Math.min(2.6, (0.62 * spacing) / 6));
   }
@@ -93,7 +93,8 @@ export class LfPoints {
     return (this.material.uniforms.shown.value as number[])[kind] === 1;
   }
 
-  // framesOfCamera: number of frames that use each camera; null: not known yet.
+  // Sets the use of all LF cameras in a frame.
+  //   framesOfCamera  number of frames of the film that use each LF camera; null: not known yet
   setUse(use: FrameUse, framesOfCamera: Uint16Array | null): void {
     const kinds = this.use.array as Uint8Array;
     kinds.set(use.ofCameras);
@@ -109,8 +110,8 @@ export class LfPoints {
     return (this.use.array as Uint8Array)[id];
   }
 
-  // Returns the camera nearest to a position in the view, within `reach` pixels; used cameras are
-  // preferred.
+  // Returns the LF camera whose point is nearest to a position in the view; null if none is within `reach` pixels. A
+  // used LF camera is preferred to others that are slightly nearer.
   pick(camera: THREE.Camera, width: number, height: number, x: number, y: number): number | null {
     const reach = 12;
     const m = new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).elements;

@@ -1,4 +1,4 @@
-// Geometry that is rewritten every frame in the same memory.
+// Lines and faces whose points are often replaced, in the same memory.
 
 import * as THREE from "three";
 
@@ -40,7 +40,7 @@ export class Faces {
     this.object.frustumCulled = false;
   }
 
-  // Draws a fan of triangles around the first corner.
+  // Sets a convex polygon, as triangles that all have the first corner.
   setPolygon(corners: Vec3[], origin: Vec3): void {
     const triangles: Vec3[] = [];
     for (let i = 1; i + 1 < corners.length; ++i) triangles.push(corners[0], corners[i], corners[i + 1]);
@@ -59,7 +59,7 @@ function setPoints(geometry: THREE.BufferGeometry, points: Vec3[], origin: Vec3)
   geometry.setDrawRange(0, points.length);
 }
 
-// Returns the edges of a closed polygon.
+// Returns the edges of a closed polygon as pairs of points.
 export function closed(corners: Vec3[]): Vec3[] {
   return corners.flatMap((corner, i) => [corner, corners[(i + 1) % corners.length]]);
 }

@@ -1,8 +1,8 @@
-// Colours of the uses of LF cameras, on dark and on light ground. Uses also differ in size and
-// brightness, and not only in hue.
+// The colours in which LF cameras are drawn, by their use, on a dark and on a light background. Uses differ not only in
+// hue, but also in brightness and size.
 
 export interface UseStyle {
-  name: string; // as in data/frame_use.ts; the last is "other"
+  name: string; // as in USES (data/frame_use.ts); the last is "other"
   label: string;
   help: string;
   dark: [number, number, number];

@@ -1,5 +1,5 @@
-// The render camera of a frame in the scene: lens with its blades, viewing frustum up to the focus
-// plane, the plane itself, the widened frustum, and the depths of the scene.
+// Draws the render camera of a frame: the lens with its blades, the viewing frustum up to the focus plane, the focus
+// plane, the widened frustum, and the nearest and farthest depth of the scene.
 
 import * as THREE from "three";
 
@@ -7,9 +7,9 @@ import { add, elementDirection, focusPoint, lensRim, type FrameCamera } from "..
 import type { DensityFacts, Vec3 } from "../data/scene";
 import { closed, Faces, Lines } from "./lines";
 
-const GRID = 6; // cells along the width of the focus plane
-const BEHIND = 0.35; // length of the widened frustum behind the lens, in focus distances
-const BEYOND = 1.5; // and in front of it
+const GRID = 6; // number of cells along the width of the focus plane
+const BEHIND = 0.35; // length of the widened frustum behind the lens, about, in focus distances
+const BEYOND = 1.5; // the same in front of the lens
 
 export class RenderCameraModel {
   readonly object = new THREE.Group();
@@ -46,7 +46,7 @@ export class RenderCameraModel {
 
   set(camera: FrameCamera, smallest: number): void {
     const { origin } = this;
-    // Even a pinhole is drawn, with a small radius.
+    // A pinhole is drawn as a lens with a small radius.
     const rim = lensRim(camera.radius > 0 ? camera : { ...camera, radius: smallest });
     this.lensFace.setPolygon(rim, origin);
     this.lensLines.set(closed(rim), origin);
@@ -65,7 +65,7 @@ export class RenderCameraModel {
       [
         ...corners.flatMap((corner) => [camera.centre, corner]),
         ...closed(corners),
-        // A mark at the upper side.
+        // A triangle that marks the upper side of the frame.
         ...closed([
           focusPoint(camera, width * 0.46, 0),
           focusPoint(camera, width * 0.54, 0),
@@ -97,15 +97,15 @@ export class RenderCameraModel {
     this.widenedLines.set(rays, origin);
   }
 
-  // False shows the lens alone; true also frustum and focus plane.
+  // false: only the lens is drawn; true: also the frustum, the focus plane, the widened frustum and the depths.
   showFocus(isShown: boolean): void {
     for (const part of [this.focusFace, this.focusLines, this.frustum]) part.object.visible = isShown;
     this.widened.visible = isShown;
     for (const part of [...this.depthLines, ...this.depthFaces]) part.object.visible = isShown;
   }
 
-  // The nearest and the farthest depth of the scene, coloured by the disparity of neighbouring LF
-  // cameras: green up to an element and a half, red above four.
+  // Draws planes at the nearest and the farthest depth of the scene. Their colour shows the displacement of points
+  // there between neighbouring LF cameras: green up to 1.5 elements, red above 4, yellow in between.
   setDensity(camera: FrameCamera, density: DensityFacts | null): void {
     this.depths.visible = density !== null;
     if (!density) return;

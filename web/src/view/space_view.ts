@@ -1,4 +1,4 @@
-// Shows the light field and the render camera in space. Draws only when something has changed.
+// Shows the light field and the render camera in 3D. Draws only when something has changed.
 
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
@@ -24,12 +24,12 @@ export class SpaceView {
   private readonly chosen = new Lines(1);
   private readonly chosenFace = new Faces(0.12);
   private readonly ring: THREE.Points;
-  private readonly size: number; // of the light field
-  private readonly spacing: number; // of its cameras, approximately
+  private readonly size: number; // diagonal of the box around all LF cameras, world units
+  private readonly spacing: number; // approximate distance between neighbouring LF cameras, world units
   private pending = false;
   private frameCamera: FrameCamera | null = null;
   private through = false;
-  private showsChosen = true; // its frustum, and not only its position
+  private showsChosen = true; // true: also the frustum of the chosen LF camera is drawn
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
@@ -43,7 +43,7 @@ export class SpaceView {
     this.points.object.geometry.computeBoundingBox();
     this.model = new RenderCameraModel(origin);
     this.size = extentOf(positions);
-    // As if the cameras filled a square; a volume looks denser on the screen.
+    // Computed as if the LF cameras filled a square. LF cameras in a volume look denser on the screen.
     this.spacing = (0.7 * this.size) / Math.max(1, Math.sqrt(positions.length / 3) - 1);
     this.ring = dots(11, 0xffffff);
     this.ring.visible = false;
@@ -72,7 +72,7 @@ export class SpaceView {
       down = [event.offsetX, event.offsetY];
     });
     this.canvas.addEventListener("pointerup", (event) => {
-      // After a drag, which turns the view, a click must not pick.
+      // A drag turns the view, and its end must not choose an LF camera.
       if (!down || Math.hypot(event.offsetX - down[0], event.offsetY - down[1]) > 3) return;
       onPick(
         this.points.pick(this.camera, this.canvas.clientWidth, this.canvas.clientHeight, event.offsetX, event.offsetY),
@@ -115,7 +115,7 @@ export class SpaceView {
     this.draw();
   }
 
-  // Shows the chosen LF camera: its frustum up to the focus plane.
+  // Marks the chosen LF camera, and draws its frustum, 0.6 focus distances long.
   setChosen(facts: CameraFacts | null): void {
     this.ring.visible = facts !== null;
     this.showChosen();
@@ -141,7 +141,7 @@ export class SpaceView {
     const forward = new THREE.Vector3(...frame.forward);
     const right = new THREE.Vector3(...frame.right);
     const centre = new THREE.Vector3(...add(frame.centre, this.origin, -1));
-    // From the front, focus plane and frustum would hide the LF cameras in the aperture.
+    // In the view of the aperture, the focus plane and the frustum would hide the LF cameras in the lens.
     this.model.showFocus(preset !== "aperture");
     this.showsChosen = preset !== "aperture";
     this.showChosen();
@@ -157,8 +157,8 @@ export class SpaceView {
       const reach = Math.max(1.5 * frame.radius, this.size * 0.06);
       this.camera.position.copy(centre).addScaledVector(forward, -this.distanceFor(reach));
     } else if (preset === "overview") {
-      // From behind the lens, so near that the LF cameras are seen, and so far that the focus plane
-      // is seen.
+      // Looks from behind the lens, from the nearest distance at which all LF cameras and the focus plane are in the
+      // view.
       this.camera.fov = 50;
       target.addScaledVector(forward, 0.3 * frame.focusDistance);
       const offset = centre
@@ -193,14 +193,14 @@ export class SpaceView {
     this.draw();
   }
 
-  // Returns the distance from which a sphere of this radius fills the view.
+  // Returns the distance at which a sphere of this radius just fits into the view.
   private distanceFor(radius: number): number {
     const half = (this.camera.fov * Math.PI) / 360;
     const narrower = Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect));
     return radius / Math.sin(narrower);
   }
 
-  // Returns the corners of the light field and of the focus plane.
+  // Returns the corners of the box around all LF cameras, and of the part of the focus plane that the frame shows.
   private everything(frame: FrameCamera): THREE.Vector3[] {
     const box = this.points.object.geometry.boundingBox!;
     const corners = [0, 1, 2, 3, 4, 5, 6, 7].map(
@@ -235,7 +235,7 @@ export class SpaceView {
     this.draw();
   }
 
-  // Draws with the next refresh of the screen.
+  // Requests a redraw at the next refresh of the screen.
   draw(): void {
     if (this.pending) return;
     this.pending = true;
@@ -257,14 +257,15 @@ export class SpaceView {
   }
 }
 
-// Ignores the far plane, which is set to include everything that is drawn.
+// Returns true if a point is in the view, with a margin. The far plane is ignored, because render() sets it beyond
+// everything that is drawn.
 function isWithin(point: THREE.Vector3, camera: THREE.Camera): boolean {
   const isBefore = point.clone().applyMatrix4(camera.matrixWorldInverse).z < 0;
   const seen = point.clone().project(camera);
   return isBefore && Math.abs(seen.x) < 0.96 && Math.abs(seen.y) < 0.94;
 }
 
-// Returns round points that are drawn in front of everything.
+// Returns round points that are drawn in front of everything else.
 function dots(size: number, colour: number): THREE.Points {
   const material = new THREE.PointsMaterial({ size, color: colour, sizeAttenuation: false });
   material.depthTest = false;
