@@ -61,7 +61,7 @@ ExampleFocus FocusOf(const Subject& subject, const char* things) {
 std::vector<double> CandidatesOf(const std::vector<SubjectDepth>& depths, const Subject& points,
                                  double guess_w) {
   constexpr size_t kMost = 3;
-  constexpr double kSame = 0.03;  // of the distance
+  constexpr double kSame = 0.03;  // distances that differ by a smaller share count as one
   std::vector<double> candidates_w;
   const auto add = [&](double distance_w) {
     const bool is_new = std::none_of(candidates_w.begin(), candidates_w.end(), [&](double other) {

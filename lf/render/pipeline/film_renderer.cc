@@ -235,7 +235,7 @@ void FilmRenderer::AddRebinnedImages(std::span<const PlaceRange> places) {
   for (SelectedImage image : asked) {
     if (std::binary_search(images_.begin(), images_.end(), image, is_before)) continue;
     if (rebinned_->RectOf(image.id, image.place).empty()) continue;
-    image.rect = {};  // nothing is collected of it
+    image.rect = {};  // none of its pixels is collected
     all.push_back(image);
   }
   const auto middle = all.insert(all.end(), images_.begin(), images_.end());

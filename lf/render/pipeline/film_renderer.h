@@ -1,7 +1,7 @@
 // Renders frames of a film in memory: without folders, files or signals.
 //
-//   LF_ASSIGN_OR_RETURN(auto renderer, FilmRenderer::Open(package, film, work, {FrameId{7}},
-//   pool)); for (bool is_going_on = true; is_going_on;) {
+//   LF_ASSIGN_OR_RETURN(auto renderer, FilmRenderer::Open(package, film, work, {}, pool));
+//   for (bool is_going_on = true; is_going_on;) {
 //     LF_ASSIGN_OR_RETURN(is_going_on, renderer->Step());  // one batch of LF images
 //     Show(renderer->Develop(0).picture);                  // the frame with the rays so far
 //   }

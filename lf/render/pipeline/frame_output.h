@@ -41,6 +41,8 @@ struct FilmFiles {
   double fps = 0;
   const std::atomic<bool>* stop = nullptr;  // true interrupts the functions; may be null
 
+  // WriteContactSheet() writes the sheet `name` into the folder; WriteVideo() writes an mp4. Both
+  // read the files of these frames.
   //   at_once  number of files that are read at the same time
   // kOutput: the file cannot be written, or ffmpeg failed. kInput: a frame cannot be read, or has
   // another size. kInterrupted: `stop` is true.
