@@ -12,8 +12,9 @@
 namespace lf {
 
 // Returns the LF cameras whose line to the focus point of the plate's middle passes through the
-// lens, and some LF cameras beside them. If these are fewer than kCamerasAround, the lens is
-// widened until there are enough. Ascending; empty if the middle of the plate has no focus point.
+// lens, and some LF cameras beside them. If fewer than kCamerasAround lines pass through the lens,
+// it is widened until there are enough. Ascending; empty if the middle of the plate has no focus
+// point.
 std::vector<LfImageId> CamerasAroundLens(const ImageIndex& index, const RenderCamera& frame);
 
 // Returns about the distance between neighbouring cameras of CamerasAroundLens() in the lens plane,

@@ -23,7 +23,7 @@ double SecondsSince(Clock::time_point start) {
 
 // An LF image of a batch while it is decoded.
 struct Loading {
-  size_t index = 0;  // in the order
+  size_t index = 0;  // in order_
   std::optional<Result<LfPixels>> pixels;
 };
 

@@ -79,7 +79,7 @@ struct CollectTimes {
   double load_cpu_s = 0;     // CPU time to read and decode LF images, all threads
   double load_wall_s = 0;    // the same work with waits for the disk, all threads
   double collect_cpu_s = 0;  // CPU time to plan and add rays, all threads
-  double wall_s = 0;         // all steps
+  double wall_s = 0;         // duration of all steps
 };
 
 // Adds the rays of LF images, in their order, to plates, one per frame. Each step adds a batch of

@@ -77,7 +77,7 @@ class FrameLens {
   RenderCamera camera_;
   double camera_distance_w_ = 0;
   std::optional<FrameWeights> weights_;
-  std::map<uint32_t, size_t> cameras_;  // index in weights_, by LF image
+  std::map<uint32_t, size_t> cameras_;  // from LfImageId to index in weights_
 };
 
 int EffectiveStep(const Intrinsics& plate);

@@ -218,7 +218,7 @@ TEST(NoiseMoments, AreReadAsTheyWereWritten) {
     return of_one ? std::string("good") : of_one.error().message;
   };
   const std::string rest = " 0 0 0 0 0 0 0 0";  // channels without a ray
-  // S = 100, 200 and W = 1, 2: 50000, 500, 5, 2.
+  // Two LF images with S = 100, 200 and W = 1, 2 have the moments 50000, 500, 5 and 2.
   EXPECT_EQ(one(" c350 1f4 5 2" + rest), "good");
   EXPECT_NE(one(" c350 1f4 5 2"), "good");
   EXPECT_NE(one(" c350  1f4 5 2" + rest).find("number 4"), std::string::npos);

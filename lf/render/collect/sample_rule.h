@@ -31,7 +31,7 @@ inline constexpr double kMostElements = 0.99;
 // the whole square.
 class ReachableElements {
  public:
-  static constexpr int kGrid = 8;  // elements
+  static constexpr int kGrid = 8;  // side of a square, in elements
 
   // places   only LF images whose places are in this range are considered
   // filter   used only if select.reach is kNeighbours (bilinear)
