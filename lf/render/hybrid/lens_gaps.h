@@ -27,7 +27,7 @@ namespace lf {
 
 // Distance up to which a ray covers a lens point, in distances between LF cameras around the lens.
 inline constexpr double kCoveredDistances = 1.5;
-// Gaps are tested at nodes, elements on a grid over the plate. A node needs no rebinned rays if at
+// Gaps are tested at nodes: positions on a grid over the plate. A node needs no rebinned rays if at
 // most this share of its lens points are gaps.
 inline constexpr double kLittleMissing = 0.1;
 // Returns the weights with which the frame collects the rays of an LF image; RayWeights::are_none()
