@@ -47,7 +47,7 @@ class CameraTree {
 
   const LightField& light_field_;
   std::vector<LfImageId> ids_;
-  std::vector<uint32_t> leaf_begin_;  // [leaf_count() + 1] in ids_
+  std::vector<uint32_t> leaf_begin_;  // [leaf_count() + 1]: offsets in ids_
   std::vector<Node> nodes_;           // a node is before the nodes below it
   double view_angle_rad_ = 0;         // largest angle between a ray and its LF camera's axis
 };
