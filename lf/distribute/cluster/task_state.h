@@ -56,8 +56,8 @@ struct TaskProgress {
 };
 
 // Returns the progress of the last start in a log. Until this start has reported progress, unit,
-// done and total are those of the previous start. The log may be any bytes; lines in an unknown
-// form count as messages.
+// done and total are those of the previous start. The log may be any bytes: lines that begin with
+// '{' but are no progress are skipped; all other lines are messages.
 TaskProgress ParseProgress(std::string_view log);
 // Returns ParseProgress() of the last lines of a log file; an empty progress if there is no file.
 TaskProgress ReadProgress(const std::filesystem::path& log);
