@@ -18,8 +18,8 @@ namespace lf {
 std::vector<LfImageId> CamerasAroundLens(const ImageIndex& index, const RenderCamera& frame);
 
 // Returns about the distance between neighbouring cameras of CamerasAroundLens() in the lens plane,
-// in world units (CameraDistance() in lens_weights/frame_weights.h); 0 if there is no such LF
-// camera.
+// in world units (CameraDistance() in selection/lens_weights/frame_weights.h); 0 if there is no
+// such LF camera.
 double CameraDistanceAround(const ImageIndex& index, const RenderCamera& frame);
 
 // Returns true if the LF camera's image shows the point, as far as its borders decide: occlusion is

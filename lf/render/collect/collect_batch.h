@@ -158,7 +158,8 @@ class BatchCollector {
   std::vector<SensorPlate>& plates_;
   std::vector<NoiseMoments>* moments_;
   std::vector<std::vector<PlateTile>> tiles_;
-  std::deque<Contribution> contributions_;  // [frame][LF image] of a batch; the next batch reuses their memory
+  std::deque<Contribution>
+      contributions_;  // [frame][LF image] of a batch; the next batch reuses their memory
   // Ideal pixels of the LF cameras of the last batch, by the index of their intrinsics.
   SharedIdealPixels ideal_pixels_;
   std::atomic<int64_t> cpu_ns_ = 0;

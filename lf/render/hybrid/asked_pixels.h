@@ -30,8 +30,8 @@ inline constexpr size_t kPreviewedFrom = 256;
 inline constexpr size_t kPreviewImages = 64;
 
 // Returns the first place of the phase that contains `place`. Phases divide the order of the LF
-// images: they begin at place 0 and at kDecisionPlaces (collector/collect.h) times the powers of
-// four. The queries of previews are updated at the beginning of each phase.
+// images: they begin at place 0 and at kDecisionPlaces (render/collect/collect.h) times the powers
+// of four. The queries of previews are updated at the beginning of each phase.
 uint32_t PhaseOf(uint32_t place);
 
 class AskedPixels {

@@ -40,7 +40,8 @@ std::vector<Vec2> SeenThrough(const ImageIndex& index, const RenderCamera& frame
 
 // Returns the sampling around the lens of a frame.
 //   near               the result of ImagesNearLens()
-//   camera_distance_w  CameraDistanceAround() (collector/around_lens.h) in the whole light field
+//   camera_distance_w  CameraDistanceAround() (render/collect/around_lens.h) in the whole light
+//                      field
 FrameSampling SamplingOf(const ImageIndex& index, const RenderCamera& frame,
                          std::span<const SelectedImage> near, double camera_distance_w);
 

@@ -53,7 +53,8 @@ struct FilmOptions {
   // collect rays only to measure the noise, and their pictures do not use these rays.
   std::optional<double> stop_at_noise;
   std::optional<double> require_noise;  // if set, measured for the report of each frame
-  uint32_t smooth_below = 0;  // see DevelopOptions in sequence/develop.h, also for fill_radius_px
+  uint32_t smooth_below = 0;            // see DevelopOptions in film/develop/develop.h, also for
+                                        // fill_radius_px
   int fill_radius_px = kFillRadius_px;
 
   bool Collects() const { return lf::Collects(mode); }

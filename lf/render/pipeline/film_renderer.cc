@@ -208,7 +208,7 @@ Result<void> FilmRenderer::PrepareRebinning(std::span<const PlaceRange> places,
 
 // Selects the LF images to load. An LF image that is collected into plates has the rectangle of the
 // pixels to collect. Rebinned rays name the pixels that they need when an LF image is loaded
-// (ImageTaker).
+// (ImageConsumer).
 void FilmRenderer::SelectForFrames(std::span<const PlaceRange> places) {
   images_.clear();
   if (film_.HasPlates()) {

@@ -1,5 +1,5 @@
 // Writes the picture of a frame, and makes the contact sheet and the video from the files of
-// frames. Internal to pipeline.
+// frames. Internal to this folder.
 #pragma once
 
 #include <atomic>
@@ -21,7 +21,7 @@ namespace lf {
 // Returns true if a file of the format contains DevelopedFrame::effective_count.
 bool HasEffectiveCounts(FrameFormat format);
 
-// Writes the developed picture of a sheet to the file `to`.
+// Writes a developed picture with its notes to the file `to`.
 //   is_interrupted  called often, by any thread; empty: nothing interrupts. The caller may pass an
 //                   unusable picture if it returns true, because nothing is written then.
 // kOutput: the file cannot be written. kInterrupted: nothing is written.

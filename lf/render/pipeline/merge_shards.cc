@@ -159,7 +159,7 @@ class Merger {
     return CheckReplacesNone(outputs, options_.kept_files);
   }
 
-  // A render into the same folder takes the same lock (lf/record/run_state.h).
+  // A render into the same folder takes the same lock (lf/render/state/run_state.h).
   fs::path PartialFolder() const { return options_.output_folder / "partial"; }
   Result<void> Lock() {
     LF_RETURN_IF_ERROR(CreateFolder(options_.output_folder));

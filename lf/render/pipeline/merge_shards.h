@@ -35,7 +35,7 @@ struct MergeProgress {
 // Merges plates into frames. The entries of all plates are read and compared first. Then frames are
 // made one by one, which needs the memory of one plate and its picture. The file of a frame appears
 // only when the frame is done. The report names the LF images that were skipped when the plates
-// were rendered, as far as the plates name them (frame_sheet.h). RenderReport::selected_image_count
+// were rendered, as far as the plates name them (plate_notes.h). RenderReport::selected_image_count
 // is the largest number of LF images of a frame, skipped ones included.
 // With `resume`, the frame of an earlier merge is kept if its file is whole, the earlier report
 // names it, and the film and the render camera are the same.
@@ -44,11 +44,10 @@ struct MergeProgress {
 //
 // kUsage: a frame exists already, and neither resume nor overwrite is set; an output would replace
 // a plate or one of kept_files; the same plate file is listed twice.
-// kInput: there are no plates; a plate has no sheet (record/frame_sheet.h) or is damaged; a shard
-// of a frame is missing or exists twice, or the shards are of different renders (the message names
-// them); every frame is black.
-// kOutput: the disk or ffmpeg failed, or another process writes frames into the folder.
-// kInterrupted: frames that were written before are kept.
+// kInput: there are no plates; a plate has no notes (render/state/plate_notes.h) or is damaged; a
+// shard of a frame is missing or exists twice, or the shards are of different renders (the message
+// names them); every frame is black. kOutput: the disk or ffmpeg failed, or another process writes
+// frames into the folder. kInterrupted: frames that were written before are kept.
 Result<RenderReport> MergeShards(const std::vector<std::filesystem::path>& plates,
                                  const MergeOptions& options, ThreadPool& pool,
                                  const std::function<void(const MergeProgress&)>& progress);

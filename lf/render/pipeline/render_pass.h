@@ -1,5 +1,5 @@
 // One pass over the LF images: renders a group of frames, whose plates fit in the memory together,
-// into a folder, and writes the state of unfinished frames there. Internal to pipeline.
+// into a folder, and writes the state of unfinished frames there. Internal to this folder.
 #pragma once
 
 #include <chrono>

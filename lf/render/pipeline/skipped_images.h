@@ -1,4 +1,4 @@
-// Finds the skipped LF images whose rays a frame lacks. Internal to pipeline.
+// Finds the skipped LF images whose rays a frame lacks. Internal to this folder.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// The sheet of a finished plate: entries in its file that suffice to develop the plate without the
+// The notes in a finished plate: entries in its file that suffice to develop the plate without the
 // light field and the path (doc/formats/plate.md, keys "sheet.").
 #pragma once
 
@@ -34,7 +34,7 @@ struct PlateNotes {
   std::vector<std::string> skipped = {};
   DevelopOptions develop;  // without completion and is_interrupted
 
-  // Facts about lens weights (collector/frame_lens.h); unset if there are no lens weights.
+  // Facts about lens weights (render/collect/frame_lens.h); unset if there are no lens weights.
   struct Weighed {
     double hat_share = 0;
     LensCoverage coverage;
@@ -43,10 +43,10 @@ struct PlateNotes {
   std::optional<Weighed> weighed;
 };
 
-// Returns the entries of a sheet for the file of its plate.
+// Returns the entries of the notes for the file of its plate.
 PlateEntries TextOf(const PlateNotes& notes);
 
-// Reads the entries that TextOf() returned. Numbers have the same bits as in the original sheet.
+// Reads the entries that TextOf() returned. Numbers have the same bits as in the original notes.
 //   width_px, height_px  of the plate
 // kInput: a key is missing, or its value is invalid. The message begins with `name`.
 Result<PlateNotes> PlateNotesOf(const PlateEntries& entries, int width_px, int height_px,

@@ -1,5 +1,5 @@
-// FrameSheetOf() must accept or refuse any lines "key: value". A sheet that it accepts must not
-// change when it is written and read again.
+// PlateNotesOf() must accept or refuse any lines "key: value". Notes that it accepts must not
+// change when they are written and read again.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

@@ -50,8 +50,9 @@ struct FrameReport {
   // Facts about lens weights; unset if there are none. With lens weights, counts are sums of
   // weights.
   struct Weighed {
-    double effective_count = 0;  // median over elements that LF images see (collector/frame_lens.h)
-    double hat_share = 0;  // share of the hat weights in all weights
+    double effective_count = 0;  // median over elements that LF images see
+                                 // (render/collect/frame_lens.h)
+    double hat_share = 0;        // share of the hat weights in all weights
     LensCoverage coverage;
   };
   std::optional<Weighed> weighed = std::nullopt;

@@ -20,7 +20,7 @@
 namespace lf {
 
 // Pairs (key, value) in the order in which they are written. Keys have the form that
-// plate/plate_file.h describes.
+// film/plate/plate_file.h describes.
 using RunInputs = std::vector<std::pair<std::string, std::string>>;
 
 // The options that decide the rays of a frame. The last three options decide only how its picture

@@ -1,4 +1,4 @@
-// Convex polygons in the lens plane, in world units. Internal to lens_weights.
+// Convex polygons in the lens plane, in world units. Internal to this folder.
 #pragma once
 
 #include <vector>

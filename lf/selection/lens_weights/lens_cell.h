@@ -1,4 +1,4 @@
-// Computes the Voronoi cell of one place among points of the lens plane. Internal to lens_weights.
+// Computes the Voronoi cell of one place among points of the lens plane. Internal to this folder.
 #pragma once
 
 #include <span>

@@ -1,5 +1,5 @@
 // Sorts points of the plane into square buckets, about one in each, so that they can be visited
-// roughly in the order of their distance from a place. Internal to lens_weights.
+// roughly in the order of their distance from a place. Internal to this folder.
 #pragma once
 
 #include <algorithm>

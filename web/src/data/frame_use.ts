@@ -1,4 +1,4 @@
-// Reads which LF cameras a frame uses, and why it does not use the others (CameraUse in lf/visualizer/frame_use.h).
+// Reads which LF cameras a frame uses, and why it does not use the others (CameraUse in lf/view/frame_use.h).
 
 export const USES = ["used", "outside", "angle", "sees-none", "limit", "no-weight"] as const;
 export const USED = 0;
