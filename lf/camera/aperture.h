@@ -18,12 +18,13 @@ struct Aperture {
   double rotation_rad = 0;  // counter-clockwise as the photographer sees it (right towards up)
 };
 
-// Relative tolerance of the rim, which is inside because cameras of regular grids sit exactly on
-// it. Squared lengths may exceed the rim of a disk by this share, and distances may exceed the
-// edges of a polygon by half of it (doc/ray.md).
+// Relative tolerance of the rim. The rim counts as inside, because LF cameras of regular grids lie
+// exactly on it. The squared length of a point may exceed the squared radius of a disk by this
+// share, and its distance along an edge's normal may exceed distance_w by half of this share
+// (doc/ray.md).
 inline constexpr double kRimTolerance = 1e-9;
 
-// One edge of the opening: normal . l <= distance_w for every l inside; |normal| = 1.
+// One edge of the opening: normal . l <= distance_w for every point l inside; |normal| = 1.
 struct ApertureEdge {
   Vec2 normal = Vec2::UnitX();
   double distance_w = 0;
@@ -32,33 +33,35 @@ struct ApertureEdge {
 // Vertices of the polygon, counter-clockwise; empty for a disk.
 std::vector<Vec2> Vertices(const Aperture& aperture);
 
-// Edges of the polygon. For a disk, edges of the regular polygon with `disk_edge_count` edges that
-// is circumscribed about it.
+// Returns the edges of the polygon. For a disk, returns the edges of the regular polygon with
+// `disk_edge_count` edges that is circumscribed about the disk.
 inline constexpr int kDiskEdges = 16;
 std::vector<ApertureEdge> Edges(const Aperture& aperture, int disk_edge_count = kDiskEdges);
-// Radius of the circle around that polygon, for a disk of radius 1: 1 / cos(pi / kDiskEdges).
+// Radius of the circle through the vertices of the polygon with kDiskEdges edges that is
+// circumscribed about a disk of radius 1: 1 / cos(pi / kDiskEdges).
 inline constexpr double kDiskPolygonRadius = 1.0195911582083184;
 
-// True if the opening, rim included, holds the point (right, up).
+// True if the point (right, up) lies in the opening or on its rim.
 bool Contains(const Aperture& aperture, const Vec2& point_lens);
 
-// Contains() for many points: finds the edges of a polygon only once.
+// Contains() for many points: computes the edges of a polygon only once.
 class ApertureTest {
  public:
   explicit ApertureTest(const Aperture& aperture);
   bool Contains(const Vec2& point_lens) const;
 
  private:
-  double radius2_w2_;                // for a disk: the squared radius, with the rim's tolerance
+  double radius2_w2_;                // for a disk: squared radius, times 1 + kRimTolerance
   std::vector<ApertureEdge> edges_;  // for a polygon; empty for a disk
 };
 
 // Area of the opening in squared world units.
 double Area(const Aperture& aperture);
 
-// `count` points spread uniformly over the opening: the R2 low-discrepancy sequence shifted by
-// `seed`, mapped to the disk by (sqrt(r) cos, sqrt(r) sin) (thesis Eq. 4.7), and to polygons by
-// triangles of equal area. Equal arguments give equal points everywhere.
+// Returns `count` points spread uniformly over the opening: the R2 low-discrepancy sequence,
+// shifted by offsets that are random in `seed`, and mapped to the disk by (sqrt(r) cos, sqrt(r)
+// sin) (thesis Eq. 4.7), or to the polygon by triangles of equal area. Equal arguments give equal
+// points on every machine.
 std::vector<Vec2> SampleLens(const Aperture& aperture, int count, uint64_t seed = 0);
 
 }  // namespace lf

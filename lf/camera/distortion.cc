@@ -22,7 +22,7 @@ class RadialCurve {
   explicit RadialCurve(const DistortionParameters& p)
       : numerator_{p[0], p[1], p[4]}, denominator_{p[5], p[6], p[7]} {}
 
-  // radial(s), s = r^2, and its derivative by s.
+  // Returns radial(s), with s = r^2, and its derivative by s.
   ValueAndSlope Factor(double s) const {
     const ValueAndSlope n = Evaluate(numerator_, s), d = Evaluate(denominator_, s);
     return {n.value / d.value, (n.slope * d.value - n.value * d.slope) / (d.value * d.value)};
@@ -40,7 +40,7 @@ class RadialCurve {
   std::array<double, 3> numerator_, denominator_;
 };
 
-// theta (1 + k1 theta^2 + ...)
+// The radial part of kFisheye, theta (1 + k1 theta^2 + ...).
 class FisheyeCurve {
  public:
   explicit FisheyeCurve(const std::array<double, 4>& k) : k_(k) {}
@@ -88,8 +88,8 @@ FisheyeCurve ThinPrismCurve(const DistortionParameters& p) {
   return FisheyeCurve({p[0], p[1], p[4], p[5]});
 }
 
-// Returns the end of the first stretch on which the curve grows, at most position(1). position(t)
-// samples the stretch, with t from 0 to 1.
+// Returns the end of the interval, from 0, in which the curve increases; at most position(1). The
+// curve is sampled at position(t), with t from 0 to 1.
 template <class Curve, class Position>
 double GrowthLimit(const Curve& curve, const Position& position) {
   constexpr int kSteps = 1024;
@@ -110,7 +110,7 @@ double GrowthLimit(const Curve& curve, const Position& position) {
   return inside;
 }
 
-// Returns r in [0, limit] with curve(r) = rd, by Newton's method within a bracket.
+// Returns r in [0, limit] with curve(r) = rd, by Newton's method safeguarded by bisection.
 template <class Curve>
 double SolveRadius(const Curve& curve, double rd, double limit) {
   double low = 0, high = limit;
@@ -128,12 +128,13 @@ double SolveRadius(const Curve& curve, double rd, double limit) {
   return r;
 }
 
-// The two-dimensional map of kRadialTangential and its derivatives.
+// Image of a point under a two-dimensional map, and the derivatives of the map there.
 struct Bent {
   Vec2 value;
   Eigen::Matrix2d jacobian;
 };
 
+// Maps u = (x, y) by kRadialTangential.
 Bent Bend(const DistortionParameters& p, const RadialCurve& curve, const Vec2& u) {
   const double x = u.x(), y = u.y(), s = x * x + y * y;
   const double p1 = p[2], p2 = p[3];
@@ -147,7 +148,7 @@ Bent Bend(const DistortionParameters& p, const RadialCurve& curve, const Vec2& u
   return bent;
 }
 
-// The two-dimensional map of kThinPrism, from (u, v), and its derivatives.
+// Maps `at` = (u, v) by kThinPrism.
 Bent BendThinPrism(const DistortionParameters& p, const Vec2& at) {
   const double u = at.x(), v = at.y(), s = u * u + v * v;
   const double p1 = p[2], p2 = p[3], sx1 = p[6], sy1 = p[7];
@@ -163,7 +164,7 @@ Bent BendThinPrism(const DistortionParameters& p, const Vec2& at) {
   return bent;
 }
 
-// The two-dimensional map of kRadialTangentialThinPrism, from (u, v), and its derivatives.
+// Maps `at` = (u, v) by kRadialTangentialThinPrism.
 Bent BendRadialTangentialThinPrism(const DistortionParameters& p, const Vec2& at) {
   const double u = at.x(), v = at.y();
   const ValueAndSlope radial = LongFisheyeCurve(p).Factor(u * u + v * v);
@@ -184,8 +185,8 @@ Bent BendRadialTangentialThinPrism(const DistortionParameters& p, const Vec2& at
   return bent;
 }
 
-// Returns the place that bend() takes to `distorted`, by Newton's method from `start`. None if
-// there is none at most `limit` from the middle.
+// Returns the point that bend() maps to `distorted`, by Newton's method from `start`. None if the
+// iteration finds no such point, or one that is farther than `limit` from the origin.
 template <class BendIt>
 std::optional<Vec2> Unbend(const BendIt& bend, const Vec2& distorted, Vec2 start, double limit) {
   constexpr double kAccurate = 1e-12;
@@ -221,8 +222,9 @@ std::optional<Vec2> UnbendRadialTangential(const DistortionParameters& p, const 
   return Unbend([&](const Vec2& at) { return Bend(p, curve, at); }, distorted, u, limit);
 }
 
-// Returns the direction whose ideal fish-eye image bend() takes to `distorted`. None if that image
-// is farther than `limit` from the middle. The iteration starts from the radial part alone.
+// Returns the direction whose ideal fish-eye image bend() maps to `distorted`. None if that image
+// is farther than `limit` from the origin. The iteration starts at the solution for the radial part
+// alone.
 template <class Curve, class BendIt>
 std::optional<Vec3> UnbendEquidistant(const Curve& curve, const BendIt& bend, const Vec2& distorted,
                                       double limit, double distorted_limit) {
@@ -236,7 +238,8 @@ std::optional<Vec3> UnbendEquidistant(const Curve& curve, const BendIt& bend, co
   return Vec3(at->x() * factor, at->y() * factor, std::cos(theta));
 }
 
-// Returns where an ideal fish-eye sees a direction: (x, y) theta / r.
+// Returns the image of a direction in an ideal fish-eye: (x, y) theta / r. None if theta exceeds
+// `limit`, or if the direction is exactly backwards.
 std::optional<Vec2> Equidistant(const Vec3& direction, double limit) {
   const double across = direction.head<2>().norm();
   const double theta = std::atan2(across, direction.z());
@@ -283,7 +286,7 @@ DistortionMap::DistortionMap(const Distortion& distortion)
       distorted_limit_ = 0.5 * kPi / p[0];
       return;
     case DistortionModel::kDivision:
-      // There r(rd) turns back (k > 0) or grows beyond all bounds (k < 0).
+      // At this rd, r(rd) has its maximum (k > 0) or a pole (k < 0).
       distorted_limit_ = p[0] == 0 ? kInfinity : 1 / std::sqrt(std::abs(p[0]));
       if (p[0] > 0) limit_ = 0.5 * distorted_limit_;
       return;
@@ -337,7 +340,7 @@ std::optional<Vec2> DistortionMap::Distort(const Vec3& direction) const {
     case DistortionModel::kFov: {
       const double r = u.norm();
       const double scale = 2 * std::tan(0.5 * p[0]);
-      // Near the axis atan(r s) / (r omega) is s / omega to rounding.
+      // Near the axis, atan(r scale) / (r omega) equals scale / omega up to rounding.
       const double factor = r < 1e-9 ? scale / p[0] : std::atan(r * scale) / (r * p[0]);
       return Vec2(u * factor);
     }
@@ -356,7 +359,7 @@ std::optional<Vec2> DistortionMap::Distort(const Vec3& direction) const {
 std::optional<Vec3> DistortionMap::Undistort(const Vec2& distorted) const {
   const DistortionParameters& p = distortion_.parameters;
   const double rd = distorted.norm();
-  // sin(a) / rd, smooth at 0.
+  // Returns sin(a) / rd, or its limit `slope_at_0` if rd is almost 0.
   const auto sine_per = [rd](double a, double slope_at_0) {
     return rd < 1e-12 ? slope_at_0 : std::sin(a) / rd;
   };

@@ -1,6 +1,6 @@
 // How a real lens bends rays. A model maps a direction in camera axes to the *distorted* normalised
 // position (xd, yd), which K then turns into pixels: x_px = fx xd + skew yd + cx, y_px = fy yd +
-// cy. Formulas and parameter order are those of OpenCV and COLMAP.
+// cy. Formulas and parameter order agree with OpenCV and COLMAP.
 #pragma once
 
 #include <array>
@@ -28,7 +28,8 @@ enum class DistortionModel : uint8_t {
   // omega, the field of view of an ideal fish-eye lens: rd = atan(2 r tan(omega / 2)) / omega
   // (Devernay and Faugeras 2001; COLMAP: FOV)
   kFov,
-  // k; gives the undistorted radius of a distorted one (Fitzgibbon 2001): r = rd / (1 + k rd^2)
+  // k; the undistorted radius r as a function of the distorted radius rd (Fitzgibbon 2001):
+  //   r = rd / (1 + k rd^2)
   // (COLMAP: SIMPLE_DIVISION, DIVISION)
   kDivision,
   // alpha beta, a unified model (Khomutenko, Garcia and Martinet 2016); alpha in [0, 1], beta > 0:
@@ -60,31 +61,34 @@ struct Distortion {
 };
 
 // Number of parameters that files and hashes contain: 12 for kRadialTangentialThinPrism, 8 for
-// every other model, so that no file or hash changed when the former was added.
+// every other model. Files and hashes of the other models did not change when
+// kRadialTangentialThinPrism was added.
 constexpr size_t StoredParameterCount(DistortionModel model) {
   return model == DistortionModel::kRadialTangentialThinPrism ? 12 : 8;
 }
 
-// True if the parameters describe a lens: omega in (0, pi), alpha in [0, 1], beta above 0.
+// True if the parameters are valid for their model: omega in (0, pi); alpha in [0, 1] and beta
+// above 0. All parameters of the other models are valid.
 bool IsDistortion(const Distortion& distortion);
 
-// Distorts and undistorts, prepared for many points.
+// Distorts and undistorts positions. The constructor computes the limits of the model once for many
+// positions.
 //
-// A polynomial describes a lens only as far as it grows: beyond the first angle where it turns
-// back, or where a denominator vanishes, pixels have no ray and directions have no pixel.
+// A polynomial describes a lens only as far as it increases: beyond the first angle where it begins
+// to decrease, or where a denominator becomes 0, pixels have no ray and directions have no pixel.
 class DistortionMap {
  public:
   // parameters: finite and IsDistortion()
   explicit DistortionMap(const Distortion& distortion);
 
-  // Returns (xd, yd) of a direction; none if the lens has no image of it. Only fish-eyes (kFisheye,
-  // kThinPrism, kRadialTangentialThinPrism) see directions with Z <= 0.
+  // Returns (xd, yd) of a direction; none if the lens has no image of the direction. Only fish-eyes
+  // (kFisheye, kThinPrism, kRadialTangentialThinPrism) see directions with Z <= 0.
   std::optional<Vec2> Distort(const Vec3& direction) const;
 
-  // Returns the direction that is distorted to (xd, yd); none if no ray arrives there. Where the
-  // model has no closed formula, it is iterated until rounding: Distort() of the result is within
-  // 1e-12 of (xd, yd). The length is above 0 and smooth over the image; Z = 1 for kNone and
-  // kRadialTangential.
+  // Returns the direction that is distorted to (xd, yd); none if no ray arrives there. If the model
+  // has no closed formula, the direction is found by iteration: Distort() of the result is within
+  // 1e-12 of (xd, yd). The length of the result is above 0 and varies smoothly over the image; Z =
+  // 1 for kNone and kRadialTangential.
   std::optional<Vec3> Undistort(const Vec2& distorted) const;
 
  private:

@@ -14,7 +14,7 @@ namespace {
 struct Lens {
   std::string name;
   Distortion distortion;
-  double widest_rad;  // directions up to here are tested
+  double widest_rad;  // largest tested angle from the optical axis
 };
 
 std::vector<Lens> Lenses() {

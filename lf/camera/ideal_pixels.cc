@@ -8,7 +8,7 @@
 namespace lf {
 namespace {
 
-// Largest patch. It is wide, because kernels work along scanlines.
+// Size of the largest patch. It is wide, because kernels work along scanlines.
 constexpr int kLargestWidth_px = 1024, kLargestHeight_px = 64;
 
 constexpr int kControls = IdealPatch::kControls;
@@ -41,8 +41,9 @@ class PatchMaker {
         map_(k.distortion),
         patches_(patches) {}
 
-  // Adds patches for `rect`. A rectangle that no patch fits is halved, across its width if that is
-  // at least twice its height, down to single pixels.
+  // Adds patches for `rect`. A rectangle that no patch fits is halved, down to single pixels: into
+  // a left and a right half if it is at least twice as wide as high, otherwise into an upper and a
+  // lower one.
   void Add(const PixelRect& rect) {
     if (rect.empty()) return;
     if (rect.pixel_count() == 1) {
@@ -76,7 +77,8 @@ class PatchMaker {
     patches_->push_back(patch);
   }
 
-  // Makes the patch go through the ideal positions of six by six points. False if it does not fit.
+  // Makes the patch go through the ideal positions of six by six points. Returns false if one of
+  // them has no ideal position, or if the error of the patch exceeds kTolerance_px.
   bool Fit(IdealPatch* patch) const {
     const PixelRect& rect = patch->rect;
     Points rows[kControls];  // control points of the scanlines through the points
@@ -103,7 +105,7 @@ class PatchMaker {
     return true;
   }
 
-  // Returns a place in [-1, 1] as one in [0, 1].
+  // Maps a position in [-1, 1] to [0, 1].
   static double UnitPlace(double place) { return 0.5 * (1 + place); }
 
   bool IsTrue(const IdealPatch& patch, double u, double v) const {

@@ -1,9 +1,10 @@
 // The pixels of an LF camera with its lens distortion undone, without resampling its image.
 //
-// The *ideal position* of a pixel is where a pinhole with the same K would record its ray: q = K d
-// with d the direction of the ray in camera axes. It is homogeneous, since a fish-eye sees beyond
-// 90 degrees, where no finite position is left. Without distortion q = (x + 0.5, y + 0.5, 1). Every
-// linear form of camera/ray_forms.h applies to q as it does to pixels.
+// The *ideal position* of a pixel is the position at which a pinhole with the same K would record
+// its ray: q = K d, where d is the direction of the ray in camera axes. It is in homogeneous
+// coordinates, because a fish-eye sees directions beyond 90 degrees, which have no finite position.
+// Without distortion q = (x + 0.5, y + 0.5, 1). Every linear form of camera/ray_forms.h applies to
+// q as it applies to the pixel positions of a camera without distortion.
 #pragma once
 
 #include <array>
@@ -18,14 +19,16 @@
 
 namespace lf {
 
-// Returns the ideal position of continuous pixel position (x, y), by iteration to rounding. This is
-// the reference. `map` must be the map of k.distortion. None if no ray arrives.
+// Returns the ideal position of continuous pixel position (x, y); none if no ray arrives there. It
+// is iterated until only rounding errors are left, and is the reference for the patches below.
+// `map` must be the map of k.distortion.
 std::optional<Vec3> IdealPosition(const Intrinsics& k, const DistortionMap& map, double x_px,
                                   double y_px);
 
-// Pixels [x_begin, x_end) of a scanline, whose ideal positions lie on a Bezier arc of degree 5; it
-// runs evenly from the left border of the first pixel to the right border of the last. A linear
-// form on the arc lies between its values at the control points.
+// Pixels [x_begin, x_end) of a scanline, whose ideal positions lie on a Bezier arc of degree 5. The
+// parameter of the arc grows linearly from 0 at the left border of the first pixel to 1 at the
+// right border of the last. On the arc, a linear form has no value outside the range of its values
+// at the control points.
 struct IdealArc {
   int32_t x_begin = 0;
   int32_t x_end = 0;
@@ -39,31 +42,33 @@ struct IdealArc {
   Vec3 At(double t) const;
 };
 
-// Pixels of a rectangle, whose ideal positions lie on a Bezier patch of degree 5 by 5, which runs
-// evenly from its left to its right and from its upper to its lower border. A linear form on the
-// patch lies between its values at the control points.
+// Pixels of a rectangle, whose ideal positions lie on a Bezier patch of degree 5 by 5. The
+// parameters of the patch grow linearly from 0 at its left and upper border to 1 at its right and
+// lower border. On the patch, a linear form has no value outside the range of its values at the
+// control points.
 struct IdealPatch {
   static constexpr int kControls = IdealArc::kControls;
   PixelRect rect;
   Vec3 control[kControls][kControls];  // [row][column]
 
-  // The arc through the pixel centres of scanline y, which must be in `rect`.
+  // The arc through the centres of the pixels of scanline y, which must be in `rect`.
   IdealArc Scanline(int y) const { return ArcAt(Parameter(y)); }
   double Parameter(int y) const { return (y + 0.5 - rect.y_begin) / rect.height(); }
   // The arc at v, which is 0 at the upper border and 1 at the lower one.
   IdealArc ArcAt(double v) const;
 };
 
-// Weights of the control points in the arc's point at t, from 0 to 1. Their sum is 1.
+// Weights of the control points in the point of an arc at parameter t, in [0, 1]. Their sum is 1.
 using BezierWeights = std::array<double, IdealArc::kControls>;
 BezierWeights BezierWeightsAt(double t);
 
 // All pixels of a camera with distortion, in patches that are accurate to kTolerance_px.
 class IdealPixels {
  public:
-  // Largest error of a patch: the distance, in LF pixels, between a pixel and where the camera
-  // would record the ray of its ideal position. Patches are exact at the points that they are made
-  // from, and checked where their error is largest (kQuinticWorstPlaces).
+  // Largest error of a patch: the distance, in LF pixels, between a pixel and the position at which
+  // the camera would record the ray of the pixel's ideal position on the patch. A patch is exact at
+  // the points that it is made from, and its error is checked where it is largest
+  // (kQuinticWorstPlaces).
   static constexpr double kTolerance_px = 3e-5;
 
   explicit IdealPixels(const Intrinsics& k);

@@ -50,14 +50,14 @@ TEST(IdealPixels, PatchesHoldEveryPixelOnceAndAgreeWithTheIteration) {
         }
       }
     EXPECT_EQ(std::count(covered.begin(), covered.end(), 1), 320 * 240) << camera.name;
-    // There must be few patches, or they would save nothing. Small images of strong lenses, as
-    // these, need the most.
+    // The patches must be few, because patches of a few pixels save no time. Small images with
+    // strong distortion, as in this test, need the most patches for their size.
     EXPECT_LE(pixels.patches().size(), 320u * 240 / 25) << camera.name;
   }
 }
 
 TEST(IdealPixels, PixelsBeyondTheFoldHaveNoPatch) {
-  // x (1 - 0.3 x^2): no ray beyond 0.70 focal lengths.
+  // x (1 - 0.3 x^2) is at most 0.70: no ray arrives beyond 0.70 focal lengths.
   const Intrinsics k{200, 200, 160, 120, 0, 320, 240, {DistortionModel::kRadialTangential, {-0.3}}};
   const DistortionMap map(k.distortion);
   const IdealPixels pixels(k);

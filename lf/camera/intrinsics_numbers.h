@@ -10,7 +10,8 @@ namespace lf {
 
 inline constexpr size_t kIntrinsicsNumbers = 7;
 
-// Returns f_x, f_y, c_x, c_y, skew, width and height, in pixels: all but distortion and vignetting.
+// Returns f_x, f_y, c_x, c_y, skew, width and height, in pixels; leaves out distortion and
+// vignetting.
 inline std::array<double, kIntrinsicsNumbers> NumbersOfIntrinsics(const Intrinsics& k) {
   return {k.fx_px,
           k.fy_px,

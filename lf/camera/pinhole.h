@@ -1,5 +1,5 @@
-// The pinhole camera (thesis 2.2.2-2.2.4). It describes every LF camera, whose lens may bend the
-// rays, and the render camera as seen through its lens centre, which has no distortion.
+// The pinhole camera (thesis 2.2.2-2.2.4). It describes an LF camera, whose lens may have
+// distortion, and the view of a render camera through its lens centre, which has no distortion.
 #pragma once
 
 #include <optional>
@@ -21,8 +21,8 @@ struct Intrinsics {
   double skew_px = 0;
   int width_px = 0;
   int height_px = 0;
-  Distortion distortion = {};  // between the pinhole's rays and K
-  Vignetting vignetting = {};  // falloff of recorded light; recorded radiance is divided by it
+  Distortion distortion = {};  // applied to the directions of rays, before K
+  Vignetting vignetting = {};  // falloff of light, by which recorded radiance is divided
 
   bool has_distortion() const { return distortion.model != DistortionModel::kNone; }
   Mat3 Matrix() const;
@@ -34,25 +34,25 @@ struct PinholeCamera {
   Intrinsics intrinsics;
   RigidTransform cam_from_world;
 
-  // c = -R^T t
+  // Returns the camera centre c = -R^T t.
   Vec3 CentreWorld() const { return cam_from_world.Inverse().translation; }
   Vec3 RightWorld() const { return cam_from_world.rotation.row(0).transpose(); }
   Vec3 UpWorld() const { return -cam_from_world.rotation.row(1).transpose(); }
   Vec3 ForwardWorld() const { return cam_from_world.rotation.row(2).transpose(); }
 };
 
-// The camera at `centre` that looks along `forward`, with `up` in the upper half of its image.
-// None if forward is 0, or up is parallel to it.
+// Returns the pose of the camera at `centre` that looks along `forward`, with `up` in the upper
+// half of its image. None if forward or up is 0, or if they are parallel.
 std::optional<RigidTransform> LookAlong(const Vec3& centre_world, const Vec3& forward_world,
                                         const Vec3& up_world);
 
-// The ray through continuous pixel position (x, y) of a camera without distortion:
-// p_camera = K^-1 p (thesis Eq. 4.1, 4.2). Its direction has length 1 along the optical axis, so
-// Ray::At(z) is the point at depth z.
+// Returns the ray through continuous pixel position (x, y) of a camera without distortion: p_camera
+// = K^-1 p (thesis Eq. 4.1, 4.2). The ray's direction has length 1 along the optical axis;
+// therefore Ray::At(z) is the point at depth z.
 Ray RayOfPixel(const PinholeCamera& camera, double x_px, double y_px);
 
-// P = K [R|t] (thesis Eq. 2.6, 2.7), for a camera without distortion. None for points at depth 0
-// or behind the camera.
+// Projects a point into the image of a camera without distortion, by P = K [R|t] (thesis Eq. 2.6,
+// 2.7). None if the point is at depth 0 or behind the camera.
 std::optional<Vec2> Project(const PinholeCamera& camera, const Vec3& point_world);
 
 }  // namespace lf

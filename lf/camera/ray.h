@@ -1,5 +1,5 @@
-// Rays are lines: the radiance that an LF camera recorded along a direction is the same wherever
-// the ray is cut (thesis 2.1.1).
+// Rays are lines: along the whole line, the radiance is the one that an LF camera recorded in its
+// direction (thesis 2.1.1).
 #pragma once
 
 #include <optional>
@@ -15,8 +15,8 @@ struct Ray {
   Vec3 At(double lambda) const { return origin + lambda * direction; }
 };
 
-// The point of the line through `ray` on `plane`, before or behind the origin; none if the ray is
-// parallel to the plane.
+// Returns the intersection of the line through `ray` with `plane`, in front of or behind
+// ray.origin; none if the ray is parallel to the plane.
 std::optional<Vec3> IntersectLine(const Ray& ray, const Plane& plane);
 
 }  // namespace lf

@@ -1,4 +1,5 @@
-// The ray of an LF camera through a point of the world, as a frame takes it (doc/ray.md, 2, 3).
+// The ray of an LF camera through a point of the world, directed as in the ray model of a frame
+// (doc/ray.md, 2, 3).
 #pragma once
 
 #include <optional>
@@ -12,7 +13,8 @@ namespace lf {
 class RayThrough {
  public:
   //   forward_world  the optical axis of the frame
-  //   map            of the LF camera's distortion; callers that have it save the time to make it
+  //   map            made from the distortion of the LF camera; a caller that has such a map saves
+  //                  the time to make it again
   RayThrough(const PinholeCamera& lf_camera, const Vec3& forward_world)
       : RayThrough(lf_camera, forward_world, DistortionMap(lf_camera.intrinsics.distortion)) {}
   RayThrough(const PinholeCamera& lf_camera, const Vec3& forward_world, const DistortionMap& map)
@@ -24,15 +26,15 @@ class RayThrough {
 
   const Vec3& centre_world() const { return centre_; }
 
-  // Direction of the line through the point and the LF camera, with the sign that makes it run
-  // forward.
+  // Returns the direction of the line through the LF camera's centre and the point, with the sign
+  // for which it runs forward.
   Vec3 DirectionWorld(const Vec3& point_world) const {
     const Vec3 d = point_world - centre_;
     return forward_.dot(d) < 0 ? Vec3(-d) : d;
   }
 
-  // Returns the position in pixels where the LF camera records a ray of this direction, which may
-  // be outside its image. None if its lens has no such ray.
+  // Returns the position, in pixels, at which the LF camera records a ray of this direction; it may
+  // lie outside the image. None if the lens has no image of the direction.
   std::optional<Vec2> RecordedAt(const Vec3& direction_world) const {
     const std::optional<Vec2> distorted = map_.Distort(rotation_ * direction_world);
     if (!distorted) return std::nullopt;

@@ -1,4 +1,4 @@
-// How much a ray counts (doc/ray.md, "What is added").
+// Weights of rays (doc/ray.md, "What is added").
 #pragma once
 
 #include <algorithm>
@@ -12,30 +12,30 @@ namespace lf {
 // ray's LF camera stands for: sum += weight v, count += weight. A ray of weight 0 adds nothing.
 inline constexpr uint32_t kMaxWeight = 255;
 
-// Side of a block of elements. Blocks of 8 x 8 elements of the plate have one weight. Every LF
-// image has blocks of its own, which begin elsewhere, so that their borders do not add up to a
-// pattern.
+// Side of a block of elements. All elements of a block of 8 x 8 elements of the plate share one
+// weight. The blocks of different LF images begin at different elements; otherwise the borders of
+// their blocks would add up to a pattern.
 inline constexpr int kWeightBlock = 8;
 
 struct WeightBlocks {
-  // In [0, kWeightBlock): blocks begin at x = 8 i - shift_x.
+  // Blocks begin at x = 8 i - shift_x and y = 8 i - shift_y; both shifts are in [0, kWeightBlock).
   int shift_x = 0;
   int shift_y = 0;
 
-  // End of the block that column x, or row y, lies in.
+  // Exclusive end of the block that contains column x, or row y.
   int EndX(int x) const { return ((x + shift_x) / kWeightBlock + 1) * kWeightBlock - shift_x; }
   int EndY(int y) const { return ((y + shift_y) / kWeightBlock + 1) * kWeightBlock - shift_y; }
 };
 
-// The feather that leaves the whole weight. Rays near the borders of an LF image count less: the
-// feather is the part of the weight that is left, from 0 at the border to kWholeFeather.
+// The feather of a ray that keeps its whole weight. The feather is the share of a ray's weight that
+// is left near the borders of its LF image: from 0 at the border to kWholeFeather inside.
 inline constexpr uint32_t kWholeFeather = 256;
 
 // Returns the weight of element (i, j) of a block, from the feather at the element's centre.
 //   weight    the block's weight
-//   above     feather at the block's upper corners, left and right
-//   below     feather at its lower corners, left and right
-// Returns at least 1 if the block's weight is not 0, because a recorded ray always counts.
+//   above     feather at the two upper corners of the block: left, right
+//   below     feather at the two lower corners of the block: left, right
+// The result is at least 1 if the block's weight is not 0, because a recorded ray always counts.
 inline uint32_t FeatheredWeight(uint32_t weight, const uint16_t* above, const uint16_t* below,
                                 int i, int j) {
   constexpr uint32_t kOne = 2 * kWeightBlock;
@@ -50,10 +50,10 @@ inline uint32_t FeatheredWeight(uint32_t weight, const uint16_t* above, const ui
 // Weights of the rays of one LF image in one frame.
 class RayWeights {
  public:
-  // One weight for the whole plate, at most kMaxWeight.
+  // The whole plate has one weight, at most kMaxWeight.
   RayWeights(uint32_t weight = 1) : same_(weight) {}  // NOLINT: a number is such weights
-  // Writes the weights, at most kMaxWeight, of `count` blocks side by side. The first of them ends
-  // before (end_x, end_y).
+  // Writes the weights, at most kMaxWeight, of `count` blocks side by side. (end_x, end_y) is the
+  // exclusive end of the first block.
   using RowFunction = std::function<void(int end_x, int end_y, int count, uint8_t* weights)>;
   // Writes the feather, at most kWholeFeather, at the positions (x + kWeightBlock i, y) of the
   // plate, i in [0, count), which are corners of blocks. Any thread may call it.
@@ -64,7 +64,7 @@ class RayWeights {
 
   bool are_same() const { return of_row_ == nullptr; }
   uint32_t same() const { return same_; }
-  // True if the image takes no part.
+  // True if all weights are 0, so that the image adds nothing to the plate.
   bool are_none() const { return are_same() && same_ == 0; }
   bool has_feather() const { return feather_of_row_ != nullptr; }
   const WeightBlocks& blocks() const { return blocks_; }
@@ -81,12 +81,12 @@ class RayWeights {
     feather_of_row_(begin_x, begin_y + kWeightBlock, 2, below);
     return FeatheredWeight(weight, above, below, x - begin_x, y - begin_y);
   }
-  // Writes the weights of `count` blocks side by side, without feather. The first one holds element
-  // (x, y). Must not be called if are_same().
+  // Writes the weights of `count` blocks side by side, without feather. The first block contains
+  // element (x, y). Must not be called if are_same() is true.
   void OfRow(int x, int y, int count, uint8_t* weights) const {
     of_row_(blocks_.EndX(x), blocks_.EndY(y), count, weights);
   }
-  // Writes the feather of `count` corners, as FeatherFunction does. Needs has_feather().
+  // Writes the feather of `count` corners, as FeatherFunction does. has_feather() must be true.
   void FeatherOfRow(int x, int y, int count, uint16_t* feather) const {
     feather_of_row_(x, y, count, feather);
   }

@@ -1,5 +1,4 @@
-// The thin-lens camera of one frame: what doc/ray.md calls K', R', c', the lens and the focus
-// plane.
+// The thin-lens camera of one frame: K', R', c', the lens and the focus plane of doc/ray.md.
 #pragma once
 
 #include <optional>
@@ -18,7 +17,7 @@ struct FocusTilt {
 };
 
 struct RenderCamera {
-  PinholeCamera pinhole;  // sensor plate elements as seen through the lens centre
+  PinholeCamera pinhole;  // projects points through the lens centre to elements of the sensor plate
   Aperture aperture;      // in the plane through the lens centre normal to the optical axis
   Plane focus_plane;      // in the world
 
@@ -31,14 +30,15 @@ struct RenderCamera {
   double unit_m = 1;  // metres per world unit
 };
 
-// The focus plane at distance g in front of `camera`, tilted. g > 0, tilts within +-90 degrees.
+// Returns the focus plane at distance g > 0 in front of `camera`, with tilts within +-90 degrees.
 Plane FocusPlane(const PinholeCamera& camera, double focus_distance_w, const FocusTilt& tilt);
 
-// A point of the lens in the world: (right, up) in lens coordinates.
+// Returns the point (right, up) of the lens, given in lens coordinates, in the world.
 Vec3 LensPointWorld(const RenderCamera& camera, const Vec2& point_lens);
 
-// The refraction of a thin lens: the point of the focus plane that element position (x, y) sees
-// through every point of the lens (thesis 2.3.2). None where the tilted plane lies behind the lens.
+// The refraction of a thin lens: returns the point of the focus plane that element position (x, y)
+// sees through every point of the lens (thesis 2.3.2). None if the line from (x, y) through the
+// lens centre meets the tilted plane only behind the lens or never.
 std::optional<Vec3> FocusPointOfElement(const RenderCamera& camera, double x_px, double y_px);
 
 }  // namespace lf

@@ -1,5 +1,5 @@
-// Random pairs of an LF camera and a render camera for tests: before, behind and in the lens
-// plane, tilted focus planes with their horizon in view, disks and polygons, turned images.
+// Random pairs of an LF camera and a render camera for tests: LF cameras in front of, behind and in
+// the lens plane, tilted focus planes whose horizon is in view, disks and polygons, rolled images.
 #pragma once
 
 #include <cstdint>
@@ -14,15 +14,18 @@ struct CameraPair {
   RenderCamera render_camera;
 };
 
-// LF images are 50 x 35 pixels, plates 160 x 120. The kind of scene cycles with the seed.
+// The LF image has 50 x 35 pixels, the plate 160 x 120 elements. The kind of scene depends on the
+// seed's remainders by small numbers.
 CameraPair RandomCameraPair(uint64_t seed);
 
-// As RandomCameraPair(), with an LF image of 200 x 140 pixels taken through a lens that bends the
-// rays: a phone's, with or without tangential terms, with a fold within the image, or a fish-eye.
+// Same as RandomCameraPair(), but with an LF image of 200 x 140 pixels and lens distortion: radial
+// (as of a phone), with tangential terms, rational, with a fold within the image, FOV, or a
+// fish-eye.
 CameraPair RandomDistortedPair(uint64_t seed);
 
-// A grid rig: LF camera (column, row) pitches beside the render camera, all parallel, in the lens
-// plane, one LF pixel per element. Accepted rays sit exactly on rims and element borders.
+// A pair from a grid rig: the LF camera is (column, row) pitches beside the render camera, in its
+// lens plane and parallel to it; one LF pixel is as large as one element. Accepted rays lie exactly
+// on the rim of the lens and on element borders.
 CameraPair ParallelPair(int column, int row, double pitch_w, double radius_w);
 
 }  // namespace lf::testing

@@ -15,18 +15,19 @@ namespace lf {
 // Returns b. kInput if g <= f: the lens then forms no real image.
 Result<double> ImageDistance(double focal_length_w, double focus_distance_w);
 
-// N = f / d                                             (thesis Eq. 2.11); infinite for a pinhole.
+// Returns the f-number N = f / d (thesis Eq. 2.11); infinity for a pinhole.
 double FNumber(double focal_length_w, double aperture_diameter_w);
 
-// Diameter of the blur of a point at depth z when a lens of diameter d is focused at depth g, in
-// world units on the focus plane:  d |z - g| / z. Multiplied by the plate's elements per world unit
-// at the focus plane (fx / g), it is the circle of confusion in elements (thesis Eq. 2.9 seen from
-// the object side).
+// Returns the diameter of the blur of a point at depth z for a lens of diameter d that is focused
+// at depth g, in world units on the focus plane:  d |z - g| / z. Multiplied by the number of
+// elements per world unit at the focus plane (fx / g), it is the circle of confusion in elements
+// (thesis Eq. 2.9, seen from the object side).
 double BlurOnFocusPlane(double aperture_diameter_w, double focus_distance_w, double depth_w);
 
-// The depths whose blur on the focus plane is at most `blur_limit_w`, in world units there. The
-// formula is exact; thesis Eq. 2.10 is its approximation for g >> f. The far end is infinity beyond
-// the hyperfocal distance. [0, infinity) for a pinhole.
+// Returns the range of depths whose blur on the focus plane is at most `blur_limit_w`, in world
+// units on that plane. The formula is exact; thesis Eq. 2.10 approximates it for g >> f. The far
+// end is infinity if the blur limit is at least the aperture diameter, that is, from the hyperfocal
+// distance on. The range is [0, infinity) for a pinhole.
 DepthRange DepthOfField(double aperture_diameter_w, double focus_distance_w, double blur_limit_w);
 
 }  // namespace lf

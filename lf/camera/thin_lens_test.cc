@@ -42,8 +42,8 @@ TEST(ThinLens, TheFNumberIsFocalLengthOverDiameter) {
   EXPECT_NEAR(stopped_down * stopped_down / (d * d), 0.5, 1e-12);
 }
 
-// z = d / b |b - b_plate| on the plate (thesis Eq. 2.9), with b where the point's own image lies;
-// one unit on the plate is g / b_plate on the focus plane.
+// The blur is d / b |b - b_plate| on the plate (thesis Eq. 2.9), where b is the distance at which
+// the point is imaged sharply; one unit on the plate corresponds to g / b_plate on the focus plane.
 TEST(ThinLens, BlurIsTheCircleOfConfusionSeenOnTheFocusPlane) {
   const double f = 0.05, d = 0.02;
   for (const double g : {0.3, 2.0})
@@ -54,7 +54,7 @@ TEST(ThinLens, BlurIsTheCircleOfConfusionSeenOnTheFocusPlane) {
     }
 }
 
-// r f g^2 / (d f^2) on either side of the focus plane, for g >> f (thesis Eq. 2.10).
+// Each end is r f g^2 / (d f^2) from the focus plane, for g >> f (thesis Eq. 2.10).
 TEST(ThinLens, TheDepthOfFieldComesNearTheThesissApproximation) {
   const double f = 0.05, d = 0.02, g = 5, pixel = 2e-6;
   const double approximation = pixel * f * g * g / (d * f * f);

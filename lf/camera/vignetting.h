@@ -11,29 +11,29 @@ namespace lf {
 //   F(r) = 1 + v1 r^2 + v2 r^4 + v3 r^6       (Goldman, "Vignette and Exposure Calibration and
 //                                             Compensation", PAMI 32(12), 2010; Hugin: Vb, Vc, Vd)
 //
-// r is relative to half of the diagonal of the whole image, so that it is 1 in the corners of an
-// image whose principal point is its centre. All three are 0 if there is no falloff.
+// r is relative to half of the diagonal of the whole image: r = 1 in the corners of an image whose
+// principal point is its centre. v1 = v2 = v3 = 0 if there is no falloff.
 struct Vignetting {
   std::array<double, 3> v = {};
 
   bool is_none() const { return v == std::array<double, 3>{}; }
-  // F at r^2.
+  // Returns F at radius r, given r^2.
   double Falloff(double r_squared) const {
     return 1 + r_squared * (v[0] + r_squared * (v[1] + r_squared * v[2]));
   }
   friend bool operator==(const Vignetting&, const Vignetting&) = default;
 };
 
-// The least share that a falloff may leave anywhere in the image: a lens that loses more than six
-// stops is a wrong number.
+// The least share of light that a falloff may leave anywhere in the image. A larger loss, of more
+// than six stops, is taken for a wrong number.
 inline constexpr double kLeastFalloff = 1.0 / 64;
 
 struct Intrinsics;
 
-// Returns r^2 of image position (x, y).
+// Returns r^2, as defined above, of image position (x, y).
 double RadiusSquared(const Intrinsics& k, double x_px, double y_px);
 
-// The least and the largest share of light that the whole image has, exact but for rounding.
+// The least and the largest falloff F in the whole image, exact up to rounding.
 struct FalloffRange {
   double min = 1, max = 1;
 };
