@@ -15,13 +15,13 @@ namespace lf {
 namespace {
 
 constexpr size_t kLookedAt = 3;
-// Number of LF images that are tried, one after the other, for each of the three.
+// Number of successive LF images of which the first readable one is taken, for each of the three.
 constexpr size_t kAskedFrom = 5;
 
 // Two pictures count as having the same transparent pixels if at most this share of them differs.
 constexpr double kSameShare = 0.02;
 
-// The facts that one LF image contributes.
+// Facts about one LF image that tell the meaning of its alpha.
 struct ImageEvidence {
   std::string image_name;
   int width = 0;
@@ -78,7 +78,7 @@ bool HaveSameTransparentPixels(const ImageEvidence& a, const ImageEvidence& b) {
          kSameShare * static_cast<double>(std::max(a.transparent_count, b.transparent_count));
 }
 
-// Returns the first LF image from `first` on whose header can be read, out of kAskedFrom.
+// Returns the first LF image with a readable header among the kAskedFrom images from `first` on.
 std::optional<LfImageId> ReadableFrom(const LightField& light_field, size_t first,
                                       ImageFileInfo* info) {
   for (size_t i = first; i < std::min(first + kAskedFrom, light_field.size()); ++i) {
@@ -93,7 +93,7 @@ std::optional<LfImageId> ReadableFrom(const LightField& light_field, size_t firs
   return std::nullopt;
 }
 
-// Returns the evidence of each chosen LF image that has transparent pixels.
+// Returns a Look for each examined LF image that has transparent pixels.
 std::vector<ImageEvidence> EvidenceOfSome(const LightField& light_field) {
   std::vector<size_t> firsts;
   for (size_t i = 0; i < kLookedAt; ++i)

@@ -1,5 +1,5 @@
-// Finds out whether the alpha channel of LF images is a mask or light, if the calibration does not
-// say it.
+// Decides whether the alpha channel of LF images is a mask or light, for calibrations that do not
+// state it.
 #pragma once
 
 #include <array>
@@ -16,16 +16,19 @@ struct AlphaEvidence {
   std::string image_name;                        // the LF image that decided the meaning
 };
 
-// Looks at the pixels of three LF images with an alpha channel, taken from the beginning, the
-// middle and the end of the light field.
-// - Alpha is light if, in each of the three, all fully transparent pixels have one colour: the
-// images
-//   then show an object alone, and that colour is its background. Alpha is premultiplied if the
-//   files hold floats and the colour is black, as renderers write them; otherwise it is straight.
-// - Alpha is a mask if there is a picture beneath the transparent pixels, or if the same pixels are
-//   transparent in all three (up to 2 % of them), like the borders of undistorted photographs.
-// Returns nullopt if the images have no alpha or no transparent pixel. Files that cannot be read
-// are skipped.
+// Examines the pixels of up to three LF images with an alpha channel, from the beginning, the
+// middle and the end of the light field. Images without fully transparent pixels do not count.
+//
+// Alpha is a mask if there is a picture beneath the transparent pixels of one image, or if the same
+// pixels are transparent in all of several images (up to 2 % of them may differ), like the borders
+// of undistorted photographs.
+//
+// Otherwise alpha is light: in each image, all fully transparent pixels have one colour, because
+// the images show an object alone, and that colour is its background. Alpha is premultiplied if the
+// files hold floats and the colour is black, as renderers write them; otherwise it is straight.
+//
+// Returns nullopt if the images have no alpha or no transparent pixel. If a file cannot be read,
+// one of the four LF images after it is tried instead.
 std::optional<AlphaEvidence> FindAlphaEvidence(const LightField& light_field);
 
 }  // namespace lf

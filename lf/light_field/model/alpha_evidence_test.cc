@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kSide = 20;
 
-// Three LF images; each test writes as many of them as it needs.
+// A light field of three LF images; each test writes as many image files as it needs.
 class AlphaEvidenceTest : public FolderTest {
  protected:
   void SetUp() override {
@@ -24,8 +24,8 @@ class AlphaEvidenceTest : public FolderTest {
     field_.image_names = {"0.png", "1.png", "2.png"};
     field_.folder = folder_;
   }
-  // Writes noise that is opaque in the columns from `begin` on. Transparent pixels have the value
-  // `beneath`, if it is given.
+  // Writes noise that is opaque in the columns from `begin` on and transparent in the others.
+  // Transparent pixels have the colour `beneath`; if it is not given, they keep their noise.
   void Write(int index, int begin, std::optional<uint8_t> beneath) {
     Image<uint8_t> image = NoiseImage<uint8_t>(kSide, kSide, 4);
     for (int y = 0; y < kSide; ++y)

@@ -16,13 +16,13 @@ namespace {
 constexpr double kSamePlace = 1e-9, kRounding = 1e-14;
 constexpr double kSameRotation = 1e-6;
 
-// Points in the cells of a grid that is so coarse that points within the tolerance rarely lie in
-// different cells.
+// Assigns points to the cells of a grid. The grid is so coarse that points within the tolerance of
+// each other rarely lie in different cells.
 class PlaceGrid {
  public:
   explicit PlaceGrid(double tolerance_w) : tolerance_w_(tolerance_w), cell_w_(1024 * tolerance_w) {}
 
-  // Calls use(cell) for each cell that contains a point within the tolerance of `point`.
+  // Calls use(cell) for each cell that has a point within the tolerance of `point`.
   template <class Use>
   void ForEachCell(const Vec3& point, const Use& use) const {
     std::array<std::array<double, 2>, 3> ends;
@@ -47,7 +47,7 @@ class PlaceGrid {
 
  private:
   double CellOf(double x) const { return cell_w_ > 0 ? std::floor(x / cell_w_) : x; }
-  // Cells with equal hashes are searched together.
+  // Different cells with equal hashes are searched together.
   static uint64_t Hash(std::array<double, 3> cell) {
     for (double& x : cell) x += 0.0;  // +0 and -0 have one hash
     return HashBytes({reinterpret_cast<const char*>(cell.data()), sizeof(cell)});
@@ -57,7 +57,7 @@ class PlaceGrid {
   double cell_w_;
 };
 
-// Returns the distance below which two positions count as the same.
+// Returns the distance up to which two positions count as the same.
 double ToleranceOf(const LightField& light_field) {
   Eigen::AlignedBox3d box;
   double reach_w = 0;
@@ -73,7 +73,7 @@ bool HaveOneView(const LightField& light_field, const LfCamera& a, const LfCamer
          (a.cam_from_world.rotation - b.cam_from_world.rotation).norm() <= kSameRotation;
 }
 
-// Returns the LF images of each pose that has several, in ascending order.
+// Returns, for each pose with several LF images, these images in ascending order.
 std::vector<std::vector<uint32_t>> PosesWithSeveral(const LightField& light_field) {
   const std::vector<uint32_t> firsts = FirstOfPose(light_field);
   std::vector<uint32_t> counts(firsts.size(), 0);
@@ -91,15 +91,15 @@ std::vector<std::vector<uint32_t>> PosesWithSeveral(const LightField& light_fiel
   return poses;
 }
 
-// Applies the rule to the LF images of one pose. Returns the number of images that have a darker
-// one.
+// Does for the LF images of one pose what ApplyBrackets() says. Returns the number of images that
+// have a darker one.
 size_t ApplyToPose(std::vector<uint32_t> images, std::vector<LfCamera>* cameras) {
   const RigidTransform pose = (*cameras)[images[0]].cam_from_world;
   const auto exposure = [&](uint32_t i) { return ExposureOf((*cameras)[i]); };
   std::stable_sort(images.begin(), images.end(),
                    [&](uint32_t a, uint32_t b) { return exposure(a) < exposure(b); });
-  // Sorted by exposure, the darkest first, with equal exposures together.
-  std::vector<size_t> begins;  // where each exposure begins in `images`, and images.size()
+  // The images are now sorted by exposure, darkest first. Nearly equal exposures form one group.
+  std::vector<size_t> begins;  // where each group begins in `images`; at the end images.size()
   for (size_t k = 0; k < images.size(); ++k)
     if (k == 0 || exposure(images[k]) >= kOneExposure * exposure(images[begins.back()]))
       begins.push_back(k);

@@ -1,5 +1,5 @@
-// Brackets: LF images of one pose with different exposures. A bright one shows the shadows with
-// little noise, a dark one the highlights that are clipped in the others.
+// Brackets: LF images of one pose with different exposures. A bright image shows the shadows with
+// little noise, a dark one shows the highlights that are clipped in the bright ones.
 //
 // Together they are one picture: each pixel is taken from the brightest LF image in which it is not
 // clipped. Every pose therefore sends exactly one ray per pixel, however bright it is. If clipped
@@ -15,34 +15,37 @@
 
 namespace lf {
 
-// Returns, for each LF image, the first LF image with the same pose and intrinsics. Positions are
-// the same within 1e-9 of the extent of all positions, rotations within 1e-6.
-// Time and memory are linear in the number of LF images.
+// Returns, for each LF image, the first LF image with the same pose and intrinsics. Positions count
+// as equal if they differ by at most 1e-9 of the extent of all positions, rotations if they differ
+// by at most 1e-6. Time and memory are linear in the number of LF images.
 std::vector<uint32_t> FirstOfPose(const LightField& light_field);
 
-// Returns how much light the LF image recorded, relative to other LF images: 1 / lf_gain, as the
-// geometric mean of the channels.
+// Returns how much light the LF image recorded, relative to other LF images: 1 / lf_gain, where the
+// geometric mean of the three channels is taken.
 double ExposureOf(const LfCamera& camera);
 
 // Exposures that differ by less than this factor count as equal.
 inline constexpr double kOneExposure = 1.1;
 
-// Raises max_radiance of integer files so that gains and falloffs clip no recorded light. Float
-// files keep their range.
+// Raises max_radiance so that gains and falloffs clip no light that integer files recorded. Does
+// nothing if an image is a float file.
 void MakeRoomForGains(LightField* light_field);
 
 // Decides which pixels of the LF images of a pose send rays, if encoding.masks_clipped is set:
-// - masks_clipped of an LF image is set if its pose has a darker one. The darkest one therefore
-// keeps
-//   its clipped pixels, and an LF image without a darker one is not masked: no element becomes
-//   black because all of its light is bright.
-// - brighter of an LF image is the first LF image of its pose with the next larger exposure. A
-// pixel
-//   that is not clipped there sends no ray from here (storage/load/image_reading.h).
-// - The LF images of one pose get the pose of the first of them, so that they share lens weights.
-// If encoding.masks_clipped is not set, no LF image is masked and none is brighter. Must be called
-// again after LF images were renumbered or gains changed.
-// Returns the number of LF images that have a darker one of their pose.
+//
+// masks_clipped of an LF image is set if its pose has a darker LF image. Therefore the darkest one
+// keeps its clipped pixels, and an LF image without a darker one is not masked: no element becomes
+// black because all of its light is bright.
+//
+// `brighter` of an LF image is the darkest LF image of its pose with the next larger exposure. A
+// pixel that is not clipped in the brighter image sends no ray from this one
+// (store/image_reading.h).
+//
+// All LF images of a pose get the exact pose of the first of them, so that they share lens weights.
+//
+// If encoding.masks_clipped is not set, no LF image is masked, and none has a brighter one. Must be
+// called again after LF images were renumbered or gains changed. Returns the number of LF images
+// whose pose has a darker one.
 size_t ApplyBrackets(LightField* light_field);
 
 }  // namespace lf

@@ -22,7 +22,7 @@ void Add(double x, float gain, LightField* field) {
   field->image_names.push_back(std::to_string(field->size()) + ".png");
 }
 
-// Returns poses at x = 1000, 1001 ...; each pose has one LF image per gain.
+// Returns `count` poses at x = 1000, 1001 ...; each pose has one LF image for each gain.
 LightField Poses(int count, const std::vector<float>& gains) {
   LightField field = Empty();
   for (int i = 0; i < count; ++i)
@@ -44,7 +44,7 @@ TEST(Brackets, TheDarkestOfEachPoseKeepsItsClippedPixels) {
 
 TEST(Brackets, AnImageWithoutADarkerOneOfItsPoseIsNotMasked) {
   LightField field = Poses(2, {1});
-  Add(1001, 0.25F, &field);  // brighter than the second
+  Add(1001, 0.25F, &field);  // brighter than the second LF image, at the same position
   Add(1005, 0.01F, &field);  // the only one at its position, although brighter than all
   EXPECT_EQ(ApplyBrackets(&field), 1U);
   EXPECT_EQ(Masked(field), (std::vector<bool>{false, false, true, false}));

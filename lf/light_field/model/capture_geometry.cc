@@ -36,8 +36,9 @@ double SquaredDistance(const Vec3& point, const Ray& axis) {
   return offset.squaredNorm() - std::pow(axis.direction.dot(offset), 2);
 }
 
-// Minimises the sum of squared distances to the axes. Returns nullopt if they are parallel: the
-// smallest eigenvalue of the mean of I - d d^T, which is their squared angular spread, is then 0.
+// Returns the point with the least sum of squared distances to the axes. Returns nullopt if they
+// are parallel: the smallest eigenvalue of the mean of I - d d^T, which is the squared angular
+// spread of the axes, is then 0.
 std::optional<Vec3> NearestPoint(const std::vector<Ray>& axes) {
   constexpr double kLeastSpread = 1e-5;  // about 0.2 degrees
   Mat3 a = Mat3::Zero();
@@ -60,7 +61,8 @@ std::vector<Ray> SampledAxes(const LightField& light_field) {
   return axes;
 }
 
-// Removes the worst tenth of the axes from the list, and returns the point nearest to the rest.
+// Removes the tenth of the axes that is farthest from their nearest point, and returns the point
+// nearest to the rest. nullopt if there is no such point.
 std::optional<Vec3> NearestWithoutWorst(std::vector<Ray>* axes) {
   const std::optional<Vec3> point = axes->size() < 2 ? std::nullopt : NearestPoint(*axes);
   if (!point) return std::nullopt;
@@ -95,7 +97,7 @@ LfImageId MiddleCamera(const LightField& light_field,
   const std::vector<Vec3> centres = Centres(light_field);
   Vec3 mean = Vec3::Zero();
   for (const Vec3& centre : centres) mean += centre / static_cast<double>(centres.size());
-  // The nearest camera is at the top; of equally near ones, the first.
+  // The nearest camera is at the top; among equally near cameras, the one with the lowest number.
   std::vector<std::pair<double, uint32_t>> heap;
   for (uint32_t i = 0; i < centres.size(); ++i)
     heap.emplace_back((centres[i] - mean).squaredNorm(), i);

@@ -10,23 +10,26 @@
 
 namespace lf {
 
-// Returns the median distance from an LF camera to its nearest neighbour, in world units, from at
-// most 500 cameras spread over the light field. 0 for fewer than two cameras.
+// Returns the median distance from an LF camera to its nearest neighbour, in world units; 0 for
+// fewer than two cameras. It is measured at fewer than 1,000 cameras spread over the light field.
+// Cameras at exactly the same position are no neighbours if encoding.masks_clipped is set
+// (brackets).
 double MedianSpacing(const LightField& light_field);
 
-// Returns the LF camera that is nearest to the mean position among those for which `is_wanted`
-// returns true, or nearest of all if there is none. `is_wanted` is called from the nearest camera
-// on. The light field must have a camera.
+// Among the LF cameras for which `is_wanted` returns true, returns the one nearest to the mean
+// position. Returns the nearest of all cameras if `is_wanted` is not given or true for none.
+// `is_wanted` is called in order of distance, nearest camera first. The light field must have a
+// camera.
 LfImageId MiddleCamera(const LightField& light_field,
                        const std::function<bool(LfImageId)>& is_wanted = {});
 
-// Returns the mean of the cameras' up directions, with length 1, or the zero vector if the cameras
-// have no common one.
+// Returns the mean of the cameras' up directions, with length 1, or the zero vector if the
+// directions almost cancel (the mean is shorter than 0.1).
 Vec3 MeanUpWorld(const LightField& light_field);
 
 // Returns the angle, 0 or more, by which the camera leans to the side: the angle between its up
-// direction and the projection of `up_world` onto its image. It is 0 if the camera looks along
-// `up_world`.
+// direction and the projection of `up_world` onto its image. Returns 0 if the camera looks almost
+// along `up_world`.
 double RollOf(const PinholeCamera& camera, const Vec3& up_world);
 
 // Returns the ray through the middle of the image, with a direction of length 1. It is the optical
@@ -34,15 +37,17 @@ double RollOf(const PinholeCamera& camera, const Vec3& up_world);
 // is always the optical axis.
 Ray CentralRay(const PinholeCamera& camera);
 
-// Returns the point nearest to the lines of the central rays (least squares without the worst
-// tenth, from at most 20,000 cameras), or nullopt if the lines are too nearly parallel to tell.
+// Returns the point that is nearest to the lines of the central rays: a least squares fit, repeated
+// without the tenth of the lines that are farthest from it. Uses fewer than 40,000 cameras, spread
+// over the light field. nullopt if the lines are so nearly parallel that no point can be found.
 std::optional<Vec3> PointNearestToAxes(const LightField& light_field);
 
-// As PointNearestToAxes(), but nullopt unless the point is in front of nine of ten cameras.
+// Same as PointNearestToAxes(), but nullopt unless the point is in front of nine tenths of the
+// cameras that were left in the fit.
 std::optional<Vec3> AxesMeetingPoint(const LightField& light_field);
 
-// How far the `count` LF cameras nearest to `camera` are from it along its right and its up axis:
-// the 80th percentiles of the distances, in world units.
+// Distances from `camera` to the `count` LF cameras nearest to it, along its right and its up axis:
+// the 80th percentile of each, in world units.
 struct Reach {
   double right_w = 0;
   double up_w = 0;

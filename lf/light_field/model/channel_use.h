@@ -13,8 +13,9 @@ struct ChannelUse {
   std::optional<int> alpha;
 };
 
-// Three or more channels: the first three are colours. The channel behind the colours is alpha if
-// its name says so. Other channels, such as depth, are unused.
+// Returns the use of the channels: the first three are colours if there are three or more,
+// otherwise the first is grey. The channel behind the colours is alpha if its name says so. Other
+// channels, such as depth, are unused.
 ChannelUse UseOf(const ImageFileInfo& info);
 
 }  // namespace lf

@@ -14,7 +14,7 @@
 
 namespace lf {
 
-// Returns the hash of the numbers; +0 and -0 have the same one.
+// Returns a hash of the numbers. +0 and -0 have the same hash.
 template <size_t kCount>
 uint64_t HashOfNumbers(std::array<double, kCount> numbers) {
   for (double& x : numbers) x += 0.0;

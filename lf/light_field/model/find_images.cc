@@ -21,10 +21,9 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr size_t kAsked = 64;           // LF images whose files stand for all
-constexpr int kMostDepth = 4;           // depth of the searched subfolders
-constexpr size_t kMostFiles = 2000000;  // files at most: a light field and its copies in other
-                                        // sizes
+constexpr size_t kAsked = 64;  // number of evenly spread LF images whose files are examined
+constexpr int kMostDepth = 4;  // levels of folders that are searched, counting the topmost
+constexpr size_t kMostFiles = 2000000;  // files that are listed at most
 constexpr int kMostDivisor = 16;
 
 std::string Lower(std::string text) {
@@ -67,7 +66,7 @@ bool IsThere(const fs::path& path) {
   return fs::is_regular_file(path, error);
 }
 
-// Image files below a folder, by their base names.
+// Image files in a folder and its subfolders, indexed by their base names.
 class FilesBelow {
  public:
   explicit FilesBelow(const fs::path& folder) : folder_(folder) {
@@ -90,14 +89,13 @@ class FilesBelow {
   }
 
   struct Match {
-    const std::string* name = nullptr;   // of the best file, relative to the folder; nullptr if
-                                         // none fits
+    const std::string* name = nullptr;   // best file, relative to the folder; nullptr: none fits
     const std::string* rival = nullptr;  // another file that fits equally well
   };
 
   // Returns the file that fits `name` best.
-  //   least_common  number of last words of the path that must agree, counting the base name
-  //   any_folder    also accepts files in folders for something else than photographs
+  //   least_common  number of last parts of the path that must agree, counting the base name
+  //   any_folder    true: also accepts files in folders for something other than photographs
   Match Find(const std::string& name, size_t least_common, bool any_folder) {
     const std::vector<std::string> words = WordsOf(name);
     if (words.empty()) return {};
@@ -189,7 +187,7 @@ const Intrinsics& IntrinsicsOf(const LightField& light_field, LfImageId id) {
   return light_field.intrinsics[light_field.cameras[id.value].intrinsics_index];
 }
 
-// Returns the whole factor by which all images are smaller, or 1 if there is none.
+// Returns the whole factor by which all images are smaller than calibrated, or 1 if there is none.
 int DivisorOf(const LightField& light_field, const std::vector<SizedImage>& sizes) {
   for (int divisor = 2; divisor <= kMostDivisor; ++divisor)
     if (std::all_of(sizes.begin(), sizes.end(), [&](const SizedImage& image) {
@@ -247,11 +245,11 @@ Result<size_t> FindImageFiles(const std::optional<fs::path>& images_folder,
                     "give the folder of the right files (--images)",
                     folder.string(), ambiguous_count, light_field->size(), example));
   if (found_count == 0) return 0;
-  // A mask must not match a file with the same name in another folder.
+  // A mask must not match a file with the same name in another folder, such as a photograph.
   for (std::string& mask : masks)
     if (!mask.empty() && !IsThere(light_field->folder / mask)) find(&mask, 2, true);
-  // Readers call this for one image to get its size, and later for all of them; only the latter is
-  // logged.
+  // Readers call this function for one image to get its size, and later for all images; only the
+  // call for all images is logged.
   if (names.size() > 1)
     LogInfo("{} of {} LF images were found by their names in {}, such as {} for {}", found_count,
             light_field->size(), folder.string(), example, looked_for);
@@ -280,8 +278,7 @@ Result<double> FitToImageFiles(const ImageScale& scale, LightField* light_field)
   double divisor = 1 / scale.factor;
   if (scale.kind == ImageScale::Kind::kAuto) divisor = DivisorOf(*light_field, sizes);
   if (sizes.empty() || divisor == 1) return 1;
-  std::map<std::array<int, 2>, std::array<int, 2>> size_of;  // size of the files, by calibrated
-                                                             // size
+  std::map<std::array<int, 2>, std::array<int, 2>> size_of;  // file size by calibrated size
   for (const SizedImage& image : sizes) {
     const Intrinsics& k = IntrinsicsOf(*light_field, image.id);
     if (!IsScaled(k, image.size, divisor))

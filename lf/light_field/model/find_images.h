@@ -1,5 +1,5 @@
-// Finds the image files of a light field whose place or size differs from its calibration:
-// photographs that were moved, renamed or downscaled after they were calibrated.
+// Finds the image files of a light field if their paths or sizes differ from the calibration,
+// because the photographs were moved, renamed or downscaled after they were calibrated.
 #pragma once
 
 #include <filesystem>
@@ -11,31 +11,36 @@
 
 namespace lf {
 
-// Searches for image files if none of up to 64 LF images, evenly spread, is where its name says, or
-// if `images_folder` is given and the names lead elsewhere. A file fits an LF image if both have
-// the same base name; suffix, upper and lower case and folders may differ. If several files fit,
-// the best one is the one whose path shares most trailing folders with the name; then the one with
-// most pixels; then the one in fewest folders. Files in folders for something else than photographs
-// (masks, depth, normals) fit only names with such a folder. A mask must share its folder with its
-// name.
+// Searches for image files if none of up to 64 evenly spread LF images has a file where its name
+// says, or if `images_folder` is given and is not light_field->folder.
 //
-// Returns how many LF images got another name, and logs it if there are two or more LF images. The
-// new names are relative to the folder; LF images without a file keep theirs. No pixels are read.
-//   images_folder  searched with its subfolders, instead of light_field->folder
+// A file fits an LF image if both have the same base name; extension, upper and lower case and
+// folders may differ. If several files fit, the best is the one whose path shares most trailing
+// folders with the name; then the one with most pixels (each folder is judged by its first image);
+// then the one in the fewest folders. A file in a folder for something other than photographs
+// (masks, depth, normals) fits only if the name contains such a folder. A file fits a mask only if
+// it also lies in a folder with the name of the mask's folder.
+//
+// Changes the names to paths relative to the searched folder, which becomes light_field->folder. LF
+// images without a file keep their names. Returns the number of LF images with a file, and logs it
+// if the light field has two or more LF images. Returns 0 and changes nothing if nothing is
+// searched or found. No pixels are read.
+//   images_folder  searched with its subfolders; light_field->folder is searched if it is not given
 // kInput: several files fit an LF image equally well.
 Result<size_t> FindImageFiles(const std::optional<std::filesystem::path>& images_folder,
                               LightField* light_field);
 
-// How the size of image files may differ from the calibration.
+// How much the size of image files may differ from the calibration.
 struct ImageScale {
-  // kOff: sizes must be equal. kAuto: files may be smaller by one whole factor from 2 to 16,
-  // rounded up, down or to the nearest pixel as COLMAP and nerfstudio do, if all of some evenly
-  // spread LF images are. kFactor: files are `factor` times as large, rounded in one of these ways.
+  // kOff: the sizes are not compared or changed here. kAuto: files may be smaller by a whole factor
+  // from 2 to 16, with sizes rounded up, down or to the nearest pixel as COLMAP and nerfstudio do;
+  // the factor must be the same for all of some evenly spread LF images. kFactor: files are
+  // `factor` times as large as calibrated, with sizes rounded in one of these ways.
   enum class Kind { kOff, kAuto, kFactor } kind = Kind::kAuto;
   double factor = 1;
 };
 
-// Reads "auto", "off", or a factor above 0 such as 0.25. kUsage for any other text.
+// Reads "auto", "off", or a factor above 0 and up to 100, such as 0.25. kUsage for any other text.
 Result<ImageScale> ParseImageScale(const std::string& text);
 
 // Scales the intrinsics to the size of the files. Returns the factor, which is 1 if nothing

@@ -110,7 +110,7 @@ TEST_F(FindImagesTest, WholeFactorsScaleTheIntrinsics) {
     const Intrinsics& k = field.intrinsics[0];
     EXPECT_EQ(k.width_px, width);
     EXPECT_EQ(k.height_px, height);
-    // The picture still covers the same rays from edge to edge.
+    // The picture still covers the same field of view from edge to edge.
     EXPECT_NEAR(k.fx_px / k.width_px, 900.0 / 1006, 1e-12);
     EXPECT_NEAR(k.fy_px / k.height_px, 902.0 / 755, 1e-12);
     EXPECT_NEAR(k.cx_px, 0.5 * width, 1e-12);

@@ -9,7 +9,7 @@
 namespace lf {
 namespace {
 
-// Returns a remedy for a picture of another size.
+// Returns a remedy for a picture that does not have the calibrated size.
 std::string Advice(const ImageFileInfo& info, bool is_mosaic, const Intrinsics& k) {
   if (info.width == k.height_px && info.height == k.width_px)
     return is_mosaic ? "mosaics cannot be rotated: calibrate them as they are stored"

@@ -1,4 +1,4 @@
-// Decides whether the pixels of an image file are those that were calibrated.
+// Decides whether an image file has the pixels that were calibrated.
 #pragma once
 
 #include <string>
@@ -11,16 +11,16 @@ namespace lf {
 
 enum class ImageFit {
   kAsStored,  // calibrated as stored; the orientation tag is ignored
-  kTurned,    // calibrated after the turn by 90 degrees that the tag asks for
-              // (pixels/files/upright.h)
+  kTurned,  // calibrated after the quarter turn that the tag requests (imageio/upright.h)
 };
 
-// Compares sizes. A picture of the calibrated size is used as stored. A picture whose width and
-// height are exchanged, and whose tag exchanges them, was turned before it was calibrated. A mosaic
-// is never turned, because its Bayer pattern would change. Square pictures, and tags that mirror or
-// turn by 180 degrees, cannot be told apart by size and are used as stored.
-//   name  of the file, for messages
-// kInput for any other size; the message names both sizes and a remedy.
+// Compares the size of a file with the calibrated size. A picture of the calibrated size is used as
+// stored. A picture whose width and height are exchanged, and whose orientation tag exchanges them,
+// was turned before it was calibrated. A mosaic is never turned, because its Bayer pattern would
+// change. A square picture is used as stored, and so is a picture whose tag mirrors it or turns it
+// by 180 degrees, because the size does not show whether it was turned before it was calibrated.
+//   name  name of the file, for messages
+// kInput for any other size; the message states both sizes and a remedy.
 Result<ImageFit> FitToCalibration(const ImageFileInfo& info, bool is_mosaic,
                                   const Intrinsics& calibrated, const std::string& name);
 

@@ -10,11 +10,12 @@
 namespace lf {
 
 struct LfPixels {
-  // A kernel adds these lanes of an RGB pixel at once: v of R, G and B, and the number of rays.
+  // The lanes of an RGB pixel, which a kernel adds at once: v of R, G and B, and the number of
+  // rays.
   static constexpr int kRgbLanes = 4;
   static constexpr int kRayLane = 3;
-  // Values v of the opacities 0 and 1. There is room on both sides, because the filters of
-  // collection undershoot and overshoot opacities beside edges.
+  // Values v of the opacities 0 and 1. They leave room below and above, because the filters of
+  // collection undershoot and overshoot at edges of the opacity.
   static constexpr uint16_t kTransparent = 4096;
   static constexpr uint16_t kOpaque = 61440;
 
@@ -29,7 +30,8 @@ struct LfPixels {
         radiance.pixels()[i] = 1;
   }
 
-  // Changes to another part in the same memory and clears the mask; the radiance is unspecified.
+  // Changes to another part of an LF image in the same memory, without a mask; the radiance is
+  // unspecified.
   void Reset(const PixelRect& part, BayerPattern pattern) {
     radiance.Resize(part.width(), part.height(), pattern == BayerPattern::kNone ? kRgbLanes : 1);
     bayer = pattern;
@@ -64,15 +66,16 @@ struct LfPixels {
   // The mosaic that RGB pixels were made from, at pixel (0, 0) of the whole LF image; kNone if
   // every pixel recorded all three colours.
   BayerPattern recorded = BayerPattern::kNone;
-  Image<uint8_t> mosaic_mask;  // of a mosaic, [height][width]: 0 = no ray from this pixel; or empty
+  Image<uint8_t> mosaic_mask;  // [height][width], 0 = pixel sends no ray; empty: no mask or RGB
   bool any_masked = false;
-  PixelRect rect;  // the part of the LF image that these pixels are
-  // Opacities of RGB pixels if the light field HasOpacity(), otherwise empty. [height][width][4] in
-  // the lanes of `radiance`: the opacity stands in each colour's lane, so that kernels collect it
-  // with the same rays and weights.
+  PixelRect rect;  // the part of the LF image that these pixels cover
+  // Opacities of RGB pixels if the light field HasOpacity(), otherwise empty. [height][width][4]
+  // with the lanes of `radiance`: the lane of each colour contains the same opacity, so that
+  // kernels collect opacities with the same rays and weights as colours.
   Image<uint16_t> opacity;
 
-  // Moves the opacities out as pixels that kernels accept; the result is empty if there are none.
+  // Moves the opacities into pixels that kernels can collect; the result is empty if there are
+  // none.
   LfPixels TakeOpacity() {
     LfPixels taken;
     if (opacity.empty()) return taken;

@@ -1,5 +1,5 @@
-// The recorded light field without its pixels: the cameras, the place of the pixels, and how stored
-// numbers become light.
+// The recorded light field without its pixels: the cameras, the names of the image files, and how
+// stored numbers become light.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace lf {
 
-// Factors of R, G and B; constructed from one number, all three are equal.
+// Factors of R, G and B. A ChannelGains made from one number has three equal factors.
 struct ChannelGains {
   ChannelGains(float all = 1) : of_channels{all, all, all} {}  // NOLINT: a number is a gain
   ChannelGains(float r, float g, float b) : of_channels{r, g, b} {}
@@ -43,11 +43,11 @@ struct LfCamera {
 };
 
 struct LightField {
-  std::vector<LfCamera> cameras;       // indexed by LfImageId, like the two lists of names
+  std::vector<LfCamera> cameras;       // indexed by LfImageId, like the two lists of names below
   std::vector<Intrinsics> intrinsics;  // the distinct ones
   // Names as written in the calibration; relative ones are relative to `folder`.
   std::vector<std::string> image_names;
-  std::vector<std::string> mask_names;  // empty, or one per camera ("" where there is none)
+  std::vector<std::string> mask_names;  // empty, or one for each camera ("": no mask)
   // The folder of the image files, or the file of a packed store that holds them
   // (storage/load/open_store.h).
   std::filesystem::path folder;

@@ -1,4 +1,4 @@
-// Identifies a light field by a few words, so that packages and resumed renders can compare it.
+// Identifies a light field by hashes, so that packages and resumed renders can compare it.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@ namespace lf {
 struct LightFieldIdentity {
   size_t image_count = 0;
   std::string names;        // hash of the names of images and masks, without the folder
-  std::string calibration;  // hash of all cameras
+  std::string calibration;  // hash of the poses, gains and intrinsics of all cameras
 
   friend bool operator==(const LightFieldIdentity&, const LightFieldIdentity&) = default;
 };

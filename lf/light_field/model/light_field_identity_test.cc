@@ -15,7 +15,7 @@ LightField OneCamera(const Distortion& distortion) {
   return light_field;
 }
 
-// Checkpoints and packages older than the model with twelve parameters hold hashes of eight.
+// Checkpoints and packages from before the model with twelve parameters contain hashes of eight.
 TEST(LightFieldIdentity, ALensOfAnOlderModelIsHashedByEightParameters) {
   ValueHasher expected;
   for (const double number : {1, 0, 0, 0, 1, 0, 0, 0, 1}) expected.Add(number);  // rotation

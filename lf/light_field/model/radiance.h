@@ -1,6 +1,6 @@
-// Converts stored numbers to light: the table "What is added" of doc/ray.md.
+// Converts stored numbers to light, as the table "What is added" of doc/ray.md says.
 //
-// Radiance is linear light, 1 = display white. A kernel sees it as a 16-bit integer
+// Radiance is linear light, 1 = display white. Collection kernels add it as a 16-bit integer
 //   v = clip(round(radiance * gain * scale) + pedestal, 0, 65535)
 // `gain` is lf_gain of the channel, divided by the falloff of the lens at the pixel's centre if the
 // camera has lf_vignetting (camera/vignetting.h). One scale and one pedestal hold for the whole
@@ -29,8 +29,9 @@ enum class Transfer : uint8_t {
 // The meaning of the alpha of LF images.
 enum class AlphaMeaning : uint8_t {
   kMask,           // pixels with alpha below one half send no ray; colours are as stored
-  kStraight,       // share of the light behind that is covered; colours are those of the cover
-  kPremultiplied,  // as kStraight, with colours whose radiance is already multiplied by alpha
+  kStraight,       // alpha is the share of the light behind that the object covers; colours are the
+                   // object's
+  kPremultiplied,  // as kStraight, but the radiance of the colours is already multiplied by alpha
 };
 
 // How the pixels of a light field are stored (keys lf_*, doc/formats/transforms_json.md).
@@ -42,19 +43,19 @@ struct RadianceEncoding {
   double black_level = 0;             // stored value of no light
   std::optional<double> white_level;  // stored value of radiance 1; default: the largest storable
   double max_radiance = 1;            // radiance (after gain) that v = 65535 stands for
-  double pedestal = 0;                // v of no light: 1024 for raw data, 0 otherwise
+  double pedestal = 0;                // v of no light; above 0, values below black are kept
   std::optional<AlphaMeaning> alpha;  // default: kMask
   // Radiance of R, G and B behind a pixel that alpha does not cover; default: black.
   std::optional<std::array<double, 3>> background;
-  // Nothing is behind the pixels: `background` is black, and frames have an opacity channel.
+  // True: nothing is behind the pixels: `background` is black, and frames have an opacity channel.
   bool keeps_opacity = false;
-  // LF images of one pose with different exposures form one picture: each pixel is taken from the
-  // brightest LF image that is not clipped there (light_field/model/brackets.h).
+  // True: LF images of one pose with different exposures form one picture. Each pixel is taken from
+  // the brightest LF image in which it is not clipped (capture/brackets.h).
   bool masks_clipped = false;
   std::array<double, 3> white_balance = {1, 1, 1};  // applied on developing
   Mat3 linear_srgb_from_camera = Mat3::Identity();  // linear sRGB = M * white balanced camera RGB
 
-  // v per unit of radiance.
+  // Returns the number of steps of v per unit of radiance.
   double Scale() const { return (65535 - pedestal) / max_radiance; }
   // Returns whether pixels are composed with the background (storage/load/opacities.h).
   bool AlphaIsLight() const { return alpha.value_or(AlphaMeaning::kMask) != AlphaMeaning::kMask; }
@@ -63,7 +64,7 @@ struct RadianceEncoding {
   std::array<double, 3> Background() const { return background.value_or(std::array{0., 0., 0.}); }
 };
 
-// Largest pedestal, which leaves at least half of the range to light.
+// Largest allowed pedestal. It leaves at least half of the range to light.
 inline constexpr double kMostPedestal = 32767;
 
 // Raises the pedestal to kUndershootPedestal, which leaves room for a fifteenth of max_radiance
@@ -72,17 +73,17 @@ inline constexpr double kMostPedestal = 32767;
 inline constexpr double kUndershootPedestal = 4096;
 void MakeRoomForUndershoot(RadianceEncoding* encoding);
 
-// Converts a pattern to and from the words of lf_bayer, "RGGB" ...; kNone is "". nullopt for other
-// words.
+// Converts a pattern to and from the words of lf_bayer, "RGGB" ...; kNone is written "". Returns
+// nullopt for words that are no pattern.
 const char* NameOf(BayerPattern bayer);
 std::optional<BayerPattern> BayerPatternOf(const std::string& name);
 
-// Converts to and from the words of lf_alpha, "mask", "straight", "premultiplied". nullopt for
-// other words.
+// Converts to and from the words of lf_alpha, "mask", "straight", "premultiplied". Returns nullopt
+// for other words.
 const char* NameOf(AlphaMeaning alpha);
 std::optional<AlphaMeaning> AlphaMeaningOf(const std::string& name);
 
-// The word that stands in place of a background and sets RadianceEncoding::keeps_opacity.
+// The word that a user writes instead of a background to set RadianceEncoding::keeps_opacity.
 inline constexpr const char* kNoBackground = "none";
 
 // Returns text for people: "a mask", "straight light over black", "premultiplied light over 1, 0.5,
@@ -104,9 +105,9 @@ double DefaultMaxRadiance(std::span<const std::string> image_names);
 // value.
 bool LevelsFit(const RadianceEncoding& encoding, int bits);
 
-// Returns the smallest stored value that counts as clipped: the upper hundredth of black to white,
-// because JPEG, noise and demosaicking do not keep the largest value exactly. bits: 8 or 16, with
-// LevelsFit(). Float files have no such value.
+// Returns the smallest stored value that counts as clipped. It is a hundredth of the range from
+// black to white below white, because JPEG, noise and demosaicking do not keep the largest value
+// exactly. bits: 8 or 16, with LevelsFit(). Float files have no such value.
 double ClippedFrom(const RadianceEncoding& encoding, int bits);
 
 // Returns v for every stored value of 8 or 16-bit files: 256 or 65536 entries. Halves round away
@@ -115,10 +116,11 @@ double ClippedFrom(const RadianceEncoding& encoding, int bits);
 // value above white. bits: 8 or 16, with LevelsFit().
 std::vector<uint16_t> RadianceTable(const RadianceEncoding& encoding, int bits, double gain);
 
-// Returns the radiance, before gain and falloff, from which RadianceTable() computes v.
+// Returns, for every stored value, the radiance before gain and falloff from which RadianceTable()
+// computes v. bits: as for RadianceTable().
 std::vector<double> LightTable(const RadianceEncoding& encoding, int bits);
 
-// Returns v for the radiance in a float file. NaN gives the pedestal.
+// Returns v for a radiance of a float file. A NaN counts as no light and becomes the pedestal.
 uint16_t QuantizeRadiance(const RadianceEncoding& encoding, double radiance, double gain);
 
 }  // namespace lf

@@ -1,4 +1,4 @@
-// Takes the encoding of camera raw files from the files themselves, if the light field does not
+// Reads the encoding of camera raw files from the files themselves, for light fields that do not
 // state it.
 #pragma once
 
@@ -12,16 +12,17 @@
 
 namespace lf {
 
-// Default v of no light if there is a black level: room for the noise below it.
+// Default v of no light for raw files with a black level. It leaves room for noise below black.
 inline constexpr double kRawPedestal = 1024;
 
-// Returns true for dng and the extensions of cameras' own formats (cr2, cr3, nef, arw, ...), in
-// upper or lower case.
+// Returns true for file names that end in dng or an extension of the cameras' own formats (cr2,
+// cr3, nef, arw, ...), in upper or lower case.
 bool IsRawName(const std::string& file_name);
 
-// Returns the raw facts of the first image, which hold for all images, or nullopt if its name is
-// not that of a raw file. Pixels are decoded if the header does not state the black level. kInput:
-// the file cannot be read or is no raw file; the message says what to state instead.
+// Returns the raw facts of the first image, which are used for all images, or nullopt if its name
+// is not the name of a raw file. Its pixels are decoded only if its header does not state the black
+// level. kInput: the file cannot be read or is no raw file; the message says what the user can
+// state instead.
 using RawFactsSource = std::function<Result<std::optional<RawFacts>>(const LightField&)>;
 Result<std::optional<RawFacts>> RawFactsOfFirstImage(const LightField& light_field);
 
@@ -29,12 +30,14 @@ Result<std::optional<RawFacts>> RawFactsOfFirstImage(const LightField& light_fie
 // facts have none. Levels and colours that the facts do not have keep their defaults.
 RadianceEncoding EncodingOfRaw(const RawFacts& facts);
 
-// For light fields whose calibration says nothing about pixels. Sets the encoding of raw files from
-// the first image and warns about facts that it does not have. Other light fields are unchanged.
+// Completes a light field whose calibration says nothing about pixels: sets the encoding of raw
+// files from the first image, keeps max_radiance, and warns about facts that the file does not
+// state. A light field whose first image is no raw file is unchanged. Errors of
+// RawFactsOfFirstImage().
 Result<void> CompleteEncodingOfRaw(LightField* light_field);
 
-// Warns about levels and colours that neither the calibration nor the file states, so that defaults
-// are used.
+// Warns about levels and colours that neither the calibration nor the file states; defaults are
+// used for them.
 void WarnOfUnknown(const LightField& light_field, const RawFacts& facts, bool levels_stated,
                    bool colours_stated);
 

@@ -1,4 +1,5 @@
-// Rotations as files have them: rounded to a few digits. For the readers of calibrations.
+// Rotation matrices from files, where they are rounded to a few digits. Used by the readers of
+// calibrations.
 #pragma once
 
 #include "lf/core/geometry.h"
@@ -6,11 +7,11 @@
 
 namespace lf {
 
-// Returns a matrix that is a rotation within 1e-12 unchanged, bit for bit, and otherwise the
+// Returns `matrix` unchanged, bit for bit, if it is a rotation within 1e-12, and otherwise the
 // rotation nearest to it.
-// kInput, without the place in the file: entries that are not finite; a determinant of 0 or less (a
-// mirrored axis); axes that miss right angles or unit length by more than `tolerance`, which is at
-// most 1e-2.
+// kInput for entries that are not finite; for a determinant of 0 or less (a mirrored axis); for
+// axes that miss right angles or unit length by more than `tolerance`, which is at most 1e-2. The
+// message does not name the place in the file; the caller adds it.
 Result<Mat3> NearestRotation(const Mat3& matrix, double tolerance);
 
 }  // namespace lf

@@ -1,4 +1,5 @@
-// A hash of values that is equal on all machines, to find out if two runs have the same inputs.
+// A hash of values that is equal on all machines, to find out whether two runs have the same
+// inputs.
 #pragma once
 
 #include <fmt/format.h>
