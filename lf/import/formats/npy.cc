@@ -26,7 +26,8 @@ uint64_t LittleEndian(std::string_view bytes) {
   return value;
 }
 
-// Returns foreign text as messages show it.
+// Returns text from a file in the form in which messages show it: at most 80 characters, with ? for
+// each character that is not printable ASCII.
 std::string Shown(std::string_view text) {
   std::string shown(text.substr(0, 80));
   std::replace_if(
@@ -40,7 +41,8 @@ struct Header {
   std::optional<std::vector<size_t>> shape;
 };
 
-// The header is a Python literal: {'descr': '<f8', 'fortran_order': False, 'shape': (20, 17), }
+// Parses the header, a Python literal: {'descr': '<f8', 'fortran_order': False, 'shape': (20, 17),
+// }
 class HeaderReader {
  public:
   explicit HeaderReader(std::string_view text) : all_(text), text_(text) {}
@@ -126,7 +128,7 @@ class HeaderReader {
   std::string_view all_, text_;
 };
 
-// The text of the header, and the bytes that follow it.
+// The text of the header, and the bytes behind it, which are the values.
 struct Parts {
   std::string_view header, values;
 };
@@ -152,7 +154,7 @@ Result<Parts> Cut(std::string_view bytes) {
   return Parts{bytes.substr(begin, length), bytes.substr(begin + length)};
 }
 
-// Returns the number of values of a shape. kInput if it is 0 or larger than is supported.
+// Returns the number of values of a shape. kInput if it is 0 or above 2^32.
 Result<size_t> CountOf(const std::vector<size_t>& shape) {
   size_t count = 1;
   for (const size_t size : shape) {

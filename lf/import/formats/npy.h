@@ -15,9 +15,9 @@ struct NpyArray {
 };
 
 // Parses a .npy file of format 1 or 2 with little-endian floats of 4 or 8 bytes ('<f4', '<f8') in C
-// order and 1 to 4 dimensions, none of them 0.
-// kInput, without the file's name: any other content, named in the message; data whose length does
-// not match the shape.
+// order and at most 4 dimensions, each of them 1 or more.
+// kInput for any other content, which the message states, and for data whose length does not match
+// the shape. The message does not name the file; the caller adds it.
 Result<NpyArray> ParseNpy(std::string_view bytes);
 
 }  // namespace lf

@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 
 #define EXPECT_HAS(message, part) EXPECT_NE((message).find(part), std::string::npos) << (message)
 
-// Made by COLMAP itself (make.py in that folder): one camera of each model with two images each.
+// A model that COLMAP itself made (make.py in that folder): one camera of each camera model, with
+// two images each.
 const fs::path kTenCameras = fs::path(LF_COLMAP_MODELS) / "ten_cameras";
 
 class ReadColmapTest : public FolderTest {
@@ -63,8 +64,8 @@ TEST_F(ReadColmapTest, BothFormsAreTheSameBitForBit) {
 }
 
 // The points of the fixture were projected by independent formulas, and COLMAP's reprojection error
-// for them is 1e-14 px. Equal results therefore show that our cameras are COLMAP's, including the
-// convention for pixel centres.
+// for them is 1e-14 px. If our projections are equal, our cameras agree with COLMAP's, including
+// the convention for pixel centres.
 TEST_F(ReadColmapTest, EveryModelProjectsAsColmapDoes) {
   Copy(".txt");
   const Result<LightField> light_field = ReadColmapModel(folder_, folder_);
@@ -118,8 +119,9 @@ struct ColmapPose {
 };
 
 // A model of COLMAP 3.12 or later. Rig 7 has the cameras 1 and 4 and an IMU (sensor type 1) with an
-// unknown pose, and was exposed in two frames. Frame 5 comes first although its images have the
-// larger ids. `form` is .bin or .txt; the layout is that of COLMAP's reconstruction_io_*.cc.
+// unknown pose, and took two frames. Frame 5 comes first although its images have the larger ids.
+// The functions return the content of a .bin file if `is_binary` is true, otherwise of a .txt file,
+// with the layout of COLMAP's reconstruction_io_*.cc.
 class RigModel {
  public:
   RigModel() {
@@ -290,9 +292,9 @@ TEST_F(ReadColmapTest, ImagesAreLookedForAndThePlacesAreListed) {
                                 folder_ / "images", folder_ / "sparse/0", folder_ / "sparse"})
     EXPECT_HAS(error, tried.string());
   EXPECT_HAS(error, "(--images)");
-  Write(folder_ / "sub/a b.png");  // in the parent itself
+  Write(folder_ / "sub/a b.png");  // in the project folder itself
   EXPECT_EQ(Open(folder_)->folder, folder_);
-  Write(folder_ / "sparse/0/images/sub/a b.png");  // nearest
+  Write(folder_ / "sparse/0/images/sub/a b.png");  // nearer to the model
   EXPECT_EQ(Open(folder_)->folder, folder_ / "sparse/0/images");
 }
 

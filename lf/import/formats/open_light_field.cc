@@ -32,7 +32,7 @@ constexpr const char* kCalibrationName = "transforms.json";
 constexpr const char* kAosName = "poses.json";
 constexpr const char* kImagesName = "images";
 
-// Returns a hint at calibrations with other names, such as Blender's transforms_train.json.
+// Returns a hint that names calibrations with other names, such as Blender's transforms_train.json.
 std::string OtherCalibrations(const fs::path& folder) {
   std::vector<std::string> names;
   std::error_code error;
@@ -56,7 +56,7 @@ std::string_view StanfordOptionOf(const OpenOptions& options) {
   return "";
 }
 
-// kUsage if an option is given that only folders of the Stanford form need.
+// Returns kUsage if an option is given that only folders with Stanford names accept.
 Result<void> CheckNoStanfordOptions(const fs::path& path, const OpenOptions& options) {
   const std::string_view option = StanfordOptionOf(options);
   if (option.empty()) return {};
@@ -87,7 +87,7 @@ Result<LightField> OpenAos(const fs::path& path, const OpenOptions& options) {
   return ReadAos(path, {.fov_deg = options.fov_deg, .images_folder = options.images_folder});
 }
 
-// A packed store holds its calibration and states everything about its pixels.
+// A packed store contains its calibration and states everything about its pixels.
 Result<LightField> OpenPackedStore(const fs::path& path, const OpenOptions& options) {
   LF_RETURN_IF_ERROR(CheckNoStanfordOptions(path, options));
   LF_RETURN_IF_ERROR(CheckNoFov(path, options));
@@ -102,7 +102,7 @@ Result<LightField> OpenPackedStore(const fs::path& path, const OpenOptions& opti
   return std::move(facts.light_field);
 }
 
-// Returns nullopt if the name is not that of a calibration file.
+// Opens a calibration file. Returns nullopt if its name is of no known kind.
 std::optional<Result<LightField>> OpenFile(const fs::path& path, const OpenOptions& options) {
   if (path.extension() == ".json" && IsAosFile(path)) return OpenAos(path, options);
   if (path.extension() == kStoreExtension) return OpenPackedStore(path, options);
@@ -163,12 +163,13 @@ Result<LightField> OpenStanford(const fs::path& folder, const OpenOptions& optio
                                      .asked_for = asked_for});
 }
 
-// Completes the encoding. Called after the calibration was read, which may state nothing about it.
+// Completes the encoding after the calibration was read, which may state nothing about the
+// encoding.
 Result<void> CompleteEncoding(const OpenOptions& options, const fs::path& path,
                               LightField* light_field) {
   RadianceEncoding& encoding = light_field->encoding;
   const bool is_raw = IsRawName(light_field->image_names[0]);
-  // An encoding that is no longer the default was stated completely.
+  // If the calibration changed the pattern or the transfer, it stated the encoding completely.
   if (is_raw && encoding.bayer == BayerPattern::kNone && encoding.transfer == Transfer::kSrgb)
     LF_RETURN_IF_ERROR(CompleteEncodingOfRaw(light_field));
   if (options.bayer) {
@@ -377,7 +378,8 @@ Result<LightField> OpenLightField(const fs::path& path, const OpenOptions& optio
     LF_RETURN_IF_ERROR(CompleteEncoding(options, path, &light_field));
   }
   LF_RETURN_IF_ERROR(CompleteAlpha(options, path, &light_field));
-  // A packed store states the decision that was made when its masks were encoded.
+  // A packed store already states which LF images mask clipped pixels, because its masks are
+  // encoded.
   if (!HoldsPackedStore(light_field) && light_field.encoding.masks_clipped)
     ApplyBrackets(&light_field);
   const Intrinsics& first = light_field.Camera({0}).intrinsics;

@@ -13,30 +13,31 @@
 namespace lf {
 
 struct OpenOptions {
-  // Values that folders of the Stanford form may lack: see StanfordOptions in
-  // import/formats/read_stanford.h. kUsage for other forms. Only lfimport offers any but focal_px.
+  // Values that the names in a Stanford folder may lack: see StanfordOptions in
+  // calibration/read_stanford.h. kUsage for calibrations of another kind. focal_px is offered by
+  // several programs, the others only by lfimport.
   std::optional<double> focal_px = {};
   std::optional<Vec2> pitch_w = {};
   std::optional<double> plane_distance_w = {};
   bool flip_x = false;
   bool flip_y = false;
   // The field of view of all cameras, required for poses of Airborne Optical Sectioning
-  // (import/formats/read_aos.h). kUsage for other forms.
+  // (calibration/read_aos.h). kUsage for calibrations of another kind.
   std::optional<double> fov_deg = {};
   // Folder in which image files are searched by name (light_field/model/find_images.h). kUsage for
   // packed stores and folders of the Stanford form.
   std::optional<std::filesystem::path> images_folder = {};
-  // How the size of image files may differ from the calibrated one.
+  // How much the size of image files may differ from the calibrated size.
   ImageScale image_scale = {};
-  // These three state the meaning of alpha and the background, and override the calibration
-  // (light_field/model/radiance.h).
-  // kUsage: a packed store coded for the other kind of alpha (mask or light); a background that is
-  // brighter than max_radiance, or for images whose alpha is a mask; opacity of mosaics.
+  // alpha, background and keeps_opacity state the meaning of alpha and the background, and override
+  // the calibration (capture/radiance.h). kUsage: a packed store that was encoded for the other
+  // kind of alpha (mask or light); a background that is brighter than max_radiance, or for images
+  // whose alpha is a mask; opacity of mosaics.
   std::optional<AlphaMeaning> alpha = {};
   std::optional<std::array<double, 3>> background = {};
   bool keeps_opacity = false;  // needs a black background; see RadianceEncoding::keeps_opacity
-  // Ignores the transforms.json in a folder if HoldsOwnAndItsSource(). Only lfimport sets this,
-  // when it writes that file again.
+  // True: ignores the transforms.json in a folder if HoldsOwnAndItsSource() is true. Only lfimport
+  // sets this, when it writes that file again.
   bool passes_over_own = false;
   // Bayer pattern of the images; overrides the calibration and the files. Only lfimport offers it.
   std::optional<BayerPattern> bayer = {};
@@ -46,31 +47,32 @@ struct OpenOptions {
 // calibration that it was made from.
 bool HoldsOwnAndItsSource(const std::filesystem::path& folder);
 
-// Reads a file, or the calibration that it finds in a folder. It searches in this order:
-// - transforms.json, or any .json file that is no poses.json:
-//   light_field/transforms_json/transforms_json.h
-// - a COLMAP model, in the folder or in its sparse/0: light_field/colmap/read_colmap.h
-// - NAME_par.txt, one in the folder: import/formats/read_middlebury.h
-// - poses_bounds.npy, or any .npy file: import/formats/read_llff.h
-// - parameters.cfg, or any .cfg file: import/formats/read_hci.h
-// - poses.json, or any .json file with M3x4 matrices: import/formats/read_aos.h
-// - images named by the Stanford form, in the folder or its images/: import/formats/read_stanford.h
-// - STORE.lfs, one in the folder: storage/packed/packed_store_file.h
+// Opens a calibration file, or the first of these that it finds in a folder:
+// - transforms.json, or a .json file without M3x4 matrices: native/transforms_json.h
+// - a COLMAP model, in the folder or in its sparse/0: colmap/read_colmap.h
+// - NAME_par.txt, only one in the folder: calibration/read_middlebury.h
+// - poses_bounds.npy, or any .npy file: calibration/read_llff.h
+// - parameters.cfg, or any .cfg file: calibration/read_hci.h
+// - poses.json, or any .json file with M3x4 matrices: calibration/read_aos.h
+// - images with Stanford names, in the folder or its images/: calibration/read_stanford.h
+// - STORE.lfs, only one in the folder: packed/packed_store_file.h
+// Files with other names than those before "or" are opened only if `path` names the file itself.
 //
-// Image files that are not where the calibration says are searched by name in its folder or in
-// OpenOptions::images_folder; not every file is checked for existence. The headers of up to 64
-// files show if all images are smaller than calibrated. If neither options nor calibration state
-// the meaning of alpha, it is derived from the pixels of three images
-// (light_field/model/alpha_evidence.h) and logged. For camera raw files, the first file provides
-// pattern, levels and colours that the calibration does not state; a warning names what is still
-// unknown.
-// kInput: no light field there (the message lists what was searched for); an error of the reader;
-// camera raw files with an unknown Bayer pattern.
+// If image files are not where the calibration says, they are searched by name in its folder or in
+// OpenOptions::images_folder; not every file is checked for existence. If the headers of up to 64
+// files show that all images are smaller than calibrated, intrinsics are scaled. If neither options
+// nor calibration state the meaning of alpha, it is derived from the pixels of three images
+// (capture/alpha_evidence.h) and logged. The pattern, levels and colours of camera raw files that
+// the calibration does not state are read from the first file; a warning names those that it does
+// not state either.
+// kInput: there is no light field (the message lists what was searched for); an error of the
+// reader; images_folder has none of the images; camera raw files with an unknown Bayer pattern.
+// kUsage: an option that the calibration does not allow.
 Result<LightField> OpenLightField(const std::filesystem::path& path,
                                   const OpenOptions& options = {});
 
-// Returns points of the scene, at most 2048 in world coordinates, that the image of LF camera `id`
-// shows. Only a COLMAP model with a points3D file has them (light_field/colmap/points_seen.h); the
+// Returns at most 2048 points of the scene, in world coordinates, that the image of LF camera `id`
+// shows. Only a COLMAP model with a points3D file states such points (colmap/points_seen.h); the
 // result is empty for other light fields. Reads the model again, block by block.
 //   path, light_field  the argument and the result of OpenLightField()
 Result<std::vector<Vec3>> PointsSeenBy(const std::filesystem::path& path,

@@ -180,14 +180,14 @@ TEST_F(OpenLightFieldTest, PointsToAFolderBelow) {
       << light_field.error().message;
 }
 
-// Real light fields; skipped if they are not on this machine.
+// Tests with real light fields. They are skipped if the light fields are not on this machine.
 class RealLightFieldTest : public testing::Test {
  protected:
   static fs::path TestData() {
     const char* folder = std::getenv("LF_TEST_DATA");
     return folder ? folder : LF_TEST_DATA_DEFAULT;
   }
-  // The test is skipped if the folder does not exist.
+  // Opens a folder of the test data. The test must have called LF_SKIP_WITHOUT() for it.
   static Result<LightField> Open(const fs::path& folder) {
     return OpenLightField(TestData() / folder);
   }
@@ -244,7 +244,7 @@ TEST_F(RealLightFieldTest, TheCardsAreARectifiedSlab) {
   ASSERT_TRUE(light_field) << light_field.error().message;
   ASSERT_EQ(light_field->size(), 81u);
   ASSERT_EQ(light_field->intrinsics.size(), 81u);
-  // Every second row and column of 17: the last is 8 off the middle.
+  // The images are every second row and column of 17; the last camera is 8 pitches off the middle.
   const PinholeCamera last = light_field->Camera({80});
   EXPECT_EQ(last.CentreWorld(), Vec3(8, 8, 0));
   EXPECT_EQ(last.intrinsics, (Intrinsics{768, 768, 384 + 61.44, 384 + 61.44, 0, 768, 768}));

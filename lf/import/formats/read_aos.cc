@@ -25,8 +25,7 @@ namespace {
 using nlohmann::json;
 
 constexpr size_t kMaxFileSize = size_t{64} << 20;  // some hundred thousand images
-constexpr int kMaxDepth = 8;  // deeper than anything that is read; hostile nesting then takes no
-                              // memory
+constexpr int kMaxDepth = 8;  // nesting below this depth is not read, so that it takes no memory
 constexpr double kRotationTolerance = 1e-3;
 constexpr double kLargest_w = 1e12;
 constexpr const char* kMatrixKey = "M3x4";
@@ -53,7 +52,7 @@ std::optional<Mat34> MatrixOf(const json& entry) {
   return matrix;
 }
 
-// kInput without the place in the file.
+// Returns the image name of an entry. The message of kInput does not name the place in the file.
 Result<std::string> NameOf(const json& entry) {
   const auto name = entry.find("imagefile");
   if (name == entry.end() || !name->is_string() || name->get_ref<const std::string&>().empty())
@@ -103,7 +102,7 @@ std::string AsPng(const std::string& name) {
   return is_tiff ? fs::path(path).replace_extension(".png").string() : name;
 }
 
-// Finds the folder of the images and the names that they have there.
+// Finds the folder of the images, and changes their names to .png if the files have this extension.
 Result<void> FindImages(const AosOptions& options, const fs::path& path, LightField* light_field) {
   const fs::path& beside = light_field->folder;
   std::vector<fs::path> folders;

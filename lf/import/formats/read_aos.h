@@ -24,16 +24,18 @@ struct AosOptions {
   std::optional<std::filesystem::path> images_folder = {};
 };
 
-// Returns true if the first MiB of the file look like these poses; false if it cannot be read.
+// Returns true if the first MiB of the file contains the key "M3x4"; false if the file cannot be
+// read.
 bool IsAosFile(const std::filesystem::path& path);
 
-// All images get the size of the first one. If the first image exists with the extension .png
-// instead of .tif or .tiff, all such names are changed, as AOS's programs do. Images that are not
-// square cause a warning. kInput names the file and the image, the value found and what was
-// expected; kUsage for a fov_deg outside 0.01 to 179.
+// Reads the poses; all images get the size of the first one. If the first image does not exist
+// under its name, but with the extension .png instead of .tif or .tiff, all such names are changed,
+// as AOS's programs do. Images that are not square cause a warning.
+// kInput names the file and the image, the value found and what was expected; kUsage for a fov_deg
+// outside 0.01 to 179.
 Result<LightField> ReadAos(const std::filesystem::path& path, const AosOptions& options);
 
-// Reads the poses and names alone, without intrinsics. `path` is for messages and
+// Reads only the poses and names, no intrinsics. `path` is needed only for messages and
 // LightField::folder.
 Result<LightField> ParseAosPoses(std::string_view text, const std::filesystem::path& path);
 

@@ -1,4 +1,4 @@
-// Any bytes give sane poses or an error.
+// Parses any bytes: the result must be sane poses or an error.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>

@@ -45,8 +45,8 @@ TEST(Aos, MatricesAreCamFromWorldWithNumbersOrStrings) {
   EXPECT_EQ(light_field.cameras[1].cam_from_world * Vec3(10, 20, 30), Vec3(-10, 7.5, 33));
 }
 
-// Published files have the nine digits of 32-bit floats. This pose is of a drone 56 m above the
-// ground.
+// Published files have nine digits, as many as 32-bit floats need. In this pose a drone is 56 m
+// above the ground.
 TEST(Aos, RotationsOfNineDigitsAreRotationsAgain) {
   const LightField light_field =
       Parsed(R"({"images": [)" +
@@ -127,7 +127,8 @@ TEST_F(AosFolderTest, TheFieldOfViewIsAcrossTheWholeImage) {
   EXPECT_EQ(k.cx_px, 256);
   EXPECT_EQ(k.width_px, 512);
   EXPECT_TRUE(fs::exists(light_field->ImagePath({0})));
-  // AOS's new_K for 512 pixels with the factor 0.79; AOS gives this field of view to its renderer.
+  // 512 / 0.79 is the focal length of AOS's new_K for 512 pixels with the factor 0.79; AOS passes
+  // this field of view to its renderer.
   const Result<LightField> f0 = ReadAos(path_, {.fov_deg = 43.10803984095769});
   EXPECT_NEAR(f0->intrinsics[0].fx_px, 512 / 0.79, 1e-9);
 }

@@ -26,8 +26,8 @@ std::string_view Trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
 }
 
-// Reads the keys of all sections in the syntax of Python's configparser: KEY = VALUE, [SECTION],
-// and comments after # and ;.
+// Returns the keys of all sections together, with their values. The syntax is that of Python's
+// configparser: KEY = VALUE, [SECTION], and comments after # and ;.
 std::map<std::string, std::string, std::less<>> KeysOf(std::string_view text) {
   std::map<std::string, std::string, std::less<>> keys;
   while (!text.empty()) {
@@ -43,7 +43,7 @@ std::map<std::string, std::string, std::less<>> KeysOf(std::string_view text) {
   return keys;
 }
 
-// Numbers by key; errors name file, key and value.
+// Returns the numbers of keys; errors name the file, the key and the value.
 class Parameters {
  public:
   Parameters(std::string_view text, const fs::path& path) : keys_(KeysOf(text)), path_(path) {}
@@ -78,8 +78,8 @@ class Parameters {
   const fs::path& path_;
 };
 
-// Z = F b / (F b / Z0 + d): a larger disparity is nearer. Returns nullopt if an end of the range is
-// at infinity or beyond.
+// Returns the depth range by Z = F b / (F b / Z0 + d): points with a larger disparity d are nearer.
+// Returns nullopt if an end of the range is at infinity or beyond, or if it is not stated.
 Result<std::optional<DepthRange>> DepthsOf(const Parameters& parameters, double focal_baseline,
                                            double plane_per_w) {
   constexpr double kMostDisparity_px = 1e6, kRounding_px = 0.05;

@@ -12,21 +12,22 @@ namespace lf {
 
 inline constexpr const char* kHciName = "parameters.cfg";
 
-// A grid of parallel cameras, numbered row by row from the upper left, as the benchmark's Blender
-// add-on places them. World: x right, y down, z into the scene, in metres, with the middle of the
-// grid as origin. With F = focal_length_mm / sensor_size_mm * max(width, height) pixels and the
-// focus distance Z0, where the disparity is 0, the camera at (x, y) has its principal point at (w /
-// 2 + F x / Z0, h / 2 + F y / Z0); if Z0 = 0, at the image centre. The depth range follows from
-// disp_min and disp_max, which are rounded to a tenth of a pixel, if both correspond to finite
-// depths.
+// Returns a grid of parallel cameras, numbered row by row from the upper left, as the benchmark's
+// Blender add-on places them. World: x right, y down, z into the scene, in metres; the origin is
+// the middle of the grid. The focal length is F = focal_length_mm / sensor_size_mm * max(width,
+// height) pixels. Z0 is the focus distance, at which the disparity is 0: the principal point of the
+// camera at (x, y) is (w / 2 + F x / Z0, h / 2 + F y / Z0), or the image centre if Z0 = 0. The
+// depth range is computed from disp_min and disp_max, which are rounded to a tenth of a pixel; it
+// is not set if one of them is missing or corresponds to no finite depth.
 //   text  the file's content
-//   path  its name for messages; its folder becomes LightField::folder
+//   path  the file's name for messages; its folder becomes LightField::folder
 // kInput names the file, the key, the value found and what was expected.
 Result<LightField> ParseHci(std::string_view text, const std::filesystem::path& path);
 
 Result<LightField> ReadHci(const std::filesystem::path& path);
 
-// Returns true if the file states a grid of cameras. Other programs also write files of this name.
+// Returns true if the file has at most 1 MiB and states a grid of cameras (num_cams_x). Other
+// programs also write files of this name.
 bool IsHciFile(const std::filesystem::path& path);
 
 }  // namespace lf

@@ -39,7 +39,7 @@ LightField Parsed(const std::string& text) {
   return light_field ? *std::move(light_field) : LightField{};
 }
 
-// Returns the text with one line replaced, or removed if `with` is empty.
+// Returns the text with the line of a key replaced; the line becomes blank if `with` is empty.
 std::string Changed(const std::string& key, const std::string& with) {
   std::string text = kText;
   const size_t begin = text.find(key), end = text.find('\n', begin);

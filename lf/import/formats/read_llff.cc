@@ -26,7 +26,8 @@ class Row {
  public:
   explicit Row(const double* numbers) : matrix_(numbers), near_far_(numbers + 15) {}
 
-  // kInput without the place in the file, as in the other functions.
+  // The messages of kInput do not name the place in the file. This also holds for the functions
+  // below.
   Result<RigidTransform> CamFromWorld() const {
     if (!matrix_.allFinite() || !(Centre().cwiseAbs().maxCoeff() <= kLargest_w))
       return InputError(
@@ -101,7 +102,8 @@ Result<void> CheckShape(const NpyArray& array, size_t image_count, const fs::pat
   return {};
 }
 
-// LLFF keeps downsampled copies (images_4, images_8) beside the images that it was run on.
+// Returns kInput if the image does not have the stated size. This happens because LLFF keeps
+// downsampled copies (images_4, images_8) beside the images that it was run on.
 Result<void> CheckSize(const Intrinsics& k, const std::array<int, 2>& size, const fs::path& image,
                        const fs::path& path) {
   if (k.width_px == size[0] && k.height_px == size[1]) return {};

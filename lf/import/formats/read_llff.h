@@ -21,19 +21,20 @@ inline constexpr const char* kLlffName = "poses_bounds.npy";
 
 // Parses the content of a file.
 //   bytes        the file's content
-//   path         its name for messages; its folder becomes LightField::folder
+//   path         the file's name for messages; its folder becomes LightField::folder
 //   image_names  the files in images/, sorted
-//   image_size   called for the first image
-// The principal point is the image centre; depth_range is the smallest near and the largest far
-// bound.
-// kInput names the file and the row, the value found and what was expected: another type or shape;
-// different numbers of rows and images; images of another size than the rows state (the format has
-// no place for copies of other sizes, such as images_8); an axis that is mirrored or sheared.
+//   image_size   called for the first image only
+// The principal point is the image centre; depth_range extends from the smallest near bound to the
+// largest far bound.
+// kInput: another type or shape; different numbers of rows and images; a first image of another
+// size than the rows state (the format has no place for copies of other sizes, such as images_8);
+// an axis that is mirrored or sheared. The message names the file and the row, the value found and
+// what was expected.
 Result<LightField> ParseLlff(std::string_view bytes, const std::filesystem::path& path,
                              std::span<const std::string> image_names,
                              const ImageSizeSource& image_size);
 
-// As ParseLlff(), for a file with its images in images/ beside it.
+// Reads a file as ParseLlff() does; the images are in images/ beside it.
 Result<LightField> ReadLlff(const std::filesystem::path& path);
 
 }  // namespace lf

@@ -19,8 +19,7 @@ namespace fs = std::filesystem;
 
 using RowNumbers = std::array<double, 17>;
 
-// A camera at (1, 2, 3) whose axes are those of the world: right x, down y, forward z. 640 x 480
-// pixels.
+// A camera at (1, 2, 3) that is not rotated: right is x, down is y, forward is z. 640 x 480 pixels.
 constexpr RowNumbers kUnturned = {0,   1, 0,  1, 480,  //
                                   1,   0, 0,  2, 640,  //
                                   0,   0, -1, 3, 500,  //

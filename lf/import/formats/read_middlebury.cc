@@ -26,7 +26,7 @@ constexpr double kLargest_w = 1e12;
 constexpr const char* kForm =
     "NAME k11 k12 k13 k21 k22 k23 k31 k32 k33 r11 r12 r13 r21 r22 r23 r31 r32 r33 t1 t2 t3";
 
-// Cuts the first word off `text`; empty at the end of the text.
+// Removes the first word from `text` and returns it. Returns "" if no word is left.
 std::string_view NextWord(std::string_view* text) {
   constexpr std::string_view kBlanks = " \t\r\v\f";
   text->remove_prefix(std::min(text->find_first_not_of(kBlanks), text->size()));
@@ -35,14 +35,14 @@ std::string_view NextWord(std::string_view* text) {
   return word;
 }
 
-// Returns a word as messages show it.
+// Returns a word in the form in which messages show it: at most 80 characters.
 std::string Shown(std::string_view word) {
   constexpr size_t kLongest = 80;
   return word.size() <= kLongest ? std::string(word)
                                  : std::string(word.substr(0, kLongest)) + "...";
 }
 
-// Returns the lines that are not blank, one after the other.
+// Iterates over the lines that are not blank.
 class Lines {
  public:
   Lines(std::string_view text, const fs::path& path) : text_(text), path_(path) {}
@@ -57,7 +57,7 @@ class Lines {
     }
     return std::nullopt;
   }
-  // "a_par.txt: line 3: " + message
+  // Returns the error "a_par.txt: line 3: MESSAGE", with the number of the current line.
   Error Fault(std::string_view message) const {
     return InputError(fmt::format("{}: line {}: {}", path_.string(), number_, message));
   }
@@ -100,7 +100,8 @@ Result<Line> ParseLine(std::string_view text, const Lines& lines) {
   return line;
 }
 
-// Returns the intrinsics without the image size. kInput without the place in the file.
+// Returns the intrinsics without the image size. The message of kInput does not name the place in
+// the file.
 Result<Intrinsics> IntrinsicsOf(Mat3 k) {
   if (!(std::abs(k(2, 2)) > 1e-9))
     return InputError(fmt::format(

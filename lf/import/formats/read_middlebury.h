@@ -1,6 +1,5 @@
 // Reads Middlebury's multi-view calibrations, NAME_par.txt (doc/formats/middlebury.md): the number
-// of images, then a line for each:
-//
+// of images, then a line for each image:
 //   imgname.png k11 k12 k13 k21 k22 k23 k31 k32 k33 r11 r12 r13 r21 r22 r23 r31 r32 r33 t1 t2 t3
 //
 // P = K [R t], camera axes x right, y down, z forward. In the file the centre of the upper left
@@ -19,19 +18,19 @@ namespace lf {
 
 // Parses the content of a file.
 //   text        the file's content
-//   path        its name for messages; its folder becomes LightField::folder
-//   image_size  called for the first image; all images have this size
+//   path        the file's name for messages; its folder becomes LightField::folder
+//   image_size  called for the first image; all images get the size that it returns
 // kInput names the file, the line and the image, the value found and what was expected.
 Result<LightField> ParseMiddlebury(std::string_view text, const std::filesystem::path& path,
                                    const ImageSizeSource& image_size);
 
-// As ParseMiddlebury(), for a file. The size comes from the header of the first image file beside
-// it.
+// Reads a file as ParseMiddlebury() does. The size of the images is read from the header of the
+// first image, which is searched by name if it is not beside the file.
 Result<LightField> ReadMiddlebury(const std::filesystem::path& path);
 
 bool IsMiddleburyName(std::string_view file_name);  // ends in _par.txt
 
-// Returns the files with such names in a folder, sorted.
+// Returns the files in a folder for which IsMiddleburyName() is true, sorted.
 std::vector<std::filesystem::path> MiddleburyFiles(const std::filesystem::path& folder);
 
 }  // namespace lf

@@ -1,4 +1,4 @@
-// Any bytes give a light field with sane cameras or an error.
+// Parses any bytes: the result must be a light field with sane cameras or an error.
 #include <array>
 #include <cstddef>
 #include <cstdint>

@@ -30,8 +30,9 @@ struct StanfordImage {
   StanfordName name;
 };
 
-// The image files of the form that is used, by row and column, and the names of all other files.
-// For example, sheet_01_02.png is no camera beside names with positions.
+// The images whose names have the form that is used, by row and column, and the names of all other
+// files. If some names state positions, images without one are other files, such as
+// sheet_01_02.png.
 struct Listing {
   std::vector<StanfordImage> images;
   std::vector<std::string> others;
@@ -77,7 +78,7 @@ void WarnOfOthers(const fs::path& folder, const Listing& listing) {
              others.size() > kShown ? ", ..." : "");
 }
 
-// Returns the call of lfimport that adds the missing values, with numbers to start from.
+// Returns the lfimport command that adds the missing values, with numbers to start from.
 std::string ImportCommand(const fs::path& folder, const StanfordOptions& options, bool needs_pitch,
                           int width_px) {
   const std::string word =
@@ -112,7 +113,7 @@ Result<void> CheckOptions(const StanfordOptions& options) {
   return {};
 }
 
-// Checks that names and options together state everything.
+// Returns kInput unless the names and the options together state everything.
 Result<void> CheckComplete(const fs::path& folder, const std::vector<StanfordImage>& images,
                            const StanfordOptions& options, int width_px) {
   if (!options.pitch_w && !images[0].name.position)
@@ -139,7 +140,7 @@ Result<void> CheckComplete(const fs::path& folder, const std::vector<StanfordIma
                   ImportCommand(folder, options, !images[0].name.position, width_px)));
 }
 
-// Returns the positions of the cameras in their plane.
+// Returns the positions of the cameras in their common plane, in world units.
 std::vector<Vec2> Positions(const std::vector<StanfordImage>& images,
                             const StanfordOptions& options) {
   std::vector<Vec2> positions;

@@ -5,8 +5,8 @@
 //   NAME_ROW_COL.ext                             a grid, placed by StanfordOptions::pitch_w
 //
 // The cameras look straight ahead, R = I, in a world with x right, y down and z into the scene.
-// They stand at (X, Y, 0) / 1000 in metres, or at the pitch times (COL, ROW, 0) with the middle of
-// the grid as origin.
+// Their centres are (X, Y, 0) / 1000 metres; if pitch_w is given, the pitch times (COL, ROW, 0),
+// with the middle of the grid as origin.
 #pragma once
 
 #include <filesystem>
@@ -20,30 +20,31 @@ namespace lf {
 // Returns true if the folder contains an image file with such a name.
 bool HoldsStanfordNames(const std::filesystem::path& folder);
 
-// Values that the names do not state. Only lfimport offers all of them. kUsage for a length outside
-// (0, 1e9].
+// Values that the names do not state. Only lfimport offers all of them. kUsage if a pitch or
+// plane_distance_w is outside (0, 1e9].
 struct StanfordOptions {
-  std::optional<double> focal_px = {};  // of all cameras; overrides the names
-  // World units from one column, and from one row, to the next; overrides positions in the names.
+  std::optional<double> focal_px = {};  // focal length of all cameras; overrides the names
+  // Distance from one column, and from one row, to the next; overrides positions in the names.
   std::optional<Vec2> pitch_w = {};
   // Depth Z0 of the plane without disparity, for rectified slabs. A camera at the offset (x, y)
   // from the middle of the grid has its principal point at
   //   (w/2 + F x / Z0,  h/2 + F y / Z0)
   std::optional<double> plane_distance_w = {};
-  // Negates x or y, for a data set that counts in the opposite direction.
+  // Negates x or y, for a data set whose rows or columns are counted in the opposite direction.
   bool flip_x = false;
   bool flip_y = false;
   // The light field as the user typed it, for the command in messages; empty: the folder.
   std::filesystem::path asked_for = {};
 };
 
-// Reads all images with such names, by row and column. The header of the first image gives the size
-// of all; the principal point is the image centre, the focal length FOCAL / SENSOR * width pixels.
-// Other files, and names without a position if others have one, are skipped with a warning that
-// counts and names them.
+// Reads all images with such names, sorted by row and column. All images get the size that the
+// header of the first one states; the principal point is the image centre, the focal length FOCAL /
+// SENSOR * width pixels. Other files, and images without a position if others have one, are left
+// out with a warning that states their number and the names of the first three.
 // kInput: no such name; two images with the same row and column; names that lack the position or
-// the focal length (the message contains a call of lfimport that adds it); a focal length in some
-// names only; an unreadable first image.
+// the focal length (the message contains the lfimport command that adds it); a focal length in only
+// some of the names, or out of range; a position beyond 1e12 world units; an unreadable first
+// image.
 Result<LightField> ReadStanfordFolder(const std::filesystem::path& folder,
                                       const StanfordOptions& options = {});
 

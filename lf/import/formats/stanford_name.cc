@@ -54,7 +54,8 @@ std::optional<StanfordName> ParseStanfordName(std::string_view file_name) {
   if (!IsImageName(file_name)) return std::nullopt;
   std::string_view stem = file_name.substr(0, file_name.rfind('.'));
   if (stem.ends_with('_')) stem.remove_suffix(1);
-  // The last fields, each of which has a '_' before it. There is always a NAME, which may be empty.
+  // Split off up to six last fields, each of which follows a '_'. The rest is NAME, which may be
+  // empty.
   std::array<std::string_view, 6> fields;
   size_t count = 0;
   for (; count < fields.size(); ++count) {

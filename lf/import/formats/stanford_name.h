@@ -1,4 +1,4 @@
-// Parses file names that state where a camera stood (doc/formats/stanford.md):
+// Parses file names that state the position of a camera (doc/formats/stanford.md):
 //
 //   NAME_ROW_COL.ext
 //   NAME_ROW_COL_Y_X.ext                         positions in millimetres
@@ -26,9 +26,9 @@ struct StanfordName {
 };
 
 // Returns nullopt if the name has another form. NAME may contain blanks and underscores; ROW and
-// COL are digits, the other fields decimal numbers without exponent. If NAME also ends in numbers,
-// the longest form that fits is used. A '_' before the extension is skipped, because the archive
-// has it.
+// COL are digits, the other fields decimal numbers without exponent. If NAME itself ends in
+// numbers, the form with most fields that fits is used. A '_' before the extension is skipped,
+// because names in the archive end in it.
 std::optional<StanfordName> ParseStanfordName(std::string_view file_name);
 
 }  // namespace lf

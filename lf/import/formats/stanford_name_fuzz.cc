@@ -1,4 +1,5 @@
-// Any bytes are a file name that either has the Stanford form, with sane values, or does not.
+// Parses any bytes as a file name: either it does not have the Stanford form, or its values are
+// sane.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
