@@ -17,7 +17,7 @@ constexpr uint64_t kMinPointSize = 8 + 3 * 8 + 3 + 8 + 8;
 constexpr uint64_t kPoint2DSize = 8 + 8 + 8;
 constexpr uint64_t kTrackEntrySize = 4 + 4;
 
-// File and entry, for messages.
+// Makes errors that name the file and the entry.
 class Place {
  public:
   Place(const ByteStream& stream, const char* kind) : stream_(stream), kind_(kind) {}
@@ -28,7 +28,8 @@ class Place {
   Error EntryFault(uint64_t id, std::string_view message) const {
     return Fault(fmt::format("{} {} {}", kind_, id, message));
   }
-  // Returns the error if the stream ends within entry `index` of `count`, or cannot be read.
+  // Returns the error of a stream that ends within entry `index` of `count`, or that cannot be
+  // read.
   Error CutOff(uint64_t index, uint64_t count) const {
     if (Result<void> status = stream_.Status(); !status) return status.error();
     return Fault(fmt::format("ends within {} {} of {}, at byte {}: it is cut off; copy it again",
@@ -66,7 +67,8 @@ Result<void> CheckEnd(const ByteStream& stream, const Place& place, const char* 
       stream.remaining(), count, things));
 }
 
-// Reads up to the 0 that ends the name; nullopt if it is missing.
+// Reads a name and the 0 that ends it; nullopt if the stream ends before the 0. A name that is too
+// long is returned in part, but still too long for AddImage() to accept it.
 std::optional<std::string> TakeName(ByteStream* stream) {
   std::string name;
   while (name.size() <= kMaxColmapNameSize) {
@@ -81,7 +83,7 @@ std::optional<std::string> TakeName(ByteStream* stream) {
   return name;
 }
 
-// Reads everything but the 2D points. Returns false if the stream ends.
+// Reads an image without its 2D points. Returns false if the stream ends.
 bool TakeImage(ByteStream* stream, ColmapImage* image) {
   if (!stream->Take(&image->id) || !stream->Take(&image->quaternion) ||
       !stream->Take(&image->translation) || !stream->Take(&image->camera_id))

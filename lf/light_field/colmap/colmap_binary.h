@@ -17,9 +17,9 @@
 
 namespace lf {
 
-// Each reads the whole stream. kInput with file and entry: an entry that ColmapScene refuses, an
-// end that is too early or too late, a count beyond what the file can hold (checked before memory
-// is allocated).
+// Each function reads the whole stream. kInput names the file and the entry: an entry that
+// ColmapScene refuses, an end that is too early or too late, a count of more than the file can hold
+// (checked before memory is allocated).
 Result<void> ReadColmapCamerasBinary(ByteStream* stream, ColmapScene* scene);
 Result<void> ReadColmapImagesBinary(ByteStream* stream, ColmapScene* scene);
 // Sink receives points and observations: ColmapScene or ColmapPointsSeen.

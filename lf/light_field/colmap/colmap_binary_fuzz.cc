@@ -1,5 +1,5 @@
-// Any bytes give a COLMAP model with sane cameras or an error. The input holds two uint16, the
-// sizes of the first two files, and then the three files.
+// Parses any bytes: the result must be a COLMAP model with sane cameras or an error. The input
+// holds two uint16, the sizes of cameras.bin and images.bin, and then the three files.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

@@ -14,9 +14,10 @@ constexpr uint64_t kMaxPixelCount = 1 << 30;  // as in pixels/files/image_file.h
 constexpr double kMinFocal_px = 0.001;
 constexpr double kMaxFocal_px = 1e7;
 constexpr double kMaxPrincipal_px = 1e7;
-constexpr double kMaxDistortion = 1e6;  // this limit and those below are those of transforms.json
+// This limit and the limits below are the same as for transforms.json.
+constexpr double kMaxDistortion = 1e6;
 constexpr double kMaxOmega = 3.1415;
-// A smaller omega of the FOV model bends no ray by more than rounding.
+// The FOV model with a smaller omega bends no ray by more than a rounding error.
 constexpr double kMinOmega = 1e-7;
 
 constexpr ColmapCameraModel kModels[] = {
@@ -89,7 +90,7 @@ Result<Distortion> DistortionOf(std::string_view model, std::span<const double> 
                                     kMaxDistortion));
   std::copy(coefficients.begin(), coefficients.end(), distortion.parameters.begin());
   if (distortion.model == DistortionModel::kFov) {
-    // The sign of omega cancels in the formula; COLMAP's optimizer may find either.
+    // Both signs of omega give the same distortion; COLMAP's optimizer may find either.
     double& omega = distortion.parameters[0];
     omega = std::abs(omega);
     if (!(omega < kMaxOmega))

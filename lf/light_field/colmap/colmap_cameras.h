@@ -12,7 +12,7 @@ namespace lf {
 
 struct ColmapCameraModel {
   std::string_view name;
-  int number;           // in cameras.bin
+  int number;           // its number in cameras.bin
   int parameter_count;  // 0: not supported
 
   bool is_supported() const { return parameter_count > 0; }
@@ -26,10 +26,10 @@ Result<ColmapCameraModel> FindColmapCameraModel(int32_t number);
 Result<ColmapCameraModel> FindColmapCameraModel(std::string_view name);
 
 // Converts the parameters, in COLMAP's order, to focal length, principal point and distortion. A
-// distortion without effect becomes DistortionModel::kNone.
-// kInput, without the place in the file: a size of 0 or beyond 65536, more than 2^30 pixels, a
-// number that is not finite or out of range.
+// distortion that bends no ray becomes DistortionModel::kNone.
 //   parameters  model.parameter_count numbers
+// kInput: a width or height of 0 or above 65536, more than 2^30 pixels, a number that is not finite
+// or out of range. The message does not name the place in the file; the caller adds it.
 Result<Intrinsics> IntrinsicsOfColmap(const ColmapCameraModel& model, uint64_t width,
                                       uint64_t height, std::span<const double> parameters);
 

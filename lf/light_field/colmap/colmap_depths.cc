@@ -9,7 +9,7 @@ namespace lf {
 namespace {
 
 constexpr uint64_t kSeed = 0;
-constexpr double kShareOutside = 0.01;  // at each end
+constexpr double kShareOutside = 0.01;  // share of the depths that is left out at each end
 
 uint64_t HashOf(uint64_t point_id, uint32_t image_id) {
   return RandomBits(kSeed, point_id, image_id);
@@ -25,8 +25,8 @@ void DepthSample::Add(uint64_t point_id, uint32_t image_id, double depth_w) {
   if (!(depth_w > 0) || !std::isfinite(depth_w)) return;
   const uint64_t hash = HashOf(point_id, image_id);
   if (hash > hash_limit_) return;
-  // Reserved once, because growing would hold both the old and the new memory. Memory that is not
-  // touched costs nothing.
+  // Memory is reserved once, because a growing vector would need the old and the new memory at the
+  // same time. Reserved memory that is not touched costs nothing.
   if (depths_.empty()) depths_.reserve(kMaxCount + 1);
   depths_.emplace_back(hash, depth_w);
   while (depths_.size() > kMaxCount && hash_limit_ > 0) {

@@ -1,4 +1,4 @@
-// The range of depths of the points of a reconstruction. Internal to this folder.
+// The range of the depths of a reconstruction's points. Internal to colmap.
 #pragma once
 
 #include <cstdint>
@@ -10,21 +10,23 @@
 
 namespace lf {
 
-// A sample of depths with bounded size that does not depend on their order: a depth is kept if the
-// hash of its observation is below a limit, which is halved whenever there are too many depths.
+// A sample of depths of bounded size. It does not depend on the order in which the depths are
+// added: a depth is kept if the hash of its observation is below a limit, which is halved whenever
+// there are too many depths.
 class DepthSample {
  public:
   static constexpr size_t kMaxCount = size_t{1} << 20;
 
-  // Returns true if Add() would now keep a depth of this observation. Few of very many are kept, so
-  // a caller can skip work for the others.
+  // Returns true if Add() would keep a depth of this observation now. Most observations of a large
+  // model are not kept; for them a caller can skip the computation of the depth.
   bool MayKeep(uint64_t point_id, uint32_t image_id) const;
 
-  // Adds the depth of a point in one camera. Depths that are not positive and finite are ignored:
-  // such a point is a mistake of the reconstruction.
+  // Adds the depth of a point in one camera. A depth that is not positive and finite is ignored,
+  // because the point is a mistake of the reconstruction.
   void Add(uint64_t point_id, uint32_t image_id, double depth_w);
 
-  // Returns the 1st to the 99th percentile; nullopt without depths.
+  // Returns the range from the 1st to the 99th percentile of the depths; nullopt if there are no
+  // depths.
   std::optional<DepthRange> Range() const;
 
  private:

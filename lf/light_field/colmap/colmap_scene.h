@@ -1,4 +1,5 @@
-// A COLMAP model while it is read, from either form, into a LightField. Internal to this folder.
+// Collects a COLMAP model, while its binary or text files are read, as a LightField. Internal to
+// colmap.
 #pragma once
 
 #include <array>
@@ -16,7 +17,7 @@
 
 namespace lf {
 
-inline constexpr size_t kMaxColmapEntryCount = size_t{1} << 24;  // cameras; images
+inline constexpr size_t kMaxColmapEntryCount = size_t{1} << 24;  // most cameras, and most images
 inline constexpr size_t kMaxColmapNameSize = 4096;               // bytes
 
 struct ColmapImage {
@@ -27,7 +28,7 @@ struct ColmapImage {
   std::string name;
 };
 
-// Positions of cameras or images by their ids in COLMAP, 8 bytes each.
+// Maps COLMAP's ids of cameras or images to positions in a list. An entry takes 8 bytes.
 class ColmapIds {
  public:
   void Reserve(size_t count) { positions_.reserve(count); }
@@ -42,8 +43,8 @@ class ColmapIds {
   std::vector<std::pair<uint32_t, uint32_t>> positions_;
 };
 
-// Receives cameras, then images, then points. The errors are kInput without file and entry, which
-// the caller adds.
+// Receives all cameras, then all images, then all points of a model. The errors are kInput; the
+// caller adds the file and the entry to their messages.
 class ColmapScene {
  public:
   // Reserves memory for `count` images.
@@ -51,22 +52,24 @@ class ColmapScene {
 
   Result<void> AddCamera(uint32_t id, const ColmapCameraModel& model, uint64_t width,
                          uint64_t height, std::span<const double> parameters);
-  // Ends the cameras. Fails if an id occurred twice.
+  // Must be called after the last camera. Fails if an id occurred twice.
   Result<void> EndCameras();
 
-  // Fails for an unknown camera, a quaternion whose length is not 1, a number that is not finite,
-  // and a name that is empty or has control characters.
+  // Fails for an unknown camera; a quaternion whose length is not 1; a translation that is not
+  // finite or beyond 1e12; a name that is empty, has control characters or more than
+  // kMaxColmapNameSize bytes; an image beyond kMaxColmapEntryCount.
   Result<void> AddImage(ColmapImage&& image);
-  // Sorts the images by name. Fails if there are none, or if an id or a name occurred twice.
+  // Must be called after the last image. Sorts the images by name. Fails if there are none, or if
+  // an id or a name occurred twice.
   Result<void> EndImages();
 
-  // Adds a point of the file; its observations follow.
+  // Does nothing; only the observations of a point, which are added next, have depths.
   Result<void> AddPoint(uint64_t, const Vec3&, bool /*has_track*/) { return {}; }
-  // Adds an observation of a point by an image. Fails if the image is unknown.
+  // Adds the depth of a point in an image that observes it. Fails if the image is unknown.
   Result<void> AddObservation(uint64_t point_id, const Vec3& point_world, uint32_t image_id);
 
   // Returns the id of the image at a position among all images sorted by name; nullopt beyond the
-  // last one. May be called after EndImages(). Takes time in proportion to the number of images.
+  // last one. May be called after EndImages(). Takes time proportional to the number of images.
   std::optional<uint32_t> ImageIdAt(uint32_t position) const {
     return image_positions_.IdOf(position);
   }
@@ -80,7 +83,7 @@ class ColmapScene {
 
   std::vector<Intrinsics> cameras_;
   ColmapIds camera_ids_;
-  LightField light_field_;           // until the end, intrinsics_index is an index into cameras_
+  LightField light_field_;           // until Take(), intrinsics_index is an index into cameras_
   std::vector<uint32_t> image_ids_;  // parallel to light_field_.cameras; empty after EndImages()
   ColmapIds image_positions_;
   DepthSample depths_;

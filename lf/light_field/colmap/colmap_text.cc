@@ -57,7 +57,7 @@ Result<ColmapImage> TakeImage(TextWords* words) {
   return image;
 }
 
-// Skips the second line, which the last image of a file may lack.
+// Skips the second of the two lines of an image. The last image of a file may lack it.
 Result<void> SkipPoints2D(TextWords* words, uint32_t image_id) {
   if (!words->NextLine()) return {};
   const std::optional<uint64_t> count = words->SkipNumbers();
@@ -113,7 +113,7 @@ Result<void> ReadColmapImagesText(ByteStream* stream, ColmapScene* scene) {
   LF_RETURN_IF_ERROR(stream->Status());
   if (Result<void> ended = scene->EndImages(); !ended)
     return InputError(fmt::format("{}: {}", stream->path().string(), ended.error().message));
-  // A file that was cut off between two images has no other fault than their number.
+  // If a file was cut off between two images, only their number shows it.
   if (words.announced_count().value_or(scene->image_count()) != scene->image_count())
     LogWarning("{}: holds {} images, but says {} at its start: was it edited, or is it cut off?",
                stream->path().string(), scene->image_count(), *words.announced_count());

@@ -15,15 +15,15 @@
 
 namespace lf {
 
-// Each reads the whole stream. kInput with file, line and entry: an entry that ColmapScene refuses,
-// missing words, words that are no numbers, too many words.
+// Each function reads the whole stream. kInput names the file, the line and the entry: an entry
+// that ColmapScene refuses, missing words, words that are not numbers, too many words.
 Result<void> ReadColmapCamerasText(ByteStream* stream, ColmapScene* scene);
 Result<void> ReadColmapImagesText(ByteStream* stream, ColmapScene* scene);
 // Sink receives points and observations: ColmapScene or ColmapPointsSeen.
 template <class Sink>
 Result<void> ReadColmapPointsText(ByteStream* stream, Sink* sink);
 
-// Returns the number of entries in images.txt.
+// Returns the number of images in images.txt.
 Result<uint64_t> CountColmapImagesText(ByteStream* stream);
 
 }  // namespace lf

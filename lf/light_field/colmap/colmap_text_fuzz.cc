@@ -1,5 +1,5 @@
-// Any bytes give a COLMAP model with sane cameras or an error. The input holds the three text
-// files, with a form feed between them.
+// Parses any bytes: the result must be a COLMAP model with sane cameras or an error. The input
+// holds the three text files, with a form feed between them.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

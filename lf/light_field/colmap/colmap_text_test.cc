@@ -44,7 +44,7 @@ TEST(ColmapText, TakesCommentsBlankLinesAndDosLineEnds) {
   EXPECT_EQ(light_field->depth_range, std::nullopt);
 }
 
-// The example is that of doc/formats/colmap.md.
+// This is the example of doc/formats/colmap.md.
 TEST(ColmapText, TheExampleOfThePageIsTrue) {
   const Result<LightField> light_field =
       ParseColmap(false, "# cameras.txt\n1 SIMPLE_RADIAL 720 1280 1100 360 640 0.05\n",

@@ -1,5 +1,5 @@
-// Finds the points of a COLMAP model that one of its images shows: the scene's geometry without
-// pixels.
+// Finds the points of a COLMAP model that one of its images shows. They tell the geometry of the
+// scene without reading pixels.
 #pragma once
 
 #include <cstdint>
@@ -22,17 +22,17 @@ class ColmapPointsSeen {
   // image_id  the id of the image in the model
   ColmapPointsSeen(uint32_t image_id, const PinholeCamera& camera);
 
-  // Adds a point of the file; its observations follow.
+  // Adds a point of the file; its observations are added next.
   Result<void> AddPoint(uint64_t point_id, const Vec3& point_world, bool has_track);
   Result<void> AddObservation(uint64_t point_id, const Vec3& point_world, uint32_t image_id);
 
   // Returns the points whose tracks contain the image. If no point of the file has a track, returns
-  // the points that project into the image. Empty afterwards.
+  // the points that project into the image. This object is empty afterwards.
   std::vector<Vec3> Take();
 
  private:
-  // At most kMostPointsSeen points, those with the smallest hashes, so that the order of points has
-  // no influence.
+  // At most kMostPointsSeen points: those with hashes below a limit, which is halved whenever there
+  // are too many. Therefore the order of the points has no influence.
   struct Sample {
     void Add(uint64_t point_id, const Vec3& point_world);
 
@@ -49,14 +49,14 @@ class ColmapPointsSeen {
   Sample tracked_, untracked_;
 };
 
-// Returns at most kMostPointsSeen evenly chosen points in world coordinates; none if the model has
-// no points3D file. Reads cameras, images and points again, block by block.
-//   position  index of the image among all images of the model sorted by name: its LfImageId
-//   camera    of this image, with the size that the image file has
+// Returns at most kMostPointsSeen points, chosen evenly, in world coordinates; none if the model
+// has no points3D file. Reads cameras, images and points again, block by block.
+//   position  index of the image among all images of the model sorted by name; equals its LfImageId
+//   camera    the camera of this image, with intrinsics for the size of the image file
 // kInput: errors of ReadColmapModel(); a position beyond the last image.
 Result<std::vector<Vec3>> ReadColmapPointsSeen(const std::filesystem::path& model_folder,
                                                uint32_t position, const PinholeCamera& camera);
-// As ReadColmapPointsSeen(), from streams.
+// Reads from streams as ReadColmapPointsSeen() does from files.
 Result<std::vector<Vec3>> ParseColmapPointsSeen(ColmapStreams streams, uint32_t position,
                                                 const PinholeCamera& camera);
 

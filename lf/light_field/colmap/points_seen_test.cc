@@ -11,8 +11,8 @@
 namespace lf {
 namespace {
 
-// Two images whose order by name differs from that by id: 7 comes first. Neither is rotated; the
-// camera of 3 stands at x = 10.
+// Two images whose order by name is not their order by id: 7 comes before 3. Neither camera is
+// rotated; the camera of image 3 is at x = 10.
 const std::string kCamerasText = "1 PINHOLE 8 6 10 11 4 3\n";
 const std::string kImagesText = "3 1 0 0 0 -10 0 0 1 b.png\n\n7 1 0 0 0 0 0 0 1 a.png\n\n";
 

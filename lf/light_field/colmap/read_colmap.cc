@@ -33,7 +33,8 @@ bool IsFolder(const fs::path& path) {
   return fs::is_directory(path, error);
 }
 
-// Returns the extension of the model's files in a folder; nullopt if there is no model.
+// Returns the extension of the model's files in a folder; nullopt if there is no model. kInput if
+// either the cameras or the images file is missing.
 Result<std::optional<std::string>> ModelExtension(const fs::path& folder) {
   std::optional<Error> incomplete;
   for (const char* extension : kExtensions) {
@@ -75,7 +76,8 @@ std::vector<fs::path> NumberedFolders(const fs::path& folder) {
   return folders;
 }
 
-// Returns the largest of the models 0, 1, ... in a folder.
+// Among the models in subfolders 0, 1, ..., returns the one with most images; nullopt if there is
+// none.
 Result<std::optional<fs::path>> LargestModel(const fs::path& folder, bool warns) {
   std::optional<fs::path> largest;
   uint64_t largest_count = 0, all_count = 0;
@@ -98,7 +100,7 @@ Result<std::optional<fs::path>> LargestModel(const fs::path& folder, bool warns)
   return largest;
 }
 
-// Returns the parent folder, for relative paths and the root as well as for others.
+// Returns the parent folder. Works also for relative paths and for the root.
 fs::path Above(const fs::path& folder) {
   const fs::path clean = folder.lexically_normal();
   const fs::path named = clean.has_filename() ? clean : clean.parent_path();
@@ -120,8 +122,8 @@ std::vector<fs::path> ImageFolders(const fs::path& model_folder) {
   return folders;
 }
 
-// Returns words about files near a missing image: in the first folder that has a similar name in
-// it, or else in the first folder that exists.
+// Returns words about files near a missing image: in the first folder that has a file with a
+// similar name, otherwise in the first existing folder that is named `images`.
 std::string NearbyIn(const fs::path& model_folder, const std::string& name) {
   std::string nearby;
   for (const fs::path& folder : ImageFolders(model_folder)) {
@@ -137,7 +139,8 @@ std::string NearbyIn(const fs::path& model_folder, const std::string& name) {
   return nearby;
 }
 
-// Returns the first folder with one of the first images, because some images may be missing.
+// Returns the first folder that contains one of the first images. One image is not enough to
+// decide, because some images may be missing.
 Result<fs::path> FindImages(const fs::path& model_folder, std::span<const std::string> names) {
   constexpr size_t kMostAsked = 64;
   const auto asked = names.first(std::min(names.size(), kMostAsked));
@@ -154,7 +157,7 @@ Result<fs::path> FindImages(const fs::path& model_folder, std::span<const std::s
       model_folder.string(), names.front(), tried, NearbyIn(model_folder, names.front())));
 }
 
-// Returns the folder above sparse/0 or a similar folder.
+// Returns the folder of the project: `model_folder` without a number, sparse and colmap at its end.
 fs::path ProjectFolder(const fs::path& model_folder) {
   const auto name_of = [](const fs::path& folder) {
     const fs::path clean = folder.lexically_normal();
@@ -169,13 +172,14 @@ fs::path ProjectFolder(const fs::path& model_folder) {
   return folder;
 }
 
-// Returns the folder `masks` beside the images, relative to their folder if possible.
+// Returns the folder `masks` beside the folder of images: relative to the latter if possible,
+// otherwise as an absolute path. nullopt if it does not exist.
 std::optional<fs::path> FindMasks(const fs::path& images_folder) {
   const fs::path masks = Above(images_folder) / "masks";
   if (!IsFolder(masks)) return std::nullopt;
   std::error_code error;
   const fs::path relative = fs::path("..") / "masks";
-  // If the folder of images is a link, `..` leads elsewhere.
+  // If the folder of images is a symbolic link, `..` leads to another folder.
   if (fs::equivalent(images_folder / relative, masks, error)) return relative;
   return fs::absolute(masks, error);
 }
@@ -199,11 +203,12 @@ void AddMasks(LightField* light_field) {
 Result<std::optional<fs::path>> FindColmapModel(const fs::path& path, bool warns) {
   for (const fs::path& folder : {path, path / "sparse", path / "colmap" / "sparse"}) {
     const Result<std::optional<std::string>> extension = ModelExtension(folder);
-    // A cameras.txt or images.txt alone may belong to another program, unless it lies in sparse.
+    // A cameras.txt or images.txt alone may belong to another program, unless it is in sparse.
     const bool may_be_another = folder == path && !HoldsBinaryFiles(folder);
     if (!extension && !may_be_another) return extension.error();
     if (extension && *extension) return std::optional<fs::path>(folder);
-    // Avoids listing a folder that may hold a million images.
+    // The numbered subfolders are not listed without need: `path` may be a folder of a million
+    // images.
     if (folder == path && !IsFolder(path / "0")) continue;
     LF_ASSIGN_OR_RETURN(std::optional<fs::path> largest, LargestModel(folder, warns));
     if (largest) return largest;

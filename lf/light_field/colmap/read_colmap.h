@@ -11,30 +11,31 @@
 
 namespace lf {
 
-// Finds the model in or below a folder: in the folder itself, its sparse/0, sparse, colmap/sparse/0
-// or colmap/sparse. If sparse holds several models (0, 1, ...), returns the one with most images,
-// or the first of equal ones, with a warning. nullopt if there is no model.
-// kInput: a cameras file without an images file beside it, or the reverse (text files count only
-// below `path`, where they must be COLMAP's); an images file whose images cannot be counted.
-//   warns  about several models; false if the caller already warned
+// Finds the model of a folder: in `path`, path/sparse or path/colmap/sparse, in each of them first
+// directly and then in the numbered subfolders 0, 1, .... If several numbered subfolders hold
+// models, returns the one with most images, or the first of several with equally many, with a
+// warning. nullopt if there is no model. kInput: a cameras file without an images file beside it,
+// or the reverse (not for text files in `path` itself, because they may belong to another program);
+// an images file whose images cannot be counted.
+//   warns  false: does not warn of several models, because the caller already did
 Result<std::optional<std::filesystem::path>> FindColmapModel(const std::filesystem::path& path,
                                                              bool warns = true);
 
-// Reads the registered images, sorted by name. .bin is preferred to .txt. Besides the result,
-// memory holds a block of a file, a sample of depths, some 50 bytes per image and 380 per camera.
+// Reads the registered images, sorted by name. Files in .bin form are preferred to .txt. Besides
+// the result, the function needs memory for a block of a file, a sample of depths, some 50 bytes
+// per image and 380 per camera.
 //
-//   images_folder  where the image files are; not checked. By default the first folder that
-//   contains
-//                  the first image: `images` in the model folder and in the three folders above it,
-//                  then these folders themselves. If none does, images are searched by name below
-//                  the folder that holds the model or its sparse/0
-//                  (light_field/model/find_images.h)
+//   images_folder  folder of the image files; not checked
+// If images_folder is not given, it is the first folder that contains one of the first 64 images:
+// `images` in the model folder and in the three folders above it, then these four folders
+// themselves. If none of them does, images are searched by name below the folder that holds the
+// model or its sparse/0 (capture/find_images.h).
 //
-// mask_names are the existing files masks/NAME.png beside the folder of images. depth_range comes
-// from the points: the 1st and 99th percentile of their depths along the optical axes of the
-// cameras that see them.
-// kInput, with file and entry: broken files, unsupported camera models, unknown ids, no images, no
-// folder with the first image (the message lists the folders that were tried).
+// mask_names are the existing files masks/NAME.png beside the folder of images. depth_range is
+// computed from the points: the 1st and 99th percentile of their depths along the optical axes of
+// the cameras that see them.
+// kInput names the file and the entry: broken files, unsupported camera models, unknown ids, no
+// images, or no image file found (the message lists the folders that were searched).
 Result<LightField> ReadColmapModel(
     const std::filesystem::path& model_folder,
     const std::optional<std::filesystem::path>& images_folder = std::nullopt);
@@ -47,10 +48,10 @@ struct ColmapStreams {
   bool is_binary = false;
 };
 
-// Opens the three files. kInput: there is no model in the folder.
+// Opens the three files. kInput: the folder contains no model, or a file cannot be opened.
 Result<ColmapStreams> OpenColmapStreams(const std::filesystem::path& model_folder);
 
-// Reads the calibration alone, without `folder` and masks. Errors as for ReadColmapModel().
+// Reads only the calibration; `folder` and masks stay empty. Errors as for ReadColmapModel().
 Result<LightField> ParseColmapModel(ColmapStreams streams);
 
 }  // namespace lf

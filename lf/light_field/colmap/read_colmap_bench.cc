@@ -1,7 +1,7 @@
 // Measures seconds and memory for models of a million images with 50 2D points each: 1.3 GB of
-// images.bin, 2.2 GB of images.txt, which are first written into the temporary folder. The peak
-// memory of the process is measured before reading and at the end, and the size of the light field
-// is reported, so run one benchmark at a time (--benchmark_filter=Binary/1/).
+// images.bin, 2.2 GB of images.txt, which are first written into the temporary folder. Reports the
+// peak memory of the process before reading and at the end, and the size of the light field. The
+// peak includes earlier benchmarks; therefore run one at a time (--benchmark_filter=Binary/1/).
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -35,7 +35,8 @@ class File {
   std::FILE* file_;
 };
 
-// Ids run against the order of the names, as COLMAP may write them.
+// Images are written in descending order of their ids and names, because COLMAP may write any
+// order.
 TestImage Image(uint32_t i, uint32_t camera_count) {
   const uint32_t id = kImageCount - i;
   return {.id = id,

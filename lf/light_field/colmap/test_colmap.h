@@ -96,7 +96,7 @@ inline Result<LightField> ParseColmap(bool is_binary, std::string_view cameras,
   return ParseColmapModel(std::move(streams));
 }
 
-// Checks the invariants of every light field that was read; for fuzzing.
+// Checks the invariants that every light field from a model must satisfy; for fuzzing.
 inline void CheckIsSane(const LightField& light_field) {
   LF_CHECK(light_field.size() > 0);
   LF_CHECK(light_field.image_names.size() == light_field.size());

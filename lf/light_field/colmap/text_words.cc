@@ -14,7 +14,8 @@ namespace {
 bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 bool EndsWord(char c) { return IsBlank(c) || c == '\n'; }
 
-// Returns a word as messages show it: short, and without terminal control characters.
+// Returns a word in the form in which messages show it: short, and without terminal control
+// characters.
 std::string Shown(std::string_view word) {
   constexpr size_t kLongest = 40;
   if (word.empty()) return "missing";

@@ -25,7 +25,8 @@ class TextWords {
   bool NextLine();
   // Moves to the next line that is not blank and not a comment (#...).
   bool NextEntry();
-  // The number in a comment "# Number of THINGS: NUMBER..." that was skipped.
+  // The number in the last comment "# Number of THINGS: NUMBER..." that was skipped, if there was
+  // one.
   const std::optional<uint64_t>& announced_count() const { return announced_count_; }
 
   // Returns true if this line has no further word.
@@ -33,23 +34,25 @@ class TextWords {
     SkipBlanks();
     return !Peek();
   }
-  // Returns the next word of this line, "" at its end. Valid until the next call.
+  // Returns the next word of this line, or "" if there is none. Valid until the next call.
   std::string_view Word();
   // Returns the rest of this line without surrounding blanks, cut to max_size + 1 bytes.
   std::string Rest(size_t max_size);
   // Skips the rest of this line. Returns the number of its words; nullopt if it contains a
-  // character that no number has.
+  // character that cannot be part of a number.
   std::optional<uint64_t> SkipNumbers();
 
-  // Reads the next word as a number. kInput with file and line; `name` says what was expected.
+  // Reads the next word as a number. kInput names the file, the line, and `name` as what was
+  // expected.
   Result<double> Number(const char* name);  // finite
   Result<uint64_t> Whole(const char* name, uint64_t max);
 
-  // Returns an error at this line, or the error of reading it.
+  // Returns kInput with the file, this line and the message; if reading the file failed, that
+  // error.
   Error Fault(std::string_view message) const;
 
  private:
-  // Returns the next character of this line without taking it; nullopt at the end of the line.
+  // Returns the next character of this line without removing it; nullopt at the end of the line.
   std::optional<char> Peek();
   void SkipBlanks();
   void NoteComment();
