@@ -29,7 +29,7 @@ constexpr const char* kThinPrismKeys[] = {"k1", "k2", "p1", "p2", "k3", "k4", "l
 constexpr const char* kRadialTangentialThinPrismKeys[] = {
     "k1", "k2", "k3", "k4", "k5", "k6", "lf_p0", "lf_p1", "lf_s0", "lf_s1", "lf_s2", "lf_s3"};
 
-// All keys, in the order of DistortionKeys::values.
+// All keys; DistortionKeys::values has the same order.
 constexpr std::array kKeys = {"k1",           "k2",     "k3",     "k4",      "k5",
                               "k6",           "p1",     "p2",     kOmegaKey, "lf_eucm_alpha",
                               "lf_eucm_beta", "lf_sx1", "lf_sy1", "lf_p0",   "lf_p1",

@@ -1,5 +1,5 @@
-// The lens distortion of transforms.json: camera_model and its parameters, which stand at the top
-// level and may be overridden in each frame, key by key. Internal to this folder.
+// The lens distortion of transforms.json: camera_model and its parameters. They are keys of the top
+// level; each frame may override any of them. Internal to native.
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@ namespace lf {
 // Returns the keys of the parameters of a model, in the order of Distortion::parameters.
 std::span<const char* const> ParameterKeys(DistortionModel model);
 
-// A camera model as COLMAP and nerfstudio name it. Its parameters are the first ones of
-// ParameterKeys(model); the remaining ones are 0.
+// A camera model as COLMAP and nerfstudio name it. Its parameters are the first parameter_count
+// keys of ParameterKeys(model); the remaining parameters are 0.
 struct CameraModelName {
   const char* name;
   DistortionModel model;
@@ -31,21 +31,23 @@ CameraModelName CameraModelOf(const Distortion& distortion);
 
 // The keys as written; each of them may be missing.
 struct DistortionKeys {
-  std::optional<uint8_t> camera_model;  // index into the list of names
-  std::optional<bool> is_fisheye;       // instant-ngp
+  std::optional<uint8_t> camera_model;  // index into the list of names in distortion_keys.cc
+  std::optional<bool> is_fisheye;       // key of instant-ngp
   std::array<std::optional<double>, 19> values;
 
   friend bool operator==(const DistortionKeys&, const DistortionKeys&) = default;
 };
 
-// kInput: an unknown camera model, a parameter beyond +-1e6, an omega outside [0, pi).
+// Reads the keys. kInput: an unknown camera model, a parameter beyond +-1e6, an omega outside [0,
+// pi).
 Result<DistortionKeys> ReadDistortionKeys(const JsonFields& fields);
 
 // Takes each key from the frame, or from the top level if the frame lacks it; a key that both lack
-// is 0. A missing camera_model means OPENCV, or OPENCV_FISHEYE if is_fisheye is set.
-// Radial-tangential models with all parameters 0 become no distortion.
+// is 0. A missing camera_model means OPENCV, or OPENCV_FISHEYE if is_fisheye is true.
+// Radial-tangential and division models whose parameters are all 0, and EUCM with alpha 0, become
+// kNone.
 // kInput: a nonzero parameter that the model does not have, an is_fisheye that contradicts the
-// model, a FOV without omega. `fields` is for messages.
+// model, a FOV without omega, an alpha or beta of EUCM out of range. `fields` is for messages.
 Result<Distortion> ResolveDistortion(const DistortionKeys& frame, const DistortionKeys& top,
                                      const JsonFields& fields);
 

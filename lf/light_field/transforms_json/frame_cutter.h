@@ -9,8 +9,8 @@
 
 namespace lf {
 
-// If the text is JSON, the frames are the objects {...} in the lists under the keys "frames" of the
-// top level. Conversely, if the rest is JSON and every frame is JSON, the whole text is JSON.
+// If the text is JSON, the frames are the objects {...} in all lists with the key "frames" of the
+// top level. Conversely, the whole text is JSON if the rest and every frame are JSON.
 class FrameCutter {
  public:
   // Calls `take` with each frame as soon as its text is complete.
@@ -23,7 +23,7 @@ class FrameCutter {
   const std::string& rest() const { return rest_; }
   // True if the text so far ends inside a frame.
   bool is_in_frame() const { return frame_depth_ > 0; }
-  // Size of all text that is kept: the rest, and the frame that has begun.
+  // Size of all text that is kept: the rest, and the frame that is not complete yet.
   size_t held_bytes() const { return rest_.size() + frame_.size(); }
 
  private:
@@ -39,9 +39,9 @@ class FrameCutter {
   bool is_escaped_ = false;      // a backslash precedes the next character
   size_t frame_depth_ = 0;       // open brackets {} in the frame
   size_t depth_ = 0;             // open brackets of both kinds in the rest
-  size_t key_begin_ = 0;         // where the last string of the top level begins in rest_
+  size_t key_begin_ = 0;         // index in rest_ at which the last string of the top level begins
   size_t key_size_ = 0;          // its size without quotation marks
-  bool is_frames_list_ = false;  // the bracket that opened depth 2 is that of "frames": [
+  bool is_frames_list_ = false;  // the bracket that opened depth 2 begins the list of "frames"
   bool is_over_ = false;         // the top level was closed or is no object: no more frames
 };
 

@@ -34,12 +34,14 @@ uint64_t HashOfIntrinsicsKeys(const IntrinsicsKeys& keys);
 Result<IntrinsicsKeys> ReadIntrinsicsKeys(const JsonFields& fields);
 
 // Takes each key from the frame, or from the top level if the frame lacks it. The focal length
-// along x is fl_x, or that of camera_angle_x; along y it is fl_y, or that of camera_angle_y, or the
-// one along x. The principal point is the image centre by default.
-//   default_size  [width, height], called if w or h is missing; its error is returned
+// along x is computed from the first of these keys that exists: fl_x of the frame, camera_angle_x
+// of the frame, fl_x of the top level, camera_angle_x of the top level. The one along y is computed
+// from the corresponding keys, or equals the one along x if there are none. The principal point is
+// the image centre by default.
+//   default_size  returns [width, height]; called if w or h is missing; its error is returned
 //   fields        for messages
-// kInput: no focal length, a distortion that is unclear (ResolveDistortion), a vignetting that
-// leaves no light somewhere in the image.
+// kInput: no focal length; an invalid distortion (ResolveDistortion()); more than 2^30 pixels; a
+// vignetting that is no falloff (IsFalloff()).
 using SizeSource = std::function<Result<std::array<int, 2>>()>;
 Result<Intrinsics> ResolveIntrinsics(const IntrinsicsKeys& frame, const IntrinsicsKeys& top,
                                      const SizeSource& default_size, const JsonFields& fields);

@@ -16,7 +16,7 @@ using simdjson::dom::array;
 using simdjson::dom::element;
 using simdjson::dom::object;
 
-// Returns a value as messages show it, which is short for any content.
+// Returns a value in the form in which messages show it, which is short for any value.
 std::string Shown(const element& value) {
   if (value.is<object>()) return "an object";
   array list;
@@ -34,7 +34,8 @@ std::optional<double> NumberBy(const NumberRule& rule, const element& value) {
   return number;
 }
 
-// Returns false unless the value is a list of count_min to count_max numbers that obey the rule.
+// Appends the numbers of a list. Returns false unless the value is a list of count_min to count_max
+// numbers that satisfy the rule.
 bool AppendNumbers(const element& value, size_t count_min, size_t count_max, const NumberRule& rule,
                    std::vector<double>* numbers) {
   array list;
@@ -48,7 +49,7 @@ bool AppendNumbers(const element& value, size_t count_min, size_t count_max, con
   return true;
 }
 
-// Returns the Levenshtein distance.
+// Returns the Levenshtein distance of two texts.
 size_t EditDistance(std::string_view a, std::string_view b) {
   std::vector<size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), size_t{0});

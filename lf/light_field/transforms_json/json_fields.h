@@ -1,5 +1,5 @@
-// Reads the keys of a JSON object as checked values; errors name file, frame, key, value and
-// expectation. For the readers of calibrations.
+// Reads the keys of a JSON object as checked values. Errors name the file, the frame, the key, the
+// value and what was expected. For the readers of calibrations.
 #pragma once
 
 #include <cstddef>
@@ -19,13 +19,13 @@ class element;
 
 namespace lf {
 
-// The condition on a number. `expected` completes "expected ..." in the message.
+// A condition that a number must satisfy. `expected` completes "expected ..." in the message.
 struct NumberRule {
   const char* expected;
   bool (*holds)(double);
 };
 
-// A view of one object of a file; object, file and file_path must outlive it.
+// A view of one object of a file. The object, file and file_path must outlive the view.
 class JsonFields {
  public:
   // Views the top level of the file.
@@ -38,7 +38,8 @@ class JsonFields {
 
   bool Has(const char* key) const;  // false also for null
   bool HasList(const char* key) const;
-  // nullopt if the key is missing or null. kInput if the value has another type or breaks the rule.
+  // Number() and the functions below return nullopt if the key is missing or null, and kInput if
+  // the value has another type or violates the rule.
   Result<std::optional<double>> Number(const char* key, const NumberRule& rule) const;
   // Reads a list of `count` numbers, or one number, which is repeated `count` times.
   Result<std::optional<std::vector<double>>> NumberOrNumbers(const char* key, size_t count,
@@ -50,20 +51,22 @@ class JsonFields {
   Result<std::optional<std::vector<double>>> Numbers(const char* key, size_t count_min,
                                                      size_t count_max,
                                                      const NumberRule& rule) const;
-  // Reads rows_min to rows_max lists of `columns` numbers each; returned row by row.
+  // Reads rows_min to rows_max lists of `columns` numbers each. The result contains the rows one
+  // after the other.
   Result<std::optional<std::vector<double>>> Matrix(const char* key, size_t rows_min,
                                                     size_t rows_max, size_t columns,
                                                     const NumberRule& rule) const;
 
-  // kInput if a key that starts with lf_ is not in `known`. The message names the nearest known
-  // key, or says that the key belongs to `elsewhere_place` if it is in `known_elsewhere`.
+  // Returns kInput if a key that starts with lf_ is not in `known`. The message names the nearest
+  // known key; if the key is in `known_elsewhere`, it says that the key belongs to
+  // `elsewhere_place`.
   Result<void> CheckLfKeys(std::span<const char* const> known,
                            std::span<const char* const> known_elsewhere,
                            const char* elsewhere_place) const;
 
-  // "a/transforms.json: frames[3] (images/3.png): " + message
+  // Returns the error "a/transforms.json: frames[3] (images/3.png): MESSAGE".
   Error Fault(std::string_view message) const;
-  // "... "key" is VALUE: expected ..."
+  // Returns the error "... "key" is VALUE: expected EXPECTED", or "... is missing: ...".
   Error Wrong(const char* key, std::string_view expected) const;
 
  private:

@@ -12,9 +12,10 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kMaxDepth = 1000;  // depth of rewritten text; simdjson accepts 1024
+constexpr int kMaxDepth = 1000;  // largest depth of rewritten text; simdjson accepts 1024
 
-// Returns true if the text has escapes \ud800 to \udfff: simdjson accepts some that are no pair.
+// Returns true if the text has escapes from \ud800 to \udfff. simdjson accepts some of them that do
+// not form a pair.
 bool HasSurrogates(std::string_view text) {
   for (size_t at = text.find('\\'); at != std::string_view::npos; at = text.find('\\', at + 1)) {
     const std::string_view escape = text.substr(at, 4);

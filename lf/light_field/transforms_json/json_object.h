@@ -1,4 +1,4 @@
-// Parses one object {...} of a JSON text, fast. For the readers of calibrations.
+// Parses one object {...} of a JSON text fast. For the readers of calibrations.
 #pragma once
 
 #include <memory>
@@ -11,19 +11,20 @@ class parser;
 
 namespace lf {
 
-// Accepts as JSON what nlohmann's parser accepts. simdjson parses it. Texts that simdjson treats
-// differently (numbers beyond 64 bits, unpaired surrogates, deep nesting) are first rewritten by
-// nlohmann's library.
+// Accepts as JSON exactly what nlohmann's parser accepts, but parses with the faster simdjson. A
+// text that simdjson may treat differently (numbers beyond 64 bits, unpaired surrogates, deep
+// nesting) is first rewritten by nlohmann's library.
 class JsonObject {
  public:
-  // An empty object, {}.
+  // Creates the empty object {}.
   JsonObject();
   ~JsonObject();
   JsonObject(const JsonObject&) = delete;
   JsonObject& operator=(const JsonObject&) = delete;
 
-  // Replaces the content. Returns false, and holds {}, if `text` is not JSON or not an object.
-  // Content below 1024 nested brackets may be lost. Numbers are rounded correctly.
+  // Replaces the content. If `text` is not JSON or not an object, the content becomes {}, and false
+  // is returned. Values inside more than 1000 nested brackets may be lost. Numbers are rounded
+  // correctly.
   bool Parse(const std::string& text);
 
   // If a key occurs several times, the last one is valid.
@@ -32,7 +33,7 @@ class JsonObject {
  private:
   bool ParseFast(const std::string& text);
 
-  // Reused for every text, so that memory is allocated once.
+  // The parser is reused for every text, so that memory is allocated once.
   std::unique_ptr<simdjson::dom::parser> parser_;
   std::unique_ptr<simdjson::dom::object> object_;
 };

@@ -28,14 +28,15 @@ class StreamIterator {
     stream_->Skip(1);
     return *this;
   }
-  // The parser compares with the end only.
+  // The parser compares only with the end.
   bool operator==(const StreamIterator&) const { return stream_->Window().empty(); }
 
  private:
   ByteStream* stream_;
 };
 
-// Returns advice on the usual mistakes. `what` ends with what the parser read last.
+// Returns advice on the usual mistakes. `what` is the parser's message, which ends with the text
+// that it read last.
 std::string_view AdviceOn(std::string_view what) {
   const auto has = [what](std::string_view part) { return what.find(part) != what.npos; };
   if (has("unexpected end of input") && has("line 1, column 1:")) return "; the file is empty";
@@ -52,8 +53,7 @@ std::string_view AdviceOn(std::string_view what) {
 }  // namespace
 
 Error IsNotJson(const std::filesystem::path& file, std::string_view what) {
-  what.remove_prefix(std::min(what.size(), what.find("] ") + 2));  // without the name of the
-                                                                   // library
+  what.remove_prefix(std::min(what.size(), what.find("] ") + 2));  // drops the library's name
   const std::string_view advice = AdviceOn(what);
   // Text in another encoding cannot be shown.
   if (advice.find("UTF-8") != advice.npos) what = what.substr(0, what.find("; last read"));

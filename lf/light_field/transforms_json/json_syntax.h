@@ -9,11 +9,13 @@
 
 namespace lf {
 
-// "a/transforms.json: is not JSON: " + what nlohmann's parser says
+// Returns the error "a/transforms.json: is not JSON: MESSAGE", with the message `what` of
+// nlohmann's parser and, for the usual mistakes, advice.
 Error IsNotJson(const std::filesystem::path& file, std::string_view what);
 
-// Reads the whole stream. Returns kInput with line and column of its first fault, or with the
-// reason why it cannot be read. Memory does not grow with the text or its nesting.
+// Reads the whole stream. Returns kInput with the line and column of the first syntax error, or
+// with the reason why the stream cannot be read. The needed memory does not grow with the text or
+// its nesting.
 Error JsonSyntaxError(ByteStream* stream);
 
 }  // namespace lf

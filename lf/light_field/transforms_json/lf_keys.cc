@@ -115,7 +115,8 @@ Result<void> ReadClipped(const JsonFields& top, RadianceEncoding* encoding) {
   return {};
 }
 
-// Returns the encoding that the first camera raw file states for the missing keys.
+// Returns an encoding that has the values of the first camera raw file if keys are missing;
+// otherwise the default encoding.
 Result<RadianceEncoding> DefaultEncoding(const JsonFields& top, const LightField& light_field,
                                          const RawFactsSource& raw_facts) {
   const auto stated = [&](const auto&... keys) { return (... && top.Has(keys)); };

@@ -44,11 +44,11 @@ inline constexpr const char* kFrameLfKeys[] = {
     "lf_eucm_beta", "lf_sx1",  "lf_sy1",         "lf_p0",        "lf_p1",        "lf_s0",
     "lf_s1",        "lf_s2",   "lf_s3",          "lf_vignetting"};
 
-// Reads the keys of the top level. Missing keys take their values from camera raw files:
-// `raw_facts` is called if a key that it can replace is missing, unless it is null. Other defaults:
-// sRGB without a Bayer pattern, linear with one; pedestal 1024 if there is a black level, otherwise
-// 0; DefaultMaxRadiance(image_names).
-//   light_field  names and folder of the images
+// Reads the keys of the top level. If keys that camera raw files can replace are missing, their
+// values are read from these files by `raw_facts`, unless it is null. Other defaults: sRGB without
+// a Bayer pattern, linear with a pattern; pedestal 1024 if the black level is above 0, otherwise 0;
+// DefaultMaxRadiance(image_names).
+//   light_field  its image names and folder are used
 Result<RadianceEncoding> ReadEncoding(const JsonFields& top, const LightField& light_field,
                                       const RawFactsSource& raw_facts);
 

@@ -12,15 +12,15 @@ using Mat34 = Eigen::Matrix<double, 3, 4>;
 // Returns cam_from_world (x right, y down, z forward) of [s R | c]. The columns of R are the axes
 // of the OpenGL camera, s is any scale, and c is the camera centre.
 //
-// If s R is a rotation within 1e-12, it is used bit for bit; otherwise the nearest rotation to R is
-// used, since files are often written with six digits.
-// kInput, without the place in the file: entries that are not finite or beyond 1e12; a determinant
-// of zero or below (a mirrored axis); axes that miss right angles or equal lengths by more than
-// 1e-3.
+// If s R is a rotation within 1e-12, it is used bit for bit; otherwise the rotation nearest to R is
+// used, because files often have only six digits.
+// kInput: numbers that are not finite or beyond 1e12; a determinant of zero or below (a mirrored
+// axis); axes that miss right angles or equal lengths by more than 1e-3. The message does not name
+// the place in the file; the caller adds it.
 Result<RigidTransform> CamFromWorldOfOpenGl(const Mat34& world_from_opengl_camera);
 
-// Returns the inverse, with s = 1. Rotations are preserved bit for bit; centres are c = -R^T t,
-// rounded.
+// Returns the camera-to-world matrix [R | c] of cam_from_world, with scale 1. Rotations are
+// preserved bit for bit; the centre c = -R^T t is rounded.
 Mat34 OpenGlOfCamFromWorld(const RigidTransform& cam_from_world);
 
 }  // namespace lf

@@ -27,8 +27,7 @@ using Event = json::parse_event_t;
 
 constexpr size_t kMaxFrameCount = size_t{1} << 24;
 constexpr size_t kMaxHeldBytes = size_t{1} << 30;
-constexpr int kMaxDepth = 8;  // deeper than anything that is read; hostile nesting then takes no
-                              // memory
+constexpr int kMaxDepth = 8;  // nesting below this depth is not read, so that it takes no memory
 
 constexpr NumberRule kFinite = {"finite", [](double) { return true; }};
 constexpr NumberRule kGain = {"a factor from 1e-6 to 1e6",
@@ -36,9 +35,9 @@ constexpr NumberRule kGain = {"a factor from 1e-6 to 1e6",
 constexpr NumberRule kUnit = {"metres per world unit, from 1e-9 to 1e9",
                               [](double x) { return x >= 1e-9 && x <= 1e9; }};
 
-// Reads each frame as it is cut out of the text and then forgets its text: for a million frames,
-// only LfCameras and names stay in memory. Intrinsics are resolved at the end, because the keys
-// that all frames share may come after the frames.
+// Reads each frame as soon as it is separated from the text and then forgets its text: for a
+// million frames, only LfCameras and names stay in memory. Intrinsics are resolved at the end,
+// because the keys that all frames share may come after the frames.
 class Reader {
  public:
   Reader(const fs::path& path, const ImageSizeSource& image_size, const RawFactsSource& raw_facts)
@@ -54,8 +53,8 @@ class Reader {
     return true;
   }
 
-  // Reads everything but the frames, after all of them; `text` has {} in place of each frame.
-  // Returns nullopt if the text is not JSON.
+  // Reads everything but the frames. Must be called after all frames. `text` has {} in place of
+  // each frame. Returns nullopt if the text is not JSON.
   std::optional<Result<LightField>> TakeRest(const std::string& text) {
     std::optional<Error> first_error;
     std::string top_text;
@@ -138,7 +137,7 @@ class Reader {
     return {};
   }
 
-  // Reads one factor for all channels, or one for each of R, G and B.
+  // Reads lf_gain: one factor for all channels, or one for each of R, G and B; 1 if it is missing.
   static Result<ChannelGains> ReadGains(const JsonFields& fields) {
     LF_ASSIGN_OR_RETURN(const std::optional<std::vector<double>> numbers,
                         fields.NumberOrNumbers("lf_gain", 3, kGain));
@@ -160,8 +159,8 @@ class Reader {
     return WithExactTranslation(fields, *pose);
   }
 
-  // lf_translation is the translation that the matrix stands for, without the rounding errors of
-  // the conversion to a centre and back.
+  // Replaces the translation by lf_translation, if the frame has it: the exact translation, without
+  // the rounding errors of its conversion to the centre in the matrix and back.
   static Result<RigidTransform> WithExactTranslation(const JsonFields& fields,
                                                      RigidTransform pose) {
     constexpr double kTolerance = 1e-6;
@@ -179,7 +178,7 @@ class Reader {
     return pose;
   }
 
-  // Reads lf_mask, or mask_path of nerfstudio, which has the same meaning.
+  // Reads lf_mask, or nerfstudio's mask_path, which has the same meaning.
   Result<void> ReadMask(const JsonFields& fields, size_t index) {
     LF_ASSIGN_OR_RETURN(std::optional<std::string> mask, fields.Text("lf_mask"));
     if (!mask) {
@@ -203,8 +202,8 @@ class Reader {
     return {};
   }
 
-  // Returns the most frequent size of up to 15 evenly spread images, or the first of equally
-  // frequent ones. Read once and then kept.
+  // Returns the most frequent size of up to 15 evenly spread images; if several sizes are equally
+  // frequent, the first of them. The size is read once and then kept.
   Result<std::array<int, 2>> DefaultSize() {
     constexpr const char* kAdvice =
         "add \"w\" and \"h\", in pixels, at the top level (e.g. \"w\": 800, \"h\": 800)";
@@ -221,7 +220,7 @@ class Reader {
     constexpr size_t kMostAsked = 15;
     const size_t count = std::min(kMostAsked, light_field_.size());
     std::vector<std::array<int, 2>> sizes;
-    std::optional<Error> fault;  // of the first image that cannot be read
+    std::optional<Error> fault;  // error of the first image that cannot be read
     for (size_t i = 0; i < count; ++i) {
       const auto index = static_cast<uint32_t>(i * light_field_.size() / count);
       const auto size = image_size_(light_field_.ImagePath(LfImageId{index}));
@@ -269,10 +268,10 @@ class Reader {
   const ImageSizeSource& image_size_;
   const RawFactsSource& raw_facts_;
   std::optional<std::array<int, 2>> default_size_;
-  LightField light_field_;  // until the end, intrinsics_index is an index into distinct_keys_
+  LightField light_field_;  // until Finish(), intrinsics_index is an index into distinct_keys_
   Distinct<IntrinsicsKeys, HashOfIntrinsicsKeys> distinct_keys_;
   JsonObject frame_;            // the frame that is being read
-  std::optional<Error> error_;  // of the first faulty frame
+  std::optional<Error> error_;  // error of the first faulty frame
 };
 
 using StreamSource = std::function<Result<ByteStream>()>;

@@ -1,6 +1,6 @@
-// Reads and writes the native description of a light field: nerfstudio / instant-ngp
-// transforms.json with the lf_* keys of doc/formats/transforms_json.md. Its axes are those of
-// OpenGL (x right, y up, looking along -z, camera-to-world) and are converted on reading.
+// Reads and writes the native description of a light field: a transforms.json of nerfstudio or
+// instant-ngp with the lf_* keys of doc/formats/transforms_json.md. Its poses are camera-to-world
+// matrices with OpenGL's axes (x right, y up, looking along -z), which are converted on reading.
 #pragma once
 
 #include <filesystem>
@@ -15,32 +15,33 @@ namespace lf {
 
 // Parses the content of a file.
 //   text        the file's content
-//   path        its name for messages; its folder becomes LightField::folder
-//   image_size  called for an image if a frame has no "w" or "h", as in Blender's scenes;
-//               if it is empty, a missing size is an error
-//   raw_facts   called for what the keys do not state about camera raw files; may be empty
+//   path        the file's name for messages; its folder becomes LightField::folder
+//   image_size  called for up to 15 images if a frame has no "w" or "h", as in Blender's scenes;
+//               the most frequent size is used. If it is empty, a missing size is an error
+//   raw_facts   called for facts about camera raw files that the keys do not state; may be empty
 // kInput names the file, the frame and its key, the value found and what was expected.
 Result<LightField> ParseTransformsJson(std::string_view text, const std::filesystem::path& path,
                                        const ImageSizeSource& image_size = {},
                                        const RawFactsSource& raw_facts = {});
 
-// As ParseTransformsJson(), but reads the file in pieces, with the memory of the light field
-// instead of that of the text. Missing sizes and missing facts of camera raw files come from the
-// headers of image files.
+// Reads a file as ParseTransformsJson() does, but in pieces, so that memory holds the light field
+// and not the whole text. Missing sizes and missing facts of camera raw files are read from image
+// files.
 Result<LightField> ReadTransformsJson(const std::filesystem::path& path);
 
-// Writes `light_field` so that reading it gives the same cameras bit for bit, except that a
-// radial-tangential distortion of zeros is read as none. Image names are written unchanged.
-//   writer  the program; if given, its name and a checksum are written (lf_written_by)
-// kOutput if the file cannot be written, or a name is not UTF-8.
+// Writes `light_field` such that the cameras read from the file are bit-identical to it, except
+// that distortion models whose parameters bend no ray may be read as kNone. Image names are written
+// unchanged.
+//   writer  name of the program; it is written with a checksum (lf_written_by) unless it is empty
+// kOutput: the file cannot be written; a name is not UTF-8, or an image name has no extension.
 Result<void> WriteTransformsJson(const LightField& light_field, const std::filesystem::path& path,
                                  std::string_view writer = {});
 
-// The programs that write native folders (lf_written_by).
+// Names of the programs that write native folders (lf_written_by).
 inline constexpr const char* kImportProgram = "lfimport";
 inline constexpr const char* kSynthProgram = "lfsynth";
 
-// Returns true if `writer` wrote the file and it was not changed since. kInput if it is unreadable.
+// Returns true if `writer` wrote the file and nobody changed it since. kInput if it cannot be read.
 Result<bool> IsAsWritten(const std::filesystem::path& path, std::string_view writer);
 
 }  // namespace lf

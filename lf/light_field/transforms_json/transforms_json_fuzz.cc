@@ -1,5 +1,5 @@
-// Any bytes give a light field with sane cameras or an error, and are cut into the same frames for
-// any size of the pieces.
+// Parses any bytes: the result must be a light field with sane cameras or an error. FrameCutter
+// must cut the bytes into the same frames for any size of the pieces.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* kUnturned = R"([[1,0,0,1], [0,1,0,2], [0,0,1,3], [0,0,0,1]])";
 
-// Returns a file with one frame. `top` and `frame` hold keys, each followed by a comma.
+// Returns a file with one frame. `top` and `frame` are additional keys; each key ends in a comma.
 std::string OneFrame(const std::string& top, const std::string& frame = "") {
   return "{" + top + R"("frames": [{)" + frame +
          R"("file_path": "images/a.png", "transform_matrix": )" + kUnturned + "}]}";
@@ -84,7 +84,8 @@ TEST(TransformsJson, AFrameOverridesTheTopLevelKeyByKey) {
   EXPECT_EQ(k(R"("fl_x": 500, "fl_y": 510, "cx": 3, )", R"("fl_x": 600, "cx": 4, )"),
             (Intrinsics{600, 510, 4, 240, 0, 640, 480}));
   EXPECT_EQ(k(R"("fl_x": 500, )", R"("w": 320, )"), (Intrinsics{500, 500, 160, 240, 0, 320, 480}));
-  // A length precedes an angle at the same place, and the frame precedes the top level.
+  // Within the frame or the top level, a length takes precedence over an angle; any key of the
+  // frame takes precedence over the top level.
   EXPECT_EQ(k(R"("fl_x": 500, "camera_angle_x": 1, )", "").fx_px, 500);
   EXPECT_NEAR(k(R"("fl_x": 500, )", R"("camera_angle_x": 1, )").fx_px, 320 / std::tan(0.5), 1e-10);
 }

@@ -19,8 +19,8 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// The text of a file, to which everything is appended. Numbers are written with the fewest digits
-// (at most 17) that read back as the same double.
+// The text of a file. The functions append to it. Numbers are written with the fewest digits (at
+// most 17) that are read back as the same double.
 class JsonText {
  public:
   template <class... Args>
@@ -51,7 +51,7 @@ class JsonText {
     }
     Add("]");
   }
-  // kOutput if the name is not UTF-8, which JSON requires.
+  // Adds a string in quotation marks. kOutput if it is not UTF-8, which JSON requires.
   Result<void> AddString(const std::string& string) {
     try {
       text_ += nlohmann::json(string).dump();
@@ -90,7 +90,8 @@ void AddDistortion(const Distortion& distortion, const Distortion& top, const ch
   }
 }
 
-// Writes the keys that differ from `top`, the intrinsics at the top level.
+// Writes the intrinsics. `top` are the intrinsics at the top level. lf_skew and lf_vignetting are
+// left out if they are 0 in both.
 void AddIntrinsics(const Intrinsics& k, const Intrinsics& top, const char* separator,
                    JsonText* json) {
   AddDistortion(k.distortion, top.distortion, separator, json);
@@ -157,14 +158,15 @@ void AddPose(const RigidTransform& cam_from_world, JsonText* json) {
   rows.topRows<3>() = pose;
   json->Add("\"transform_matrix\": ");
   json->AddMatrix({rows.data(), 16}, 4);
-  // Converted to a centre and back with rounding, most translations change in their last bit.
+  // The conversion to a centre and back changes the last bit of most translations.
   const Result<RigidTransform> read_back = CamFromWorldOfOpenGl(pose);
   if (read_back && read_back->translation == cam_from_world.translation) return;
   json->Add(", \"lf_translation\": ");
   json->AddNumbers({cam_from_world.translation.data(), 3});
 }
 
-// Writes one number if all channels have the same gain, as most light fields state it.
+// Writes one number if all channels have the same gain, as in most light fields, and nothing if it
+// is 1.
 void AddGains(const LfCamera& camera, JsonText* json) {
   const std::array<double, 3> gains = {camera.gain[0], camera.gain[1], camera.gain[2]};
   if (!camera.gain.are_equal()) {
@@ -221,14 +223,14 @@ Result<std::string> TransformsJsonText(const LightField& light_field) {
   return json.text();
 }
 
-// FNV-1a with 64 bits: detects that a file was edited after it was written.
+// Returns FNV-1a with 64 bits. It shows whether a file was edited after it was written.
 uint64_t ChecksumOf(std::string_view text) {
   uint64_t sum = 0xcbf29ce484222325;
   for (const char c : text) sum = (sum ^ static_cast<unsigned char>(c)) * 0x100000001b3;
   return sum;
 }
 
-// Returns the first lines of a file by `writer`, which `rest` follows.
+// Returns the first lines of a file that `writer` wrote. `rest` is the text behind them.
 std::string SignedOpening(std::string_view writer, std::string_view rest) {
   return fmt::format("{{\n\"lf_written_by\": \"{} {:016x}\",\n", writer, ChecksumOf(rest));
 }
@@ -252,7 +254,7 @@ Result<void> WriteTransformsJson(const LightField& light_field, const fs::path& 
 
 Result<bool> IsAsWritten(const fs::path& path, std::string_view writer) {
   LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path));
-  const size_t size = SignedOpening(writer, "").size();  // the same for every text
+  const size_t size = SignedOpening(writer, "").size();  // the size does not depend on the text
   if (text.size() < size) return false;
   return std::string_view(text).substr(0, size) ==
          SignedOpening(writer, std::string_view(text).substr(size));
