@@ -15,7 +15,7 @@
 namespace lf {
 namespace {
 
-// The median of an even number of values is the lower middle one.
+// If the number of values is even, the median is the lower of the two middle values.
 Spread SpreadOf(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<ptrdiff_t>((values.size() - 1) / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -23,12 +23,14 @@ Spread SpreadOf(std::vector<double> values) {
   return {*least, *middle, *largest};
 }
 
-// Returns the angle from the ray of `a_px` to that of the midpoint and on to that of `b_px`,
-// because a fish-eye may see more than half a turn. Smaller if the lens ends within the image.
+// Returns the sum of the angles from the ray of `a_px` to the ray of the midpoint and from there to
+// the ray of `b_px`, because a fish-eye may see more than half a turn. If the lens ends within the
+// image, the angle is measured only up to its end.
 double AngleBetween(const Intrinsics& k, const Vec2& a_px, const Vec2& b_px) {
   const DistortionMap map(k.distortion);
   const Vec2 middle_px = (a_px + b_px) / 2;
-  // The ray of the pixel. If the lens ends before the pixel, the last ray on the way to it.
+  // Returns the ray of the pixel. If the lens ends before the pixel, returns the last ray between
+  // the midpoint and the pixel.
   const auto direction = [&](const Vec2& pixel) -> Vec3 {
     const auto position = [&](double share) {
       const Vec2 at = middle_px + share * (pixel - middle_px);
@@ -143,7 +145,7 @@ CaptureReport ReportCapture(const LightField& light_field, const CaptureReportOp
 
   const std::vector<uint32_t> firsts = FirstOfPose(light_field);
   report.brackets = FindBrackets(light_field, firsts, options.lights);
-  // The first LF image of a bracketed pose stands for all of them.
+  // Only the first LF image of a bracketed pose counts as a camera.
   std::vector<Vec3> positions;
   std::vector<LfImageId> ids;
   Eigen::AlignedBox3d box;

@@ -20,7 +20,8 @@ struct Spread {
   double max = 0;
 };
 
-// The LF cameras of one model and image size. Spreads are over LF images.
+// The LF cameras that share a distortion model and an image size. A Spread is over all LF images of
+// these cameras.
 struct CameraGroup {
   DistortionModel model = DistortionModel::kNone;
   int width_px = 0;
@@ -33,28 +34,28 @@ struct CameraGroup {
 
 enum class DistanceSource {
   kStated,      // CaptureReportOptions::distance_w
-  kDepthRange,  // middle of 1 / near and 1 / far of the calibration
-  kMeeting,     // median distance to the point where the axes meet
+  kDepthRange,  // reciprocal of the mean of 1 / near and 1 / far of the calibration
+  kMeeting,     // median distance from the cameras to the point where their axes meet
 };
 
-// How densely the cameras sample a scene at the distance z. With the median spacing b and the
-// median focal length F, a point moves by the disparity F b / z pixels between neighbouring images.
-// A frame focused at z shows points at z' as copies that are F b |1/z - 1/z'| pixels of an LF image
-// apart: ghosts, unless that is at most about a pixel.
+// How densely the cameras sample a scene at the distance z. b is the median spacing, F the median
+// focal length of the largest group of cameras. Between neighbouring images, a point moves by the
+// disparity F b / z pixels. A frame focused at z shows a point at z' as copies that are F b |1/z -
+// 1/z'| pixels of an LF image apart. They are visible as ghosts if this is more than about a pixel.
 struct Density {
   DistanceSource source = DistanceSource::kStated;
   double distance_w = 0;
-  double spacing_rad = 0;    // angle of b, seen from z
+  double spacing_rad = 0;    // angle of the spacing b, seen from the distance z
   double disparity_px = 0;   // F b / z
-  double near_ghost_px = 0;  // at z' = 0.75 z: a third of the disparity
-  double far_ghost_px = 0;   // at z' = 1.25 z: a fifth of the disparity
+  double near_ghost_px = 0;  // distance of copies at z' = 0.75 z: a third of the disparity
+  double far_ghost_px = 0;   // distance of copies at z' = 1.25 z: a fifth of the disparity
 };
 
 struct CaptureWarning {
   std::string kind;                // a word for programs, such as "upside-down"
   std::string message;             // the fault and its remedy
-  size_t image_count = 0;          // affected LF images; 0: the capture as a whole
-  std::vector<std::string> names;  // of the first 5 of them
+  size_t image_count = 0;          // affected LF images; 0: the whole capture is affected
+  std::vector<std::string> names;  // names of the first 5 affected LF images
 };
 
 struct CaptureReport {
@@ -63,8 +64,9 @@ struct CaptureReport {
   std::vector<CameraGroup> groups;  // by falling image_count
   Vec3 box_min_w = Vec3::Zero();    // bounding box of the positions
   Vec3 box_max_w = Vec3::Zero();
-  std::optional<Spread> spacing_w;      // from a camera to its nearest neighbour, for two or more
-                                        // cameras; brackets count as one camera
+  // Distance from a camera to its nearest neighbour. None for fewer than two cameras. LF images of
+  // one pose with several exposures count as one camera.
+  std::optional<Spread> spacing_w;
   std::optional<Vec3> meeting_point_w;  // AxesMeetingPoint()
   std::optional<DepthRange> depth_range;
   double unit_m = 1;
@@ -78,21 +80,21 @@ struct CaptureReport {
 
 struct CaptureReportOptions {
   std::optional<double> distance_w;  // to the scene, for the density; overrides other sources
-  std::vector<double> lights = {};   // of the files, for FindBrackets(); empty: not read
+  std::vector<double> lights = {};   // LightOf() of each file, for FindBrackets(); empty: unknown
 };
 
 // Kinds of warnings:
 //   facing-away         cameras that look away from the common point or direction of most cameras
 //   diverging-axes      most cameras look away from the point where their axes meet
 //   upside-down         cameras whose up axis opposes that of most (by more than 120 degrees)
-//   repeated-positions  cameras at the position of another one that are no brackets
+//   repeated-positions  cameras at the position of another camera, unless they are brackets
 //   brackets            poses with several exposures that are not merged yet
 //   sparse              ghosts at 0.75 z of more than 1 % of the image width
 // The light field must have an LF image.
 CaptureReport ReportCapture(const LightField& light_field, const CaptureReportOptions& options,
                             ThreadPool& pool);
 
-// Returns a warning about `ids`, with their names.
+// Returns a warning about the LF images `ids`, with the names of the first 5.
 CaptureWarning WarningAbout(const LightField& light_field, std::string kind, std::string message,
                             const std::vector<LfImageId>& ids);
 

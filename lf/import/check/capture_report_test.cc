@@ -16,8 +16,8 @@ void Add(const RigidTransform& pose, LightField* field) {
   field->cameras.push_back({pose, 0, 1});
 }
 
-// A grid of 10 x 10 cameras at z = 0, x = 0, 0.1 ... and y = 0, 0.2 ..., looking along z, or at a
-// point.
+// Returns a grid of 10 x 10 cameras at z = 0, x = 0, 0.1 ... and y = 0, 0.2 .... They look along z,
+// or at `target` if it is given.
 LightField Grid(std::optional<Vec3> target = {}) {
   LightField field;
   for (int i = 0; i < 100; ++i) {
@@ -27,7 +27,7 @@ LightField Grid(std::optional<Vec3> target = {}) {
   return field;
 }
 
-// Cameras on a circle around the origin that look inwards (sign 1) or outwards (-1).
+// Returns cameras on a circle around the origin that look inwards (sign 1) or outwards (sign -1).
 LightField Ring(double sign) {
   LightField field;
   for (int i = 0; i < 60; ++i) {
@@ -155,7 +155,7 @@ TEST(CaptureReport, CamerasThatLookAwayFromTheOthersAreNamed) {
 
 TEST(CaptureReport, MixedUpAxesDiverge) {
   EXPECT_EQ(Kinds(ReportOf(Ring(-1))), Words{"diverging-axes"});
-  // Cameras in OpenCV's convention that were read in OpenGL's.
+  // These cameras have OpenCV's axes, but were read with OpenGL's.
   LightField field = Grid(Vec3(0.45, 0.9, 40));
   const Mat3 flip = Vec3(1, -1, -1).asDiagonal();
   for (LfCamera& camera : field.cameras)

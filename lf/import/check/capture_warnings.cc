@@ -14,8 +14,8 @@ namespace {
 
 LfImageId IdOf(size_t index) { return LfImageId{static_cast<uint32_t>(index)}; }
 
-// Returns true if the cameras stand around or in front of something: the median line of sight
-// passes the point within a fifth of its distance. Otherwise the point says nothing about them.
+// Returns true if the cameras surround something or face it: the median axis passes the point
+// within a fifth of the distance to it. Otherwise the point tells nothing about the cameras.
 bool AxesConverge(const std::vector<Ray>& axes, const Vec3& point) {
   std::vector<double> ratios;
   for (const Ray& axis : axes) {
@@ -38,8 +38,8 @@ std::vector<CaptureWarning> WarnOfDirections(const LightField& light_field) {
   }
   const std::optional<Vec3> point = PointNearestToAxes(light_field);
   const bool converges = point && AxesConverge(axes, *point);
-  // Without a common point the cameras may have a common direction. It is significant if the mean
-  // direction is long enough.
+  // Cameras without a common point may have a common direction. It is significant if the mean
+  // direction is longer than 0.5.
   if (!converges && !(sum.norm() > 0.5 * static_cast<double>(axes.size()))) return {};
 
   std::vector<LfImageId> away;
@@ -73,9 +73,9 @@ std::vector<CaptureWarning> WarnOfUpsideDown(const LightField& light_field) {
     ups.push_back(light_field.Camera(IdOf(i)).UpWorld());
     spread += ups.back() * ups.back().transpose() / static_cast<double>(light_field.size());
   }
-  // The axis along which most up vectors lie, in either direction. A dome has 2/3 of the spread
-  // along it. Cameras that lie on their side around a ring have no common up; arcs of such rings
-  // have up to 0.61 along an axis.
+  // Find the axis along which most up vectors lie, in either direction. On a dome it has 2/3 of the
+  // spread. Cameras that lie on their side around a ring have no common up direction; in arcs of
+  // such rings an axis has up to 0.61 of the spread.
   constexpr double kCommonUp = 0.65;
   const Eigen::SelfAdjointEigenSolver<Mat3> eigen(spread);
   if (!(eigen.eigenvalues()[2] >= kCommonUp)) return {};
@@ -100,14 +100,14 @@ std::vector<CaptureWarning> WarnOfRepeats(const LightField& light_field,
                                           std::span<const LfImageId> ids,
                                           std::span<const double> nearest_w) {
   constexpr double kSamePlace = 1e-8, kRounding = 1e-14;
-  // Bound of the distance that rounding gives two equal positions.
+  // Bounds the distance that rounding can cause between two equal positions.
   const auto rounding_w = [&](size_t i) {
     return kRounding * light_field.cameras[ids[i].value].cam_from_world.translation.norm();
   };
-  std::vector<double> apart_w;  // of cameras that share no position
+  std::vector<double> apart_w;  // distances of cameras that share no position
   for (size_t i = 0; i < nearest_w.size(); ++i)
     if (nearest_w[i] > rounding_w(i)) apart_w.push_back(nearest_w[i]);
-  double typical_w = 0;  // their median, which one distant camera does not change
+  double typical_w = 0;  // median of apart_w, which one distant camera does not change
   if (!apart_w.empty()) {
     const auto middle = apart_w.begin() + static_cast<ptrdiff_t>(apart_w.size() / 2);
     std::nth_element(apart_w.begin(), middle, apart_w.end());

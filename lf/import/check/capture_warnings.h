@@ -1,4 +1,4 @@
-// Finds what looks wrong in a capture from its poses. Internal to this folder.
+// Finds faults of a capture in its poses. Internal to import.
 #pragma once
 
 #include <span>
@@ -10,24 +10,24 @@
 
 namespace lf {
 
-// Warnings facing-away and diverging-axes.
+// Returns the warnings facing-away and diverging-axes.
 std::vector<CaptureWarning> WarnOfDirections(const LightField& light_field);
 
-// Warning upside-down.
+// Returns the warning upside-down.
 std::vector<CaptureWarning> WarnOfUpsideDown(const LightField& light_field);
 
-// Warning repeated-positions, for cameras whose nearest neighbour is closer than 1e-8 of the
-// median.
+// Returns the warning repeated-positions about cameras whose distance to the nearest neighbour is
+// less than 1e-8 of the median distance.
 //   nearest_w  NearestDistances() of the LF images `ids`
 std::vector<CaptureWarning> WarnOfRepeats(const LightField& light_field,
                                           std::span<const LfImageId> ids,
                                           std::span<const double> nearest_w);
 
-// Warning brackets, if the light field does not state how exposures differ, or keeps clipped
-// pixels.
+// Returns the warning brackets if the light field does not state how exposures differ, or if it
+// keeps clipped pixels.
 std::vector<CaptureWarning> WarnOfBrackets(const FoundBrackets& brackets, bool masks_clipped);
 
-// Warning sparse, for images `width_px` wide and cameras `spacing_w` apart.
+// Returns the warning sparse, for images `width_px` wide and cameras `spacing_w` apart.
 std::vector<CaptureWarning> WarnOfSparseness(const Density& density, double width_px,
                                              double spacing_w);
 

@@ -17,13 +17,13 @@ class CodeChecker {
  public:
   static Result<std::unique_ptr<CodeChecker>> Open(const LightField& light_field);
 
-  // The result of a check; no fault if `reason` is "".
+  // The result of a check. `reason` is "" if there is no fault.
   struct Fault {
     bool is_missing = false;
     std::string reason;
   };
   // Checks one LF image. May be called by many threads at the same time.
-  //   decode  false: reads the store's table only; true: also decodes the image, with its checksum
+  //   decode  false: checks only the store's table; true: also decodes the image and its mask
   Fault Check(LfImageId id, bool decode) const;
 
  private:
@@ -33,7 +33,7 @@ class CodeChecker {
   const LightField& light_field_;
   const std::vector<PackedCode> codes_;
   mutable std::mutex mutex_;
-  mutable std::vector<PackedCodeReader> readers_;  // reused; one per thread in Check()
+  mutable std::vector<PackedCodeReader> readers_;  // not in use now; kept for later calls
 };
 
 }  // namespace lf

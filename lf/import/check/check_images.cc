@@ -18,7 +18,7 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// Images between two checks of the clock and the flag.
+// Number of images that are checked before progress is reported and `interrupted` is read.
 constexpr size_t kHeadersPerRound = 512;
 constexpr size_t kImagesPerRound = 64;
 

@@ -28,19 +28,19 @@ struct ImageFault {
 
 struct ImageFaults {
   std::vector<ImageFault> missing;  // the file does not exist
-  // The header (kPixels: the pixels) cannot be read, or the size is not that of the calibration.
+  // The header (kPixels: the pixels) cannot be read, or the size differs from the calibration.
   std::vector<ImageFault> broken;
 };
 
 struct CheckOptions {
   ImageCheck check = ImageCheck::kHeaders;
-  const std::atomic<bool>* interrupted = nullptr;  // polled now and then
+  const std::atomic<bool>* interrupted = nullptr;  // read between rounds of images; may be null
   std::function<void(size_t done, size_t total)> progress;
 };
 
 // Checks all LF images and their masks in parallel. The lists are in the order of the LF images;
-// each LF image is in at most one of them. kInterrupted; kInput: a packed store that cannot be
-// read.
+// each LF image is in at most one of them. kInterrupted: `interrupted` is true. kInput: a packed
+// store that cannot be read.
 Result<ImageFaults> CheckImages(const LightField& light_field, const CheckOptions& options,
                                 ThreadPool& pool);
 

@@ -25,8 +25,8 @@ void AddEntries(std::string_view text, std::string_view separators,
 
 std::string_view BaseName(std::string_view name) { return name.substr(name.rfind('/') + 1); }
 
-// Patterns to match names with. Exact names are looked up; only those with wildcards are tried one
-// by one.
+// Patterns that names are matched with. A name is looked up among the exact patterns; only patterns
+// with wildcards are tried one by one.
 class PatternSet {
  public:
   explicit PatternSet(std::span<const std::string> patterns)
@@ -54,7 +54,8 @@ class PatternSet {
     return matches;
   }
 
-  // A pattern that was given twice counts as used if one of the two was.
+  // Returns the first pattern that matched no name. A pattern that occurs twice counts as used if
+  // one of its occurrences does.
   const std::string* FirstUnused() const {
     for (size_t i = 0; i < used_.size(); ++i)
       if (!used_[i] && !used_[exact_.at(patterns_[i])]) return &patterns_[i];

@@ -11,16 +11,16 @@
 
 namespace lf {
 
-// Reads the patterns in options. Each option is a list separated by commas, or @FILE with one
-// pattern per line (for names that contain commas); blank lines and entries are skipped. kInput:
-// FILE cannot be read.
+// Reads the patterns from options. Each option is a list separated by commas, or @FILE, a file with
+// one pattern per line (for names that contain commas). Empty entries and lines are skipped.
+// kInput: FILE cannot be read.
 Result<std::vector<std::string>> ReadPatterns(std::span<const std::string> options);
 
-// Removes every LF image whose name matches a pattern. The name is that in the calibration, or the
-// part of it after the last '/'. A pattern is a name or a shell pattern with * ? [abc], in which *
-// also matches '/'.
+// Removes every LF image whose name matches a pattern. Both the name in the calibration and its
+// part after the last '/' are compared. A pattern is a name or a shell pattern with * ? [abc], in
+// which * also matches '/'.
 // Returns the number of removed LF images.
-// kInput: a pattern that matches no image (nothing is removed then), or no image would remain.
+// kInput, with nothing removed: a pattern that matches no image, or no image would remain.
 Result<size_t> ExcludeImages(std::span<const std::string> patterns, LightField* light_field);
 
 }  // namespace lf

@@ -14,7 +14,8 @@ namespace {
 
 constexpr float kLeastGain = 1e-6F, kMostGain = 1e6F;
 
-// Returns words for what a file lacks.
+// Returns text that names the parts of the exposure that a file does not state; "" if there are
+// none.
 std::string MissingOf(const ExposureFacts& facts, bool wants_f_number) {
   std::vector<const char*> missing;
   if (!facts.time_s) missing.push_back("exposure time");
@@ -23,7 +24,8 @@ std::string MissingOf(const ExposureFacts& facts, bool wants_f_number) {
   return fmt::format("{}", fmt::join(missing, " and no "));
 }
 
-// kInput with the first LF image without an exposure and the number of such LF images.
+// Returns kInput if an LF image does not state its exposure. The message names the first such LF
+// image and their number.
 Result<void> CheckAllAreStated(std::span<const StatedExposure> stated,
                                const LightField& light_field, bool wants_f_number) {
   size_t fault_count = 0;

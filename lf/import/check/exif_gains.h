@@ -16,31 +16,31 @@ namespace lf {
 struct StatedExposure {
   LfImageId id;
   ExposureFacts facts;
-  std::string fault;  // why the file cannot be read, or ""
+  std::string fault;  // reason why the file cannot be read; "": it was read
 };
 
 // Reads the headers of the files of `ids` in parallel.
 std::vector<StatedExposure> ReadStatedExposures(const LightField& light_field,
                                                 std::span<const LfImageId> ids, ThreadPool& pool);
 
-// Returns the light that the camera let in, in arbitrary units: time * iso / f_number^2. NaN if
-// time or sensitivity is not stated. A missing f-number counts as 1.
+// Returns the light that the camera recorded from a scene, in arbitrary units: time * iso /
+// f_number^2. NaN if time or sensitivity is not stated. A missing f-number counts as 1.
 double LightOf(const ExposureFacts& facts);
 
 // The result of GainFromExif().
 struct ExifGains {
   size_t image_count = 0;
   float least_gain = 1, most_gain = 1;
-  bool has_f_numbers = true;  // false: no file states one, and all are assumed to be equal
+  bool has_f_numbers = true;  // false: no file states an f-number, and all are assumed equal
   LfImageId reference;        // an LF image whose gain is 1
 };
 
 // Sets the gain of each LF image to the value that makes it as bright as the LF image with the
-// median exposure (of an even number, the darker middle one), and raises max_radiance as
-// MakeRoomForGains() does. Previous gains are replaced.
-//   stated  of all LF images, in their order
-// kInput: a file that cannot be read or lacks a part of its exposure, which the message names;
-// f-numbers in some files only; gains outside 1e-6 to 1e6.
+// median exposure (for an even number of images, the darker of the two in the middle), and raises
+// max_radiance as MakeRoomForGains() does. Previous gains are replaced.
+//   stated  exposures of all LF images, in their order
+// kInput: a file that cannot be read or does not state its whole exposure (the message names what
+// is missing); f-numbers in only some of the files; gains outside 1e-6 to 1e6.
 Result<ExifGains> GainFromExif(std::span<const StatedExposure> stated, LightField* light_field);
 
 }  // namespace lf

@@ -10,7 +10,8 @@
 namespace lf {
 namespace {
 
-// Returns the different exposures, ascending. Of exposures that count as one, the darkest is kept.
+// Returns the different exposures, ascending. Among exposures that count as one, the darkest is
+// kept.
 std::vector<double> DifferentOnes(std::vector<double> exposures) {
   std::erase_if(exposures, [](double x) { return !(x > 0); });
   std::sort(exposures.begin(), exposures.end());

@@ -15,19 +15,18 @@ struct FoundBrackets {
   size_t pose_count = 0;                           // poses with several exposures
   size_t image_count = 0;                          // LF images of these poses
   size_t least_exposures = 0, most_exposures = 0;  // number of different exposures of a pose
-  // Exposures of the pose with most of them, ascending, in stops (factors of two) relative to the
-  // middle one; of an even number, relative to the darker middle one.
+  // Exposures of the pose with most exposures, ascending, in stops (factors of two) relative to the
+  // middle one (for an even number of exposures, to the darker of the two in the middle).
   std::vector<double> stops;
-  bool are_gains = false;       // exposures are from lf_gain; otherwise from the files
-  std::vector<bool> of_images;  // true for the LF images of these poses
+  bool are_gains = false;       // exposures come from lf_gain; false: from the files
+  std::vector<bool> of_images;  // [LF images]: true for the images of these poses
 };
 
-// Exposures of one pose that differ by less than kOneExposure (light_field/model/brackets.h) count
-// as one.
+// Finds the poses with several exposures; nullopt if there are none. Exposures of one pose that
+// differ by less than kOneExposure (capture/brackets.h) count as one.
 //   firsts  FirstOfPose(light_field)
-//   lights  LightOf() each file (exif_gains.h), used if lf_gain shows no difference; NaN: unknown;
-//           empty: all unknown
-// nullopt if no pose has several exposures.
+//   lights  LightOf() of each file (exif_gains.h), used if lf_gain shows no difference. NaN:
+//           unknown; empty: all are unknown
 std::optional<FoundBrackets> FindBrackets(const LightField& light_field,
                                           std::span<const uint32_t> firsts,
                                           std::span<const double> lights);

@@ -9,20 +9,22 @@
 
 namespace lf {
 
-// Renames images and masks relative to `folder`, which must exist and becomes LightField::folder. A
-// name stays absolute if the calibration gave an absolute one that shares only the root with the
-// folder. Links on the way to the folders are followed.
-// kInput: the folder does not exist.
+// Renames images and masks relative to `folder`, which must exist and becomes LightField::folder.
+// Names that were absolute stay absolute if they share only the root with the folder. Symbolic
+// links in the paths of the folders are resolved.
+// kInput: this folder or the light field's folder does not exist.
 Result<void> MoveToFolder(const std::filesystem::path& folder, LightField* light_field);
 
 // Checks that folder/transforms.json may be written for the light field that was read from
-// `source`. kUsage, unless forced, if the file exists and is being read from, or was changed or not
-// written by WriteNativeFolder().
+// `source`. kUsage if the file exists and the light field was read from it, or if it was not
+// written by WriteNativeFolder() or was changed since. If `force` is true, it may always be
+// written.
 Result<void> CheckMayWrite(const std::filesystem::path& source, const std::filesystem::path& folder,
                            bool force);
 
-// Creates the folder, moves the light field to it, and writes its transforms.json. Returns the
-// file's path. kOutput; kUsage: a packed store, whose LF images are no files.
+// Creates the folder, moves the light field to it with MoveToFolder(), and writes its
+// transforms.json. Returns the path of the file. kOutput: the folder or file cannot be written.
+// kUsage: the light field is a packed store, whose LF images are no files.
 Result<std::string> WriteNativeFolder(const std::filesystem::path& folder, LightField* light_field);
 
 }  // namespace lf

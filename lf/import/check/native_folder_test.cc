@@ -80,7 +80,7 @@ TEST_F(NativeFolderTest, WhatOthersWroteIsNotReplacedUnforced) {
   ASSERT_TRUE(WriteNativeFolder(out, &field_));
   EXPECT_TRUE(CheckMayWrite(elsewhere, out, false));
 
-  // A file of ours is not replaced either while it is being read from.
+  // Even a file that we wrote is not replaced if it is the one that the light field was read from.
   for (const fs::path& source : {out, out / "transforms.json", out / "deep" / ".."}) {
     const Result<void> may = CheckMayWrite(source, out, false);
     ASSERT_FALSE(may);

@@ -12,8 +12,8 @@ namespace {
 constexpr size_t kLeafSize = 8;
 constexpr size_t kPointsPerTask = 1024;
 
-// A kd-tree without nodes. In the middle of each range of `order_` is its median along its widest
-// axis; points with smaller coordinates along that axis stand before it.
+// A kd-tree without nodes. The middle entry of each range of `order_` is the median along the
+// widest axis of the range; points before it have smaller or equal coordinates along that axis.
 class KdTree {
  public:
   explicit KdTree(std::span<const Vec3> points)

@@ -21,7 +21,7 @@ std::vector<double> BruteForce(const std::vector<Vec3>& points) {
   return distances;
 }
 
-// Returns random points in `dimensions` coordinates; the other coordinates are constant.
+// Returns points that are random in the first `dimensions` coordinates and constant in the others.
 std::vector<Vec3> RandomPoints(size_t count, int dimensions) {
   std::vector<Vec3> points;
   for (uint64_t i = 0; i < count; ++i) {

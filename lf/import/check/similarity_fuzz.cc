@@ -1,4 +1,4 @@
-// Any bytes give a similarity or an error.
+// Parses any bytes: the result must be a similarity or an error.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

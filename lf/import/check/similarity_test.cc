@@ -13,7 +13,7 @@ std::string MessageOf(const std::string& text) {
   return similarity ? "" : similarity.error().message;
 }
 
-// A quarter turn about z with the scale 2 and a translation.
+// A quarter turn about z, with the scale 2 and the translation (10, 20, 30).
 constexpr const char* kTurned = "0 -2 0 10\n2 0 0 20\n0 0 2 30\n0 0 0 1\n";
 
 LightField TwoCameras() {
