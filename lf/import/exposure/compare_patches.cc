@@ -12,14 +12,14 @@ namespace {
 
 constexpr int kHalf = 6;
 constexpr int kSide = 2 * kHalf + 1;
-constexpr int kPadded = kPatchWindowSide;  // neighbours included
+constexpr int kPadded = kPatchWindowSide;  // side of the window: the patch and its neighbours
 static_assert(kPadded == kSide + 2);
-constexpr double kLeastShare = 2. / 3;  // of the pixels must count
-constexpr double kDarkest = 0.01;       // radiance; below it, noise and quantisation are as large
+constexpr double kLeastShare = 2. / 3;  // least share of the pixels that must be used
+constexpr double kDarkest = 0.01;  // radiance; darker light is as small as noise and quantisation
 // Deviations of one pixel's light: relative, absolute (radiance), and as a part of the step to the
 // neighbour that differs most.
 constexpr double kNoise = 0.005, kDarkNoise = 0.001, kOfStep = 0.15;
-constexpr double kLeastDeviation = 5e-4;  // of a ratio
+constexpr double kLeastDeviation = 5e-4;  // least deviation of a ratio
 
 PatchWindow WindowOf(const ExposureView& view, const PatchGrid& grid) {
   PatchWindow window;
@@ -45,7 +45,7 @@ float StepAt(const PatchWindow& window, size_t pixel) {
   return step;
 }
 
-// The pixels that count, one after the other.
+// The pixels that are used, one after the other.
 struct Pixels {
   std::array<std::array<float, kSide * kSide>, 3> a, b;  // light, by channel
   std::array<float, kSide * kSide> a_sum, b_sum, a_step, b_step, weight, level;
@@ -74,8 +74,9 @@ void Gather(const PatchWindow& window_a, const PatchWindow& window_b, const Patc
     }
 }
 
-// Sets the weights of the pixels from both images equally, with b's light multiplied by `gain`.
-// Dark noise is relative to the geometric mean of both.
+// Sets the weights of the pixels. Both images have equal influence, with b's light multiplied by
+// `gain`. The noise in the dark is the geometric mean of that in both images, relative to the
+// light.
 void Weigh(double gain, double scale, Pixels* pixels) {
   const auto g = static_cast<float>(gain);
   for (size_t i = 0; i < pixels->count; ++i) {
@@ -89,7 +90,7 @@ void Weigh(double gain, double scale, Pixels* pixels) {
   }
 }
 
-// Sums of the weighted light of both images.
+// Weighted sums of the light of images a and b.
 struct Ratio {
   double a = 0, b = 0;
 };
@@ -115,7 +116,7 @@ double Deviation(const Pixels& pixels, size_t c, const Ratio& sums) {
   return std::sqrt(squares / (sums.a * sums.a) + kLeastDeviation * kLeastDeviation);
 }
 
-// Computes the weighted mean of r^2, and its variance.
+// Computes the weighted mean and variance of r^2 over the pixels.
 void TakeRadii(const Intrinsics& k, const std::array<Vec2, kSide * kSide>& at, const Pixels& pixels,
                float* mean, float* variance) {
   double weights = 0, sum = 0, squares = 0;

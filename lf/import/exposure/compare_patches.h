@@ -1,6 +1,6 @@
-// Compares the light of a patch in two LF images. Pixels at edges count little, because they depend
-// on how the pixel grid and the interpolation cut the edge, and so differ much more than smooth
-// light.
+// Compares the light of a patch in two LF images. Pixels at edges get little weight: their light
+// depends on how the pixel grid and the interpolation cut the edge, and so differs much more than
+// smooth light does.
 #pragma once
 
 #include <array>
@@ -13,7 +13,8 @@
 
 namespace lf {
 
-// Light in R, G and B of 13 x 13 pixels and of the pixels around them; 0 if it is not recorded.
+// Light in R, G and B of 13 x 13 pixels and of the pixels next to them; 0 if the light of a pixel
+// was not recorded.
 inline constexpr int kPatchWindowSide = 15;
 using PatchWindow = std::array<std::array<float, 3>, kPatchWindowSide * kPatchWindowSide>;
 
@@ -23,24 +24,25 @@ struct ComparedImage {
   const Intrinsics& intrinsics;
 };
 
-// The 13 x 13 pixels around a place of an LF image, to be compared with the same place in other LF
-// images.
+// The 13 x 13 pixels around a place of an LF image, which are compared with the same place in other
+// LF images.
 class ComparedPatch {
  public:
   //   a      must outlive the patch
   //   white  radiance of the largest value of ExposureView::light
   ComparedPatch(const ComparedImage& a, const Place& place, double white);
 
-  // Returns the sample of this patch and the same place in b. A pixel counts if it and its four
-  // neighbours are recorded in both LF images. Its weight is its inverse variance, from noise and
-  // from a part of the gradient. The deviations of the sample's ratios follow from the residuals of
-  // the pixels. None if too few pixels count, or if all channels are dark.
-  //   grid  the place as b shows it (PatchSeenBy())
+  // Returns the sample of this patch and of the same place in b. A pixel is used if it and its four
+  // neighbours are recorded in both LF images. Its weight is its inverse variance, estimated from
+  // noise and from a share of the gradient. The deviations of the sample's ratios are computed from
+  // the residuals of the pixels. None if fewer than two thirds of the pixels are used, or if all
+  // channels are dark.
+  //   grid  pixels of b that show the place (PatchSeenBy())
   std::optional<ExposureSample> CompareWith(const ComparedImage& b, const PatchGrid& grid) const;
 
  private:
   const ComparedImage a_;
-  const double scale_;  // radiance of one step of light
+  const double scale_;  // radiance of one step of ExposureView::light
   const PatchGrid grid_;
   const PatchWindow window_;
 };

@@ -19,7 +19,7 @@ Intrinsics SmallCamera() {
   return k;
 }
 
-// Returns a view with this light; negative light is not recorded.
+// Returns a view with this light. Negative light means that the pixel is not recorded.
 ExposureView Draw(const std::function<double(int x, int y)>& light) {
   ExposureView view;
   view.grey = std::make_shared<const ReducedImage>();
@@ -34,7 +34,7 @@ ExposureView Draw(const std::function<double(int x, int y)>& light) {
   return view;
 }
 
-// Compares the patch in the middle of a with that of b, which is displaced.
+// Compares the patch in the middle of a with a patch of b that is displaced by `displaced_px`.
 std::optional<ExposureSample> Compare(const ExposureView& a, const ExposureView& b,
                                       double displaced_px = 0) {
   const Intrinsics k = SmallCamera();
@@ -72,7 +72,7 @@ TEST(ComparedPatch, EdgesThatFallBetweenPixelsCountLittle) {
   const ExposureView b = Draw([](int x, int) { return x < 20 ? 0.1 : x == 20 ? 0.3 : 0.6; });
   const auto sample = Compare(a, b);
   ASSERT_TRUE(sample);
-  // The means of all pixels differ by 0.06.
+  // The log ratio of the means over all pixels of the patches would be 0.06.
   EXPECT_NEAR(sample->log_ratio[0], 0, 0.002);
 }
 
@@ -86,7 +86,7 @@ TEST(ComparedPatch, TheRadiiAreThoseOfThePlaces) {
   const ExposureView a = Draw([](int, int) { return 0.4; });
   const auto sample = Compare(a, a, 5);
   ASSERT_TRUE(sample);
-  const double square = 2. * kSize * kSize / 4;  // of half the diagonal
+  const double square = 2. * kSize * kSize / 4;  // square of half the diagonal
   const double own = 2 * 14 + 2 * 0.25;          // variances of 13 whole numbers, and the centre
   EXPECT_NEAR(sample->a_r_squared, own / square, 1e-6);
   EXPECT_NEAR(sample->b_r_squared, (2 * 14 + 0.25 + 5.5 * 5.5) / square, 1e-6);

@@ -11,16 +11,16 @@
 namespace lf {
 namespace {
 
-// Whole LF images in memory at the same time.
+// Number of whole LF images in memory at the same time.
 constexpr size_t kMostAtOnce = 16;
-// Part of the largest light from which on a value counts as clipped: demosaicking and JPEG do not
-// keep the largest value exactly.
+// Values above this share of the largest light count as clipped, because demosaicking and JPEG do
+// not keep the largest value exactly.
 constexpr double kClippedFrom = 0.97;
 
 int DivisorOf(int width_px, int most_px) { return std::max(1, (width_px + most_px - 1) / most_px); }
 
-// Returns the value v from which on a pixel of the image counts as clipped. Integer files hold
-// radiance up to 1.
+// Returns the smallest value v that counts as clipped in the image. Integer files hold radiance up
+// to 1.
 double ClippedFrom(const RadianceEncoding& encoding, const std::string& name) {
   const double of_file = std::min(encoding.max_radiance, DefaultMaxRadiance({&name, 1}));
   return encoding.pedestal + kClippedFrom * of_file * encoding.Scale();
@@ -56,7 +56,7 @@ Image<uint16_t> LightOf(const LfPixels& pixels, int divisor, double pedestal, do
 std::array<float, 3> ExposureView::LightsAt(const Vec2& place_px) const {
   const int divisor = grey->divisor;
   const double x = place_px.x() / divisor - 0.5, y = place_px.y() / divisor - 0.5;
-  // A place exactly on the centres of the last column or row has light.
+  // The light at a position exactly on the centres of the last column or row is known.
   if (!(x >= 0 && y >= 0 && x <= light.width() - 1 && y <= light.height() - 1)) return {};
   const int column = std::min(static_cast<int>(x), light.width() - 2);
   const int row = std::min(static_cast<int>(y), light.height() - 2);

@@ -14,16 +14,16 @@ namespace {
 constexpr int kRounds = 16;
 constexpr int kHuberRounds = 5;        // later rounds give outliers no weight at all
 constexpr double kHuber = 1.345;       // in standard deviations (95 % efficient on normal noise)
-constexpr double kTukey = 4.685;       // likewise
-constexpr double kLeastFactor = 0.2;   // of the deviations that samples state
+constexpr double kTukey = 4.685;       // in standard deviations (95 % efficient on normal noise)
+constexpr double kLeastFactor = 0.2;   // least factor_
 constexpr double kUnit = 0.01;         // deviation of a sample whose weight is 1
 constexpr double kLeastShare = 0.05;   // lower bound of the light that a lens leaves, while fitting
-constexpr double kPriorDeviation = 1;  // of falloff coefficients that samples tell nothing of
-constexpr size_t kLeastPerImage = 12;  // samples that agree, over all channels
-constexpr double kAgrees = 0.1;        // robust weight
-constexpr double kMostDeviation = 0.02;  // of the gain of an LF image that is matched
-constexpr double kCommonShare = 0.25;    // part of a pair's spread that more samples do not reduce
-constexpr double kBelievedSamples = 8;   // so many of a pair count as much as those of all pairs
+constexpr double kPriorDeviation = 1;  // prior standard deviation of falloff coefficients
+constexpr size_t kLeastPerImage = 12;  // agreeing samples of an LF image, over all channels
+constexpr double kAgrees = 0.1;        // a sample agrees if its robust weight is larger
+constexpr double kMostDeviation = 0.02;  // of the gain, for an LF image that is matched
+constexpr double kCommonShare = 0.25;    // share of a pair's spread that more samples do not reduce
+constexpr double kBelievedSamples = 8;   // weight of the spread of all pairs, in samples of a pair
 
 double BoundedFalloff(const Vignetting& falloff, double r_squared) {
   return std::max(kLeastShare, falloff.Falloff(r_squared));
@@ -38,7 +38,7 @@ double MeanLogShare(const Vignetting& falloff, double r_squared, double variance
   return std::log(share) + bend * variance / 2;
 }
 
-// Returns d ln F / d v.
+// Returns the derivatives of ln F by v1, v2 and v3.
 Eigen::Vector3d Slope(const Vignetting& falloff, double r_squared) {
   return Eigen::Vector3d(r_squared, r_squared * r_squared, r_squared * r_squared * r_squared) /
          BoundedFalloff(falloff, r_squared);
@@ -51,8 +51,8 @@ double MedianOf(std::vector<double>* values) {
   return *middle;
 }
 
-// Returns the standard deviation of normal noise with these absolute values, unaffected by
-// outliers.
+// Returns the standard deviation of normal noise whose absolute values are `sizes`. Outliers have
+// little influence.
 double SpreadOf(std::vector<double>* sizes) { return 1.4826 * MedianOf(sizes); }
 
 class Fit {
@@ -82,7 +82,8 @@ class Fit {
   }
 
  private:
-  // Numbers the pairs of LF images: samples of the same pair share their place in the equations.
+  // Numbers the pairs of LF images, because samples of the same pair contribute to the same entries
+  // of the equations.
   void FindPairs() {
     std::unordered_map<uint64_t, uint32_t> numbers;
     for (const ExposureSample& sample : samples_) {
@@ -93,7 +94,7 @@ class Fit {
     }
   }
 
-  // Computes the residuals, their deviation, and the weight of each sample.
+  // Computes the residuals, factor_, and the weight of each sample in each channel.
   void Weigh() {
     std::vector<double> sizes;
     for (size_t i = 0; i < samples_.size(); ++i)
@@ -156,8 +157,9 @@ class Fit {
     }
   }
 
-  // Adds the channel's samples to the equations of the falloffs, and returns L^-1 [C y] for its
-  // Laplacian L, the ties C and the right-hand side y.
+  // Adds the samples of channel c to the equations of the falloffs (`matrix`, `right`) and to the
+  // ties: C, which couples gains and falloffs, and the right-hand side y of the gains as its last
+  // column. Returns L^-1 [C y], where L is the Laplacian of the channel.
   Eigen::MatrixXd SolveGains(size_t c, Eigen::MatrixXd* ties, Eigen::MatrixXd* matrix,
                              Eigen::VectorXd* right) const {
     std::vector<double> of_pairs(pairs_.size());
@@ -199,7 +201,7 @@ class Fit {
       entries.emplace_back(a, b, -of_pairs[p]);
       entries.emplace_back(b, a, -of_pairs[p]);
     }
-    // A tiny multiple of the identity keeps gains that no sample determines at their value.
+    // A tiny multiple of the identity makes gains that no sample determines keep their value.
     constexpr double kTrace = 1e-9;
     for (int i = 0; i < static_cast<int>(images); ++i) entries.emplace_back(i, i, kTrace);
     Eigen::SparseMatrix<double> laplacian(images, images);
@@ -215,10 +217,10 @@ class Fit {
 
   bool Agrees(size_t sample, size_t c) const { return agreements_[3 * sample + c] > kAgrees; }
 
-  // Returns the variance of the logarithm of each pair's ratio, from the differences between its
-  // places. If a lamp stands still while the object turns, each place becomes brighter or darker by
-  // its own factor, in common with the places around it. No gain is right then, whatever the number
-  // of samples.
+  // Returns the variance of the log ratio of each pair of LF images, estimated from the differences
+  // between its places. If a lamp stands still while the object turns, each place becomes brighter
+  // or darker by a factor that it shares only with the places around it. In this case no gain is
+  // right, and more samples do not help.
   std::vector<double> PairVariances() {
     std::vector<std::vector<double>> sizes(pairs_.size());
     std::vector<double> all;
@@ -242,7 +244,7 @@ class Fit {
     return variances;
   }
 
-  // Finds the LF images whose gains enough samples tie to others, and the components that they
+  // Finds the LF images whose gains are determined by enough samples, and the components that they
   // form.
   void FindComponents() {
     std::vector<size_t> counts(groups_.size());
@@ -313,11 +315,11 @@ class Fit {
   const std::vector<uint32_t>& groups_;
   const FitOptions options_;
   std::vector<std::array<uint32_t, 2>> pairs_;
-  std::vector<uint32_t> pair_of_;  // of each sample
+  std::vector<uint32_t> pair_of_;  // index into pairs_, for each sample
   std::vector<double> residuals_;  // [samples][3]; NaN: no sample of the channel
   std::vector<float> agreements_;  // [samples][3]: robust weights, in [0, 1]
   std::vector<float> weights_;     // [samples][3]: robust weights times inverse variance
-  double factor_ = 1;              // of the deviations that samples state
+  double factor_ = 1;  // actual deviation of samples, relative to the one that they state
   int round_ = 0;
   ExposureFit fit_;
 };

@@ -13,7 +13,7 @@ namespace {
 
 constexpr Vignetting kTrueFalloff{{-0.3, 0.05, -0.15}};  // 60 % in the corner
 
-// A strip of LF images with gains within +-20 %. Each overlaps the next ones.
+// A strip of LF images with gains within +-20 %. Each image overlaps the next two.
 struct Strip {
   explicit Strip(uint32_t count) : groups(count, 0), true_log_gains(count) {
     std::array<double, 3> sums = {};

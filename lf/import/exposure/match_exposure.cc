@@ -20,14 +20,14 @@
 namespace lf {
 namespace {
 
-constexpr int kWidest_px = 240, kNarrowest_px = 80;  // of the small copies
-constexpr size_t kLeastViews = 2;                    // of a ring
-constexpr double kLeastAgreement = 0.8;              // correlation of a view that is compared
+constexpr int kWidest_px = 240, kNarrowest_px = 80;  // widths of the small copies
+constexpr size_t kLeastViews = 2;                    // least number of views in a ring
+constexpr double kLeastAgreement = 0.8;              // least correlation of a view that is compared
 constexpr size_t kProbed = 6;        // number of LF images that are first searched at all depths
-constexpr size_t kProbedPlaces = 3;  // one of so many places of these is searched
-constexpr size_t kLeastProbes = 50;  // number of depths that must be found there
+constexpr size_t kProbedPlaces = 3;  // every third place of these images is searched
+constexpr size_t kLeastProbes = 50;  // least number of depths that must be found in these images
 constexpr size_t kMostSamples = 4'000'000;
-constexpr size_t kLeastSamples = 60;  // kept of each LF image, even if kMostSamples is exceeded
+constexpr size_t kLeastSamples = 60;  // samples kept of each LF image, even beyond kMostSamples
 constexpr size_t kImagesPerRound = 64;
 constexpr size_t kLeastImagesPerCamera = 8;
 constexpr double kLeastCornerLight = 0.05, kMostCornerLight = 1.25;
@@ -61,8 +61,9 @@ class Sampler {
   Sampler(const LightField& field, const std::vector<ExposureView>& views)
       : field_(field), views_(views), nearby_(field) {}
 
-  // Searches some places of some LF images at all depths. All LF images are then searched from half
-  // of the nearest depth found, because a full search takes several times as long.
+  // Searches some places of some LF images at all depths. All LF images are then searched only from
+  // half of the nearest depth that was found, because a search of all depths takes several times as
+  // long.
   void FindNearestDepth(ThreadPool& pool) {
     const size_t count = std::min(kProbed, field_.size());
     std::vector<std::vector<double>> depths(count);
@@ -85,7 +86,8 @@ class Sampler {
     nearest_w_ = *near / 2;
   }
 
-  // Returns samples of one LF image with those around it, thinned evenly to at most `most`.
+  // Returns samples that compare one LF image with those around it. If there are more than `most`,
+  // they are thinned evenly to `most`.
   std::vector<ExposureSample> SamplesOf(LfImageId id, size_t most) const {
     std::vector<ExposureSample> samples;
     const ExposureView& own = views_[id.value];
@@ -140,7 +142,8 @@ class Sampler {
   double nearest_w_ = 0;  // nearest depth that is searched
 };
 
-// Returns the width of small copies that fit into the memory; 0 if not even the narrowest do.
+// Returns the largest width of small copies that fit into the memory; 0 if not even the narrowest
+// fit.
 int WidthWithin(const LightField& field, size_t memory_bytes) {
   for (int width = kWidest_px; width >= kNarrowest_px; width -= 20) {
     size_t bytes = 0;
@@ -176,7 +179,8 @@ Result<std::vector<ExposureSample>> TakeSamples(const LightField& plain,
   return samples;
 }
 
-// Returns the mean step of the samples that agree, with the exposure of the calibration.
+// Returns the mean |ln ratio| that remains in the agreeing samples with the exposure of the
+// calibration.
 double StepBefore(const LightField& field, const std::vector<ExposureSample>& samples,
                   const ExposureFit& fit, const CameraGroups& groups) {
   std::vector<std::array<double, 3>> log_gains(field.size());
@@ -195,8 +199,8 @@ double StepBefore(const LightField& field, const std::vector<ExposureSample>& sa
   return count > 0 ? sum / static_cast<double>(count) : 0;
 }
 
-// Returns facts about the falloffs; none if a falloff is not like that of a lens, or if samples do
-// not reach far enough towards the corners.
+// Returns facts about the falloffs; none if one of them is implausible for a lens, or if the
+// samples do not reach far enough towards the corners.
 std::optional<FoundFalloff> BelievableFalloff(const LightField& field, const CameraGroups& groups,
                                               const std::vector<ExposureSample>& samples,
                                               const ExposureFit& fit) {

@@ -19,44 +19,45 @@
 namespace lf {
 
 struct MatchExposureOptions {
-  bool vignetting = false;  // if true, falloffs are estimated; if false, the light field's are kept
-  // Memory for small copies of all LF images. The copies are made smaller if they would need more.
+  bool vignetting = false;  // true: falloffs are estimated; false: the light field's are kept
+  // Memory for small copies of all LF images. Smaller copies are used if they do not fit.
   size_t memory_bytes = size_t{2} << 30;
-  const std::atomic<bool>* interrupted = nullptr;  // read now and then; may be null
+  const std::atomic<bool>* interrupted = nullptr;  // read between rounds of images; may be null
   std::function<void(size_t done, size_t total)> progress;
 };
 
 struct FoundFalloff {
-  double corner_min = 1, corner_max = 1;  // light left in the farthest corner, over all cameras
-  double reach = 0;                       // the r that a tenth of the samples lies beyond
+  double corner_min = 1, corner_max = 1;  // light in the farthest corner, over all cameras
+  double reach = 0;                       // radius r that a tenth of the samples exceeds
   size_t camera_count = 0;                // number of estimated falloffs
 };
 
 struct MatchedExposure {
   std::vector<ChannelGains> gains;      // one for each of LightField::cameras
   std::vector<Vignetting> falloffs;     // one for each of LightField::intrinsics
-  float least_gain = 1, most_gain = 1;  // of the LF images that were matched
-  std::optional<FoundFalloff> falloff;  // none: not asked for, or not believable
+  float least_gain = 1, most_gain = 1;  // range of the gains of LF images that were matched
+  std::optional<FoundFalloff> falloff;  // none: not requested, or not believable
   // Mean relative difference of the light of the same place in two neighbouring LF images, which is
-  // the strength of seams: with the exposure of the calibration, and with the matched one.
+  // the strength of seams. `before` uses the exposure of the calibration, `after` the matched one.
   double step_before = 0, step_after = 0;
-  size_t sample_count = 0;  // number of compared colours in which the LF images agree
+  size_t sample_count = 0;  // number of compared colours that agree in two LF images
   size_t component_count = 0;
   std::vector<LfImageId> left_alone;  // too little overlap; the gain stays as it was
   std::vector<LfImageId> unreadable;  // cannot be read; the gain stays as it was
 };
 
-// Returns the light field without gains and falloffs, whose store MatchExposure() reads.
+// Returns the light field without gains and falloffs and with no clipped pixels masked.
+// MatchExposure() reads the store of this light field.
 LightField WithoutExposure(const LightField& light_field);
 
-// Finds the depth of the textured places of each LF image, at which the LF images around agree
-// (focus/place_depth.h). Compares the light of each place with that in these LF images and in the
-// six nearest ones. Dark, clipped and masked pixels do not count, and FitExposure() gives outliers
-// no weight. The geometric mean of the gains is 1 in each channel and each component, which is a
-// set of LF images that are connected by overlaps. Each intrinsics has its own falloff; if there
-// are fewer than eight LF images for each intrinsics, all intrinsics of the same image size share
-// one. Each LF image is loaded once.
-//   store  of WithoutExposure(light_field), with Mosaics::kToRgb
+// Finds the depth of the textured places of each LF image, at which the LF images around it agree
+// (focus/place_depth.h). Compares the light of each place with the light that these LF images and
+// the six nearest ones show there. Dark, clipped and masked pixels are not used, and FitExposure()
+// gives outliers no weight. A component is a set of LF images that are connected by overlaps; the
+// geometric mean of its gains is 1 in each channel. Each entry of LightField::intrinsics has its
+// own falloff; if there are fewer than eight LF images per entry on average, all entries with the
+// same image size share a falloff. Each LF image is loaded once.
+//   store  the store of WithoutExposure(light_field), with Mosaics::kToRgb
 // kInput: there are too many images for the memory; or the gains of fewer than half of the readable
 // LF images can be estimated, because they do not overlap enough, or because the light on the scene
 // changes from one image to the next. kInterrupted: `interrupted` is true.
@@ -64,7 +65,7 @@ Result<MatchedExposure> MatchExposure(const LightField& light_field, const LfIma
                                       const MatchExposureOptions& options, ThreadPool& pool);
 
 // Writes gains and falloffs into the light field, and raises max_radiance of integer files so that
-// no recorded light is clipped by them.
+// they clip no recorded light.
 void ApplyExposure(const MatchedExposure& matched, LightField* light_field);
 
 }  // namespace lf

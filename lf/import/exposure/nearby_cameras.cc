@@ -11,12 +11,12 @@
 namespace lf {
 namespace {
 
-constexpr double kLeastCosine = 0.8;  // between optical axes
+constexpr double kLeastCosine = 0.8;  // least cosine of the angle between optical axes
 constexpr size_t kMostRings = 9;
 constexpr int kViewsPerRing = 6;
-constexpr size_t kLeastViews = 2;  // of a ring
-constexpr double kInnerRing = 2;   // in spacings
-constexpr double kRingFactor = 2;  // from ring to ring
+constexpr size_t kLeastViews = 2;  // least number of views in a ring
+constexpr double kInnerRing = 2;   // radius of the innermost ring, in spacings
+constexpr double kRingFactor = 2;  // radius of a ring relative to the one before
 constexpr size_t kNearest = 6;     // LF images that are compared in addition to those of rings
 
 }  // namespace
@@ -58,8 +58,8 @@ void NearbyCameras::Split(size_t begin, size_t end) {
   Split(middle + 1, end);
 }
 
-// Visits the cameras of a range, the near side of each split first. Skips ranges that are farther
-// away than `limit`, which a visit may lower.
+// Visits the cameras of a range, on the near side of each split first. Skips ranges that are
+// farther from the point than `limit`, which a visit may lower.
 template <typename Visit>
 void NearbyCameras::Search(size_t begin, size_t end, const Vec3& point_world, const double& limit,
                            const Visit& visit) const {
@@ -101,10 +101,10 @@ View NearbyCameras::ViewOf(const PinholeCamera& camera, uint32_t other) const {
           Vec2(camera.RightWorld().dot(offset), camera.UpWorld().dot(offset)).norm()};
 }
 
-// Returns the views nearest to evenly spread positions of a ring.
-//   turn         rotates the positions, in steps between them
-//   least_share  views must be at least this part of the radius away, and at most twice the radius;
-//                0: at any distance
+// Returns the views that are nearest to evenly spread positions on a ring.
+//   turn         rotates the positions, in units of the step between two positions
+//   least_share  views must be at least this share of the radius away, and at most twice the
+//                radius; 0: views may be at any distance
 std::vector<View> NearbyCameras::Ring(LfImageId camera, double radius_w, double turn,
                                       double least_share) const {
   const PinholeCamera middle = field_.Camera(camera);

@@ -1,5 +1,5 @@
-// Finds the LF cameras around one in a k-d tree of their positions, so that the neighbours of all n
-// LF images are found in n log n steps.
+// Finds the LF cameras around an LF camera. A k-d tree of their positions finds the neighbours of
+// all n LF cameras in n log n steps.
 #pragma once
 
 #include <cstddef>
@@ -18,17 +18,17 @@ class NearbyCameras {
   // Refers to the light field, which must outlive it.
   explicit NearbyCameras(const LightField& light_field);
 
-  // Returns up to `count` LF cameras nearest to a point, the nearest first, that look in about the
-  // same direction as `camera` (within 37 degrees); without `camera` itself.
+  // Returns up to `count` LF cameras, the nearest to a point first. They look in about the same
+  // direction as `camera` (within 37 degrees); `camera` itself is not among them.
   std::vector<uint32_t> Nearest(const Vec3& point_world, size_t count, LfImageId camera) const;
 
-  // Returns rings of up to six views around `camera` for DepthOf(), each twice as wide as the one
-  // before. Depths must be more precise than with ChooseRings(), because with a wrong disparity the
-  // estimated falloff is too weak. Images are not loaded.
+  // Returns rings of up to six views around `camera` for DepthOf(); each ring is twice as wide as
+  // the one before. The depths must be more precise than those with ChooseRings(), because a wrong
+  // disparity makes the estimated falloff too weak. Images are not loaded.
   Rings DepthRings(LfImageId camera) const;
 
-  // Returns the views whose light is compared with that of `camera`: those of the rings, and the
-  // six nearest ones, each once. Images are not loaded.
+  // Returns the views whose light is compared with the light of `camera`: the views of the rings
+  // and the six nearest ones, each once. Images are not loaded.
   std::vector<View> ComparedViews(LfImageId camera, const Rings& rings) const;
 
  private:
@@ -42,7 +42,7 @@ class NearbyCameras {
   const LightField& field_;
   std::vector<Vec3> centres_;    // [cameras]
   std::vector<Vec3> forwards_;   // [cameras]
-  std::vector<uint32_t> order_;  // a balanced tree: the middle of each range is its root
+  std::vector<uint32_t> order_;  // a balanced tree: the middle entry of each range is its root
   std::vector<uint8_t> axes_;    // axis of each root's split, at the root's index in order_
   Vec3 least_ = Vec3::Zero(), most_ = Vec3::Zero();  // corners of the box of all centres
   double spacing_w_ = 0;

@@ -11,7 +11,7 @@
 namespace lf {
 namespace {
 
-// Returns cameras at random positions, a third of which look back.
+// Returns cameras at random positions. A third of them look in the opposite direction.
 LightField Scattered(uint32_t count) {
   LightField field;
   Intrinsics k;
