@@ -7,15 +7,16 @@
 namespace lf {
 namespace {
 
-// A found depth counts for depths around it by a Gaussian in the logarithm of depth. Its width is
-// the uncertainty of the found depth.
+// A found depth supports the depths around it by a Gaussian in the logarithm of depth. WidthOf()
+// returns its width, ShareAt() its value.
 double WidthOf(const FoundDepth& found) { return std::max(0.03, found.error); }
 double ShareAt(double distance_w, const FoundDepth& found) {
   const double off = std::log(found.distance_w / distance_w) / WidthOf(found);
   return std::abs(off) < 3 ? std::exp(-0.5 * off * off) : 0;
 }
 
-// Returns the depth around which most found depths lie, refined to the mean of those near it.
+// Returns the depth that most found depths support, refined to the mean of the found depths near
+// it.
 SubjectDepth BestDepth(std::span<const FoundDepth> found, double total_weight) {
   double best_weight = -1, best_w = 0;
   for (const FoundDepth& at : found) {

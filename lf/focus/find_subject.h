@@ -1,5 +1,5 @@
-// Finds the depth of the subject of an LF image by comparing the LF images around it, and tells
-// whether it is sure: a first picture must not be focused on a watermark.
+// Finds the depth of the subject of an LF image by comparing it with the LF images around it, and
+// tells whether the depth is sure, so that a first picture is not focused on a watermark.
 #pragma once
 
 #include <cstddef>
@@ -15,30 +15,32 @@ namespace lf {
 
 struct SubjectDepth {
   double distance_w = 0;   // along the optical axis, in world units
-  double share = 0;        // part of the weight of all found depths
-  size_t place_count = 0;  // places of the image that lie there
+  double share = 0;        // share of the weight of all found depths
+  size_t place_count = 0;  // number of places of the image near this depth
 };
 
 struct Subject {
-  std::vector<SubjectDepth> depths;  // at most three, the best first; none: nothing was found
+  std::vector<SubjectDepth> depths;  // at most three, the best first; empty: nothing was found
   bool is_sure = false;              // true if the first depth is sure
-  size_t place_count = 0;            // places of the image whose depth was found
-  size_t textured_count = 0;         // places with texture, whose depth was searched
-  // A tenth of the places lies nearer than near_w, a tenth farther than far_w. Both are 0 if no
-  // place was found.
+  size_t place_count = 0;            // number of places whose depth was found
+  size_t textured_count = 0;         // number of places with texture, whose depth was searched
+  // A tenth of the places with a depth is nearer than near_w, a tenth is farther than far_w. Both
+  // are 0 if no depth was found.
   double near_w = 0;
   double far_w = 0;
 };
 
 // Searches the depth of up to 176 places with texture, evenly spread over the image of `camera`.
-// Compares each place with up to five rings of LF cameras around, every ring four times as wide as
-// the one before: near cameras tell the depth without ambiguity, far ones precisely. The weight of
-// a place depends on its texture, on how clearly the LF images agree on one depth, and on how near
-// it is to the middle. Places that stand still in all images, and places that are so far that
-// nothing moves, do not count. The best depth is the one around which most weight lies, within a
-// few percent. It is sure if eight places lie there, with a tenth of the whole weight, and if
-// depths were found for a quarter of the textured places.
-//   store  one with Mosaics::kToRgb
+// Each place is compared with up to five rings of LF cameras around `camera`; each ring is four
+// times as wide as the one before. Near cameras tell the depth without ambiguity, far cameras tell
+// it precisely. The weight of a place depends on its texture, on how clearly the LF images agree on
+// one depth, and on how near the place is to the middle of the image. Places that do not move from
+// image to image do not count: watermarks, and places that are too far away.
+//
+// The best depth is the one around which most weight lies, within a few percent. It is sure if at
+// least eight places with a tenth of the whole weight lie around it, and if depths were found for
+// at least a quarter of the textured places.
+//   store  a store with Mosaics::kToRgb
 // kInput: the image of `camera` cannot be loaded. Other images that cannot be loaded are left out.
 // kOutput: the machine lacks memory or open files.
 Result<Subject> FindSubject(const LightField& light_field, const LfImageStore& store,

@@ -51,19 +51,20 @@ class DrawnStore : public LfImageStore {
   Light light_;
 };
 
-// Returns a texture with details of a few pixels.
+// Returns the light of a texture with details of a few pixels, on a plane at depth `depth_w`.
 double Texture(const Ray& ray, double depth_w, uint64_t seed) {
   const Vec3 point = ray.At((depth_w - ray.origin.z()) / ray.direction.z());
   const double scale = kFocal_px / 4 / depth_w;
   return 0.15 + 0.7 * ValueNoise(point.x() * scale, point.y() * scale, seed);
 }
 
-// Returns a wall that fills the picture.
+// Returns the light of a wall that fills the picture.
 Light Wall(double depth_w) {
   return [depth_w](const Ray& ray, LfImageId, const Vec2&) { return Texture(ray, depth_w, 1); };
 }
 
-// Returns a card in the middle, half as wide as the picture, in front of a wall.
+// Returns the light of a card in front of a wall. The card is in the middle and half as wide as the
+// picture.
 Light CardBefore(double card_w, double wall_w) {
   return [=](const Ray& ray, LfImageId, const Vec2&) {
     const Vec3 point = ray.At((card_w - ray.origin.z()) / ray.direction.z());
@@ -119,7 +120,7 @@ LightField FieldOf(const std::vector<RigidTransform>& poses) {
   return field;
 }
 
-// Returns a grid of cameras that look along z, or at a point on the axis.
+// Returns a grid of cameras that look along z, or at a point on the z axis if `look_at_w` is not 0.
 LightField Grid(int columns, int rows, double spacing_w, double look_at_w = 0) {
   std::vector<RigidTransform> poses;
   for (int i = 0; i < columns * rows; ++i) {
@@ -130,7 +131,7 @@ LightField Grid(int columns, int rows, double spacing_w, double look_at_w = 0) {
   return FieldOf(poses);
 }
 
-// Swaps cameras, so that LF images have the calibration of others.
+// Swaps cameras, so that LF images have the calibration of other LF images.
 LightField Shuffled(LightField field) {
   for (size_t i = 0; i < field.size(); ++i)
     std::swap(field.cameras[i], field.cameras[RandomBits(3, i, 0) % field.size()]);
@@ -144,7 +145,7 @@ struct Case {
   LightField field;
   Light light;
   double depth_w = 0;        // 0: cannot be found
-  LightField drawn_by = {};  // the true calibration, if that of `field` is wrong
+  LightField drawn_by = {};  // the true calibration, if `field` has a wrong one
 };
 
 std::vector<Case> Cases() {

@@ -19,20 +19,20 @@ namespace {
 constexpr int kHalfPatch = 5;  // in elements or LF pixels, whichever are larger
 constexpr int kPatchSide = 2 * kHalfPatch + 1;
 constexpr int kPatchSize = kPatchSide * kPatchSide;
-constexpr double kStep_px = 0.5;         // change of the largest disparity from depth to depth
-constexpr double kMostDisplaced = 0.45;  // largest disparity, as a part of the LF image's width
-constexpr double kLeastTexture = 0.004;  // standard deviation in a patch, of the root of light
-constexpr double kLeastAgreement = 0.6;  // correlation
-constexpr size_t kLeastViews = 3;        // without the reference
-constexpr double kAgreeing = 0.6;        // part of the views; the point may be hidden from others
-constexpr double kLeastCosine = 0.5;     // between optical axis and ray
+constexpr double kStep_px = 0.5;  // change of the largest disparity from one depth to the next
+constexpr double kMostDisplaced = 0.45;  // largest disparity, as a share of the LF image's width
+constexpr double kLeastTexture = 0.004;  // standard deviation of the root of light in a patch
+constexpr double kLeastAgreement = 0.6;  // least correlation
+constexpr size_t kLeastViews = 3;        // least number of views in addition to the reference
+constexpr double kAgreeing = 0.6;        // share of views that agree; others may not see it
+constexpr double kLeastCosine = 0.5;     // least cosine of the angle between optical axis and ray
 
 using Patch = std::array<float, kPatchSize>;
 
 struct View {
   LfImageId id;
   RayThrough rays;
-  double offset_w = 0;  // distance from the ray, in the plane normal to it
+  double offset_w = 0;  // distance of the LF camera from the ray, in the plane normal to it
   LfPixels pixels = {};
 };
 
@@ -58,8 +58,8 @@ SearchRay MakeSearchRay(const RenderCamera& frame, const Ray& ray, double lf_foc
   return search;
 }
 
-// Returns the wanted positions of LF cameras: at the ray, on a ring as wide as the lens, and on a
-// ring half as wide.
+// Returns the wanted positions of LF cameras relative to the ray: on the ray, on a ring as wide as
+// the lens, and on a ring half as wide.
 std::vector<Vec2> WantedPlaces(double radius_w) {
   std::vector<Vec2> places = {Vec2::Zero()};
   for (int i = 0; i < 12; ++i) {
@@ -71,13 +71,13 @@ std::vector<Vec2> WantedPlaces(double radius_w) {
   return places;
 }
 
-// Chooses the LF camera nearest to each wanted place. The ring is widened until it holds at least
-// eight LF cameras.
+// Chooses the LF camera nearest to each wanted position. If fewer than eight LF cameras lie within
+// the ring, it is widened.
 std::vector<View> ChooseViews(const LightField& field, const SearchRay& search, double radius_w) {
   struct Candidate {
     LfImageId id;
     Vec2 place;
-    double behind_w;  // along the ray
+    double behind_w;  // distance from the ray's origin along the ray
   };
   std::vector<Candidate> candidates;
   for (uint32_t i = 0; i < field.size(); ++i) {
@@ -114,8 +114,8 @@ std::vector<View> ChooseViews(const LightField& field, const SearchRay& search, 
   return views;
 }
 
-// Returns the root of the bilinear light, in which noise is about equal everywhere; none if the
-// image has no value there.
+// Returns the root of the bilinearly interpolated light at a position; in the root, noise is about
+// equal in shadows and highlights. None if the image has no value there.
 std::optional<float> ValueAt(const LfPixels& pixels, const Vec2& place) {
   const double x = place.x() - 0.5 - pixels.rect.x_begin, y = place.y() - 0.5 - pixels.rect.y_begin;
   const int column = static_cast<int>(std::floor(x)), row = static_cast<int>(std::floor(y));
@@ -132,8 +132,8 @@ std::optional<float> ValueAt(const LfPixels& pixels, const Vec2& place) {
   return static_cast<float>(std::sqrt(sum / (3 * 65535.0)));
 }
 
-// Reads the patch around the point at a depth as the view sees it, and subtracts its mean. Returns
-// its standard deviation; none if the view does not show all of it.
+// Reads the patch around the point of the ray at a depth, as the view sees it, and subtracts the
+// patch's mean. Returns its standard deviation; none if the view does not show the whole patch.
 std::optional<double> ReadPatch(const View& view, const SearchRay& search, double depth_w,
                                 Patch* patch) {
   double sum = 0, squares = 0;
@@ -155,8 +155,8 @@ std::optional<double> ReadPatch(const View& view, const SearchRay& search, doubl
 }
 
 struct Agreement {
-  double score = -1;   // correlation of the views with the reference; -1: not seen
-  double texture = 0;  // of the reference
+  double score = -1;   // mean correlation of views with the reference; -1: not seen
+  double texture = 0;  // standard deviation of the reference
 };
 
 Agreement AgreementAt(std::span<const View> views, const SearchRay& search, double depth_w) {
@@ -171,7 +171,7 @@ Agreement AgreementAt(std::span<const View> views, const SearchRay& search, doub
     for (int i = 0; i < kPatchSize; ++i)
       product +=
           static_cast<double>(reference[static_cast<size_t>(i)]) * other[static_cast<size_t>(i)];
-    // The least deviation keeps noise from correlating.
+    // A lower bound of the deviations keeps mere noise from correlating.
     const double scale = kPatchSize * std::max(*texture, kLeastTexture / 4) *
                          std::max(*deviation, kLeastTexture / 4);
     correlations.push_back(product / scale);
@@ -194,7 +194,7 @@ DepthSweep MakeSweep(std::span<const View> views) {
   return sweep;
 }
 
-// Returns the part of the LF image that the sweep reads.
+// Returns the rectangle of the view's LF image that the sweep reads.
 PixelRect PartOf(const View& view, const SearchRay& search, const DepthSweep& sweep) {
   const Intrinsics& k = view.rays.intrinsics();
   PixelRect part;
@@ -211,8 +211,8 @@ PixelRect PartOf(const View& view, const SearchRay& search, const DepthSweep& sw
   return Intersection(part, {0, 0, k.width_px, k.height_px});
 }
 
-// Reads the needed parts of the views. Removes views that cannot be read, unless the machine failed
-// (kOutput).
+// Reads the rectangles of all views. Removes views that cannot be read. Errors: kOutput if the
+// machine failed; the error of a view, or kInput, if too few views are left.
 Result<void> LoadViews(const LightField& field, const LfImageStore& store, const SearchRay& search,
                        const DepthSweep& sweep, ThreadPool& pool, std::vector<View>* views) {
   std::vector<std::optional<Error>> errors(views->size());

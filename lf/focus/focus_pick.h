@@ -1,5 +1,5 @@
-// Finds the distance of the point that a person clicks on. A light field has no depths: they are
-// searched along the ray, for a depth at which the LF images around it agree (plane sweep).
+// Finds the distance of the point that a person clicks on. A light field has no depths; therefore a
+// plane sweep searches the ray of the click for a depth at which the LF images around it agree.
 #pragma once
 
 #include <optional>
@@ -18,29 +18,30 @@ namespace lf {
 
 struct FocusPick {
   Vec3 point_world;
-  // In [0, 1]: high if the LF images agree well at this depth, and much better than at others.
+  // In [0, 1]: high if the LF images agree well at this depth, and much better than at other
+  // depths.
   double certainty = 0;
-  std::vector<LfImageId> images;  // compared images; the first is the nearest to the ray's origin
+  std::vector<LfImageId> images;  // the compared images; the first is nearest to the ray's origin
 };
 
-// A pick below this certainty is a guess, as on patterns that repeat, and on outlines.
+// A pick below this certainty is a guess. Repeating patterns and outlines cause such picks.
 inline constexpr double kLeastCertainty = 0.2;
 
-// Returns the ray of the continuous position (x, y) of an LF image, lens distortion undone. None if
-// the position has no ray.
+// Returns the ray that an LF image records at the continuous position (x, y), with the lens
+// distortion undone. None if no ray arrives there.
 std::optional<Ray> RayOfLfPixel(const PinholeCamera& lf_camera, double x_px, double y_px);
 
-// Returns the point of the scene that the ray meets. The compared images are around the ray's
-// origin, about as far from it as the rim of the frame's lens, because the disparity between them
-// is the blur of the lens.
-//   ray    from the lens centre of `frame`, or from an LF camera
-//   store  one with Mosaics::kToRgb
+// Returns the point of the scene that the ray meets. The compared LF cameras are around the ray's
+// origin, about as far from it as the rim of the frame's lens, because the disparity between such
+// cameras equals the blur of the lens.
+//   ray    starts at the lens centre of `frame`, or at an LF camera
+//   store  a store with Mosaics::kToRgb
 // kInput, in words for the person who clicked: too few LF cameras see the point, it has no texture,
 // or the images agree on no depth. Errors of store.Load() if too few images can be read.
 Result<FocusPick> FindFocus(const LightField& light_field, const LfImageStore& store,
                             const RenderCamera& frame, const Ray& ray, ThreadPool& pool);
 
-// Returns the focus distance with which the frame's focus plane, with its tilt, contains the point.
+// Returns the focus distance for which the frame's tilted focus plane contains the point.
 double FocusDistanceThrough(const RenderCamera& frame, const Vec3& point_world);
 
 }  // namespace lf

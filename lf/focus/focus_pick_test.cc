@@ -13,14 +13,14 @@ namespace {
 constexpr int kSide = 9;
 constexpr double kSpacing_w = 0.02, kNear_w = 1.2, kFar_w = 2;
 
-// Returns waves without a period, in [0.2, 0.8].
+// Returns a sum of waves without a period, in [0.2, 0.8].
 double Texture(double x, double y) {
   return 0.5 + 0.1 * (std::sin(31 * x + 17 * y) + std::sin(53 * y - 29 * x * x) +
                       std::sin(71 * x + 5 * y * y));
 }
 
-// Returns the light of a wall, and of half a wall in front of it at x < 0. The right end of the far
-// wall (x > 0.6) is white.
+// Returns the light of a wall, and of a nearer wall that covers only x < 0. The right end of the
+// far wall (x > 0.6) is white.
 double Light(const Ray& ray) {
   const Vec3 near = ray.At((kNear_w - ray.origin.z()) / ray.direction.z());
   if (near.x() < 0) return Texture(near.x(), near.y());
@@ -28,7 +28,7 @@ double Light(const Ray& ray) {
   return far.x() > 0.6 ? 0.9 : Texture(far.x() + 3, far.y());
 }
 
-// Draws the requested rectangle. The gain of the images differs.
+// Draws the walls into the requested rectangle. The images have different gains.
 class WallStore : public LfImageStore {
  public:
   explicit WallStore(const LightField& field) : field_(field) {}
@@ -67,7 +67,7 @@ LightField Wall(const Distortion& distortion = {}) {
   return field;
 }
 
-// Returns a frame between the LF cameras, with a lens 0.12 wide.
+// Returns a frame whose lens is between the LF cameras and 0.12 wide.
 RenderCamera Frame() {
   RenderCamera frame;
   frame.pinhole.intrinsics = {300, 300, 160, 120, 0, 320, 240};
@@ -77,7 +77,7 @@ RenderCamera Frame() {
   return frame;
 }
 
-// A wall of a pattern that repeats every 0.05.
+// A wall with a pattern that repeats every 0.05 world units.
 class LatticeStore : public LfImageStore {
  public:
   explicit LatticeStore(const LightField& field) : field_(field) {}
@@ -121,7 +121,8 @@ TEST(FocusPick, FindsBothWalls) {
   }
 }
 
-// Beside the edge, half of the LF cameras see the wall in front.
+// Close to the edge of the near wall, half of the LF cameras see the near wall instead of the
+// point.
 TEST(FocusPick, AgreesWithThoseThatSeeThePoint) {
   const auto far = PickInFrame(Wall(), 176, 120);
   ASSERT_TRUE(far) << far.error().message;

@@ -13,23 +13,23 @@ namespace lf {
 namespace {
 
 constexpr int kColumns = 16, kRows = 11;   // cells of the image; each has one place
-constexpr double kLeastTexture = 0.006;    // step between pixels in the weakest direction
-constexpr double kLeastDeviation = 0.002;  // keeps noise from correlating
-constexpr double kLeastAgreement = 0.65;   // correlation
-constexpr double kAgreeing = 0.6;          // part of the views; the place may be hidden from others
+constexpr double kLeastTexture = 0.006;    // least step between pixels, in the weakest direction
+constexpr double kLeastDeviation = 0.002;  // lower bound that keeps noise from correlating
+constexpr double kLeastAgreement = 0.65;   // least correlation
+constexpr double kAgreeing = 0.6;  // share of views that must agree; others may not see the place
 constexpr size_t kLeastViews = 2;
-constexpr double kStep_px = 0.5;         // change of the largest disparity from depth to depth
-constexpr double kMostDisplaced = 0.45;  // largest disparity, as a part of the image's width
-constexpr double kLeastMove_px = 1;  // in the reduced image: a place that moves less does not count
-constexpr double kStill = 0.9;       // correlation
+constexpr double kStep_px = 0.5;  // change of the largest disparity from one depth to the next
+constexpr double kMostDisplaced = 0.45;  // largest disparity, as a share of the image's width
+constexpr double kLeastMove_px = 1;      // reduced pixels; a place that moves less is not used
+constexpr double kStill = 0.9;           // correlation of a place that does not move
 constexpr size_t kMostRings = 5;
 constexpr int kViewsPerRing = 6;
-constexpr double kInnerRing = 2;      // in spacings
-constexpr double kRingFactor = 4;     // from ring to ring
-constexpr double kLeastCosine = 0.8;  // between optical axes
+constexpr double kInnerRing = 2;      // radius of the innermost ring, in spacings
+constexpr double kRingFactor = 4;     // radius of a ring relative to the one before
+constexpr double kLeastCosine = 0.8;  // least cosine of the angle between optical axes
 
-// Returns the sum over a patch, in as many chains of additions as a processor runs at the same
-// time.
+// Returns the sum over a patch. It is computed in as many independent chains of additions as a
+// processor runs at the same time.
 template <typename Value>
 double SumOf(const Value& value) {
   constexpr size_t kChains = 9;
@@ -42,7 +42,7 @@ double SumOf(const Value& value) {
   return sum;
 }
 
-// Subtracts the mean. Returns the standard deviation; NaN if a value is NaN.
+// Subtracts the mean from the patch. Returns the standard deviation; NaN if a value is NaN.
 double Centre(Patch* patch) {
   const double sum = SumOf([&](size_t i) { return static_cast<double>((*patch)[i]); });
   const auto mean = static_cast<float>(sum / kPatchSize);
@@ -52,7 +52,7 @@ double Centre(Patch* patch) {
   return std::sqrt(squares / kPatchSize);
 }
 
-// Reads all pixels of the patch, with the values of ReducedImage::At(). Returns false if the patch
+// Reads all pixels of the patch; each value equals ReducedImage::At(). Returns false if the patch
 // extends beyond the image.
 bool Sample(const ReducedImage& image, const PatchGrid& grid, Patch* patch) {
   const Image<float>& light = image.light;
@@ -66,7 +66,8 @@ bool Sample(const ReducedImage& image, const PatchGrid& grid, Patch* patch) {
             corner.y() < light.height() - 1))
         return false;
     }
-  // Parallel cameras see the place without scaling, so that all pixels have the same fractions.
+  // Parallel cameras show the place at the same scale, so that all its pixels are interpolated with
+  // the same weights.
   constexpr double kSamePixel = 1e-7;
   if ((step_x - Vec2(1, 0)).norm() + (step_y - Vec2(0, 1)).norm() < kSamePixel) {
     const int column = static_cast<int>(first.x()), row = static_cast<int>(first.y());
@@ -95,8 +96,8 @@ bool Sample(const ReducedImage& image, const PatchGrid& grid, Patch* patch) {
   return true;
 }
 
-// Returns the correlation of the place's patch with another one; -1 if a pixel of that is not
-// recorded.
+// Returns the correlation of the place's patch with `other`, whose mean is subtracted; -1 if a
+// pixel of `other` is not recorded.
 double Correlation(const Place& place, Patch* other) {
   const double deviation = Centre(other);
   if (std::isnan(deviation)) return -1;
@@ -126,7 +127,7 @@ double CorrelationAt(const View& view, const Place& place, double depth_w) {
 
 namespace {
 
-// Returns the mean of the better correlations; -1 if too few views see the place.
+// Returns the mean of the largest 60 % of the correlations; -1 if too few views see the place.
 double Agreement(std::vector<double>* correlations) {
   if (correlations->size() < kLeastViews) return -1;
   const auto count = static_cast<size_t>(kAgreeing * static_cast<double>(correlations->size()));
@@ -141,7 +142,8 @@ double AgreementAt(std::span<const View> views, const Place& place, double depth
   return Agreement(&correlations);
 }
 
-// Returns the agreement of the views at the place's own pixels, where a watermark would be.
+// Returns the agreement of the views at the pixel position of the place itself, where a watermark
+// would be in every image.
 double StillAgreement(const Rings& rings, const Place& place, int divisor) {
   std::vector<double> correlations;
   for (const std::vector<View>& ring : rings)
@@ -156,7 +158,8 @@ double StillAgreement(const Rings& rings, const Place& place, int divisor) {
   return Agreement(&correlations);
 }
 
-// Returns the largest disparity of the views from the place's own pixels, in reduced pixels.
+// Returns the largest displacement of the place in a view from its own pixel position, in reduced
+// pixels.
 double LargestMove(const Rings& rings, const Place& place, double depth_w, int divisor) {
   double largest = 0;
   for (const std::vector<View>& ring : rings)
@@ -166,7 +169,7 @@ double LargestMove(const Rings& rings, const Place& place, double depth_w, int d
   return largest;
 }
 
-// Returns the disparity in reduced pixels at 1 / depth = 1.
+// Returns the largest disparity, in reduced pixels, at 1 / depth = 1.
 double PixelsPerW(std::span<const View> views, const Intrinsics& k, int divisor) {
   double baseline_w = 0;
   for (const View& view : views) baseline_w = std::max(baseline_w, view.offset_w);
@@ -175,9 +178,9 @@ double PixelsPerW(std::span<const View> views, const Intrinsics& k, int divisor)
 
 // The best depth of a sweep.
 struct Peak {
-  double score = -1, rival = -1;        // the rival is the best local maximum elsewhere
+  double score = -1, rival = -1;        // agreement; rival: the best local maximum elsewhere
   double per_w = 0;                     // 1 / depth, refined between the steps
-  double from_per_w = 0, to_per_w = 0;  // range around it that is almost as good
+  double from_per_w = 0, to_per_w = 0;  // range around per_w that is almost as good
 };
 
 Peak FindPeak(const DepthSweep& sweep, std::span<const View> views, const Place& place) {
@@ -260,7 +263,8 @@ double TextureAt(const Image<float>& light, int x, int y) {
   return std::sqrt(std::max(0.0, least) / kPatchSize) / 2;  // NaN stays
 }
 
-// Returns the place of one cell with the most texture.
+// Returns the place with the most texture in one cell of the image; none if its texture is too
+// weak.
 std::optional<Place> PlaceIn(const LightField& field, LfImageId camera, const ReducedImage& image,
                              int column, int row) {
   const int border = kHalfPatch + 1, width = image.light.width() - 2 * border,
@@ -300,7 +304,7 @@ std::optional<Place> PlaceIn(const LightField& field, LfImageId camera, const Re
   place.deviation = Centre(&place.patch);
   const Intrinsics& k = pinhole.intrinsics;
   const Vec2 off = (place.at_px - Vec2(k.width_px, k.height_px) / 2) / (0.5 * k.width_px);
-  constexpr double kMiddle = 0.5;  // of half the width
+  constexpr double kMiddle = 0.5;  // as a share of half the width
   place.weight = std::min(1.0, best / (3 * kLeastTexture)) *
                  std::exp(-0.5 * off.squaredNorm() / (kMiddle * kMiddle));
   return place;

@@ -1,5 +1,5 @@
 // Finds the depth of one textured place of an LF image by comparing it with the LF images around it
-// (plane sweep). For find_subject.cc, and for stages that compare LF images themselves.
+// (plane sweep). Used by find_subject.cc and by code that compares LF images itself.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace lf {
 
-inline constexpr int kHalfPatch = 4;  // pixels of the reduced image
+inline constexpr int kHalfPatch = 4;  // in pixels of the reduced image
 inline constexpr int kPatchSide = 2 * kHalfPatch + 1;
 inline constexpr int kPatchSize = kPatchSide * kPatchSide;
 using Patch = std::array<float, kPatchSize>;
@@ -25,24 +25,25 @@ using Patch = std::array<float, kPatchSize>;
 struct View {
   LfImageId id;
   RayThrough rays;
-  double offset_w = 0;  // distance from the camera
+  double offset_w = 0;  // distance from the compared camera, across its optical axis
   std::shared_ptr<const ReducedImage> image = nullptr;
 };
 
 using Rings = std::vector<std::vector<View>>;  // the innermost ring first
 
-// Returns LF cameras around `camera` in up to five rings, every ring four times as wide as the one
-// before. A ring has the LF cameras nearest to six evenly spread positions. Images are not loaded.
+// Returns LF cameras around `camera` in up to five rings; each ring is four times as wide as the
+// one before. A ring contains the LF cameras nearest to six evenly spread positions. Images are not
+// loaded.
 Rings ChooseRings(const LightField& field, LfImageId camera);
 
-// A place of the camera's image: its ray, and the rays of the pixels around it.
+// A place of the camera's image: its ray, and the directions to the pixels around it.
 struct Place {
-  Vec2 at_px;              // in the LF image
-  Vec3 origin, direction;  // depth 1 along the optical axis
-  Vec3 right, down;        // one reduced pixel, at depth 1
-  double weight = 0;       // larger with more texture, and nearer to the middle
-  Patch patch;             // of the camera's image, mean 0
-  double deviation = 0;
+  Vec2 at_px;              // position in the LF image
+  Vec3 origin, direction;  // the direction has length 1 along the optical axis
+  Vec3 right, down;        // steps to the next reduced pixel, at depth 1
+  double weight = 0;       // larger with more texture and nearer to the middle of the image
+  Patch patch;             // pixels of the camera's image, minus their mean
+  double deviation = 0;    // standard deviation of the patch
 
   Vec3 At(double depth_w, double x, double y) const {
     return origin + depth_w * (direction + x * right + y * down);
@@ -53,19 +54,18 @@ struct Place {
 std::vector<Place> TexturedPlaces(const LightField& field, LfImageId camera,
                                   const ReducedImage& image);
 
-// The pixels around a place at a depth, as a view records them: the pixels of the patch lie at
-// centre + x step_x + y step_y, in pixels of the view's LF image, for integers x and y within
-// +-kHalfPatch.
+// The positions at which a view records the pixels around a place at a depth: centre + x step_x + y
+// step_y, in pixels of the view's LF image, for integers x and y within +-kHalfPatch.
 struct PatchGrid {
   Vec2 centre, step_x, step_y;
 
-  // Returns the position of the pixel `index` of a Patch.
+  // Returns the position of pixel `index` of a Patch.
   Vec2 At(int index) const {
     return centre + (index % kPatchSide - kHalfPatch) * step_x +
            (index / kPatchSide - kHalfPatch) * step_y;
   }
 };
-// Returns the grid of a place at a depth in a view; none if the view's lens has no such rays.
+// Returns the grid of a place at a depth in a view; none if the view's lens has no image of it.
 std::optional<PatchGrid> PatchSeenBy(const View& view, const Place& place, double depth_w);
 
 // Returns the correlation of the place's patch with the view's pixels at a depth, in [-1, 1]; -1 if
@@ -74,15 +74,16 @@ double CorrelationAt(const View& view, const Place& place, double depth_w);
 
 struct FoundDepth {
   double distance_w = 0, weight = 0;
-  double error = 0;  // relative to distance_w
+  double error = 0;  // standard deviation relative to distance_w
 };
 
-// Returns the depth on which most views agree. None if there is no clear depth, if the place stands
-// still in all views, as a watermark does, or if it is so far that nothing moves.
-//   rings      of views whose images are loaded; at least one ring, each of at least two views
-//   k          of the camera
-//   divisor    of the reduced images
-//   nearest_w  no nearer depths are tested; 0: the nearest that the inner ring's images can show
+// Returns the depth on which most views agree. None if no depth is clearly better than the others;
+// if the place does not move from view to view, as a watermark; or if it is so far away that it
+// moves by less than a reduced pixel.
+//   rings      rings of views whose images are loaded; at least one ring, each with at least two
+//   views k          intrinsics of the camera divisor    divisor of the reduced images nearest_w no
+//   nearer depths are tested; 0: tests from the nearest depth that the images of the
+//              innermost ring can show
 std::optional<FoundDepth> DepthOf(const Rings& rings, const Place& place, const Intrinsics& k,
                                   int divisor, double nearest_w = 0);
 

@@ -1,5 +1,5 @@
-// Finds the depth of the subject of an LF image from points of a reconstruction that it shows, for
-// scenes whose pixels do not tell the depth.
+// Finds the depth of the subject of an LF image from the points of a reconstruction that the image
+// shows, for scenes whose depth cannot be found from pixels.
 #pragma once
 
 #include <span>
@@ -10,16 +10,16 @@
 
 namespace lf {
 
-// Returns the depths around which most points lie, by weight: a point counts more the nearer it is
-// to the middle of the image. Points behind the camera or outside its image do not count; the
-// number of the others is textured_count, and also place_count. The best depth is sure if 24 points
-// lie there, with a quarter of the whole weight and at least 1.5 times the weight at the next best
-// depth.
+// Returns the depths around which most points lie. The weight of a point is larger the nearer it is
+// to the middle of the image. Points behind the camera or outside its image are not used;
+// textured_count and place_count are the number of the remaining points. The best depth is sure if
+// 24 points with a quarter of the whole weight lie around it, and if its weight is at least 1.5
+// times the weight at the next best depth.
 Subject FindPointSubject(const PinholeCamera& camera, std::span<const Vec3> points_world);
 
 // Returns true if the camera sees at least 24 points, and at most 1 % of them are within 10 % of
-// this depth. If pixels tell this depth, it is then likely that of a pattern that repeats, a
-// mirror, or a mark on the lens.
+// `depth_w`. If this depth was found from pixels, it is then probably caused by a pattern that
+// repeats, a mirror, or a mark on the lens.
 bool PointsContradict(const PinholeCamera& camera, std::span<const Vec3> points_world,
                       double depth_w);
 

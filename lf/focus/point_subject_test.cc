@@ -19,8 +19,8 @@ PinholeCamera Camera() {
   return camera;
 }
 
-// Draws random points that the camera sees. depth(x, y) gives the depth at positions from -1 to 1
-// in the image; 0 draws no point.
+// Draws random points that the camera sees. depth(x, y) returns the depth at position (x, y) of the
+// image, from -1 to 1; depths below 0 put points behind the camera.
 using Depth = std::function<double(RandomSequence* random, double x, double y)>;
 std::vector<Vec3> Draw(int count, const Depth& depth) {
   const PinholeCamera camera = Camera();
@@ -34,7 +34,7 @@ std::vector<Vec3> Draw(int count, const Depth& depth) {
   return points;
 }
 
-// Adds the error of a reconstruction, up to 1 % of the depth.
+// Returns the depth with the error of a reconstruction, which is up to 1 %.
 double Blurred(RandomSequence* random, double depth_w) {
   return depth_w * (1 + random->Uniform(-0.01, 0.01));
 }
@@ -142,7 +142,7 @@ TEST(PointsContradict, OnlyWherePointsAreManyAndNoneIsNear) {
   EXPECT_FALSE(PointsContradict(Camera(), few, 2));
   EXPECT_FALSE(PointsContradict(Camera(), {}, 2));
   EXPECT_FALSE(PointsContradict(Camera(), Draw(400, Behind(Wall(5))), 2));
-  // The subject has few of the points, and the wall behind it has most.
+  // Few of the points belong to the subject, most belong to the wall behind it.
   EXPECT_FALSE(PointsContradict(Camera(), Draw(2000, CardBefore(2, 6, 0.2)), 2));
   EXPECT_TRUE(PointsContradict(Camera(), Draw(2000, CardBefore(2, 6, 0.2)), 3.5));
 }

@@ -1,4 +1,4 @@
-// Reduced LF images for the search of depths: grey, a few hundred pixels wide.
+// Reduced LF images for the search of depths. They are grey and at most 480 pixels wide.
 #pragma once
 
 #include <optional>
@@ -15,26 +15,28 @@ namespace lf {
 inline constexpr int kMostReducedWidth = 480;
 
 struct ReducedImage {
-  // Square root of light, from 0 (black) to 1, in which noise is about equal everywhere; NaN if
-  // nothing was recorded. A pixel is the root of the mean light of divisor x divisor pixels of the
-  // LF image, whose last columns and rows may be left out.
+  // Square root of light, from 0 (black) to 1; NaN if nothing was recorded. In the root, noise is
+  // about equal in shadows and highlights. A pixel is the root of the mean light of divisor x
+  // divisor pixels of the LF image; the last columns and rows of the LF image are left out if they
+  // do not fill a pixel.
   Image<float> light;
   int divisor = 1;
 
-  // Returns the light between pixels: NaN beyond the image, and if one of the four pixels around
-  // was not recorded.
-  //   place_px  in the LF image, continuous
+  // Returns the value at a position, interpolated between pixels; NaN outside the centres of the
+  // border pixels, and if one of the four pixels around was not recorded.
+  //   place_px  continuous position in the LF image
   float At(const Vec2& place_px) const;
 };
 
-// Returns the divisor for LF images of this width.
+// Returns the smallest divisor that reduces LF images of this width to kMostReducedWidth or less.
 int DivisorFor(int width_px);
 
-// Reduces a whole LF image in RGB.
+// Reduces a whole LF image with RGB pixels.
 ReducedImage Reduced(const LfPixels& pixels, int divisor);
 
-// Loads an LF image and reduces it. kInput: the image cannot be loaded.
-//   store  one with Mosaics::kToRgb
+// Loads an LF image and reduces it. kInput: the image cannot be loaded. kOutput: the machine lacks
+// memory or open files.
+//   store  a store with Mosaics::kToRgb
 Result<ReducedImage> LoadReducedImage(const LightField& light_field, const LfImageStore& store,
                                       LfImageId id);
 

@@ -10,10 +10,11 @@
 
 namespace lf {
 
-// Returns the range of depths, along the optical axis of the LF camera nearest to a position, that
-// contains four fifths of the places which FindSubject() finds in its image, and 5 % more on either
-// side. None if the subject is not sure, or if the camera's image cannot be read.
-//   store  one with Mosaics::kToRgb
+// Runs FindSubject() for the LF camera nearest to a position. Returns the range of depths, along
+// the camera's optical axis, that contains four fifths of the places found in its image, widened by
+// 5 % at either end. None if the subject is not sure, if the image cannot be read, or if there are
+// fewer than three LF images.
+//   store  a store with Mosaics::kToRgb
 std::optional<DepthRange> SweptDepths(const LightField& light_field, const LfImageStore& store,
                                       const Vec3& position_world, ThreadPool& pool);
 
