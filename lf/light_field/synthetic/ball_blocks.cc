@@ -10,8 +10,8 @@ BallBlocks::BallBlocks(const std::vector<Ball>& balls) {
   if (!balls.empty()) Build(balls, order, 0, balls.size());
 }
 
-// Splits order[begin, end) across its longest side, at a whole number of blocks, until one block is
-// left.
+// Splits order[begin, end) across the longest side of its bounding box, at a whole number of
+// blocks, until each part is one block.
 void BallBlocks::Build(const std::vector<Ball>& balls, Indices& order, size_t begin, size_t end) {
   Eigen::AlignedBox3d box;
   for (size_t i = begin; i < end; ++i) box.extend(balls[order[i]].centre_world);

@@ -1,6 +1,6 @@
-// Finds quickly the few balls that a ray comes near. Balls near to each other form blocks of eight:
-// a ball around the block is tested first, then the eight are tested side by side. For the hundred
-// balls of a scene this is faster than a tree.
+// Finds the few balls near a ray quickly. Eight balls near each other form a block: a ball around
+// the block is tested first, then its eight balls are tested side by side. For the hundred balls of
+// a scene this is faster than a tree.
 #pragma once
 
 #include <algorithm>
@@ -18,9 +18,10 @@ struct Ball {
   double radius_w = 0;
 };
 
-// The points around a half-line from `origin` along `direction` (unit length) that are nearer to it
-// than base_w / cos + along tan, where `along` is the distance along the half-line, up to
-// `along_end`. sine is the sine of half the opening angle.
+// A cone around the half-line from `origin` along `direction` (unit length): the points whose
+// distance from the half-line is less than base_w / cos + along tan, where `along` is their
+// distance along the half-line, at most `along_end`. `sine` is the sine of half the opening angle;
+// cos and tan are of the same angle.
 struct Cone {
   Vec3 origin = Vec3::Zero();
   Vec3 direction = Vec3::UnitZ();
@@ -34,14 +35,14 @@ class BallBlocks {
   BallBlocks() = default;
   explicit BallBlocks(const std::vector<Ball>& balls);
 
-  // Calls visit(i) for the index of every ball that reaches into the cone, and for some others,
-  // because the test is in single precision and errs on the safe side. The order is always the
+  // Calls visit(i) for the index of every ball that reaches into the cone. Some other balls may be
+  // visited, because the test in single precision never misses a ball. The order is always the
   // same.
   template <class Visit>
   void ForEachNear(const Cone& cone, Visit&& visit) const;
 
-  // Calls visit(i) in this way for every ball that would contain the point if its radius were
-  // multiplied by `factor`.
+  // Calls visit(i) for every ball that would contain the point if its radius were multiplied by
+  // `factor`, and perhaps for some others.
   template <class Visit>
   void ForEachAround(const Vec3& point_world, double factor, Visit&& visit) const;
 

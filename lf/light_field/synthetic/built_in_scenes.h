@@ -38,19 +38,19 @@ struct BuiltInScene {
   std::string_view name;
   std::string_view summary;
   SceneDescription (*describe)();
-  // The recommended capture, which is the default. A capture of another size keeps the horizontal
-  // field of view.
+  // The recommended capture, which is the default. If another image size is chosen, the horizontal
+  // field of view stays the same.
   RigOptions rig;
   int width_px = 480;
   int height_px = 320;
   double focal_length_per_width = 1;  // fx / width
-  int samples = 4;                    // as in Photograph()
-  double max_radiance = 1;            // no light is brighter; for RadianceEncoding::max_radiance
+  int samples = 4;                    // rays per pixel at edges, as in Photograph()
+  double max_radiance = 1;  // upper bound of the radiance; for RadianceEncoding::max_radiance
 };
 
 std::span<const BuiltInScene> BuiltInScenes();
 
-// Returns null for an unknown name.
+// Returns the scene with this name, or null if there is none.
 const BuiltInScene* FindBuiltInScene(std::string_view name);
 
 // Returns intrinsics with square pixels and a central principal point.

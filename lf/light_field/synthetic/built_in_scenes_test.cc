@@ -41,8 +41,8 @@ TEST(BuiltInScenes, PicturesAreFiniteNeverNegativeAndWithinTheirMaximum) {
   }
 }
 
-// Checks 2 exp(-2 (pi sigma / step)^2) for all lamps and all focus distances that the captures are
-// meant for.
+// Checks that 2 exp(-2 (pi sigma / step)^2) is below 2 % for all lamps, at all focus distances for
+// which the captures are meant.
 TEST(BuiltInScenes, TheRecommendedCapturesShowBokehWithoutDots) {
   for (const BuiltInScene& scene : BuiltInScenes()) {
     const std::vector<PinholeCamera> cameras = Cameras(scene);

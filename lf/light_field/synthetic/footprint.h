@@ -5,16 +5,16 @@
 
 namespace lf {
 
-// The footprint is round and Gaussian, exp(-(distance / width)^2), with its centre on the ray.
-// Along the ray the width is |width_w + lambda spread|. Curved mirrors increase the spread, glass
-// spheres decrease it; widths follow paraxial optics, which is accurate enough to decide over how
-// much to average. {} is the exact ray.
+// The footprint is round and Gaussian, exp(-(distance / width)^2), with its centre on the ray. At
+// distance lambda along the ray, the width is |width_w + lambda spread|. Curved mirrors increase
+// the spread, glass spheres decrease it. The widths follow paraxial optics, which is accurate
+// enough to choose how much to average. {} is the exact ray, of width 0.
 struct Footprint {
   double width_w = 0;
   double spread = 0;
 
   double At(double lambda) const { return std::abs(width_w + lambda * spread); }
-  // Returns the footprint of the beam with its start moved along the ray.
+  // Returns the footprint of the rest of the beam, which starts at distance lambda along the ray.
   Footprint From(double lambda) const {
     const double width_there_w = width_w + lambda * spread;
     return width_there_w < 0 ? Footprint{-width_there_w, -spread}
@@ -22,8 +22,8 @@ struct Footprint {
   }
 };
 
-// Returns the footprint whose variance is that of a square pixel `pixel_angle` wide (focal length
-// 1). exp(-(d/w)^2) has variance w^2 / 2 per axis, a square of side 1 has 1 / 12.
+// Returns the footprint that has the same variance as a square pixel `pixel_angle` wide (at focal
+// length 1). exp(-(d/w)^2) has the variance w^2 / 2 along each axis, a square of side 1 has 1 / 12.
 inline constexpr double kFootprintPerSide = 0.40824829046386302;  // sqrt(2 / 12)
 inline Footprint FootprintOfPixel(double pixel_angle) {
   return {0, pixel_angle * kFootprintPerSide};

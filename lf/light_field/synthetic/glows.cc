@@ -15,8 +15,8 @@ Glows::Glows(std::vector<Glow> glows) : glows_(std::move(glows)) {
   balls_ = BallBlocks(balls);
 }
 
-// Returns true if the box around the ray touches the box around the lamps. Rays that end on a table
-// below the lamps do not touch it, and there are many of these.
+// Returns true if the box around the ray touches the box around the lamps. It does not for rays
+// that end on a table below the lamps, and there are many of these.
 bool Glows::MayMeet(const Ray& ray, const Footprint& footprint, double lambda_end) const {
   if (glows_.empty()) return false;
   const double past_all = (bounds_.center() - ray.origin).norm() + bounds_.diagonal().norm();
@@ -38,8 +38,7 @@ Rgb Glows::Along(const Ray& ray, const Footprint& footprint, double lambda_end,
     const double passes2 = std::max(0.0, to_centre.squaredNorm() - lambda * lambda);
     const double width_w = footprint.At(lambda);
     const double own2 = glow.radius_w * glow.radius_w;
-    const double wide2 = own2 + width_w * width_w;  // Gaussian convolved with a Gaussian: squares
-                                                    // add
+    const double wide2 = own2 + width_w * width_w;  // convolving Gaussians adds squared widths
     if (passes2 > kGlowReach * kGlowReach * wide2) return;
     light += glow.colour * (own2 / wide2 * std::exp(-passes2 / wide2));
   };

@@ -1,4 +1,4 @@
-// The small lamps (glows) that a ray passes.
+// The light of the small lamps (glows) that a ray passes.
 #pragma once
 
 #include <cstdint>
@@ -18,20 +18,20 @@ class Glows {
  public:
   explicit Glows(std::vector<Glow> glows);
 
-  // Returns the light that all lamps before `lambda_end` add to the ray, averaged over its
-  // footprint. The direction must have unit length. `among` lists the lamps to consider; null means
-  // all.
+  // Returns the light that all lamps at distances below `lambda_end` add to the ray, averaged over
+  // its footprint. The direction must have unit length. `among` lists the lamps that are
+  // considered; null: all lamps are.
   Rgb Along(const Ray& ray, const Footprint& footprint, double lambda_end,
             const std::vector<uint32_t>* among = nullptr) const;
 
-  // Returns all lamps that reach into the cone, and perhaps some others.
+  // Returns the indices of all lamps that reach into the cone, and perhaps of some others.
   std::vector<uint32_t> Near(const Cone& cone) const;
 
  private:
   bool MayMeet(const Ray& ray, const Footprint& footprint, double lambda_end) const;
 
   std::vector<Glow> glows_;
-  Eigen::AlignedBox3d bounds_;  // of all glows
+  Eigen::AlignedBox3d bounds_;  // bounding box of all glows
   BallBlocks balls_;
 };
 

@@ -7,27 +7,29 @@
 namespace lf {
 namespace {
 
-// Spheres further away than this many radii do not hide the room's light.
+// A sphere farther away than this number of its radii does not hide the room's light.
 constexpr double kReach = 6;
-// A point is on a sphere if it is this near to it, relative to its radius.
+// A point lies on a sphere if its distance to it, relative to the sphere's radius, is at most this.
 constexpr double kTouching = 1e-6;
 
-// Returns the share of a lamp's light that passes one sphere. The sines are those of half the
-// angles under which lamp and sphere are seen.
+// Returns the share of a lamp's light that passes one sphere. sine_lamp and sine_sphere are the
+// sines of half the angles under which lamp and sphere are seen; `cosine` is the cosine of the
+// angle between their centres.
 Rgb PassedBy(const Occluder& occluder, double sine_lamp, double sine_sphere, double cosine) {
   const double between = std::acos(std::min(1.0, cosine));
   const double sphere = std::asin(std::min(1.0, sine_sphere));
   const double hidden = HiddenShare(std::asin(std::min(1.0, sine_lamp)), sphere, between);
   if (!occluder.is_glass || hidden == 0) return Rgb::Constant(1 - hidden);
-  // Three quarters of the light that the shadow lacks are gathered in a spot of 0.38 of its radius.
+  // Three quarters of the light that the shadow lacks are gathered in a spot whose radius is 0.38
+  // of the shadow's.
   constexpr double kSpot = 0.38, kSpread = 0.12;
   const double t = between / (kSpot * sphere);
   const double gathered = kSpread + (0.75 / (kSpot * kSpot)) * std::exp(-t * t);
   return (1 - hidden) + hidden * gathered * occluder.colour;
 }
 
-// Returns the effective cosine of a lamp of the given sine while it rises over the horizon: a
-// parabola, then a line.
+// Returns the effective cosine of a lamp that may be partly below the horizon of the surface. It is
+// a parabola while the lamp rises over the horizon, then the cosine itself.
 double RisenCosine(double cosine, double sine_lamp) {
   if (cosine >= sine_lamp) return cosine;
   const double risen = std::max(0.0, cosine + sine_lamp);
@@ -53,9 +55,10 @@ Lighting::Lighting(std::vector<Lamp> lamps, std::vector<Occluder> occluders, con
   balls_ = BallBlocks(balls);
 }
 
-// Returns the share of the room's light that spheres above the surface leave. Each hides its cosine
-// times the squared sine of half its angle, which is exact for one sphere wholly above the horizon,
-// minus 1 / kReach^2 of the cosine, so that its effect fades out at kReach.
+// Returns the share of the room's light that the spheres above the surface leave. Each sphere hides
+// its cosine times the squared sine of half the angle under which it is seen, which is exact for a
+// single sphere wholly above the horizon. 1 / kReach^2 of the cosine is subtracted, so that the
+// effect becomes 0 at kReach.
 double Lighting::OpenShare(const Vec3& point_world, const Vec3& normal_world) const {
   double open = 1;
   balls_.ForEachAround(point_world, kReach, [&](uint32_t i) {

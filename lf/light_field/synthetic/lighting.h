@@ -1,5 +1,5 @@
-// The light on diffuse surfaces: lamps with soft shadows of spheres, and the ambient light of the
-// room.
+// The light on diffuse surfaces. It comes from lamps, with soft shadows of spheres, and from the
+// ambient light of the room.
 #pragma once
 
 #include <vector>
@@ -22,10 +22,11 @@ class Lighting {
   Lighting() = default;
   Lighting(std::vector<Lamp> lamps, std::vector<Occluder> occluders, const Rgb& ambient);
 
-  // Returns the light that a white diffuse surface at the point reflects. The formulas are closed,
-  // without random numbers: the share of a lamp that a sphere hides is that of two discs on the
-  // sky; the spot in the shadow of glass is a Gaussian, as bright as the light that the shadow
-  // lacks. Spheres that touch the point hide nothing of it, because the cosine accounts for them.
+  // Returns the light that a white diffuse surface at the point reflects. It is computed by closed
+  // formulas, without random numbers. The share of a lamp that a sphere hides is computed as for
+  // two discs on the sky. The spot in the shadow of glass is a Gaussian with three quarters of the
+  // light that the shadow lacks. A sphere that the point lies on hides nothing, because the cosine
+  // accounts for it.
   Rgb DiffuseLight(const Vec3& point_world, const Vec3& normal_world) const;
 
  private:
@@ -39,8 +40,8 @@ class Lighting {
   Rgb ambient_ = Rgb::Zero();
 };
 
-// Returns the share of a disc of radius a on the sky that is hidden by one of radius b, with
-// centres c apart (all are angles).
+// Returns the share of a disc of radius a on the sky that is hidden by a disc of radius b, whose
+// centre is c away. a, b and c are angles.
 double HiddenShare(double a, double b, double c);
 
 }  // namespace lf

@@ -31,8 +31,8 @@ TEST(Lighting, ASphereThrowsAShadowWithASoftRim) {
     before = share;
   }
   EXPECT_DOUBLE_EQ(before, 1);
-  // Similar triangles give the edge of the core at 0.2 + (0.2 - 0.1), and half of the light at 2 x
-  // 0.2.
+  // By similar triangles, the core of the shadow ends at 0.2 + (0.2 - 0.1), and half of the light
+  // is reached at 2 x 0.2.
   EXPECT_NEAR(LightAt(lighting, {0.3, 0, 0}), 0, 0.1);
   EXPECT_NEAR(LightAt(lighting, {0.405, 0, 0}) / LightAt(bare, {0.405, 0, 0}), 0.5, 0.05);
 }

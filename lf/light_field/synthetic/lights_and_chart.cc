@@ -1,5 +1,5 @@
-// The two scenes for measurements: lights on black, and charts. Both are in front of a camera 1 m
-// before the origin that looks along +z.
+// Describes the two scenes for measurements: lights on black, and charts. Both are in front of a
+// camera at z = -1 m that looks along +z.
 #include <array>
 #include <cmath>
 
@@ -9,14 +9,15 @@ namespace lf {
 namespace {
 
 constexpr double kCameraZ = -1;
-constexpr double kFocalPx = 480;  // of the recommended capture
+constexpr double kFocalPx = 480;  // focal length of the recommended capture
 
 // Returns the point that the middle camera sees at (x, y) pixels from the centre of its picture.
 Vec3 PointAt(double x_px, double y_px, double depth_w) {
   return {x_px / kFocalPx * depth_w, y_px / kFocalPx * depth_w, kCameraZ + depth_w};
 }
 
-// Returns a matte print. The room is white all round, so that radiance is reflectance.
+// Returns a matte print. The room is equally white on all sides, so that radiance equals
+// reflectance.
 Material Print(PatternKind pattern, double scale_w) {
   Material print;
   print.colour = Rgb::Constant(0.8);
@@ -34,8 +35,8 @@ void Hang(SceneDescription& scene, const Material& material, const Vec3& centre,
 
 }  // namespace
 
-// Far rows are at the top and near ones at the bottom, red is left and blue is right, so that a
-// mirrored or rotated picture is noticed at once.
+// Far rows are at the top and near rows at the bottom; red is on the left and blue on the right, so
+// that a mirrored or rotated picture is noticed at once.
 SceneDescription DescribeLights() {
   constexpr std::array kDepths = {3.0, 2.0, 1.4, 1.0, 0.75, 0.6, 0.5};
   constexpr double kSigmaPx = 1.2;

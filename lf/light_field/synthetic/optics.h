@@ -7,12 +7,12 @@
 
 namespace lf {
 
-// Returns the direction after a mirror: d - 2 (d.n) n. Lengths are kept.
+// Returns the direction of a ray after its reflection: d - 2 (d.n) n. It has the length of d.
 Vec3 Reflected(const Vec3& direction, const Vec3& normal);
 
-// Returns the direction after a surface, by Snell's law n1 sin = n2 sin. Both vectors have unit
-// length, and the normal points against the direction; index_ratio = n1 / n2. None if there is
-// total reflection.
+// Returns the direction of a ray after its refraction at a surface, by Snell's law n1 sin = n2 sin,
+// with index_ratio = n1 / n2. Both vectors have unit length, and the normal points against the
+// direction. None for total reflection.
 std::optional<Vec3> Refracted(const Vec3& direction, const Vec3& normal, double index_ratio);
 
 // Returns the share of unpolarised light that a glass surface reflects (Fresnel). The light enters

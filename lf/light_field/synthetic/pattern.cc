@@ -21,7 +21,7 @@ double Floor(double t) {
   return cut > t ? cut - 1 : cut;
 }
 
-// A sine-like wave of period 1 between -1 and 1, made of two parabolas.
+// Returns a sine-like wave of period 1 between -1 and 1, made of two parabolas.
 double Wave(double t) {
   const double phase = t - Floor(t) - 0.5;
   return 16 * phase * (std::abs(phase) - 0.5);
@@ -29,17 +29,18 @@ double Wave(double t) {
 
 double SmoothStep(double t) { return t * t * (3 - 2 * t); }
 
-// Contrast of a wave of period 1 averaged over `width`: 1 for points, 0 from one period on.
+// Returns the contrast that a wave of period 1 keeps when averaged over `width`: 1 for width 0, 0
+// from one period on.
 double Contrast(double width) {
   const double rest = std::max(0.0, 1 - width * width);
   return rest * rest;
 }
 
-// Returns +1 on [0, 1/2) and -1 on [1/2, 1), averaged over `width`: the difference of its integral,
-// which is a triangle wave.
+// Returns the square wave that is +1 on [0, 1/2) and -1 on [1/2, 1), averaged over `width`: the
+// difference of its integral, a triangle wave, divided by `width`.
 double SquareWave(double x, double width) {
   const auto integral = [](double t) { return 0.5 - std::abs(t - Floor(t) - 0.5); };
-  constexpr double kNarrow = 1e-6;  // below it the difference is rounding noise
+  constexpr double kNarrow = 1e-6;  // for smaller widths the difference is rounding noise
   if (width < kNarrow) return x - Floor(x) < 0.5 ? 1 : -1;
   return std::clamp((integral(x + width / 2) - integral(x - width / 2)) / width, -1.0, 1.0);
 }
@@ -50,12 +51,12 @@ double Checker(const Pattern& pattern, const Vec2& place_w, double width_w) {
                    SquareWave(place_w.y() / period_w, width_w / period_w);
 }
 
-// The row at height v of a table of letters. Row heights are 1.5 times their letters, and shrink by
-// 4/5 from row to row. The top edge is v = 0; v runs upwards, so rows have negative v.
+// The row at height v of a table of letters. A row is 1.5 times as high as its letters, and 4/5 as
+// high as the row above. The top edge is v = 0; v increases upwards, so that rows have negative v.
 struct ShrinkingRow {
   int index = 0;
-  double letter_w = 0;  // height of its letters
-  double down = 0;      // 0 at the top of a letter, 1 at its bottom; outside [0, 1]: the gap
+  double letter_w = 0;  // height of the row's letters
+  double down = 0;      // 0 at the top of a letter, 1 at its bottom; else in a gap
 };
 constexpr int kRowCount = 12;
 
@@ -80,7 +81,7 @@ double Bars(const Pattern& pattern, const Vec2& place_w, double width_w) {
   return 0.5 + 0.5 * SquareWave(place_w.x() / period_w, width_w / period_w);
 }
 
-// 3 x 5 dots per digit, rows from the top, the left dot first.
+// 3 x 5 dots for each digit: rows from the top, in each row the left dot first.
 constexpr std::array<uint16_t, 10> kDigits = {
     0b111'101'101'101'111, 0b010'110'010'010'111, 0b111'001'111'100'111, 0b111'001'111'001'111,
     0b101'101'111'001'001, 0b111'100'111'001'111, 0b111'100'111'101'111, 0b111'001'010'010'010,
@@ -89,7 +90,7 @@ constexpr std::array<uint16_t, 10> kDigits = {
 double Letters(const Pattern& pattern, const Vec2& place_w) {
   const ShrinkingRow row = RowAt(place_w.y(), pattern.scale_w);
   if (row.down < 0 || row.down >= 1) return 0;
-  const double across = place_w.x() / row.letter_w * 5;  // in dots: 3 of 4 belong to the digit
+  const double across = place_w.x() / row.letter_w * 5;  // in dots, of which a digit has 3 of 4
   const double cell = Floor(across / 4);
   const int dot_x = static_cast<int>(across - 4 * cell);
   if (dot_x >= 3) return 0;
@@ -129,7 +130,7 @@ double Wood(const Pattern& pattern, const Vec2& place_w, double width_w) {
   double value = 0.42 + 0.3 * (tone - 0.5) + 0.14 * Contrast(4 * width) * rings +
                  0.45 * Contrast(20 * width) * fibre +
                  0.35 * Contrast(40 * width) * std::max(0.0, pores - 0.72) / 0.28;
-  // The seam is a groove of 1/70 of the plank's width; it is fainter in wider footprints.
+  // The seam is a groove of 1/70 of the plank's width; wider footprints make it fainter.
   const double seam_width = std::max(1.0 / 70, width);
   const double from_seam = std::min(in_plank, 1 - in_plank) / seam_width;
   if (from_seam < 1) value += (1 - value) * (1 - SmoothStep(from_seam)) / (70 * seam_width);

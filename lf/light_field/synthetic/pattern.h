@@ -1,8 +1,7 @@
 // Procedural textures: the share of a material's second colour at a point of a surface.
-//
-// Lengths are world units on the surface. `width_w` is the width over which the caller averages
-// (the footprint of a pixel; 0 for an exact point). Patterns are filtered analytically if there is
-// a formula, so that a few rays per pixel show no moire.
+// Lengths are world units on the surface. `width_w` is the width over which the pattern is averaged
+// (the footprint of a pixel; 0 for an exact point). Patterns are filtered analytically where there
+// is a formula, so that a few rays per pixel show no moire.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +29,9 @@ struct Pattern {
 // Returns the pattern's value in [0, 1].
 double PatternAt(const Pattern& pattern, const Vec2& place_w, double width_w);
 
-// Returns smooth noise in [0, 1] with one random value per unit square, bicubically interpolated.
-// Its mean is 1/2. Equal arguments give equal values on every machine.
+// Returns smooth noise in [0, 1) from one random value per lattice point; between them, it is
+// interpolated with cubic weights (smoothstep) along each axis. Its mean is 1/2. Equal arguments
+// give equal values on every machine.
 double ValueNoise(double x, double y, uint64_t seed);
 
 }  // namespace lf

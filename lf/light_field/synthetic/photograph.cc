@@ -13,7 +13,7 @@
 namespace lf {
 namespace {
 
-// The rays of all pixels of a camera. Inverts the camera's matrix only once.
+// Returns the rays of a camera's pixels; inverts the camera's matrix only once.
 class PixelRays {
  public:
   explicit PixelRays(const PinholeCamera& camera)
@@ -27,7 +27,7 @@ class PixelRays {
 
   bool has_distortion() const { return distortion_.has_value(); }
 
-  // Returns none if the lens lets no ray through.
+  // Returns the ray through a position of the picture; none if the lens lets no ray through.
   std::optional<Ray> Through(double x_px, double y_px) const {
     if (!distortion_) return Ray{centre_, world_from_pixel_ * Vec3(x_px, y_px, 1)};
     const std::optional<Vec3> position = IdealPosition(intrinsics_, *distortion_, x_px, y_px);
@@ -47,12 +47,13 @@ class PixelRays {
   double pixel_angle_;
 };
 
-// Returns the side of the smallest square number of samples that is not below `samples`.
+// Returns n for the smallest n x n samples that are not fewer than `samples`.
 int SideOf(int samples) { return static_cast<int>(std::ceil(std::sqrt(std::max(1, samples)))); }
 
-// Returns n x n points of the unit square, one in each cell of the n x n grid and in each of n^2
-// rows and columns: a slightly rotated grid. Their mean is the centre, and x and y are
-// uncorrelated, so that the blur between the points is equal in all directions.
+// Returns n x n points of the unit square that form a slightly rotated grid: there is one point in
+// each cell of the n x n grid, and one in each of n^2 rows and n^2 columns. Their mean is the
+// centre, and x and y are uncorrelated, so that the blur between the points is equal in all
+// directions.
 std::vector<Vec2> SquarePoints(int side) {
   std::vector<Vec2> points;
   const double n = side;
@@ -63,14 +64,14 @@ std::vector<Vec2> SquarePoints(int side) {
 }
 
 // Returns true if two neighbours form an edge: they show different surfaces, or differ by more than
-// this share of the brighter one. kDark avoids edges of noise that is too dark to be seen.
+// kShare of the brighter one. kDark prevents edges from noise that is too dark to be seen.
 bool IsEdge(const Scene::Sight& a, const Scene::Sight& b) {
   if (a.shape != b.shape) return true;
   constexpr double kShare = 0.4, kDark = 0.1;
   return ((a.radiance - b.radiance).abs() > kShare * (a.radiance.max(b.radiance) + kDark)).any();
 }
 
-// Tiles of the picture, each with the shapes that its rays may hit first.
+// Divides the picture into tiles; for each tile, finds the shapes that its rays may hit first.
 class Tiles {
  public:
   Tiles(const Scene& scene, const PixelRays& rays, int width, int height)
@@ -84,8 +85,8 @@ class Tiles {
       }
   }
 
-  // Returns the sector of a pixel of the picture, or of one pixel beside it; null if it is not
-  // known.
+  // Returns the sector of the tile that contains a pixel of the picture, or a pixel next to the
+  // picture; null if the tile has none.
   const Scene::Sector* At(int x, int y) const {
     const int column = std::clamp(x / side_, 0, columns_ - 1);
     const int row = std::clamp(y / side_, 0, rows_ - 1);
@@ -95,12 +96,13 @@ class Tiles {
   }
 
  private:
-  static constexpr int kAcross = 32;  // tiles along the longer side
+  static constexpr int kAcross = 32;  // number of tiles along the longer side of the picture
   static constexpr double kBow = 1.1;
-  // One pixel for the border, kGlowReach footprints of a pixel, and a safety margin.
+  // The margin is one pixel for the border, kGlowReach footprints of a pixel, and a safety margin.
   static constexpr double kMargin_px = 1 + kGlowReach * kFootprintPerSide + 0.5;
 
-  // Returns none unless all tested pixels of the tile have rays.
+  // Returns a cone around all rays of a tile; none unless all tested positions of the tile have
+  // rays.
   std::optional<Cone> ConeOf(const PixelRays& rays, int x, int y) const {
     const std::optional<Ray> axis = rays.Through(x + 0.5 * side_, y + 0.5 * side_);
     if (!axis) return std::nullopt;
@@ -125,8 +127,8 @@ class Tiles {
   std::vector<std::optional<Scene::Sector>> sectors_;
 };
 
-// Surfaces and radiance that the rays through the pixel centres of row y see, from one pixel left
-// of the picture to one right of it.
+// Returns the surfaces and radiance seen by the rays through the pixel centres of row y, from one
+// pixel left of the picture to one pixel right of it.
 using SightRow = std::vector<Scene::Sight>;
 SightRow LookAlongRow(const Scene& scene, const PixelRays& rays, const Tiles& tiles, int width,
                       int y) {
@@ -140,7 +142,7 @@ SightRow LookAlongRow(const Scene& scene, const PixelRays& rays, const Tiles& ti
   return row;
 }
 
-// Light, and the share of rays that it comes from.
+// R, G, B, and the share of rays that see a surface.
 using Rgba = Eigen::Array4d;
 
 // Returns the light and opacity that one ray adds to a picture.
@@ -219,8 +221,8 @@ Image<float> ThinLensPhotograph(const Scene& scene, const RenderCamera& camera,
             FocusPointOfElement(camera, x + element_points[i].x(), y + element_points[i].y());
         if (!focus_point) continue;
         const Vec3 direction = *focus_point - lens_points[i];
-        // At the lens it is as wide as the sample's part of the lens; at the focus plane, as its
-        // part of the element.
+        // The footprint is as wide at the lens as the part of the lens that the sample represents,
+        // and as wide at the focus plane as its part of the element.
         const Footprint footprint{lens_cell_w, -lens_cell_w / direction.norm() - element_spread};
         sum += LightOf(scene.SightAlong({lens_points[i], direction}, footprint), surroundings);
       }

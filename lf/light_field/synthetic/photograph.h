@@ -12,7 +12,7 @@
 
 namespace lf {
 
-// The background of pictures where there is no surface.
+// The background that is seen where there is no surface.
 enum class Surroundings : uint8_t {
   kShown,        // room and lamps; pictures are R, G, B
   kTransparent,  // nothing, not even lamps; a ray that hits a surface, of glass or not, is opaque.
@@ -20,25 +20,27 @@ enum class Surroundings : uint8_t {
                  // rays that hit a surface
 };
 
-// Returns the picture that the camera records: linear radiance, the mean over each pixel's square;
-// black where its lens lets no ray through.
-//   samples  rays per pixel at edges of the picture (a neighbour shows another surface or another
-//            brightness), spread over the square; other pixels take one ray through their centre
+// Returns the picture that the camera records: linear radiance, averaged over the square of each
+// pixel; black where the camera's lens lets no ray through.
+//   samples  rays per pixel at edges of the picture, spread over the pixel's square; rounded up to
+//            a square number. At an edge, a neighbour shows another surface or another brightness.
+//            Other pixels are sampled by one ray through their centre
 // Shape [height][width][3], or [4] with kTransparent.
 Image<float> Photograph(const Scene& scene, const PinholeCamera& camera, int samples,
                         Surroundings surroundings = Surroundings::kShown);
 
 struct LensSampling {
-  // Rays per element, each through its own point of lens and element; rounded up to a square
-  // number. Each ray averages lamps and textures over its part of lens and element.
+  // Rays per element, each through its own point of the lens and of the element; rounded up to a
+  // square number. Lamps and textures are averaged over the part of lens and element that each ray
+  // represents.
   int samples = 529;
-  uint64_t seed = 0;  // for the lens points
+  uint64_t seed = 0;  // determines the lens points
 };
 
-// Returns the frame that the thin-lens camera records: the mean over lens and element of the
-// radiance along the rays that meet in the element's point of the focus plane (thesis 2.3.2).
-// Elements that look past the horizon of a tilted focus plane stay black. A pinhole is a lens of
-// one point. Linear; shape [height][width][3], or [4] with kTransparent. The bits do not depend on
+// Returns the frame that the thin-lens camera records: the radiance along all rays that meet in the
+// element's point of the focus plane, averaged over lens and element (thesis 2.3.2). Elements that
+// look past the horizon of a tilted focus plane are black. The lens of a pinhole is one point.
+// Linear radiance; shape [height][width][3], or [4] with kTransparent. The bits do not depend on
 // the number of threads.
 Image<float> ThinLensPhotograph(const Scene& scene, const RenderCamera& camera,
                                 const LensSampling& sampling, ThreadPool& pool,

@@ -15,8 +15,8 @@ PinholeCamera Camera(int width, int height, double focal_px) {
   return camera;  // at the origin, looking along +z
 }
 
-// Returns a white ball in a white room before a black background, so that a pixel is the share that
-// the ball covers.
+// Returns a white ball in white ambient light before a black background, so that the value of a
+// pixel is the share of it that the ball covers.
 Scene WhiteBall(const Vec3& centre, double radius_w) {
   SceneDescription description;
   Material white;
@@ -66,7 +66,7 @@ TEST(Photograph, WhereNothingChangesAPixelIsTheRayThroughItsCentre) {
   EXPECT_LT(changed, 600);  // nothing else may change
 }
 
-// Photographs find for each tile which shapes its rays may hit. No shape may be missed.
+// Photograph() finds for each tile the shapes that its rays may hit. It must not miss any shape.
 TEST(Photograph, EveryPixelIsWhatItsRayAloneSees) {
   const BuiltInScene& still_life = *FindBuiltInScene("still-life");
   const Scene scene(still_life.describe());
@@ -97,8 +97,9 @@ Scene OneLamp(const Vec3& place) {
   return Scene(description);
 }
 
-// The spot of a lamp has the shape of the lens: its radius is f r |1/g - 1/z| elements. It is
-// upright beyond the focus plane, and upside down before it.
+// The image of a lamp out of focus has the shape of the lens, with a radius of f r |1/g - 1/z|
+// elements. It is upright for lamps beyond the focus plane, and upside down for lamps in front of
+// it.
 TEST(Photograph, OutOfFocusALampTakesTheShapeOfTheLens) {
   ThreadPool pool(2);
   for (const double depth_w : {2.0, 0.6}) {
@@ -122,8 +123,8 @@ TEST(Photograph, OutOfFocusALampTakesTheShapeOfTheLens) {
         sum += static_cast<double>(picture.at(x, y));
         row += (y + 0.5) * static_cast<double>(picture.at(x, y));
       }
-    EXPECT_NEAR(row / sum, 40.5, 0.1);  // the pentagon's centre of mass is that of the lens
-    // No light is lost: the lamp's image has the flux that it has in focus.
+    EXPECT_NEAR(row / sum, 40.5, 0.1);  // the centre of mass of the pentagon is that of the lens
+    // No light is lost: the lamp's image has the same flux as in focus.
     const double radius_in_focus_px = 400 * 0.002 / depth_w;
     EXPECT_NEAR(sum, 100 * kPi * radius_in_focus_px * radius_in_focus_px, 0.03 * sum);
   }

@@ -12,7 +12,7 @@
 namespace lf {
 namespace {
 
-// The number of rows and columns whose product is nearest to the count.
+// The number of rows and of columns. Their product is near the wanted number of cameras.
 struct Grid {
   uint32_t rows = 1;
   uint32_t columns = 1;
@@ -75,7 +75,7 @@ std::vector<RigidTransform> BandPoses(const RigOptions& options) {
   return poses;
 }
 
-// The dome is Fibonacci's spiral: equal steps of height, each a golden angle further round.
+// Arranges the dome in Fibonacci's spiral: equal steps of height, each rotated by the golden angle.
 std::vector<RigidTransform> HemispherePoses(const RigOptions& options) {
   const Vec3 up = options.up_world.normalized();
   const Vec3 right = options.view_world.cross(up).normalized();

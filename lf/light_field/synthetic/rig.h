@@ -17,27 +17,26 @@ enum class RigShape : uint8_t {
 
 struct RigOptions {
   RigShape shape = RigShape::kPlanar;
-  // Number of cameras wanted. The grid has round(sqrt(count)) rows, the band min(3, count) rows;
-  // both have the number of columns that comes nearest to count. The dome has exactly this many
-  // cameras.
+  // Wanted number of cameras. The grid has round(sqrt(count)) rows, the band min(3, count) rows.
+  // Both have the number of columns for which rows times columns is nearest to count. The dome has
+  // exactly `count` cameras.
   uint32_t count = 289;
-  double spacing_w = 0.0025;  // from camera to camera; kHemisphere ignores it, because it has no
-                              // pitch
+  double spacing_w = 0.0025;  // from camera to camera; kHemisphere ignores it
   double distance_w = 1;      // from the middle of the rig to the target
   Vec3 target_world = Vec3::Zero();
-  Vec3 view_world = Vec3::UnitZ();  // from the middle of the rig to the target, any length
+  Vec3 view_world = Vec3::UnitZ();  // from the rig's middle to the target, any length
   Vec3 up_world = -Vec3::UnitY();
-  // Simulates a shaky hand: every camera is moved by up to jitter * spacing along each of its axes
-  // and turned by up to jitter degrees about each, uniformly. The returned poses include the
-  // jitter.
+  // Simulates a shaky hand: every camera is moved by up to jitter * RigPitch() along each of its
+  // axes and rotated by up to `jitter` degrees about each of them, uniformly distributed. The
+  // returned poses include the jitter.
   double jitter = 0;
   uint64_t seed = 0;
 };
 
-// Returns cam_from_world of every camera, in rows from the upper left (grid, band) or from the
-// zenith down (dome). Equal options give equal poses. kUsage: count is 0, a spacing or distance is
-// not positive, jitter is outside [0, 1], view_world is upright, or a band is longer than its full
-// circle.
+// Returns cam_from_world of every camera: in rows from the upper left (grid, band), or from the
+// zenith down (dome). Equal options give equal poses.
+// kUsage: count is 0; a spacing or distance is not positive and finite; jitter is outside [0, 1];
+// view_world is 0 or parallel to up_world; or a band is longer than its full circle.
 Result<std::vector<RigidTransform>> MakeRig(const RigOptions& options);
 
 // Returns the distance from one camera to the next: spacing_w, or on a dome the mean distance.

@@ -10,8 +10,8 @@
 namespace lf {
 namespace {
 
-// Light paths end after this many mirrors and glass spheres, or if less than this share of the
-// light would reach the camera.
+// A light path ends after kDepthLimit mirrors and glass spheres, or if less than kLeastWeight of
+// its light would reach the camera.
 constexpr int kDepthLimit = 4;
 constexpr double kLeastWeight = 0.012;
 
@@ -20,8 +20,8 @@ constexpr double kLeastWeight = 0.012;
 struct Scene::Place {
   Vec3 point = Vec3::Zero();
   Vec3 normal = Vec3::Zero();  // points against the ray
-  double cosine = 1;           // of the angle between ray and normal
-  Footprint footprint;         // footprint of the beam from here on
+  double cosine = 1;           // cosine of the angle between ray and normal
+  Footprint footprint;         // footprint of the beam, starting at the point
   const Sphere* sphere = nullptr;
   const PanelPlane* panel = nullptr;
   const Material* material = nullptr;
@@ -113,7 +113,7 @@ Rgb Scene::Follow(const Beam& beam, Hit* first) const {
 }
 
 // Returns the light that the surface mirrors. A sphere spreads the beam: its focal length is -R/2
-// over the cosine.
+// times the cosine.
 Rgb Scene::Reflection(const Beam& beam, const Place& place, double share) const {
   Beam next{{place.point, Reflected(beam.ray.direction, place.normal)},
             place.footprint,
@@ -130,9 +130,9 @@ Rgb Scene::Reflection(const Beam& beam, const Place& place, double share) const 
   return Follow(next, nullptr);
 }
 
-// Follows a beam into the sphere, along the chord, and out. By symmetry a ray leaves a sphere at
-// the angle at which it entered, so it always gets out, and loses the same share again. Internal
-// reflections are left out.
+// Follows a beam into the sphere, along the chord, and out. By symmetry, a ray leaves a sphere at
+// the angle at which it entered. Therefore it always gets out, and loses the same share of its
+// light once more. Internal reflections are left out.
 Rgb Scene::ThroughGlass(const Beam& beam, const Place& place) const {
   LF_CHECK(place.sphere != nullptr);  // the constructor checked it
   const Material& glass = *place.material;
@@ -146,9 +146,9 @@ Rgb Scene::ThroughGlass(const Beam& beam, const Place& place) const {
   const Vec3 exit = place.point + chord_w * inside;
   const Vec3 exit_normal = (sphere.centre_world - exit) / sphere.radius_w;
   const std::optional<Vec3> direction = Refracted(inside, exit_normal, glass.refractive_index);
-  if (!direction) return mirrored;  // only by rounding errors at the very rim
-  // Treats the sphere as a thin ball lens of focal length n R / (2 (n - 1)). It narrows the
-  // footprint; haze widens it, for either sign of the spread.
+  if (!direction) return mirrored;  // only due to rounding errors at the very rim
+  // The sphere is treated as a thin ball lens of focal length n R / (2 (n - 1)), which narrows the
+  // footprint. Haze widens it, whatever the sign of the spread.
   const double focal_w =
       glass.refractive_index * sphere.radius_w / (2 * (glass.refractive_index - 1));
   double spread = place.footprint.spread - place.footprint.width_w / focal_w;
@@ -161,8 +161,8 @@ Rgb Scene::ThroughGlass(const Beam& beam, const Place& place) const {
 
 // Returns the position of a point on its pattern.
 Vec2 Scene::PlaceOnPattern(const Place& place) {
-  if (place.sphere) {  // a slanted cut through a pattern in the plane, which has no poles and no
-                       // seam
+  // A sphere is a slanted cut through a pattern in the plane, which has no poles and no seam.
+  if (place.sphere) {
     const Vec3 offset = place.point - place.sphere->centre_world;
     return {offset.x() + 0.5 * offset.z(), offset.y() - 0.4 * offset.z()};
   }
@@ -176,7 +176,7 @@ Rgb Scene::DiffuseRadiance(const Place& place) const {
   const Material& material = *place.material;
   Rgb colour = material.colour;
   if (material.pattern.kind != PatternKind::kPlain) {
-    // A slanted footprint is long in one direction only, so its mean width is used.
+    // A slanted footprint is long in only one direction; therefore its mean width is used.
     const double width_w =
         place.footprint.width_w / (kFootprintPerSide * std::sqrt(std::max(0.01, place.cosine)));
     const double second = PatternAt(material.pattern, PlaceOnPattern(place), width_w);

@@ -1,8 +1,9 @@
-// A scene as a light source: the radiance along any ray, in closed form (an analytic ray caster).
+// A scene as a light source: computes the radiance along any ray in closed form (an analytic ray
+// caster).
 //
 // Rays are followed through mirrors and glass. Diffuse surfaces receive light from lamps, with soft
-// shadows, and from the room (lighting.h). Nothing is random: a ray always has the same radiance,
-// in every thread. Therefore light field and thin-lens frames show the same world.
+// shadows, and from the room (lighting.h). Nothing is random: a ray has the same radiance each time
+// and in every thread. Therefore a light field and thin-lens frames show the same world.
 #pragma once
 
 #include <cstdint>
@@ -19,24 +20,26 @@ namespace lf {
 
 class Scene {
  public:
-  // Material indices must exist. Only spheres may be glass, only panels may shine.
+  // Material indices must exist. Only spheres may have kGlass, only panels may have kLight.
   explicit Scene(SceneDescription description);
 
-  // Returns linear RGB. `ray.direction` may have any length but 0. Lamps and textures are averaged
-  // over `footprint`, whose lengths belong to a ray of unit length.
+  // Returns the radiance as linear RGB. `ray.direction` may have any length but 0. Lamps and
+  // textures are averaged over `footprint`, whose lengths are measured as if the direction had unit
+  // length.
   Rgb RadianceAlong(const Ray& ray, const Footprint& footprint = {}) const;
 
-  // Shapes that rays within a cone may hit first, and glows that they may pass. With it,
-  // SightAlong() returns the same light faster. The cone must contain the rays with kGlowReach
-  // widths of their footprints (glows.h).
+  // The spheres that rays within a cone may hit first, and the glows that they may pass. With a
+  // sector, Look() returns the same light faster. The cone must contain the rays and kGlowReach
+  // widths of their footprints around them (glows.h).
   struct Sector {
     std::vector<uint32_t> spheres;
     std::vector<uint32_t> glows;
   };
   Sector SectorOf(const Cone& cone) const;
 
-  // The radiance with the shape that was hit first, which tells where more rays are needed.
-  // `sector`: one that contains the ray, or null.
+  // The radiance, and the shape that the ray hits first. Different shapes in neighbouring pixels
+  // tell where more rays are needed.
+  //   sector  a sector whose cone contains the ray, or null
   struct Sight {
     Rgb radiance = Rgb::Zero();
     uint32_t shape = Hit::kNothing;
@@ -48,8 +51,8 @@ class Scene {
   struct Beam {
     Ray ray;  // unit direction
     Footprint footprint;
-    double weight = 1;  // share of its light that reaches the camera
-    int depth = 0;      // number of mirrors and glass spheres passed
+    double weight = 1;  // share of the beam's light that reaches the camera
+    int depth = 0;      // number of mirrors and glass spheres that were passed
     const Sector* sector = nullptr;
   };
   struct Place;  // a point on a surface (scene.cc)

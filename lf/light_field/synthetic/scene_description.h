@@ -16,20 +16,20 @@ using Rgb = Eigen::Array3d;
 
 enum class Finish : uint8_t {
   kDiffuse,  // Lambertian under a clear coat that reflects like glass, times `coat`
-  kMirror,   // reflects `colour` of the light
-  kGlass,    // a refracting sphere; `colour` of the light passes one radius of it
+  kMirror,   // reflects the share `colour` of the light
+  kGlass,    // a refracting sphere; the share `colour` of the light is left after one radius
   kLight,    // emits `colour`, which fades out towards the rim of the panel
 };
 
 struct Material {
   Finish finish = Finish::kDiffuse;
   Rgb colour = Rgb::Constant(0.5);
-  Rgb second_colour = Rgb::Constant(0.5);  // where the pattern is 1; kDiffuse only
+  Rgb second_colour = Rgb::Constant(0.5);  // colour where the pattern is 1; kDiffuse only
   Pattern pattern;
   double coat = 0;                // 0: matte; 1: polished
   double refractive_index = 1.5;  // of glass and of the coat
-  // Angle by which glows that are reflected or refracted by the material are spread, as by an
-  // imperfect polish. It keeps their tiny images in balls from sparkling.
+  // Angle by which the material spreads the images of glows that it reflects or refracts, like an
+  // imperfect polish. It keeps the tiny images of glows in balls from sparkling.
   double haze_rad = 0;
 };
 
@@ -40,8 +40,8 @@ struct Sphere {
 };
 
 // A flat piece, visible from both sides: the points centre + a half_right + b half_up with |a|, |b|
-// <= 1, or a^2 + b^2 <= 1 for a disk. Its pattern is in world units from the centre (kBars and
-// kLetters: from the upper left corner).
+// <= 1; for a disk, a^2 + b^2 <= 1. Its pattern is placed in world units, with the centre as origin
+// (kBars and kLetters: the upper left corner).
 struct Panel {
   Vec3 centre_world = Vec3::Zero();
   Vec3 half_right_w = Vec3::UnitX();
@@ -60,16 +60,17 @@ struct Glow {
   Rgb colour = Rgb::Constant(1);  // radiance at the centre; may be far above 1
 };
 
-// A light that falls on diffuse surfaces and is itself invisible (a kLight panel may be put in its
-// place). Spheres cast shadows, which are softer the larger the lamp is; panels cast none.
+// A light that falls on diffuse surfaces and is itself invisible (a kLight panel at the same
+// position can show it). Spheres cast shadows, which are softer for larger lamps; panels cast none.
 struct Lamp {
   Vec3 centre_world = Vec3::Zero();
   double radius_w = 0.1;
-  Rgb power = Rgb::Constant(1);  // reflected radiance of a white surface facing it at distance 1
+  Rgb power = Rgb::Constant(1);  // radiance of a white surface that faces the lamp at distance 1
 };
 
-// The light of the distant room: `floor` and `ceiling` by the height of the direction, and soft
-// spots colour * exp(sharpness (cos - 1)).
+// The light of the distant room: a blend from `floor` to `ceiling` by the height of the direction,
+// and soft spots colour * exp(sharpness (cos - 1)), where cos is of the angle to the spot's
+// direction.
 struct RoomSpot {
   Vec3 direction_world = Vec3::UnitZ();  // unit length
   double sharpness = 10;

@@ -42,12 +42,12 @@ TEST(Scene, ADiffuseSurfaceUnderAWhiteRoomShowsItsColour) {
   EXPECT_TRUE(scene.RadianceAlong({Vec3::Zero(), -Vec3::UnitZ()}).isApprox(Rgb(0, 0, 0.25)));
 }
 
-// A ray that passes the centre of a mirror ball at distance h hits it at an angle of sine h, and
-// leaves it turned by twice that angle's complement.
+// A ray that passes the centre of a mirror ball of radius 1 at distance h hits it under the angle
+// of incidence asin(h). The angle between the direction back and the reflected ray is twice that.
 TEST(Scene, AMirrorBallShowsALampUnderTheMirrorAngle) {
   const double h = 0.4;
   const Vec3 normal(h, 0, -std::sqrt(1 - h * h));
-  const double turn = 2 * std::asin(h);  // between the direction back and the direction out
+  const double turn = 2 * std::asin(h);  // angle between the direction back and the direction out
   const Vec3 out(std::sin(turn), 0, -std::cos(turn));
   SceneDescription description = SphereOf(Mirror());
   description.glows = {{normal + 3 * out, 0.001, Rgb::Constant(7)}};
@@ -56,12 +56,12 @@ TEST(Scene, AMirrorBallShowsALampUnderTheMirrorAngle) {
   EXPECT_LT(scene.RadianceAlong({{h + 0.002, 0, -5}, Vec3::UnitZ()})[0], 0.1);
 }
 
-// By Snell's law applied twice, a ray at height h is turned by 2 (i - r), sin i = h, sin r = h / n,
-// about the middle of its chord.
+// By Snell's law, applied twice, a ray at height h is turned by 2 (i - r), where sin i = h and sin
+// r = h / n. The turn is symmetric about the middle of the chord.
 TEST(Scene, AGlassBallBendsARayTwice) {
   const double h = 0.5;
   const double i = std::asin(h), r = std::asin(h / 1.5);
-  const double exit_angle = 2 * r - i;  // of the exit point, still above the axis
+  const double exit_angle = 2 * r - i;  // angle of the exit point, still above the axis
   const Vec3 exit(std::sin(exit_angle), 0, std::cos(exit_angle));
   const Vec3 out(-std::sin(2 * (i - r)), 0, std::cos(2 * (i - r)));
   SceneDescription description = SphereOf(Glass());
@@ -72,8 +72,8 @@ TEST(Scene, AGlassBallBendsARayTwice) {
   EXPECT_LT(scene.RadianceAlong({{h + 0.002, 0, -5}, Vec3::UnitZ()})[0], 0.1);
 }
 
-// A Gaussian of radius r seen at distance d through haze a has the radius sqrt(r^2 + (a d)^2). Its
-// radiance decreases as its area grows.
+// Through haze a, a Gaussian of radius r at distance d is seen with the radius sqrt(r^2 + (a d)^2).
+// Its radiance decreases as its area grows.
 TEST(Scene, HazeSpreadsTheImageOfALampWithoutLosingLight) {
   Material mirror = Mirror();
   mirror.haze_rad = 0.03;

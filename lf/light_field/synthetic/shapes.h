@@ -13,18 +13,20 @@
 
 namespace lf {
 
-// Smallest distance of a hit, because a ray that leaves a surface must not hit it again.
+// Smallest distance of a hit. Without it, a ray that leaves a surface would hit this surface again.
 inline constexpr double kLeastLambda = 1e-7;
 
 // Returns the distance along `ray`, whose direction has unit length, to the first point of the
-// sphere beyond kLeastLambda: a point of the outside, or of the inside if the ray starts within.
+// sphere beyond kLeastLambda. If the ray starts inside, this is the point where it leaves the
+// sphere. None if there is no such point.
 std::optional<double> Intersect(const Ray& ray, const Sphere& sphere);
 
-// A panel with precomputed values that every ray needs.
+// A panel with precomputed values, which the tests of all rays use.
 struct PanelPlane {
   explicit PanelPlane(const Panel& panel);
 
-  // Returns the position on the panel in units of its half axes; inside it both are within [-1, 1].
+  // Returns the position on the panel in units of its half axes; both numbers are within [-1, 1] on
+  // it.
   Vec2 PlaceOf(const Vec3& point_world) const {
     const Vec3 offset = point_world - centre_world;
     return {offset.dot(right_per_w), offset.dot(up_per_w)};
@@ -41,10 +43,10 @@ struct PanelPlane {
   uint32_t material = 0;
 };
 
-// Returns the distance along `ray` to a panel, on either of its sides.
+// Returns the distance along `ray` to a panel, on either of its sides; none if the ray misses it.
 std::optional<double> Intersect(const Ray& ray, const PanelPlane& panel);
 
-// The point where a ray ends. Shapes are numbered: spheres first, then panels.
+// The point where a ray ends. Shapes are numbered: first the spheres, then the panels.
 struct Hit {
   double lambda = std::numeric_limits<double>::infinity();
   uint32_t shape = kNothing;
@@ -58,15 +60,15 @@ class Shapes {
  public:
   Shapes(std::vector<Sphere> spheres, const std::vector<Panel>& panels);
 
-  // Returns the first hit. The direction must have unit length. `among` lists the spheres to
-  // consider, null means all; panels are always considered.
+  // Returns the first hit. The direction must have unit length. `among` lists the spheres that are
+  // considered; null: all spheres are. Panels are always considered.
   Hit FirstHit(const Ray& ray, const std::vector<uint32_t>* among = nullptr) const;
 
-  // Returns all spheres that reach into the cone, and perhaps some others.
+  // Returns the indices of all spheres that reach into the cone, and perhaps of some others.
   std::vector<uint32_t> SpheresNear(const Cone& cone) const;
 
   const std::vector<Sphere>& spheres() const { return spheres_; }
-  // Returns null for a panel.
+  // Returns the sphere with this shape number; null if the number is that of a panel.
   const Sphere* SphereOf(uint32_t shape) const {
     return shape < spheres_.size() ? &spheres_[shape] : nullptr;
   }

@@ -8,7 +8,7 @@
 namespace lf {
 namespace {
 
-// Adds materials, and objects made of them.
+// Adds materials, and objects made of these materials.
 class Table {
  public:
   explicit Table(SceneDescription& scene) : scene_(scene) {}
@@ -64,7 +64,8 @@ void AddTableTop(SceneDescription& scene, Table& table) {
   scene.panels.push_back({{0, 0, 0.2}, {1.5, 0, 0}, {0, 0, 1.0}, false, table.Add(wood)});
 }
 
-// Adds a white cloth before a lamp, facing the middle of the table. All shiny objects reflect it.
+// Adds a white cloth at the position of a lamp, facing the middle of the table. All shiny objects
+// reflect it.
 void AddSoftBox(SceneDescription& scene, Table& table, const Vec3& centre, double half_width_w,
                 double half_height_w, const Rgb& radiance) {
   Material cloth;

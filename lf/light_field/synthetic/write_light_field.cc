@@ -22,7 +22,7 @@ namespace {
 constexpr double kLargest16 = 65535;
 constexpr double kBlackLevel = 1024;
 
-// Returns one Gaussian random number per counter (Box and Muller).
+// Returns one Gaussian random number for each (seed, stream, index), by Box and Muller's method.
 double NormalRandom(uint64_t seed, uint64_t stream, uint64_t index) {
   const double radius = std::sqrt(-2 * std::log(1 - RandomUnit(seed, stream, 2 * index)));
   return radius * std::cos(2 * kPi * RandomUnit(seed, stream, 2 * index + 1));

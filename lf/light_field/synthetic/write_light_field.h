@@ -20,10 +20,10 @@ enum class LfImageFormat : uint8_t {
   kExr,    // half floats, which are radiance
   kPng,    // 8-bit sRGB; light brighter than 1 is clipped
   kPng16,  // 16 bits, linear, up to max_radiance
-  kBayer,  // 16-bit RGGB mosaic as from a raw converter: black level 1024, no white balance
+  kBayer,  // 16-bit RGGB mosaic as of a raw converter: black level 1024, not white balanced
 };
 
-// Returns how images of this format store radiance up to max_radiance.
+// Returns how images of this format store radiance up to max_radiance. kPng stores only up to 1.
 RadianceEncoding EncodingOf(LfImageFormat format, double max_radiance);
 
 // Returns the calibration of photographs images/0000.exr ... taken from `poses`. Writes nothing.
@@ -31,28 +31,29 @@ LightField DescribeLightField(const std::vector<RigidTransform>& poses,
                               const Intrinsics& intrinsics, LfImageFormat format,
                               double max_radiance, const std::filesystem::path& folder);
 
-// Returns one value per pixel, as a sensor with the filters of encoding.bayer records the picture
-// [height][width][3]: with black level, before white balance, and with noise of standard deviation
-// noise * sqrt(radiance + 0.01) radiance (photon noise and some electronic noise). The noise
-// depends only on `seed` and position.
+// Returns one value per pixel, as a sensor with the colour filters of encoding.bayer records the
+// picture [height][width][3]: with black level and before white balance. The standard deviation of
+// the noise is noise * sqrt(radiance + 0.01), in units of radiance (photon noise and some
+// electronic noise). The noise depends only on `seed` and position.
 Image<uint16_t> Mosaic(ImageView<const float> picture, const RadianceEncoding& encoding,
                        double noise, uint64_t seed);
 
 struct WriteLightFieldOptions {
   LfImageFormat format = LfImageFormat::kExr;
-  int samples = 4;    // as in Photograph()
+  int samples = 4;    // rays per pixel at edges, as in Photograph()
   double noise = 0;   // as in Mosaic(); kBayer only
-  uint64_t seed = 0;  // of the noise
-  // Called after every image, by any thread, one at a time. Returns false to stop the work.
+  uint64_t seed = 0;  // determines the noise
+  // Called after every image, by any thread, but by one at a time. Returns false to stop the work.
+  // May be empty.
   std::function<bool(size_t images_done)> keep_going;
 };
 
 // Photographs the scene with every camera of `light_field` and writes the images, then
-// light_field.folder/transforms.json, so that a folder with this file is complete. If
-// encoding.AlphaIsLight(), which no mosaic has, surroundings are transparent (photograph.h) and
-// images have alpha. Existing images are replaced, each atomically; an existing transforms.json is
-// removed first. The bytes do not depend on the number of threads. kOutput: folder, disk, no
-// permission. kInterrupted: keep_going stopped the work.
+// light_field.folder/transforms.json; a folder that contains this file is therefore complete. If
+// encoding.AlphaIsLight() is true, surroundings are transparent (photograph.h) and images have
+// alpha; this is not allowed for mosaics. Existing images are replaced, each atomically; an
+// existing transforms.json is removed first. The bytes do not depend on the number of threads.
+// kOutput: a folder or file cannot be written. kInterrupted: keep_going stopped the work.
 Result<void> WriteLightField(const Scene& scene, const LightField& light_field,
                              const WriteLightFieldOptions& options, ThreadPool& pool);
 

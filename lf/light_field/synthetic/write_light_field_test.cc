@@ -17,7 +17,7 @@ namespace {
 
 class WriteLightFieldTest : public FolderTest {
  protected:
-  // Returns a light field of four cameras that are far apart and shaken.
+  // Returns a light field of four cameras that are far apart and have jitter.
   LightField SmallField(const BuiltInScene& scene, LfImageFormat format, int width, int height) {
     RigOptions rig = scene.rig;
     rig.count = 4;
@@ -83,7 +83,7 @@ TEST_F(WriteLightFieldTest, FilesAreTheSameForAnyNumberOfThreads) {
   for (size_t i = 0; i < 5; ++i) EXPECT_EQ(bytes[i], bytes[i + 5]);
 }
 
-// Converted by the reader's own tables, every format gives the radiance that was photographed.
+// The reader's own tables convert every format back to the radiance that was photographed.
 TEST_F(WriteLightFieldTest, StoredNumbersMeanTheRadiancePhotographed) {
   const BuiltInScene& still_life = *FindBuiltInScene("still-life");
   const Scene scene(still_life.describe());

@@ -15,11 +15,12 @@
 
 namespace lf {
 
-// Writes folder/frame_0001.exr ..., one for each camera: R, G, B as floats, linear light; and A, by
-// which they are multiplied, if surroundings are transparent.
+// Writes the frames folder/frame_0001.exr ..., one for each camera: R, G, B as floats, linear
+// light. If surroundings are transparent, R, G and B are multiplied by alpha, and A is written
+// behind them.
 //   keep_going  called after every frame; returns false to stop the work. May be empty
-// kOutput: folder, disk, no permission. kInterrupted: the work was stopped; written frames are
-// complete.
+// kOutput: a folder or file cannot be written. kInterrupted: the work was stopped; written frames
+// are complete.
 Result<void> WriteTruth(const Scene& scene, std::span<const RenderCamera> cameras,
                         const LensSampling& sampling, const std::filesystem::path& folder,
                         ThreadPool& pool, Surroundings surroundings = Surroundings::kShown,
