@@ -1,4 +1,4 @@
-// Finds faults of a capture in its poses. Internal to import.
+// Finds faults of a capture in its poses. Internal to this folder.
 #pragma once
 
 #include <span>

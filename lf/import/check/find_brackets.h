@@ -23,7 +23,7 @@ struct FoundBrackets {
 };
 
 // Finds the poses with several exposures; nullopt if there are none. Exposures of one pose that
-// differ by less than kOneExposure (capture/brackets.h) count as one.
+// differ by less than kOneExposure (light_field/model/brackets.h) count as one.
 //   firsts  FirstOfPose(light_field)
 //   lights  LightOf() of each file (exif_gains.h), used if lf_gain shows no difference. NaN:
 //           unknown; empty: all are unknown

@@ -14,7 +14,7 @@ namespace lf {
 
 struct OpenOptions {
   // Values that the names in a Stanford folder may lack: see StanfordOptions in
-  // calibration/read_stanford.h. kUsage for calibrations of another kind. focal_px is offered by
+  // import/formats/read_stanford.h. kUsage for calibrations of another kind. focal_px is offered by
   // several programs, the others only by lfimport.
   std::optional<double> focal_px = {};
   std::optional<Vec2> pitch_w = {};
@@ -22,7 +22,7 @@ struct OpenOptions {
   bool flip_x = false;
   bool flip_y = false;
   // The field of view of all cameras, required for poses of Airborne Optical Sectioning
-  // (calibration/read_aos.h). kUsage for calibrations of another kind.
+  // (import/formats/read_aos.h). kUsage for calibrations of another kind.
   std::optional<double> fov_deg = {};
   // Folder in which image files are searched by name (light_field/model/find_images.h). kUsage for
   // packed stores and folders of the Stanford form.
@@ -30,9 +30,9 @@ struct OpenOptions {
   // How much the size of image files may differ from the calibrated size.
   ImageScale image_scale = {};
   // alpha, background and keeps_opacity state the meaning of alpha and the background, and override
-  // the calibration (capture/radiance.h). kUsage: a packed store that was encoded for the other
-  // kind of alpha (mask or light); a background that is brighter than max_radiance, or for images
-  // whose alpha is a mask; opacity of mosaics.
+  // the calibration (light_field/model/radiance.h). kUsage: a packed store that was encoded for the
+  // other kind of alpha (mask or light); a background that is brighter than max_radiance, or for
+  // images whose alpha is a mask; opacity of mosaics.
   std::optional<AlphaMeaning> alpha = {};
   std::optional<std::array<double, 3>> background = {};
   bool keeps_opacity = false;  // needs a black background; see RadianceEncoding::keeps_opacity
@@ -48,23 +48,24 @@ struct OpenOptions {
 bool HoldsOwnAndItsSource(const std::filesystem::path& folder);
 
 // Opens a calibration file, or the first of these that it finds in a folder:
-// - transforms.json, or a .json file without M3x4 matrices: native/transforms_json.h
-// - a COLMAP model, in the folder or in its sparse/0: colmap/read_colmap.h
-// - NAME_par.txt, only one in the folder: calibration/read_middlebury.h
-// - poses_bounds.npy, or any .npy file: calibration/read_llff.h
-// - parameters.cfg, or any .cfg file: calibration/read_hci.h
-// - poses.json, or any .json file with M3x4 matrices: calibration/read_aos.h
-// - images with Stanford names, in the folder or its images/: calibration/read_stanford.h
-// - STORE.lfs, only one in the folder: packed/packed_store_file.h
+// - transforms.json, or a .json file without M3x4 matrices:
+//   light_field/transforms_json/transforms_json.h
+// - a COLMAP model, in the folder or in its sparse/0: light_field/colmap/read_colmap.h
+// - NAME_par.txt, only one in the folder: import/formats/read_middlebury.h
+// - poses_bounds.npy, or any .npy file: import/formats/read_llff.h
+// - parameters.cfg, or any .cfg file: import/formats/read_hci.h
+// - poses.json, or any .json file with M3x4 matrices: import/formats/read_aos.h
+// - images with Stanford names, in the folder or its images/: import/formats/read_stanford.h
+// - STORE.lfs, only one in the folder: storage/packed/packed_store_file.h
 // Files with other names than those before "or" are opened only if `path` names the file itself.
 //
 // If image files are not where the calibration says, they are searched by name in its folder or in
 // OpenOptions::images_folder; not every file is checked for existence. If the headers of up to 64
 // files show that all images are smaller than calibrated, intrinsics are scaled. If neither options
 // nor calibration state the meaning of alpha, it is derived from the pixels of three images
-// (capture/alpha_evidence.h) and logged. The pattern, levels and colours of camera raw files that
-// the calibration does not state are read from the first file; a warning names those that it does
-// not state either.
+// (light_field/model/alpha_evidence.h) and logged. The pattern, levels and colours of camera raw
+// files that the calibration does not state are read from the first file; a warning names those
+// that it does not state either.
 // kInput: there is no light field (the message lists what was searched for); an error of the
 // reader; images_folder has none of the images; camera raw files with an unknown Bayer pattern.
 // kUsage: an option that the calibration does not allow.
@@ -72,8 +73,9 @@ Result<LightField> OpenLightField(const std::filesystem::path& path,
                                   const OpenOptions& options = {});
 
 // Returns at most 2048 points of the scene, in world coordinates, that the image of LF camera `id`
-// shows. Only a COLMAP model with a points3D file states such points (colmap/points_seen.h); the
-// result is empty for other light fields. Reads the model again, block by block.
+// shows. Only a COLMAP model with a points3D file states such points
+// (light_field/colmap/points_seen.h); the result is empty for other light fields. Reads the model
+// again, block by block.
 //   path, light_field  the argument and the result of OpenLightField()
 Result<std::vector<Vec3>> PointsSeenBy(const std::filesystem::path& path,
                                        const LightField& light_field, LfImageId id);

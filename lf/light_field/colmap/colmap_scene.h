@@ -1,5 +1,5 @@
 // Collects a COLMAP model, while its binary or text files are read, as a LightField. Internal to
-// colmap.
+// this folder.
 #pragma once
 
 #include <array>

@@ -29,7 +29,7 @@ Result<std::optional<std::filesystem::path>> FindColmapModel(const std::filesyst
 // If images_folder is not given, it is the first folder that contains one of the first 64 images:
 // `images` in the model folder and in the three folders above it, then these four folders
 // themselves. If none of them does, images are searched by name below the folder that holds the
-// model or its sparse/0 (capture/find_images.h).
+// model or its sparse/0 (light_field/model/find_images.h).
 //
 // mask_names are the existing files masks/NAME.png beside the folder of images. depth_range is
 // computed from the points: the 1st and 99th percentile of their depths along the optical axes of

@@ -39,7 +39,7 @@ void MakeRoomForGains(LightField* light_field);
 //
 // `brighter` of an LF image is the darkest LF image of its pose with the next larger exposure. A
 // pixel that is not clipped in the brighter image sends no ray from this one
-// (store/image_reading.h).
+// (storage/load/image_reading.h).
 //
 // All LF images of a pose get the exact pose of the first of them, so that they share lens weights.
 //

@@ -11,7 +11,7 @@ namespace lf {
 
 enum class ImageFit {
   kAsStored,  // calibrated as stored; the orientation tag is ignored
-  kTurned,  // calibrated after the quarter turn that the tag requests (imageio/upright.h)
+  kTurned,    // calibrated after the quarter turn that the tag requests (pixels/files/upright.h)
 };
 
 // Compares the size of a file with the calibrated size. A picture of the calibrated size is used as

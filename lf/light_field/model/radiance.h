@@ -50,7 +50,7 @@ struct RadianceEncoding {
   // True: nothing is behind the pixels: `background` is black, and frames have an opacity channel.
   bool keeps_opacity = false;
   // True: LF images of one pose with different exposures form one picture. Each pixel is taken from
-  // the brightest LF image in which it is not clipped (capture/brackets.h).
+  // the brightest LF image in which it is not clipped (light_field/model/brackets.h).
   bool masks_clipped = false;
   std::array<double, 3> white_balance = {1, 1, 1};  // applied on developing
   Mat3 linear_srgb_from_camera = Mat3::Identity();  // linear sRGB = M * white balanced camera RGB

@@ -1,5 +1,5 @@
 // The lens distortion of transforms.json: camera_model and its parameters. They are keys of the top
-// level; each frame may override any of them. Internal to native.
+// level; each frame may override any of them. Internal to this folder.
 #pragma once
 
 #include <array>

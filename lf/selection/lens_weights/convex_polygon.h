@@ -1,4 +1,4 @@
-// Convex polygons in the lens plane, in world units. Internal to this folder.
+// Convex polygons in the lens plane, in world units.
 #pragma once
 
 #include <vector>
