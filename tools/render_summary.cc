@@ -144,8 +144,8 @@ void WarnOfLenses(const RenderReport& report) {
             fitting_w > 0 ? fmt::format("An aperture of at most {:.4g} world units, or ", fitting_w)
                           : "Only ");
       });
-  // Hat weights always have few images, and frames that no LF image sees are black; both have
-  // reports of their own.
+  // Frames with hat weights (interpolation between LF images) always use few LF images, and frames
+  // that no LF image sees are black. Both are reported elsewhere and left out here.
   WarnOfFrames(
       report, -kFewImages,
       [](const auto& weighed) {

@@ -10,9 +10,9 @@
 
 namespace lf {
 
-// Logs counts, speed and memory, then warnings about frames with elements without rays and about
-// lenses, and where to look at the result. LF images
-// that were left out are reported by EndOfRender() (render_end.h).
+// Logs counts, speed and memory; rebinned rays, lens weights and noise; warnings about elements
+// without rays, and about lenses that exceed the capture or contain few LF images; and where to
+// look at the result. EndOfRender() (render_end.h) reports the LF images that were left out.
 void SummariseRender(const RenderReport& report, const std::string& look_at);
 
 // Adds to the error of an interruption the command that resumes the render.

@@ -23,12 +23,9 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Adds the mean of its rays, rounded half up, to each of `count` elements of a row. An element has
-// up to samples^2 rays, whose sums are in `samples` successive elements of `fine`. Returns the
-// number of elements that have a ray.
-//
-// Quotients of numbers up to 2^24 are rounded down correctly: a quotient that is no integer is
-// farther from the nearest integer than the precision of a float.
+// Adds to each of `count` elements of a row the mean of the element's rays, rounded half up. An
+// element has up to samples^2 rays, whose sums are in `samples` successive elements of `fine`.
+// Returns the number of elements that have a ray.
 #if HWY_TARGET == HWY_SCALAR
 
 template <class Weights>
@@ -73,6 +70,10 @@ uint64_t AddMeans(const TileSums::Element* fine, int samples, int count, const W
 }
 
 #else
+
+// Float division followed by ConvertTo(), which drops the fraction, is exact for numbers up to
+// 2^24, because a quotient that is no integer is farther from the nearest integer than the
+// precision of a float.
 
 template <class Weights>
 HWY_ATTR uint64_t AddMeans(const TileSums::CountedElement* fine, int samples, int count,

@@ -218,8 +218,8 @@ HWY_ATTR uint64_t GatherMeans(const GatherPlan& plan, const LfPixels& pixels,
   const int samples = plan.sampling.samples;
   thread_local std::vector<ElementOf<kReading>> fine;
   uint64_t rays = 0;
-  // The row is cut into chunks, so that the finer elements and the places of a chunk stay in the
-  // first level cache.
+  // The row is cut into chunks, so that the finer elements of a chunk, and the pixel indices and
+  // weights of its rays (`Places`), stay in the L1 cache.
   const int chunk = std::max(16, 256 / samples);
   for (int x_begin = tile.x_begin; x_begin < tile.x_end; x_begin += chunk) {
     const int x_end = std::min(tile.x_end, x_begin + chunk);

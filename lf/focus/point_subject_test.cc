@@ -19,9 +19,10 @@ PinholeCamera Camera() {
   return camera;
 }
 
-// Draws random points that the camera sees. depth(x, y) returns the depth at position (x, y) of the
-// image, from -1 to 1; depths below 0 put points behind the camera.
+// Returns the depth of a point at position (x, y) of the image, each from -1 to 1. A negative depth
+// puts the point behind the camera.
 using Depth = std::function<double(RandomSequence* random, double x, double y)>;
+// Draws points at random image positions.
 std::vector<Vec3> Draw(int count, const Depth& depth) {
   const PinholeCamera camera = Camera();
   RandomSequence random(17);

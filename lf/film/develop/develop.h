@@ -16,11 +16,13 @@ namespace lf {
 // The part of a frame that was interpolated from rebinned rays (render/hybrid/rebinned_rays.h).
 struct Completion {
   Image<float> rgb;  // [height][width][3], in the units of the plate's values
-  // [height][width] share of rgb in an element that also has collected rays; 0: rgb is unknown
+  // [height][width] Weight of rgb, in [0, 1], in an element that also has collected rays; their
+  // mean has the rest. A channel without collected rays takes rgb alone. 0: rgb is unknown.
   Image<float> share;
 };
 
-// Closes the gaps between the rays of mosaics and of LF pixels that are larger than elements.
+// Default fill radius. It closes the gaps between the rays of mosaics and of LF pixels that are
+// larger than elements. kMostFillRadius_px is the largest allowed.
 inline constexpr int kFillRadius_px = 2;
 inline constexpr int kMostFillRadius_px = 4096;
 // An element that is smoothed takes light from collected elements at most this far away.

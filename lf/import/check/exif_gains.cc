@@ -25,7 +25,7 @@ std::string MissingOf(const ExposureFacts& facts, bool wants_f_number) {
 }
 
 // Returns kInput if an LF image does not state its exposure. The message names the first such LF
-// image and their number.
+// image and says how many there are.
 Result<void> CheckAllAreStated(std::span<const StatedExposure> stated,
                                const LightField& light_field, bool wants_f_number) {
   size_t fault_count = 0;

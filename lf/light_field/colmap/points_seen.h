@@ -16,7 +16,7 @@ namespace lf {
 
 inline constexpr size_t kMostPointsSeen = 2048;
 
-// Collects the points while a points3D file is read. Internal to this folder.
+// Collects the points that one image sees while a points3D file is read. Internal to this folder.
 class ColmapPointsSeen {
  public:
   // image_id  the id of the image in the model

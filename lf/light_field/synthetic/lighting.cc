@@ -20,8 +20,8 @@ Rgb PassedBy(const Occluder& occluder, double sine_lamp, double sine_sphere, dou
   const double sphere = std::asin(std::min(1.0, sine_sphere));
   const double hidden = HiddenShare(std::asin(std::min(1.0, sine_lamp)), sphere, between);
   if (!occluder.is_glass || hidden == 0) return Rgb::Constant(1 - hidden);
-  // Three quarters of the light that the shadow lacks are gathered in a spot whose radius is 0.38
-  // of the shadow's.
+  // A glass sphere focuses three quarters of the light that it takes from its shadow in a spot with
+  // 0.38 of the shadow's radius. kSpread of that light is spread evenly over the shadow.
   constexpr double kSpot = 0.38, kSpread = 0.12;
   const double t = between / (kSpot * sphere);
   const double gathered = kSpread + (0.75 / (kSpot * kSpot)) * std::exp(-t * t);

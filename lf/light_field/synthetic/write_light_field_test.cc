@@ -83,7 +83,8 @@ TEST_F(WriteLightFieldTest, FilesAreTheSameForAnyNumberOfThreads) {
   for (size_t i = 0; i < 5; ++i) EXPECT_EQ(bytes[i], bytes[i + 5]);
 }
 
-// The reader's own tables convert every format back to the radiance that was photographed.
+// RadianceTable(), with which LF images are loaded, converts the numbers of each PNG format to the
+// photographed radiance, clipped at max_radiance.
 TEST_F(WriteLightFieldTest, StoredNumbersMeanTheRadiancePhotographed) {
   const BuiltInScene& still_life = *FindBuiltInScene("still-life");
   const Scene scene(still_life.describe());

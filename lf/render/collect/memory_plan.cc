@@ -17,7 +17,8 @@ constexpr size_t kProgramBytes = 132 * kMiB;
 // Memory to develop a frame, for each element: picture, counts, tables for filling, file buffers.
 // Measured: 58 bytes.
 constexpr size_t kDevelopBytesPerElement = 64;
-// to develop, for each element: opacity, its counts and tables
+// Additional memory to develop a frame with opacity, for each element: opacity, its counts and
+// tables.
 constexpr size_t kOpacityBytes = 16;
 constexpr size_t kSheetBytesPerElement = 3;  // of each picture of the contact sheet
 constexpr size_t kMostSheetPictures = 12;

@@ -53,8 +53,8 @@ class LensGaps {
   const RenderCamera& camera() const { return all_.camera; }
   // Number of LF images that have a collected ray at a node.
   size_t collected_count() const { return collected_places_.size(); }
-  // Returns the place after the first `count` of the LF images that collected_count() counts; after
-  // all of them if there are fewer; 0 if `count` is 0.
+  // Returns one more than the rank of LF image number `count`, counted by rank among those of
+  // collected_count(). If there are fewer, the last of them is used. Returns 0 if `count` is 0.
   uint32_t PlaceAfter(size_t count) const;
 
   // QueriesAt() returns the queries when exactly the LF images at places before `place` are
@@ -62,8 +62,9 @@ class LensGaps {
   FrameQueries QueriesAt(uint32_t place) const;
   bool AsksAt(uint32_t place) const;
   bool asks_in_the_end() const { return asks_in_the_end_; }
-  // First place from which on the queries do not change any more.
+  // Rank from which on QueriesAt() returns the same queries for all higher ranks.
   uint32_t changes_until() const { return changes_until_; }
+  // Rank after all LF images.
   static constexpr uint32_t kInTheEnd = UINT32_MAX - 1;
 
   // Returns the frame's camera with its lens and plate enlarged by the reach of the kernels,

@@ -74,9 +74,9 @@ class RebinnedRays : public ImageConsumer {
   PixelRect RectOf(LfImageId id, uint32_t place) const override;
   void Take(std::span<const BatchImage> images, uint32_t place_end) override;
 
-  // Cameras that select the LF images: their lenses and plates contain all rays that the frames
-  // need. There is one camera for each frame that ever needs rebinned rays; asking_frames() are the
-  // indices of these frames.
+  // Returns the cameras for which LF images are selected. Their lenses and plates contain all rays
+  // that the frames need. There is one for each frame that needs rebinned rays at any stage;
+  // asking_frames() returns the indices of these frames.
   std::vector<RenderCamera> ReachedCameras() const;
   const std::vector<size_t>& asking_frames() const { return asking_; }
 

@@ -132,8 +132,8 @@ class Merger {
     for (const auto& [frame, plates] : frames_) now_.plate_total += plates.size();
     for (const auto& [frame, plates] : frames_)
       if (const Result<void> written = WriteFrameOf(plates); !written) {
-        // --resume reads this report and writes the frames again that it does not name. An error is
-        // ignored, because the disk may be full.
+        // A later run with --resume reads this report, and rewrites the frames that the report does
+        // not name. An error of writing the report is ignored, because the disk may be full.
         (void)WriteReport(Report(), ReportPath());
         return written.error();
       }

@@ -43,7 +43,7 @@ struct PlateNotes {
   std::optional<Weighed> weighed;
 };
 
-// Returns the entries of the notes for the file of its plate.
+// Returns the notes as the entries that are stored in the file of the plate.
 PlateEntries TextOf(const PlateNotes& notes);
 
 // Reads the entries that TextOf() returned. Numbers have the same bits as in the original notes.
