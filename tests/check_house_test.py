@@ -193,7 +193,7 @@ class PlantedFaults(unittest.TestCase):
         self.plant("lf/CMakeLists.txt", "add_subdirectory(core)\n")
         self.plant("lf/core/CMakeLists.txt", "lf_folder(core SOURCES a.cc)\n")
         self.plant("lf/optics/camera/CMakeLists.txt", "lf_folder(optics/camera\n  DEPENDS core\n  LIBS x)\n")
-        self.plant("lf/camera/path/CMakeLists.txt", "lf_folder(path DEPENDS core optics/camera)\n")
+        self.plant("lf/path/CMakeLists.txt", "lf_folder(path DEPENDS core optics/camera)\n")
         text = ("| folder | may include |\n| --- | --- |\n"
                 "| core | nothing, but every folder may include it; it is left out below |\n"
                 "| optics/camera | no other |\n| path | optics/camera |\n")
@@ -206,7 +206,7 @@ class PlantedFaults(unittest.TestCase):
         self.plant("README.md", "")
         self.expect("doc_tables.py", "--write", faults=[])
         self.expect("doc_tables.py", faults=[])
-        self.plant("lf/camera/path/CMakeLists.txt", "lf_folder(path DEPENDS core lens)\n")
+        self.plant("lf/path/CMakeLists.txt", "lf_folder(path DEPENDS core lens)\n")
         self.expect("check_house.py", "tables", faults=["doc/layout.md:2: a folder of lf/ depends on lens"])
 
     def test_every_generated_table_is_shown_and_every_folder_has_a_task(self):
