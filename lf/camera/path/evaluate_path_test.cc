@@ -201,7 +201,7 @@ TEST(Path, NamesTheFrameAtWhichAQuantityLeavesItsRange) {
 TEST(Path, ACameraMustLookSomewhereElseThanItStandsAndNotAlongUp) {
   TestPath path;
   path.pose = "position: [0, 0, -2], look_at: [0, 0, 0], speed: [0, 0, 1]";
-  EXPECT_NE(path.Error().find("frame 21 (2 s): the camera stands on the point it looks at"),
+  EXPECT_NE(path.Error().find("frame 21 (2 s): the camera is at the point that it looks at"),
             std::string::npos);
   path.pose = "position: [0, -1, 0], look_at: [0, 0, 0]";
   EXPECT_NE(path.Error().find("frame 1 (0 s): the camera looks along 'up'"), std::string::npos);

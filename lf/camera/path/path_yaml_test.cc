@@ -55,7 +55,7 @@ TEST(PathYaml, AKeyStandsOnce) {
   path = {};
   path.focus = "focus_distance: 2, focus_distance_mm: 2000";
   EXPECT_TRUE(Says(path, "focus_distance_mm",
-                   "lens.focus_distance and lens.focus_distance_mm say the same"));
+                   "lens.focus_distance and lens.focus_distance_mm state the same quantity"));
 }
 
 TEST(PathYaml, MissingKeysAreNamedWithWhatToWrite) {

@@ -66,7 +66,7 @@ TEST(YamlTree, AliasBombsStaySmall) {
   for (int i = 1; i < 30; ++i)
     text += fmt::format("b{}: &a{} [{}]\n", i, i, Repeated(fmt::format("*a{} , ", i - 1), 9));
   EXPECT_TRUE(ParseYaml(text, "p.yaml"));  // 9^30 words if aliases were expanded
-  EXPECT_EQ(ErrorOf("a: &a [*a]\n"), "p.yaml:1:8: an alias stands inside its own anchor");
+  EXPECT_EQ(ErrorOf("a: &a [*a]\n"), "p.yaml:1:8: an alias is inside its own anchor; remove it");
 }
 
 TEST(YamlTree, QuotesOnlyWhatCanBePrinted) {

@@ -204,12 +204,12 @@ TEST_F(PlateFile, WideWordsLieInThePlateAndAscend) {
   EXPECT_EQ(ErrorOf(with_words([](WideWord*) {})), "");
   EXPECT_EQ(ErrorOf(with_words([](WideWord* words) { words[1].index = kPlateWords - 1; })), "");
   for (const uint64_t index : {kPlateWords, kPlateWords + 1, UINT64_MAX})
-    ExpectError(with_words([&](WideWord* words) { words[1].index = index; }), "is none");
-  ExpectError(with_words([](WideWord* words) { words[1].index = words[0].index; }), "is none");
+    ExpectError(with_words([&](WideWord* words) { words[1].index = index; }), "is invalid");
+  ExpectError(with_words([](WideWord* words) { words[1].index = words[0].index; }), "is invalid");
   ExpectError(with_words([](WideWord* words) { words[0].count = SensorPlate::kMaxCount; }),
-              "is none");
+              "is invalid");
   ExpectError(with_words([](WideWord* words) { words[0].sum = 65535 * words[0].count + 1; }),
-              "is none");
+              "is invalid");
 }
 
 TEST_F(PlateFile, EntriesOfAnotherFormAreRefused) {

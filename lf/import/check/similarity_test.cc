@@ -72,7 +72,7 @@ TEST_F(SimilarityFileTest, IsNumbersOrTheNameOfAFile) {
   EXPECT_EQ(ReadSimilarity(kTurned)->translation, Vec3(10, 20, 30));
   EXPECT_NE(ReadSimilarity("1 2 3").error().message.find("3 numbers"), std::string::npos);
   ASSERT_TRUE(WriteFileAtomically(path, "1 2 3"));
-  EXPECT_NE(ReadSimilarity(path).error().message.find("m.txt: 3 numbers"), std::string::npos);
+  EXPECT_NE(ReadSimilarity(path).error().message.find("m.txt: found 3 numbers"), std::string::npos);
   EXPECT_NE(ReadSimilarity((folder_ / "no").string()).error().message.find("no"),
             std::string::npos);
 }

@@ -87,7 +87,7 @@ TEST_F(CheckOutputsTest, MasksContactSheetsAndFilesThatAreReadStay) {
   options_.folder.inputs = {folder_ / "nowhere", folder_ / "field" / "report.json"};
   EXPECT_EQ(Refusal(), "");
   std::ofstream(folder_ / "field" / "report.json") << "path";
-  EXPECT_NE(Refusal().find("is what is read"), std::string::npos) << Refusal();
+  EXPECT_NE(Refusal().find("is an input file"), std::string::npos) << Refusal();
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ TEST_F(OpenPackagesTest, PackagesOfOneFilmAreJoined) {
 TEST_F(OpenPackagesTest, EveryChoiceOfTheFilmIsCompared) {
   const auto expect = [&](const auto& change, const std::string& words) {
     const std::string message = ErrorOf(change);
-    EXPECT_NE(message.find("package-2.lfp: is of " + words), std::string::npos) << message;
+    EXPECT_NE(message.find("package-2.lfp: was made for " + words), std::string::npos) << message;
   };
   expect([](Package* p) { p->choices.max_angle_rad = 0.5; }, "another --max-angle");
   expect([](Package* p) { p->choices.max_image_count = 2; }, "another --max-images");

@@ -250,7 +250,7 @@ TEST_F(PackedStoreFileTest, ItGoesOnWithTheSameOnly) {
   plan.source = "elsewhere";
   EXPECT_EQ(difference(field_, plan), "");
   plan.codec = "levels 4";
-  EXPECT_NE(difference(field_, plan).find("codec lossless, levels 3, this call has levels 4"),
+  EXPECT_NE(difference(field_, plan).find("codec lossless, levels 3, but now it is levels 4"),
             std::string::npos);
   plan = plan_;
   plan.whole.names = "f";

@@ -108,7 +108,7 @@ Result<void> MakeTables(const LightField& light_field, const PackedStorePlan& pl
   return database->Execute("commit");
 }
 
-// Returns the first difference as text: "codec default, levels 4, threshold 3, this call has ...".
+// Returns the first difference as text: "codec default, levels 4, threshold 3, but now it is ...".
 std::optional<std::string> FirstDifference(const Settings& settings, const LightField& light_field,
                                            const PackedStorePlan& plan, bool any_shards) {
   const auto shown = [](const std::string& value) { return value.empty() ? "(none)" : value; };
