@@ -344,7 +344,9 @@ Result<void> FilmRenderer::CheckAnyContributes() const {
     return frame.earlier_rays.accepted_count > 0;
   });
   if (!images_.empty() || has_rays) return {};
-  return NoneContributes(setup_.frames());
+  std::vector<FrameId> ids;
+  for (const Frame& frame : frames_) ids.push_back(frame.id);
+  return NoneContributes(ids);
 }
 
 Result<void> FilmRenderer::CheckNotAllBroken() const {
