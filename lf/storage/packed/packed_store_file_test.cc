@@ -14,7 +14,9 @@
 #include "lf/camera/testing_scenes.h"
 #include "lf/core/file.h"
 #include "lf/core/random.h"
+#include "lf/storage/packed/packed_format.h"
 #include "lf/storage/packed/packed_store_writer.h"
+#include "lf/storage/sqlite/database.h"
 
 namespace lf {
 namespace {
@@ -278,6 +280,29 @@ TEST_F(PackedStoreFileTest, ItGoesOnWithTheSameOnly) {
   PackedStoreWriter::RemoveUnfinished(path_, lock);
   lock.Remove();
   EXPECT_TRUE(Files().empty());
+}
+
+TEST_F(PackedStoreFileTest, AnImpossibleEntryOfAnUnfinishedStoreIsAnError) {
+  {
+    PackedStoreWriter writer = Writer();
+    ASSERT_TRUE(writer.Add({3}, CodeOfImage(3)));
+    ASSERT_TRUE(writer.Commit());
+  }
+  for (const char* const entry : {"id = 40", "shard = 1", "shard = -1", "bytes = -1", "bytes = 0",
+                                  "source_bytes = -1", "source_bytes = 'ten'"}) {
+    const fs::path unfinished = path_.string() + ".unfinished";
+    const std::string before = *ReadFile(unfinished);
+    ASSERT_TRUE(Database::OpenToAppend(unfinished, kStoreFormat)
+                    .value()
+                    .Execute(std::string("update codes set ") + entry));
+    const Result<PackedStoreWriter> writer = PackedStoreWriter::Resume(path_, field_, plan_);
+    ASSERT_FALSE(writer) << entry;
+    for (const char* const words : {"a store.lfs.unfinished: is ", "damaged"})
+      EXPECT_NE(writer.error().message.find(words), std::string::npos)
+          << entry << ": " << writer.error().message;
+    ASSERT_TRUE(WriteFileAtomically(unfinished, before));
+  }
+  EXPECT_TRUE(PackedStoreWriter::Resume(path_, field_, plan_));
 }
 
 TEST_F(PackedStoreFileTest, OneWriterAtATime) {

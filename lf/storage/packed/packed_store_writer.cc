@@ -209,9 +209,9 @@ Result<void> PackedStoreWriter::State::Read(const Settings& settings) {
       *database, "select id, shard, bytes, source_bytes from codes",
       [&](const Statement& row) -> Result<void> {
         LF_ASSIGN_OR_RETURN(const int64_t id, row.Integer(0));
-        LF_ASSIGN_OR_RETURN(const int64_t of_shard, row.Integer(1));
-        LF_ASSIGN_OR_RETURN(const int64_t bytes, row.Integer(2));
-        LF_ASSIGN_OR_RETURN(const int64_t sources, row.Integer(3));
+        LF_ASSIGN_OR_RETURN(const int64_t of_shard, row.Integer(1, 0, shard_count));
+        LF_ASSIGN_OR_RETURN(const int64_t bytes, row.Integer(2, 1, INT64_MAX));
+        LF_ASSIGN_OR_RETURN(const int64_t sources, row.Integer(3, 0, INT64_MAX));
         if (id < 0 || static_cast<size_t>(id) >= has.size())
           return settings.Damaged(fmt::format(
               "it has an encoded image of LF image {}, which the light field lacks", id));
