@@ -101,6 +101,15 @@ class ShardsTest(ProgramTestCase):
         self.assertEqual(self.merge("exr", *plates), digests(self.folder / "again"))
         self.assertEqual(expected, {})
 
+    def test_frames_without_plates_are_named(self):
+        self.render("whole", "--keep-plates")
+        plates = sorted((self.folder / "whole").glob("*.plate"))
+        for given, gap in ((plates, None), (plates[:2], None), (plates[::2], "frames 2:")):
+            result = self.call(MERGE, *given, "-o", self.folder / "gap", "--overwrite")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual("no plates are given" in result.stderr, gap is not None, result.stderr)
+            self.assertIn(gap or "", result.stderr)
+
     def test_packages_may_be_cut_too(self):
         expected = self.render("whole")
         self.succeeds(PREPROCESSOR, self.field, self.path, "-o", self.folder / "packages",

@@ -119,6 +119,7 @@ class Merger {
       frames_[plate.notes.frame].push_back(std::move(plate));
     }
     LF_RETURN_IF_ERROR(CheckFrames());
+    WarnOfGaps();
     LogDebug("{} plates of {} frames, the first in {} shards", files.size(), frames_.size(),
              frames_.begin()->second.front().shard.count);
     if (options_.video) {
@@ -216,6 +217,22 @@ class Merger {
             one.shard.count - there.size() > missing.size() ? ", ..." : ""));
     }
     return {};
+  }
+
+  // Frames may have been left out on purpose, by lfrenderer --frames. Who forgot the plates of one
+  // machine would find a shorter film otherwise.
+  void WarnOfGaps() const {
+    std::vector<std::string> gaps;
+    for (auto next = std::next(frames_.begin()); next != frames_.end(); ++next) {
+      const uint32_t begin = std::prev(next)->first.value + 1, end = next->first.value;
+      if (begin + 1 == end) gaps.push_back(fmt::format("{}", begin));
+      if (begin + 1 < end) gaps.push_back(fmt::format("{}-{}", begin, end - 1));
+    }
+    if (gaps.empty()) return;
+    const size_t said = std::min<size_t>(gaps.size(), 10);
+    LogWarning("no plates are given of frames {}{}: the film is made without them",
+               fmt::join(gaps.begin(), gaps.begin() + static_cast<std::ptrdiff_t>(said), ", "),
+               gaps.size() > said ? ", ..." : "");
   }
 
   Result<void> FindFinished() {
