@@ -103,7 +103,8 @@ Result<RenderOptions> TryArguments(const std::vector<fs::path>& packages, const 
   try {
     renderer.app().parse(static_cast<int>(argv.size()), argv.data());
   } catch (const CLI::ParseError& error) {
-    return UsageError(fmt::format("the arguments of lfrenderer, after --: {}", error.what()));
+    return UsageError(
+        fmt::format("lfrenderer would refuse its arguments (after --): {}", error.what()));
   }
   LF_RETURN_IF_ERROR(render.Check(renderer.app().count("--seed") > 0));
   std::optional<LightFieldPlace> place;

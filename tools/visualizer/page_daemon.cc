@@ -238,7 +238,9 @@ Result<void> PageDaemon::Start(int socket) {
   try {
     parts_->news = std::thread([this] { parts_->streams.Run(); });
   } catch (const std::exception&) {
-    return OutputError("the page cannot be served: the machine has no thread left");
+    return OutputError(
+        "the page cannot be served: the system starts no more threads: end "
+        "other programs, or raise the limit of processes (ulimit -u)");
   }
   parts_->daemon =
       MHD_start_daemon(kMode, 0, nullptr, nullptr, Parts::OnRequest, parts_.get(),       //

@@ -231,7 +231,7 @@ class Reader {
     }
     if (sizes.empty())
       return InputError(
-          fmt::format("{}: the image size is missing, and the images do not tell it: {}; {}",
+          fmt::format("{}: the image size is missing, and cannot be read from the images: {}; {}",
                       path_.string(), fault->message, advice));
     const auto count_of = [&](const std::array<int, 2>& size) {
       return std::count(sizes.begin(), sizes.end(), size);
