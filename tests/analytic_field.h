@@ -86,7 +86,8 @@ inline SensorPlate CollectFrame(const LightField& field, const LfImageStore& sto
   std::vector<SensorPlate> plates;
   plates.emplace_back(frame.pinhole.intrinsics.width_px, frame.pinhole.intrinsics.height_px);
   const auto images = SelectImages(ImageIndex(field), frames, {}, pool);
-  const auto statistics = Collect(field, store, frames, images, {}, pool, &plates, nullptr);
+  const auto statistics =
+      Collect(field, store, FramesOf(frames, plates), images, {}, pool, nullptr);
   LF_CHECK(statistics.has_value());
   return std::move(plates[0]);
 }

@@ -46,10 +46,9 @@ Result<RenderRate> MeasureRate(const ImageIndex& index, const RenderCamera& fram
       OpenStore(light_field, reading.estimator == Estimator::kBilinear ? Mosaics::kToRgb
                                                                        : Mosaics::kAsRecorded));
   const LfImageStore& store = *opened;
-  const Intrinsics& plate = frame.pinhole.intrinsics;
-  std::vector<SensorPlate> plates;
-  plates.push_back(
-      SensorPlate::WithOpacity(plate.width_px, plate.height_px, light_field.encoding.HasOpacity()));
+  SensorPlate plate = SensorPlate::WithOpacity(frame.pinhole.intrinsics.width_px,
+                                               frame.pinhole.intrinsics.height_px,
+                                               light_field.encoding.HasOpacity());
   const std::vector<SelectedImage> sample = SampleOf(needs, store);
   if (sample.empty())
     return InputError(
@@ -64,11 +63,11 @@ Result<RenderRate> MeasureRate(const ImageIndex& index, const RenderCamera& fram
   const double lens_s = static_cast<double>(std::clock() - lens_start) / CLOCKS_PER_SEC;
   CollectOptions options;
   options.reading = reading;
+  CollectedFrame collected = {lens.camera(), &plate};
   if (needs_options.lens_weights != LensWeights::kNone)
-    options.weights = [&lens](size_t, LfImageId id) { return lens.WeightsOf(id); };
+    collected.weights = [&lens](LfImageId id) { return lens.WeightsOf(id); };
   LF_ASSIGN_OR_RETURN(const CollectStatistics statistics,
-                      Collect(light_field, store, std::span(&lens.camera(), 1), sample, options,
-                              pool, &plates, nullptr));
+                      Collect(light_field, store, {collected}, sample, options, pool, nullptr));
   const size_t loaded = sample.size() - statistics.skipped.size();
   if (loaded == 0) return InputError(statistics.skipped.front().reason);
   RenderRate rate;
@@ -83,7 +82,7 @@ Result<RenderRate> MeasureRate(const ImageIndex& index, const RenderCamera& fram
   develop.scale = light_field.encoding.Scale();
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / fmt::format("lf_rate.{}.exr", ::getpid());
-  DevelopedFrame developed = Develop(plates[0], develop, alone);
+  DevelopedFrame developed = Develop(plate, develop, alone);
   if (needs_options.lens_weights != LensWeights::kNone)
     developed.effective_count =
         SpreadOverPlate(lens.EffectiveCounts(), lens.camera().pinhole.intrinsics);

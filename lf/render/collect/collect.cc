@@ -43,22 +43,19 @@ struct Batch {
 class FrameCollector::State {
  public:
   State(const LightField& light_field, const LfImageStore& store,
-        std::span<const RenderCamera> frames, std::span<const SelectedImage> order,
-        std::span<const PlaceRange> places, const CollectOptions& options, ThreadPool& pool,
-        std::vector<SensorPlate>* plates)
+        std::vector<CollectedFrame> frames, std::span<const SelectedImage> order,
+        const CollectOptions& options, ThreadPool& pool)
       : light_field_(light_field),
         store_(store),
         order_(order),
         options_(options),
         pool_(pool),
-        collector_(light_field, frames, options.reading, options.back_end, options.weights,
-                   options.plan_bytes, options.whole_images, pool, plates, options.moments),
-        places_(places.begin(), places.end()),
-        progress_(frames.size()),
-        is_stopped_(frames.size(), false) {
-    if (places_.empty()) places_.resize(frames.size());
-    LF_CHECK(places_.size() == frames.size());
-    for (size_t f = 0; f < places_.size(); ++f) progress_[f].places_done = places_[f].begin;
+        frames_(std::move(frames)),
+        collector_(light_field, frames_, options.reading, options.back_end, options.plan_bytes,
+                   options.whole_images, pool),
+        progress_(frames_.size()),
+        is_stopped_(frames_.size(), false) {
+    for (size_t f = 0; f < frames_.size(); ++f) progress_[f].places_done = frames_[f].places.begin;
     LF_CHECK(options.batch_image_count >= 1);
     images_done_ = announced_ = FirstWanted(0);
   }
@@ -78,9 +75,9 @@ class FrameCollector::State {
             fmt::format("interrupted after {} of {} LF images", images_done_, order_.size())};
   }
   bool Takes(size_t frame) const {
-    return !is_stopped_[frame] && progress_[frame].places_done < places_[frame].end;
+    return !is_stopped_[frame] && progress_[frame].places_done < frames_[frame].places.end;
   }
-  // True if options_.taker still needs LF images before this place.
+  // True if options_.consumer still needs LF images before this place.
   bool ConsumerWants(uint32_t place_end) const {
     return options_.consumer != nullptr && options_.consumer->places_done() < place_end;
   }
@@ -102,8 +99,8 @@ class FrameCollector::State {
   std::span<const SelectedImage> order_;
   const CollectOptions options_;
   ThreadPool& pool_;
+  const std::vector<CollectedFrame> frames_;
   BatchCollector collector_;
-  std::vector<PlaceRange> places_;
   std::vector<FrameProgress> progress_;
   std::vector<bool> is_stopped_;
   std::vector<SkippedImage> skipped_;
@@ -152,7 +149,7 @@ Result<bool> FrameCollector::State::Step() {
     all_done = all_done && taker.is_done;
     if (!taker.is_done) continue;
     FrameProgress& progress = progress_[taker.frame];
-    progress.places_done = std::min(batch_.place_end, places_[taker.frame].end);
+    progress.places_done = std::min(batch_.place_end, frames_[taker.frame].places.end);
     progress.rays.image_count += taker.rays.image_count;
     progress.rays.tested_count += taker.rays.tested_count;
     progress.rays.accepted_count += taker.rays.accepted_count;
@@ -173,7 +170,7 @@ Result<bool> FrameCollector::State::Step() {
 }
 
 // Returns the index in order_ of the first LF image, at or after index `from`, that a frame or the
-// taker still needs; order_.size() if there is none.
+// consumer still needs; order_.size() if there is none.
 size_t FrameCollector::State::FirstWanted(size_t from) const {
   uint32_t place = UINT32_MAX;
   for (size_t f = 0; f < progress_.size(); ++f)
@@ -217,7 +214,7 @@ std::vector<BatchFrame> FrameCollector::State::FramesOf(const Batch& batch) cons
   std::vector<BatchFrame> frames;
   for (size_t f = 0; f < progress_.size(); ++f)
     if (Takes(f) && progress_[f].places_done < batch.place_end)
-      frames.push_back({f, {progress_[f].places_done, places_[f].end}, false, {}});
+      frames.push_back({f, {progress_[f].places_done, frames_[f].places.end}, false, {}});
   return frames;
 }
 
@@ -231,7 +228,7 @@ PixelRect FrameCollector::State::RectOf(const Batch& batch, const SelectedImage&
   if (batch.frames.empty()) return image.rect;
   std::vector<size_t> frames;
   for (const size_t frame : batch.frames)
-    if (places_[frame].Holds(image.place)) frames.push_back(frame);
+    if (frames_[frame].places.Holds(image.place)) frames.push_back(frame);
   return collector_.RectOf(image.id, frames);
 }
 
@@ -299,12 +296,11 @@ void FrameCollector::State::Skip(const SelectedImage& image, const Error& error)
 }
 
 FrameCollector::FrameCollector(const LightField& light_field, const LfImageStore& store,
-                               std::span<const RenderCamera> frames,
-                               std::span<const SelectedImage> order,
-                               std::span<const PlaceRange> places, const CollectOptions& options,
-                               ThreadPool& pool, std::vector<SensorPlate>* plates)
-    : state_(std::make_unique<State>(light_field, store, frames, order, places, options, pool,
-                                     plates)) {}
+                               std::vector<CollectedFrame> frames,
+                               std::span<const SelectedImage> order, const CollectOptions& options,
+                               ThreadPool& pool)
+    : state_(std::make_unique<State>(light_field, store, std::move(frames), order, options, pool)) {
+}
 FrameCollector::~FrameCollector() = default;
 
 Result<bool> FrameCollector::Step() { return state_->Step(); }
@@ -315,12 +311,11 @@ size_t FrameCollector::images_done() const { return state_->images_done(); }
 const CollectTimes& FrameCollector::times() const { return state_->times(); }
 
 Result<CollectStatistics> Collect(const LightField& light_field, const LfImageStore& store,
-                                  std::span<const RenderCamera> frames,
+                                  std::vector<CollectedFrame> frames,
                                   std::span<const SelectedImage> order,
                                   const CollectOptions& options, ThreadPool& pool,
-                                  std::vector<SensorPlate>* plates,
                                   const std::function<void(const CollectProgress&)>& progress) {
-  FrameCollector collector(light_field, store, frames, order, {}, options, pool, plates);
+  FrameCollector collector(light_field, store, std::move(frames), order, options, pool);
   CollectProgress done;
   while (true) {
     LF_ASSIGN_OR_RETURN(const bool stepped, collector.Step());

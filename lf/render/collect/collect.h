@@ -12,12 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "lf/camera/render_camera.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
-#include "lf/film/plate/sensor_plate.h"
 #include "lf/light_field/model/light_field.h"
 #include "lf/render/collect/collect_batch.h"
+#include "lf/render/collect/collected_frame.h"
 #include "lf/render/collect/image_consumer.h"
 #include "lf/selection/select.h"
 #include "lf/storage/load/lf_image_store.h"
@@ -47,10 +46,6 @@ struct CollectOptions {
   uint32_t decision_places = kDecisionPlaces;
   // True: batches also end at all places of NoiseDecisionAfter() (noise_rule.h).
   bool cuts_for_noise = false;
-  // Moments of the plates, one per frame. Step() updates them with the plates: the moments of a
-  // frame include exactly the LF images in its plate. Null: no moments are kept.
-  std::vector<NoiseMoments>* moments = nullptr;
-  FrameImageWeights weights;
   // Receives the LF images of all batches, in addition to the frames. Does not change the plates.
   // May be null.
   ImageConsumer* consumer = nullptr;
@@ -82,7 +77,7 @@ struct CollectTimes {
   double wall_s = 0;         // duration of all steps
 };
 
-// Adds the rays of LF images, in their order, to plates, one per frame. Each step adds a batch of
+// Adds the rays of LF images, in their order, to the plates of frames. Each step adds a batch of
 // LF images while the next batch is decoded. The threads of the pool do both.
 //
 // The plates have the same bits for any order, batch size and number of threads, and however often
@@ -92,15 +87,12 @@ class FrameCollector {
  public:
   // order   LF images that the frames take, by ascending places, each with the bounds of the pixels
   // that the frames need: the result of SelectImages(), where SelectOptions::takes must be true
-  // exactly for the LF images that options.weights gives a weight
-  // places  the range of places that each frame takes; its plate must have the rays of the places
-  //         before `begin`. Empty: every frame takes all places
-  // plates  one per frame; only Step() changes them
-  // All arguments must outlive the collector, except `options` and `places`, which are copied.
+  // exactly for the LF images that CollectedFrame::weights gives a weight
+  // The plates and moments of the frames, and all arguments except `frames` and `options`, must
+  // outlive the collector. Only Step() changes plates and moments.
   FrameCollector(const LightField& light_field, const LfImageStore& store,
-                 std::span<const RenderCamera> frames, std::span<const SelectedImage> order,
-                 std::span<const PlaceRange> places, const CollectOptions& options,
-                 ThreadPool& pool, std::vector<SensorPlate>* plates);
+                 std::vector<CollectedFrame> frames, std::span<const SelectedImage> order,
+                 const CollectOptions& options, ThreadPool& pool);
   ~FrameCollector();
   FrameCollector(const FrameCollector&) = delete;
   FrameCollector& operator=(const FrameCollector&) = delete;
@@ -142,13 +134,12 @@ struct CollectProgress {
   uint64_t tested_count = 0;
 };
 
-// Makes a FrameCollector for all places and calls Step() until nothing is left to do. Errors are
+// Makes a FrameCollector and calls Step() until nothing is left to do. Errors are
 // those of FrameCollector::Step().
 Result<CollectStatistics> Collect(const LightField& light_field, const LfImageStore& store,
-                                  std::span<const RenderCamera> frames,
+                                  std::vector<CollectedFrame> frames,
                                   std::span<const SelectedImage> order,
                                   const CollectOptions& options, ThreadPool& pool,
-                                  std::vector<SensorPlate>* plates,
                                   const std::function<void(const CollectProgress&)>& progress);
 
 }  // namespace lf

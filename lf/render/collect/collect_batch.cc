@@ -57,25 +57,20 @@ size_t PlanBytes(Estimator estimator, bool has_distortion, int image_width, int 
          (sizeof(Segment) + (is_nearest ? 3 * sizeof(TilePiece) : 0));
 }
 
-BatchCollector::BatchCollector(const LightField& light_field, std::span<const RenderCamera> frames,
-                               const RayReading& reading, CollectBackEnd back_end,
-                               FrameImageWeights weights, size_t plan_bytes, bool whole_images,
-                               ThreadPool& pool, std::vector<SensorPlate>* plates,
-                               std::vector<NoiseMoments>* moments)
+BatchCollector::BatchCollector(const LightField& light_field,
+                               std::span<const CollectedFrame> frames, const RayReading& reading,
+                               CollectBackEnd back_end, size_t plan_bytes, bool whole_images,
+                               ThreadPool& pool)
     : light_field_(light_field),
       frames_(frames),
       reading_(reading),
       back_end_(back_end),
-      weights_(std::move(weights)),
       plan_bytes_(plan_bytes),
       whole_images_(whole_images),
-      pool_(pool),
-      plates_(*plates),
-      moments_(moments) {
-  LF_CHECK(plates->size() == frames.size());
-  LF_CHECK(moments == nullptr || moments->size() == frames.size());
-  for (SensorPlate& plate : plates_)
-    tiles_.push_back(CutIntoTiles(&plate, TileSums::GridOf(plate.width(), plate.height())));
+      pool_(pool) {
+  for (const CollectedFrame& frame : frames_)
+    tiles_.push_back(
+        CutIntoTiles(frame.plate, TileSums::GridOf(frame.plate->width(), frame.plate->height())));
 }
 
 void BatchCollector::Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>& frames,
@@ -97,8 +92,8 @@ void BatchCollector::Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>
   for (const BatchImage& image : batch)
     frame_bytes +=
         PlanBytes(reading_.estimator, light_field_.Camera(image.id).intrinsics.has_distortion(),
-                  image.pixels.rect.width(), image.pixels.rect.height(), plates_[0].width(),
-                  plates_[0].height());
+                  image.pixels.rect.width(), image.pixels.rect.height(), frames_[0].plate->width(),
+                  frames_[0].plate->height());
   const size_t chunk = std::max<size_t>(1, plan_bytes_ / frame_bytes);
   for (size_t begin = 0; begin < takers.size(); begin += chunk) {
     if (is_interrupted()) return;
@@ -123,7 +118,7 @@ PixelRect BatchCollector::RectOf(LfImageId id, std::span<const size_t> frames) c
   const ImageOverlap overlap(camera, cells, ReachOf(reading_.estimator));
   PixelRect rect;
   for (const size_t frame : frames)
-    if (takes(frame)) rect = Bounds(rect, overlap.Rect(frames_[frame]));
+    if (takes(frame)) rect = Bounds(rect, overlap.Rect(frames_[frame].camera));
   return rect;
 }
 
@@ -156,7 +151,7 @@ std::span<BatchFrame> BatchCollector::FramesThatMayTake(const std::vector<BatchI
   ForEachTimed(frames.size(), [&](size_t f) {
     frames[f].is_done = std::none_of(batch.begin(), batch.end(), [&](const BatchImage& image) {
       return frames[f].places.Holds(image.place) &&
-             (whole_images_ || !image.overlap->PlainlyMisses(frames_[frames[f].frame]));
+             (whole_images_ || !image.overlap->PlainlyMisses(frames_[frames[f].frame].camera));
     });
   });
   const auto rest = std::stable_partition(frames.begin(), frames.end(),
@@ -178,7 +173,7 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
     contribution.rect = {};
     contribution.accepted_count = 0;
     if (!taker.places.Holds(image.place)) return;
-    const RenderCamera& frame = frames_[taker.frame];
+    const RenderCamera& frame = frames_[taker.frame].camera;
     const PinholeCamera camera = light_field_.Camera(image.id);
     contribution.weights = WeightsOf(taker.frame, image.id);
     if (contribution.weights.are_none()) return;
@@ -205,8 +200,9 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
   const auto collect = [&](const Task& task) {
     if (!gates[task.taker].IsOpen(interrupted)) return;
     thread_local TileSums sums;
-    PlateTile& tile = tiles_[frames[task.taker].frame][task.tile];
-    NoiseTally tally(MomentsOf(frames[task.taker].frame), tile.rect());
+    const size_t frame = frames[task.taker].frame;
+    PlateTile& tile = tiles_[frame][task.tile];
+    NoiseTally tally(frames_[frame].moments, tile.rect());
     sums.Begin(&tile, tally.elements());
     for (size_t k = 0; k < batch.size(); ++k) {
       Contribution& contribution = contributions_[task.taker * batch.size() + k];
@@ -217,7 +213,7 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
         tally.TakeImage([&](size_t element, int c) { return sums.Added(element, c); });
     }
     sums.Flush();
-    if (!plates_[frames[task.taker].frame].has_opacity()) return;
+    if (!frames_[frame].plate->has_opacity()) return;
     sums.Begin(&tile, {}, TileSums::Target::kOpacity);
     for (size_t k = 0; k < batch.size(); ++k)
       if (Contribution& contribution = contributions_[task.taker * batch.size() + k];
@@ -258,9 +254,9 @@ uint64_t BatchCollector::AddToTile(const Contribution& contribution, size_t tile
 
 void BatchCollector::AddByReference(const std::vector<BatchImage>& batch, BatchFrame* frame) {
   const ThreadCpuTimer timer;
-  const RenderCamera& camera = frames_[frame->frame];
-  SensorPlate& plate = plates_[frame->frame];
-  NoiseTally tally(MomentsOf(frame->frame), {0, 0, plate.width(), plate.height()});
+  const RenderCamera& camera = frames_[frame->frame].camera;
+  SensorPlate& plate = *frames_[frame->frame].plate;
+  NoiseTally tally(frames_[frame->frame].moments, {0, 0, plate.width(), plate.height()});
   const auto total_of = [&](size_t element, int c) {
     return plate.At(tally.elements()[element].x, tally.elements()[element].y, c);
   };

@@ -22,7 +22,7 @@
 #include "lf/film/plate/sensor_plate.h"
 #include "lf/light_field/model/lf_pixels.h"
 #include "lf/light_field/model/light_field.h"
-#include "lf/render/collect/noise_moments.h"
+#include "lf/render/collect/collected_frame.h"
 #include "lf/render/collect/shared_ideal_pixels.h"
 #include "lf/selection/overlap.h"
 #include "lf/selection/select.h"
@@ -89,21 +89,16 @@ struct OtherItems {
 size_t PlanBytes(Estimator estimator, bool has_distortion, int image_width, int image_height,
                  int plate_width, int plate_height);
 
-// Returns the weights of the rays of an LF image in a frame; 0 if the frame does not take the LF
-// image. An empty function means that every ray has weight 1.
-using FrameImageWeights = std::function<RayWeights(size_t frame, LfImageId id)>;
-
 class BatchCollector {
  public:
+  // frames        must outlive the object; `places` is not used, BatchFrame has its own
   // plan_bytes    memory for the plans of frames that are planned together; exceeded if one frame
   //               needs more
   // whole_images  true: tests all loaded pixels of an LF image instead of the rectangle that a
   //               frame needs
-  // moments       one per frame, of the size of its plate; null: no moments are kept
-  BatchCollector(const LightField& light_field, std::span<const RenderCamera> frames,
-                 const RayReading& reading, CollectBackEnd back_end, FrameImageWeights weights,
-                 size_t plan_bytes, bool whole_images, ThreadPool& pool,
-                 std::vector<SensorPlate>* plates, std::vector<NoiseMoments>* moments = nullptr);
+  BatchCollector(const LightField& light_field, std::span<const CollectedFrame> frames,
+                 const RayReading& reading, CollectBackEnd back_end, size_t plan_bytes,
+                 bool whole_images, ThreadPool& pool);
 
   // Adds the LF images to the plates of `frames` and runs the other items. May change the order of
   // `frames`. Once *interrupted is true, no further frame is begun, and the frames that are begun
@@ -129,10 +124,8 @@ class BatchCollector {
   };
   PixelRect RectOf(const BatchImage& image, const RenderCamera& frame) const;
   RayWeights WeightsOf(size_t frame, LfImageId id) const {
-    return weights_ ? weights_(frame, id) : RayWeights();
-  }
-  NoiseMoments* MomentsOf(size_t frame) const {
-    return moments_ == nullptr ? nullptr : &(*moments_)[frame];
+    const ImageWeights& weights = frames_[frame].weights;
+    return weights ? weights(id) : RayWeights();
   }
   void UndoDistortion(std::vector<BatchImage>& batch);
   std::span<BatchFrame> FramesThatMayTake(const std::vector<BatchImage>& batch,
@@ -148,16 +141,13 @@ class BatchCollector {
   void ForEachTimed(size_t count, const std::function<void(size_t)>& body);
 
   const LightField& light_field_;
-  std::span<const RenderCamera> frames_;
+  std::span<const CollectedFrame> frames_;
   RayReading reading_;
   CollectBackEnd back_end_;
-  FrameImageWeights weights_;
   size_t plan_bytes_;
   bool whole_images_;
   ThreadPool& pool_;
-  std::vector<SensorPlate>& plates_;
-  std::vector<NoiseMoments>* moments_;
-  std::vector<std::vector<PlateTile>> tiles_;
+  std::vector<std::vector<PlateTile>> tiles_;  // of each frame's plate
   std::deque<Contribution>
       contributions_;  // [frame][LF image] of a batch; the next batch reuses their memory
   // Ideal pixels of the LF cameras of the last batch, by the index of their intrinsics.

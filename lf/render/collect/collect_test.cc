@@ -28,7 +28,7 @@ Outcome CollectAll(const NoiseStore& store, int threads, CollectOptions options,
   });
   std::vector<SensorPlate> plates;
   for (size_t i = 0; i < frames.size(); ++i) plates.emplace_back(80, 60);
-  auto statistics = Collect(field, store, frames, images, options, pool, &plates, nullptr);
+  auto statistics = Collect(field, store, FramesOf(frames, plates), images, options, pool, nullptr);
   return {std::move(plates), std::move(statistics)};
 }
 
@@ -56,7 +56,7 @@ std::vector<SensorPlate> CollectDistorted(int threads, const CollectOptions& opt
   std::vector<SensorPlate> plates;
   for (size_t i = 0; i < frames.size(); ++i) plates.emplace_back(80, 60);
   const auto statistics =
-      Collect(field, NoiseStore(), frames, images, options, pool, &plates, nullptr);
+      Collect(field, NoiseStore(), FramesOf(frames, plates), images, options, pool, nullptr);
   EXPECT_TRUE(statistics);
   *accepted = 0;
   if (statistics)
@@ -82,7 +82,8 @@ TEST(Collect, FramesThatPassByTakeWhatTheyTakeAlone) {
   const auto collect = [&](std::span<const RenderCamera> some, std::vector<SensorPlate>* plates) {
     for (size_t f = 0; f < some.size(); ++f) plates->emplace_back(80, 60);
     const std::vector<SelectedImage> images = SelectImages(ImageIndex(field), some, {}, pool);
-    return Collect(field, NoiseStore(), some, images, options, pool, plates, nullptr)->frames;
+    return Collect(field, NoiseStore(), FramesOf(some, *plates), images, options, pool, nullptr)
+        ->frames;
   };
   std::vector<SensorPlate> plates;
   const std::vector<FrameRays> rays = collect(frames, &plates);
@@ -155,8 +156,6 @@ TEST(Collect, OpacityIsCollectedByTheRaysAndWeightsOfColours) {
         options.reading.estimator = estimator;
         options.back_end = back_end;
         options.batch_image_count = 5;
-        if (has_weights)
-          options.weights = [](size_t, LfImageId id) { return RayWeights(1 + id.value % 7); };
         ThreadPool pool(2);
         const std::vector<SelectedImage> images =
             SelectImages(ImageIndex(field), frames, {.reach = ReachOf(estimator)}, pool);
@@ -165,8 +164,13 @@ TEST(Collect, OpacityIsCollectedByTheRaysAndWeightsOfColours) {
           plates.push_back(SensorPlate::WithOpacity(80, 60));
           colours.emplace_back(80, 60);
         }
-        for (std::vector<SensorPlate>* into : {&plates, &colours})
-          ASSERT_TRUE(Collect(field, RedOpacityStore(), frames, images, options, pool, into, {}));
+        for (std::vector<SensorPlate>* into : {&plates, &colours}) {
+          std::vector<CollectedFrame> collected = FramesOf(frames, *into);
+          if (has_weights)
+            for (CollectedFrame& frame : collected)
+              frame.weights = [](LfImageId id) { return RayWeights(1 + id.value % 7); };
+          ASSERT_TRUE(Collect(field, RedOpacityStore(), collected, images, options, pool, {}));
+        }
         for (size_t f = 0; f < frames.size(); ++f)
           for (int y = 0; y < 60; ++y)
             for (int x = 0; x < 80; ++x) {

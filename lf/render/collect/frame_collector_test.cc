@@ -31,7 +31,9 @@ struct Job {
     return empty;
   }
   FrameCollector Collector() {
-    return FrameCollector(field, store, frames, order, places, options, pool, &plates);
+    std::vector<CollectedFrame> collected = FramesOf(frames, plates);
+    for (size_t f = 0; f < collected.size(); ++f) collected[f].places = places[f];
+    return FrameCollector(field, store, std::move(collected), order, options, pool);
   }
 };
 
@@ -45,8 +47,8 @@ SensorPlate PlateOf(Job& job, size_t f, uint32_t end, FrameRays* rays) {
   options.interrupted = nullptr;
   const auto on_load = std::exchange(job.store.on_load, nullptr);
   const Result<CollectStatistics> statistics =
-      Collect(job.field, job.store, std::span(job.frames).subspan(f, 1), images, options, job.pool,
-              &plates, nullptr);
+      Collect(job.field, job.store, FramesOf(std::span(job.frames).subspan(f, 1), plates), images,
+              options, job.pool, nullptr);
   job.store.on_load = on_load;
   EXPECT_TRUE(statistics);
   *rays = statistics->frames[0];

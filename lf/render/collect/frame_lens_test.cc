@@ -32,8 +32,10 @@ std::vector<SensorPlate> Collected(const LightField& field, const std::vector<Fr
   CollectOptions options;
   options.reading.estimator = estimator;
   options.back_end = back_end;
-  options.weights = [&](size_t f, LfImageId id) { return lenses[f].WeightsOf(id); };
-  EXPECT_TRUE(Collect(field, store, cameras, order, options, pool, &plates, {}));
+  std::vector<CollectedFrame> frames = FramesOf(cameras, plates);
+  for (size_t f = 0; f < frames.size(); ++f)
+    frames[f].weights = [&lens = lenses[f]](LfImageId id) { return lens.WeightsOf(id); };
+  EXPECT_TRUE(Collect(field, store, frames, order, options, pool, {}));
   return plates;
 }
 
@@ -185,7 +187,8 @@ TEST(FrameLens, BordersOfLfImagesLeaveNoSeam) {
     plates.emplace_back(640, 480);
     CollectOptions options;
     options.reading.estimator = Estimator::kBilinear;
-    options.weights = [&](size_t, LfImageId id) {
+    std::vector<CollectedFrame> frames = FramesOf({&camera, 1}, plates);
+    frames[0].weights = [&](LfImageId id) {
       const RayWeights weights = lenses[0].WeightsOf(id);
       if (has_feather || weights.are_same()) return weights;
       return RayWeights(weights.blocks(),
@@ -193,7 +196,7 @@ TEST(FrameLens, BordersOfLfImagesLeaveNoSeam) {
                           weights.OfRow(end_x - 1, end_y - 1, count, of_blocks);
                         });
     };
-    EXPECT_TRUE(Collect(field, EvenStore(), {&camera, 1}, order, options, pool, &plates, {}));
+    EXPECT_TRUE(Collect(field, EvenStore(), frames, order, options, pool, {}));
     double most = 0;
     const auto value = [&](int x, int y) {
       const ElementSum sum = plates[0].At(x, y, 1);

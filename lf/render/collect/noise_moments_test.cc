@@ -155,10 +155,13 @@ Collected CollectField(Estimator estimator, CollectBackEnd back_end, const LensW
   options.reading.estimator = estimator;
   options.back_end = back_end;
   options.batch_image_count = batch;
-  options.moments = &collected.moments;
-  if (weights != LensWeights::kNone)
-    options.weights = [&](size_t f, LfImageId id) { return lenses[f].WeightsOf(id); };
-  EXPECT_TRUE(Collect(field, store, frames, order, options, pool, &collected.plates, nullptr));
+  std::vector<CollectedFrame> into = FramesOf(frames, collected.plates);
+  for (size_t f = 0; f < kFrames; ++f) {
+    into[f].moments = &collected.moments[f];
+    if (weights != LensWeights::kNone)
+      into[f].weights = [&lens = lenses[f]](LfImageId id) { return lens.WeightsOf(id); };
+  }
+  EXPECT_TRUE(Collect(field, store, into, order, options, pool, nullptr));
   return collected;
 }
 

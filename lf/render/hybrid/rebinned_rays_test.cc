@@ -75,10 +75,10 @@ struct Fixture {
       collect.batch_image_count = batch;
       collect.consumer = rays.get();
       const size_t count = collects ? frames.size() : 0;
-      std::vector<SensorPlate> none;
-      FrameCollector collector(field, store, std::span(frames).first(count), order,
-                               std::span(places).first(count), collect, pool,
-                               collects ? &outcome.plates : &none);
+      std::vector<CollectedFrame> collected =
+          FramesOf(std::span(frames).first(count), outcome.plates);
+      for (size_t f = 0; f < count; ++f) collected[f].places = places[f];
+      FrameCollector collector(field, store, std::move(collected), order, collect, pool);
       for (size_t step = 0; step < interrupted_after; ++step)
         if (!*collector.Step()) break;
       if (interrupted_after == SIZE_MAX) break;
@@ -124,8 +124,8 @@ TEST(RebinnedRays, CompletesWhatIsNotCollectedAndLeavesThePlatesAlone) {
   CollectOptions collect;
   collect.reading.estimator = Estimator::kBilinear;
   const auto order = SelectImages(fixture.index, fixture.frames, fixture.select, pool);
-  ASSERT_TRUE(Collect(fixture.field, testing::NoiseStore(), fixture.frames, order, collect, pool,
-                      &plates, {}));
+  ASSERT_TRUE(Collect(fixture.field, testing::NoiseStore(), FramesOf(fixture.frames, plates), order,
+                      collect, pool, {}));
   for (size_t f = 0; f < plates.size(); ++f) EXPECT_TRUE(plates[f] == outcome.plates[f]);
 }
 

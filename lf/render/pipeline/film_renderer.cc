@@ -43,7 +43,7 @@ Result<void> FilmRenderer::Begin(const EarlierRun* earlier) {
   LF_RETURN_IF_ERROR(FindLenses());
   std::vector<PlaceRange> places(frames_.size());
   if (film_.max_image_count)
-    places = PlacesOfFirst(*film_.max_image_count, setup_.index(), cameras_, SelectCollected(),
+    places = PlacesOfFirst(*film_.max_image_count, setup_.index(), Cameras(), SelectCollected(),
                            setup_.pool());
   if (film_.Rebins()) LF_RETURN_IF_ERROR(PrepareRebinning(places, earlier));
   if (film_.HasPlates()) LF_RETURN_IF_ERROR(PreparePlates(earlier, &places));
@@ -53,37 +53,42 @@ Result<void> FilmRenderer::Begin(const EarlierRun* earlier) {
 
   CollectOptions collect = OptionsOfCollector();
   if (film_.HasStopRule()) LF_RETURN_IF_ERROR(PrepareStops(places, &collect));
-  if (!film_.HasPlates()) places.clear();
-  collector_ = std::make_unique<FrameCollector>(
-      setup_.light_field(), setup_.store(),
-      film_.HasPlates() ? std::span<const RenderCamera>(cameras_) : std::span<const RenderCamera>(),
-      images_, places, collect, setup_.pool(), &plates_);
-  for (size_t f = 0; f < plates_.size(); ++f)
-    if (frames_[f].is_released) collector_->Stop(f);
+  collector_ =
+      std::make_unique<FrameCollector>(setup_.light_field(), setup_.store(),
+                                       FramesOfCollector(places), images_, collect, setup_.pool());
+  if (film_.HasPlates())
+    for (size_t f = 0; f < frames_.size(); ++f)
+      if (frames_[f].is_released) collector_->Stop(f);
   EndEarlyFrames();
   DecideStops();  // an earlier run may have ended exactly where the stop rule is applied
   return {};
 }
 
 Result<void> FilmRenderer::FindLenses() {
-  for (const Frame& frame : frames_) {
+  for (Frame& frame : frames_) {
     if (setup_.work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
-    lenses_.emplace_back(setup_.index(), setup_.path().Camera(frame.id), film_.lens_weights,
-                         select_, setup_.pool(), setup_.package().CameraDistance(frame.id));
-    cameras_.push_back(lenses_.back().camera());
+    frame.lens.emplace(setup_.index(), setup_.path().Camera(frame.id), film_.lens_weights, select_,
+                       setup_.pool(), setup_.package().CameraDistance(frame.id));
+    frame.camera = frame.lens->camera();
   }
   return {};
+}
+
+std::vector<RenderCamera> FilmRenderer::Cameras() const {
+  std::vector<RenderCamera> cameras;
+  for (const Frame& frame : frames_) cameras.push_back(frame.camera);
+  return cameras;
 }
 
 // Returns the options that select only the LF images whose rays have a weight in a frame.
 SelectOptions FilmRenderer::SelectCollected() const {
   SelectOptions select = select_;
   if (film_.lens_weights != LensWeights::kNone)
-    select.takes = [this](size_t f, LfImageId id) { return lenses_[f].Takes(id); };
+    select.takes = [this](size_t f, LfImageId id) { return lens(f).Takes(id); };
   return select;
 }
 
-CollectOptions FilmRenderer::OptionsOfCollector() {
+CollectOptions FilmRenderer::OptionsOfCollector() const {
   const WorkOptions& work = setup_.work();
   CollectOptions collect;
   collect.reading = film_.reading;
@@ -94,28 +99,37 @@ CollectOptions FilmRenderer::OptionsOfCollector() {
   collect.whole_images = work.whole_images;
   collect.interrupted = work.interrupted;
   collect.place_end = setup_.index().place_end();
-  if (film_.lens_weights != LensWeights::kNone || setup_.package().choices.max_angle_rad)
-    collect.weights = [this](size_t f, LfImageId id) { return lenses_[f].WeightsOf(id); };
   collect.decision_places = 0;
   if (rebinned_) {
     collect.consumer = rebinned_.get();
     collect.decision_places = kDecisionPlaces;
   }
-  if (film_.MeasuresNoise()) collect.moments = &moments_;
   return collect;
+}
+
+std::vector<CollectedFrame> FilmRenderer::FramesOfCollector(std::span<const PlaceRange> places) {
+  std::vector<CollectedFrame> collected;
+  if (!film_.HasPlates()) return collected;
+  for (size_t f = 0; f < frames_.size(); ++f) {
+    Frame& frame = frames_[f];
+    collected.push_back({frame.camera, &frame.plate, places[f]});
+    if (film_.lens_weights != LensWeights::kNone || setup_.package().choices.max_angle_rad)
+      collected.back().weights = [&frame](LfImageId id) { return frame.lens->WeightsOf(id); };
+    if (film_.MeasuresNoise()) collected.back().moments = &frame.moments;
+  }
+  return collected;
 }
 
 Result<void> FilmRenderer::PreparePlates(const EarlierRun* earlier,
                                          std::vector<PlaceRange>* places) {
   // All threads make plates at the same time, because a thread that clears a plate mostly waits for
   // the memory.
-  for (size_t f = 0; f < frames_.size(); ++f) plates_.emplace_back(0, 0);
-  if (film_.MeasuresNoise()) moments_.resize(frames_.size());
   setup_.pool().ForEach(frames_.size(), [this](size_t f) {
-    const Intrinsics& plate = cameras_[f].pinhole.intrinsics;
-    if (!setup_.work().IsStopped() && !frames_[f].is_released)
-      plates_[f] = SensorPlate::WithOpacity(plate.width_px, plate.height_px,
-                                            setup_.light_field().encoding.HasOpacity());
+    Frame& frame = frames_[f];
+    const Intrinsics& plate = frame.camera.pinhole.intrinsics;
+    if (!setup_.work().IsStopped() && !frame.is_released)
+      frame.plate = SensorPlate::WithOpacity(plate.width_px, plate.height_px,
+                                             setup_.light_field().encoding.HasOpacity());
   });
   for (size_t f = 0; f < frames_.size(); ++f) {
     if (setup_.work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
@@ -125,7 +139,7 @@ Result<void> FilmRenderer::PreparePlates(const EarlierRun* earlier,
       taken.begin = taken.end;
       continue;
     }
-    LF_ASSIGN_OR_RETURN(const FrameProgress start, LoadPlate(f, earlier));
+    LF_ASSIGN_OR_RETURN(const FrameProgress start, LoadPlate(&frame, earlier));
     if (frame.is_early) taken.end = std::min(taken.end, start.places_done);
     frame.places = {0, taken.end};
     taken.begin = start.places_done;
@@ -136,24 +150,25 @@ Result<void> FilmRenderer::PreparePlates(const EarlierRun* earlier,
 
 // Loads a plate of the earlier run. If noise is measured and the plate has no moments, the plate is
 // dropped and its frame starts again, unless the frame is to be finished early.
-Result<FrameProgress> FilmRenderer::LoadPlate(size_t f, const EarlierRun* earlier) {
-  Frame& frame = frames_[f];
-  const int width = plates_[f].width(), height = plates_[f].height();
+Result<FrameProgress> FilmRenderer::LoadPlate(Frame* frame, const EarlierRun* earlier) const {
+  SensorPlate& plate = frame->plate;
+  const int width = plate.width(), height = plate.height();
   FrameProgress start;
   std::optional<NoiseMoments> moments;
   if (earlier != nullptr) {
-    LF_ASSIGN_OR_RETURN(start, earlier->LoadPlate(frame.id, &plates_[f],
-                                                  film_.MeasuresNoise() ? &moments : nullptr));
+    LF_ASSIGN_OR_RETURN(
+        start, earlier->LoadPlate(frame->id, &plate, film_.MeasuresNoise() ? &moments : nullptr));
   }
   if (!film_.MeasuresNoise()) return start;
-  frame.has_noise = moments || start.places_done == 0;
-  if (!frame.has_noise && !frame.is_early) {
-    LogInfo("frame {} is started again, because its noise was not measured before", frame.id.value);
-    plates_[f] = SensorPlate::WithOpacity(width, height, plates_[f].has_opacity());
+  frame->has_noise = moments || start.places_done == 0;
+  if (!frame->has_noise && !frame->is_early) {
+    LogInfo("frame {} is started again, because its noise was not measured before",
+            frame->id.value);
+    plate = SensorPlate::WithOpacity(width, height, plate.has_opacity());
     start = {};
-    frame.has_noise = true;
+    frame->has_noise = true;
   }
-  moments_[f] = moments ? *std::move(moments) : NoiseMoments(width, height);
+  frame->moments = moments ? *std::move(moments) : NoiseMoments(width, height);
   return start;
 }
 
@@ -183,7 +198,7 @@ Result<void> FilmRenderer::PrepareRebinning(std::span<const PlaceRange> places,
     const FrameId id = frames_[f].id;
     CollectedWeights collected;
     if (film_.Collects())
-      collected = [&, f](LfImageId image) { return lenses_[f].WeightsOf(image); };
+      collected = [this, f](LfImageId image) { return lens(f).WeightsOf(image); };
     gaps.emplace_back(setup_.index(), setup_.path().Camera(id), collected,
                       film_.lens_weights == LensWeights::kNone, places[f], select_,
                       film_.rebin.query, setup_.pool(), setup_.package().CameraDistance(id));
@@ -214,7 +229,7 @@ void FilmRenderer::SelectForFrames(std::span<const PlaceRange> places) {
   if (film_.HasPlates()) {
     SelectOptions select = SelectCollected();
     select.whole_images = setup_.work().whole_images;
-    images_ = SelectImages(setup_.index(), cameras_, select, setup_.pool(), places);
+    images_ = SelectImages(setup_.index(), Cameras(), select, setup_.pool(), places);
   }
   if (film_.shard)
     std::erase_if(images_,
@@ -307,8 +322,8 @@ RenderedFrame FilmRenderer::Develop(size_t f, const Completion* completion, bool
     return DevelopFrame(NotesOf(f), plate, completion, with_effective, setup_.pool(),
                         is_interrupted);
   };
-  if (film_.Collects()) return develop(plates_[f]);
-  const Intrinsics& plate = cameras_[f].pinhole.intrinsics;
+  if (film_.Collects()) return develop(frames_[f].plate);
+  const Intrinsics& plate = frames_[f].camera.pinhole.intrinsics;
   // The plate is empty, because the whole picture is interpolated.
   return develop(SensorPlate(plate.width_px, plate.height_px));
 }
@@ -316,7 +331,7 @@ RenderedFrame FilmRenderer::Develop(size_t f, const Completion* completion, bool
 PlateNotes FilmRenderer::NotesOf(size_t f) const {
   const FrameId id = frames_[f].id;
   PlateNotes notes = MakePlateNotes(id, setup_.path().Camera(id),
-                                    film_.Collects() ? Progress(f).rays : FrameRays(), lenses_[f],
+                                    film_.Collects() ? Progress(f).rays : FrameRays(), lens(f),
                                     setup_.light_field().encoding);
   notes.fps = setup_.path().fps;
   notes.estimator = film_.reading.estimator;
@@ -327,11 +342,12 @@ PlateNotes FilmRenderer::NotesOf(size_t f) const {
 }
 
 void FilmRenderer::Release(size_t f) {
-  frames_[f].is_released = true;
+  Frame& frame = frames_[f];
+  frame.is_released = true;
   if (!film_.HasPlates()) return;
   collector_->Stop(f);
-  plates_[f] = SensorPlate(0, 0);
-  if (film_.MeasuresNoise()) moments_[f] = NoiseMoments();
+  frame.plate = SensorPlate(0, 0);
+  frame.moments = NoiseMoments();
 }
 
 bool FilmRenderer::AreAllReleased() const {

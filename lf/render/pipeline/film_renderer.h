@@ -92,13 +92,13 @@ class FilmRenderer {
   // Returns the frame's progress. It counts all rays in the plate, including those of the earlier
   // run.
   FrameProgress Progress(size_t f) const;
-  const SensorPlate& plate(size_t f) const { return plates_[f]; }  // only if HasPlates()
+  const SensorPlate& plate(size_t f) const { return frames_[f].plate; }  // only if HasPlates()
   // Returns the moments of the plate. Returns null if noise is not measured, or if the moments lack
   // LF images whose rays are in the plate.
   const NoiseMoments* moments(size_t f) const {
-    return frames_[f].has_noise ? &moments_[f] : nullptr;
+    return frames_[f].has_noise ? &frames_[f].moments : nullptr;
   }
-  const FrameLens& lens(size_t f) const { return lenses_[f]; }
+  const FrameLens& lens(size_t f) const { return *frames_[f].lens; }
 
   // True if the frame is to be finished with the rays of the earlier run.
   bool EndsEarly(size_t f) const { return frames_[f].is_early; }
@@ -151,6 +151,10 @@ class FilmRenderer {
  private:
   struct Frame {
     FrameId id;
+    std::optional<FrameLens> lens;  // set by Begin()
+    RenderCamera camera;            // with this lens
+    SensorPlate plate{0, 0};
+    NoiseMoments moments;          // of the plate; empty if noise is not measured
     PlaceRange places;             // of the LF images that it takes, in all runs
     FrameRays earlier_rays;        // in the plate when this run began
     uint32_t decision_places = 0;  // stop_at_samples is decided at its multiples
@@ -163,14 +167,16 @@ class FilmRenderer {
   };
 
   Result<void> FindLenses();
+  std::vector<RenderCamera> Cameras() const;
   SelectOptions SelectCollected() const;
   Result<void> PrepareRebinning(std::span<const PlaceRange> places, const EarlierRun* earlier);
   Result<void> CheckReach(const LensGaps& gaps, FrameId frame) const;
   Result<void> PreparePlates(const EarlierRun* earlier, std::vector<PlaceRange>* places);
-  Result<FrameProgress> LoadPlate(size_t f, const EarlierRun* earlier);
+  Result<FrameProgress> LoadPlate(Frame* frame, const EarlierRun* earlier) const;
   void SelectForFrames(std::span<const PlaceRange> places);
   void AddRebinnedImages(std::span<const PlaceRange> places);
-  CollectOptions OptionsOfCollector();
+  CollectOptions OptionsOfCollector() const;
+  std::vector<CollectedFrame> FramesOfCollector(std::span<const PlaceRange> places);
   void EndEarlyFrames();
 
   const ReachableElements& ReachableOf(size_t f);
@@ -187,12 +193,6 @@ class FilmRenderer {
   const FilmOptions& film_;  // of the setup
   const SelectOptions select_;
   std::vector<Frame> frames_;
-  // The next four arrays have one value for each frame. They are not members of Frame, because
-  // selection and collection need arrays.
-  std::vector<FrameLens> lenses_;
-  std::vector<RenderCamera> cameras_;  // with the lenses of lenses_
-  std::vector<SensorPlate> plates_;
-  std::vector<NoiseMoments> moments_;  // empty if noise is not measured
   std::vector<SelectedImage> images_;
   std::unique_ptr<FrameCollector> collector_;
   std::unique_ptr<RebinnedRays> rebinned_;  // null if the mode has none

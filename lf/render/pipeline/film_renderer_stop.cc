@@ -11,11 +11,11 @@ namespace lf {
 const ReachableElements& FilmRenderer::ReachableOf(size_t f) {
   Frame& frame = frames_[f];
   if (!frame.reachable) {
-    std::function<RayWeights(LfImageId)> weights;
+    ImageWeights weights;
     if (film_.lens_weights != LensWeights::kNone)
-      weights = [this, f](LfImageId id) { return lenses_[f].WeightsOf(id); };
+      weights = [&frame](LfImageId id) { return frame.lens->WeightsOf(id); };
     frame.reachable =
-        std::make_unique<ReachableElements>(setup_.index(), cameras_[f], frame.places, select_,
+        std::make_unique<ReachableElements>(setup_.index(), frame.camera, frame.places, select_,
                                             film_.reading.filter, setup_.pool(), weights);
   }
   return *frame.reachable;
@@ -82,13 +82,13 @@ uint32_t FilmRenderer::PlacesCovered(uint32_t places_done) const {
 // Returns the noise of a frame in radiance, with the light field's white as 1; infinity if the
 // noise cannot be measured.
 double FilmRenderer::NoiseOf(size_t f) {
-  return MeasureNoise(plates_[f], moments_[f], ReachableOf(f)) /
+  return MeasureNoise(frames_[f].plate, frames_[f].moments, ReachableOf(f)) /
          setup_.light_field().encoding.Scale();
 }
 
 bool FilmRenderer::IsEnough(size_t f) {
   if (film_.stop_at_noise) return NoiseOf(f) <= *film_.stop_at_noise;
-  return HasSamples(plates_[f], ReachableOf(f), *film_.stop_at_samples);
+  return HasSamples(frames_[f].plate, ReachableOf(f), *film_.stop_at_samples);
 }
 
 // Applies the stop rule to every frame that has reached its next_decision. The plate then has
@@ -127,7 +127,7 @@ Result<void> FilmRenderer::Measure(size_t f, FrameReport* report) {
   const Frame& frame = frames_[f];
   const auto samples = film_.require_samples ? film_.require_samples : film_.stop_at_samples;
   if (samples)
-    report->samples = FrameSamples{*samples, MeasureSamples(plates_[f], ReachableOf(f), *samples)};
+    report->samples = FrameSamples{*samples, MeasureSamples(frame.plate, ReachableOf(f), *samples)};
   const auto noise = film_.require_noise ? film_.require_noise : film_.stop_at_noise;
   if (noise && frame.has_noise) {
     FrameNoise& measured = report->noise.emplace();

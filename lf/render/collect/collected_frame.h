@@ -1,0 +1,41 @@
+// A frame for whose plate rays are collected.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "lf/camera/ray_weight.h"
+#include "lf/camera/render_camera.h"
+#include "lf/core/ids.h"
+#include "lf/film/plate/sensor_plate.h"
+#include "lf/render/collect/noise_moments.h"
+#include "lf/selection/select.h"
+
+namespace lf {
+
+// Returns the weights of the rays of an LF image in a frame; 0 if the frame does not take the LF
+// image. Any thread may call it. An empty function means that every ray has weight 1.
+using ImageWeights = std::function<RayWeights(LfImageId id)>;
+
+struct CollectedFrame {
+  RenderCamera camera;
+  SensorPlate* plate = nullptr;  // receives the rays; must not be null
+  // The LF images that the frame takes. The plate must have the rays of the places before `begin`.
+  PlaceRange places = {};
+  ImageWeights weights = {};
+  // Moments of the plate, of its size. They are updated with the plate, and always include exactly
+  // the LF images in it. Null: no moments are kept.
+  NoiseMoments* moments = nullptr;
+};
+
+// Returns frames that take all LF images, with weight 1.
+//   plates  one for each camera, of its size
+inline std::vector<CollectedFrame> FramesOf(std::span<const RenderCamera> cameras,
+                                            std::vector<SensorPlate>& plates) {
+  std::vector<CollectedFrame> frames;
+  for (size_t f = 0; f < cameras.size(); ++f) frames.push_back({cameras[f], &plates[f]});
+  return frames;
+}
+
+}  // namespace lf
