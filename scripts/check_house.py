@@ -17,8 +17,10 @@ usage: check_house.py REPOSITORY CHECK
   headers  a header says "Internal to" if its folder lists it as INTERNAL, and only then; installed headers
            include no internal ones (header_rules.py)
   comments how comments begin and end (doc/style.md; comment_rules.py)
-  commits  the commits that tables were made from are ancestors of HEAD. Exits with 77, skipped, where
-           there is no history to look into
+  commits  the commits that tables were made from are ancestors of HEAD
+  messages subjects and bodies of commits (doc/style.md; commit_rules.py)
+
+commits and messages exit with 77, skipped, where there is no history to look into.
 """
 import functools
 import pathlib
@@ -27,6 +29,7 @@ import subprocess
 import sys
 
 import comment_rules
+import commit_rules
 import doc_tables
 import folder_list
 import header_rules
@@ -180,9 +183,15 @@ def check_commits(root, files):
     return table_rules.check_commits(root, files, text_lines)
 
 
+def check_messages(root, files):
+    return commit_rules.check_messages(root)
+
+
 CHECKS = {"lengths": check_lengths, "paths": check_paths, "links": check_links,
           "pages": check_pages, "tables": check_tables, "mutants": check_mutants,
-          "headers": check_headers, "comments": check_comments, "commits": check_commits}
+          "headers": check_headers, "comments": check_comments, "commits": check_commits,
+          "messages": check_messages}
+OF_HISTORY = {"commits", "messages"}
 SKIPPED = 77
 
 
@@ -195,9 +204,9 @@ def main() -> int:
     if not files:
         print(f"{root}: no files", file=sys.stderr)
         return 1
-    unknown = table_rules.why_no_history(root) if sys.argv[2] == "commits" else ""
+    unknown = table_rules.why_no_history(root) if sys.argv[2] in OF_HISTORY else ""
     if unknown:
-        print(f"skipped: the commits of tables cannot be looked up: {unknown}")
+        print(f"skipped: commits cannot be looked up: {unknown}")
         return SKIPPED
     faults = list(CHECKS[sys.argv[2]](root, files))
     print("\n".join(faults) or f"{len(files)} files, no fault")

@@ -12,6 +12,9 @@ import tempfile
 import unittest
 
 REPOSITORY = pathlib.Path(sys.argv.pop()).resolve()
+sys.path.insert(0, str(REPOSITORY / "scripts"))
+
+import commit_rules
 
 
 def run(script, root, *arguments):
@@ -333,6 +336,25 @@ tests = '{tests}'
         code, lines = run("check_house.py", clone, "commits")
         self.assertEqual(code, 77, lines)
         self.assertIn("shallow", lines[0])
+
+    def test_messages_of_commits_say_what_and_why(self):
+        self.git("init", "-q")
+        self.git("commit", "-q", "--allow-empty", "-m", "anything")
+        first = self.git("rev-parse", "HEAD")
+        for number, (message, line_count) in enumerate([
+                ("core: Read files", 50), ("core, web/src: Speed up reading\n\nIt was slow.", 51),
+                ("core: Read" + " more" * 13, 1),
+                ("Read files", 1), ("core: read files", 1), ("core: Added a file", 1), ("core: Reading", 1),
+                ("core: Read files", 51)]):
+            self.plant(f"lf/core/{number}.cc", "\n" * line_count)
+            self.git("add", ".")
+            self.git("commit", "-q", "-m", message)
+        faults = [fault.partition("): ")[2] for fault in commit_rules.check_messages(self.root, first)]
+        form = "expected a subject such as 'render: Resume after a full disk'"
+        self.assertEqual(faults, ["51 lines change, and no body says why", "'Reading' is no imperative",
+                                  "'Added' is no imperative", form, form,
+                                  "the subject has 75 characters, at most 72 are allowed"])
+        self.assertEqual(len(list(commit_rules.check_messages(self.root, "0123456"))), 1)
 
     def test_a_clean_house_has_no_faults(self):
         self.plant("lf/core/CMakeLists.txt", "lf_folder(core SOURCES a.cc)\n")
