@@ -108,7 +108,11 @@ Result<void> CheckOptions(const RigOptions& options) {
     return UsageError(
         fmt::format("jitter {}: expected 0 to 1 (a share of the camera spacing)", options.jitter));
   if (!LookAlong(Vec3::Zero(), options.view_world, options.up_world))
-    return UsageError("the rig would look straight up or down, where no side of the picture is up");
+    return UsageError(fmt::format(
+        "view direction {} {} {}: expected a direction that is not 0 and not parallel to the up "
+        "direction {} {} {}",
+        options.view_world.x(), options.view_world.y(), options.view_world.z(),
+        options.up_world.x(), options.up_world.y(), options.up_world.z()));
   const double arc_rad = options.spacing_w / options.distance_w * GridOf(options).columns;
   if (options.shape == RigShape::kBand && arc_rad > 2 * kPi)
     return UsageError(fmt::format(

@@ -141,7 +141,7 @@ TEST(Rig, ImpossibleRigsAreRefused) {
   EXPECT_NE(message(options).find("jitter 1.5"), std::string::npos);
   options = Rig(RigShape::kPlanar, 9);
   options.view_world = Vec3::UnitY();
-  EXPECT_NE(message(options).find("straight"), std::string::npos);
+  EXPECT_NE(message(options).find("not parallel to the up direction"), std::string::npos);
 }
 
 }  // namespace

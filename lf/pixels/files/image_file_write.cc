@@ -148,7 +148,10 @@ Result<void> Encode(const fs::path& path, ImageFormat format, const OIIO::ImageS
   }
   // If memory runs out in its destructors, OpenEXR reports nothing and omits blocks.
   if (const Result<void> whole = CheckIsWhole(SourceOf(bytes), bytes.size(), name); !whole)
-    return OutputError(fmt::format("{} (did memory run out?)", whole.error().message));
+    return OutputError(
+        fmt::format("{}: cannot be written, because the encoder left out a part of the picture, "
+                    "probably for lack of memory ({}): give the program more memory",
+                    name, whole.error().message));
   return WriteFileAtomically(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 

@@ -177,7 +177,8 @@ Result<void> CheckSizes(QuietLibRaw& raw, uint64_t size_bytes, const std::string
   if (is_packed && !raw.LiesInOnePiece())
     return InputError(
         fmt::format("{}: its mosaic is in uncompressed tiles, or in strips with gaps, which LibRaw "
-                    "does not read; write the DNG again, compressed without loss or in strips",
+                    "does not read; write the DNG again, with lossless compression or in strips "
+                    "without gaps",
                     name));
   // The Huffman code of a pixel has at least one bit; a run of equal pixels may share it.
   constexpr double kMostPixelsPerByte = 512;

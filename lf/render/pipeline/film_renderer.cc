@@ -19,9 +19,10 @@ Result<std::unique_ptr<FilmRenderer>> FilmRenderer::Open(Package package, const 
                       FilmSetup::Make(std::move(package), film, work, std::move(frames), pool));
   const size_t fit = setup->plan().frames_per_pass;
   if (fit < setup->frames().size())
-    return OutputError(fmt::format(
-        "{} frames at the same time need more than {} MiB of memory, which suffice for {}",
-        setup->frames().size(), work.memory_bytes >> 20, fit));
+    return OutputError(
+        fmt::format("{} frames cannot be rendered at the same time: {} MiB of memory suffice for "
+                    "{}: allow more memory, or open fewer frames",
+                    setup->frames().size(), work.memory_bytes >> 20, fit));
   LF_RETURN_IF_ERROR(setup->PlanSlabs());
   auto renderer = std::make_unique<FilmRenderer>(*setup, setup->frames());
   renderer->own_setup_ = std::move(setup);

@@ -184,7 +184,8 @@ TEST_F(FilmRendererTest, TooManyFramesAtATimeAreRefused) {
   const auto renderer = FilmRenderer::Open(film_, options_, work_, {}, pool_);
   ASSERT_FALSE(renderer);
   EXPECT_EQ(renderer.error().kind, ErrorKind::kOutput);
-  EXPECT_NE(renderer.error().message.find("2003 frames at the same time"), std::string::npos)
+  EXPECT_NE(renderer.error().message.find("2003 frames cannot be rendered at the same time"),
+            std::string::npos)
       << renderer.error().message;
 }
 
