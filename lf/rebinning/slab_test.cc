@@ -102,6 +102,8 @@ TEST(Slab, NumbersBeyondSixteenBitsAreNoCell) {
   const double far = kMostCells * slab.r_uv_w;
   EXPECT_TRUE(CellOf(slab, SlabPoint(0, 0, 0.999 * far, 0)));
   EXPECT_FALSE(CellOf(slab, SlabPoint(0, 0, 1.001 * far, 0)));
+  EXPECT_TRUE(KeyOf(SlabPoint(kMostCells - 0.5, 0, 0, -kMostCells)));
+  EXPECT_FALSE(KeyOf(SlabPoint(kMostCells, 0, 0, 0)));
   EXPECT_FALSE(CellOf(slab, SlabPoint(0, 0, 0, -1.001 * far)));
   EXPECT_FALSE(CellOf(slab, SlabPoint(0, 0, 0, std::nan(""))));
   EXPECT_FALSE(CellOf(slab, SlabPoint(std::numeric_limits<double>::infinity(), 0, 0, 0)));

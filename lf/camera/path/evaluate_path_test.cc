@@ -178,6 +178,13 @@ TEST(Path, EveryNumberMayMoveByItself) {
   EXPECT_NEAR(path.At(11).focus_distance_w, 3, 1e-12);  // the start value is the key at time 0
 }
 
+TEST(Path, AStartValueHoldsUntilAKeyThatFollowsAtOnce) {
+  TestPath path;
+  path.more = "keyframes: {focus_distance: [{time: 0.0000015, value: 4, interpolation: linear}]}\n";
+  EXPECT_EQ(path.At(1).focus_distance_w, 2);
+  EXPECT_EQ(path.At(2).focus_distance_w, 4);
+}
+
 TEST(Path, NamesTheFrameAtWhichAQuantityLeavesItsRange) {
   TestPath path;
   path.focus = "focus_distance: 2, focus_distance_speed: -1.5";

@@ -38,7 +38,8 @@ TEST(ClusterJob, IsTheSameWhenWrittenAndRead) {
 }
 
 TEST(ClusterJob, IsRefusedWhereItsNamesWouldLeaveTheFolder) {
-  for (const char* name : {"../../etc/passwd", "..", ".hidden", "", "a\nb"}) {
+  for (const char* name :
+       {"../../etc/passwd", "/etc/passwd", "a/../../b", "..", ".hidden", "", "a\nb"}) {
     ClusterJob job = SomeJob();
     job.packages[0].name = name;
     EXPECT_FALSE(ParseJob(ToJson(job), "job").has_value()) << name;

@@ -221,6 +221,29 @@ TEST(LfImageCodec, TheThresholdBoundsTheError) {
     }
 }
 
+// Columns that alternate between two values have one detail: their difference. It is dropped below
+// two thirds of a step, and a detail that is just kept is decoded as a whole step.
+TEST(LfImageCodec, DetailsBelowTwoThirdsOfAStepAreDropped) {
+  CodecSettings settings;
+  settings.levels = 1;
+  settings.threshold = 20;
+  const auto decoded_difference = [&](int difference) {
+    Image<uint8_t> image(64, 64);
+    for (int y = 0; y < 64; ++y)
+      for (int x = 0; x < 64; ++x)
+        image.at(x, y) = static_cast<uint8_t>(x % 2 == 0 ? 90 : 90 + difference);
+    DecodedPart part;
+    EXPECT_TRUE(DecodeImage(EncodeImage(image, PixelLayout::kGrey, settings), &part));
+    const auto& decoded = std::get<Image<uint8_t>>(part.pixels);
+    return decoded.at(33, 32) - decoded.at(32, 32);
+  };
+  int least = 1;
+  while (least < 100 && decoded_difference(least) == 0) ++least;
+  const int step = decoded_difference(least);
+  EXPECT_GE(step, 20);
+  EXPECT_NEAR(static_cast<double>(least) / step, 2.0 / 3, 0.06);
+}
+
 // Errors of both signs are equally frequent, so that the mean of many LF images is the mean of the
 // scene.
 TEST(LfImageCodec, BrightAndDarkPicturesKeepTheirMean) {

@@ -241,7 +241,8 @@ TEST(RawImage, ClaimsAreCheckedBeforeLibRawBelievesThem) {
   ExpectFault(TestDng(Mosaic(), "RGGB").Short(259, {7}).Long(257, {60000}), "too short");
   ExpectFault(TestDng(Mosaic(), "RGGB").Without(273), "where its pixels are");
   ErrorOf(TestDng(Mosaic(), "RGGB").Long(256, {0}).File());
-  ErrorOf(TestDng(Mosaic(), "RGGB").Long(50829, {0, 0, 31, 40}).File());
+  for (const auto& area : {std::vector<uint32_t>{0, 0, 31, 40}, {0, 0, 30, 41}, {1, 1, 30, 41}})
+    ExpectFault(TestDng(Mosaic(), "RGGB").Long(50829, area), "active area");
   ErrorOf(TestDng(Mosaic(), "RGGB").Long(50829, {20, 20, 10, 10}).File());
 }
 
