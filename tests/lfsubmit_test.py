@@ -171,6 +171,9 @@ class LocalJobTest(ClusterTestCase):
     def test_frames_that_are_gone_are_rendered_again(self):
         self.submit()
         (self.film / "frame_0005.exr").unlink()
+        # This is how the batch script of Slurm finishes a film.
+        self.fails(5, ["package-0001 (frames 5: done, but their files are missing)"],
+                   cluster_test_case.SUBMIT, "--run-finish", self.film)
         self.succeeds(cluster_test_case.SUBMIT, "--resume", self.film)
         self.assertEqual(digests(self.film), self.expected)
         self.assertEqual([package["restarts"] for package in self.status()["packages"]], [0, 1, 0])
