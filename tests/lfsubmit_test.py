@@ -178,6 +178,15 @@ class LocalJobTest(ClusterTestCase):
         self.assertEqual(digests(self.film), self.expected)
         self.assertEqual([package["restarts"] for package in self.status()["packages"]], [0, 1, 0])
 
+    def test_a_film_that_was_moved_goes_on_in_its_new_place(self):
+        self.submit()
+        moved = self.folder / "moved"
+        self.film.rename(moved)
+        (moved / "frame_0005.exr").unlink()
+        self.succeeds(cluster_test_case.SUBMIT, "--resume", moved)
+        self.assertEqual(digests(moved), self.expected)
+        self.assertFalse(self.film.exists())
+
     def test_a_folder_of_a_job_that_lost_files_is_repaired(self):
         self.submit("--frames", "1-4")
         submit = cluster_test_case.SUBMIT
