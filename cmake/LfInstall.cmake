@@ -13,10 +13,10 @@ target_compile_features(lf_installed PUBLIC cxx_std_20)
 target_compile_options(lf_installed INTERFACE -ffp-contract=off)
 get_property(headers GLOBAL PROPERTY LF_PUBLIC_HEADERS)
 target_sources(lf_installed PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${headers})
-# An archive does not contain the libraries that it needs, so its user links them. OpenImageIO, raw_r, jpeg, simdjson,
-# zstd, xxhash and sqlite3 are linked by name, see LfDependencies.cmake.
+# An archive does not contain the libraries that it needs, so its user links them. Those without a namespace are linked by
+# name, so that their user needs no CMake packages of them.
 target_link_libraries(lf_installed PUBLIC Eigen3::Eigen fmt::fmt TBB::tbb Threads::Threads yaml-cpp
-                                          hwy::hwy OpenImageIO OpenImageIO_Util raw_r jpeg
+                                          hwy::hwy OpenEXR::OpenEXR OpenEXR::OpenEXRCore png tiff z raw_r jpeg
                                           simdjson zstd xxhash sqlite3)
 install(TARGETS lf_installed EXPORT lfrendertoolsTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}

@@ -40,8 +40,7 @@ endif()
 # lf_unit_tests(target group): each suite of the program is a test of ctest, group.Suite. The group of lf/camera/path
 # is camera.path, which is also built where all tests of camera are.
 #
-# A suite and not a single test is a process, because a process that uses image files takes up to half a second to load
-# the libraries behind OpenImageIO.
+# A suite and not a single test is a process, because thousands of processes would take longer than their tests.
 function(lf_unit_tests target group)
   set(list ${CMAKE_CURRENT_BINARY_DIR}/${target}_suites.cmake)
   add_custom_command(

@@ -14,7 +14,9 @@ from folder_list import room_of
 
 # Third-party headers, and the only folders that may include them (doc/design.md, "Dependencies").
 OWNERS = {
-    "OpenImageIO/": {"pixels/files"},
+    "OpenEXR/": {"pixels/files"},
+    "png.h": {"pixels/files"},
+    "tiff": {"pixels/files"},
     "jpeglib.h": {"pixels/files"},
     "jerror.h": {"pixels/files"},
     "yaml-cpp/": {"camera/path"},

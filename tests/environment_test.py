@@ -35,13 +35,13 @@ CODES = (2, 3, 4, 6)
 PARTS = ("memory", "files", "processes", "size", "disk", "streams", "locale", "names", "inputs")
 LOADER = "error while loading shared libraries"  # a message of the system's loader, before the program starts
 # Limits of the quick form, of which each call tries every third, and of the long form (ALL_...).
-MEMORY_MIB = (16, 96, 192, 256, 320, 384, 448, 512, 576, 640, 800, 1200)
+MEMORY_MIB = (16, 28, 40, 56, 72, 88, 104, 120, 144, 176, 240, 400)
 FILES = (3, 4, 5, 6, 7, 8, 10, 12, 16)
 PROCESSES = (1, 2, 4)
 SIZES = (0, 100, 4096, 20000)
 DISK_SIZES = ("4k", "16k", "64k", "inodes 3", "inodes 5")
 EVERY = 3
-ALL_MEMORY_MIB = range(16, 1600, 16)
+ALL_MEMORY_MIB = range(16, 600, 8)
 ALL_FILES = range(3, 30)
 ALL_PROCESSES = range(1, 12)
 ALL_SIZES = (0, 1, 100, 511, 512, 513, 1000, 2000, 4095, 4096, 4097, 6000, 8192, 12000, 20000, 40000, 80000, 160000)

@@ -22,7 +22,7 @@ from bounded_runs import BoundedRuns
 from small_field import wall, write_field, write_path
 
 PROGRAMS = []
-MEMORY_MIB = 256
+MEMORY_MIB = 128
 SEAL = b"LFSEAL1\n"
 SEAL_BYTES = 24
 ENDLESS = "with recursive c(x) as (select 1 union all select x + 1 from c) select"

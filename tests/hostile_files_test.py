@@ -20,7 +20,7 @@ from bounded_runs import BoundedRuns
 from small_field import PATH_YAML, HEIGHT, WIDTH, wall, write_field, write_path
 
 PROGRAMS = []
-MEMORY_MIB = 384  # a good run takes 150, of which 130 are the libraries of image files
+MEMORY_MIB = 128  # a good run takes 30
 FRAME = {"file_path": "image_00.png", "transform_matrix": np.eye(4).tolist()}
 
 

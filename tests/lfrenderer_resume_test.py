@@ -76,7 +76,7 @@ class ResumeTest(unittest.TestCase):
         return digests(self.folder / name)
 
     def finish_each(self, *calls):
-        """Runs two at a time, because a small render is mostly one thread that loads libraries."""
+        """Runs two at a time, because a small render is mostly one thread."""
         with concurrent.futures.ThreadPoolExecutor(2) as threads:
             return list(threads.map(lambda call: self.finish(*call), calls))
 

@@ -6,6 +6,7 @@ usage: program_options_test.py FOLDER_OF_THE_PROGRAMS
 """
 import pathlib
 import re
+import subprocess
 import sys
 import unittest
 
@@ -62,6 +63,13 @@ class ProgramOptionsTest(ProgramTestCase):
     def test_all_programs_are_listed(self):
         programs = {path.name for path in BIN.iterdir() if path.name.startswith("lf")}
         self.assertEqual(programs, set(OFFERED))
+
+    # Every start of a program loads them all. A library for all image formats once brought 250.
+    def test_few_libraries_are_loaded(self):
+        for name in OFFERED:
+            with self.subTest(program=name):
+                libraries = subprocess.run(["ldd", self.program(name)], capture_output=True, text=True).stdout
+                self.assertLess(len(libraries.splitlines()), 50, libraries)
 
     def test_help_tells_the_options_that_have_an_effect(self):
         for name, offered in OFFERED.items():

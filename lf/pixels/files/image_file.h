@@ -1,5 +1,5 @@
 // Reads image files (PNG, JPEG, TIFF, EXR, camera raw files) and writes them (all but raw files).
-// No other folder uses OpenImageIO, libjpeg or LibRaw.
+// No other folder uses OpenEXR, libpng, libtiff, libjpeg or LibRaw.
 //
 // All functions may be called by many threads at once; none starts threads of its own.
 #pragma once
@@ -24,8 +24,8 @@ namespace lf {
 
 // Pixels of a file, in the type it stores: integers of up to 8 bits as uint8_t, of up to 16 bits as
 // uint16_t (bit depths in between are scaled to the full range), half and float as float. Wider or
-// signed integers, and the integer channels of an EXR file that also holds others, become floats of
-// equal value (exact up to 2^24); doubles are rounded to float.
+// signed integers become floats of equal value (exact up to 2^24), and all channels do if one
+// becomes float; doubles are rounded to float.
 using StoredImage = std::variant<Image<uint8_t>, Image<uint16_t>, Image<float>>;
 
 // Properties of the pixels that a camera raw file states, in the terms of
@@ -66,7 +66,8 @@ Result<ImageFileInfo> ReadImageInfo(const std::filesystem::path& path);
 //   is not demosaicked, brightened, white balanced or rotated, and the black level is not
 //   subtracted. It is cropped to the pixels that see light (the active area of a DNG) and mapped
 //   through the linearization table of a DNG. LibRaw decodes these files. It may not detect small
-//   damage within compressed ones, and does not accept pictures below 22 pixels.
+//   damage within compressed pixels, and does not accept pictures below 22 pixels in width or
+//   height.
 // kInput, naming the file: it is missing, unreadable, truncated or damaged (JPEG: also if libjpeg
 // had to guess pixels); it has another format, or is a raw file that is neither Bayer nor
 // monochrome; it is a CMYK JPEG; it is larger than 2^30 pixels or 2^32 values, which is checked
@@ -93,9 +94,10 @@ struct ImagePart {
 using WantedPixels = std::function<Result<PixelRect>(const ImageFileInfo& info)>;
 
 // Reads at least the wanted pixels, which must contain a pixel of the picture. They have the values
-// that ReadImage() gives. JPEG files are decoded in part if this saves time, others as a whole;
-// damage is detected anywhere in the file in both cases. Reuses the memory of part->image if it has
-// the right type, because allocating it costs up to a third of the decoding time.
+// that ReadImage() gives. JPEG files are decoded in part if this saves time, files of other formats
+// as a whole; damage is detected anywhere in the file in both cases. Reuses the memory of
+// part->image if it has the right type, because allocating it costs up to a third of the decoding
+// time.
 Result<void> ReadImagePart(const std::filesystem::path& path, const WantedPixels& wanted,
                            ImagePart* part);
 
@@ -121,8 +123,8 @@ using ImageMetadata = std::vector<std::pair<std::string, std::variant<std::strin
 //   is_interrupted is called before every 32 rows are encoded, if given; it cannot interrupt the
 //                  writing to the disk
 // JPEG has quality 95 and full chroma resolution. EXR is compressed without loss (zip).
-// kOutput: the folder or the disk fails, or the format cannot hold the type. kInterrupted: nothing
-// is written.
+// kOutput: the folder or the disk fails, or the format cannot hold the type. kInterrupted:
+// is_interrupted returned true; nothing is written.
 Result<void> WriteImage(const std::filesystem::path& path, ImageView<const float> pixels,
                         const std::vector<std::string>& channel_names, PixelType type,
                         const ImageMetadata& metadata = {},

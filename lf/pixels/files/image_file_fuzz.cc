@@ -6,10 +6,6 @@
 #include "lf/pixels/files/image_file.h"
 #include "lf/pixels/files/whole_file.h"
 
-// OpenImageIO leaks a string when libpng reports an error by longjmp. The fuzzer looks for our own
-// faults only.
-extern "C" const char* __asan_default_options() { return "detect_leaks=0"; }
-
 // Any bytes must give an image, or an error that names the file. Pictures above a million values
 // are read up to their header only, because decoding them takes long and shows nothing new.
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {

@@ -1,5 +1,3 @@
-#include <OpenImageIO/imageio.h>
-
 #include <thread>
 
 #include "lf/core/file.h"
@@ -14,15 +12,6 @@ class ReadImageTest : public FolderTest {
  protected:
   void Save(const std::string& name, const std::string& bytes) const {
     ASSERT_TRUE(WriteFileAtomically(folder_ / name, bytes));
-  }
-  // Writes a file with OpenImageIO, as other programs may write it.
-  void SaveByOpenImageIo(const std::string& name, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
-                         const void* pixels) const {
-    const std::string path = (folder_ / name).string();
-    auto output = OIIO::ImageOutput::create(path);
-    ASSERT_TRUE(output && output->open(path, spec) && output->write_image(type, pixels) &&
-                output->close())
-        << output->geterror();
   }
   void ExpectInputError(const Error& error, const std::string& name, const std::string& reason) {
     EXPECT_EQ(error.kind, ErrorKind::kInput);
@@ -48,18 +37,6 @@ TEST_F(ReadImageTest, FewBitsAreScaledToTheFullRange) {
   const auto png = std::get<Image<uint8_t>>(ReadImageBytes(kPng4Bit, "4 bit").value());
   ASSERT_EQ(png.width(), 16);
   for (int x = 0; x < 16; ++x) EXPECT_EQ(png.at(x, 0), 17 * x);
-
-  Image<uint16_t> words(16, 1, 1);
-  for (int x = 0; x < 16; ++x) words.at(x, 0) = static_cast<uint16_t>(x * 65535 / 15);
-  for (const int bits : {10, 12}) {
-    OIIO::ImageSpec spec(16, 1, 1, OIIO::TypeDesc::UINT16);
-    spec.attribute("oiio:BitsPerSample", bits);
-    SaveByOpenImageIo("a.tif", spec, OIIO::TypeDesc::UINT16, words.pixels().data());
-    const auto tiff = std::get<Image<uint16_t>>(ReadImage(folder_ / "a.tif").value());
-    EXPECT_EQ(tiff.at(0, 0), 0);
-    EXPECT_EQ(tiff.at(15, 0), 65535);
-    for (int x = 1; x < 15; ++x) EXPECT_NEAR(tiff.at(x, 0), words.at(x, 0), 65536 >> bits);
-  }
 }
 
 TEST_F(ReadImageTest, PalettesBecomeColours) {
@@ -75,34 +52,6 @@ TEST_F(ReadImageTest, AlphaDoesNotTouchTheColours) {
     ASSERT_TRUE(WriteImage(folder_ / name, image.view()));
     EXPECT_EQ(std::get<Image<uint8_t>>(*ReadImage(folder_ / name)).pixels(), image.pixels());
   }
-}
-
-TEST_F(ReadImageTest, WideIntegersKeepTheirValue) {
-  const std::vector<uint32_t> values = {0, 1, 70000, 1u << 24};
-  SaveByOpenImageIo("a.tif", OIIO::ImageSpec(4, 1, 1, OIIO::TypeDesc::UINT32),
-                    OIIO::TypeDesc::UINT32, values.data());
-  const auto image = std::get<Image<float>>(ReadImage(folder_ / "a.tif").value());
-  EXPECT_EQ(image.pixels(), (LargeVector<float>{0, 1, 70000, 1 << 24}));
-}
-
-TEST_F(ReadImageTest, TilesAndOtherCompressionsAreRead) {
-  Image<float> image(40, 30, 3);
-  for (size_t i = 0; i < image.pixels().size(); ++i) image.pixels()[i] = static_cast<float>(i);
-  for (const char* compression : {"none", "rle", "zips", "piz"}) {
-    OIIO::ImageSpec spec(40, 30, 3, OIIO::TypeDesc::FLOAT);
-    spec.tile_width = spec.tile_height = 16;
-    spec.attribute("compression", compression);
-    SaveByOpenImageIo("a.exr", spec, OIIO::TypeDesc::FLOAT, image.pixels().data());
-    EXPECT_EQ(std::get<Image<float>>(*ReadImage(folder_ / "a.exr")).pixels(), image.pixels());
-  }
-}
-
-TEST_F(ReadImageTest, AnOrientationTagTurnsNothing) {
-  const auto image = NoiseImage<uint8_t>(5, 3, 3);
-  OIIO::ImageSpec spec(5, 3, 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("Orientation", 6);
-  SaveByOpenImageIo("a.tif", spec, OIIO::TypeDesc::UINT8, image.pixels().data());
-  EXPECT_EQ(std::get<Image<uint8_t>>(*ReadImage(folder_ / "a.tif")).pixels(), image.pixels());
 }
 
 TEST_F(ReadImageTest, TheContentDecidesNotTheName) {

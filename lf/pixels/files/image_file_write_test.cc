@@ -106,7 +106,7 @@ TEST_F(WriteImageTest, HalfRoundsToElevenBits) {
   ASSERT_TRUE(WriteImage(folder_ / "a.exr", image.view(), {"Y"}, PixelType::kHalf));
   const auto read = std::get<Image<float>>(ReadImage(folder_ / "a.exr").value());
   EXPECT_EQ(read.at(0, 0), 1365.0f / 4096);
-  EXPECT_EQ(read.at(1, 0), 1024);  // half way between two halves: rounded to even
+  EXPECT_EQ(read.at(1, 0), 1024);  // half way between two half floats: rounded to even
   EXPECT_TRUE(std::isinf(read.at(2, 0)));
 }
 

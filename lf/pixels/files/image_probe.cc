@@ -143,6 +143,11 @@ bool IsRawTiff(const ByteSource& source, std::span<const uint8_t> start) {
 
 }  // namespace
 
+const char* NameOf(ImageFormat format) {
+  constexpr const char* kNames[] = {"PNG", "JPEG", "TIFF", "EXR", "raw"};
+  return kNames[static_cast<int>(format)];
+}
+
 Result<void> CheckPixelCount(uint64_t width, uint64_t height, const std::string& name) {
   // Both are below 2^32, so the product does not wrap.
   if (width * height <= kMaxImagePixels) return {};

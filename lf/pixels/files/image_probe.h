@@ -6,19 +6,17 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <span>
 #include <string>
 
 #include "lf/core/result.h"
+#include "lf/pixels/files/file_bytes.h"
 
 namespace lf {
 
-// Copies the bytes from `offset` on into `to`. Returns the number of bytes copied, which is less
-// than the size of `to` if the file ends.
-using ByteSource = std::function<size_t(uint64_t offset, std::span<uint8_t> to)>;
-
 enum class ImageFormat { kPng, kJpeg, kTiff, kExr, kRaw };
+
+// Returns "PNG", "JPEG", "TIFF", "EXR" or "raw".
+const char* NameOf(ImageFormat format);
 
 // Returns the format, which it detects by the content. kRaw is a camera raw file. A TIFF file is
 // kRaw if it is a DNG, or if it begins with a thumbnail, because a TIFF decoder would show the

@@ -56,7 +56,8 @@ TEST(ImageProbe, RefusesChunksOfAPngThatAreLongerThanTheFile) {
   EXPECT_EQ(MessageOf(Probe(head + text + "\x7f\xff\xff\xfftEXta\0b"s + end)),
             "a: claims a chunk of 2147483647 bytes, for which the file is too short: truncated or "
             "damaged");
-  // Chunks of pixels are read in parts, so that the size of an image in a truncated file is known.
+  // A chunk of pixels may claim any length, because it is read in parts. The size of the picture in
+  // a truncated file can therefore be read.
   EXPECT_TRUE(Probe(head + "\x7f\xff\xff\xffIDAT..."s));
 }
 

@@ -8,16 +8,16 @@
 
 namespace lf {
 
-// Returns the Bayer pattern at the pixel (x, y) of the sensor; kNone if the colours are not in one
-// of the four Bayer patterns. The filter of `raw` must repeat every 2 x 2 pixels.
+// Returns the Bayer pattern that begins at the pixel (x, y) of the sensor; kNone if the colours are
+// not in one of the four Bayer patterns. The filter of `raw` must repeat every 2 x 2 pixels.
 BayerPattern PatternAt(LibRaw& raw, int x, int y);
 
 // True if the colour filter repeats every 2 x 2 pixels.
 bool RepeatsEveryTwo(LibRaw& raw);
 
-// Returns all facts except `bayer` and `is_monochrome`. The levels of a DNG are its tags: neither
-// covered pixels nor the exposure that a converter recommends change them (DNG 1.4, chapter 4). The
-// levels of other files are LibRaw's; their black level is missing unless is_unpacked.
+// Returns all facts except `bayer` and `is_monochrome`. The levels of a DNG come from its tags:
+// neither covered pixels nor the exposure that a converter recommends change them (DNG 1.4, chapter
+// 4). The levels of other files are LibRaw's; their black level is missing unless is_unpacked.
 RawFacts FactsOf(const libraw_data_t& raw, bool is_unpacked);
 
 // Converts LibRaw's `flip` to an EXIF orientation.

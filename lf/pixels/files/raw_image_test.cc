@@ -137,7 +137,8 @@ TEST(RawImage, TheTagsTellThePattern) {
   EXPECT_EQ(Read(other_colours.Bytes(50710, "\3\4\5")).info.raw.value().bayer, BayerPattern::kNone);
 }
 
-// LibRaw makes odd margins even. The pattern must still be that of the corner of the active area.
+// LibRaw makes odd margins even. The pattern must still be the one that begins at the corner of the
+// active area.
 TEST(RawImage, TheActiveAreaIsTheImage) {
   const Image<uint16_t> mosaic = Mosaic(60, 50);
   for (const auto& [top, left] : {std::pair(2, 4), {3, 4}, {2, 5}, {3, 5}})
@@ -241,7 +242,8 @@ TEST(RawImage, ClaimsAreCheckedBeforeLibRawBelievesThem) {
   ExpectFault(TestDng(Mosaic(), "RGGB").Short(259, {7}).Long(257, {60000}), "too short");
   ExpectFault(TestDng(Mosaic(), "RGGB").Without(273), "where its pixels are");
   ErrorOf(TestDng(Mosaic(), "RGGB").Long(256, {0}).File());
-  for (const auto& area : {std::vector<uint32_t>{0, 0, 31, 40}, {0, 0, 30, 41}, {1, 1, 30, 41}})
+  ErrorOf(TestDng(Mosaic(), "RGGB").Long(50829, {0, 0, 31, 40}).File());
+  for (const auto& area : {std::vector<uint32_t>{1, 1, 31, 40}, {1, 1, 30, 41}})
     ExpectFault(TestDng(Mosaic(), "RGGB").Long(50829, area), "active area");
   ErrorOf(TestDng(Mosaic(), "RGGB").Long(50829, {20, 20, 10, 10}).File());
 }

@@ -11,8 +11,8 @@
 
 namespace lf {
 
-// A stream over `source`, which must outlive it. LibRaw hardly notices that a file ends early, so
-// the stream records it.
+// A stream over `source`, which must outlive it. LibRaw may not notice that a file ends early;
+// therefore the stream records reads beyond the end.
 class RawStream final : public LibRaw_abstract_datastream {
  public:
   RawStream(const ByteSource& source, uint64_t size_bytes);

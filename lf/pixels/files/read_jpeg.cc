@@ -15,7 +15,7 @@
 #include <span>
 #include <vector>
 
-#include "lf/pixels/files/tiff_directories.h"
+#include "lf/pixels/files/exif_orientation.h"
 
 namespace lf {
 namespace {
@@ -23,11 +23,11 @@ namespace {
 constexpr size_t kBufferBytes = size_t{1} << 16;
 
 // Margin around the wanted part, in pixels. At the edge of a decoded part, the neighbours that
-// chroma is interpolated from are missing; two blocks inside it, all pixels equal those of the
-// whole picture.
+// chroma is interpolated from are missing; two blocks further inside, all pixels equal the pixels
+// of the whole picture.
 constexpr int kMargin_px = 32;
 
-// Decoding a part is faster if it is below this share of the picture.
+// Decoding a part is faster than decoding all if the part is below this share of the picture.
 constexpr double kPartPays = 0.85;
 
 // The bytes that libjpeg reads. libjpeg knows no end of a file: it asks for bytes until the picture
@@ -59,24 +59,6 @@ void SkipBytes(j_decompress_ptr decompress, long count) {
   source.offset += static_cast<size_t>(count) - in_buffer;
 }
 
-// Returns the orientation that the content of an APP1 segment states; 1 if it states none.
-int OrientationOf(std::span<const uint8_t> segment) {
-  constexpr std::array<uint8_t, 6> kExif = {'E', 'x', 'i', 'f', 0, 0};
-  if (segment.size() < kExif.size() || !std::equal(kExif.begin(), kExif.end(), segment.begin()))
-    return 1;
-  const std::span<const uint8_t> tiff = segment.subspan(kExif.size());
-  const ByteSource source = [&](uint64_t offset, std::span<uint8_t> to) -> size_t {
-    if (offset >= tiff.size()) return 0;
-    const auto part = tiff.subspan(offset, std::min<uint64_t>(to.size(), tiff.size() - offset));
-    std::copy(part.begin(), part.end(), to.begin());
-    return part.size();
-  };
-  const std::optional<TiffDirectory> directory = FirstTiffDirectory(source);
-  constexpr int kOrientationTag = 0x112;
-  const double orientation = directory ? directory->Number(kOrientationTag, 1) : 1;
-  return orientation >= 1 && orientation <= 8 ? static_cast<int>(orientation) : 1;
-}
-
 PixelRect WithMargin(const PixelRect& rect, const PixelRect& whole) {
   return Intersection({rect.x_begin - kMargin_px, rect.y_begin - kMargin_px,
                        rect.x_end + kMargin_px, rect.y_end + kMargin_px},
@@ -92,7 +74,7 @@ struct JpegReader::State {
     errors.error_exit = [](j_common_ptr common) { Of(common).JumpOut(); };
     errors.emit_message = [](j_common_ptr common, int level) {
       // After a warning, libjpeg continues with guessed pixels, so warnings are errors. The only
-      // harmless one is about fill bytes between segments, which some cameras write.
+      // harmless warning is about fill bytes between segments, which some cameras write.
       if (level < 0 && common->err->msg_code != JWRN_EXTRANEOUS_DATA) Of(common).JumpOut();
     };
     source.bytes = &bytes;
@@ -170,7 +152,7 @@ Result<JpegReader> JpegReader::Open(const ByteSource& source, const std::string&
   state->info.channel_names =
       channels == 1 ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"};
   for (const jpeg_marker_struct* m = decompress.marker_list; m != nullptr; m = m->next) {
-    state->info.orientation = OrientationOf({m->data, m->data_length});
+    state->info.orientation = OrientationOfExif({m->data, m->data_length});
     if (state->info.orientation != 1) break;
   }
   return JpegReader(std::move(state));

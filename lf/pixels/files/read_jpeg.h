@@ -30,8 +30,8 @@ class JpegReader {
   // time, only these pixels and some around them are decoded, otherwise all. Returns the decoded
   // rectangle, and resizes `image` to it, in the same memory if possible. The pixels equal those of
   // the whole picture, bit for bit. The whole file is read in any case, so that the detection of
-  // damage does not depend on `wanted`; a part saves only the inverse transforms. kInput: libjpeg
-  // had to guess pixels, or the file has more than kMaxScans.
+  // damage does not depend on `wanted`; decoding a part saves only inverse transforms. kInput:
+  // libjpeg had to guess pixels, or the file has more than kMaxScans.
   Result<PixelRect> Read(const PixelRect& wanted, Image<uint8_t>* image);
 
   // A progressive file with more scans could demand hours of work with few bytes. Encoders write

@@ -18,7 +18,7 @@ namespace {
 
 struct JpegKind {
   int channels = 3;
-  int h_sampling = 1, v_sampling = 1;  // of the first component, relative to the others
+  int h_sampling = 1, v_sampling = 1;  // sampling of the first component; 1: as the others
   bool is_progressive = false;
   int restart_rows = 0;
   bool has_separate_scans = false;  // one scan for each component

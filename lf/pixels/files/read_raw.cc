@@ -51,8 +51,7 @@ class QuietLibRaw final : public LibRaw {
             sizes.top_margin + sizes.height};
   }
 
-  // Returns true if the rows of an uncompressed DNG are contiguous in the file, as LibRaw reads
-  // them.
+  // Returns true if the rows of an uncompressed DNG are contiguous in the file, as LibRaw expects.
   bool LiesInOnePiece() const {
     const auto& unpacker = libraw_internal_data.unpacker_data;
     if (unpacker.tile_width < imgdata.sizes.raw_width ||
@@ -197,9 +196,9 @@ Result<void> DamageError(const std::string& name) {
   return InputError(fmt::format("{}: LibRaw cannot decode it: truncated or damaged", name));
 }
 
-// Marks at the last pixels of a picture, by which decoders that stop early are detected: these
-// leave the marks unchanged. A picture has these values by chance once in 2^64. All other pixels
-// are cleared, because LibRaw does not clear them.
+// Marks at the last pixels of a picture, by which decoders that stop early are detected: such
+// decoders leave the marks unchanged. A picture has these values by chance once in 2^64. All other
+// pixels are cleared, because LibRaw does not clear them.
 class DecodingMarks {
  public:
   void Set(libraw_data_t& raw, const PixelRect& area) const {

@@ -34,7 +34,7 @@ class RawReader {
   ExposureFacts exposure() const;
 
   // Decodes the visible pixels into `image`, whose memory is reused. kInput: LibRaw noticed that
-  // the file is truncated or damaged. Throws std::bad_alloc.
+  // the file is truncated or damaged. Throws std::bad_alloc if LibRaw lacks memory.
   Result<void> Read(Image<uint16_t>* image);
 
  private:

@@ -34,7 +34,7 @@ TEST(Upright, PartsKeepTheirPlaces) {
   for (int i = 0; i < 20; ++i) stored.pixels()[i] = i;
   for (int orientation = 5; orientation <= 8; ++orientation) {
     const Image<int> upright = Upright(stored, orientation);
-    const PixelRect wanted = {1, 2, 3, 5};  // of the 4 x 5 upright picture
+    const PixelRect wanted = {1, 2, 3, 5};  // a part of the 4 x 5 upright picture
     const PixelRect rect = StoredRect(wanted, 5, 4, orientation);
     EXPECT_EQ(UprightRect(rect, 5, 4, orientation), wanted);
     Image<int> part(rect.width(), rect.height());

@@ -1,0 +1,67 @@
+// Opens TIFF files with libtiff, and collects its errors and warnings. Internal to this folder.
+//
+// libtiff continues after most errors. It reports them to a handler that belongs to one file here,
+// so many threads can use it at once, and nothing is printed.
+#pragma once
+
+#include <tiffio.h>
+
+#include <exception>
+#include <memory>
+#include <string>
+
+#include "lf/core/result.h"
+#include "lf/pixels/files/picture_decoder.h"
+
+namespace lf {
+
+class LibtiffHandle {
+ public:
+  // Reads the header and the first directory. `file` must outlive the handle. kInput: the file is
+  // truncated or damaged.
+  static Result<std::unique_ptr<LibtiffHandle>> OpenToRead(const FileBytes& file);
+  // Starts a file whose bytes become `bytes`, which must outlive the handle. It is complete after
+  // Close(). A BigTIFF file can have more than 4 GiB.
+  static Result<std::unique_ptr<LibtiffHandle>> OpenToWrite(const std::string& name, bool is_big,
+                                                            std::string* bytes,
+                                                            bool is_big_endian = false);
+  ~LibtiffHandle() { Close(); }
+  LibtiffHandle(const LibtiffHandle&) = delete;
+  LibtiffHandle& operator=(const LibtiffHandle&) = delete;
+
+  // This is null after Close().
+  TIFF* tiff() const { return tiff_; }
+  // Frees libtiff's memory. A file to write must have been completed by TIFFWriteDirectory().
+  void Close();
+
+  // Returns an error if libtiff reported that pixels are missing or guessed: kInput when reading,
+  // kOutput when writing. `succeeded` is the result of the last call. Throws std::bad_alloc if
+  // memory ran out, and what the ByteSource threw.
+  Result<void> Check(bool succeeded) const;
+
+ private:
+  explicit LibtiffHandle(const std::string& name) : name_(name) {}
+  void Open(const char* mode);
+  Error ErrorOf(const std::string& reason) const;
+
+  // libtiff calls these functions. They do not throw, because an exception must not pass through C.
+  static tmsize_t Read(thandle_t handle, void* to, tmsize_t size) noexcept;
+  static tmsize_t Write(thandle_t handle, void* from, tmsize_t size) noexcept;
+  static toff_t Seek(thandle_t handle, toff_t offset, int origin) noexcept;
+  static toff_t Size(thandle_t handle) noexcept;
+  static int OnError(TIFF*, void* handle, const char*, const char* format, va_list) noexcept;
+  static int OnWarning(TIFF*, void* handle, const char* module, const char* format,
+                       va_list) noexcept;
+  void Note(const char* message) noexcept;
+
+  std::string name_;
+  const FileBytes* file_ = nullptr;  // null when writing
+  std::string* bytes_ = nullptr;     // null when reading
+  uint64_t position_ = 0;
+  TIFF* tiff_ = nullptr;
+  char fault_[512] = {};  // the first message that matters; empty: none
+  bool is_out_of_memory_ = false;
+  std::exception_ptr thrown_;  // by the ByteSource or by `bytes_`
+};
+
+}  // namespace lf

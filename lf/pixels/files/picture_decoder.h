@@ -1,0 +1,49 @@
+// The readers of PNG, TIFF and EXR files. Internal to this folder.
+//
+// Each uses the library of its format: libpng, libtiff, OpenEXR. A library for all formats, such as
+// OpenImageIO, would load some 250 further libraries into every program.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "lf/core/result.h"
+#include "lf/pixels/files/file_bytes.h"
+#include "lf/pixels/files/image_file.h"
+
+namespace lf {
+
+// A file whose header has been read. Its pixels can be decoded once. One thread at a time may use
+// it.
+class PictureDecoder {
+ public:
+  virtual ~PictureDecoder() = default;
+  virtual const ImageFileInfo& info() const = 0;
+  // Decodes all pixels. `image` becomes an Image of the type that info() states, in the same memory
+  // if possible. kInput: the file is truncated or damaged anywhere, even if the library could guess
+  // what is missing.
+  virtual Result<void> Read(StoredImage* image) = 0;
+};
+
+// These functions read the header. `file` must outlive the decoder, and must have passed
+// ProbeImage(). kInput: the file is truncated or damaged, is larger than ReadImage() allows, or is
+// of a kind that is not read; the message says which.
+Result<std::unique_ptr<PictureDecoder>> OpenPng(const FileBytes& file);
+Result<std::unique_ptr<PictureDecoder>> OpenTiff(const FileBytes& file);
+Result<std::unique_ptr<PictureDecoder>> OpenExr(const FileBytes& file);
+
+// kInput if a picture has no pixel, or more pixels or values than ReadImage() allows.
+Result<void> CheckPictureSize(int64_t width, int64_t height, int64_t channels,
+                              const std::string& name);
+
+// Makes `stored` an Image<T> of this size, and returns it. Reuses its memory if possible.
+template <class T>
+Image<T>& Resized(int width, int height, int channels, StoredImage* stored) {
+  if (!std::holds_alternative<Image<T>>(*stored)) stored->emplace<Image<T>>();
+  Image<T>& image = std::get<Image<T>>(*stored);
+  image.Resize(width, height, channels);
+  return image;
+}
+
+}  // namespace lf

@@ -1,0 +1,57 @@
+// The writers of PNG, TIFF, JPEG and EXR files. They encode in memory. Internal to this folder.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+
+#include "lf/core/result.h"
+#include "lf/pixels/files/image_file.h"
+
+namespace lf {
+
+// Number of rows that are made and encoded at a time. It is a multiple of the rows in a block of
+// EXR's compression (16), so that the bytes do not depend on it. Rows of 8192 pixels take about
+// 0.1 s.
+inline constexpr int kBlockRows = 32;
+
+// A picture whose rows are made while it is encoded.
+struct PictureRows {
+  std::string name;  // of the file, for messages
+  int width = 0;
+  int height = 0;
+  int channels = 0;
+  PixelType type = PixelType::kUint8;  // of all channels; not kHalf
+  bool is_srgb = false;                // true: the file states that its values are sRGB
+  ImageMetadata metadata = {};
+  // Writes the values of row y, [x][channel] without gaps.
+  std::function<void(int y, std::byte* to)> pack_row;
+  // Called before every kBlockRows rows; may be empty.
+  std::function<bool()> is_interrupted = {};
+};
+
+// These functions return the bytes of a file. Equal pictures give equal bytes. kOutput: the library
+// reports an error. kInterrupted: is_interrupted() returned true.
+//
+// PNG has 1 to 4 channels of kUint8 or kUint16, and one text for each entry of the metadata.
+Result<std::string> EncodePng(const PictureRows& picture);
+// TIFF has any number of channels of kUint8, kUint16 or kFloat. Its description holds one line for
+// each entry of the metadata: "lf.time_s: 0.25".
+Result<std::string> EncodeTiff(const PictureRows& picture);
+// JPEG has 1 or 3 channels of kUint8, quality 95 and full chroma resolution. Its comment holds the
+// lines that TIFF has.
+Result<std::string> EncodeJpegRows(const PictureRows& picture);
+// EXR keeps the types of metadata. The channels must have the same size.
+Result<std::string> EncodeExr(const std::string& name, std::span<const ExrChannel> channels,
+                              const ImageMetadata& metadata,
+                              const std::function<bool()>& is_interrupted);
+
+// Returns the value as text.
+std::string TextOf(const std::variant<std::string, double, int>& value);
+
+// Returns one line for each entry: "lf.frame: 12\nlf.time_s: 0.25\n".
+std::string LinesOf(const ImageMetadata& metadata);
+
+}  // namespace lf

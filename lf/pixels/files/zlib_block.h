@@ -1,0 +1,26 @@
+// Inflates a zlib stream strictly. Internal to this folder.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace lf {
+
+// Reuses its memory from stream to stream.
+class ZlibBlock {
+ public:
+  // Inflates the whole stream and verifies its checksum. The first `size` bytes become stored();
+  // more bytes are allowed, because some programs fill up the last strip of a picture. Returns
+  // null, or what is wrong. Throws std::bad_alloc.
+  const char* Inflate(std::span<const std::byte> stream, size_t size);
+
+  // The inflated bytes as a zlib stream without compression.
+  std::span<uint8_t> stored() { return stored_; }
+
+ private:
+  std::vector<uint8_t> stored_;
+};
+
+}  // namespace lf
