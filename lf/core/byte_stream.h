@@ -17,7 +17,7 @@ class ByteStream {
  public:
   // kInput if the file cannot be opened or is no regular file.
   static Result<ByteStream> Open(const std::filesystem::path& path);
-  // A stream of bytes in memory, which must outlive the stream. `path` is for messages only.
+  // Reads bytes in memory, which must outlive this object. `path` is for messages only.
   ByteStream(std::string_view bytes, std::filesystem::path path);
 
   ByteStream(ByteStream&& other) noexcept;
@@ -30,8 +30,9 @@ class ByteStream {
   uint64_t position() const { return window_end_ - window_.size(); }
   uint64_t remaining() const { return size_ - position(); }
 
-  // Returns the next bytes: all that have been read already, at least one. Empty only at the end of
-  // the file, or if the file cannot be read (see Status()). Valid until Skip() or Take() is called.
+  // Returns the next bytes: all that are in memory already, at least one. The result is empty only
+  // at the end of the file, or if the file cannot be read (see Status()). It is valid until Skip()
+  // or Take() is called.
   std::string_view Window() {
     Fill(1);
     return window_;
@@ -40,9 +41,8 @@ class ByteStream {
   // `count` is larger than the window.
   void Skip(uint64_t count);
 
-  // Reads the next number and moves behind it. The number is little-endian, as are all numbers of
-  // COLMAP's files. Returns false and does not move if fewer bytes are left or the file cannot be
-  // read.
+  // Reads the next number and advances past it. The number is little-endian, as in COLMAP's files.
+  // Returns false and does not advance if too few bytes are left or the file cannot be read.
   template <class T>
   bool Take(T* value) {
     static_assert(std::endian::native == std::endian::little);
@@ -52,13 +52,13 @@ class ByteStream {
     return true;
   }
 
-  // kInput with the system's reason if reading failed or the file became shorter after it was
-  // opened.
+  // kInput if reading failed (with the system's reason), or if the file has become shorter since it
+  // was opened.
   Result<void> Status() const;
 
  private:
   ByteStream(int fd, uint64_t size, std::filesystem::path path);
-  // True if the window holds `count` bytes. Reads more if it must.
+  // Reads more if the window holds fewer than `count` bytes. True if it then holds `count` or more.
   bool Fill(size_t count) { return window_.size() >= count || ReadMore(count); }
   bool ReadMore(size_t count);
 

@@ -29,7 +29,7 @@ std::string Noise(size_t size) {
   return bytes;
 }
 
-// The steps have many sizes. Some of them cross the ends of blocks.
+// Skips steps of many sizes. Some of them cross the end of a block.
 TEST_F(ByteStreamTest, AFileIsTheSameAsItsBytesInMemory) {
   const std::string bytes = Noise((size_t{5} << 20) + 123);
   ASSERT_TRUE(WriteFileAtomically(folder_ / "noise", bytes));

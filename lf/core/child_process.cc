@@ -25,13 +25,14 @@ namespace lf {
 namespace {
 
 constexpr int kFirstOther = 3;  // the descriptor after the three standard files
-// Room for a queue of four million tasks, Slurm's maximum, of 60 bytes each.
+// Limit of the output of a command: enough for a queue of four million tasks (Slurm's maximum) with
+// 60 bytes each.
 constexpr off_t kMostBytes = off_t{256} << 20;
 constexpr auto kTick = std::chrono::milliseconds(5);
 
 using Clock = std::chrono::steady_clock;
 
-// Closes its descriptor at the end.
+// Owns a file descriptor. The destructor closes it.
 class OwnedFile {
  public:
   explicit OwnedFile(int fd) : fd_(fd) {}
@@ -47,7 +48,7 @@ class OwnedFile {
   int fd_;
 };
 
-// Returns the last bytes of a file in memory.
+// Returns the last most_bytes bytes of a file in memory; all of them if it is shorter.
 std::string TextOf(int file, off_t most_bytes = std::numeric_limits<off_t>::max()) {
   const off_t size = std::max<off_t>(0, ::lseek(file, 0, SEEK_END));
   std::string text(static_cast<size_t>(std::min(size, most_bytes)), '\0');
@@ -69,14 +70,15 @@ struct Launch {
 // Lets the program inherit no other file than the standard files and `kept`.
 void CloseOtherFilesAtExec(int kept) {
   if (::close_range(kFirstOther, ~0u, CLOSE_RANGE_CLOEXEC) != 0) {  // Linux older than 5.11
-    constexpr int kHighest = 65536;                                 // the limit may be a billion
+    constexpr int kHighest = 65536;  // the limit of open files may be a billion
     for (int file = kFirstOther; file < kHighest; ++file) ::fcntl(file, F_SETFD, FD_CLOEXEC);
   }
   if (kept >= 0) ::fcntl(kept, F_SETFD, 0);
 }
 
-// Runs between vfork and exec, in the memory of the parent: it may change nothing there, allocate
-// nothing and take no locks. Reports through `alarm` why it failed.
+// Turns the new process into the program. Runs between vfork and exec, in the memory of the parent,
+// where it may change nothing, allocate nothing and take no locks. If it fails, it writes the errno
+// to the pipe `alarm`.
 [[noreturn]] void Become(const Launch& launch, pid_t parent, int alarm) {
   ::setpgid(0, 0);
   if (launch.ends_with_parent) {

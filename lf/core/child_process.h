@@ -1,5 +1,5 @@
-// Runs other programs as child processes: lfrenderer, for as long as it takes; those of a batch
-// system, for an answer; and ffmpeg, which is fed with pictures.
+// Runs other programs as child processes: lfrenderer, until it ends; the commands of a batch
+// system, for their answers; and ffmpeg, which reads pictures from its standard input.
 #pragma once
 
 #include <sys/types.h>
@@ -18,21 +18,22 @@ namespace lf {
 
 struct ProcessEnd {
   int exit_code = 0;
-  int signal = 0;  // the signal that killed it; 0: it exited by itself
+  int signal = 0;  // the signal that killed the process; 0: it exited by itself
 };
 
 // A program that runs as a child process. It has a process group of its own, so that a Ctrl-C for
-// us does not reach it, and inherits neither our open files nor the signals that we catch, block or
-// ignore (except SIGXFSZ). It leaves no zombie. For one thread at a time.
+// us does not reach it. It inherits none of our open files except `kept`, no blocked signals, and
+// of the signals that we ignore only SIGXFSZ. It leaves no zombie. An object may be used by one
+// thread at a time.
 class ChildProcess {
  public:
   struct Options {
     std::vector<std::string> words;        // the program, searched in PATH, and its arguments
     std::filesystem::path working_folder;  // empty: ours
-    int output = -1;                       // file descriptor; -1: /dev/null
-    int complaints = -1;     // -1: a file in memory, whose last lines the errors below quote
-    int kept = -1;           // a descriptor that stays open in the program as long as it lives
-    bool has_input = false;  // Write() feeds its standard input; false: /dev/null
+    int output = -1;                       // descriptor of standard output; -1: /dev/null
+    int complaints = -1;     // standard error; -1: a file in memory, whose end is quoted in errors
+    int kept = -1;           // a descriptor that the program inherits; -1: none
+    bool has_input = false;  // true: standard input is fed by Write(); false: /dev/null
   };
   // kOutput if the program cannot be run. A program without an input gets SIGTERM if the thread
   // that started it ends for any reason. A program with an input sees the end of its input instead.
@@ -44,12 +45,12 @@ class ChildProcess {
   std::optional<ProcessEnd> Poll();
   void Signal(int signal);
 
-  // Writes to the program's input, and raises no SIGPIPE. kOutput if the program has closed it, or
-  // reads nothing for patience_s, after which it is killed.
+  // Writes to the program's input, and raises no SIGPIPE. kOutput if the program has closed its
+  // input, or if it has read nothing for patience_s; in the second case it is killed.
   Result<void> Write(std::span<const uint8_t> bytes, double patience_s);
 
-  // Closes the input and waits for the program. kOutput unless it exits with code 0 within
-  // patience_s, after which it is killed.
+  // Closes the input and waits for the program, which is killed if it still runs after patience_s.
+  // kOutput unless it exits with code 0.
   Result<void> Finish(double patience_s);
 
  private:
@@ -59,10 +60,10 @@ class ChildProcess {
 
   std::string name_;
   pid_t pid_ = 0;                  // 0: not started
-  std::optional<ProcessEnd> end_;  // the process exists no longer
-  int lost_reason_ = 0;            // errno of the wait that could not tell the end
+  std::optional<ProcessEnd> end_;  // how the program ended; nullopt while it runs
+  int lost_reason_ = 0;            // errno if waitpid() failed and `end_` is a guess; 0: it did not
   int input_ = -1;                 // socket; -1: closed
-  int complaints_ = -1;            // file in memory; -1: they go elsewhere
+  int complaints_ = -1;            // standard error: file in memory; -1: Options::complaints
 };
 
 struct CommandAnswer {
@@ -71,8 +72,8 @@ struct CommandAnswer {
   std::string complaints;
 };
 
-// Runs a program and waits for its end. kOutput: it cannot be run, dies of a signal, takes longer
-// than patience_s, or prints more than 256 MiB.
+// Runs a program and waits for its end. kOutput if it cannot be run, dies of a signal, takes longer
+// than patience_s, or prints more than 256 MiB. In the last two cases it is killed.
 Result<CommandAnswer> RunCommand(const std::vector<std::string>& words, double patience_s);
 
 }  // namespace lf

@@ -29,7 +29,7 @@ class ChildProcessTest : public testing::Test {
   fs::path folder_;
 };
 
-// Starts a program with an input.
+// Starts a shell script as a program that has an input.
 std::unique_ptr<ChildProcess> Shell(const std::string& script) {
   ChildProcess::Options options;
   options.words = {"sh", "-c", script};
@@ -73,7 +73,7 @@ TEST_F(ChildProcessTest, AProgramThatDoesNotExistIsNamed) {
   }
 }
 
-// A write with SIGPIPE would end this test.
+// If a write raised SIGPIPE, this test would end.
 TEST_F(ChildProcessTest, ALeavingProgramIsQuotedAndRaisesNoSignal) {
   auto child = Shell("echo 'no room left' >&2; exit 3");
   const std::vector<uint8_t> bytes(1'000'000);
@@ -152,12 +152,12 @@ TEST_F(ChildProcessTest, KeepsOneFileOpenAndLeavesOurGroup) {
   ASSERT_TRUE(child.has_value()) << child.error().message;
   const auto end = EndOf(**child);
   ASSERT_TRUE(end.has_value());
-  EXPECT_EQ(end->signal, SIGKILL);  // and not this test with it
+  EXPECT_EQ(end->signal, SIGKILL);  // `kill -KILL 0` killed only the group of the program
   EXPECT_NE(ReadFile(folder_ / "files").value().find((folder_ / "kept").string()),
             std::string::npos);
 }
 
-// Starts `sleep 60` in a process that then dies. Returns the number of the sleeping process.
+// Starts `sleep 60` from a process that then ends. Returns the number of the sleeping process.
 pid_t OrphanOf(bool has_input) {
   int numbers[2];
   EXPECT_EQ(::pipe2(numbers, O_CLOEXEC), 0);
@@ -178,7 +178,7 @@ pid_t OrphanOf(bool has_input) {
   return number;
 }
 
-// Returns true if a process runs, neither dead nor a zombie that init has not yet seen.
+// Returns true if the process runs; false if it is dead, or a zombie that init has not yet reaped.
 bool IsAlive(pid_t number) {
   const auto status = ReadFile("/proc/" + std::to_string(number) + "/status");
   return status && status->find("State:\tZ") == std::string::npos;

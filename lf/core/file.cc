@@ -38,8 +38,9 @@ fs::path ParentOf(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-// Returns the file that a write to `path` replaces: `path`, or the file that a link leads to.
-// kOutput for a device or a pipe, because the rename would replace it by a file.
+// Returns the file that a write to `path` replaces: `path`, or if it is a link, the file that it
+// leads to. kOutput for a link to a missing file, and for a folder, a device or a pipe (the rename
+// would replace a device or a pipe by a file).
 Result<fs::path> WriteTarget(const fs::path& path) {
   std::error_code error;
   fs::path target = path;

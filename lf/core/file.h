@@ -14,13 +14,13 @@
 
 namespace lf {
 
-// Returns the kind of the error when an open or a read failed with the errno `code`. kOutput if the
-// machine lacks something (open files, memory): any other file would fail as well, and the file
-// must not be reported as damaged. kInput for everything else.
+// Returns the kind of error to report if a file could not be opened or read, with the errno `code`.
+// It is kOutput if the machine lacks something (file descriptors, memory), because any other file
+// would then fail as well, and the file must not be reported as damaged. Otherwise it is kInput.
 ErrorKind KindOfReadFailure(int code);
-// Returns the kind of the error when a library threw `thrown` while it read. For a
-// std::system_error it is the kind of its errno, because the library may have been unable to start
-// a thread. kInput for everything else.
+// Returns the kind of error to report if a library threw `thrown` while it read a file. For a
+// std::system_error it is the kind for its errno, because the library may have been unable to start
+// a thread. Otherwise it is kInput.
 ErrorKind KindOfReadFailure(const std::exception& thrown);
 
 // Returns the bytes of a file. The error has the kind KindOfReadFailure() if the file cannot be

@@ -1,5 +1,5 @@
-// Describes what is near a missing file, for messages, since most missing files have a slightly
-// different name.
+// Describes for error messages what exists near a missing file, because most files that are not
+// found exist under a slightly different name.
 #pragma once
 
 #include <filesystem>
@@ -7,9 +7,9 @@
 
 namespace lf {
 
-// Returns text to append to "... no such file". It begins with "; ":
-//   "; similar there: image_7.png"           base names that are equal but for the suffix, case,
-//                                            zeros before numbers, blanks, _, -, and (1) or copy
+// Returns text to append to "... no such file". It begins with "; ", for example:
+//   "; similar there: image_7.png"           equal names, apart from the suffix, case, zeros
+//                                            before numbers, blanks, _, -, and (1) or copy
 //                                            at the end
 //   "; its folder holds 24 files, such as image_00.png", "; its folder is empty"
 //   "; there is no folder a/images: a holds masks/, photos/"

@@ -28,8 +28,8 @@ inline double Value(const PixelForm& form, const Vec3& position) {
   return form[0] * position[0] + form[1] * position[1] + form[2] * position[2];
 }
 
-// Maps coordinates in frame a to frame b: x_b = rotation * x_a + translation. A variable of this
-// type is named b_from_a.
+// Converts coordinates in frame of reference a to b: x_b = rotation * x_a + translation. A variable
+// of this type is named b_from_a.
 struct RigidTransform {
   Mat3 rotation = Mat3::Identity();
   Vec3 translation = Vec3::Zero();

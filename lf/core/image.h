@@ -1,4 +1,4 @@
-// Pixels in memory: [height][width][channels], rows `stride` elements apart.
+// Pixels in memory: [height][width][channels], with `stride` values from one row to the next.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ struct ImageView {
   int width = 0;
   int height = 0;
   int channels = 1;
-  size_t stride = 0;  // elements from one row to the next
+  size_t stride = 0;  // number of values from one row to the next
 
   T* row(int y) const {
     LF_DCHECK(y >= 0 && y < height);

@@ -1,5 +1,5 @@
-// Messages for people: one line per event, to stderr. Results go to stdout, and not through this
-// file.
+// Writes messages for people to stderr, one line for each event. Results go to stdout, and not
+// through this file.
 #pragma once
 
 #include <fmt/format.h>

@@ -25,7 +25,7 @@ void ComesAfter(void* place) { __tsan_acquire(place); }
 void ComesBefore(void*) {}
 void ComesAfter(void*) {}
 #endif
-char loop_begins;  // global, as the loop's own variables may be read only after ComesAfter()
+char loop_begins;  // global: only after ComesAfter() may a thread read the loop's variables
 
 }  // namespace
 
@@ -46,8 +46,8 @@ ThreadPool::~ThreadPool() = default;
 int ThreadPool::thread_count() const { return state_->arena.max_concurrency(); }
 
 void ThreadPool::ForEach(size_t count, const std::function<void(size_t)>& body) {
-  // There is one task per thread, and each takes the next item. tbb alone would cut [0, count) into
-  // halves and begin in the middle of it.
+  // There is one task per thread, which takes the next item until none is left. tbb alone would cut
+  // [0, count) into halves and begin in the middle of it.
   std::atomic<size_t> next = 0;
   const size_t task_count = std::min(count, static_cast<size_t>(thread_count()));
   ComesBefore(&loop_begins);

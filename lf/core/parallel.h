@@ -1,4 +1,4 @@
-// Threads. All use of oneTBB is in parallel.cc.
+// Runs loops on threads. All use of oneTBB is in parallel.cc.
 #pragma once
 
 #include <cstddef>
@@ -20,8 +20,8 @@ class ThreadPool {
   int thread_count() const;
 
   // Calls body(i) once for every i in [0, count), in parallel, and returns when all calls have
-  // ended. Items are begun in order, each by the next free thread, so they should cost at least
-  // some microseconds, and the long ones should come first.
+  // ended. The calls begin in the order of i, each on the next free thread. Each call should
+  // therefore take at least some microseconds, and the longest calls should come first.
   void ForEach(size_t count, const std::function<void(size_t)>& body);
 
  private:
@@ -29,7 +29,7 @@ class ThreadPool {
   std::unique_ptr<State> state_;
 };
 
-// CPU time of the calling thread, from construction on.
+// Measures the CPU time that the calling thread has used since construction.
 class ThreadCpuTimer {
  public:
   ThreadCpuTimer() : begin_ns_(Now()) {}

@@ -1,4 +1,4 @@
-// Words for people to paste into a shell.
+// Quotes words that people paste into a shell.
 #pragma once
 
 #include <string>

@@ -81,8 +81,8 @@ fs::path FolderOf(const fs::path& path) {
   return error ? folder : absolute.lexically_normal();
 }
 
-// The temporary files in one folder, by their final names: those of this host, but not of this
-// process.
+// The temporary files in one folder that other processes of this host have made, by their final
+// names.
 using Leftovers = std::map<std::string, std::vector<fs::path>>;
 
 Leftovers LeftoversIn(const fs::path& folder) {

@@ -1,4 +1,4 @@
-// Files that have no final name yet, and the leftovers of programs that were killed.
+// Files that do not have their final names yet, and the leftovers of programs that were killed.
 //
 // While FILE.EXT is written it is called .FILE.PROCESS-HOST.tmp.EXT, in the same folder. The
 // extension is kept because libraries choose the format by it. PROCESS is the process number. HOST

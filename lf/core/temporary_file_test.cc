@@ -24,7 +24,8 @@ class TemporaryFileTest : public testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  // Creates the file that TemporaryPath() would name in a process of this host with this number.
+  // Creates the temporary file that a process of this host with the number `process` would write
+  // for `file`.
   fs::path Leave(const std::string& file, pid_t process) const {
     std::string name = TemporaryPath(folder_ / file).filename().string();
     const std::string own = fmt::format(".{}-", ::getpid());
