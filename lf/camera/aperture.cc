@@ -77,7 +77,8 @@ std::vector<Vec2> SampleLens(const Aperture& aperture, int count, uint64_t seed)
       points.push_back(aperture.radius_w * std::sqrt(a) * Direction(2 * kPi * b));
       continue;
     }
-    // One triangle (centre, vertex, next vertex) per blade, uniform within it.
+    // The polygon has one triangle (centre, vertex, next vertex) per blade. Points are spread
+    // uniformly in each triangle.
     const double scaled = b * aperture.blades;
     const int blade = std::min(static_cast<int>(scaled), aperture.blades - 1);
     const double along = scaled - blade;

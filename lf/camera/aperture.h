@@ -59,9 +59,9 @@ class ApertureTest {
 double Area(const Aperture& aperture);
 
 // Returns `count` points spread uniformly over the opening: the R2 low-discrepancy sequence,
-// shifted by offsets that are random in `seed`, and mapped to the disk by (sqrt(r) cos, sqrt(r)
-// sin) (thesis Eq. 4.7), or to the polygon by triangles of equal area. Equal arguments give equal
-// points on every machine.
+// shifted by random offsets that depend on `seed`. A point (a, b) of it is mapped to the disk by
+// radius_w sqrt(a) (cos 2 pi b, sin 2 pi b) (thesis Eq. 4.7), or to the polygon by triangles of
+// equal area. Equal arguments give equal points on every machine.
 std::vector<Vec2> SampleLens(const Aperture& aperture, int count, uint64_t seed = 0);
 
 }  // namespace lf

@@ -1,6 +1,7 @@
-// How a real lens bends rays. A model maps a direction in camera axes to the *distorted* normalised
-// position (xd, yd), which K then turns into pixels: x_px = fx xd + skew yd + cx, y_px = fy yd +
-// cy. Formulas and parameter order agree with OpenCV and COLMAP.
+// Describes how a real lens bends rays. A model maps a direction (X, Y, Z) in camera axes to the
+// *distorted* normalised position (xd, yd), at the radius rd from the optical axis. The calibration
+// matrix K then converts (xd, yd) to pixels: x_px = fx xd + skew yd + cx, y_px = fy yd + cy.
+// Formulas and parameter order agree with OpenCV and COLMAP.
 #pragma once
 
 #include <array>
@@ -74,11 +75,12 @@ bool IsDistortion(const Distortion& distortion);
 // Distorts and undistorts positions. The constructor computes the limits of the model once for many
 // positions.
 //
-// A polynomial describes a lens only as far as it increases: beyond the first angle where it begins
-// to decrease, or where a denominator becomes 0, pixels have no ray and directions have no pixel.
+// A polynomial describes a lens only up to the first angle at which the polynomial stops increasing
+// or its denominator becomes 0. Directions beyond this angle have no pixel, and pixels farther from
+// the axis have no ray.
 class DistortionMap {
  public:
-  // parameters: finite and IsDistortion()
+  // The parameters must be finite, and IsDistortion() must be true.
   explicit DistortionMap(const Distortion& distortion);
 
   // Returns (xd, yd) of a direction; none if the lens has no image of the direction. Only fish-eyes

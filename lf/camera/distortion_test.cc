@@ -181,15 +181,15 @@ TEST(Distortion, OnlyLensesAreDistortions) {
 
 TEST(Distortion, DivisionAndUnifiedLensesEndWhereTheyTurnBack) {
   using enum DistortionModel;
-  const DistortionMap pincushion({kDivision, {0.25}});  // r turns back at rd = 2, r = 1
+  const DistortionMap pincushion({kDivision, {0.25}});  // r(rd) has its maximum, 1, at rd = 2
   EXPECT_TRUE(pincushion.Distort({0.999, 0, 1}));
   EXPECT_FALSE(pincushion.Distort({1.001, 0, 1}));
   EXPECT_TRUE(pincushion.Undistort({1.999, 0}));
   EXPECT_FALSE(pincushion.Undistort({2.001, 0}));
-  const DistortionMap barrel({kDivision, {-0.25}});  // 90 degrees at rd = 2
+  const DistortionMap barrel({kDivision, {-0.25}});  // rd = 2 at 90 degrees
   EXPECT_NEAR(barrel.Distort({1e9, 0, 1})->x(), 2, 1e-6);
   EXPECT_FALSE(barrel.Undistort({0, 2.001}));
-  const DistortionMap unified({kUnified, {0.5, 4}});  // 90 degrees at rd = 1
+  const DistortionMap unified({kUnified, {0.5, 4}});  // rd = 1 at 90 degrees
   EXPECT_NEAR(unified.Distort({1e9, 0, 1})->x(), 1, 1e-6);
   EXPECT_TRUE(unified.Undistort({0.999, 0}));
   EXPECT_FALSE(unified.Undistort({1.001, 0}));

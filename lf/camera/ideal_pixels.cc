@@ -81,7 +81,7 @@ class PatchMaker {
   // them has no ideal position, or if the error of the patch exceeds kTolerance_px.
   bool Fit(IdealPatch* patch) const {
     const PixelRect& rect = patch->rect;
-    Points rows[kControls];  // control points of the scanlines through the points
+    Points rows[kControls];  // control points of the arc through each row of points
     for (size_t j = 0; j < kControls; ++j) {
       Points through;
       for (size_t i = 0; i < kControls; ++i) {

@@ -19,9 +19,9 @@
 
 namespace lf {
 
-// Returns the ideal position of continuous pixel position (x, y); none if no ray arrives there. It
-// is iterated until only rounding errors are left, and is the reference for the patches below.
-// `map` must be the map of k.distortion.
+// Returns the ideal position of continuous pixel position (x, y); none if no ray arrives there. The
+// result is exact up to rounding errors (by iteration if the model has no closed formula), and is
+// the reference for the patches below. `map` must be the map of k.distortion.
 std::optional<Vec3> IdealPosition(const Intrinsics& k, const DistortionMap& map, double x_px,
                                   double y_px);
 
@@ -58,7 +58,8 @@ struct IdealPatch {
   IdealArc ArcAt(double v) const;
 };
 
-// Weights of the control points in the point of an arc at parameter t, in [0, 1]. Their sum is 1.
+// Returns the weights of the control points of an arc for its point at parameter t, in [0, 1]. The
+// sum of the weights is 1.
 using BezierWeights = std::array<double, IdealArc::kControls>;
 BezierWeights BezierWeightsAt(double t);
 

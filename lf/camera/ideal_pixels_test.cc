@@ -57,7 +57,8 @@ TEST(IdealPixels, PatchesHoldEveryPixelOnceAndAgreeWithTheIteration) {
 }
 
 TEST(IdealPixels, PixelsBeyondTheFoldHaveNoPatch) {
-  // x (1 - 0.3 x^2) is at most 0.70: no ray arrives beyond 0.70 focal lengths.
+  // x (1 - 0.3 x^2) is at most 0.70: no ray arrives farther than 0.70 focal lengths from the
+  // principal point.
   const Intrinsics k{200, 200, 160, 120, 0, 320, 240, {DistortionModel::kRadialTangential, {-0.3}}};
   const DistortionMap map(k.distortion);
   const IdealPixels pixels(k);

@@ -24,7 +24,7 @@ TEST(Pinhole, ProjectionUndoesTheRay) {
   }
 }
 
-// P = K [R|t] of SkewedCamera(), every entry written out (thesis Eq. 2.5, 2.6).
+// Returns P = K [R|t] of SkewedCamera(), with the entries of K written out (thesis Eq. 2.5, 2.6).
 Eigen::Matrix<double, 3, 4> CameraMatrix(const PinholeCamera& camera) {
   Mat3 k;
   k << 500, 3, 321.5,  // fx, s, cx
@@ -51,7 +51,8 @@ TEST(Pinhole, ProjectsByTheCameraMatrix) {
   EXPECT_NEAR((*Project(at_origin, {1, -2, 4}) - Vec2(445, -1.75)).norm(), 0, 1e-12);
 }
 
-// p_camera = K^-1 p, then the inverse of the 4 x 4 matrix of Eq. 4.2, by a general inverse.
+// Compares RayOfPixel() with p_camera = K^-1 p and the inverse of the 4 x 4 matrix of thesis Eq.
+// 4.2, both computed by a general matrix inverse.
 TEST(Pinhole, RaysGoThroughThePointsOfTheInverseMatrices) {
   const PinholeCamera camera = SkewedCamera();
   Eigen::Matrix4d extrinsic = Eigen::Matrix4d::Identity();

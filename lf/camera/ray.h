@@ -1,5 +1,5 @@
-// Rays are lines: along the whole line, the radiance is the one that an LF camera recorded in its
-// direction (thesis 2.1.1).
+// Rays are lines: the radiance that an LF camera recorded for a ray holds along the whole line
+// (thesis 2.1.1).
 #pragma once
 
 #include <optional>

@@ -22,7 +22,7 @@ RayForms MakeRayForms(const Mat3& direction, const Vec3& centre_world,
   // (X - c') n.d = [ (c - c') n^T + (h - n.c) I ] d
   const Mat3 focus = offset * n.transpose() + (h - n.dot(c)) * Mat3::Identity();
   const Mat3 sensor = plate.intrinsics.Matrix() * plate.cam_from_world.rotation * focus * direction;
-  // (lens point - c') f.d = M d
+  // (lens point - c') f.d = [ (c - c') f^T - f.(c - c') I ] d
   const Mat3 lens = offset * f.transpose() - f.dot(offset) * Mat3::Identity();
 
   RayForms forms;

@@ -1,12 +1,13 @@
-// From an LF pixel to the sensor plate, as linear forms on the pixel position.
+// Maps LF pixels to the sensor plate by linear forms on the pixel position.
 //
-// For a fixed pair of LF camera and render camera, every quantity of doc/ray.md, 1-5, is a linear
-// form on p = (x + 0.5, y + 0.5, 1)^T, or a quotient of two such forms. Collection kernels compute
-// spans and addresses from these forms, selection computes polygons; no ray needs an inversion or
-// an intersection of its own.
+// For a fixed pair of LF camera and render camera, every quantity of doc/ray.md, steps 1-5, is a
+// linear form on p = (x + 0.5, y + 0.5, 1)^T, or a quotient of two such forms. Collection kernels
+// compute spans and addresses from these forms, selection computes polygons; no ray needs an
+// inversion or an intersection of its own.
 //
-// d = R^T K^-1 p is the ray's direction, c the centre of its LF camera, c' the lens centre, f the
-// forward axis of the render camera, X the point where the ray meets the focus plane n.X = h.
+// R, K and c are the rotation, calibration matrix and centre of the LF camera; d = R^T K^-1 p is
+// the ray's direction; c' is the lens centre and f the forward axis of the render camera; X is the
+// point where the ray meets the focus plane n.X = h.
 #pragma once
 
 #include <array>
@@ -43,8 +44,8 @@ RayForms MakeRayForms(const Mat3& direction, const Vec3& centre_world,
 // therefore nothing has to be projected through the plane of the LF camera. Rays with n.d > 0 and
 // rays with n.d < 0 have different half-planes: plane_sign, +1 or -1, is the sign of n.d.
 
-// Returns the half-planes of plane_sign n.d >= 0, of forward and front, and of the four edges of
-// the plate. Each edge is moved outwards by margin_px elements.
+// Returns the half-planes of plane_sign n.d >= 0, of `forward` and `front`, and of the four edges
+// of the plate. Each edge is moved outwards by margin_px elements.
 inline constexpr size_t kPlateHalfPlanes = 7;
 std::array<PixelForm, kPlateHalfPlanes> PlateHalfPlanes(const RayForms& forms,
                                                         const RenderCamera& render_camera,

@@ -27,7 +27,7 @@ class RayThrough {
   const Vec3& centre_world() const { return centre_; }
 
   // Returns the direction of the line through the LF camera's centre and the point, with the sign
-  // for which it runs forward.
+  // for which the direction points forward.
   Vec3 DirectionWorld(const Vec3& point_world) const {
     const Vec3 d = point_world - centre_;
     return forward_.dot(d) < 0 ? Vec3(-d) : d;

@@ -12,9 +12,9 @@ namespace lf {
 // ray's LF camera stands for: sum += weight v, count += weight. A ray of weight 0 adds nothing.
 inline constexpr uint32_t kMaxWeight = 255;
 
-// Side of a block of elements. All elements of a block of 8 x 8 elements of the plate share one
-// weight. The blocks of different LF images begin at different elements; otherwise the borders of
-// their blocks would add up to a pattern.
+// Side of a block, in elements. The plate is divided into blocks of 8 x 8 elements; all elements of
+// a block have the same weight. The blocks of different LF images begin at different elements;
+// otherwise the borders of their blocks would add up to a pattern.
 inline constexpr int kWeightBlock = 8;
 
 struct WeightBlocks {
@@ -51,7 +51,7 @@ inline uint32_t FeatheredWeight(uint32_t weight, const uint16_t* above, const ui
 class RayWeights {
  public:
   // The whole plate has one weight, at most kMaxWeight.
-  RayWeights(uint32_t weight = 1) : same_(weight) {}  // NOLINT: a number is such weights
+  RayWeights(uint32_t weight = 1) : same_(weight) {}  // NOLINT: implicit on purpose
   // Writes the weights, at most kMaxWeight, of `count` blocks side by side. (end_x, end_y) is the
   // exclusive end of the first block.
   using RowFunction = std::function<void(int end_x, int end_y, int count, uint8_t* weights)>;

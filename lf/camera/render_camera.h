@@ -21,7 +21,7 @@ struct RenderCamera {
   Aperture aperture;      // in the plane through the lens centre normal to the optical axis
   Plane focus_plane;      // in the world
 
-  // The settings that the planes were made from, for people and metadata.
+  // The settings that the members above were computed from, for people and metadata.
   double time_s = 0;
   double focal_length_w = 0;
   double sensor_width_w = 0;
@@ -33,7 +33,7 @@ struct RenderCamera {
 // Returns the focus plane at distance g > 0 in front of `camera`, with tilts within +-90 degrees.
 Plane FocusPlane(const PinholeCamera& camera, double focus_distance_w, const FocusTilt& tilt);
 
-// Returns the point (right, up) of the lens, given in lens coordinates, in the world.
+// Converts a point of the lens from lens coordinates (right, up) to world coordinates.
 Vec3 LensPointWorld(const RenderCamera& camera, const Vec2& point_lens);
 
 // The refraction of a thin lens: returns the point of the focus plane that element position (x, y)

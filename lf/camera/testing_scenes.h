@@ -15,7 +15,7 @@ struct CameraPair {
 };
 
 // The LF image has 50 x 35 pixels, the plate 160 x 120 elements. The kind of scene depends on the
-// seed's remainders by small numbers.
+// seed modulo small numbers.
 CameraPair RandomCameraPair(uint64_t seed);
 
 // Same as RandomCameraPair(), but with an LF image of 200 x 140 pixels and lens distortion: radial
@@ -24,8 +24,8 @@ CameraPair RandomCameraPair(uint64_t seed);
 CameraPair RandomDistortedPair(uint64_t seed);
 
 // A pair from a grid rig: the LF camera is (column, row) pitches beside the render camera, in its
-// lens plane and parallel to it; one LF pixel is as large as one element. Accepted rays lie exactly
-// on the rim of the lens and on element borders.
+// lens plane and parallel to it; one LF pixel is as large as one element. Accepted rays may lie
+// exactly on the rim of the lens and on element borders.
 CameraPair ParallelPair(int column, int row, double pitch_w, double radius_w);
 
 }  // namespace lf::testing

@@ -26,8 +26,8 @@ double BlurOnFocusPlane(double aperture_diameter_w, double focus_distance_w, dou
 
 // Returns the range of depths whose blur on the focus plane is at most `blur_limit_w`, in world
 // units on that plane. The formula is exact; thesis Eq. 2.10 approximates it for g >> f. The far
-// end is infinity if the blur limit is at least the aperture diameter, that is, from the hyperfocal
-// distance on. The range is [0, infinity) for a pinhole.
+// end is infinity if the blur limit is at least the aperture diameter, that is, if the focus
+// distance is at least the hyperfocal distance. The range is [0, infinity) for a pinhole.
 DepthRange DepthOfField(double aperture_diameter_w, double focus_distance_w, double blur_limit_w);
 
 }  // namespace lf

@@ -37,7 +37,7 @@ TEST(ThinLens, TheFNumberIsFocalLengthOverDiameter) {
   EXPECT_DOUBLE_EQ(FNumber(0.05, 0.025), 2);
   EXPECT_DOUBLE_EQ(FNumber(0.085, 0.0302), 0.085 / 0.0302);
   EXPECT_TRUE(std::isinf(FNumber(0.05, 0)));
-  // A stop is a factor of sqrt(2) of N: the opening has half the area (thesis 2.2.6).
+  // One stop multiplies N by sqrt(2) and halves the area of the opening (thesis 2.2.6).
   const double d = 0.02, stopped_down = 0.05 / (std::sqrt(2.0) * FNumber(0.05, d));
   EXPECT_NEAR(stopped_down * stopped_down / (d * d), 0.5, 1e-12);
 }
@@ -54,11 +54,12 @@ TEST(ThinLens, BlurIsTheCircleOfConfusionSeenOnTheFocusPlane) {
     }
 }
 
-// Each end is r f g^2 / (d f^2) from the focus plane, for g >> f (thesis Eq. 2.10).
+// For g >> f, each end of the depth of field is r f g^2 / (d f^2) from the focus plane, where r is
+// the size of a pixel on the plate (thesis Eq. 2.10).
 TEST(ThinLens, TheDepthOfFieldComesNearTheThesissApproximation) {
   const double f = 0.05, d = 0.02, g = 5, pixel = 2e-6;
   const double approximation = pixel * f * g * g / (d * f * f);
-  const double limit = pixel * g / *ImageDistance(f, g);  // a pixel, on the focus plane
+  const double limit = pixel * g / *ImageDistance(f, g);  // size of a pixel on the focus plane
   const DepthRange range = DepthOfField(d, g, limit);
   EXPECT_NEAR(g - range.near_w, approximation, 0.03 * approximation);
   EXPECT_NEAR(range.far_w - g, approximation, 0.03 * approximation);

@@ -24,8 +24,8 @@ struct Vignetting {
   friend bool operator==(const Vignetting&, const Vignetting&) = default;
 };
 
-// The least share of light that a falloff may leave anywhere in the image. A larger loss, of more
-// than six stops, is taken for a wrong number.
+// The least share of light that a falloff may leave anywhere in the image. Parameters that cause a
+// larger loss (more than six stops) are considered wrong.
 inline constexpr double kLeastFalloff = 1.0 / 64;
 
 struct Intrinsics;
@@ -39,8 +39,8 @@ struct FalloffRange {
 };
 FalloffRange FalloffRangeOf(const Intrinsics& k);
 
-// Returns whether the falloff leaves at least kLeastFalloff, and at most 1 / kLeastFalloff, of the
-// light everywhere in the image.
+// True if the falloff leaves at least kLeastFalloff, and at most 1 / kLeastFalloff, of the light
+// everywhere in the image.
 bool IsFalloff(const Intrinsics& k);
 
 }  // namespace lf

@@ -57,7 +57,7 @@ TEST(Vignetting, TheRangeHoldsEveryPixelAndIsReached) {
 TEST(Vignetting, ALensThatLosesAllLightIsNone) {
   EXPECT_TRUE(IsFalloff(Camera({{-0.9, 0, 0}})));
   EXPECT_FALSE(IsFalloff(Camera({{-1, 0, 0}})));
-  EXPECT_FALSE(IsFalloff(Camera({{-4, 4, 0}})));  // at r = 0.7, not in the corner
+  EXPECT_FALSE(IsFalloff(Camera({{-4, 4, 0}})));  // F is 0 at r = 0.7, but 1 in the corners
   EXPECT_FALSE(IsFalloff(Camera({{100, 0, 0}})));
 }
 

@@ -12,7 +12,7 @@ namespace lf {
 struct CameraPath {
   double fps = 30;
   double unit_m = 1;                  // metres per world unit
-  std::vector<RenderCamera> cameras;  // of frames 1, 2, ...; frame 1 is time 0
+  std::vector<RenderCamera> cameras;  // one for each frame 1, 2, ...; frame 1 is at time 0
 
   size_t frame_count() const { return cameras.size(); }
   const RenderCamera& Camera(FrameId frame) const {

@@ -29,7 +29,7 @@ Error ErrorAt(const Moment& moment, const Quantity& quantity, const std::string&
                                 moment.frame, moment.time_s, message));
 }
 
-// Returns the quantity's value; an error if it leaves its range.
+// Returns the quantity's value; an error if the value is outside the quantity's range.
 Result<MotionValue> ValueOf(const Moment& moment, const Quantity& quantity) {
   const MotionValue value = ValueAt(quantity.motion, moment.time_s);
   for (const double component : value) {
@@ -90,7 +90,7 @@ Result<RigidTransform> PoseAt(const Moment& moment) {
 // of view.
 Result<void> SetOptics(const Moment& moment, RenderCamera* camera) {
   const PathDescription& path = moment.path;
-  double half_view = 0;  // as a tangent
+  double half_view = 0;  // tangent of half the field of view
   if (path.field_of_view_rad) {
     LF_ASSIGN_OR_RETURN(const double view_rad, NumberOf(moment, *path.field_of_view_rad));
     half_view = std::tan(view_rad / 2);

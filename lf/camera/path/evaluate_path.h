@@ -1,4 +1,4 @@
-// Evaluates the description of a path to the thin-lens camera of every frame.
+// Computes the thin-lens camera of every frame from the description of a path.
 #pragma once
 
 #include "lf/camera/path/camera_path.h"

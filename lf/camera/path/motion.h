@@ -27,7 +27,7 @@ struct AcceleratedMotion {
 };
 
 // Returns the value after constant accelerations. The speed reached in a period is kept after it,
-// and periods that overlap add up:
+// and the accelerations of overlapping periods add up:
 //
 //   x(t) = x0 + v0 t + sum over periods of  a (s^2 / 2 + s (t - from - s)),
 //   s    = min(t, to) - from, the time spent in the period; 0 before it
@@ -49,8 +49,9 @@ enum class SmoothCurve {
   kRotation,    // unit quaternions: slerp
 };
 
-// The curve through keys. A smooth stretch ends at the last key before a linear or step key. Before
-// the first key and after the last one, the value of that key holds.
+// The curve through keys. Smooth keys form one curve up to the last key before a linear or step
+// key; the next smooth curve begins at this linear or step key. Before the first key and after the
+// last one, the value of that key holds.
 class KeyframeCurve {
  public:
   // keys   at least one, times strictly increasing, values of one size

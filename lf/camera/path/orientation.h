@@ -7,9 +7,9 @@
 
 namespace lf {
 
-// world_from_cam = R_y(yaw) R_x(pitch) R_z(roll), right-handed rotations about the axes x right,
-// y down, z forward. If all are zero, the camera's axes are the world's. From there, the
-// photographer turns
+// Returns world_from_cam = R_y(yaw) R_x(pitch) R_z(roll), right-handed rotations about the axes x
+// right, y down, z forward. If all three angles are zero, the camera's axes are the world's. From
+// there, the photographer turns
 //   yaw    to the right, about the world's y axis
 //   pitch  up, about the camera's x axis
 //   roll   clockwise, about the camera's z axis

@@ -13,9 +13,10 @@ namespace lf {
 // text                content of the file
 // name                its name in messages: "path.yaml:12:5: ..."
 // light_field_unit_m  metres per world unit of the light field, if there is one; a path that states
-//                     another unit is an error. Without it the path's own unit is used, or else 1.
-// kInput: every key is checked. Messages state file:line:column, the value found, the allowed keys
-// and, for a misspelt key, the nearest allowed one.
+//                     another unit is an error. nullopt: the path's own unit is used, or 1 if the
+//                     path states none.
+// Every key is checked; kInput if anything is wrong. The message states file:line:column, the value
+// found, the allowed keys and, for a misspelt key, the nearest allowed key.
 Result<CameraPath> ParsePathYaml(std::string_view text, std::string_view name,
                                  std::optional<double> light_field_unit_m);
 Result<CameraPath> ReadPathYaml(const std::filesystem::path& path,

@@ -12,7 +12,7 @@
 
 namespace lf {
 
-// Units of a quantity. The keys in the file are its name with the suffix of a unit, such as
+// Units of a quantity. A key in the file is the quantity's name with the suffix of a unit, such as
 // "focus_distance_mm". kDegreesUnsaid: degrees, but without a suffix.
 enum class QuantityUnit { kNone, kLength, kDegrees, kDegreesUnsaid };
 
@@ -30,13 +30,13 @@ class QuantityReader {
   QuantityReader(const YamlEntry* keyframes, const YamlEntry* accelerations, double unit_m,
                  YamlErrors* errors);
 
-  // Returns the quantity; none if the file does not give it or, with an error, gives it wrongly.
-  // Its start and speed are keys of `section`. If it has keyframes but none at time 0, its start
-  // becomes the key at time 0.
+  // Returns the quantity; none if the file does not state it, or if it states it wrongly (then an
+  // error is added). The quantity's start and speed are keys of `section`. If it has keyframes but
+  // none at time 0, its start, if any, becomes the keyframe at time 0.
   std::optional<Quantity> Read(YamlMap* section, const QuantitySpec& spec);
 
-  // Returns a length that does not change over time and is given in world units or in millimetres;
-  // none if the file does not give it or, with an error, gives it wrongly.
+  // Returns a length that does not change over time and is stated in world units or in millimetres;
+  // none if the file does not state it, or if it states it wrongly (then an error is added).
   std::optional<double> ReadFixedLength(YamlMap* section, const std::string& name,
                                         const NumberRange& range);
 

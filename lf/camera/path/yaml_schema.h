@@ -20,7 +20,8 @@ class YamlErrors {
 
   // Adds the error "file:line:column: message".
   void Add(const YamlPlace& place, std::string message);
-  // Adds an error before all others, because a misspelt key explains why another one is missing.
+  // Adds an error in front of the errors of Add(), because a misspelt key explains why another key
+  // is missing.
   void AddFirst(const YamlPlace& place, std::string message);
 
   bool empty() const { return errors_.empty(); }
@@ -28,8 +29,8 @@ class YamlErrors {
   bool full() const { return errors_.size() >= 20; }
   const std::string& file_name() const { return file_name_; }
 
-  // Returns the first error and the lines of the others, in one line of text. There must be an
-  // error.
+  // Returns the first error and the line numbers of the others, in one line of text. There must be
+  // an error.
   Error First() const;
 
  private:

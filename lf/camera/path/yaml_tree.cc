@@ -133,9 +133,9 @@ Error ErrorAt(std::string_view name, const YAML::Exception& error, std::string_v
   return InputError(fmt::format("{}:{}:{}: {}", name, place.line, place.column, message));
 }
 
-// Every token of YAML except the first follows one of these characters. Their number therefore
-// limits the memory of the parser, independent of what it takes for a key, a quotation or a
-// comment.
+// Every token of YAML except the first follows one of the characters that are counted here. Their
+// number therefore limits the memory of the parser, no matter what it considers a key, a quotation
+// or a comment.
 Result<void> CheckBounds(std::string_view text, std::string_view name) {
   if (text.size() > kMaxYamlBytes)
     return InputError(

@@ -37,7 +37,7 @@ struct YamlNode {
 };
 
 // Limits that are checked before the text is parsed. No path made by people or programs comes near
-// them, and the worst text within them takes about 350 MB and 2 s.
+// them, and parsing the worst text within them takes about 350 MB and 2 s.
 inline constexpr size_t kMaxYamlBytes = size_t{8} << 20;
 inline constexpr size_t kMaxYamlMarks = 1'000'000;  // number of characters that mark structure
 inline constexpr size_t kMaxYamlDepth = 16;
