@@ -36,7 +36,7 @@ struct CodeHead {
 
   // Used by kThesis.
   int quantizer = 256;
-  int64_t low = 0;  // coefficients that the quantiser's first and last value stand for (haar.h)
+  int64_t low = 0;  // coefficients of the quantiser's first and last value, in units of haar.h
   int64_t high = 0;
 
   int tile_size() const { return 1 << tile_bits; }

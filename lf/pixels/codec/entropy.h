@@ -22,11 +22,11 @@ void AppendCompressed(std::span<const uint8_t> bytes, std::string* code);
 // Appends a whole number in as few bytes as it needs: seven bits in each byte, the lowest first.
 // The highest bit of a byte is set if more bytes follow.
 void AppendNumber(uint64_t number, std::string* code);
-// Reads a number of AppendNumber() from the front of `code` and removes it there. Returns false if
-// `code` ends within the number or the number exceeds `limit`.
+// Reads a number that AppendNumber() wrote from the front of `code` and removes it there. Returns
+// false if `code` ends within the number or the number exceeds `limit`.
 [[nodiscard]] bool TakeNumber(std::string_view* code, uint64_t limit, uint64_t* number);
-// Removes the first `count` bytes from `code` and sets `bytes` to them. Returns false if there are
-// fewer.
+// Removes the first `count` bytes from `code` and sets `bytes` to them. Returns false if `code` has
+// fewer bytes.
 [[nodiscard]] bool TakeBytes(std::string_view* code, size_t count, std::string_view* bytes);
 
 }  // namespace lf

@@ -2,8 +2,8 @@
 
 #include <utility>
 
-// SynthesizeHaar() with vectors, compiled for every instruction set; the program chooses one at run
-// time (Highway).
+// SynthesizeHaar() with SIMD vectors, compiled for every instruction set; the program chooses one
+// at run time (Highway).
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lf/pixels/codec/haar.cc"  // NOLINT: as Highway wants it
 #include <hwy/foreach_target.h>
@@ -15,7 +15,7 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Computes two rows of 2 count values from `count` coefficients of each subband.
+// Computes two rows of 2 * count values each from `count` coefficients of each subband.
 void MergeHaarRows(const int32_t* low, const int32_t* across, const int32_t* down,
                    const int32_t* both, int count, int32_t* HWY_RESTRICT upper,
                    int32_t* HWY_RESTRICT lower) {

@@ -1,7 +1,8 @@
 // The averaging Haar transform of a plane, one level at a time: thesis 2.5.1, equations 2.20 and
 // 2.21, nonstandard decomposition. Internal to this folder.
 //
-//   a = (x + y) / 2    d = (x - y) / 2    of rows, then of columns;    x = a + d    y = a - d
+//   analysis, along rows, then along columns:     a = (x + y) / 2    d = (x - y) / 2
+//   synthesis, along columns, then along rows:    x = a + d          y = a - d
 //
 // x and y are neighbours. If the number of values is odd, the last one is its own average and has
 // no d. Values are integers in units of 1 / 2^kHaarBits, in which five levels of 16-bit pixels are

@@ -42,7 +42,7 @@ enum class CodecProfile : uint8_t {
 struct CodecSettings {
   CodecProfile profile = CodecProfile::kDefault;
   int levels = 4;  // 1 to 5; the thesis's best is 1
-  // Detail coefficients whose magnitude is below this value become 0. The unit is that of stored
+  // Detail coefficients whose magnitude is below this value become 0. It is in units of stored
   // values. kThesis compares coefficients of the averaging transform. kDefault compares
   // coefficients of the transform scaled to unit norm, and its quantiser's step is 1.5 times the
   // threshold. kLossless ignores it.
@@ -84,8 +84,8 @@ struct DecodedPart {
 // Decodes the tiles that contain `wanted`, which must contain a pixel of the image. Reuses the
 // memory of part->pixels if it has the right type. If another program wrote `code`, the result may
 // be any picture or an error, but decoding never needs more memory than a few times the pixels of
-// these tiles. Returns kInput, with a message that does not name the file, in the cases of
-// ReadCodeInfo() and if the tiles are damaged.
+// these tiles. Returns kInput, with a message that does not name the file, if ReadCodeInfo() does,
+// or if the tiles are damaged.
 Result<void> DecodeImage(std::string_view code, const PixelRect& wanted, DecodedPart* part);
 // Decodes the whole image.
 Result<void> DecodeImage(std::string_view code, DecodedPart* part);

@@ -1,7 +1,7 @@
 // Measures how fast 2048x2048 mosaics and 1920x1280 RGB images, both of 8 bits, are encoded and
-// decoded. MB/s count the pixels before encoding. The mosaic is read from the file LF_BENCH_IMAGE
-// (raw bytes of 2048x2048 pixels) if this environment variable is set; otherwise, and for RGB, the
-// picture consists of waves of several lengths with noise of 1.5 grey values.
+// decoded. MB/s count the bytes of the unencoded pixels. The mosaic is read from the file
+// LF_BENCH_IMAGE (raw bytes of 2048x2048 pixels) if this environment variable is set; otherwise,
+// and for RGB, the picture consists of waves of several lengths with noise of 1.5 grey values.
 #include <benchmark/benchmark.h>
 
 #include <cmath>

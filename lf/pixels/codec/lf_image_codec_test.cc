@@ -249,7 +249,7 @@ TEST(LfImageCodec, DetailsBelowTwoThirdsOfAStepAreDropped) {
 TEST(LfImageCodec, BrightAndDarkPicturesKeepTheirMean) {
   std::mt19937 random(8);
   for (const int darkest : {25, 150})
-    for (const int levels : {1, 2}) {  // with fewer levels, a coefficient has a larger effect
+    for (const int levels : {1, 2}) {  // with fewer levels, steps are coarser
       Image<uint8_t> image(256, 256);
       for (uint8_t& v : image.pixels()) v = static_cast<uint8_t>(darkest + random() % 80);
       CodecSettings settings;

@@ -77,7 +77,8 @@ struct Choice {
   double cost = 0;  // bytes
 };
 
-// Returns the packing that needs the fewest bytes. kOverhead is the fixed cost of each stream.
+// Returns the packing that needs the fewest bytes. kOverhead is the fixed size of each stream, in
+// bytes.
 //   escapes_left  number of nested streams of escapes that are still allowed
 Choice BestPacking(std::span<const uint32_t> numbers, int escapes_left) {
   constexpr double kOverhead = 40;
@@ -164,7 +165,7 @@ bool IsPacking(Packing packing, size_t bytes_of_number) {
   }
 }
 
-// Memory of a thread that is reused for a stream and for each level of its escapes.
+// Memory that a thread reuses. A stream and each level of its escapes have an object of their own.
 template <class U>
 struct Scratch {
   std::vector<uint8_t> bytes;

@@ -3,8 +3,9 @@
 //
 // Most coefficients are 0, 1 or -1, and small ones have small neighbours. zstd compresses bytes,
 // and spends at least one bit on each; therefore up to four coefficients share a byte. A
-// coefficient that is too large for its share of the byte is an escape: its remainder is appended
-// to a second stream, which is then packed in the way that makes it shortest.
+// coefficient that is too large for its share of the byte is an escape: the byte holds the largest
+// value of the share, and the remainder (the coefficient minus this value) is appended to a second
+// stream, which is then packed in the way that makes it shortest.
 #pragma once
 
 #include <cstddef>

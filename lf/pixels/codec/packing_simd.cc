@@ -21,8 +21,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 // How many numbers are processed together: they stay in the first-level cache from one step to the
 // next.
 constexpr size_t kBlock = 2048;
-constexpr size_t kRoom = kBlock + 4 * kSlack;  // vectors of four times the width may end beyond the
-                                               // block
+constexpr size_t kRoom = kBlock + 4 * kSlack;  // StoreInterleaved4() may write beyond the block
 
 // Unpacks `size` bytes of kTwo or kFour into one byte for each number.
 void Spread(Packing packing, const uint8_t* HWY_RESTRICT bytes, size_t size,
@@ -109,7 +108,8 @@ void AddEscapes(U escape, std::span<const U> escapes, size_t count, U* HWY_RESTR
   constexpr size_t kLanes = ExpandTable<U>::kLanes;
   const auto limit = hn::Set(d, escape);
   // No branch depends on whether a lane holds an escape, because the processor could not predict
-  // it. The loop checks the remaining escapes before each run, and a run may read into their slack.
+  // it. The loop checks only before each run whether remainders are left; a run may therefore read
+  // into their slack.
   constexpr size_t kRun = 64;
   static_assert(kRun + kLanes <= kSlack);
   size_t next = *next_escape, i = 0;
@@ -195,7 +195,8 @@ bool UnpackSimd(const PackedStream<uint16_t>& stream, uint16_t* numbers) {
 }
 template <>
 bool UnpackSimd(const PackedStream<uint32_t>& stream, uint32_t* numbers) {
-  // This case is rare: noise of more than two bytes.
+  // Streams whose numbers need three or four bytes are rare (only noise has them), and have no SIMD
+  // version.
   if (stream.packing == Packing::kPlanes3 || stream.packing == Packing::kPlanes4)
     return UnpackReference(stream, numbers);
   return HWY_DYNAMIC_DISPATCH(Unpack32)(stream, numbers);

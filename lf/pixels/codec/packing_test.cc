@@ -10,7 +10,7 @@
 namespace lf {
 namespace {
 
-// Returns values with a two-sided exponential distribution, like that of real coefficients.
+// Returns values with a two-sided exponential distribution, as real coefficients have.
 std::vector<int32_t> Coefficients(std::mt19937& random, size_t count, double scale, int32_t most) {
   std::exponential_distribution<double> size(1 / scale);
   std::vector<int32_t> values(count);

@@ -4,8 +4,8 @@
 #include <limits>
 #include <type_traits>
 
-// MergeColours() with vectors, compiled for every instruction set; the program chooses one at run
-// time (Highway).
+// MergeColours() with SIMD vectors, compiled for every instruction set; the program chooses one at
+// run time (Highway).
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lf/pixels/codec/rgb_planes.cc"  // NOLINT: as Highway wants it
 #include <hwy/foreach_target.h>
@@ -84,7 +84,7 @@ void MergeRowSimd(const std::array<const int32_t*, kRgbComponents>& components,
   HWY_DYNAMIC_DISPATCH(Merge16Of32)(components, scale, width, out);
 }
 
-// Adds modulo the range of T, as vectors do.
+// Adds modulo the range of T, as SIMD instructions do.
 template <class T>
 T Sum(T a, T b) {
   using Unsigned = std::make_unsigned_t<T>;

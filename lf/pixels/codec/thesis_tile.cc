@@ -51,8 +51,8 @@ int64_t NearestCode(const CodeHead& head, int32_t value) {
   return range == 0 ? 0 : ((value - head.low) * (head.quantizer - 1) + range / 2) / range;
 }
 
-// Returns the coefficient of every possible code. Codes above the quantiser's last one, which only
-// damaged files have, stand for its last value.
+// Returns the coefficient that each possible code stands for. Codes above the quantiser's last
+// code, which only damaged files have, stand for the same coefficient as the last code.
 std::vector<int32_t> Values(const CodeHead& head) {
   std::vector<int32_t> values(size_t{1} << (8 * CodeBytes(head)));
   for (size_t i = 0; i < values.size(); ++i)

@@ -18,7 +18,7 @@ using Line = std::vector<double>;
 using Plane = std::vector<Line>;  // [height][width]
 
 // a = (x + y) / 2, d = (x - y) / 2 of neighbours (thesis 2.5.1): averages first, then differences.
-// If their number is odd, the last value is its own average.
+// If the number of values is odd, the last value is its own average.
 Line Transformed(const Line& line) {
   Line averages, differences;
   for (size_t i = 0; i + 1 < line.size(); i += 2) {
@@ -189,7 +189,7 @@ void ExpectTheThesis(std::mt19937& random, int width, int height, PixelLayout la
 }
 
 // The cases are the rows of Table 5.3, the mapping to a byte and to q values (5.4), thresholds that
-// coefficients of whole pixels meet exactly, and odd sizes.
+// some coefficients equal exactly, and odd sizes.
 TEST(ThesisTile, GivesThePixelsOfTheThesissCodec) {
   std::mt19937 random(1);
   struct Row {

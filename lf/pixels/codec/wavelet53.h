@@ -41,8 +41,8 @@ inline size_t BandSize(Band band, int width, int height) {
   return static_cast<size_t>(BandWidth(band, width)) * BandHeight(band, height);
 }
 
-// A subband as it is encoded. v is one of its values. Its coefficient is v * step. If is_doubled,
-// it is v * step / 2, with halves rounded up.
+// A subband as it is encoded. A value v stands for the coefficient v * step. If is_doubled is true,
+// the coefficient is half of this, with halves rounded up.
 template <class T>
 struct CodedBand {
   const T* values = nullptr;  // [BandHeight][BandWidth]
@@ -52,7 +52,7 @@ struct CodedBand {
 
 template <class T>
 struct CodedBands {
-  int width = 0;  // of the plane that was split into these subbands
+  int width = 0;  // size of the plane that was split into these subbands
   int height = 0;
   std::array<CodedBand<T>, kBands> bands;  // by Band
 };
@@ -72,8 +72,8 @@ enum class Transform { kReference, kSimd };
 template <class T>
 void Synthesize(Transform transform, const CodedBands<T>& bands, T* values);
 
-// Restores the last level directly as pixels of one channel. T is int16_t or int32_t for 8-bit
-// pixels, and int32_t for 16-bit pixels.
+// Restores pixels of one channel directly from the subbands of the finest level. T is int16_t or
+// int32_t for 8-bit pixels, and int32_t for 16-bit pixels.
 template <class T, class Pixel>
 void SynthesizePixels(Transform transform, const CodedBands<T>& bands, const PixelScale& scale,
                       ImageView<Pixel> pixels);
@@ -86,8 +86,8 @@ void Analyze(Transform transform, const int32_t* values, int width, int height,
 
 // Returns how much the synthesis amplifies an error of 1 in one coefficient: the Euclidean norm
 // along one dimension. is_high[0] is true if the coefficient's subband is high at the deepest
-// level. Each further entry is true if the result of the level before is the high subband of the
-// next level, up to the plane itself.
+// level. Each further entry is about the next finer level, up to the finest: it is true if the
+// result of the level before is the high subband of this level.
 double SynthesisNorm(const std::vector<bool>& is_high);
 
 }  // namespace lf

@@ -1,6 +1,6 @@
-// The 5/3 transform by rows of vectors, compiled for every instruction set; the program chooses one
-// at run time (Highway). A level is one pass over its subbands: a few rows of coefficients stay in
-// the first-level cache between the vertical and the horizontal step.
+// The 5/3 transform with SIMD vectors along rows, compiled for every instruction set; the program
+// chooses one at run time (Highway). A level is one pass over its subbands: a few rows of
+// coefficients stay in the first-level cache between the vertical and the horizontal step.
 #include <cstring>
 #include <utility>
 #include <vector>
@@ -18,8 +18,7 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Rows of values that belong to a thread, each with slack before and behind it. Their memory is
-// reused.
+// Rows of values in memory that a thread reuses, with slack at both ends of each row.
 template <class T>
 class Rows {
  public:

@@ -35,8 +35,8 @@ struct Size {
   size_t count() const { return static_cast<size_t>(width) * height; }
 };
 
-// ComponentSize() returns the size of a component. LowSize() returns the size of its low subband
-// after `levels` levels.
+// ComponentSize() returns the size of a component. LowSize() returns the size of the low subband of
+// a component of this size after `levels` levels.
 Size ComponentSize(const CodeHead& head, int component, int tile_width, int tile_height) {
   if (head.info.layout != PixelLayout::kMosaic) return {tile_width, tile_height};
   const auto band = static_cast<Band>(component);
