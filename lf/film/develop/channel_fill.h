@@ -1,5 +1,5 @@
-// Fills thin elements of one colour channel, those with too few rays, from the collected elements
-// around them (develop.h). Internal to this folder.
+// Fills thin elements (elements with too few rays) of one colour channel from the collected
+// elements (elements with rays) around them (develop.h). Internal to this folder.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,8 @@ class ChannelFill {
  public:
   //   mean, ray_count  own average and number of rays of every element [height][width][channels];
   //                    must outlive this object
-  //   rays_needed      number of rays that the neighbours of an element must have; at least 1
+  //   rays_needed      least number of rays that the neighbours of an element have together; at
+  //                    least 1
   //   fill_radius_px   DevelopOptions::fill_radius_px
   //   is_interrupted   called before each row; once it returns true, this object must not be used
   ChannelFill(const Image<float>& mean, const Image<uint32_t>& ray_count, int channel,
@@ -40,7 +41,7 @@ class ChannelFill {
     int64_t distance2;
   };
 
-  // Returns the largest distance of the neighbours of an element, in elements.
+  // Returns the largest distance, in elements, of neighbours that an element takes light from.
   int RadiusAt(int x, int y) const;
   bool IsEnough(const Collected& collected) const;
   size_t SumIndex(int x, int y) const { return (static_cast<size_t>(width_) + 1) * y + x; }

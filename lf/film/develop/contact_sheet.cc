@@ -13,8 +13,8 @@ namespace {
 constexpr int kBorderPx = 4;
 constexpr uint8_t kBorderGrey = 24;
 
-// The source columns (or rows) that one target column covers, from `begin` on, and the share that
-// each of them has in it. The first and the last may be covered in part.
+// The source columns (or rows) that one target column (or row) covers, from `begin` on, and the
+// share of each in the target column. The first and the last may be covered in part.
 struct Cover {
   int begin = 0;
   std::vector<float> shares;  // sum 1

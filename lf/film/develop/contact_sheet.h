@@ -13,7 +13,7 @@ namespace lf {
 // The first and the last are included if `limit` is at least 2.
 std::vector<size_t> ContactSheetFrames(size_t frame_count, size_t limit = 12);
 
-// A grid of pictures of one size with thin borders, about as many columns as rows.
+// A grid of pictures of one size with thin borders, and with about as many columns as rows.
 class ContactSheet {
  public:
   // Makes an empty page for `count` pictures (at least one) of width x height px. The page is at
@@ -29,7 +29,7 @@ class ContactSheet {
   Result<void> Write(const std::filesystem::path& path) const;
 
  private:
-  int width_;  // of the pictures
+  int width_;  // size of the pictures
   int height_;
   int columns_;
   int reduced_width_;

@@ -13,7 +13,8 @@ namespace lf {
 namespace {
 
 constexpr int kChannels = SensorPlate::kChannels;
-constexpr int kFilledPerQuestion = 64;  // filled per call of is_interrupted(); each up to 0.1 ms
+// Number of fills between two calls of is_interrupted(). A fill takes up to 0.1 ms.
+constexpr int kFilledPerQuestion = 64;
 
 // Returns the share of the completion in a channel with `count` collected rays.
 double ShareOf(const Completion* completion, int x, int y, uint64_t count) {

@@ -16,16 +16,18 @@ namespace lf {
 // The part of a frame that was interpolated from rebinned rays (render/hybrid/rebinned_rays.h).
 struct Completion {
   Image<float> rgb;  // [height][width][3], in the units of the plate's values
-  // [height][width] Weight of rgb, in [0, 1], in an element that also has collected rays; their
-  // mean has the rest. A channel without collected rays takes rgb alone. 0: rgb is unknown.
+  // [height][width] Weight of rgb, in [0, 1], in an element that also has collected rays; the mean
+  // of these rays has the weight 1 - share. A channel without collected rays takes rgb alone. 0:
+  // rgb is unknown.
   Image<float> share;
 };
 
-// Default fill radius. It closes the gaps between the rays of mosaics and of LF pixels that are
-// larger than elements. kMostFillRadius_px is the largest allowed.
+// Default fill radius. It fills the elements that lie between the rays of mosaics, or of LF pixels
+// that are larger than elements. kMostFillRadius_px is the largest allowed.
 inline constexpr int kFillRadius_px = 2;
 inline constexpr int kMostFillRadius_px = 4096;
-// An element that is smoothed takes light from collected elements at most this far away.
+// An element that is smoothed takes light from collected elements (elements with rays) at most this
+// far away.
 inline constexpr int kSmoothRadius_px = 32;
 
 struct DevelopOptions {
@@ -51,7 +53,7 @@ struct DevelopOptions {
   const Completion* completion = nullptr;
 
   // If given, called by any thread, at least before each row and every 64 elements to be filled.
-  // Once it returns true, the rest is skipped and the result must not be used.
+  // Once it returns true, the remaining work is skipped, and the result must not be used.
   std::function<bool()> is_interrupted = {};
 };
 
@@ -75,12 +77,13 @@ struct DevelopedFrame {
 //
 //   sum_i v_i / d_i  /  sum_i 1 / d_i      (Shepard 1968; d between element centres, in elements)
 //
-// over all within the smallest radius that holds at least 4 of them and at least smooth_below rays.
-// The radius is at most fill_radius_px for an element without a ray, and kSmoothRadius_px
-// otherwise, even if it holds fewer. The element's own value, if it has one, is one of them, with d
-// = 0.5. Then applies white balance and linear_srgb_from_camera. Opacities are averaged and filled
-// like a colour, from the same neighbours, and clipped. Counts above 2^32 - 1 become 2^32 - 1. The
-// bits do not depend on the number of threads.
+// over all collected elements within the smallest radius in which there are at least 4 of them,
+// with at least smooth_below rays together. The radius is at most fill_radius_px for an element
+// without a ray, and kSmoothRadius_px otherwise, even if it contains fewer. The element's own
+// value, if it has one, is one of the v_i, with d = 0.5. Then applies white balance and
+// linear_srgb_from_camera. Opacities are averaged and filled like a colour, from the same
+// neighbours, and clipped. Counts above 2^32 - 1 become 2^32 - 1. The bits do not depend on the
+// number of threads.
 DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, ThreadPool& pool);
 
 }  // namespace lf

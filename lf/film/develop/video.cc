@@ -100,7 +100,7 @@ Result<void> CheckVideoTarget(const fs::path& path) {
 struct VideoWriter::State {
   fs::path path;
   fs::path unfinished;
-  int width = 0;  // of the pictures; width and height of the film are even
+  int width = 0;  // size of the pictures; the size of the video is even
   int height = 0;
   double patience_s = 0;
   size_t picture_count = 0;

@@ -18,7 +18,7 @@ Result<void> CheckVideoTarget(const std::filesystem::path& path);
 
 // Writes an mp4 (H.264, yuv420p, sRGB as BT.709) of 8-bit sRGB pictures, frame by frame. Odd sizes
 // are cropped by one pixel, because H.264 needs even ones. The file appears under its name when it
-// is complete. For one thread at a time.
+// is complete. One thread at a time may use a VideoWriter.
 class VideoWriter {
  public:
   //   patience_s  ffmpeg is killed if it reads nothing, or does not end in Close(), for this time

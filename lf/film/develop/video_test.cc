@@ -13,7 +13,7 @@ namespace lf {
 namespace {
 namespace fs = std::filesystem;
 
-// Sets PATH, where programs are looked up, so that tests can use their own.
+// Sets PATH, where programs are looked up, so that tests can run their own programs.
 class PathVariable {
  public:
   explicit PathVariable(const std::string& path) : old_(::getenv("PATH")) {

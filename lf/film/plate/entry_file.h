@@ -1,5 +1,5 @@
-// Common part of the files of plates and of rebinned rays: they begin with a head, the text of
-// their entries, and the checksum of both. Internal to film/plate and rebinning.
+// Common part of the files of plates and of rebinned rays: these files begin with a head, the text
+// of their entries, and the checksum of both. Internal to film/plate and rebinning.
 #pragma once
 
 #include <bit>
@@ -52,7 +52,7 @@ class Source {
   const Kind& kind() const { return kind_; }
   uint64_t left() const { return left_; }
 
-  // kInput if fewer bytes are left, or if they cannot be read.
+  // kInput if fewer than `size` bytes are left, or if they cannot be read.
   Result<void> Read(void* to, size_t size);
   // Returns the error for a damaged file.
   Error Damaged(const std::string& reason) const;

@@ -1,6 +1,6 @@
 // A sensor plate as a file: what it was made from, its progress, and every sum and count, exact
-// (doc/formats/plate.md). The plates of a divided run are added from such files, and an interrupted
-// frame is resumed from one.
+// (doc/formats/plate.md). The plates of a divided render are read from such files and added, and an
+// interrupted frame is resumed from such a file.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ using PlateEntries = std::vector<std::pair<std::string, std::string>>;
 const std::string* FindEntry(const PlateEntries& entries, std::string_view key);
 
 // Writes the plate atomically (core/file.h), compressed by the threads of `pool`. The bytes depend
-// on the sums, counts and entries alone: not on how the plate keeps them, and not on the threads.
+// on the sums, counts and entries alone, not on how the plate stores them, and not on the threads.
 // kOutput if the folder or the disk fails.
 Result<void> WritePlate(const std::filesystem::path& path, const PlateEntries& entries,
                         const SensorPlate& plate, ThreadPool& pool);

@@ -103,7 +103,8 @@ TEST_F(PlateFile, GivesBackTheFourthChannelWideWordsIncluded) {
   EXPECT_FALSE(PlateReader::OpenBytes(of_colours, "x")->has_opacity());
 }
 
-// An element beyond its packed word is kept wide, and the rays after that are packed again.
+// If an element gets more rays than a packed word can hold, they move to the wide table, and later
+// rays are packed again.
 TEST_F(PlateFile, KeepsTheRaysThatAWideElementGetsLater) {
   constexpr uint64_t kMost = SensorPlate::kMaxCount;
   for (const uint32_t count_limit : {SensorPlate::kMaxCount, 10u}) {
@@ -187,7 +188,8 @@ TEST_F(PlateFile, WhatItSaysIsCheckedBeforeAnythingIsAllocated) {
 
 TEST_F(PlateFile, WideWordsLieInThePlateAndAscend) {
   using plate_format::WideWord;
-  constexpr size_t kWords = 2, kEnd = sizeof(uint64_t);  // wide words of NoisePlate(); the checksum
+  // NoisePlate() has kWords wide words. The checksum behind them has kEnd bytes.
+  constexpr size_t kWords = 2, kEnd = sizeof(uint64_t);
   const std::string bytes = BytesOf(testing::NoisePlate(20, 15, 7, SensorPlate::kMaxCount, true));
   const auto with_words = [&](const std::function<void(WideWord*)>& change) {
     std::string changed = bytes;

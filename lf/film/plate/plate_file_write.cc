@@ -22,7 +22,7 @@ using namespace plate_format;
 constexpr int kCompressionLevel = 1;
 
 // Elements of the wide table that a packed word could hold are written packed, because which
-// elements a plate keeps wide depends on how it was filled.
+// elements a plate keeps wide depends on how it was filled, and the file must not depend on this.
 bool IsWide(const ElementSum& rays) { return rays.count > SensorPlate::kMaxCount; }
 
 class Compressor {

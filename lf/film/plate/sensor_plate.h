@@ -7,9 +7,9 @@
 // number of threads and any split of the work. 2^24 - 1 rays of value 65535 just fit; before an
 // element could exceed that, its content moves to a side table of wide words. Nothing wraps.
 //
-// A plate may have a fourth channel, opacity: its words stand behind those of the colours,
-// [height][width][4], and count the same rays. Opacities are values v as
-// light_field/model/lf_pixels.h has them.
+// A plate may have a fourth channel, opacity: its word follows the three words of an element's
+// colours, [height][width][4], and counts the same rays. Opacities are values v as
+// light_field/model/lf_pixels.h defines them.
 #pragma once
 
 #include <cstddef>
@@ -76,7 +76,7 @@ class SensorPlate {
   const std::map<size_t, ElementSum>& wide() const { return wide_; }
   ElementSum AtWord(size_t index) const;
 
-  // True if all sums and counts are equal, however they are kept.
+  // True if all sums and counts are equal, however they are stored.
   friend bool operator==(const SensorPlate& a, const SensorPlate& b);
 
  private:

@@ -18,8 +18,8 @@ TEST(SensorPlate, HoldsTheMostRaysOfTheBrightestLight) {
   EXPECT_EQ(plate.At(0, 0, 2), ElementSum{});
 }
 
-// Three sums and three counts, as in width x height x 6 x 4 B (thesis 5.2). Rays take no more
-// memory.
+// Three sums and three counts, as in width x height x 6 x 4 B (thesis 5.2). Further rays take no
+// more memory.
 TEST(SensorPlate, TakesTheBytesOfTheThesis) {
   SensorPlate plate(1920, 1080);
   EXPECT_EQ(plate.size_bytes(), size_t{1920} * 1080 * 6 * 4);

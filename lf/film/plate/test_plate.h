@@ -6,8 +6,8 @@
 
 namespace lf::testing {
 
-// A plate of noise. About every tenth word is empty. If `has_wide`, two words do not fit in any
-// packed word; others may be wide only because of the plate's count_limit.
+// A plate of noise. About every tenth word is empty. If `has_wide`, the rays of two words exceed
+// any packed word; other words may be wide only because of the plate's count_limit.
 inline SensorPlate NoisePlate(int width, int height, uint64_t seed, uint32_t count_limit,
                               bool has_wide) {
   SensorPlate plate(width, height, count_limit);

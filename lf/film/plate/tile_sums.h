@@ -28,12 +28,12 @@ class TileSums {
     uint32_t counts[4] = {};
   };
 
-  // For mosaics: packed words, as those of the plate. Along a scanline, green alternates with
+  // For mosaics: packed words like the words of the plate. Along a scanline, green alternates with
   // another colour. If an LF pixel is as large as an element, the colours alternate in the same way
   // along a row of elements. A row of elements has one row of words for each alternation, so that a
   // scanline adds to adjacent words:
-  //   kRedFirst    R at even x, G at odd ones     kBlueFirst   B at even x, G at odd ones
-  //   kGreenFirst  G at even x, R at odd ones     kGreenFirst + kBlueFirst   G, B
+  //   kRedFirst    R at even x, G at odd x    kBlueFirst                B at even x, G at odd x
+  //   kGreenFirst  G at even x, R at odd x    kGreenFirst + kBlueFirst  G at even x, B at odd x
   static constexpr int kRedFirst = 0;
   static constexpr int kGreenFirst = 1;
   static constexpr int kBlueFirst = 2;
@@ -91,7 +91,7 @@ class TileSums {
   }
 
   // As ReserveRgb(), for words [height][kMosaicRows][stride()]. Zeros may be added to kMargin words
-  // before and behind the rows of the tile.
+  // in front of and behind the rows of the tile.
   uint64_t* ReserveMosaic(uint32_t rays) {
     if (rays > mosaic_headroom_) MakeMosaicRoom(rays);
     mosaic_headroom_ -= rays;
@@ -125,7 +125,7 @@ class TileSums {
   void KeepWatched(const Pending& pending);
 
   uint32_t ray_limit_;
-  uint32_t mosaic_limit_;  // rays that the plate's words hold
+  uint32_t mosaic_limit_;  // largest number of rays in a packed word
   PlateTile* tile_ = nullptr;
   Target target_ = Target::kColours;
   bool has_rgb_ = false;

@@ -29,7 +29,7 @@ TEST(TileSums, MosaicsAndRgbReachThePlate) {
   for (const int width : {1, 2, 7, 20}) {
     SensorPlate plate(23, 9), expected(23, 9);
     PlateTile tile(&plate, {2, 3, 2 + width, 8});
-    TileSums sums(50);  // flushed now and then
+    TileSums sums(50);  // so few rays that sums are flushed now and then
     sums.Begin(&tile);
     for (uint64_t ray = 0; ray < 500; ++ray) {
       const auto random = [&](uint64_t index, int end) {
@@ -63,7 +63,7 @@ TEST(TileSums, MosaicsAndRgbReachThePlate) {
 TEST(TileSums, OpacityReachesTheFourthChannelAlone) {
   SensorPlate plate = SensorPlate::WithOpacity(23, 9), expected = SensorPlate::WithOpacity(23, 9);
   PlateTile tile(&plate, {2, 3, 22, 8});
-  TileSums sums(50);  // flushed now and then
+  TileSums sums(50);  // so few rays that sums are flushed now and then
   for (const bool is_opacity : {false, true}) {
     sums.Begin(&tile, {}, is_opacity ? TileSums::Target::kOpacity : TileSums::Target::kColours);
     for (uint64_t ray = 0; ray < 300; ++ray) {
@@ -86,7 +86,7 @@ TEST(TileSums, OpacityReachesTheFourthChannelAlone) {
 TEST(TileSums, RaysMayCountDifferentlyInEachColour) {
   SensorPlate plate(23, 9), expected(23, 9);
   PlateTile tile(&plate, {2, 3, 20, 8});
-  TileSums sums(50);  // flushed now and then
+  TileSums sums(50);  // so few rays that sums are flushed now and then
   sums.Begin(&tile);
   for (uint64_t ray = 0; ray < 500; ++ray) {
     const auto random = [&](uint64_t index, int end) {
@@ -110,14 +110,14 @@ TEST(TileSums, RaysMayCountDifferentlyInEachColour) {
   EXPECT_EQ(plate, expected);
 }
 
-// Uses all three layouts in one tile of a plate that has rays of earlier tiles, and words that move
-// to its wide table meanwhile.
+// Uses all three layouts in one tile of a plate to which rays were added before, and some of whose
+// words move to the wide table meanwhile.
 TEST(TileSums, TellsWhatWasAddedToWatchedElements) {
   SensorPlate plate(23, 9, 60), added(23, 9);
   plate.Add(5, 4, 1, {300, 55});
   PlateTile tile(&plate, {2, 3, 21, 8});
   const std::vector<PlateElement> watched = {{2, 3}, {5, 4}, {6, 4}, {20, 7}, {19, 7}};
-  TileSums sums(50);  // flushed now and then
+  TileSums sums(50);  // so few rays that sums are flushed now and then
   const auto expect_added = [&](uint64_t ray) {
     for (size_t i = 0; i < watched.size(); ++i)
       for (int c = 0; c < 3; ++c)
