@@ -10,14 +10,15 @@
 namespace lf {
 namespace {
 
-// Smallest size of an entry: fewest parameters, an empty name, no 2D points, an empty track.
+// Smallest sizes of entries, in bytes: a camera with two parameters (EQUIRECTANGULAR), an image
+// with an empty name and without 2D points, a point with an empty track.
 constexpr uint64_t kMinCameraSize = 4 + 4 + 8 + 8 + 2 * 8;
 constexpr uint64_t kMinImageSize = 4 + 7 * 8 + 4 + 1 + 8;
 constexpr uint64_t kMinPointSize = 8 + 3 * 8 + 3 + 8 + 8;
 constexpr uint64_t kPoint2DSize = 8 + 8 + 8;
 constexpr uint64_t kTrackEntrySize = 4 + 4;
 
-// Makes errors that name the file and the entry.
+// Makes errors that name the file, and the entry if the fault is in an entry.
 class Place {
  public:
   Place(const ByteStream& stream, const char* kind) : stream_(stream), kind_(kind) {}
@@ -67,8 +68,8 @@ Result<void> CheckEnd(const ByteStream& stream, const Place& place, const char* 
       stream.remaining(), count, things));
 }
 
-// Reads a name and the 0 that ends it; nullopt if the stream ends before the 0. A name that is too
-// long is returned in part, but still too long for AddImage() to accept it.
+// Reads a name and the 0 that ends it; nullopt if the stream ends before the 0. If a name is too
+// long, returns a part of it that is still too long, and AddImage() refuses it.
 std::optional<std::string> TakeName(ByteStream* stream) {
   std::string name;
   while (name.size() <= kMaxColmapNameSize) {

@@ -34,7 +34,7 @@ TEST(ColmapBinary, ImagesComeSortedByName) {
   EXPECT_EQ(light_field->cameras[0].cam_from_world.translation, Vec3(2, 0, 0));
   EXPECT_EQ(light_field->cameras[1].cam_from_world.translation, Vec3(3, 0, 0));
   EXPECT_EQ(light_field->cameras[2].cam_from_world.translation, Vec3(1, 0, 0));
-  // Only cameras that images use remain, in the order of the first image of each.
+  // Only cameras that took an image remain, in the order of their first images.
   ASSERT_EQ(light_field->intrinsics.size(), 2u);
   EXPECT_EQ(light_field->Camera({0}).intrinsics, (Intrinsics{20, 20, 4, 3, 0, 8, 6}));
   EXPECT_EQ(light_field->Camera({1}).intrinsics, (Intrinsics{10, 11, 4, 3, 0, 8, 6}));
@@ -112,7 +112,7 @@ TEST(ColmapBinary, BrokenPointsAreNamed) {
   std::string long_track = PointsBin({TestPoint()});
   long_track[long_track.size() - 8] = 1;
   EXPECT_HAS(error(long_track), "point 1 says that 1 images see it, but only 0 bytes are left");
-  // The file holds two entries of 8 bytes.
+  // The file holds a track of two entries, 8 bytes each. `claimed` states another length.
   const std::string two = PointsBin({{.track = {1, 1}}});
   for (const uint64_t count : {uint64_t{3}, uint64_t{16}, uint64_t{1} << 61, UINT64_MAX}) {
     const std::string claimed = two.substr(0, two.size() - 24) + PackedBytes().Put(count).bytes() +

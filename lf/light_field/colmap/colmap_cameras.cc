@@ -80,7 +80,8 @@ DistortionModel DistortionModelOf(std::string_view model) {
   return DistortionModel::kRadialTangential;
 }
 
-// Converts the parameters after the principal point, which COLMAP orders as Distortion does.
+// Converts the parameters that follow the principal point. Their order is the same in COLMAP and in
+// Distortion.
 Result<Distortion> DistortionOf(std::string_view model, std::span<const double> coefficients) {
   Distortion distortion;
   distortion.model = DistortionModelOf(model);

@@ -20,8 +20,8 @@ struct ColmapCameraModel {
 
 inline constexpr int kMaxColmapParameterCount = 16;
 
-// Finds a model by its number in cameras.bin or its name in cameras.txt. kInput, with the model and
-// a remedy, if it is unknown or cannot be expressed as a Distortion.
+// Finds a model by its number in cameras.bin or its name in cameras.txt. kInput if the model is
+// unknown or cannot be expressed as a Distortion; the message names the model and a remedy.
 Result<ColmapCameraModel> FindColmapCameraModel(int32_t number);
 Result<ColmapCameraModel> FindColmapCameraModel(std::string_view name);
 

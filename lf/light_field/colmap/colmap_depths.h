@@ -10,9 +10,9 @@
 
 namespace lf {
 
-// A sample of depths of bounded size. It does not depend on the order in which the depths are
-// added: a depth is kept if the hash of its observation is below a limit, which is halved whenever
-// there are too many depths.
+// A random sample of at most kMaxCount depths. It does not depend on the order in which the depths
+// are added: a depth is kept if the hash of its observation (point and image) is at most a limit,
+// which is halved whenever there are more than kMaxCount depths.
 class DepthSample {
  public:
   static constexpr size_t kMaxCount = size_t{1} << 20;
@@ -31,7 +31,7 @@ class DepthSample {
 
  private:
   uint64_t hash_limit_ = UINT64_MAX;
-  std::vector<std::pair<uint64_t, double>> depths_;  // with their hashes
+  std::vector<std::pair<uint64_t, double>> depths_;  // hash and depth of each kept observation
 };
 
 }  // namespace lf

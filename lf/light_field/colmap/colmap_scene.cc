@@ -12,7 +12,7 @@ namespace lf {
 namespace {
 
 constexpr double kLargest_w = 1e12;
-// Even quaternions that are rounded to a few digits deviate less from length 1.
+// Largest deviation of a quaternion's length from 1. Rounding to a few digits causes less.
 constexpr double kNormTolerance = 1e-3;
 
 Result<RigidTransform> PoseOf(const ColmapImage& image) {
@@ -74,7 +74,7 @@ std::optional<uint32_t> ColmapIds::Sort() {
 
 std::optional<uint32_t> ColmapIds::Find(uint32_t id) const {
   if (positions_.empty() || id < positions_.front().first) return std::nullopt;
-  // In most models the ids have no gaps; then this guess is the position.
+  // If the ids have no gaps, as in most models, the entry with `id` is at this index.
   const size_t guess = id - positions_.front().first;
   if (guess < positions_.size() && positions_[guess].first == id) return positions_[guess].second;
   const auto found = std::lower_bound(positions_.begin(), positions_.end(), std::pair(id, 0u));
@@ -168,7 +168,7 @@ Result<void> ColmapScene::AddObservation(uint64_t point_id, const Vec3& point_wo
         "model without a range of depths",
         image_id));
   if (!depths_.MayKeep(point_id, image_id))
-    return {};  // saves a lookup: the poses are scattered in memory
+    return {};  // saves a lookup of the pose: the poses are scattered in memory
   const RigidTransform& pose = light_field_.cameras[*position].cam_from_world;
   depths_.Add(point_id, image_id, pose.rotation.row(2).dot(point_world) + pose.translation.z());
   return {};

@@ -1,5 +1,5 @@
-// Collects a COLMAP model, while its binary or text files are read, as a LightField. Internal to
-// this folder.
+// Converts a COLMAP model to a LightField while the model's binary or text files are read. Internal
+// to this folder.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ inline constexpr size_t kMaxColmapNameSize = 4096;               // bytes
 
 struct ColmapImage {
   uint32_t id = 0;
-  std::array<double, 4> quaternion = {1, 0, 0, 0};  // w x y z, of cam_from_world
+  std::array<double, 4> quaternion = {1, 0, 0, 0};  // w x y z; the rotation of cam_from_world
   std::array<double, 3> translation = {};
   uint32_t camera_id = 0;
   std::string name;
@@ -36,7 +36,7 @@ class ColmapIds {
   // Must be called before the first Find(). Returns an id that was added twice, or nullopt.
   std::optional<uint32_t> Sort();
   std::optional<uint32_t> Find(uint32_t id) const;
-  // Returns the id at a position. Takes linear time.
+  // Returns the id that was added with this position, or nullopt. Takes linear time.
   std::optional<uint32_t> IdOf(uint32_t position) const;
 
  private:
@@ -55,15 +55,17 @@ class ColmapScene {
   // Must be called after the last camera. Fails if an id occurred twice.
   Result<void> EndCameras();
 
-  // Fails for an unknown camera; a quaternion whose length is not 1; a translation that is not
-  // finite or beyond 1e12; a name that is empty, has control characters or more than
-  // kMaxColmapNameSize bytes; an image beyond kMaxColmapEntryCount.
+  // Fails for an unknown camera; a quaternion whose length differs from 1 by more than 1e-3; a
+  // translation with a number that is not finite or beyond +-1e12; a name that is empty, has
+  // control characters or more than kMaxColmapNameSize bytes; more than kMaxColmapEntryCount
+  // images.
   Result<void> AddImage(ColmapImage&& image);
   // Must be called after the last image. Sorts the images by name. Fails if there are none, or if
   // an id or a name occurred twice.
   Result<void> EndImages();
 
-  // Does nothing; only the observations of a point, which are added next, have depths.
+  // Does nothing, because a depth belongs to an observation of the point. The observations are
+  // added next.
   Result<void> AddPoint(uint64_t, const Vec3&, bool /*has_track*/) { return {}; }
   // Adds the depth of a point in an image that observes it. Fails if the image is unknown.
   Result<void> AddObservation(uint64_t point_id, const Vec3& point_world, uint32_t image_id);

@@ -113,7 +113,7 @@ Result<void> ReadColmapImagesText(ByteStream* stream, ColmapScene* scene) {
   LF_RETURN_IF_ERROR(stream->Status());
   if (Result<void> ended = scene->EndImages(); !ended)
     return InputError(fmt::format("{}: {}", stream->path().string(), ended.error().message));
-  // If a file was cut off between two images, only their number shows it.
+  // If a file was cut off between two images, only the number of images at its start reveals it.
   if (words.announced_count().value_or(scene->image_count()) != scene->image_count())
     LogWarning("{}: holds {} images, but says {} at its start: was it edited, or is it cut off?",
                stream->path().string(), scene->image_count(), *words.announced_count());

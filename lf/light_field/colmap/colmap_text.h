@@ -3,8 +3,9 @@
 //
 //   cameras   CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]
 //   images    two lines: IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME, where NAME is the rest of
-//             the line; then its 2D points, X Y POINT3D_ID each
-//   points3D  POINT3D_ID X Y Z R G B ERROR, then its track, IMAGE_ID POINT2D_IDX each
+//             the line; then the 2D points of the image, X Y POINT3D_ID for each
+//   points3D  POINT3D_ID X Y Z R G B ERROR, then the point's track, IMAGE_ID POINT2D_IDX for each
+//             image that sees it
 //
 // Internal to this folder.
 #pragma once
@@ -15,11 +16,13 @@
 
 namespace lf {
 
-// Each function reads the whole stream. kInput names the file, the line and the entry: an entry
-// that ColmapScene refuses, missing words, words that are not numbers, too many words.
+// Each function reads the whole stream. kInput if ColmapScene refuses an entry, a word is missing
+// or not a number, or a line has too many words. The message names the file, the line and the
+// entry.
 Result<void> ReadColmapCamerasText(ByteStream* stream, ColmapScene* scene);
 Result<void> ReadColmapImagesText(ByteStream* stream, ColmapScene* scene);
-// Sink receives points and observations: ColmapScene or ColmapPointsSeen.
+// Sink is ColmapScene or ColmapPointsSeen. It receives each point, followed by the images that
+// observe the point.
 template <class Sink>
 Result<void> ReadColmapPointsText(ByteStream* stream, Sink* sink);
 

@@ -1,5 +1,5 @@
 // Parses any bytes: the result must be a COLMAP model with sane cameras or an error. The input
-// holds the three text files, with a form feed between them.
+// holds cameras.txt, images.txt and points3D.txt, separated by form feeds.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

@@ -119,8 +119,8 @@ TEST(ColmapText, AnotherNumberOfImagesThanAnnouncedIsAWarning) {
   EXPECT_EQ(messages("# Number of things\n"), "");
 }
 
-// If a file without the blank lines of images without points were accepted, every second image
-// would be lost.
+// The second line of an image without 2D points is blank. If a file that lacks such lines were
+// accepted, every second image would be lost.
 TEST(ColmapText, AnImageInThePlaceOfPointsIsAnError) {
   const char* expected = "m/images.txt:2: expected the 2D points of image 1 (X Y POINT3D_ID";
   EXPECT_HAS(ErrorOfImages("1 1 0 0 0 0 0 0 1 a.png\n2 1 0 0 0 0 0 0 1 b.png\n"), expected);
@@ -147,7 +147,7 @@ TEST(ColmapText, WhatIsNoTextIsShownShort) {
 
 class ColmapTextFileTest : public FolderTest {};
 
-// Words, lines and names cross the ends of blocks.
+// Words, lines and names cross the ends of the blocks that ByteStream reads.
 TEST_F(ColmapTextFileTest, LinesMayBeLongerThanBlocks) {
   std::string points;
   while (points.size() < (size_t{3} << 20)) points += "123.4567 89.0123 77 ";

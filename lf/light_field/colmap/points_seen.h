@@ -1,5 +1,5 @@
-// Finds the points of a COLMAP model that one of its images shows. They tell the geometry of the
-// scene without reading pixels.
+// Finds the points of a COLMAP model that one of its images shows. These points describe the
+// geometry of the scene; no pixels have to be read for them.
 #pragma once
 
 #include <cstdint>
@@ -31,13 +31,13 @@ class ColmapPointsSeen {
   std::vector<Vec3> Take();
 
  private:
-  // At most kMostPointsSeen points: those with hashes below a limit, which is halved whenever there
-  // are too many. Therefore the order of the points has no influence.
+  // Keeps at most kMostPointsSeen points: the points whose hashes are at most a limit, which is
+  // halved whenever there are more points. The order in which points are added has no influence.
   struct Sample {
     void Add(uint64_t point_id, const Vec3& point_world);
 
     uint64_t hash_limit = UINT64_MAX;
-    std::vector<std::pair<uint64_t, Vec3>> points;  // with their hashes
+    std::vector<std::pair<uint64_t, Vec3>> points;  // hash and position of each kept point
   };
 
   bool ProjectsIntoImage(const Vec3& point_world) const;
@@ -49,8 +49,9 @@ class ColmapPointsSeen {
   Sample tracked_, untracked_;
 };
 
-// Returns at most kMostPointsSeen points, chosen evenly, in world coordinates; none if the model
-// has no points3D file. Reads cameras, images and points again, block by block.
+// Returns the points that one image shows, in world coordinates: at most kMostPointsSeen, a random
+// sample if there are more; none if the model has no points3D file. Reads cameras, images and
+// points again, block by block.
 //   position  index of the image among all images of the model sorted by name; equals its LfImageId
 //   camera    the camera of this image, with intrinsics for the size of the image file
 // kInput: errors of ReadColmapModel(); a position beyond the last image.

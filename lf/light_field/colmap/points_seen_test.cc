@@ -47,7 +47,7 @@ TEST(ColmapPointsSeen, TheyAreThoseWhoseTracksNameTheImage) {
   }
 }
 
-// With fx = 10 and 8 pixels, the image shows points within 0.4 of the axis at depth 1.
+// With fx = 10 px and a width of 8 px, the image shows points within 0.4 of the axis at depth 1.
 TEST(ColmapPointsSeen, WithoutTracksTheyAreThoseThatProjectIntoTheImage) {
   const std::string points = PointsBin({{.id = 1, .xyz = {0.39, 0, 1}},
                                         {.id = 2, .xyz = {0.41, 0, 1}},

@@ -34,7 +34,7 @@ bool IsFolder(const fs::path& path) {
 }
 
 // Returns the extension of the model's files in a folder; nullopt if there is no model. kInput if
-// either the cameras or the images file is missing.
+// only one of the two files cameras and images exists.
 Result<std::optional<std::string>> ModelExtension(const fs::path& folder) {
   std::optional<Error> incomplete;
   for (const char* extension : kExtensions) {
@@ -122,8 +122,8 @@ std::vector<fs::path> ImageFolders(const fs::path& model_folder) {
   return folders;
 }
 
-// Returns words about files near a missing image: in the first folder that has a file with a
-// similar name, otherwise in the first existing folder that is named `images`.
+// Returns the part of a message that names files near a missing image: in the first folder that has
+// a file with a similar name, otherwise in the first existing folder that is named `images`.
 std::string NearbyIn(const fs::path& model_folder, const std::string& name) {
   std::string nearby;
   for (const fs::path& folder : ImageFolders(model_folder)) {
@@ -139,8 +139,8 @@ std::string NearbyIn(const fs::path& model_folder, const std::string& name) {
   return nearby;
 }
 
-// Returns the first folder that contains one of the first images. One image is not enough to
-// decide, because some images may be missing.
+// Returns the first of the ImageFolders() that contains one of the first kMostAsked images. It is
+// not enough to look for one image, because some images may be missing.
 Result<fs::path> FindImages(const fs::path& model_folder, std::span<const std::string> names) {
   constexpr size_t kMostAsked = 64;
   const auto asked = names.first(std::min(names.size(), kMostAsked));
@@ -157,7 +157,8 @@ Result<fs::path> FindImages(const fs::path& model_folder, std::span<const std::s
       model_folder.string(), names.front(), tried, NearbyIn(model_folder, names.front())));
 }
 
-// Returns the folder of the project: `model_folder` without a number, sparse and colmap at its end.
+// Returns the folder of the project: `model_folder` without a number, sparse and colmap at the end
+// of its path.
 fs::path ProjectFolder(const fs::path& model_folder) {
   const auto name_of = [](const fs::path& folder) {
     const fs::path clean = folder.lexically_normal();

@@ -11,13 +11,13 @@
 
 namespace lf {
 
-// Finds the model of a folder: in `path`, path/sparse or path/colmap/sparse, in each of them first
-// directly and then in the numbered subfolders 0, 1, .... If several numbered subfolders hold
-// models, returns the one with most images, or the first of several with equally many, with a
-// warning. nullopt if there is no model. kInput: a cameras file without an images file beside it,
-// or the reverse (not for text files in `path` itself, because they may belong to another program);
+// Finds the model of a folder. Searches `path`, path/sparse and path/colmap/sparse, each of them
+// first directly and then in its numbered subfolders 0, 1, .... If several numbered subfolders hold
+// models, logs a warning and returns the one with most images (the first if several have equally
+// many). nullopt if there is no model. kInput: a cameras file without an images file beside it, or
+// the reverse (except for text files in `path` itself, because they may belong to another program);
 // an images file whose images cannot be counted.
-//   warns  false: does not warn of several models, because the caller already did
+//   warns  false: logs no warning, because the caller already did
 Result<std::optional<std::filesystem::path>> FindColmapModel(const std::filesystem::path& path,
                                                              bool warns = true);
 
@@ -26,16 +26,17 @@ Result<std::optional<std::filesystem::path>> FindColmapModel(const std::filesyst
 // per image and 380 per camera.
 //
 //   images_folder  folder of the image files; not checked
-// If images_folder is not given, it is the first folder that contains one of the first 64 images:
-// `images` in the model folder and in the three folders above it, then these four folders
-// themselves. If none of them does, images are searched by name below the folder that holds the
-// model or its sparse/0 (light_field/model/find_images.h).
+// If images_folder is not given, it is the first of these folders that contains one of the first 64
+// images: `images` in the model folder and in the three folders above it, then these four folders
+// themselves. If none of them does, images are searched by name below the project folder, which is
+// the model folder without a number, sparse and colmap at the end
+// (light_field/model/find_images.h).
 //
 // mask_names are the existing files masks/NAME.png beside the folder of images. depth_range is
 // computed from the points: the 1st and 99th percentile of their depths along the optical axes of
 // the cameras that see them.
-// kInput names the file and the entry: broken files, unsupported camera models, unknown ids, no
-// images, or no image file found (the message lists the folders that were searched).
+// kInput: broken files, unsupported camera models, unknown ids, no images, or no image file found
+// (the message lists the folders that were searched). The message names the file and the entry.
 Result<LightField> ReadColmapModel(
     const std::filesystem::path& model_folder,
     const std::optional<std::filesystem::path>& images_folder = std::nullopt);

@@ -1,7 +1,8 @@
-// Measures seconds and memory for models of a million images with 50 2D points each: 1.3 GB of
-// images.bin, 2.2 GB of images.txt, which are first written into the temporary folder. Reports the
-// peak memory of the process before reading and at the end, and the size of the light field. The
-// peak includes earlier benchmarks; therefore run one at a time (--benchmark_filter=Binary/1/).
+// Measures the time and memory of reading models of a million images with 50 2D points each: 1.3 GB
+// of images.bin, 2.2 GB of images.txt. The files are first written into the temporary folder.
+// Reports the peak memory of the process before reading and at the end, and the size of the light
+// field. The peak includes earlier benchmarks; therefore run one benchmark at a time
+// (--benchmark_filter=Binary/1/).
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <sys/resource.h>

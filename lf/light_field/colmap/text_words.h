@@ -15,7 +15,7 @@ namespace lf {
 // Blanks, tabs and carriage returns separate words; a line feed ends a line.
 class TextWords {
  public:
-  static constexpr size_t kMaxWordSize = 1024;  // bytes; longer words are cut
+  static constexpr size_t kMaxWordSize = 1024;  // bytes; the rest of a longer word is skipped
 
   // `stream` must outlive this object.
   explicit TextWords(ByteStream* stream) : stream_(stream) {}
@@ -36,19 +36,20 @@ class TextWords {
   }
   // Returns the next word of this line, or "" if there is none. Valid until the next call.
   std::string_view Word();
-  // Returns the rest of this line without surrounding blanks, cut to max_size + 1 bytes.
+  // Returns the rest of this line without surrounding blanks. If it is longer than max_size,
+  // returns its first max_size + 1 bytes.
   std::string Rest(size_t max_size);
   // Skips the rest of this line. Returns the number of its words; nullopt if it contains a
   // character that cannot be part of a number.
   std::optional<uint64_t> SkipNumbers();
 
-  // Reads the next word as a number. kInput names the file, the line, and `name` as what was
-  // expected.
+  // Reads the next word as a number. kInput if it is missing or not such a number; the message
+  // names the file, the line, and `name` as the quantity that was expected.
   Result<double> Number(const char* name);  // finite
   Result<uint64_t> Whole(const char* name, uint64_t max);
 
-  // Returns kInput with the file, this line and the message; if reading the file failed, that
-  // error.
+  // Returns kInput with the file, this line and the message. If reading the file failed, returns
+  // the error of the reading instead.
   Error Fault(std::string_view message) const;
 
  private:

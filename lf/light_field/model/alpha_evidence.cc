@@ -15,7 +15,7 @@ namespace lf {
 namespace {
 
 constexpr size_t kLookedAt = 3;
-// Number of successive LF images of which the first readable one is taken, for each of the three.
+// Each of the kLookedAt LF images is the first readable one among this many successive LF images.
 constexpr size_t kAskedFrom = 5;
 
 // Two pictures count as having the same transparent pixels if at most this share of them differs.
@@ -93,7 +93,7 @@ std::optional<LfImageId> ReadableFrom(const LightField& light_field, size_t firs
   return std::nullopt;
 }
 
-// Returns a Look for each examined LF image that has transparent pixels.
+// Returns the evidence of each examined LF image that has transparent pixels.
 std::vector<ImageEvidence> EvidenceOfSome(const LightField& light_field) {
   std::vector<size_t> firsts;
   for (size_t i = 0; i < kLookedAt; ++i)

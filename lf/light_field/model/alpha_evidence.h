@@ -19,16 +19,16 @@ struct AlphaEvidence {
 // Examines the pixels of up to three LF images with an alpha channel, from the beginning, the
 // middle and the end of the light field. Images without fully transparent pixels do not count.
 //
-// Alpha is a mask if there is a picture beneath the transparent pixels of one image, or if the same
-// pixels are transparent in all of several images (up to 2 % of them may differ), like the borders
-// of undistorted photographs.
+// Alpha is a mask if the transparent pixels of one image have different colours, because a picture
+// lies beneath them, or if the same pixels are transparent in all of several images (up to 2 % of
+// them may differ), like the borders of undistorted photographs.
 //
 // Otherwise alpha is light: in each image, all fully transparent pixels have one colour, because
 // the images show an object alone, and that colour is its background. Alpha is premultiplied if the
 // files hold floats and the colour is black, as renderers write them; otherwise it is straight.
 //
 // Returns nullopt if the images have no alpha or no transparent pixel. If a file cannot be read,
-// one of the four LF images after it is tried instead.
+// the first readable one of the four LF images after it is examined instead.
 std::optional<AlphaEvidence> FindAlphaEvidence(const LightField& light_field);
 
 }  // namespace lf

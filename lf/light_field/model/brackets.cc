@@ -91,8 +91,8 @@ std::vector<std::vector<uint32_t>> PosesWithSeveral(const LightField& light_fiel
   return poses;
 }
 
-// Does for the LF images of one pose what ApplyBrackets() says. Returns the number of images that
-// have a darker one.
+// Applies the rules of ApplyBrackets() to the LF images of one pose. Returns the number of images
+// for which there is a darker one.
 size_t ApplyToPose(std::vector<uint32_t> images, std::vector<LfCamera>* cameras) {
   const RigidTransform pose = (*cameras)[images[0]].cam_from_world;
   const auto exposure = [&](uint32_t i) { return ExposureOf((*cameras)[i]); };

@@ -1,10 +1,10 @@
 // Brackets: LF images of one pose with different exposures. A bright image shows the shadows with
 // little noise, a dark one shows the highlights that are clipped in the bright ones.
 //
-// Together they are one picture: each pixel is taken from the brightest LF image in which it is not
-// clipped. Every pose therefore sends exactly one ray per pixel, however bright it is. If clipped
-// pixels were just left out, poses that see a light would count less than poses that see past it,
-// and lights out of focus would be too dark.
+// The LF images of a pose are used as one picture: each pixel is taken from the brightest LF image
+// in which it is not clipped. Every pose therefore sends exactly one ray per pixel, however bright
+// the pixel is. If clipped pixels were just left out, poses that see a light would count less than
+// poses that see past it, and lights out of focus would be too dark.
 #pragma once
 
 #include <cstddef>
@@ -20,8 +20,8 @@ namespace lf {
 // by at most 1e-6. Time and memory are linear in the number of LF images.
 std::vector<uint32_t> FirstOfPose(const LightField& light_field);
 
-// Returns how much light the LF image recorded, relative to other LF images: 1 / lf_gain, where the
-// geometric mean of the three channels is taken.
+// Returns how much light the LF image recorded, relative to other LF images: 1 / gain, with the
+// geometric mean of the gains of the three channels.
 double ExposureOf(const LfCamera& camera);
 
 // Exposures that differ by less than this factor count as equal.
@@ -38,7 +38,7 @@ void MakeRoomForGains(LightField* light_field);
 // black because all of its light is bright.
 //
 // `brighter` of an LF image is the darkest LF image of its pose with the next larger exposure. A
-// pixel that is not clipped in the brighter image sends no ray from this one
+// pixel of the LF image sends no ray if it is not clipped in the brighter image
 // (storage/load/image_reading.h).
 //
 // All LF images of a pose get the exact pose of the first of them, so that they share lens weights.

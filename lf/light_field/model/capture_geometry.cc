@@ -36,9 +36,9 @@ double SquaredDistance(const Vec3& point, const Ray& axis) {
   return offset.squaredNorm() - std::pow(axis.direction.dot(offset), 2);
 }
 
-// Returns the point with the least sum of squared distances to the axes. Returns nullopt if they
-// are parallel: the smallest eigenvalue of the mean of I - d d^T, which is the squared angular
-// spread of the axes, is then 0.
+// Returns the point with the least sum of squared distances to the axes. Returns nullopt if the
+// axes are parallel. The smallest eigenvalue of the mean of I - d d^T, where d is the direction of
+// an axis, is then 0: it is the squared angular spread of the axes.
 std::optional<Vec3> NearestPoint(const std::vector<Ray>& axes) {
   constexpr double kLeastSpread = 1e-5;  // about 0.2 degrees
   Mat3 a = Mat3::Zero();
@@ -61,8 +61,8 @@ std::vector<Ray> SampledAxes(const LightField& light_field) {
   return axes;
 }
 
-// Removes the tenth of the axes that is farthest from their nearest point, and returns the point
-// nearest to the rest. nullopt if there is no such point.
+// Removes the tenth of the axes that is farthest from NearestPoint() of all axes. Returns
+// NearestPoint() of the remaining axes, or nullopt if there is no such point.
 std::optional<Vec3> NearestWithoutWorst(std::vector<Ray>* axes) {
   const std::optional<Vec3> point = axes->size() < 2 ? std::nullopt : NearestPoint(*axes);
   if (!point) return std::nullopt;

@@ -17,7 +17,8 @@ LightField Field(const std::vector<RigidTransform>& poses) {
   return field;
 }
 
-// Returns a grid of 12 x 6 cameras with pitches 0.1 and 0.2 that look along +z, or at a target.
+// Returns a grid of 12 x 6 cameras with pitches 0.1 and 0.2. They look at `target`, or along +z if
+// it is not given.
 LightField Grid(std::optional<Vec3> target) {
   std::vector<RigidTransform> poses;
   for (int row = 0; row < 6; ++row)
@@ -122,7 +123,7 @@ TEST(CaptureGeometry, RollIsTheAngleToTheDirectionThatIsUpForMost) {
   EXPECT_NEAR(up.norm(), 1, 1e-12);
   EXPECT_NEAR(RollOf(field.Camera({0}), up), 0, 1e-9);
   EXPECT_NEAR(RollOf(field.Camera({1}), up), RollOf(field.Camera({2}), up), 1e-9);
-  // The camera looks from 27 degrees above.
+  // The cameras look 27 degrees downward, and the roll is therefore a little more than 10 degrees.
   const double expected = std::atan(std::tan(RadiansFromDegrees(10)) / std::cos(std::atan(0.5)));
   EXPECT_NEAR(RollOf(field.Camera({1}), up), expected, RadiansFromDegrees(0.5));
   // A camera that looks along the up direction has no roll.

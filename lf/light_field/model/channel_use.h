@@ -9,7 +9,7 @@ namespace lf {
 
 struct ChannelUse {
   int channels = 1;
-  int colours = 1;  // 1: grey or mosaic; 3: R, G, B; they come first
+  int colours = 1;  // 1: grey or mosaic; 3: R, G, B; the colours are the first channels
   std::optional<int> alpha;
 };
 

@@ -1,4 +1,4 @@
-// The list LightField::intrinsics while a reader of calibrations fills it.
+// Collects LightField::intrinsics while a calibration is read: equal intrinsics are stored once.
 #pragma once
 
 #include <algorithm>

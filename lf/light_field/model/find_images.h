@@ -32,10 +32,11 @@ Result<size_t> FindImageFiles(const std::optional<std::filesystem::path>& images
 
 // How much the size of image files may differ from the calibration.
 struct ImageScale {
-  // kOff: the sizes are not compared or changed here. kAuto: files may be smaller by a whole factor
-  // from 2 to 16, with sizes rounded up, down or to the nearest pixel as COLMAP and nerfstudio do;
-  // the factor must be the same for all of some evenly spread LF images. kFactor: files are
-  // `factor` times as large as calibrated, with sizes rounded in one of these ways.
+  // kOff: the sizes are neither compared nor changed. kAuto: files may be smaller by a whole factor
+  // from 2 to 16, with sizes rounded up, down or to the nearest pixel as COLMAP and nerfstudio do.
+  // Up to 64 evenly spread LF images are examined, and all of them must have the same factor.
+  // kFactor: files are `factor` times as large as calibrated, with sizes rounded in one of these
+  // ways.
   enum class Kind { kOff, kAuto, kFactor } kind = Kind::kAuto;
   double factor = 1;
 };
