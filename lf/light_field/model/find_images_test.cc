@@ -35,7 +35,7 @@ class FindImagesTest : public FolderTest {
 TEST_F(FindImagesTest, NamesThatLeadToAFileStay) {
   WriteImages({"images/a.png", "elsewhere/b.png"});
   LightField field = FieldOf({"images/a.png", "images/b.png"});
-  EXPECT_EQ(*FindImageFiles({}, &field), 0u);  // one missing file is no moved capture
+  EXPECT_EQ(*FindImageFiles({}, &field), 0u);  // one missing file is not a capture that was moved
   EXPECT_EQ(field.image_names[1], "images/b.png");
 }
 
@@ -119,7 +119,8 @@ TEST_F(FindImagesTest, WholeFactorsScaleTheIntrinsics) {
 }
 
 TEST_F(FindImagesTest, OtherSizesAreLeftAlone) {
-  // A crop, an undistorted picture, one with half the width only, and a larger one.
+  // Half of the calibrated 1000 x 1000 pixels, the same cropped by undistortion, half of the width
+  // only, and twice the size.
   const std::vector<std::pair<int, int>> sizes = {
       {500, 500}, {494, 494}, {500, 1000}, {2000, 2000}};
   for (const auto& [width, height] : sizes) {

@@ -12,7 +12,7 @@
 
 namespace lf {
 
-// [width, height] of an image file.
+// A function that returns [width, height] of an image file.
 using ImageSizeSource = std::function<Result<std::array<int, 2>>(const std::filesystem::path&)>;
 
 // Reads the size from the header of the file (ReadImageInfo() of pixels/files).

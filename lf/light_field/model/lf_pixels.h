@@ -30,8 +30,8 @@ struct LfPixels {
         radiance.pixels()[i] = 1;
   }
 
-  // Changes to another part of an LF image in the same memory, without a mask; the radiance is
-  // unspecified.
+  // Makes this object hold another part of an LF image, in the same memory and without a mask. The
+  // radiance is unspecified until it is written.
   void Reset(const PixelRect& part, BayerPattern pattern) {
     radiance.Resize(part.width(), part.height(), pattern == BayerPattern::kNone ? kRgbLanes : 1);
     bayer = pattern;
@@ -62,11 +62,11 @@ struct LfPixels {
   // v of every pixel (light_field/model/radiance.h). A mosaic: [height][width][1]. RGB:
   // [height][width][4] with R, G, B and 1, or all 0 if the pixel is masked.
   Image<uint16_t> radiance;
-  BayerPattern bayer = BayerPattern::kNone;  // at pixel (0, 0) of the whole LF image
-  // The mosaic that RGB pixels were made from, at pixel (0, 0) of the whole LF image; kNone if
-  // every pixel recorded all three colours.
+  BayerPattern bayer = BayerPattern::kNone;  // begins at pixel (0, 0) of the whole LF image
+  // The pattern of the mosaic from which RGB pixels were made, beginning at pixel (0, 0) of the
+  // whole LF image; kNone if every pixel recorded all three colours.
   BayerPattern recorded = BayerPattern::kNone;
-  Image<uint8_t> mosaic_mask;  // [height][width], 0 = pixel sends no ray; empty: no mask or RGB
+  Image<uint8_t> mosaic_mask;  // [height][width], 0: pixel sends no ray; empty: no mask, or RGB
   bool any_masked = false;
   PixelRect rect;  // the part of the LF image that these pixels cover
   // Opacities of RGB pixels if the light field HasOpacity(), otherwise empty. [height][width][4]

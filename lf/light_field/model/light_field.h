@@ -31,12 +31,12 @@ struct ChannelGains {
   std::array<float, 3> of_channels;
 };
 
-// One LF camera. It takes 120 bytes, since a light field may have a million of them.
+// One LF camera. A light field may have a million of them, and therefore it takes only 120 bytes.
 struct LfCamera {
   RigidTransform cam_from_world;
   uint32_t intrinsics_index = 0;  // index into LightField::intrinsics
   ChannelGains gain;              // factor of the radiance (lf_gain)
-  // ApplyBrackets() sets these two (light_field/model/brackets.h).
+  // ApplyBrackets() sets `brighter` and `masks_clipped` (light_field/model/brackets.h).
   static constexpr uint32_t kNone = UINT32_MAX;
   uint32_t brighter = kNone;   // the LF image of the same pose with the next larger exposure
   bool masks_clipped = false;  // clipped pixels send no ray, because the pose has a darker LF image
@@ -44,7 +44,7 @@ struct LfCamera {
 
 struct LightField {
   std::vector<LfCamera> cameras;       // indexed by LfImageId, like the two lists of names below
-  std::vector<Intrinsics> intrinsics;  // the distinct ones
+  std::vector<Intrinsics> intrinsics;  // each distinct set of intrinsics once
   // Names as written in the calibration; relative ones are relative to `folder`.
   std::vector<std::string> image_names;
   std::vector<std::string> mask_names;  // empty, or one for each camera ("": no mask)
@@ -61,7 +61,8 @@ struct LightField {
     const LfCamera& camera = cameras[id.value];
     return {intrinsics[camera.intrinsics_index], camera.cam_from_world};
   }
-  // For a packed store the path is for messages only: STORE.lfs/name.png
+  // Returns the path of an image file. In a packed store it is only for messages:
+  // STORE.lfs/name.png
   std::filesystem::path ImagePath(LfImageId id) const { return folder / image_names[id.value]; }
 };
 

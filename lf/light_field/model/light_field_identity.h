@@ -1,4 +1,5 @@
-// Identifies a light field by hashes, so that packages and resumed renders can compare it.
+// Identifies a light field by hashes, so that packages and resumed renders can check that a light
+// field is still the same.
 #pragma once
 
 #include <cstddef>

@@ -15,14 +15,15 @@ LightField OneCamera(const Distortion& distortion) {
   return light_field;
 }
 
-// Checkpoints and packages from before the model with twelve parameters contain hashes of eight.
+// Checkpoints and packages that were written before the model with twelve parameters existed
+// contain hashes of eight parameters.
 TEST(LightFieldIdentity, ALensOfAnOlderModelIsHashedByEightParameters) {
   ValueHasher expected;
   for (const double number : {1, 0, 0, 0, 1, 0, 0, 0, 1}) expected.Add(number);  // rotation
   for (const double number : {0, 0, 0}) expected.Add(number);
   for (const double number : {0, 1}) expected.Add(number);  // intrinsics_index, gain
   for (const double number : {500.0, 501.0, 320.0, 240.0, 0.5, 640.0, 480.0}) expected.Add(number);
-  for (const double number : {2, 1, 2, 3, 4, 0, 0, 0, 0}) expected.Add(number);  // the lens
+  for (const double number : {2, 1, 2, 3, 4, 0, 0, 0, 0}) expected.Add(number);  // lens distortion
   EXPECT_EQ(IdentityOf(OneCamera({DistortionModel::kFisheye, {1, 2, 3, 4}})).calibration,
             expected.Text());
 }

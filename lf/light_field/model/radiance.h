@@ -39,13 +39,13 @@ enum class AlphaMeaning : uint8_t {
 struct RadianceEncoding {
   BayerPattern bayer = BayerPattern::kNone;
   Transfer transfer = Transfer::kSrgb;
-  std::vector<double> response;       // kResponse: radiance at black .. white, evenly spaced, >= 2
+  std::vector<double> response;  // kResponse: radiance at black .. white, evenly spaced; 2 or more
   double black_level = 0;             // stored value of no light
   std::optional<double> white_level;  // stored value of radiance 1; default: the largest storable
   double max_radiance = 1;            // radiance (after gain) that v = 65535 stands for
-  double pedestal = 0;                // v of no light; above 0, values below black are kept
+  double pedestal = 0;  // v of no light; if above 0, values below black are kept
   std::optional<AlphaMeaning> alpha;  // default: kMask
-  // Radiance of R, G and B behind a pixel that alpha does not cover; default: black.
+  // Radiance of R, G and B behind LF pixels that alpha does not cover completely; default: black.
   std::optional<std::array<double, 3>> background;
   // True: nothing is behind the pixels: `background` is black, and frames have an opacity channel.
   bool keeps_opacity = false;
@@ -105,8 +105,8 @@ double DefaultMaxRadiance(std::span<const std::string> image_names);
 // value.
 bool LevelsFit(const RadianceEncoding& encoding, int bits);
 
-// Returns the smallest stored value that counts as clipped. It is a hundredth of the range from
-// black to white below white, because JPEG, noise and demosaicking do not keep the largest value
+// Returns the smallest stored value that counts as clipped. It lies below white by a hundredth of
+// the range from black to white, because JPEG, noise and demosaicking do not keep the largest value
 // exactly. bits: 8 or 16, with LevelsFit(). Float files have no such value.
 double ClippedFrom(const RadianceEncoding& encoding, int bits);
 

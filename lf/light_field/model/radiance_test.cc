@@ -75,7 +75,7 @@ TEST(RadianceTable, HalvesRoundAwayFromZero) {
   encoding.transfer = Transfer::kLinear;
   encoding.black_level = 3;
   encoding.white_level = 5;
-  encoding.pedestal = 65535 - 5;  // 2.5 per stored value
+  encoding.pedestal = 65535 - 5;  // 2.5 steps of v per stored value
   const std::vector<uint16_t> table = RadianceTable(encoding, 8, 1);
   EXPECT_EQ(table[4], 65530 + 3);
   EXPECT_EQ(table[2], 65530 - 3);

@@ -31,7 +31,7 @@ Result<Mat3> NearestRotation(const Mat3& matrix, double tolerance) {
                     skew, tolerance));
   if (skew <= kExact) return matrix;
   // The orthogonal factor of the polar decomposition, by Newton's iteration (Higham 1986). For a
-  // matrix within the tolerance, three steps reach machine precision.
+  // matrix within the tolerance, three steps reach machine precision; the fourth is a reserve.
   Mat3 axes = matrix;
   for (int i = 0; i < 4; ++i) axes = 0.5 * (axes + axes.inverse().transpose()).eval();
   return axes;

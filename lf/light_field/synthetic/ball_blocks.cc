@@ -10,8 +10,9 @@ BallBlocks::BallBlocks(const std::vector<Ball>& balls) {
   if (!balls.empty()) Build(balls, order, 0, balls.size());
 }
 
-// Splits order[begin, end) across the longest side of its bounding box, at a whole number of
-// blocks, until each part is one block.
+// Makes order[begin, end) a block if it has at most kLanes balls. Otherwise splits it in two,
+// across the longest side of the bounding box of the balls' centres, and continues with both parts.
+// The first part fills whole blocks.
 void BallBlocks::Build(const std::vector<Ball>& balls, Indices& order, size_t begin, size_t end) {
   Eigen::AlignedBox3d box;
   for (size_t i = begin; i < end; ++i) box.extend(balls[order[i]].centre_world);

@@ -35,9 +35,9 @@ class BallBlocks {
   BallBlocks() = default;
   explicit BallBlocks(const std::vector<Ball>& balls);
 
-  // Calls visit(i) for the index of every ball that reaches into the cone. Some other balls may be
-  // visited, because the test in single precision never misses a ball. The order is always the
-  // same.
+  // Calls visit(i) for the index of every ball that reaches into the cone, and perhaps for some
+  // other balls: the test in single precision is so wide that it never misses a ball. The order is
+  // always the same.
   template <class Visit>
   void ForEachNear(const Cone& cone, Visit&& visit) const;
 

@@ -1,28 +1,29 @@
-// The scenes that come with the program, each with the capture for which it was composed.
+// The scenes that come with lfsynth, each with the capture for which it was composed.
 //
 // Lengths are metres. y points down; the origin is the middle of what the cameras look at.
 //
 // `still-life`  Glass, mirrors and marbles on a dark wooden table, with strings of small lights far
 //               behind. Depths in front of the middle camera: marbles 0.43 to 1.2, the clear glass
-//               ball 0.75, the mirror ball 0.90, coloured balls 1.07 to 1.32, lights 2.1 to 2.7.
-//               17 x 17 cameras on 48 x 48 mm: an aperture of up to 46 mm. A focus pull from 0.58
-//               (amber marble) over 0.75 (glass ball) to 2.3 (lights) shows it.
+//               ball 0.75, the mirror ball 0.90, coloured balls 1.07 to 1.32, lights 2.1 to 2.7. 17
+//               x 17 cameras on 48 x 48 mm: an aperture of up to 46 mm. A focus pull from 0.58
+//               (amber marble) over 0.75 (glass ball) to 2.3 (lights) shows all of them.
 // `lights`      Only lights, on black: seven rows at depths 3, 2, 1.4, 1, 0.75, 0.6, 0.5 from the
 //               top, reddish on the left, bluish on the right.
-// `chart`       Test charts: a Siemens star facing the cameras at 1.0, digits at 0.7 (left) and
-//               1.4 (right), bars slanted from 0.8 (left) to 1.2 (right) above, and a checkered
-//               board lying below, from 0.6 to 1.4 (for tilted focus planes). Radiance is 0.8 and
-//               0.03, the background 0.02.
+// `chart`       Test charts: a Siemens star facing the cameras at 1.0; digits at 0.7 (left) and 1.4
+//               (right); above the star, bars slanted from 0.8 (left) to 1.2 (right); below it, a
+//               flat checkered board from 0.6 to 1.4 (for tilted focus planes). Bright parts have
+//               radiance 0.8, dark parts 0.03, the background 0.02.
 //
-// The required density of a capture: focused at depth g, a light at depth z appears displaced by
+// How dense a capture must be: in a frame that is focused at depth g, a light at depth z is
+// displaced from one camera to the next by
 //     step_px = focal_length_px * spacing_w * |1/g - 1/z|
-// from one camera to the next, so that its bokeh is a sum of dots step_px apart. A lamp (Glow) of
-// radius r is a Gaussian dot of sigma_px = focal_length_px * r / (sqrt(2) z). The sum ripples by
-// 2 exp(-2 (pi sigma_px / step_px)^2): 1.4 % at sigma = step / 2, 8 % at 0.4; larger sigma make the
-// ripple invisible. Recommended for `still-life`: focal length 540 px, spacing 3 mm, lamps of 12.5
-// mm radius. At g = 0.58 and z = 2.3, step is 2.1 px and sigma 2.1 px; at g = 0.75, step is 1.5 px.
-// The bokeh of a 46 mm lens is then 32 and 22 px wide, of 480. Estimators that round to whole
-// pixels displace the dots by up to half a pixel; sigma is large enough for them.
+// Its bokeh is therefore a sum of dots that are step_px apart. A lamp (Glow) of radius r is a
+// Gaussian dot of sigma_px = focal_length_px * r / (sqrt(2) z). The sum ripples by 2 exp(-2 (pi
+// sigma_px / step_px)^2): 1.4 % at sigma = step / 2, 8 % at 0.4; larger sigma make the ripple
+// invisible. Recommended for `still-life`: focal length 540 px, spacing 3 mm, lamps of 12.5 mm
+// radius. For z = 2.3, step is 2.1 px at g = 0.58 and 1.5 px at g = 0.75; sigma is 2.1 px. The
+// bokeh of a 46 mm lens is then 32 and 22 px wide, in a picture of 480 px. Estimators that round to
+// whole pixels displace the dots by up to half a pixel; sigma is large enough for them.
 #pragma once
 
 #include <span>

@@ -8,7 +8,7 @@ namespace lf {
 // The footprint is round and Gaussian, exp(-(distance / width)^2), with its centre on the ray. At
 // distance lambda along the ray, the width is |width_w + lambda spread|. Curved mirrors increase
 // the spread, glass spheres decrease it. The widths follow paraxial optics, which is accurate
-// enough to choose how much to average. {} is the exact ray, of width 0.
+// enough to choose how much to average. Footprint{} has width 0: it is that of an exact ray.
 struct Footprint {
   double width_w = 0;
   double spread = 0;

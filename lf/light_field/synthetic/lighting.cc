@@ -9,7 +9,7 @@ namespace {
 
 // A sphere farther away than this number of its radii does not hide the room's light.
 constexpr double kReach = 6;
-// A point lies on a sphere if its distance to it, relative to the sphere's radius, is at most this.
+// A point counts as lying on a sphere if it is at most this share of the sphere's radius away.
 constexpr double kTouching = 1e-6;
 
 // Returns the share of a lamp's light that passes one sphere. sine_lamp and sine_sphere are the
@@ -20,8 +20,8 @@ Rgb PassedBy(const Occluder& occluder, double sine_lamp, double sine_sphere, dou
   const double sphere = std::asin(std::min(1.0, sine_sphere));
   const double hidden = HiddenShare(std::asin(std::min(1.0, sine_lamp)), sphere, between);
   if (!occluder.is_glass || hidden == 0) return Rgb::Constant(1 - hidden);
-  // A glass sphere focuses three quarters of the light that it takes from its shadow in a spot with
-  // 0.38 of the shadow's radius. kSpread of that light is spread evenly over the shadow.
+  // A glass sphere focuses three quarters of the light that its shadow lacks in a spot with 0.38 of
+  // the shadow's radius, and spreads the share kSpread of that light evenly over the shadow.
   constexpr double kSpot = 0.38, kSpread = 0.12;
   const double t = between / (kSpot * sphere);
   const double gathered = kSpread + (0.75 / (kSpot * kSpot)) * std::exp(-t * t);
@@ -56,9 +56,10 @@ Lighting::Lighting(std::vector<Lamp> lamps, std::vector<Occluder> occluders, con
 }
 
 // Returns the share of the room's light that the spheres above the surface leave. Each sphere hides
-// its cosine times the squared sine of half the angle under which it is seen, which is exact for a
-// single sphere wholly above the horizon. 1 / kReach^2 of the cosine is subtracted, so that the
-// effect becomes 0 at kReach.
+// the share cosine * sine^2: the cosine of the angle between the normal and the direction to the
+// sphere's centre, and the sine of half the angle under which the sphere is seen. The formula is
+// exact for a single sphere wholly above the horizon. 1 / kReach^2 is subtracted from sine^2, so
+// that the effect becomes 0 at kReach.
 double Lighting::OpenShare(const Vec3& point_world, const Vec3& normal_world) const {
   double open = 1;
   balls_.ForEachAround(point_world, kReach, [&](uint32_t i) {

@@ -26,7 +26,7 @@ class Lighting {
   // formulas, without random numbers. The share of a lamp that a sphere hides is computed as for
   // two discs on the sky. The spot in the shadow of glass is a Gaussian with three quarters of the
   // light that the shadow lacks. A sphere that the point lies on hides nothing, because the cosine
-  // accounts for it.
+  // of the light's angle to the normal already accounts for it.
   Rgb DiffuseLight(const Vec3& point_world, const Vec3& normal_world) const;
 
  private:

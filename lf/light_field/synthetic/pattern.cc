@@ -36,8 +36,9 @@ double Contrast(double width) {
   return rest * rest;
 }
 
-// Returns the square wave that is +1 on [0, 1/2) and -1 on [1/2, 1), averaged over `width`: the
-// difference of its integral, a triangle wave, divided by `width`.
+// Returns the square wave that is +1 on [0, 1/2) and -1 on [1/2, 1), averaged over `width`. The
+// mean is the difference of the wave's integral (a triangle wave) at both ends of the interval,
+// divided by `width`.
 double SquareWave(double x, double width) {
   const auto integral = [](double t) { return 0.5 - std::abs(t - Floor(t) - 0.5); };
   constexpr double kNarrow = 1e-6;  // for smaller widths the difference is rounding noise
@@ -56,7 +57,7 @@ double Checker(const Pattern& pattern, const Vec2& place_w, double width_w) {
 struct ShrinkingRow {
   int index = 0;
   double letter_w = 0;  // height of the row's letters
-  double down = 0;      // 0 at the top of a letter, 1 at its bottom; else in a gap
+  double down = 0;  // 0 at the top of a letter, 1 at its bottom; below 0 or above 1 in a gap
 };
 constexpr int kRowCount = 12;
 
@@ -90,7 +91,7 @@ constexpr std::array<uint16_t, 10> kDigits = {
 double Letters(const Pattern& pattern, const Vec2& place_w) {
   const ShrinkingRow row = RowAt(place_w.y(), pattern.scale_w);
   if (row.down < 0 || row.down >= 1) return 0;
-  const double across = place_w.x() / row.letter_w * 5;  // in dots, of which a digit has 3 of 4
+  const double across = place_w.x() / row.letter_w * 5;  // in dots: a digit has 3, the gap 1
   const double cell = Floor(across / 4);
   const int dot_x = static_cast<int>(across - 4 * cell);
   if (dot_x >= 3) return 0;

@@ -29,9 +29,9 @@ struct Pattern {
 // Returns the pattern's value in [0, 1].
 double PatternAt(const Pattern& pattern, const Vec2& place_w, double width_w);
 
-// Returns smooth noise in [0, 1) from one random value per lattice point; between them, it is
-// interpolated with cubic weights (smoothstep) along each axis. Its mean is 1/2. Equal arguments
-// give equal values on every machine.
+// Returns smooth noise in [0, 1). It has one random value per lattice point, and is interpolated
+// between lattice points with cubic weights (smoothstep) along each axis. Its mean is 1/2. Equal
+// arguments give equal values on every machine.
 double ValueNoise(double x, double y, uint64_t seed);
 
 }  // namespace lf

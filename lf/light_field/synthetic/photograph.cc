@@ -47,12 +47,12 @@ class PixelRays {
   double pixel_angle_;
 };
 
-// Returns n for the smallest n x n samples that are not fewer than `samples`.
+// Returns the smallest n for which n x n samples are not fewer than `samples`.
 int SideOf(int samples) { return static_cast<int>(std::ceil(std::sqrt(std::max(1, samples)))); }
 
 // Returns n x n points of the unit square that form a slightly rotated grid: there is one point in
 // each cell of the n x n grid, and one in each of n^2 rows and n^2 columns. Their mean is the
-// centre, and x and y are uncorrelated, so that the blur between the points is equal in all
+// centre, and x and y are uncorrelated, so that averaging over them blurs equally in all
 // directions.
 std::vector<Vec2> SquarePoints(int side) {
   std::vector<Vec2> points;
@@ -63,8 +63,9 @@ std::vector<Vec2> SquarePoints(int side) {
   return points;
 }
 
-// Returns true if two neighbours form an edge: they show different surfaces, or differ by more than
-// kShare of the brighter one. kDark prevents edges from noise that is too dark to be seen.
+// Returns true if there is an edge between two neighbouring pixels: they show different surfaces,
+// or differ by more than kShare of the brighter one. kDark prevents edges from noise that is too
+// dark to be seen.
 bool IsEdge(const Scene::Sight& a, const Scene::Sight& b) {
   if (a.shape != b.shape) return true;
   constexpr double kShare = 0.4, kDark = 0.1;
@@ -222,7 +223,7 @@ Image<float> ThinLensPhotograph(const Scene& scene, const RenderCamera& camera,
         if (!focus_point) continue;
         const Vec3 direction = *focus_point - lens_points[i];
         // The footprint is as wide at the lens as the part of the lens that the sample represents,
-        // and as wide at the focus plane as its part of the element.
+        // and as wide at the focus plane as the part of the element that the sample represents.
         const Footprint footprint{lens_cell_w, -lens_cell_w / direction.norm() - element_spread};
         sum += LightOf(scene.SightAlong({lens_points[i], direction}, footprint), surroundings);
       }

@@ -22,9 +22,9 @@ enum class Surroundings : uint8_t {
 
 // Returns the picture that the camera records: linear radiance, averaged over the square of each
 // pixel; black where the camera's lens lets no ray through.
-//   samples  rays per pixel at edges of the picture, spread over the pixel's square; rounded up to
-//            a square number. At an edge, a neighbour shows another surface or another brightness.
-//            Other pixels are sampled by one ray through their centre
+//   samples  rays per pixel at edges in the picture, spread over the pixel's square; rounded up to
+//            a square number. A pixel is at an edge if a neighbour shows another surface or another
+//            brightness. Other pixels are sampled by one ray through their centre
 // Shape [height][width][3], or [4] with kTransparent.
 Image<float> Photograph(const Scene& scene, const PinholeCamera& camera, int samples,
                         Surroundings surroundings = Surroundings::kShown);

@@ -52,7 +52,7 @@ TEST(Rig, TheBandLiesOnItsCircleAndLooksAtTheTarget) {
   for (size_t i = 0; i < poses.size(); ++i) {
     const PinholeCamera camera = At(poses[i]);
     const Vec3 to_target = options.target_world - camera.CentreWorld();
-    EXPECT_NEAR(to_target.norm(), 2, 2e-3);  // rows are exactly above each other
+    EXPECT_NEAR(to_target.norm(), 2, 2e-3);  // the upper and lower rows are a little farther away
     EXPECT_NEAR(to_target.normalized().dot(camera.ForwardWorld()), 1, 1e-12);
     EXPECT_NEAR(camera.RightWorld().y(), 0, 1e-12);
     if (i % 100 != 99) {

@@ -134,7 +134,7 @@ Rgb Scene::Reflection(const Beam& beam, const Place& place, double share) const 
 // the angle at which it entered. Therefore it always gets out, and loses the same share of its
 // light once more. Internal reflections are left out.
 Rgb Scene::ThroughGlass(const Beam& beam, const Place& place) const {
-  LF_CHECK(place.sphere != nullptr);  // the constructor checked it
+  LF_CHECK(place.sphere != nullptr);  // the constructor rejects panels of glass
   const Material& glass = *place.material;
   const Sphere& sphere = *place.sphere;
   const double share = Reflectance(place.cosine, glass.refractive_index);
@@ -159,9 +159,10 @@ Rgb Scene::ThroughGlass(const Beam& beam, const Place& place) const {
   return mirrored + passing * tint * Follow(next, nullptr);
 }
 
-// Returns the position of a point on its pattern.
+// Returns the position in the plane of the pattern that belongs to a point of a surface.
 Vec2 Scene::PlaceOnPattern(const Place& place) {
-  // A sphere is a slanted cut through a pattern in the plane, which has no poles and no seam.
+  // The pattern is projected onto a sphere along a slanted direction, so that it has no poles and
+  // no seam.
   if (place.sphere) {
     const Vec3 offset = place.point - place.sphere->centre_world;
     return {offset.x() + 0.5 * offset.z(), offset.y() - 0.4 * offset.z()};

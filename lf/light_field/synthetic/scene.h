@@ -29,8 +29,8 @@ class Scene {
   Rgb RadianceAlong(const Ray& ray, const Footprint& footprint = {}) const;
 
   // The spheres that rays within a cone may hit first, and the glows that they may pass. With a
-  // sector, Look() returns the same light faster. The cone must contain the rays and kGlowReach
-  // widths of their footprints around them (glows.h).
+  // sector, SightAlong() returns the same light faster. The cone must contain the rays and
+  // kGlowReach widths of their footprints around them (glows.h).
   struct Sector {
     std::vector<uint32_t> spheres;
     std::vector<uint32_t> glows;

@@ -1,7 +1,7 @@
 // The parts of a synthetic scene, as plain values. lf::Scene (scene.h) computes its light.
 //
-// World units are metres (unit_m = 1), and y points down: a table is a panel whose half_up x
-// half_right normal points to -y. Radiance is linear light with sRGB primaries; 1 is display white.
+// World units are metres (unit_m = 1), and y points down: the normal of a table top, half_right x
+// half_up, points to -y. Radiance is linear light with sRGB primaries; 1 is display white.
 #pragma once
 
 #include <cstdint>
@@ -51,9 +51,9 @@ struct Panel {
 };
 
 // A small lamp in the picture: a soft ball of light that hides nothing. A ray that passes its
-// centre at distance b receives colour exp(-(b / radius)^2). Averaged over a round Gaussian
-// footprint this stays a Gaussian, so that a glow far smaller than a pixel loses no light and does
-// not flicker.
+// centre at distance b receives colour exp(-(b / radius)^2). The average of this light over a round
+// Gaussian footprint is again a Gaussian, so that a glow far smaller than a pixel loses no light
+// and does not flicker.
 struct Glow {
   Vec3 centre_world = Vec3::Zero();
   double radius_w = 0.005;

@@ -25,8 +25,8 @@ std::optional<double> Intersect(const Ray& ray, const Sphere& sphere);
 struct PanelPlane {
   explicit PanelPlane(const Panel& panel);
 
-  // Returns the position on the panel in units of its half axes; both numbers are within [-1, 1] on
-  // it.
+  // Returns the position of a point in units of the half axes. On the panel, both numbers are
+  // within [-1, 1].
   Vec2 PlaceOf(const Vec3& point_world) const {
     const Vec3 offset = point_world - centre_world;
     return {offset.dot(right_per_w), offset.dot(up_per_w)};
@@ -46,7 +46,8 @@ struct PanelPlane {
 // Returns the distance along `ray` to a panel, on either of its sides; none if the ray misses it.
 std::optional<double> Intersect(const Ray& ray, const PanelPlane& panel);
 
-// The point where a ray ends. Shapes are numbered: first the spheres, then the panels.
+// The first point where a ray meets a shape; kNothing if it meets none. Shapes are numbered: first
+// the spheres, then the panels.
 struct Hit {
   double lambda = std::numeric_limits<double>::infinity();
   uint32_t shape = kNothing;

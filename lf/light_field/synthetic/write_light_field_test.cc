@@ -63,7 +63,7 @@ TEST_F(WriteLightFieldTest, EveryLampIsWhereTheWrittenCalibrationProjectsIt) {
       ++seen;
     }
   }
-  EXPECT_GT(seen, 200);  // of 4 x 77 lamps
+  EXPECT_GT(seen, 200);  // of 77 lamps in each of 4 LF images
 }
 
 TEST_F(WriteLightFieldTest, FilesAreTheSameForAnyNumberOfThreads) {

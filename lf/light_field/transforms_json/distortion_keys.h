@@ -29,7 +29,7 @@ struct CameraModelName {
 // parameter_count is the number of parameters to write; OPENCV has k3 only if it is not 0.
 CameraModelName CameraModelOf(const Distortion& distortion);
 
-// The keys as written; each of them may be missing.
+// The keys of the top level or of one frame, as written; nullopt for a missing key.
 struct DistortionKeys {
   std::optional<uint8_t> camera_model;  // index into the list of names in distortion_keys.cc
   std::optional<bool> is_fisheye;       // key of instant-ngp

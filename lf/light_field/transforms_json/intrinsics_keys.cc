@@ -31,8 +31,8 @@ constexpr NumberRule kVignetting = {"within +-1e6, such as [-0.3, 0.05, -0.1]",
 
 using Key = std::optional<double> IntrinsicsKeys::*;
 
-// Returns the focal length along one axis. Keys of the frame take precedence over the top level,
-// and within each of them the length over the angle.
+// Returns the focal length along one axis. The frame's keys take precedence over those of the top
+// level. At either level, the length takes precedence over the angle.
 std::optional<double> Focal(const IntrinsicsKeys& frame, const IntrinsicsKeys& top, Key length,
                             Key angle, double size_px) {
   for (const IntrinsicsKeys* keys : {&frame, &top}) {

@@ -14,7 +14,7 @@
 
 namespace lf {
 
-// The keys as written; each of them may be missing.
+// The keys of the top level or of one frame, as written; nullopt for a missing key.
 struct IntrinsicsKeys {
   std::optional<double> fl_x, fl_y;                      // px
   std::optional<double> camera_angle_x, camera_angle_y;  // rad, the whole field of view
@@ -35,9 +35,9 @@ Result<IntrinsicsKeys> ReadIntrinsicsKeys(const JsonFields& fields);
 
 // Takes each key from the frame, or from the top level if the frame lacks it. The focal length
 // along x is computed from the first of these keys that exists: fl_x of the frame, camera_angle_x
-// of the frame, fl_x of the top level, camera_angle_x of the top level. The one along y is computed
-// from the corresponding keys, or equals the one along x if there are none. The principal point is
-// the image centre by default.
+// of the frame, fl_x of the top level, camera_angle_x of the top level. The focal length along y is
+// computed from the corresponding keys; without them, it equals the focal length along x. The
+// principal point is the image centre by default.
 //   default_size  returns [width, height]; called if w or h is missing; its error is returned
 //   fields        for messages
 // kInput: no focal length; an invalid distortion (ResolveDistortion()); more than 2^30 pixels; a

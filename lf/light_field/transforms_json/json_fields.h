@@ -1,5 +1,5 @@
 // Reads the keys of a JSON object as checked values. Errors name the file, the frame, the key, the
-// value and what was expected. For the readers of calibrations.
+// value and what was expected. Used by the readers of calibrations.
 #pragma once
 
 #include <cstddef>

@@ -26,7 +26,7 @@ bool HasSurrogates(std::string_view text) {
   return false;
 }
 
-// Returns the same value in a form that simdjson accepts, or "" if the text is not JSON.
+// Returns text of the same JSON value in a form that simdjson accepts, or "" if `text` is not JSON.
 std::string WrittenAnew(const std::string& text) {
   try {
     const auto keep = [](int depth, json::parse_event_t, json&) { return depth <= kMaxDepth; };

@@ -1,4 +1,4 @@
-// Parses one object {...} of a JSON text fast. For the readers of calibrations.
+// Parses one object {...} of a JSON text fast. Used by the readers of calibrations.
 #pragma once
 
 #include <memory>

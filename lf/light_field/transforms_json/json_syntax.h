@@ -1,4 +1,4 @@
-// Error messages about files that are not JSON. For the readers of calibrations.
+// Makes error messages about files that are not JSON. Used by the readers of calibrations.
 #pragma once
 
 #include <filesystem>

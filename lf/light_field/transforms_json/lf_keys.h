@@ -47,7 +47,7 @@ inline constexpr const char* kFrameLfKeys[] = {
 // Reads the keys of the top level. If keys that camera raw files can replace are missing, their
 // values are read from these files by `raw_facts`, unless it is null. Other defaults: sRGB without
 // a Bayer pattern, linear with a pattern; pedestal 1024 if the black level is above 0, otherwise 0;
-// DefaultMaxRadiance(image_names).
+// max_radiance from DefaultMaxRadiance().
 //   light_field  its image names and folder are used
 Result<RadianceEncoding> ReadEncoding(const JsonFields& top, const LightField& light_field,
                                       const RawFactsSource& raw_facts);

@@ -159,8 +159,9 @@ class Reader {
     return WithExactTranslation(fields, *pose);
   }
 
-  // Replaces the translation by lf_translation, if the frame has it: the exact translation, without
-  // the rounding errors of its conversion to the centre in the matrix and back.
+  // Replaces the translation by lf_translation, if the frame has this key. lf_translation is exact:
+  // it lacks the rounding errors of converting the translation to the centre in the matrix and
+  // back.
   static Result<RigidTransform> WithExactTranslation(const JsonFields& fields,
                                                      RigidTransform pose) {
     constexpr double kTolerance = 1e-6;

@@ -19,7 +19,8 @@ namespace lf {
 //   image_size  called for up to 15 images if a frame has no "w" or "h", as in Blender's scenes;
 //               the most frequent size is used. If it is empty, a missing size is an error
 //   raw_facts   called for facts about camera raw files that the keys do not state; may be empty
-// kInput names the file, the frame and its key, the value found and what was expected.
+// kInput if the content is wrong. The message names the file, the frame and its key, the value
+// found and what was expected.
 Result<LightField> ParseTransformsJson(std::string_view text, const std::filesystem::path& path,
                                        const ImageSizeSource& image_size = {},
                                        const RawFactsSource& raw_facts = {});
@@ -29,8 +30,8 @@ Result<LightField> ParseTransformsJson(std::string_view text, const std::filesys
 // files.
 Result<LightField> ReadTransformsJson(const std::filesystem::path& path);
 
-// Writes `light_field` such that the cameras read from the file are bit-identical to it, except
-// that distortion models whose parameters bend no ray may be read as kNone. Image names are written
+// Writes `light_field` such that reading the file returns bit-identical cameras, except that
+// distortion models whose parameters bend no ray may be read as kNone. Image names are written
 // unchanged.
 //   writer  name of the program; it is written with a checksum (lf_written_by) unless it is empty
 // kOutput: the file cannot be written; a name is not UTF-8, or an image name has no extension.

@@ -1,7 +1,7 @@
-// Measures seconds and memory for reading a transforms.json with 10,000 to a million frames (300
-// bytes each), which is first written into the temporary folder. Reports the peak memory of the
-// process before reading and at the end. The peak includes earlier benchmarks; therefore run one at
-// a time (--benchmark_filter=Read/1000000).
+// Measures the time and memory of reading a transforms.json with 10,000 to a million frames (300
+// bytes each). The file is first written into the temporary folder. Reports the peak memory of the
+// process before reading and at the end. The peak includes earlier benchmarks; therefore run one
+// benchmark at a time (--benchmark_filter=Read/1000000).
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <sys/resource.h>

@@ -1,5 +1,5 @@
 // Parses any bytes: the result must be a light field with sane cameras or an error. FrameCutter
-// must cut the bytes into the same frames for any size of the pieces.
+// must find the same frames whether it is given the text byte by byte or at once.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
