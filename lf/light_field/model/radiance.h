@@ -40,10 +40,10 @@ struct RadianceEncoding {
   BayerPattern bayer = BayerPattern::kNone;
   Transfer transfer = Transfer::kSrgb;
   std::vector<double> response;  // kResponse: radiance at black .. white, evenly spaced; 2 or more
-  double black_level = 0;             // stored value of no light
+  double black_level = 0;        // stored value of no light
   std::optional<double> white_level;  // stored value of radiance 1; default: the largest storable
   double max_radiance = 1;            // radiance (after gain) that v = 65535 stands for
-  double pedestal = 0;  // v of no light; if above 0, values below black are kept
+  double pedestal = 0;                // v of no light; if above 0, values below black are kept
   std::optional<AlphaMeaning> alpha;  // default: kMask
   // Radiance of R, G and B behind LF pixels that alpha does not cover completely; default: black.
   std::optional<std::array<double, 3>> background;

@@ -4,8 +4,8 @@
 //
 // `still-life`  Glass, mirrors and marbles on a dark wooden table, with strings of small lights far
 //               behind. Depths in front of the middle camera: marbles 0.43 to 1.2, the clear glass
-//               ball 0.75, the mirror ball 0.90, coloured balls 1.07 to 1.32, lights 2.1 to 2.7. 17
-//               x 17 cameras on 48 x 48 mm: an aperture of up to 46 mm. A focus pull from 0.58
+//               ball 0.75, the mirror ball 0.90, coloured balls 1.07 to 1.32, lights 2.1 to 2.7.
+//               17 x 17 cameras on 48 x 48 mm: an aperture of up to 46 mm. A focus pull from 0.58
 //               (amber marble) over 0.75 (glass ball) to 2.3 (lights) shows all of them.
 // `lights`      Only lights, on black: seven rows at depths 3, 2, 1.4, 1, 0.75, 0.6, 0.5 from the
 //               top, reddish on the left, bluish on the right.
@@ -18,10 +18,10 @@
 // displaced from one camera to the next by
 //     step_px = focal_length_px * spacing_w * |1/g - 1/z|
 // Its bokeh is therefore a sum of dots that are step_px apart. A lamp (Glow) of radius r is a
-// Gaussian dot of sigma_px = focal_length_px * r / (sqrt(2) z). The sum ripples by 2 exp(-2 (pi
-// sigma_px / step_px)^2): 1.4 % at sigma = step / 2, 8 % at 0.4; larger sigma make the ripple
-// invisible. Recommended for `still-life`: focal length 540 px, spacing 3 mm, lamps of 12.5 mm
-// radius. For z = 2.3, step is 2.1 px at g = 0.58 and 1.5 px at g = 0.75; sigma is 2.1 px. The
+// Gaussian dot of sigma_px = focal_length_px * r / (sqrt(2) z). The sum ripples by
+// 2 exp(-2 (pi sigma_px / step_px)^2): 1.4 % at sigma = step / 2, 8 % at 0.4; larger sigma make the
+// ripple invisible. Recommended for `still-life`: focal length 540 px, spacing 3 mm, lamps of 12.5
+// mm radius. For z = 2.3, step is 2.1 px at g = 0.58 and 1.5 px at g = 0.75; sigma is 2.1 px. The
 // bokeh of a 46 mm lens is then 32 and 22 px wide, in a picture of 480 px. Estimators that round to
 // whole pixels displace the dots by up to half a pixel; sigma is large enough for them.
 #pragma once

@@ -57,7 +57,7 @@ double Checker(const Pattern& pattern, const Vec2& place_w, double width_w) {
 struct ShrinkingRow {
   int index = 0;
   double letter_w = 0;  // height of the row's letters
-  double down = 0;  // 0 at the top of a letter, 1 at its bottom; below 0 or above 1 in a gap
+  double down = 0;      // 0 at the top of a letter, 1 at its bottom; below 0 or above 1 in a gap
 };
 constexpr int kRowCount = 12;
 

@@ -91,7 +91,7 @@ void AddDistortion(const Distortion& distortion, const Distortion& top, const ch
 }
 
 // Writes the intrinsics. `top` are the intrinsics at the top level. lf_skew and lf_vignetting are
-// left out if they are 0 in both.
+// left out if they are 0 in `k` and in `top`.
 void AddIntrinsics(const Intrinsics& k, const Intrinsics& top, const char* separator,
                    JsonText* json) {
   AddDistortion(k.distortion, top.distortion, separator, json);
@@ -223,7 +223,7 @@ Result<std::string> TransformsJsonText(const LightField& light_field) {
   return json.text();
 }
 
-// Returns FNV-1a with 64 bits. It shows whether a file was edited after it was written.
+// Returns the 64-bit FNV-1a hash. It shows whether a file was edited after it was written.
 uint64_t ChecksumOf(std::string_view text) {
   uint64_t sum = 0xcbf29ce484222325;
   for (const char c : text) sum = (sum ^ static_cast<unsigned char>(c)) * 0x100000001b3;

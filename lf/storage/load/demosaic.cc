@@ -72,9 +72,9 @@ class RowWindow {
 RowGains GainsOf(const std::array<double, 3>& white_balance, int c) {
   constexpr int kGreen = 1;
   const int d = 2 - c;
-  return {.g_at_c = 2 * BalanceRatio(white_balance, c, kGreen),  // gain 1/2; L is 1/4 of the sum
-          .d_at_c = 3 * BalanceRatio(white_balance, c, d),       // gain 3/4; L is 1/4 of the sum
-          .c_at_g = BalanceRatio(white_balance, kGreen, c),      // gain 5/8; L is 1/10 of the sum
+  return {.g_at_c = 2 * BalanceRatio(white_balance, c, kGreen),  // 2/16: gain 1/2, L is sum / 4
+          .d_at_c = 3 * BalanceRatio(white_balance, c, d),       // 3/16: gain 3/4, L is sum / 4
+          .c_at_g = BalanceRatio(white_balance, kGreen, c),      // 1/16: gain 5/8, L is sum / 10
           .d_at_g = BalanceRatio(white_balance, kGreen, d)};
 }
 
@@ -100,8 +100,8 @@ void DemosaicRow(const std::array<const uint16_t*, 5>& rows, bool begins_with_g,
   std::memcpy(rgb + static_cast<ptrdiff_t>(last) * kLanes, cut_pair, kLanes * sizeof(*rgb));
 }
 
-// Masks pixels that are computed from masked pixels. Returns true if there are any.
-//   rows  of the mosaic's mask
+// Masks RGB pixels that are computed from masked mosaic pixels. Returns true if it masks any.
+//   rows  as RowWindow::MoveTo() returns them for the mosaic's mask
 bool MaskRow(const std::array<const uint8_t*, 5>& rows, int width, std::vector<uint8_t>* kept,
              uint16_t* rgb) {
   uint8_t least = 255;

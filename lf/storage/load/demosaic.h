@@ -7,8 +7,9 @@
 // Laplacian), and w is the white balance. The gains are the paper's: 1/2 for G, 5/8 for R and B at
 // G, 3/4 for R at B and B at R.
 //
-// - Reason for w: a grey detail has equal height in all colours only after white balance, so that L
-//   of d also serves c. In the mosaic, which is not balanced, its height is proportional to 1 / w.
+// - Reason for w: a grey detail has equal height in all colours only after white balance. In the
+//   mosaic, which is not balanced, the height is proportional to 1 / w. The factor w[d] / w[c]
+//   turns the height of L, which is measured in d, into the height in c.
 // - Means and L are exact. The ratio w[d] / w[c] has steps of 1/256 and is limited to 8, because a
 //   larger factor would mostly amplify noise. Sums are integers, rounded half up and clipped to
 //   0..65535, so that the result has the same bits on every machine.
@@ -36,7 +37,8 @@ PixelRect MosaicRectOf(const PixelRect& rect, int image_width_px, int image_heig
 void Demosaic(const LfPixels& mosaic, int image_width_px, int image_height_px,
               const std::array<double, 3>& white_balance, const PixelRect& rect, LfPixels* rgb);
 
-// Computes the same pixels as Demosaic(), bit for bit, literally by the formula, one at a time.
+// Computes the same pixels as Demosaic(), bit for bit, literally by the formula, one pixel at a
+// time.
 void DemosaicReference(const LfPixels& mosaic, int image_width_px, int image_height_px,
                        const std::array<double, 3>& white_balance, const PixelRect& rect,
                        LfPixels* rgb);

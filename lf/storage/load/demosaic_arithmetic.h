@@ -18,7 +18,7 @@ inline constexpr int kRatioBits = 8;
 // Largest ratio: 8. With it no sum reaches 2^31: (4096 + 12 * 2048) * 65535 < 2^31.
 inline constexpr int32_t kMaxRatio = 8 << kRatioBits;
 
-// Returns w[recorded] / w[missing] in units of 1/256, at most kMaxRatio.
+// Returns w[recorded] / w[missing] in units of 1/256, at most kMaxRatio, for the white balance w.
 inline int32_t BalanceRatio(const std::array<double, 3>& white_balance, int recorded, int missing) {
   const double of_recorded = white_balance[static_cast<size_t>(recorded)];
   const double of_missing = white_balance[static_cast<size_t>(missing)];

@@ -1,5 +1,6 @@
-// A plain loop that compilers vectorise, compiled for every instruction set; the program chooses
-// one at run time (Highway). With the minimum that x86-64 has, it takes more than twice as long.
+// A plain loop that compilers vectorise. It is compiled for every instruction set, and the program
+// chooses one of these versions at run time (Highway). The version for the minimum that x86-64 has
+// takes more than twice as long.
 #include "lf/storage/load/demosaic_row.h"
 
 #include <algorithm>
@@ -38,7 +39,7 @@ HWY_ATTR HWY_INLINE uint32_t Colour(int32_t sum) {
 }
 
 // c, g and d in the names are C, G and D of RowGains. "near" is the sum of the pixels above and
-// below; "left" and "right" are the pairs beside this one.
+// below; "left" and "right" are the pairs beside the pair `here`.
 template <bool kCIsRed>
 HWY_ATTR void DemosaicPairsBy(const uint16_t* const rows[5], const RowGains& gains, int pair_count,
                               uint16_t* HWY_RESTRICT rgb) {

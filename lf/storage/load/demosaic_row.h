@@ -9,9 +9,9 @@ namespace lf {
 // of a mosaic holds G and either R or B, which is called C here; D is the colour that the row
 // lacks.
 struct RowGains {
-  int32_t g_at_c = 0;  // factor of 4 C minus the four others
+  int32_t g_at_c = 0;  // factor of 4 C minus the four C that are 2 pixels away
   int32_t d_at_c = 0;
-  int32_t c_at_g = 0;  // factor of 10 G minus the others, weighted
+  int32_t c_at_g = 0;  // factor of 10 G minus a weighted sum of the other G
   int32_t d_at_g = 0;
 };
 

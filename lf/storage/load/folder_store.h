@@ -16,8 +16,9 @@ namespace lf {
 // values to radiance as LightField::encoding says:
 //   - Integers of 8 or 16 bits are converted by the table of the encoding. Floats are radiance
 //     already, and are quantised.
-//   - With a Bayer pattern, a file has one channel. It gives a mosaic, or RGB pixels computed
-//     from it (demosaic.h). Without one, a file is RGB, or grey, which counts for all channels.
+//   - With a Bayer pattern, a file has one channel. The store returns it as a mosaic, or as RGB
+//     pixels computed from the mosaic (demosaic.h). Without a pattern, a file is RGB, or grey,
+//     which counts for all colours.
 //   - RadianceEncoding::alpha decides whether pixels with an alpha below one half are masked, or
 //     all pixels are composed with the background (opacities.h). Pixels that are 0 in the first
 //     channel of the image's mask file are masked. Further channels are ignored.
@@ -30,9 +31,9 @@ class FolderStore : public LfImageStore {
  public:
   explicit FolderStore(const LightField& light_field, Mosaics mosaics = Mosaics::kAsRecorded);
 
-  // Loads the pixels of `rect`, cut to the image. kInput as LfImageStore says, and if the levels
-  // (lf_black_level, lf_white_level) exceed the file's bits, a mask file has another size than the
-  // image, or a camera raw file has another Bayer pattern.
+  // Loads the pixels of `rect`, clipped to the image. kInput as LfImageStore says, and if the
+  // levels (lf_black_level, lf_white_level) exceed the file's bits, a mask file has another size
+  // than the image, or a camera raw file has another Bayer pattern.
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override;
   bool IsThere(LfImageId id) const override;
   uint64_t StoredBytes(LfImageId id) const override;

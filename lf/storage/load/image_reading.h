@@ -76,20 +76,20 @@ void ForEachClipped(const ImagePart& part, int colours, const RadianceEncoding& 
 }
 
 // Distance in pixels around each clipped pixel of the brighter LF image within which the darker LF
-// image sends rays. It is the reach of the four pixels of an interpolation and, for mosaics, of the
-// pixels from which these are computed. Within it, pixels that the brighter LF image does not clip
-// send rays from both LF images.
+// image sends rays. It covers the four pixels that an interpolation reads and, for mosaics, the
+// mosaic pixels from which these are computed. Within this distance, pixels that the brighter LF
+// image does not clip send rays from both LF images.
 inline int ReachOfDarker(BayerPattern bayer) { return bayer == BayerPattern::kNone ? 1 : 4; }
 
-// Calls mask(x, y) for the pixels of `rect` that the next brighter LF image of the pose shows,
-// because it is clipped neither there nor within ReachOfDarker(). Reads that LF image; masks
+// Calls mask(x, y) for the pixels of `rect` that the next brighter LF image of the pose shows: it
+// clips neither the pixel nor one within ReachOfDarker() of it. Reads the brighter LF image; masks
 // nothing if it cannot be read.
 void ForEachSeenBrighter(const LightField& light_field, LfImageId id, const PixelRect& rect,
                          const std::function<void(int x, int y)>& mask);
 
-// Calls mask(x, y) for all masked pixels of `rect`: those that alpha masks (if alpha is a mask),
-// those that are clipped or that a brighter LF image shows (in brackets,
-// light_field/model/brackets.h), and those that the mask file masks, which is read if there is one.
+// Calls mask(x, y) for all masked pixels of `rect`. A pixel is masked if alpha is a mask and masks
+// it, if the pixel is clipped or a brighter LF image shows it (in brackets,
+// light_field/model/brackets.h), or if the mask file masks it, which is read if there is one.
 // mask() may be called several times for one pixel. kInput: the mask file cannot be read.
 template <class Mask>
 Result<void> ForEachMasked(const LightField& light_field, LfImageId id, const ImagePart& part,
@@ -113,8 +113,8 @@ Result<void> ForEachMasked(const LightField& light_field, LfImageId id, const Im
   return {};
 }
 
-// kInput if integers of `bits` bits cannot hold the light field's levels.
-//   path  of the image, for the message
+// Returns kInput if integers of `bits` bits cannot hold the light field's levels.
+//   path  path of the image, for the message
 Result<void> CheckLevels(const RadianceEncoding& encoding, int bits, const std::string& path);
 
 }  // namespace lf

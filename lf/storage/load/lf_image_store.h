@@ -24,7 +24,7 @@ class LfImageStore {
   // Loads at least the pixels `rect` of one LF image, as linear 16-bit radiance. Reuses the memory
   // of `pixels`. May be called by many threads at the same time. kInput, naming the file: the image
   // is missing, broken or of another size than the calibration says. kOutput: the machine lacks
-  // something, such as memory. The caller decides whether to continue without it.
+  // something, such as memory. The caller decides whether to continue without the image.
   virtual Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const = 0;
 
   // Returns true if the file exists, even if it is broken. The answer may change, for example if a
@@ -34,11 +34,11 @@ class LfImageStore {
   // Returns true if pixels of LF images were left out on purpose when the store was made. Keeps()
   // then tells which.
   virtual bool IsPartial() const { return false; }
-  // Returns false if some of the pixels `rect`, cut to the image, were left out on purpose.
+  // Returns false if some of the pixels `rect`, clipped to the image, were left out on purpose.
   virtual bool Keeps(LfImageId /*id*/, const PixelRect& /*rect*/) const { return true; }
 
-  // Returns the bytes that loading reads: the size of the file, or of the encoded image in a packed
-  // store. 0 if it is missing, or the size is not known.
+  // Returns the number of bytes that loading reads: the size of the file, or of the encoded image
+  // in a packed store; 0 if the image is missing or the size is not known.
   virtual uint64_t StoredBytes(LfImageId /*id*/) const { return 0; }
 
   // Announces that the image will be loaded soon, so that the disk may begin to read it. Does not
@@ -53,9 +53,10 @@ class LfImageStore {
 Result<LfPixels> LoadWithoutThrowing(const LfImageStore& store, LfImageId id, const PixelRect& rect,
                                      const std::string& name, LfPixels pixels);
 
-// Remembers the first failure to load that is the machine's fault (no memory, no open files). A
-// caller that leaves out LF images that cannot be loaded must check it at the end, because such an
-// LF image may be intact. All functions may be called by many threads at the same time.
+// Remembers the first failure to load that is the machine's fault (out of memory, too many open
+// files). A caller that leaves out LF images that cannot be loaded must call Check() at the end,
+// because such an LF image may be intact. All functions may be called by many threads at the same
+// time.
 class MachineFailure {
  public:
   // Ignores errors of the image itself, which are not kOutput.

@@ -64,8 +64,8 @@ void ExpectComposed(const LightField& field, const Image<T>& stored, const LfPix
         const double expected = encoding.alpha == AlphaMeaning::kStraight
                                     ? a * v + (1 - a) * behind
                                     : v + (1 - a) * (behind - encoding.pedestal);
-        // Rounding adds an error of up to 0.5, and alpha in 65534 instead of 65535 steps of up to
-        // 1.
+        // Rounding causes an error of up to 0.5. Alpha in 65534 instead of 65535 steps causes an
+        // error of up to 1.
         ASSERT_NEAR(pixels.radiance.at(x, y, c), std::min(expected, 65535.0), 1.51)
             << x << " " << y;
       }

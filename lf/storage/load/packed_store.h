@@ -18,11 +18,11 @@
 namespace lf {
 
 // Decodes the recorded values (recorded_image.h) and converts them to radiance as FolderStore does
-// for files. After lossless encoding, both give the same bits, unless floats were rounded to half.
-// Takes 32 bytes of memory for each LF image of the light field, and as many connections to the
-// file as threads have loaded at the same time. While one image loads, its encoded bytes, its
-// stored values and the result are in memory together. Keeps a reference to `light_field`, which
-// must outlive the store.
+// for files. After lossless encoding, both stores give the same bits, unless floats were rounded to
+// half floats. Takes 32 bytes of memory for each LF image of the light field, and as many
+// connections to the file as threads have loaded at the same time. While one image loads, its
+// encoded bytes, its stored values and the result are in memory together. Keeps a reference to
+// `light_field`, which must outlive the store.
 class PackedStore : public LfImageStore {
  public:
   // Opens the file light_field.folder. Its LF images are found by name, so that the light field may
@@ -30,7 +30,7 @@ class PackedStore : public LfImageStore {
   // storage/packed/packed_store_file.h says.
   static Result<std::unique_ptr<PackedStore>> Open(const LightField& light_field, Mosaics mosaics);
 
-  // Loads the pixels of `rect`, cut to the image. kInput as LfImageStore says, naming store and
+  // Loads the pixels of `rect`, clipped to the image. kInput as LfImageStore says, naming store and
   // image: the image is not in the store, the pixels lie beyond those that were encoded, or the
   // store is damaged.
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override;

@@ -21,7 +21,7 @@ using LaneTable = std::array<std::array<uint64_t, 256>, 3>;
 class RadianceTables {
  public:
   RadianceTables(const RadianceEncoding& encoding, const ChannelGains& gains);
-  // Makes the tables for files of one type only; the others stay empty.
+  // Makes only the tables for files with `bits` bits per value; the other tables stay empty.
   RadianceTables(const RadianceEncoding& encoding, const ChannelGains& gains, int bits);
 
   // Null if the levels do not fit. If all gains are equal, the channels share a table.
@@ -46,8 +46,8 @@ class RadianceTables {
 // does. Writes all lanes, and masks nothing. The levels must fit the integers.
 //   colours  1: grey or mosaic; 3: the first three channels
 //   plain    the tables of gain 1; tables for other gains are made when needed
-//   camera   for its gains
-//   k        of the camera, for its falloff
+//   camera   the gains are taken from it
+//   k        intrinsics of the camera, for the falloff
 void ConvertRadiance(const ImagePart& part, int colours, const RadianceTables& plain,
                      const RadianceEncoding& encoding, const LfCamera& camera, const Intrinsics& k,
                      LfPixels* pixels);

@@ -1,4 +1,5 @@
-// usage: radiance_conversion_bench     measures ns per pixel of an 8-bit RGB image
+// Measures how long ConvertRadiance() takes for an 8-bit RGB image, in ns per pixel, with and
+// without a falloff.
 #include <benchmark/benchmark.h>
 
 #include "lf/storage/load/radiance_conversion.h"

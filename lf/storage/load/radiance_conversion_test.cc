@@ -127,7 +127,7 @@ TEST(ConvertRadiance, AFalloffOfOneHalfDoublesTheLight) {
   LfPixels pixels({0, 0, 1, 1}, BayerPattern::kNone);
   ConvertRadiance(part, 1, RadianceTables(world.encoding, ChannelGains()), world.encoding,
                   world.camera, world.k, &pixels);
-  EXPECT_EQ(pixels.radiance.at(0, 0, 0), 10000);  // max_radiance is 2
+  EXPECT_EQ(pixels.radiance.at(0, 0, 0), 10000);  // light is doubled, and max_radiance is 2
 }
 
 }  // namespace

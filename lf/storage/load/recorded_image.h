@@ -23,14 +23,14 @@ struct RecordedImage {
   StoredValues values = StoredValues::kUint8;
   PixelRect rect;
   Image<uint8_t> mask;  // [height][width]: 0 masked, 255 not; empty: nothing is masked
-  // Replaces the mask if alpha is light (opacities.h). Empty: all is opaque.
+  // Replaces the mask if alpha is light (opacities.h). Empty: every pixel is opaque.
   Image<uint16_t> opacities;
   bool is_rounded = false;    // a float was not representable as half, and was rounded to the
                               // nearest
   uint64_t source_bytes = 0;  // size of the image's file and its mask file
 };
 
-// Reads the pixels of `rect`, cut to the image, rotated upright as in the calibration, and not
+// Reads the pixels of `rect`, clipped to the image, rotated upright as in the calibration, and not
 // composed with a background. Pixels that are masked by alpha, the mask file (folder_store.h) or
 // brackets (light_field/model/brackets.h) are 0 in the mask. Floats become the nearest half floats,
 // NaN becomes 0. When half floats are loaded, they are quantised as floats of image files are.

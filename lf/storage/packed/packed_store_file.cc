@@ -211,7 +211,8 @@ Result<std::vector<PackedCode>> FindCodes(const fs::path& path,
                                           std::span<const std::string> names) {
   LF_ASSIGN_OR_RETURN(OpenedStore store, OpenComplete(path));
   LF_ASSIGN_OR_RETURN(const std::vector<PackedCode> codes, ReadCodes(&store));
-  // Merges both lists in the order of names, so that no further table of a million names is needed.
+  // Merges `names` and the names in the store, both in ascending order, so that no further table of
+  // a million names is needed.
   std::vector<uint32_t> order(names.size());
   std::iota(order.begin(), order.end(), 0U);
   std::stable_sort(order.begin(), order.end(),

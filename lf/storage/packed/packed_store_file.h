@@ -51,13 +51,13 @@ struct PackedStoreFacts {
   LightFieldIdentity whole;         // the light field that the LF images are from
   std::vector<uint32_t> whole_ids;  // ids in `whole`, in the order of light_field.cameras
   std::string source;               // LIGHTFIELD, as the user gave it to the writer
-  std::string codec;                // settings, in words
+  std::string codec;                // settings of the codec, in words
   std::string written_by;
   size_t shard_count = 0;  // 0: the encoded images are in the file itself
 };
 
-// kInput: the file cannot be read, is no complete packed store, is damaged, has another version, or
-// lacks a shard.
+// Reads everything but the encoded images. kInput: the file cannot be read, is no complete packed
+// store, is damaged, has another version, or lacks a shard.
 Result<PackedStoreFacts> ReadPackedStore(const std::filesystem::path& path);
 
 // Returns the store's file, followed by its shards.
@@ -65,8 +65,8 @@ std::vector<std::filesystem::path> FilesOf(const std::filesystem::path& path,
                                            const PackedStoreFacts& facts);
 
 // Black and white level of the display curve along which images are encoded as kDisplay16. They are
-// the levels that the light field had when the images were encoded; its levels may be corrected
-// later.
+// the levels that the light field had when the images were encoded; the levels of the light field
+// may be corrected later.
 struct DisplayLevels {
   double black = 0;
   double white = 0;  // above black
@@ -74,12 +74,12 @@ struct DisplayLevels {
 // kInput as ReadPackedStore(), and if the store has no such levels.
 Result<DisplayLevels> ReadDisplayLevels(const std::filesystem::path& path);
 
-// Returns PackedStoreFacts::codec without reading the rest. Settings that begin with kLosslessCodec
-// restore the recorded values exactly.
+// Returns PackedStoreFacts::codec without reading the other facts. Settings that begin with
+// kLosslessCodec restore the recorded values exactly.
 Result<std::string> ReadCodecSettings(const std::filesystem::path& path);
 inline constexpr std::string_view kLosslessCodec = "lossless";
 
-// Returns PackedStoreFacts::whole without reading the rest.
+// Returns PackedStoreFacts::whole without reading the other facts.
 Result<LightFieldIdentity> ReadWholeIdentity(const std::filesystem::path& path);
 
 // Position and type of one encoded LF image. Takes 32 bytes.
@@ -97,8 +97,8 @@ struct PackedCode {
 };
 
 // Returns an entry for each of `names`; it is not listed if the store has no LF image of this name.
-// If a name occurs twice, the first and the second LF image of this name in the store are taken.
-// Takes seconds for a million names. kInput as ReadPackedStore().
+// If a name occurs twice in `names`, the two entries belong to the first and the second LF image of
+// this name in the store. Takes seconds for a million names. kInput as ReadPackedStore().
 Result<std::vector<PackedCode>> FindCodes(const std::filesystem::path& path,
                                           std::span<const std::string> names);
 

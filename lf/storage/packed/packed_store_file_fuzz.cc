@@ -1,5 +1,5 @@
-// Any bytes, read as a file, must give a packed store or an error. A store must have only valid
-// cameras and tables, and give encoded images or errors.
+// Reads any bytes as a file: the result must be a packed store or an error. A store must have only
+// valid cameras and tables, and reading its encoded images must succeed or return an error.
 #include <unistd.h>
 
 #include <cstddef>

@@ -39,7 +39,7 @@ LightField TestField(uint32_t count = 40) {
         {pair.lf_camera.cam_from_world, i % 10, 0.5f + 0.1f * static_cast<float>(i)});
     if (i % 4 == 1) field.cameras.back().gain = {1.0f / 3, 1, 2.0f / 3};
     if (i % 3 == 1 && i < 10) field.intrinsics.back().vignetting.v = {-1e-9 / 3, 0, 0.0025};
-    // The order differs from that of the names.
+    // The LF images are not in the order of their names.
     field.image_names.push_back("bänd/ima'ge " + std::to_string((i * 17) % count) + ".png");
     field.mask_names.push_back(i % 2 == 0 ? "" : "mask.png");
   }
@@ -187,7 +187,7 @@ TEST_F(PackedStoreFileTest, ShardsHoldTheCodes) {
   plan_.shard_bytes = 10000;
   Write();
   const size_t count = ReadPackedStore(path_).value().shard_count;
-  EXPECT_GE(count, 8u);  // more than a reader keeps open
+  EXPECT_GE(count, 8u);  // at least as many as a reader keeps open
   EXPECT_EQ(Files().size(), count + 1);
   ExpectHoldsAll();
   EXPECT_EQ(PackedStoresIn(folder_), std::vector<fs::path>{path_});
@@ -203,12 +203,12 @@ TEST_F(PackedStoreFileTest, ShardsHoldTheCodes) {
   EXPECT_NE(fault().find("a store-0001.lfs: belongs to another packed store"), std::string::npos);
   fs::remove(first);
   EXPECT_NE(fault().find("a store-0001.lfs: no such file"), std::string::npos);
-  // A store without shards replaces it and removes the remaining shards.
+  // A store without shards replaces the store. The shards behind the missing first one stay,
+  // because the search for shards to remove ends at a missing one.
   plan_.shard_bytes = 0;
   Write();
   ExpectHoldsAll();
-  EXPECT_EQ(Files().size(), count);  // Shards from the missing one on are not found: the chain is
-                                     // broken there.
+  EXPECT_EQ(Files().size(), count);  // the store and count - 1 shards
 }
 
 TEST_F(PackedStoreFileTest, AnUnfinishedStoreGoesOn) {

@@ -161,7 +161,7 @@ struct PackedStoreWriter::State {
   uint64_t shard_bytes = 0;
   std::string store;
   std::string replaced;                // id of the store that has the final name
-  std::vector<uint64_t> source_bytes;  // of the LF images that earlier runs added
+  std::vector<uint64_t> source_bytes;  // for the LF images that earlier runs added
 
   std::mutex mutex;  // guards everything below
   std::vector<bool> has;
@@ -169,7 +169,7 @@ struct PackedStoreWriter::State {
   std::optional<Statement> insert_code;
   int shard_count = 0;
   uint64_t bytes_in_shard = 0;
-  std::optional<Database> shard;  // the last one
+  std::optional<Database> shard;  // the last shard
   std::optional<Statement> insert_blob;
   size_t batch_size = 0;
   std::chrono::steady_clock::time_point batch_begin;
@@ -238,8 +238,8 @@ Result<void> PackedStoreWriter::State::TakeShardsBack() const {
   return {};
 }
 
-// kUsage unless a shard may get this name. It may if no file has the name, or if a shard of this
-// store or of the store that is replaced has it.
+// Returns kUsage if the name of a shard is taken: by a file that is a shard neither of this store
+// nor of the store that is replaced.
 Result<void> PackedStoreWriter::State::CheckIsFree(const fs::path& shard_path) const {
   std::error_code error;
   if (!fs::exists(fs::symlink_status(shard_path, error))) return {};

@@ -44,7 +44,7 @@ std::string UriOf(const fs::path& path) {
   return uri + "?immutable=1";
 }
 
-// Returns the length of the file that its header states; 0 if the header states no valid one
+// Returns the length that the file's header states for the file; 0 if it states no valid length
 // (SQLite's "Database File Format", 1.3).
 uintmax_t BytesOfPages(const fs::path& path) {
   constexpr size_t kHeadBytes = 100, kPageSize = 16, kChanges = 24, kPages = 28, kPagesValid = 92;
@@ -330,14 +330,15 @@ Result<Database> Database::OpenToAppend(const fs::path& path, const DatabaseForm
       fmt::format("pragma page_size = {}; pragma journal_mode = delete; pragma synchronous = full;",
                   format.page_bytes)));
   LF_ASSIGN_OR_RETURN(const int64_t page_count, database.Pragma("page_count"));
-  // SQLite leaves a journal in place if it had nothing to roll back. It is no longer needed.
+  // SQLite leaves a journal in place if there was nothing to roll back. Such a journal is no longer
+  // needed.
   std::error_code ignored;
   fs::remove(fs::path(path) += "-journal", ignored);
   if (page_count > 0) {
     LF_RETURN_IF_ERROR(database.CheckFormat(format));
     return database;
   }
-  // One transaction sets both or none, even if the program is killed here.
+  // One transaction sets both pragmas or none, even if the program is killed here.
   LF_RETURN_IF_ERROR(database.Execute(
       fmt::format("begin; pragma application_id = {}; pragma user_version = {}; commit",
                   static_cast<int32_t>(format.application_id), format.version)));
@@ -365,7 +366,8 @@ Result<Database> Database::Open(const fs::path& path, const DatabaseFormat& form
   // allocated.
   sqlite3_db_config(state->handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(state->handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
-  // No value can be longer than the file, whatever its header claims.
+  // A value cannot be longer than the file, whatever length a damaged row states for it. Limits
+  // SQLite accordingly (to at least kLeastLimit).
   constexpr uintmax_t kLeastLimit = 1 << 20;
   const uintmax_t longest = std::clamp<uintmax_t>(size, kLeastLimit, kMaxBlobBytes);
   sqlite3_limit(state->handle, SQLITE_LIMIT_LENGTH, static_cast<int>(longest));

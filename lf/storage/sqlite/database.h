@@ -1,5 +1,5 @@
-// Our SQLite files: packages and packed stores (doc/design.md, "SQLite is the file format"). No
-// other folder uses SQLite.
+// Reads and writes our SQLite files: packages and packed stores (doc/design.md, "SQLite is the file
+// format"). No other folder uses SQLite.
 //
 // A file states its kind by its application_id, and its version by its user_version. It is written
 // under a temporary name, either at once (core/file.h) or in batches over hours, and then only

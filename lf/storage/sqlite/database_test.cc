@@ -90,7 +90,7 @@ TEST_F(DatabaseTest, ReadsWhatWasWritten) {
   const Result<int> rows = ReadAll(Write());
   ASSERT_TRUE(rows) << rows.error().message;
   EXPECT_EQ(*rows, 20);
-  // A smaller file replaces it.
+  // Write() replaces the file by a smaller one.
   EXPECT_EQ(*ReadAll(Write(3)), 3);
 }
 
@@ -174,7 +174,8 @@ TEST_F(DatabaseTest, KeepsAllBitsOfNumbers) {
   }
 }
 
-// Files with other objects in place of the expected tables, correct in every other way.
+// The files have other tables, views, triggers or indices than expected, and are correct in every
+// other way.
 TEST_F(DatabaseTest, OtherTablesAreRefusedBeforeTheyAreRead) {
   const std::string endless =
       "with recursive c(x) as (select 0 union all select x + 1 from c) select x as key, "

@@ -13,8 +13,8 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// The footer is 8 letters, the size of the file before it and its XXH3, least significant bytes
-// first.
+// The footer consists of 8 letters, the size of the file in front of the footer, and the XXH3 of
+// the file's bytes. Both numbers are stored with the least significant byte first.
 constexpr std::string_view kLetters = "LFSEAL1\n";
 constexpr size_t kSealBytes = 24;
 constexpr size_t kPartBytes = size_t{1} << 20;

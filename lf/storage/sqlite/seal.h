@@ -12,7 +12,8 @@ namespace lf {
 // Appends the footer to a file that is complete and closed. kOutput if the file cannot be written.
 Result<void> SealFile(const std::filesystem::path& path);
 
-// kInput: the file is shorter or longer than it was, or a byte has changed.
+// Checks a file against its footer. kInput: the file is shorter or longer than it was, or one of
+// its bytes has changed.
 //   what  name of this kind of file in messages: "package"
 Result<void> CheckSeal(const std::filesystem::path& path, const char* what);
 

@@ -23,15 +23,15 @@ create table intrinsics (id integer primary key, width integer, height integer, 
   cx real, cy real, skew real, distortion text, parameters text);)";
 
 Result<void> WriteIntrinsics(const std::vector<Intrinsics>& intrinsics, Database* database);
-// settings  of the file, for messages
+//   settings  the settings of the file, for messages
 Result<std::vector<Intrinsics>> ReadIntrinsics(const Settings& settings, Database* database);
 
 // Binds the columns of an LF camera, beginning at `parameter`: intrinsics, gain, x, y, z (for
 // people) and pose.
 void BindCamera(const LightField& light_field, LfImageId id, int parameter, Statement* statement);
 // Reads the columns intrinsics, gain, pose, beginning at `column`.
-//   name              of the LF image, for messages; an empty name is damage
-//   intrinsics_count  rows of the table of intrinsics
+//   name              name of the LF image, for messages; an empty name is damage
+//   intrinsics_count  number of rows in the table of intrinsics
 Result<LfCamera> ReadCamera(const Settings& settings, const Statement& row, int column,
                             const std::string& name, size_t intrinsics_count);
 

@@ -1,5 +1,5 @@
-// Numbers in blobs, least significant byte first, and limits for the numbers of a file. The readers
-// of calibrations and paths have the same limits.
+// Converts numbers to and from blobs (least significant byte first) and text, and checks the
+// numbers of a file against limits. The readers of calibrations and paths have the same limits.
 #pragma once
 
 #include <array>
@@ -37,7 +37,7 @@ inline constexpr size_t kPoseNumbers = 12;
 std::array<double, kPoseNumbers> NumbersOfPose(const RigidTransform& pose);
 RigidTransform PoseOfNumbers(std::span<const double, kPoseNumbers> numbers);
 
-// Returns the numbers of a text, separated by spaces; none if a word is not a finite number.
+// Returns the numbers of a text, separated by spaces; nullopt if a word is not a finite number.
 std::optional<std::vector<double>> ParseNumbers(const std::string& text);
 
 inline constexpr int64_t kMostSide_px = 65536;
