@@ -1,4 +1,4 @@
-// The range of the depths of a reconstruction's points. Internal to this folder.
+// Finds the range of the depths of a reconstruction's points. Internal to this folder.
 #pragma once
 
 #include <cstdint>

@@ -24,7 +24,7 @@ TEST(ColmapDepths, WhatLiesBehindACameraDoesNotCount) {
   EXPECT_EQ(sample.Range(), (DepthRange{3, 3}));
 }
 
-// There are many more depths than the sample keeps.
+// There are 2.5 times as many depths as the sample may keep.
 TEST(ColmapDepths, TheOrderDoesNotMatter) {
   constexpr uint64_t kCount = 5 * DepthSample::kMaxCount / 2;
   const auto depth = [](uint64_t i) { return 1 + static_cast<double>(i) / kCount; };

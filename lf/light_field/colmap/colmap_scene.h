@@ -17,8 +17,9 @@
 
 namespace lf {
 
-inline constexpr size_t kMaxColmapEntryCount = size_t{1} << 24;  // most cameras, and most images
-inline constexpr size_t kMaxColmapNameSize = 4096;               // bytes
+// Largest number of cameras, and of images.
+inline constexpr size_t kMaxColmapEntryCount = size_t{1} << 24;
+inline constexpr size_t kMaxColmapNameSize = 4096;  // bytes
 
 struct ColmapImage {
   uint32_t id = 0;

@@ -20,8 +20,8 @@ namespace lf {
 // by at most 1e-6. Time and memory are linear in the number of LF images.
 std::vector<uint32_t> FirstOfPose(const LightField& light_field);
 
-// Returns how much light the LF image recorded, relative to other LF images: 1 / gain, with the
-// geometric mean of the gains of the three channels.
+// Returns how much light the LF image recorded, relative to other LF images: 1 / gain, where `gain`
+// is the geometric mean of the gains of the three channels.
 double ExposureOf(const LfCamera& camera);
 
 // Exposures that differ by less than this factor count as equal.

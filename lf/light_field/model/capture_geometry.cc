@@ -30,7 +30,7 @@ double Percentile(std::vector<double> values, double share) {
   return *at;
 }
 
-// Returns the squared distance of `point` to a line.
+// Returns the squared distance of `point` to the line `axis`.
 double SquaredDistance(const Vec3& point, const Ray& axis) {
   const Vec3 offset = point - axis.origin;
   return offset.squaredNorm() - std::pow(axis.direction.dot(offset), 2);

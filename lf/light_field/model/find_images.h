@@ -11,8 +11,8 @@
 
 namespace lf {
 
-// Searches for image files if none of up to 64 evenly spread LF images has a file where its name
-// says, or if `images_folder` is given and is not light_field->folder.
+// Searches for image files if none of up to 64 evenly spread LF images has a file at the path that
+// its name states, or if `images_folder` is given and is not light_field->folder.
 //
 // A file fits an LF image if both have the same base name; extension, upper and lower case and
 // folders may differ. If several files fit, the best is the one whose path shares most trailing

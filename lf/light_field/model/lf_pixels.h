@@ -14,8 +14,8 @@ struct LfPixels {
   // rays.
   static constexpr int kRgbLanes = 4;
   static constexpr int kRayLane = 3;
-  // Values v of the opacities 0 and 1. They leave room below and above, because the filters of
-  // collection undershoot and overshoot at edges of the opacity.
+  // Values v of the opacities 0 and 1. The range of v has room below and above them, because the
+  // filters of collection undershoot and overshoot where the opacity changes abruptly.
   static constexpr uint16_t kTransparent = 4096;
   static constexpr uint16_t kOpaque = 61440;
 

@@ -67,7 +67,7 @@ TEST(RadianceTable, NoiseAroundBlackAveragesToBlack) {
   const std::vector<uint16_t> table = RadianceTable(Raw12Bit(), 16, 1);
   for (size_t noise = 0; noise <= 60; ++noise)
     EXPECT_EQ(table[256 - noise] + table[256 + noise], 2 * 1024) << noise;
-  EXPECT_EQ(table[0], 0);  // stored 0 is 256 steps of 16.8 below a pedestal of 1024
+  EXPECT_EQ(table[0], 0);  // clipped: 256 steps of 16.8 are more than the pedestal of 1024
 }
 
 TEST(RadianceTable, HalvesRoundAwayFromZero) {
@@ -141,7 +141,7 @@ TEST(Levels, FitOnlyWhereTheFilesCanHoldThem) {
 }
 
 TEST(Levels, ClipNearWhiteCountedFromBlack) {
-  RadianceEncoding encoding = Raw12Bit();  // 256 to 4095
+  RadianceEncoding encoding = Raw12Bit();  // levels 256 to 4095
   EXPECT_DOUBLE_EQ(ClippedFrom(encoding, 16), 256 + 0.99 * 3839);
   encoding.white_level.reset();
   EXPECT_DOUBLE_EQ(ClippedFrom(encoding, 16), 256 + 0.99 * (65535 - 256));

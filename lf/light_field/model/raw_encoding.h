@@ -32,7 +32,7 @@ RadianceEncoding EncodingOfRaw(const RawFacts& facts);
 
 // Completes a light field whose calibration says nothing about pixels: sets the encoding of raw
 // files from the first image, keeps max_radiance, and warns about facts that the file does not
-// state. A light field whose first image is no raw file is unchanged. Errors of
+// state. A light field whose first image is no raw file is unchanged. Returns the errors of
 // RawFactsOfFirstImage().
 Result<void> CompleteEncodingOfRaw(LightField* light_field);
 

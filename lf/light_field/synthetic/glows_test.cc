@@ -28,8 +28,8 @@ TEST(Glows, ALampBehindTheEndOfTheRayOrItsStartIsNotSeen) {
   EXPECT_GT(glows.Along({Vec3::Zero(), Vec3::UnitZ()}, {}, 2.01)[0], 0.9);
 }
 
-// The light of a lamp summed over a grid of pixels is its total light, even if it is much smaller
-// than a pixel.
+// The light of a lamp summed over a grid of pixels is the lamp's total light, even if the lamp is
+// much smaller than a pixel.
 TEST(Glows, AFootprintLosesNoLight) {
   for (const double radius_w : {0.2, 0.02, 0.002}) {
     const Glows glows({{{0.013, -0.007, 1}, radius_w, Rgb::Constant(5)}});

@@ -15,7 +15,7 @@ TEST(Lighting, LightFallsWithTheSquareOfTheDistanceAndTheCosine) {
   const Lighting lighting({{{0, -2, 0}, 0.1, Rgb::Constant(8)}}, {}, Rgb::Zero());
   EXPECT_NEAR(LightAt(lighting, Vec3::Zero()), 2, 1e-12);
   EXPECT_NEAR(LightAt(lighting, {2, 0, 0}), 8 / 8.0 * std::sqrt(0.5), 1e-12);
-  EXPECT_EQ(lighting.DiffuseLight(Vec3::Zero(), -kUp)[1], 0);  // from behind
+  EXPECT_EQ(lighting.DiffuseLight(Vec3::Zero(), -kUp)[1], 0);  // the lamp is behind the surface
 }
 
 TEST(Lighting, ASphereThrowsAShadowWithASoftRim) {
@@ -50,7 +50,7 @@ TEST(Lighting, GlassGathersTheLightOfItsShadowInTheMiddle) {
   const Rgb green(0.2, 1, 0.2);
   const Lighting lighting({lamp}, {{{{0, -0.3, 0}, 0.2, 0}, true, green}}, Rgb::Zero());
   const Rgb middle = lighting.DiffuseLight(Vec3::Zero(), kUp);
-  EXPECT_GT(middle[1], 4);                       // brighter than without the sphere: 2
+  EXPECT_GT(middle[1], 4);                       // without the sphere, it is 2
   EXPECT_NEAR(middle[0], 0.2 * middle[1], 0.1);  // in the colour of the glass
   EXPECT_LT(LightAt(lighting, {0.2, 0, 0}), 1);  // while its surroundings are darker
 }

@@ -12,7 +12,7 @@ Vec3 Reflected(const Vec3& direction, const Vec3& normal);
 
 // Returns the direction of a ray after its refraction at a surface, by Snell's law n1 sin = n2 sin,
 // with index_ratio = n1 / n2. Both vectors have unit length, and the normal points against the
-// direction. None for total reflection.
+// direction. nullopt for total reflection.
 std::optional<Vec3> Refracted(const Vec3& direction, const Vec3& normal, double index_ratio);
 
 // Returns the share of unpolarised light that a glass surface reflects (Fresnel). The light enters

@@ -20,7 +20,7 @@ TEST(Optics, AMirrorReturnsLightUnderTheAngleOfIncidence) {
     const Vec3 out = Reflected(in, normal);
     EXPECT_NEAR(out.norm(), 1, 1e-12);
     EXPECT_NEAR(out.dot(normal), -in.dot(normal), 1e-12);
-    EXPECT_NEAR(out.cross(normal).dot(in), 0, 1e-12);  // in one plane
+    EXPECT_NEAR(out.cross(normal).dot(in), 0, 1e-12);  // all three lie in one plane
   }
 }
 

@@ -15,8 +15,8 @@ PinholeCamera Camera(int width, int height, double focal_px) {
   return camera;  // at the origin, looking along +z
 }
 
-// Returns a white ball in white ambient light before a black background, so that the value of a
-// pixel is the share of it that the ball covers.
+// Returns a white ball in white ambient light in front of a black background, so that the value of
+// a pixel is the share of it that the ball covers.
 Scene WhiteBall(const Vec3& centre, double radius_w) {
   SceneDescription description;
   Material white;
@@ -123,7 +123,7 @@ TEST(Photograph, OutOfFocusALampTakesTheShapeOfTheLens) {
         sum += static_cast<double>(picture.at(x, y));
         row += (y + 0.5) * static_cast<double>(picture.at(x, y));
       }
-    EXPECT_NEAR(row / sum, 40.5, 0.1);  // the centre of mass of the pentagon is that of the lens
+    EXPECT_NEAR(row / sum, 40.5, 0.1);  // the pentagon's centre of mass is the centre of the lens
     // No light is lost: the lamp's image has the same flux as in focus.
     const double radius_in_focus_px = 400 * 0.002 / depth_w;
     EXPECT_NEAR(sum, 100 * kPi * radius_in_focus_px * radius_in_focus_px, 0.03 * sum);

@@ -11,8 +11,8 @@ namespace lf {
 
 enum class RigShape : uint8_t {
   kPlanar,  // a grid in a plane, all cameras looking along `view_world`
-  kBand,    // up to three rows on an arc around the upright line through the target, looking at it
-  kHemisphere,  // spread evenly over the dome above the target, looking at it
+  kBand,  // at most 3 rows on an arc around the upright line through the target, facing the target
+  kHemisphere,  // spread evenly over the dome above the target, facing the target
 };
 
 struct RigOptions {

@@ -43,7 +43,8 @@ TEST(Scene, ADiffuseSurfaceUnderAWhiteRoomShowsItsColour) {
 }
 
 // A ray that passes the centre of a mirror ball of radius 1 at distance h hits it under the angle
-// of incidence asin(h). The angle between the direction back and the reflected ray is twice that.
+// of incidence asin(h). The angle between the direction back and the reflected ray is twice as
+// large.
 TEST(Scene, AMirrorBallShowsALampUnderTheMirrorAngle) {
   const double h = 0.4;
   const Vec3 normal(h, 0, -std::sqrt(1 - h * h));

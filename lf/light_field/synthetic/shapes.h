@@ -18,10 +18,10 @@ inline constexpr double kLeastLambda = 1e-7;
 
 // Returns the distance along `ray`, whose direction has unit length, to the first point of the
 // sphere beyond kLeastLambda. If the ray starts inside, this is the point where it leaves the
-// sphere. None if there is no such point.
+// sphere. nullopt if there is no such point.
 std::optional<double> Intersect(const Ray& ray, const Sphere& sphere);
 
-// A panel with precomputed values, which the tests of all rays use.
+// A panel with values that are computed once for the tests of all rays.
 struct PanelPlane {
   explicit PanelPlane(const Panel& panel);
 
@@ -43,7 +43,8 @@ struct PanelPlane {
   uint32_t material = 0;
 };
 
-// Returns the distance along `ray` to a panel, on either of its sides; none if the ray misses it.
+// Returns the distance along `ray` to a panel, on either of its sides; nullopt if the ray misses
+// it.
 std::optional<double> Intersect(const Ray& ray, const PanelPlane& panel);
 
 // The first point where a ray meets a shape; kNothing if it meets none. Shapes are numbered: first

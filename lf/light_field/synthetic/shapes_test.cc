@@ -18,8 +18,8 @@ Vec3 RandomPoint(uint64_t stream, uint64_t i) {
 TEST(Shapes, ARayMeetsASphereAtItsAnalyticDistance) {
   const Sphere sphere{{0, 0, 5}, 2, 0};
   EXPECT_NEAR(*Intersect({Vec3::Zero(), Vec3::UnitZ()}, sphere), 3, 1e-12);
-  // The ray passes the centre at a distance of 1.2. It meets the sphere sqrt(2^2 - 1.2^2) = 1.6
-  // before its point nearest to the centre: at 5 - 1.6 = 3.4.
+  // The ray passes the centre at a distance of 1.2. It meets the sphere sqrt(2^2 - 1.2^2) = 1.6 in
+  // front of the point nearest to the centre: at 5 - 1.6 = 3.4.
   EXPECT_NEAR(*Intersect({{1.2, 0, 0}, Vec3::UnitZ()}, sphere), 3.4, 1e-12);
   EXPECT_FALSE(Intersect({{2.001, 0, 0}, Vec3::UnitZ()}, sphere));
   EXPECT_FALSE(Intersect({Vec3::Zero(), -Vec3::UnitZ()}, sphere));

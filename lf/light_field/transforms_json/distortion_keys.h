@@ -42,12 +42,12 @@ struct DistortionKeys {
 // pi).
 Result<DistortionKeys> ReadDistortionKeys(const JsonFields& fields);
 
-// Takes each key from the frame, or from the top level if the frame lacks it; a key that both lack
-// is 0. A missing camera_model means OPENCV, or OPENCV_FISHEYE if is_fisheye is true.
-// Radial-tangential and division models whose parameters are all 0, and EUCM with alpha 0, become
-// kNone.
-// kInput: a nonzero parameter that the model does not have, an is_fisheye that contradicts the
-// model, a FOV without omega, an alpha or beta of EUCM out of range. `fields` is for messages.
+// Takes each key from the frame, or from the top level if the frame lacks it; a
+// parameter that both lack is 0. A missing camera_model means OPENCV, or OPENCV_FISHEYE if
+// is_fisheye is true. Radial-tangential and division models whose parameters are all 0, and EUCM
+// with alpha 0, become kNone. kInput: a nonzero parameter that the model does not have, an
+// is_fisheye that contradicts the model, a FOV without omega, an alpha or beta of EUCM out of
+// range. `fields` is for messages.
 Result<Distortion> ResolveDistortion(const DistortionKeys& frame, const DistortionKeys& top,
                                      const JsonFields& fields);
 

@@ -40,7 +40,7 @@ class FrameCutter {
   size_t frame_depth_ = 0;       // open brackets {} in the frame
   size_t depth_ = 0;             // open brackets of both kinds in the rest
   size_t key_begin_ = 0;         // index in rest_ at which the last string of the top level begins
-  size_t key_size_ = 0;          // its size without quotation marks
+  size_t key_size_ = 0;          // size of this string without quotation marks
   bool is_frames_list_ = false;  // the bracket that opened depth 2 begins the list of "frames"
   bool is_over_ = false;         // the top level was closed or is no object: no more frames
 };
