@@ -72,9 +72,11 @@ class RowWindow {
 RowGains GainsOf(const std::array<double, 3>& white_balance, int c) {
   constexpr int kGreen = 1;
   const int d = 2 - c;
-  return {.g_at_c = 2 * BalanceRatio(white_balance, c, kGreen),  // 2/16: gain 1/2, L is sum / 4
-          .d_at_c = 3 * BalanceRatio(white_balance, c, d),       // 3/16: gain 3/4, L is sum / 4
-          .c_at_g = BalanceRatio(white_balance, kGreen, c),      // 1/16: gain 5/8, L is sum / 10
+  // DemosaicPairs() computes 4 L at C and 10 L at G. The factors are gain / 4 and gain / 10, in
+  // units of 1/16.
+  return {.g_at_c = 2 * BalanceRatio(white_balance, c, kGreen),  // gain 1/2
+          .d_at_c = 3 * BalanceRatio(white_balance, c, d),       // gain 3/4
+          .c_at_g = BalanceRatio(white_balance, kGreen, c),      // gain 5/8
           .d_at_g = BalanceRatio(white_balance, kGreen, d)};
 }
 

@@ -174,8 +174,8 @@ TEST(Demosaic, GainsAreThePapersTimesTheRatioOfTheWhiteBalance) {
   EXPECT_EQ(at_spot(6, 6, {3, 1, 1.5}, 2), 1200);
 }
 
-// Except for rounding, white balance before demosaicing gives the same result as Demosaic() with
-// the white balance as its argument, followed by white balance.
+// Except for rounding, it makes no difference whether the pixels are white balanced before or after
+// demosaicing, because Demosaic() takes the white balance into account.
 TEST(Demosaic, WhiteBalanceMayComeAfterwards) {
   constexpr int kSize = 30;
   const std::array<int, 3> factors = {4, 1, 2};

@@ -241,7 +241,8 @@ TEST_F(FolderStoreTest, AMosaicBecomesRgbWhereItIsAskedTo) {
   ASSERT_TRUE(store.Load({0}, kWhole, &pixels));
   EXPECT_EQ(pixels.bayer, BayerPattern::kNone);
   EXPECT_EQ(pixels.radiance.pixels(), expected.radiance.pixels());
-  // A rectangle gives a part of the whole, also if it reaches beyond the image.
+  // The pixels of a rectangle are a part of the whole image, even if the rectangle reaches beyond
+  // it.
   ASSERT_TRUE(store.Load({0}, {1, 1, kWidth + 3, kHeight}, &pixels));
   EXPECT_EQ(pixels.rect, (PixelRect{1, 1, kWidth, kHeight}));
   for (int y = 1; y < kHeight; ++y)

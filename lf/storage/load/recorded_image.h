@@ -25,8 +25,7 @@ struct RecordedImage {
   Image<uint8_t> mask;  // [height][width]: 0 masked, 255 not; empty: nothing is masked
   // Replaces the mask if alpha is light (opacities.h). Empty: every pixel is opaque.
   Image<uint16_t> opacities;
-  bool is_rounded = false;    // a float was not representable as half, and was rounded to the
-                              // nearest
+  bool is_rounded = false;    // a float was not a half float, and was rounded to the nearest one
   uint64_t source_bytes = 0;  // size of the image's file and its mask file
 };
 

@@ -36,7 +36,7 @@ create table codes (id integer primary key, shard integer, kind text, x_begin in
 inline constexpr const char* kBlobsTable =
     "create table blobs (id integer primary key, code blob not null, mask blob);";
 
-// Opens a store, which has its encoded images itself or in shards.
+// Opens the file of a store, which holds the encoded images itself or leaves them to shards.
 inline Result<Database> OpenStoreDatabase(const std::filesystem::path& path) {
   const std::string tables = fmt::format("{}{}{}", kSettingsTable, kIntrinsicsTable, kStoreTables);
   return Database::Open(path, kStoreFormat, {tables + kBlobsTable, tables});

@@ -71,7 +71,7 @@ struct DisplayLevels {
   double black = 0;
   double white = 0;  // above black
 };
-// kInput as ReadPackedStore(), and if the store has no such levels.
+// Reads the levels. kInput as ReadPackedStore(), and if the store has no such levels.
 Result<DisplayLevels> ReadDisplayLevels(const std::filesystem::path& path);
 
 // Returns PackedStoreFacts::codec without reading the other facts. Settings that begin with
@@ -106,7 +106,7 @@ Result<std::vector<PackedCode>> FindCodes(const std::filesystem::path& path,
 // a few open.
 class PackedCodeReader {
  public:
-  // kInput as ReadPackedStore().
+  // Opens a store for reading. kInput as ReadPackedStore().
   static Result<PackedCodeReader> Open(const std::filesystem::path& path);
   PackedCodeReader(PackedCodeReader&&) noexcept;
   PackedCodeReader& operator=(PackedCodeReader&&) noexcept;

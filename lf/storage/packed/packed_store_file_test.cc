@@ -203,8 +203,8 @@ TEST_F(PackedStoreFileTest, ShardsHoldTheCodes) {
   EXPECT_NE(fault().find("a store-0001.lfs: belongs to another packed store"), std::string::npos);
   fs::remove(first);
   EXPECT_NE(fault().find("a store-0001.lfs: no such file"), std::string::npos);
-  // A store without shards replaces the store. The shards behind the missing first one stay,
-  // because the search for shards to remove ends at a missing one.
+  // A store without shards replaces the store with shards. The old shards behind the missing first
+  // one stay, because the search for shards to remove ends at a missing one.
   plan_.shard_bytes = 0;
   Write();
   ExpectHoldsAll();

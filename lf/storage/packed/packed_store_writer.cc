@@ -339,7 +339,7 @@ Result<void> PackedStoreWriter::State::FinishFiles() {
     LF_RETURN_IF_ERROR(RenameFlushed(UnfinishedPath(ShardPath(path, n)), ShardPath(path, n)));
   }
   LF_RETURN_IF_ERROR(RenameFlushed(UnfinishedPath(path), path));
-  // Removes the shards that the replaced store had in addition.
+  // Removes the shards of the replaced store whose numbers are beyond the last new shard.
   if (replaced.empty()) return {};
   std::error_code ignored;
   for (int n = shard_count + 1; n <= kMostShards && StoreOfShard(ShardPath(path, n)) == replaced;
@@ -370,7 +370,7 @@ Result<PackedStoreWriter> PackedStoreWriter::Open(const fs::path& path,
   state->replaced = StoreIdOf(path);
   state->has.resize(light_field.size());
   state->source_bytes.resize(light_field.size());
-  // Checks the name now, and not after all work is done.
+  // Checks the name of the first shard now, and not after all work is done.
   if (plan.shard_bytes > 0 && !IsUnfinished(path))
     LF_RETURN_IF_ERROR(state->CheckIsFree(ShardPath(path, 1)));
   LF_ASSIGN_OR_RETURN(Database database,

@@ -25,13 +25,13 @@ struct PackedStorePlan {
   std::vector<uint32_t> whole_ids;  // id of each LF image in `whole`; empty: 0, 1, 2, ...
   std::vector<PixelRect> rects;     // wanted pixels of each LF image; empty: all pixels
   std::string codec;                // all settings of the encoder, in words
-  std::optional<DisplayLevels> display_levels = {};  // of images encoded as kDisplay16
+  std::optional<DisplayLevels> display_levels = {};  // set if images are encoded as kDisplay16
   // 0: one file. Otherwise the encoded images are in STORE-0001.lfs, STORE-0002.lfs, ... of about
   // this size, beside STORE.lfs, which has everything else.
   uint64_t shard_bytes = 0;
   // These are for information only. They may differ when an unfinished store is resumed.
   std::string source;   // LIGHTFIELD or packages, as the user gave them
-  std::string version;  // of the program
+  std::string version;  // version of the program
 };
 
 // One encoded LF image, to be added.

@@ -19,7 +19,7 @@ constexpr int kMaxBlobBytes = 1 << 30;
 
 // Limit of the steps of SQLite's virtual machine for one command. A row takes some 10 steps for
 // each value, and each value takes at least a byte of the file. A damaged file could take any
-// number of steps, because its pages may be children of several others.
+// number of steps, because a page may be a child of several other pages.
 constexpr int kStepsBetweenLooks = 1000;
 constexpr int64_t kStepsOfSmallFile = 10'000'000, kStepsOfByte = 20;
 constexpr size_t kHashBytes = sizeof(uint64_t);

@@ -22,7 +22,7 @@ namespace lf {
 struct DatabaseFormat {
   const char* name;         // name of this kind of file in messages: "package"
   uint32_t application_id;  // four letters
-  int version;              // written by this program; older versions cannot be read
+  int version;              // version that this program writes; it cannot read older ones
   int page_bytes = 65536;   // a power of 2; should be small for small files
 };
 
@@ -52,8 +52,8 @@ class Statement {
   void Reset();
 
   bool IsNull(int column) const;
-  // Values of the current row. kInput if the column has another type, or a blob's checksum is
-  // wrong.
+  // Return values of the current row. kInput if the column has another type, or a blob's checksum
+  // is wrong.
   Result<int64_t> Integer(int column) const;
   Result<int64_t> Integer(int column, int64_t low, int64_t high) const;
   Result<double> Real(int column) const;  // always finite
