@@ -92,8 +92,9 @@ struct CameraTree::Builder {
     if (!codes.empty()) Add(0, codes.size(), kLevels);
   }
 
-  // Adds a node for codes [begin, end), and the nodes below it. A code has one octal digit for each
-  // level. The codes differ only in their lowest `levels` digits.
+  // Adds a node for codes [begin, end), and the nodes below it. A code is the Morton code of an LF
+  // camera's position, with one octal digit for each level. The codes differ only in their lowest
+  // `levels` digits.
   void Add(size_t begin, size_t end, int levels) {
     const auto digit = [&](size_t i, int level) { return codes[i].first >> (3 * (level - 1)) & 7; };
     const bool is_leaf = end - begin <= kMostInLeaf || levels == 0;
@@ -162,7 +163,7 @@ void CameraTree::ForEachLeaf(const SeenRegion& region,
   // If the angle between the optical axes is larger, the LF camera and the frame have no ray
   // direction in common.
   const double most_angle = region.ray_angle_rad() + view_angle_rad_ + kRounding;
-  uint32_t inside_until = 0;  // nodes before it are inside, as is a node above them
+  uint32_t inside_until = 0;  // nodes with a smaller index are inside, because a node above them is
   for (uint32_t n = 0; n < nodes_.size();) {
     const Node& node = nodes_[n];
     const Vec3 axis = Eigen::Map<const Eigen::Vector3f>(node.axis).cast<double>();

@@ -1,5 +1,5 @@
-// An octree over the positions of the LF cameras (thesis 4.2.1), so that a frame tests a few nodes
-// instead of a million LF cameras.
+// An octree over the positions of the LF cameras (thesis 4.2.1). With it, selection tests a few
+// nodes for each frame instead of a million LF cameras.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,15 @@
 
 namespace lf {
 
-// Takes about 7 bytes for each LF camera. Refers to the light field, which must outlive the tree.
+// Takes about 7 bytes of memory for each LF camera. Refers to the light field, which must outlive
+// the tree.
 class CameraTree {
  public:
   explicit CameraTree(const LightField& light_field);
 
   const LightField& light_field() const { return light_field_; }
 
-  // A leaf contains neighbouring LF cameras: at most 32, unless more have the same position.
+  // A leaf contains neighbouring LF cameras: at most 32, unless more have almost the same position.
   size_t leaf_count() const { return leaf_begin_.size() - 1; }
   std::span<const LfImageId> Leaf(size_t leaf) const {
     return std::span(ids_).subspan(leaf_begin_[leaf], leaf_begin_[leaf + 1] - leaf_begin_[leaf]);
@@ -38,7 +39,7 @@ class CameraTree {
   // The last child has the same `next` as node n.
   struct Node {
     float low[3], high[3];  // bounds of the LF cameras' positions, rounded outwards
-    float axis[3];          // no optical axis is more than spread_rad away from it
+    float axis[3];          // at most spread_rad from the optical axis of every LF camera
     float spread_rad;
     uint32_t next;  // the node after all nodes below this one
     uint32_t leaf_begin, leaf_end;

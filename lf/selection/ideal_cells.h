@@ -20,8 +20,10 @@ struct IdealCell {
 };
 
 // Divides the LF image into cells, at most 24 along its longer side. The box of a cell contains the
-// ideal positions of nine pixels, and a margin of twice their second differences. The margin is at
-// least eight times the deviation between these positions that a smooth lens causes.
+// ideal positions of nine points of the cell (its corners, the middles of its sides, its middle),
+// and a margin of twice the largest second difference between these. The ideal positions of other
+// points of the cell are outside of the box of the nine, if the lens is smooth, by at most an
+// eighth of the margin.
 std::vector<IdealCell> MakeIdealCells(const Intrinsics& k);
 
 }  // namespace lf

@@ -1,5 +1,5 @@
 // An index of a light field, made once for many selections: an octree of the LF cameras, and the
-// place of each LF image in the order.
+// place of each LF image in the order (image_order.h).
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,8 @@
 
 namespace lf {
 
-// Refers to the light field, which must outlive the index. Takes about 12 bytes for each LF camera.
+// Refers to the light field, which must outlive the index. Takes about 12 bytes of memory for each
+// LF camera.
 class ImageIndex {
  public:
   //   places  places of all LF images of light_field, which may be a part of a larger light field

@@ -42,7 +42,7 @@ std::vector<uint32_t> ByArea(std::vector<uint32_t> shuffled,
   return shuffled;
 }
 
-// Finds the frames that take an LF image, and their rays.
+// Finds the frames that take an LF image, and the number of its rays for each of them.
 class Takers {
  public:
   Takers(size_t image_count, std::span<const std::vector<ImageRays>> frames)
@@ -68,7 +68,7 @@ std::vector<uint32_t> RoundRobin(const std::vector<uint32_t>& shuffled,
                                  std::span<const std::vector<ImageRays>> frames) {
   const Takers takers(shuffled.size(), frames);
   const ImagePlaces places = PlacesOf(shuffled);
-  // [frame]: the next LF image is at the end
+  // [frame]: LF images that the frame has not got yet; the next is the last of the vector
   std::vector<std::vector<uint32_t>> waiting(frames.size());
   for (size_t f = 0; f < frames.size(); ++f) {
     for (const ImageRays& image : frames[f]) waiting[f].push_back(image.id.value);

@@ -19,8 +19,8 @@ namespace lf {
 
 //   kShuffle     random, depends only on a seed and not on the frames: gives an even result even
 //                before all LF images are processed
-//   kRoundRobin  all frames get rays equally fast: the next LF image is one for the frame that has
-//                the fewest rays so far
+//   kRoundRobin  all frames get rays equally fast: the next LF image is one that the frame with the
+//                fewest rays so far takes
 //   kArea        LF images with the most rays, summed over all frames, come first: gives many rays
 //                soon, but neighbouring LF images follow each other, so that the bokeh of
 //                unfinished frames is uneven
@@ -39,7 +39,7 @@ struct ImagePlaces {
 
 ImagePlaces ShuffledPlaces(size_t image_count, uint64_t seed);
 
-// An LF image that a frame takes.
+// An LF image that a frame takes, and the number of its rays for that frame.
 struct ImageRays {
   LfImageId id;
   uint64_t ray_count = 0;

@@ -31,7 +31,7 @@ std::vector<uint32_t> Ids(const ImagePlaces& places) {
   return ids;
 }
 
-// Counts the rays of each frame after the first tenth of the LF images that any frame takes.
+// Counts the rays that each frame gets from the first tenth of the LF images that any frame takes.
 // Returns the standard deviation of these counts divided by their mean.
 double SpreadAfterATenth(ImageOrder order, const std::vector<std::vector<ImageRays>>& frames) {
   const ImagePlaces places = PlacesInOrder(order, kImages, 3, frames);

@@ -50,8 +50,8 @@ class Clipped {
 
   // Keeps the part of the polygon with form <= 0.
   void Clip(const PixelForm& form) {
-    // These tests are quick, and enough for almost all half-planes: they keep the whole LF image or
-    // nothing.
+    // These tests are quick, and enough for almost all half-planes, which contain either the whole
+    // LF image or nothing of it.
     if (IsBelowZero(form, image_)) return;
     if (IsBelowZero(-form, image_)) {
       count_ = 0;
@@ -141,7 +141,8 @@ PixelRect ClippedRect(const Intrinsics& image, std::span<const PixelForm> plate,
     region.Clip(form);
     if (region.empty()) return {};
   }
-  // This holds for most LF cameras in a wide lens, and saves clipping by sixteen edges.
+  // Skips clipping by the edges of the lens (16 for a disk) if the lens contains all rays of the LF
+  // image, as it does for most LF cameras in a wide lens.
   if (LensHolds(forms, frame.lens_inner_w, image)) return region.Pixels(image, reach);
   const double margin_w = kLensMargin * frame.camera.aperture.radius_w;
   for (const ApertureEdge& edge : frame.lens_edges) {
@@ -212,9 +213,9 @@ ImageOverlap::ImageOverlap(const PinholeCamera& lf_camera, std::span<const Ideal
 }
 
 // A ray of direction d meets the lens plane at M d / (f.d) (doc/ray.md, 5). The separating line is
-// normal to the direction from the lens centre to the point where the middle ray meets the lens
-// plane. It touches a circle that contains every polygon by which Rect() clips, so that
-// PlainlyMisses() never contradicts Rect().
+// normal to the direction from the lens centre to the point where the ray of direction
+// middle_world_ meets the lens plane. It touches a circle that contains every polygon by which
+// Rect() clips, so that PlainlyMisses() never contradicts Rect().
 bool ImageOverlap::PlainlyMisses(const RenderCamera& render_camera) const {
   if (!has_bounds_) return false;
   constexpr double kRounding = 1e-9;

@@ -28,10 +28,11 @@ enum class PixelReach {
 // the plate sees beyond the horizon of a tilted focus plane. The thesis projects the lens and the
 // region into the LF image as rectangles and intersects them. This function clips the LF image by
 // the half-planes that bound them (camera/ray_forms.h). The result is the same region, but no point
-// must be projected that may lie in the plane through the LF camera.
+// is projected. Projection would fail for points in the plane through the LF camera's centre and
+// normal to its axis.
 //
 // An LF image with lens distortion cannot be clipped like this. For such an image, the rectangle
-// bounds all cells that no half-plane excludes.
+// bounds all cells (ideal_cells.h) that no half-plane excludes.
 //   cells  MakeIdealCells() of the LF camera's intrinsics; may be empty if the LF camera has no
 //          lens distortion
 PixelRect ContributingRect(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
@@ -44,13 +45,13 @@ struct FrameOutline {
 
   RenderCamera camera;
   std::vector<ApertureEdge> lens_edges;  // edges of a polygon that contains the lens
-  double lens_inner_w = 0;               // radius of a circle within that polygon
+  double lens_inner_w = 0;  // radius of the largest circle about the lens centre within the lens
 };
 
 // Computes ContributingRect() of one LF image for many frames. Values that depend only on the LF
-// image are computed once. If PlainlyMisses() is true, a frame takes about 30 ns instead of a
-// microsecond or more. This matters because a dense light field and a long path have millions of
-// pairs of LF image and frame, almost all of which plainly miss.
+// image are computed once. A frame for which PlainlyMisses() is true costs about 30 ns instead of a
+// microsecond or more. This speed matters because a dense light field and a long path have millions
+// of pairs of LF image and frame, almost all of which plainly miss.
 class ImageOverlap {
  public:
   //   cells  must outlive this object

@@ -103,7 +103,7 @@ TEST(Overlap, CamerasBeyondTheRimPlainlyMiss) {
 
 TEST(Overlap, ALensBehindTheBackOfTheCameraStillCounts) {
   testing::CameraPair pair = testing::ParallelPair(0, 0, 0.01, 0.2);
-  // 1 in front of the lens, looks away from it
+  // The LF camera is 1 world unit in front of the lens and looks away from it.
   pair.lf_camera.cam_from_world.translation = {0, 0, -1};
   const PixelRect rect = ContributingRect(pair.lf_camera, pair.render_camera);
   EXPECT_EQ(rect.width(), 40);  // slopes up to 0.2 to both sides, focal length 100 pixels

@@ -7,7 +7,7 @@
 namespace lf {
 namespace {
 
-// These margins are several times larger than those that overlap.cc adds to lens and plate.
+// The margins of lens and plate are 10 and 1000 times as large as those of overlap.cc.
 constexpr double kLensGrowth = 1 + 1e-5;
 constexpr double kPlateMargin_px = 1e-3;
 constexpr double kRounding = 1e-9;
@@ -31,8 +31,8 @@ SeenRegion::SeenRegion(const RenderCamera& frame)
   const Intrinsics& k = frame.pinhole.intrinsics;
   const Mat3 to_camera = k.InverseMatrix();
   const double height = frame.focus_plane.offset_w - frame.focus_plane.normal.dot(centre_);
-  // The bounds are found at the corners of the plate, because t and q are linear in the position on
-  // the plate.
+  // t and q (seen_region.h) are linear in the position on the plate. Their bounds are therefore at
+  // the corners of the plate.
   Vec2 t_low = Vec2::Constant(INFINITY), t_high = -t_low;
   q_low_ = INFINITY;
   q_high_ = -INFINITY;
@@ -64,7 +64,7 @@ SeenRegion::SeenRegion(const RenderCamera& frame)
     slope_[side] = bounds[side][0];
     other_slope_[side] = bounds[side][1];
   }
-  // Largest components of the direction X - L at depth 1.
+  // Largest right and up components of (X - L) / (depth of X).
   const Vec2 steepest =
       t_low.cwiseAbs().cwiseMax(t_high.cwiseAbs()) + Vec2::Constant(radius_w_ * q_high_);
   ray_angle_rad_ = std::atan(steepest.norm()) + kRounding;

@@ -22,10 +22,11 @@ struct WorldBox {
 
 // Every accepted ray passes through a point L of the lens and a point X of the focus plane that the
 // plate sees (doc/ray.md, 2-5). The position c of an LF camera with such a ray is on the line
-// through L and X,
+// through L and X. In axes of the lens (origin at its centre; right, up, forward):
 //   c = (1 - z q) L + z t,  z: depth of c in front of the lens, negative behind it,
-//                           t: direction of X at depth 1, q: 1 / depth of X.
-// With |L| <= r, t in a box and q in [q0, q1], each coordinate of c is at most
+//                           t: X / (depth of X), q: 1 / (depth of X).
+// If |L| <= r, q is in [q0, q1], and the right component of t is in [t0, t1], then the right
+// component of c is at most
 //   max(z t0, z t1) + r max(|1 - z q0|, |1 - z q1|)
 // and this bound is a convex function of z. There is such a bound on each of four sides (right,
 // left, above, below), and the set of points beyond it is convex. A box whose eight corners are all
@@ -57,10 +58,10 @@ class SeenRegion {
 
   Vec3 centre_, right_, up_, forward_;
   double radius_w_ = 0;
-  // Largest t towards each of the four sides, and smallest t towards the same side.
+  // [side]: largest and smallest component of t in the direction of this side.
   double slope_[4] = {};
   double other_slope_[4] = {};
-  double q_low_ = 0, q_high_ = 0;  // 1 / world units
+  double q_low_ = 0, q_high_ = 0;  // bounds of q, in 1 / world units
   double ray_angle_rad_ = 0;
   bool is_empty_ = false;       // no element has a focus point
   bool is_everything_ = false;  // no bounds are known

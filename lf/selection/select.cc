@@ -139,7 +139,8 @@ bool IsInterrupted(const SelectOptions& options) {
   return options.interrupted != nullptr && *options.interrupted;
 }
 
-// Returns the index at which the visits of each leaf begin, and at last the number of visits.
+// Returns the index at which the visits of each leaf begin and, as the last entry, the number of
+// visits.
 std::vector<size_t> LeavesOf(std::span<const Visit> visits) {
   std::vector<size_t> begin;
   for (size_t i = 0; i < visits.size(); ++i)

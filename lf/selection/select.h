@@ -32,10 +32,10 @@ struct PlaceRange {
 // misses the frame.
 struct SelectedImage {
   LfImageId id;
-  uint32_t place = 0;        // of the LF image in the order
+  uint32_t place = 0;        // its rank in the order (image_order.h)
   PixelRect rect;            // bounds of its rectangles for all frames that take it
   uint32_t frame_count = 0;  // number of frames that take it
-  uint64_t ray_count = 0;    // sum of the pixels of these rectangles: rays to be tested
+  uint64_t ray_count = 0;    // sum of the pixel counts of these rectangles: rays to be tested
 };
 
 struct SelectOptions {
@@ -48,10 +48,11 @@ struct SelectOptions {
   // look at the render camera. Here the user chooses the angle.)
   std::optional<double> max_angle_rad = {};
   // Returns false if an LF image is to be left out for a frame because it has no lens weight there.
-  // Empty: no LF image is left out for this reason. Called by any thread.
+  // Empty: no LF image is left out for this reason. Several threads call it at the same time.
   //   frame  index of the frame in the argument `frames` of SelectImages()
   std::function<bool(size_t frame, LfImageId id)> takes = {};
-  // May be null. Once it is true, the remaining work is skipped and the result must not be used.
+  // If it is not null and becomes true, the remaining work is skipped and the result must not be
+  // used.
   const std::atomic<bool>* interrupted = nullptr;
 };
 

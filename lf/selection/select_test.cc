@@ -152,7 +152,7 @@ TEST(Select, EveryFrameTakesItsFirstImagesOnly) {
         SelectImages(ImageIndex(grid), alone, {}, pool, std::span(places).subspan(f, 1));
     ASSERT_EQ(some.size(), 10u);
     for (size_t i = 0; i < some.size(); ++i) EXPECT_EQ(some[i].id, all[i].id);
-    // Selecting from that place on returns the remaining LF images.
+    // Selecting from the end of the frame's range on returns the remaining LF images.
     const std::vector<PlaceRange> rest = {{places[f].end}};
     EXPECT_EQ(SelectImages(ImageIndex(grid), alone, {}, pool, rest).size(), all.size() - 10);
   }

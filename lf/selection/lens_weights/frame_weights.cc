@@ -14,8 +14,8 @@
 namespace lf {
 namespace {
 
-// Largest movement of lens points from one node to the next, about, as a share of the distance
-// between LF cameras.
+// Approximate upper bound of the movement of lens points from one node to the next, as a share of
+// the distance between LF cameras.
 constexpr double kStepOfDistance = 1.0 / 3;
 constexpr int kMostNodes = 48;         // columns or rows of nodes
 constexpr int kLeastNodeStep_px = 32;  // a finer grid would cost more time than the rays
@@ -46,9 +46,9 @@ LensPoints PointsAt(const RenderCamera& frame, std::span<const Vec3> centres_wor
   return seen;
 }
 
-// Returns the approximate distance between neighbouring points around the lens. Considers the
-// kCamerasAround points nearest to the lens centre, or all points within the lens if these are
-// more.
+// Returns the approximate distance between neighbouring points around the lens, computed from the
+// density of the kCamerasAround points nearest to the lens centre, or of all points within the lens
+// if these are more.
 double DistanceAround(const LensPoints& seen, double radius) {
   std::vector<double> distances;
   for (const Vec2& point : seen.points) distances.push_back(point.norm());
@@ -244,7 +244,7 @@ void FrameWeights::SetWeights(const std::vector<Node>& nodes) {
 
 void FrameWeights::SetPlaces() {
   const auto set = [](int count, int size_px, std::vector<Place>* places) {
-    // A block may begin before the plate or end beyond it.
+    // A block may extend beyond any edge of the plate.
     places->resize(static_cast<size_t>(size_px) + kWeightBlock + 1);
     if (count == 1) return;
     for (size_t end = 0; end < places->size(); ++end) {

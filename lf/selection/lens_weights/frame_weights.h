@@ -1,10 +1,10 @@
 // The weights of all LF cameras in one frame, for each of its elements. They are integers
-// (doc/ray.md, "What is added"), and can be computed before an LF image is read.
+// (doc/ray.md, "What is added"), and are computed before any LF image is read.
 //
 // The point of the lens through which an LF camera sees an element depends on the element, unless
 // the LF camera is in the lens plane. Shares (lens_cells.h) are computed at the nodes of a grid
-// over the plate, and interpolated between the nodes. The more these points move over the plate,
-// the finer the grid is.
+// over the plate, and interpolated between the nodes. The farther such a point moves over the lens,
+// from one edge of the plate to the other, the finer the grid is.
 #pragma once
 
 #include <cstddef>
@@ -54,8 +54,9 @@ class FrameWeights {
   FrameWeights(const RenderCamera& frame, std::span<const Vec3> centres_world, LensWeights kind,
                ThreadPool& pool, bool are_brackets = false);
 
-  // Returns the weight of the rays of an LF camera to an element, from 0 (they add nothing) to
-  // kMaxWeight. All elements of a block of BlocksOf(camera) have the same weight.
+  // Returns the weight of an LF camera's rays that land on an element, from 0 (they add nothing) to
+  // kMaxWeight. `camera` is an index in centres_world. All elements of a block of BlocksOf(camera)
+  // have the same weight.
   //
   // Weights are proportional to shares, and the largest share of the frame has kMaxWeight, with two
   // exceptions. First, shares are limited to kMostSmallShares times a small share s: the smallest
@@ -82,8 +83,8 @@ class FrameWeights {
   // Coverage of the lens as seen from the middle of the plate (lens_coverage.h).
   const LensCoverage& coverage() const { return coverage_; }
 
-  // Numbers of nodes of the grid. Its outer nodes are on the edges of the plate; if the number is
-  // 1, the node is in the middle.
+  // Numbers of columns and rows of nodes. The outer ones are on the edges of the plate; a single
+  // column or row is in its middle.
   int columns() const { return columns_; }
   int rows() const { return rows_; }
 
@@ -100,9 +101,9 @@ class FrameWeights {
     double share;
     double distance_w;  // from the lens centre to the LF camera's lens point
   };
-  using Node = std::vector<CameraShare>;  // the shares above 0
-  // Position of the middle of a block: the node before it, and the distance from this node in 1/256
-  // of the distance between nodes.
+  using Node = std::vector<CameraShare>;  // the LF cameras with a share above 0
+  // Position of the middle of a block, across or down: the index of the node to its left (or above
+  // it), and the distance from this node in 1/256 of the distance between nodes.
   struct Place {
     int node = 0;
     int fraction = 0;
@@ -120,22 +121,23 @@ class FrameWeights {
   int height_px_;
   int columns_ = 1;
   int rows_ = 1;
-  double farthest_w_ = 0;             // largest Share::distance_w at any node
+  double farthest_w_ = 0;             // largest CameraShare::distance_w at any node
   double step_w_ = 0;                 // largest movement of lens points from one node to the next
   std::vector<Place> places_across_;  // [end of the block]
   std::vector<Place> places_down_;
-  std::vector<size_t> nodes_begin_;  // [camera]: index of its first weight, or kNone
+  std::vector<size_t> nodes_begin_;  // [camera]: index of its first weight in weights_, or kNone
   std::vector<uint16_t> weights_;    // for each camera [row][column], in 1/256
 };
 
 // CameraDistance() returns the approximate distance between neighbouring LF cameras around the
-// lens, in world units. It is measured between the points where their rays to the middle of the
-// plate meet the lens plane. Considered are the kCamerasAround points nearest to the lens centre,
-// or all points within the lens if these are more. 0 if there is none.
+// lens, in world units. It is computed from the density of the points where the rays of these LF
+// cameras to the middle of the plate meet the lens plane. The density is that of the kCamerasAround
+// points nearest to the lens centre, or of all points within the lens if these are more. 0 if there
+// are no points.
 inline constexpr size_t kCamerasAround = 12;
 double CameraDistance(const RenderCamera& frame, std::span<const Vec3> centres_world);
 
-// Returns each position once, in the order of coordinates. It is used for brackets, which have
+// Returns each position once, sorted by x, then y, then z. It is used for brackets, which have
 // several LF images of one pose, so that the distance between poses does not depend on the number
 // of exposures.
 std::vector<Vec3> DistinctPlaces(std::span<const Vec3> centres_world);

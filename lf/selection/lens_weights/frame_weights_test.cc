@@ -215,7 +215,7 @@ TEST(FrameWeights, AreTheSameInBlocksOfEachCamerasOwn) {
 }
 
 TEST(FrameWeights, OneCameraWithAHugeShareLeavesTheOthersTheirs) {
-  // to be moved into a corner of the lens
+  // Cameras around the lens centre, which are then moved into a corner of the lens.
   std::vector<Vec3> centres = JitteredGrid(10, 0.002, 0.3, 6);
   for (Vec3& c : centres) c += Vec3(0.1, 0.1, 0);
   centres.emplace_back(-0.1, -0.1, 0);

@@ -38,8 +38,8 @@ class ImageFeather {
   double At(const Vec3& direction) const;
 
   Intrinsics intrinsics_;
-  // These are linear in the position e = (x, y, 1) on the plate. X is the focus point of the
-  // position, c the centre of the LF camera.
+  // The following are linear in the position e = (x, y, 1) on the plate. X is the focus point of
+  // the position, c the centre of the LF camera.
   Mat3 to_focus_;      // X - c in axes of the LF camera, times a positive factor
   Vec3 before_lens_;   // times e: > 0 if X is in front of the lens
   Vec3 runs_forward_;  // times e: >= 0 if X - c points forward; otherwise c - X does

@@ -82,9 +82,9 @@ class HatMaker {
   ConvexPolygon part_;  // a member, so that its memory is reused
 };
 
-// For a point beside the opening, finds the closest place of the opening's rim, and returns one of
-// the points near that place: the nearest to it. Returns nullopt for a point in the opening, or if
-// there is no other point near that place.
+// For a point outside of the circle around the opening, returns the other point that is nearest to
+// the closest place of this circle. Only the buckets around that place are searched. Returns
+// nullopt if these contain no other point, or if `point` is in the circle.
 std::optional<Vec2> PointAtRim(const Vec2& point, std::span<const Vec2> points,
                                const PointGrid& grid, double radius) {
   const double distance = point.norm();
@@ -113,8 +113,8 @@ std::vector<double> CellShares(std::span<const Vec2> points, const Aperture& ape
   std::vector<double> shares;
   shares.reserve(points.size());
   for (const Vec2& point : points) {
-    // Most points beside the opening have no cell in it, because a point near its rim is nearer to
-    // all of it. This is tested first, because it is quick.
+    // Most points beside the opening have no cell in it, because a single other point near the rim
+    // is nearer to every place of the opening. Clipping by that point first is quick.
     ConvexPolygon around = opening;
     if (const std::optional<Vec2> rival = PointAtRim(point, points, grid, aperture.radius_w)) {
       const Vec2 across = *rival - point;

@@ -27,10 +27,10 @@ CoveredRegion CoveredBy(std::span<const Vec2> points);
 inline constexpr double kMuchUncovered = 0.1;
 
 struct LensCoverage {
-  // Share of the opening that is not covered: it is farther from every point than kFarDistances *
-  // DistanceOfMost() or, if the opening is wider than DistanceOfMost(), outside of
-  // CoveredBy(points). For a pinhole, only its middle is tested: 0 or 1. Exact to about 1 / 256. 1
-  // if there are no two different points.
+  // Share of the opening that is farther from every point than kFarDistances * DistanceOfMost() or,
+  // if the opening is wider than DistanceOfMost(), outside of CoveredBy(points). For a pinhole,
+  // only its middle is tested: 0 or 1. Exact to about 1 / 256. 1 if there are no two different
+  // points.
   double uncovered_share = 1;
   // Diameter of the largest aperture with the same centre that is within CoveredBy(points); 0 if
   // there are no two different points.
