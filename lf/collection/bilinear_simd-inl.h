@@ -22,8 +22,8 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Half of the sum of all weights. It is added to round half up. The largest sum, 65535 * 65536 +
-// kHalf, just fits into 32 bits.
+// Half of the sum of the weights of a ray's four pixels. It is added to round half up. The largest
+// sum, 65535 * 65536 + kHalf, just fits into 32 bits.
 constexpr uint32_t kHalf = kOne * kOne / 2;
 
 // AddRays() adds rays [i, i + kRaysAtOnce) of `places` to the elements with the same indices in
@@ -56,8 +56,8 @@ using AllLanes = hn::CappedTag<uint32_t, 16>;
 using LanesOfOne = hn::Full128<uint32_t>;
 constexpr int kRaysAtOnce = static_cast<int>(hn::MaxLanes(AllLanes())) / LfPixels::kRgbLanes;
 
-// For each ray, loads two adjacent pixels into a block of 128 bits: pixel[k] and the next one into
-// block k.
+// For each ray, loads two adjacent pixels into a block of 128 bits: pixel number pixel[k] of
+// `values` and the pixel to its right into block k.
 HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<uint16_t>> LoadPairs(hn::Full128<uint16_t> d,
                                                              const uint16_t* values,
                                                              const int32_t* pixel) {

@@ -53,7 +53,7 @@ inline const CubicTables& TablesOfCubics() {
 #if HWY_TARGET == HWY_SCALAR
 
 // Adds the ray between the sixteen pixels that begin at `first` to element i of `sums`. `right` and
-// `down` are its distances from the upper left of the inner four pixels, in steps of 1 /
+// `down` are its distances from the upper left one of the inner four pixels, in steps of 1 /
 // kCubicSteps px.
 template <class Weights>
 HWY_INLINE void AddCubicRay(const CubicTables& tables, uint32_t right, uint32_t down,
@@ -86,9 +86,9 @@ struct ColumnWeights {
   V16 high[2];
 };
 
-// Mixes columns of four pixels, the topmost of which are at `first`: sums the weighted pixels less
-// kMiddle and divides by 2^kShift, rounded half up. Writes the columns of the first pixel of each
-// block to `low`, those of the second to `high`.
+// Mixes columns of four pixels, the topmost of which are at `first`: sums (pixel - kMiddle) *
+// weight and divides the sum by 2^kShift, rounded half up. Writes the mixed columns of the first
+// pixel in each block of 128 bits to `low`, those of the second pixel to `high`.
 template <int kShift, class D16, class V16, class V32>
 HWY_ATTR HWY_INLINE void MixColumns(D16 d16, const ColumnWeights<V16>& weights,
                                     const uint16_t* first, ptrdiff_t row_values, V32* low,
@@ -139,7 +139,7 @@ HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<int32_t>> MixSixteen(D d, const ColumnWe
 }
 
 // Adds the ray between the sixteen pixels that begin at `first` to element i of `sums`. `right` and
-// `down` are its distances from the upper left of the inner four pixels, in steps of 1 /
+// `down` are its distances from the upper left one of the inner four pixels, in steps of 1 /
 // kCubicSteps px.
 template <class Weights>
 HWY_ATTR HWY_INLINE void AddCubicRay(const CubicTables& tables, uint32_t right, uint32_t down,

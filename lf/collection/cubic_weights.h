@@ -5,9 +5,9 @@
 //   column_k = round((d0 p_0k + d1 p_1k + d2 p_2k + d3 p_3k) / 2^8),   d = CubicTapsAt(down, 12)
 // Then the columns are mixed to the value,
 //   round((c0 column_0 + c1 column_1 + c2 column_2 + c3 column_3) / 2^15)
-// with c = CubicTapsAt(right, 11), which is clipped to 16 bits. `right` and `down` are distances
-// from the upper left of the inner four pixels, in steps of 1 / kCubicSteps px. The value is exact
-// if all pixels are equal. All sums fit into 32 bits if 2^15 is subtracted from p.
+// with c = CubicTapsAt(right, 11). The value is clipped to 16 bits. `right` and `down` are
+// distances from the upper left one of the inner four pixels, in steps of 1 / kCubicSteps px. The
+// value is exact if all pixels are equal. All sums fit into 32 bits if 2^15 is subtracted from p.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ inline constexpr int kCubicDownBits = 12;
 inline constexpr int kCubicRightBits = 11;
 inline constexpr int kCubicColumnShift = 8;
 inline constexpr int kCubicShift = kCubicDownBits - kCubicColumnShift + kCubicRightBits;
-inline constexpr int kCubicSteps = 256;  // from one pixel to the next
+inline constexpr int kCubicSteps = 256;  // steps from one pixel to the next
 
 using CubicTaps = std::array<int32_t, 4>;
 

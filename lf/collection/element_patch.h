@@ -14,9 +14,9 @@ namespace lf {
 class ElementPatch {
  public:
   // Fits a polynomial through the positions on the plate, (x p, y p) / (denominator p), of six by
-  // six ideal positions p in columns [x_begin, x_end) of `patch`. Returns none if it deviates from
-  // positions between these by more than SegmentMaker::kTolerance, or if positions are too far
-  // apart for single precision (IsNearMiddle()).
+  // six ideal positions p in columns [x_begin, x_end) of `patch`. Returns none if the polynomial
+  // deviates from positions between these by more than SegmentMaker::kTolerance, or if positions
+  // are too far apart for single precision (IsNearMiddle()).
   static std::optional<ElementPatch> Fit(const PixelForm& x, const PixelForm& y,
                                          const PixelForm& denominator, const IdealPatch& patch,
                                          int x_begin, int x_end);

@@ -3,8 +3,8 @@
 // LF pixels are finer than elements, this ray is the mean of several rays through the element
 // (gather_sampling.h). LF images must be RGB.
 //
-// One test compares two back ends. The reference intersects planes for every element. The fast back
-// end works in two steps, as in scatter.h:
+// There are two back ends, which a test compares. The reference intersects planes for every
+// element. The fast back end works in two steps, as in scatter.h:
 //   1. PlanGather, called once per (LF image, frame), finds the accepted elements of each row of
 //      the plate and cuts them into segments along which the position in the LF image is a
 //      polynomial.
@@ -53,8 +53,8 @@ std::optional<RgbRay> InterpolatePixels(const LfPixels& pixels, int width_px, in
                                         double x_px, double y_px,
                                         const GatherSampling& sampling = {});
 
-// True if each of the four pixel centres around (x, y) recorded a ray. Pixels beyond the fold of
-// the lens distortion recorded none.
+// True if each of the four pixels whose centres are around (x, y) recorded a ray. Pixels beyond the
+// fold of the lens distortion recorded none.
 bool RaysArriveAround(const Intrinsics& k, const DistortionMap& map, double x_px, double y_px);
 
 // Adds to each element the ray that this LF image recorded for it, if there is one. Returns the
@@ -70,7 +70,7 @@ struct GatherPlan {
   int plate_width = 0;
   int plate_height = 0;
   // The accepted elements of the finer plate, which has sampling.samples times as many rows and
-  // columns, sorted by y, then x.
+  // columns as the plate, sorted by y, then x.
   std::vector<Segment> segments;
   std::vector<size_t> row_begin;  // [plate_height * samples + 1]: index of a row's first segment
 };

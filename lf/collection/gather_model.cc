@@ -16,7 +16,7 @@ GatherModel::GatherModel(const PinholeCamera& lf_camera, const RenderCamera& ren
       may_lack_rays_(MayLackRays(lf_camera.intrinsics)) {}
 
 std::optional<Vec3> GatherModel::Direction(int x, int y) const {
-  // The focus point, before the lens.
+  // The element's focus point; nullopt if it is not in front of the lens.
   const std::optional<Vec3> focus_point = FocusPointOfElement(render_camera_, x + 0.5, y + 0.5);
   if (!focus_point) return std::nullopt;
   const Vec3 d = ray_.DirectionWorld(*focus_point);

@@ -26,8 +26,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr int kWeightBits = 8;
 constexpr int kOne = 1 << kWeightBits;  // sum of the weights along x, or along y
 
-// kMiddle is subtracted from the values of pixels, because the instruction that multiplies and adds
-// pairs of products needs signed numbers.
+// kMiddle is subtracted from the values of pixels, because the instruction that multiplies pairs of
+// numbers and adds the two products needs signed numbers.
 constexpr uint16_t kMiddle = 0x8000;
 
 // For each of consecutive elements: the upper left one of the four pixels around its ray, as an
@@ -47,8 +47,9 @@ struct Places {
 // overflow.
 constexpr float kWhole = 12582912;
 
-// One coordinate of a position: the last pixel whose centre is not behind the position, counted
-// from the first pixel of the loaded rectangle, and the distance from this centre in 1/256 px.
+// One coordinate of a position: the last pixel whose centre is not to the right of the position (or
+// below it), counted from the first pixel of the loaded rectangle, and the distance of the position
+// from this centre in 1/256 px.
 struct Coordinate {
   hn::Vec<LaneI> pixel;
   hn::Vec<LaneI> weight;
@@ -81,7 +82,7 @@ class CoordinateFinder {
 
  private:
   float polynomial_[Segment::kTerms];
-  int32_t base_;  // pixel `base` from `begin` in 1/256 px, less the bits of kWhole
+  int32_t base_;  // (base - begin) in 1/256 px, less the bits of kWhole
   int32_t last_;
 };
 

@@ -13,13 +13,15 @@ namespace lf {
 namespace {
 
 // Linear forms of an element position e for one (LF camera, render camera). X is the point of the
-// focus plane that the element sees, and d = +-(X - c) is the direction of its ray, forward.
+// focus plane that the element sees, c the centre of the LF camera. The direction d of the
+// element's ray is X - c or c - X, whichever runs forward.
 struct GatherForms {
-  PixelForm plane;       // > 0 where X is before the lens
-  PixelForm forward;     // f.(X - c) times a positive number; its sign is the +- of d
+  PixelForm plane;       // > 0 where X is in front of the lens
+  PixelForm forward;     // f.(X - c) times a positive number: > 0 if d = X - c
   PixelForm lens_right;  // lens position = (lens_right e, lens_up e) / (forward e)
   PixelForm lens_up;
-  // X - c in axes of the LF camera; without lens distortion multiplied by K: homogeneous pixels.
+  // X - c in axes of the LF camera, times a positive number. Without lens distortion also
+  // multiplied by K, which yields homogeneous pixel positions.
   PixelForm across_x;
   PixelForm across_y;
   PixelForm depth;
@@ -52,7 +54,7 @@ GatherForms MakeForms(const PinholeCamera& lf_camera, const RenderCamera& render
 }
 
 // Returns forms that are at most 0 for every accepted element, among elements whose forward form
-// has this sign. With lens distortion, there are no forms for the borders of the LF image.
+// has the sign `sign`. With lens distortion, there are no forms for the borders of the LF image.
 std::vector<PixelForm> HalfPlanes(const GatherForms& forms, const Intrinsics& k,
                                   const Aperture& aperture, int sign) {
   std::vector<PixelForm> half_planes = {-forms.plane, -sign * forms.forward};
@@ -73,7 +75,7 @@ std::vector<PixelForm> HalfPlanes(const GatherForms& forms, const Intrinsics& k,
 
 class GatherPlanner {
  public:
-  // finer the render camera with the finer plate of `sampling`
+  //   finer  the render camera with the finer plate of `sampling`
   GatherPlanner(const PinholeCamera& lf_camera, const RenderCamera& finer,
                 const GatherSampling& sampling, GatherPlan memory)
       : k_(lf_camera.intrinsics),

@@ -15,8 +15,9 @@ namespace lf {
 namespace {
 
 // Returns the value of a ray in one colour, interpolated between the four nearest pixels. `right`
-// and `down` are its distances from the upper left of these, in 1/256 px. pixel(dx, dy) returns the
-// value of the pixel dx columns to the right of the upper left one and dy rows below it.
+// and `down` are the distances of the ray from the upper left one of these, in 1/256 px. pixel(dx,
+// dy) returns the value of the pixel dx columns to the right of the upper left one and dy rows
+// below it.
 template <class Pixel>
 uint16_t Bilinear(const Pixel& pixel, uint32_t right, uint32_t down) {
   constexpr uint32_t kOne = 256;
@@ -27,7 +28,7 @@ uint16_t Bilinear(const Pixel& pixel, uint32_t right, uint32_t down) {
 }
 
 // Like Bilinear(), with the shares of mosaic_filter.h. Returns the value of the ray and its count.
-// share(dx, dy) returns k of a pixel.
+// share(dx, dy) returns the share k of the pixel whose value is pixel(dx, dy).
 template <class Pixel, class Share>
 std::pair<uint16_t, uint32_t> BilinearByShares(const Pixel& pixel, const Share& share,
                                                uint32_t right, uint32_t down) {

@@ -16,7 +16,7 @@ namespace lf {
 //              masked, the ray is bilinear
 //   kMosaic    is for RGB pixels made from a mosaic. It uses sixteen pixels, or four where kAuto
 //              does. A recorded colour counts more than an interpolated one (mosaic_filter.h), and
-//              the ray adds a count of 1 to kRecordedShare to each colour
+//              the ray adds a count from 1 to kRecordedShare to each colour
 //   kAuto      is kBicubic, or kBilinear if an element has kBilinearFrom x kBilinearFrom samples or
 //              more, because their mean hides the difference
 enum class PixelFilter { kAuto, kNearest, kBilinear, kBicubic, kMosaic };

@@ -27,9 +27,9 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Tables for one Bayer pattern, indexed by the phase (Places::phase) of the upper left one of the
-// inner four pixels. In the last lane, which counts rays, every pixel has the share of a recorded
-// one.
+// Tables for one Bayer pattern, with d and k as in mosaic_filter.h. They are indexed by the phase
+// (Places::phase) of the upper left one of the inner four pixels. In the last lane, which counts
+// rays, every pixel has the share of a recorded one.
 struct MosaicTable {
   // For rays of sixteen pixels. Columns 0 and 2 of the pixels have index 0, columns 1 and 3 have
   // index 1.
@@ -60,8 +60,8 @@ struct MosaicTable {
           for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane) {
             of_step.counts[column][lane] = 0;
             for (int row = 0; row < 4; ++row) {
-              // The sixteen pixels begin one column and one row before the four: x and y are odd
-              // there if they are even here.
+              // The sixteen pixels begin one column to the left of the four and one row above them.
+              // x and y are odd there if they are even here.
               const int32_t weight =
                   taps[row] * static_cast<int32_t>(share(x + 1 + column, y + 1 + row, lane));
               of_step.weights[column][row / 2][2 * lane + row % 2] = static_cast<int16_t>(weight);
@@ -84,7 +84,7 @@ inline const MosaicTable& TableOfMosaic(BayerPattern recorded) {
 // a_x a_y k / 2^9 is the upper half of the 32-bit product of 64 a_x and 2 a_y k.
 constexpr int kSideShift = 16 - kShareShift - 1;
 
-// Each of these functions adds ray i of `places` to element i of `sums`.
+// AddMosaicRay() and AddCubicMosaicRay() add ray i of `places` to element i of `sums`.
 #if HWY_TARGET == HWY_SCALAR
 
 //   upper  the upper left of four pixels

@@ -29,7 +29,8 @@ RayShare AtMostZero(const Hull& hull, const PixelForm& form) {
 
 constexpr int kControls = IdealPatch::kControls;
 
-// Writes the control points of the curve's parts before and behind t (De Casteljau's construction).
+// Writes the control points of the two parts of the curve, up to t and from t on (De Casteljau's
+// construction).
 void SplitBezier(const Vec3 (&c)[kControls], double t, Vec3 (&left)[kControls],
                  Vec3 (&right)[kControls]) {
   std::copy(std::begin(c), std::end(c), std::begin(right));
@@ -84,7 +85,7 @@ class PatchPlanner {
   };
 
   static uint64_t BitsOf(const std::vector<PixelForm>& forms) {
-    LF_CHECK(forms.size() <= 64);  // blades, and edges of the plate
+    LF_CHECK(forms.size() <= 64);  // one form for each blade, or kPlateHalfPlanes
     return forms.empty() ? 0 : ~uint64_t{0} >> (64 - forms.size());
   }
 
@@ -227,7 +228,7 @@ class PatchPlanner {
     FindRuns(right, arc, begin, end, open);
   }
 
-  // Splits an arc at a border of pixels near the middle.
+  // Splits an arc at the border between two pixels near its middle.
   static void Split(const IdealArc& arc, IdealArc* left, IdealArc* right) {
     const int middle = arc.x_begin + (arc.x_end - arc.x_begin) / 2;
     left->x_begin = arc.x_begin;

@@ -53,7 +53,7 @@ std::optional<PlateElement> RayModel::CollectIdeal(const Vec3& position) const {
   const double along = forward_.dot(ray.direction);
   if (!(along > 0)) return std::nullopt;
 
-  // 3. The focus point, before the lens.
+  // 3. The focus point, which must be in front of the lens.
   const std::optional<Vec3> focus_point = IntersectLine(ray, focus_plane_);
   if (!focus_point || !(forward_.dot(*focus_point - lens_centre_) > 0)) return std::nullopt;
 

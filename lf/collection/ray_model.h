@@ -28,8 +28,8 @@ class RayModel {
   RayModel(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
 
   // Returns the element of the plate on which the ray of LF pixel (x, y) lands; none if the ray is
-  // not accepted because it runs backward, has no focus point before the lens, or misses the lens
-  // or the plate. Lens distortion is undone by iteration.
+  // not accepted because it runs backward, has no focus point in front of the lens, or misses the
+  // lens or the plate. Lens distortion is undone by iteration.
   std::optional<PlateElement> Collect(int x, int y) const;
 
   // Like Collect(), for the ray of an ideal position (camera/ideal_pixels.h).

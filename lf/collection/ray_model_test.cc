@@ -128,7 +128,7 @@ TEST(RayModel, ACameraInTheFocusPlaneSendsAllItsRaysToOneElement) {
 TEST(RayModel, PolygonsTakeTheirVerticesAndNotTheCircleBetween) {
   Scene scene;
   scene.render.aperture = {0.1, 3, 0};
-  scene.Place({0, -0.1, 0});  // y down: straight up, the vertex
+  scene.Place({0, -0.1, 0});  // straight above the lens centre (y points down): at the vertex
   EXPECT_TRUE(scene.Collect(50, 50));
   scene.Place({0, 0.05, 0});  // on the lower edge
   EXPECT_TRUE(scene.Collect(50, 50));

@@ -91,16 +91,17 @@ Interval WithinDisk(const LineForm& right, const LineForm& up, const LineForm& f
   const double discriminant = b * b - a * c;
   const auto inside = [&](double x) { return (a * x + 2 * b) * x + c <= 0; };
   if (!(discriminant > 0)) return inside(0.5 * (range.begin + range.end)) ? range : kNowhere;
-  // Both roots without cancellation.
+  // Both roots, c / t and t / a, are computed without cancellation.
   const double t = -(b + std::copysign(std::sqrt(discriminant), b));
   if (a == 0)
     return Intersect(range, b > 0 ? Interval{-kInfinity, c / t} : Interval{c / t, kInfinity});
   const double low = std::min(c / t, t / a);
   const double high = std::max(c / t, t / a);
   if (a > 0) return Intersect(range, {low, high});
-  // The condition holds before the smaller and behind the larger root. One of these two branches
-  // belongs to the mirror image of the cone, where forward < 0; it is outside `range`, except for
-  // rounding errors. If both branches reach into `range`, all of `range` is returned.
+  // The condition holds to the left of the smaller root and to the right of the larger one. One of
+  // these two branches belongs to the mirror image of the cone, where forward < 0; it is outside
+  // `range`, except for rounding errors. If both branches reach into `range`, all of `range` is
+  // returned.
   const Interval left = Intersect(range, {-kInfinity, low});
   const Interval right_branch = Intersect(range, {high, kInfinity});
   if (left.empty()) return right_branch;

@@ -46,8 +46,9 @@ class RowSpans {
 
   // Finds the positions of [x_begin, x_end) in row y that fulfil the conditions and that the ray
   // model accepts. Writes sorted spans. They are exact if the accepted positions of each side have
-  // no gap, except where a form is 0 along the whole row. The ray model is applied only where
-  // rounding may decide, and to all ends of spans if model_decides is true.
+  // no gap. They are also exact if a form is 0 along the whole row, because the ray model then
+  // tests every position. The ray model is applied only where rounding may decide, and to all ends
+  // of spans if model_decides is true.
   //   accepted(side, x)  returns true if the ray model accepts position x on this side
   template <class Accepted>
   void Find(int y, int x_begin, int x_end, const Accepted& accepted, std::vector<RowSpan>* spans);

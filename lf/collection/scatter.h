@@ -1,9 +1,9 @@
 // Ray collection, estimator *nearest* (thesis 4.3.1; doc/ray.md): every pixel of an LF image is one
 // ray, added to the element it hits.
 //
-// One test compares two back ends. The reference applies the ray model to every pixel. The fast
-// back end works in two steps, so that many threads can share one plate, and many plates one LF
-// image:
+// There are two back ends, which tests compare. The reference applies the ray model to every pixel.
+// The fast back end works in two steps, so that many threads can share one plate, and many plates
+// one LF image:
 //   1. PlanScatter, called once per (LF image, frame), finds the accepted pixels of each scanline.
 //      It cuts them into segments along which the position on the plate is a polynomial, and cuts
 //      the segments at the borders of tiles.
@@ -53,11 +53,11 @@ struct ScatterPlan {
   TilePieces pieces;
 };
 
-// Plans the accepted rays of `rect`. The ray model decides at the ends of spans where rounding
-// might.
+// Plans the accepted rays of `rect`. Where rounding might decide about the end of a span, the ray
+// model decides instead.
 //   grid          the tiles of the render camera's plate
-//   ideal_pixels  those of lf_camera's intrinsics; must be given if lf_camera has lens distortion,
-//                 and are not used otherwise
+//   ideal_pixels  the IdealPixels of lf_camera's intrinsics; must be given if lf_camera has lens
+//                 distortion, and are not used otherwise
 //   memory        a plan that is no longer needed; its memory is reused
 ScatterPlan PlanScatter(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
                         const PixelRect& rect, const TileGrid& grid,

@@ -117,13 +117,13 @@ struct MosaicPixels {
   static constexpr int kLanesPerPixel = 1;
   const uint16_t* values;        // [count]
   const uint16_t* values_ahead;  // values of a scanline below, to prefetch
-  uint64_t* words[2];            // [0] if `start` is even, [1] if it is odd
+  uint64_t* words[2];            // sums of pixels with an even `start` [0], or an odd one [1]
   Weights weights;               // [i] is the weight of word i
-  const uint8_t* mask;           // [count], or null
+  const uint8_t* mask;           // [count], 0: no ray; null if no pixel is masked
 
   bool has_runs() const { return mask == nullptr; }
   // Returns the word of pixel i. Because row_stride is even, `start` is even if i and the column of
-  // the element are both even or both odd. It is the same for all pixels of a run.
+  // the element are both even or both odd. `start` is the same for all pixels of a run.
   uint64_t* WordsOf(int i, int32_t start) const { return words[start & 1] + start + i; }
 
   void Add(int i, int32_t start) const {
@@ -389,8 +389,8 @@ uint64_t ScatterTile(const ScatterPlan& plan, size_t tile, const LfPixels& pixel
                      const RayWeights& weights) {
   const PixelRect& rect = sums->rect();
   LF_CHECK(plan.grid.RectOf(tile) == rect);
-  // This makes addresses in the tile, and addresses counted from the base of a segment, exact in
-  // single precision.
+  // This limit makes addresses in the tile, and addresses counted from the base of a segment, exact
+  // in single precision.
   const int64_t row_stride = int64_t{TileSums::kMosaicRows} * sums->stride();
   LF_CHECK(row_stride * (rect.height() + int64_t{Segment::kMaxCount}) < (int64_t{1} << 22));
   thread_local TileWeights tile_weights;

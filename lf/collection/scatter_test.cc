@@ -61,7 +61,8 @@ TEST(Scatter, TheFastBackEndAgreesWithTheReference) {
     const uint64_t accepted =
         ScatterReference(pair.lf_camera, pixels, pair.render_camera, pixels.rect, &expected);
     EXPECT_EQ(ScatterInTilesOf(pair, pixels, pixels.rect, 120, &fast), accepted);
-    // Conservation: accepted rays are the sum of the counts.
+    // Conservation: the counts add up to the number of accepted rays, or three times as many for
+    // RGB.
     EXPECT_EQ(TotalCount(expected), accepted * (bayer == BayerPattern::kNone ? 3 : 1));
     EXPECT_EQ(TotalCount(fast), TotalCount(expected));
     differing += DifferingCount(expected, fast);

@@ -12,7 +12,7 @@ namespace {
 // Positions with larger coordinates are never accepted, and could overflow integers.
 constexpr double kFarthest = 1 << 24;
 
-// Bounds are wider by this margin, which is far above the rounding of single precision.
+// RangeOf() widens its bounds by this margin, which is far above the rounding of single precision.
 constexpr float kBoundMargin = 0.01F;
 
 // Fits polynomials to the function `position(x)`, which returns an optional Vec2, on pieces [begin,

@@ -49,8 +49,9 @@ struct Polynomials {
 // piece whose middle is at x = `middle`.
 Segment MakeSegment(int y, int x_begin, int x_end, double middle, const Polynomials& polynomials);
 
-// True if no coordinate of a piece's positions differs from the position of its middle by more than
-// SegmentMaker::kFarthestFromMiddle. The piece extends by `half` to both sides of its middle.
+// True if no coordinate of a position on the piece differs by more than
+// SegmentMaker::kFarthestFromMiddle from the same coordinate of the position of its middle. The
+// piece extends by `half` to both sides of its middle.
 bool IsNearMiddle(const Polynomials& polynomials, double half);
 
 // Makes the segments of rows. A pixel with the centre p = (column + 0.5, row + 0.5, 1), or with the
@@ -67,8 +68,9 @@ class SegmentMaker {
   SegmentMaker(const PixelForm& x, const PixelForm& y, const PixelForm& denominator)
       : x_(x), y_(y), denominator_(denominator) {}
 
-  // Appends the segments of [x_begin, x_end) of row y. The polynomials of each are fitted to a
-  // block [k 2^n, (k + 1) 2^n), so that positions do not depend on x_begin and x_end.
+  // Appends the segments of [x_begin, x_end) of row y. The polynomials of each segment are fitted
+  // to a block [k 2^n, (k + 1) 2^n) that contains it, so that positions do not depend on x_begin
+  // and x_end.
   void Add(int y, int x_begin, int x_end, std::vector<Segment>* segments) const;
 
   // Like Add(), with the ideal positions of `arc`, which belongs to scanline y.

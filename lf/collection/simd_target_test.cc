@@ -1,4 +1,4 @@
-// Results are bit-identical on every instruction set.
+// Tests that results are bit-identical on every instruction set.
 #include "lf/collection/simd_target.h"
 
 #include <gtest/gtest.h>

@@ -24,7 +24,7 @@ struct Crossing {
 // One coordinate of a segment's positions, counted from the base of the segment.
 class Axis {
  public:
-  // base  of the segment, in elements
+  //   base  base_x or base_y of the segment, in elements
   Axis(const float (&polynomial)[Segment::kTerms], int base, float t_begin, int count,
        int last_element, int tile_size)
       : polynomial_(polynomial),
@@ -77,8 +77,8 @@ class Axis {
     return RangeOf(polynomial_, t_begin_ + static_cast<float>(first), last - first + 1);
   }
 
-  // Writes the crossing of the border before `tile` (the one with the smaller coordinate), if there
-  // is one. From first to last, positions must only rise (step 1) or only fall (step -1).
+  // Writes the crossing of the left (or upper) border of the column (or row) `tile` of tiles, if
+  // there is one. From first to last, positions must only rise (step 1) or only fall (step -1).
   void CrossOnce(int first, int last, const PositionRange& range, int tile, int step,
                  Crossing** crossings) const {
     const auto border = static_cast<float>(tile * tile_size_ - base_);
@@ -163,7 +163,7 @@ void TilePieces::Cut(const std::vector<Segment>& segments, const TileGrid& grid)
   for (size_t tile = 1; tile < tile_begin_.size(); ++tile)
     tile_begin_[tile] += tile_begin_[tile - 1];
   sorted_.resize(cuttings.size());
-  // This moves each tile's begin to its end, which is the begin of the next.
+  // Moves the begin of each tile's pieces to their end, where the pieces of the next tile begin.
   for (const Cutting& cutting : cuttings)
     sorted_[tile_begin_[static_cast<size_t>(cutting.tile)]++] = cutting.piece;
   std::copy_backward(tile_begin_.begin(), tile_begin_.end() - 1, tile_begin_.end());

@@ -11,9 +11,9 @@
 
 namespace lf {
 
-// Positions [begin, end) of a segment, counted from its first one. Positions outside the plate are
-// clamped to it; then all of them land in one tile. At most `crowd` of them land in the same
-// element, clamped ones not counted.
+// Positions [begin, end) of a segment, counted from its first one. All of them land in one tile, if
+// positions outside the plate are clamped to it. At most `crowd` of them land in the same element,
+// not counting clamped ones.
 struct TilePiece {
   uint32_t segment = 0;
   uint16_t begin = 0;
