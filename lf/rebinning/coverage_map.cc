@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kPixelsPerCell = 8;
 constexpr double kReachPerCell = 2;
-// Distance between neighbouring spawned rays, in cells. Below 1, every cell that a ray between them
-// runs through is marked, or is a neighbour of a marked cell.
+// Distance between neighbouring spawned rays, in cells. Because it is below 1, every cell that a
+// ray between them runs through is marked, or is a neighbour of a marked cell.
 constexpr double kSpawnStep = 0.9;
 
 // Returns points in lens coordinates, step_w apart, that fill the reach of the lens points that are

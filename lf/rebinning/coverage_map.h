@@ -1,10 +1,10 @@
 // A map of the rays that some frames query, so that no other rays are kept (thesis 4.3.2, "coverage
 // map").
 //
-// The bounds of the slab are cut into cells of one bit each, far wider than the cells of rays. Rays
-// are spawned on the lenses of all frames, less than one such cell apart, and mark the cells that
-// they pass through; then the neighbours of each marked cell are marked. The map covers every ray
-// that is within reach of a query, and some others.
+// The bounds of the slab are cut into cells of one bit each, far wider than the cells that rays are
+// sorted into (slab.h). Rays are spawned on the lenses of all frames, less than one such cell
+// apart, and mark the cells that they pass through; then the neighbours of each marked cell are
+// marked. The map covers every ray that is within reach of a query, and some others.
 #pragma once
 
 #include <array>

@@ -53,8 +53,8 @@ struct SeenCells {
   std::array<double, kAtOnce> lens_x_w, lens_y_w, x_px, y_px;
 };
 
-// Finds the cells whose middle rays the frame sees (those that FrameRaysOf() does not leave out,
-// squares aside). There must be at most kAtOnce cells.
+// Finds the cells whose middle rays the frame sees (those that FrameRaysOf() does not leave out if
+// all squares need rays). There must be at most kAtOnce cells.
 void FindSeenCells(const FrameView& view, std::span<const BinnedCell> cells, SeenCells* seen);
 // Computes where one ray passes the lens and meets the plate. It is used for rays that do not
 // belong to cells, and as the reference of FindSeenCells().

@@ -60,7 +60,7 @@ void FindSeen(const FrameView& view, std::span<const BinnedCell> cells, SeenCell
     auto is_seen = hn::And(hn::Gt(along, zero), hn::Le(off2, hn::Set(d, view.lens_reach2_w2)));
     if (hn::AllFalse(d, is_seen)) continue;
     const V focus_st = At(view.st.focus, s, t), focus_uv = At(view.uv.focus, u, v);
-    // The ray meets the focus plane at X: depth is (forward . X) times this slope.
+    // X is the point where the ray meets the focus plane. `depth` is (forward . X) times `slope`.
     const V slope = hn::Sub(focus_uv, focus_st);
     const V depth = Cross(forward_st, focus_uv, forward_uv, focus_st);
     const V per_depth = hn::Div(one, depth);

@@ -8,7 +8,7 @@ namespace lf {
 namespace {
 
 // FindSeenCells() finds the same cells as RayView, at the same positions. The cells lie on all
-// sides of the frame, which looks along the slab or aside.
+// sides of the frame, which looks about along the normals of the slab's planes or aside.
 TEST(FrameView, SeesWhatSingleRaysSee) {
   Slab slab;
   slab.st = {Vec3(0.01, 0, 0.002), Vec3(0.8, 0.6, 0), Vec3(-0.6, 0.8, 0)};

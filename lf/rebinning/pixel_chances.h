@@ -19,8 +19,8 @@ class PixelChances {
  public:
   PixelChances(uint64_t seed, LfImageId id) : stream_(MixBits(MixBits(seed) ^ id.value)) {}
 
-  // Chooses, among consecutive pixels, those whose random number is below their p. The unit of p is
-  // 1 / 65535: a pixel with p = 65535 is chosen for certain.
+  // Chooses, among consecutive pixels, those whose random number is below their probability p. The
+  // unit of p is 1 / 65535: a pixel with p = 65535 is chosen for certain.
   //   first   number of the first pixel, counted row by row of the LF image
   //   chosen  indices into p, ascending; its memory is reused
   void Choose(uint64_t first, std::span<const uint16_t> p, std::vector<uint32_t>* chosen) const;

@@ -24,7 +24,7 @@ using D16 = hn::Repartition<uint16_t, D>;
 
 // Appends base + i to `chosen` for each chosen i of [0, count). p must be readable for one vector
 // beyond its end.
-//   pair  number of the pair of pixels 0 and 1
+//   pair  number, in the LF image, of the pair of pixels 0 and 1
 void ChooseSome(uint64_t stream, uint64_t pair, const uint16_t* HWY_RESTRICT p, size_t count,
                 uint32_t base, uint32_t* HWY_RESTRICT chosen, size_t* chosen_count) {
   const D d;

@@ -1,5 +1,6 @@
-// The share of each lens point that a frame interpolates between rebinned rays, all over the plate:
-// from 0 (the point is not queried) to 1. Shares are given at nodes and interpolated between them.
+// The share of the light through each lens point that a frame interpolates between rebinned rays:
+// from 0 (the point is not queried) to 1. It differs from element to element: shares are given at
+// nodes on the plate and interpolated between these.
 #pragma once
 
 #include <cstddef>

@@ -90,8 +90,8 @@ GreyRows::GreyRows(const LfPixels& pixels, const PixelRect& part,
 }
 
 // Returns the green of the pair of pixels in row y that contains column x. If that green is outside
-// the rectangle, returns the nearest green of the row that is inside, or its first pixel if there
-// is none.
+// the rectangle, returns the nearest green of the row that is inside, or the first pixel of the row
+// if there is none.
 uint16_t GreyRows::GreenOfPair(int x, int y) const {
   if (BayerChannel(pixels_.bayer, x, y) != 1) x ^= 1;
   const PixelRect& rect = pixels_.rect;

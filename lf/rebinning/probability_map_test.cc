@@ -79,7 +79,7 @@ TEST(ProbabilityMap, AnEdgeIsLikelyAndFlatIsXi) {
   const double expected = step * (gaussian(0) - gaussian(1)) * 4 + 0.25;
   EXPECT_NEAR(p.at(20, 10) / 65535.0, expected, 0.01);
   EXPECT_EQ(p.at(19, 10), p.at(20, 10));
-  // A pixel that does not pass beta is never kept.
+  // A pixel where |LoG| is below beta is never kept.
   EXPECT_EQ(MapOf(pixels, table, {1, 4, 0.01, 0.25, 0}).at(3, 10), 0);
 }
 

@@ -1,12 +1,13 @@
 // The steps of both implementations of probability_map.h, in integers. Internal to rebinning.
 //
-// Every plane continues beyond its borders with its outermost values.
+// A plane has one value for each pixel, or for each 2 x 2 pixels of a mosaic. It continues beyond
+// its borders with its outermost values.
 //
 //   grey     made of stored values                                  [0, 65535]
 //   across   (sum of taps * grey + 128) >> 8                        in 1 / 16
 //   smooth   (sum of taps * across of the rows + 2048) >> 12        in 1 / 16
-//   change   min(|left + right + above + below - 4 here| >> 4, 65535), of smooth
-//   p        min((change * alpha >> 8) + xi, 65535)  where change >= beta
+//   change   min(|left + right + above + below - 4 here| >> 4, 65535), of values of smooth
+//   p        min((change * alpha >> 8) + xi, 65535)  where change >= beta, else 0
 //
 // If p is smoothed again, it takes the place of grey, and the result is (smooth + 8) >> 4.
 #pragma once
@@ -20,7 +21,8 @@
 
 namespace lf {
 
-// Weights of a Gaussian at distances 0, 1, ... The weights of both sides sum up to kTapSum.
+// Weights of a Gaussian at distances 0, 1, ... Their sum over both sides, with the weight at 0
+// counted once, is kTapSum.
 struct SmoothingTaps {
   static constexpr uint32_t kTapSum = 4096;
   std::vector<uint32_t> values;

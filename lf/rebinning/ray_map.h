@@ -53,8 +53,9 @@ class RayMap {
   // threads.
   static constexpr size_t kShards = 32;
 
-  // max_cells number of cells that Trim() leaves at most; at least 1 expected_cells memory for this
-  // number of cells, but at most max_cells, is allocated at once
+  //   max_cells       number of cells that Trim() leaves at most; at least 1
+  //   expected_cells  memory for this number of cells, but at most for max_cells, is allocated at
+  //                   once
   explicit RayMap(size_t max_cells, size_t expected_cells = SIZE_MAX);
 
   // Constructs an empty map with the limit() and is_too_coarse() of a map that was written to a

@@ -21,7 +21,7 @@ namespace {
 
 using namespace ray_map_format;
 
-// Number of shards that may be in memory twice: an eighth of all, for any number of threads.
+// Largest number of shards that are in memory twice: an eighth of all, for any number of threads.
 constexpr size_t kMostTogether = RayMap::kShards / 8;
 size_t Together(const ThreadPool& pool) {
   return std::min(kMostTogether, static_cast<size_t>(pool.thread_count()));

@@ -143,7 +143,8 @@ TEST_F(RayMapFile, GoesOnAsTheMapThatWasWritten) {
       ThreadPool pool(threads);
       RayMap whole(max_cells), stopped(max_cells);
       for (uint64_t batch = 0; batch < 8; ++batch) {
-        // Repeated keys, and keys all over the range; `others` are added only to existing cells.
+        // First the keys of the rays repeat, then they are all over the range. `others` are added
+        // only to existing cells.
         for (const uint64_t cells : {uint64_t{20000}, UINT64_MAX}) {
           const std::vector<BinnedRay> rays = RandomRays(5000, cells, 2 * batch + cells % 2);
           const std::vector<BinnedRay> others = RandomRays(2000, cells, 100 + batch);

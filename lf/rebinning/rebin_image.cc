@@ -144,8 +144,9 @@ class ImageRebinner {
         map_(map),
         rays_(*rays) {}
 
-  // Chooses rays of columns [begin, end) by their p and adds them to the kept rays. Adds the rest,
-  // except masked pixels, to the other rays if options.averages_others is true.
+  // Chooses rays of columns [begin, end) by their p and adds them to the kept rays. Adds the rays
+  // that are not chosen, except those of masked pixels, to the other rays if
+  // options.averages_others is true.
   //   p            the probabilities of these columns
   //   position(x)  the ideal position of the pixel
   template <class Position>
@@ -208,16 +209,16 @@ class ImageRebinner {
 constexpr int kBandRows = 64;
 static_assert(kBandRows % RebinCoverage::kBlock == 0);
 
-// Pixels within a band that are covered by the same kind of map.
+// Pixels within a band that are covered by the same kind of map: `whole` or `by_edges`.
 struct PixelRun {
   PixelRect rect;
   bool is_whole;            // covered by RebinCoverage::whole
   const IdealPatch* patch;  // the patch with these pixels; null without distortion
 };
 
-// Finds the covered squares of an LF image. Neighbouring ones in a row of squares form one run.
-// Squares begin at multiples of their side, so that coverage does not depend on the part of the
-// image that is read.
+// Finds the covered squares of an LF image. Neighbouring squares of a row that the same kind of map
+// covers form one run. Squares begin at multiples of their side, so that coverage does not depend
+// on the part of the image that is read.
 class CoveredRuns {
  public:
   //   coverage  null: all pixels are kept with the probability of Eq. 4.4
@@ -238,7 +239,7 @@ class CoveredRuns {
     }
     constexpr int kBlock = RebinCoverage::kBlock;
     for (int y = rect.y_begin / kBlock * kBlock; y < rect.y_end; y += kBlock) {
-      bool continues = false;  // true if the square before is covered
+      bool continues = false;  // true if the square to the left is covered
       for (int x = rect.x_begin / kBlock * kBlock; x < rect.x_end; x += kBlock) {
         const PixelRect block = Intersection({x, y, x + kBlock, y + kBlock}, rect);
         const std::optional<SlabPoint> point =

@@ -52,14 +52,14 @@ struct RebinCoverage {
   std::array<const CoverageMap*, 2> by_edges = {};
 };
 
-// Adds the rays of the pixels of `rect` that are covered, cut both planes of the slab, and are
+// Adds those rays of the pixels of `rect` that are covered, cut both planes of the slab, and are
 // kept. A ray has the three colours of its pixel. In a mosaic, the two colours that a pixel did not
 // record are the means of its neighbours that did.
 //   pixels         must hold `rect`, and should hold PixelsAround() more pixels on each side that
 //                  is not a border of the LF image; without these, p and the colours near the
 //                  borders of `rect` differ a little
 //   stored_values  StoredValueTable() of the light field
-//   ideal_pixels   those of lf_camera's intrinsics; must be null if lf_camera has no lens
+//   ideal_pixels   the IdealPixels of lf_camera's intrinsics; must be null if lf_camera has no lens
 //                  distortion
 //   coverage       null: all pixels are covered, and kept with the probability of Eq. 4.4
 //   map            rays for whose cells map.MayHold() is false are left out

@@ -76,7 +76,7 @@ void Rebin(benchmark::State& state, bool averages_others) {
 void RebinKept(benchmark::State& state) { Rebin(state, false); }
 void RebinWithOthers(benchmark::State& state) { Rebin(state, true); }
 
-// mosaic 0 is RGB, 1 is RGGB.
+// The argument `mosaic` is 0 for RGB, 1 for RGGB.
 BENCHMARK(ProbabilityOnly)->Arg(0)->Arg(1)->ArgName("mosaic")->Unit(benchmark::kMillisecond);
 BENCHMARK(RebinKept)->Arg(0)->Arg(1)->ArgName("mosaic")->Unit(benchmark::kMillisecond);
 BENCHMARK(RebinWithOthers)->Arg(0)->Arg(1)->ArgName("mosaic")->Unit(benchmark::kMillisecond);

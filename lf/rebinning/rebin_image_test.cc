@@ -121,7 +121,7 @@ TEST(RebinImage, KeepsAsManyAsItsProbabilitiesSay) {
     if (i == 0)
       first = Keys(rays);
     else
-      EXPECT_NE(Keys(rays), first);  // another LF image or seed, other rays
+      EXPECT_NE(Keys(rays), first);  // another LF image or seed keeps other rays
   }
   EXPECT_NEAR(sum / 20, expected, 4 * std::sqrt(expected / 20));
 }

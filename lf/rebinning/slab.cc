@@ -86,7 +86,7 @@ SlabForms MakeCellForms(const Slab& slab, const PinholeCamera& lf_camera) {
 std::optional<SlabPoint> Parameterize(const SlabForms& forms, const Vec3& position) {
   const double per_st = 1 / Value(forms.denominators[0], position);
   const double per_uv = 1 / Value(forms.denominators[1], position);
-  // For a ray parallel to a plane, this has divided by 0: none is returned here, or the point is
+  // If the ray is parallel to a plane, a divisor above is 0: none is returned here, or the point is
   // not finite.
   if (!(forms.distances[0] * per_st < forms.distances[1] * per_uv)) return {};
   return SlabPoint(

@@ -103,15 +103,15 @@ class LensGrid {
   std::array<int, 2> count_;
 };
 
-// A lens point in the order of the groups of its set.
+// A lens point. The points of a set are in the order of its groups.
 struct GroupedPoint {
   Vec2 at;
   double sigma_st_w;
   size_t number;  // index in PointShares
 };
 
-// Groups the points of a set into groups of eight points near each other: cuts the lens into
-// strips, and the strips into groups. Sorts `points` into the order of the groups.
+// Groups the points of a set into groups of at most eight points near each other: cuts the lens
+// into strips, and the strips into groups. Sorts `points` into the order of the groups.
 std::vector<LensPointGroup> GroupsOf(std::vector<GroupedPoint>& points) {
   constexpr size_t kPoints = LensPointGroup::kPoints;
   const size_t groups = (points.size() + kPoints - 1) / kPoints;
@@ -171,7 +171,7 @@ class TileSplatter {
                const PointShares* shares, SplatFrame* frame)
       : kernel_(kernel), sets_(sets), lens_(lens), shares_(shares), frame_(frame) {}
 
-  //   k  of the lens point sets
+  //   k  LensPointSets::k
   void Run(std::span<const FrameRay> rays, std::span<const uint32_t> of_tile, const PixelRect& rect,
            int k) {
     SortByLens(rays, of_tile);

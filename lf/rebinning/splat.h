@@ -30,7 +30,7 @@ struct SplatFrame {
 // Renders a frame. Elements without a rebinned ray near them are black and have share 0. The bits
 // do not depend on the number of threads.
 //   rays    the rays of this frame (frame_rays.h) within ReachOf()
-//   shares  weights of the lens points in both images; null: all weights are 1
+//   shares  weights of the lens points in `rgb` and `share`; null: all weights are 1
 SplatFrame Splat(std::span<const FrameRay> rays, int width_px, int height_px,
                  const LensPointSets& lens_points, const QueryKernel& kernel, ThreadPool& pool,
                  const PointShares* shares = nullptr);

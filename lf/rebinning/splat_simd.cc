@@ -50,8 +50,8 @@ struct Along {
   HWY_ALIGN float q[kMostAcross];
   HWY_ALIGN float gaussian[kMostAcross];
 
-  // place   of the ray, in elements of the grid, from the centre of the first element
-  // scale   k / sigma
+  //   place  position of the ray, in elements of the grid, from the centre of the first element
+  //   scale  k / sigma
   HWY_INLINE void Find(float place, float scale, int count) {
     const float reach = static_cast<float>(kReach_sigmas) / scale;
     begin = std::max(0, static_cast<int>(std::ceil(place - reach)));
