@@ -61,7 +61,7 @@ class Takers {
 
  private:
   std::vector<size_t> begin_;
-  std::vector<std::pair<uint32_t, uint64_t>> takers_;  // frame, rays
+  std::vector<std::pair<uint32_t, uint64_t>> takers_;  // frame, number of rays
 };
 
 std::vector<uint32_t> RoundRobin(const std::vector<uint32_t>& shuffled,
@@ -76,7 +76,7 @@ std::vector<uint32_t> RoundRobin(const std::vector<uint32_t>& shuffled,
               [&](uint32_t a, uint32_t b) { return places.of_images[a] > places.of_images[b]; });
   }
   std::vector<uint64_t> rays(frames.size(), 0);
-  using Turn = std::pair<uint64_t, uint32_t>;  // rays, frame
+  using Turn = std::pair<uint64_t, uint32_t>;  // number of rays, frame
   std::priority_queue<Turn, std::vector<Turn>, std::greater<>> turns;
   for (uint32_t f = 0; f < frames.size(); ++f) turns.emplace(0, f);
   std::vector<bool> is_taken(shuffled.size(), false);

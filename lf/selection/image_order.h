@@ -17,8 +17,8 @@
 
 namespace lf {
 
-//   kShuffle     random, depends only on a seed and not on the frames: gives an even result even
-//                before all LF images are processed
+//   kShuffle     random, depends only on a seed and not on the frames: the result is even among all
+//                frames, also before all LF images are processed
 //   kRoundRobin  all frames get rays equally fast: the next LF image is one that the frame with the
 //                fewest rays so far takes
 //   kArea        LF images with the most rays, summed over all frames, come first: gives many rays

@@ -13,7 +13,7 @@ namespace {
 constexpr double kLensMargin = 1e-6;
 constexpr double kPlateMarginPx = 1e-6;
 constexpr double kPixelMarginPx = 1e-6;  // rounding error of a vertex
-constexpr int kNeighboursPx = 2;         // on each side of a ray
+constexpr int kNeighboursPx = 2;         // number of pixels on each side of a ray
 constexpr double kZeroMargin = 1e-12;    // rounding error of a form, relative to its terms
 
 int NeighboursOf(PixelReach reach) { return reach == PixelReach::kNeighbours ? kNeighboursPx : 0; }

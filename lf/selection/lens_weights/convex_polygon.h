@@ -26,7 +26,8 @@ class ConvexPolygon {
 
   double Area() const;
 
-  // Returns the area of the intersection with the disk of this radius around the origin.
+  // Returns the area of the intersection of the polygon with the disk of this radius around the
+  // origin.
   double AreaInDisk(double radius) const;
 
  private:

@@ -126,7 +126,7 @@ class FrameWeights {
   std::vector<Place> places_across_;  // [end of the block]
   std::vector<Place> places_down_;
   std::vector<size_t> nodes_begin_;  // [camera]: index of its first weight in weights_, or kNone
-  std::vector<uint16_t> weights_;    // for each camera [row][column], in 1/256
+  std::vector<uint16_t> weights_;    // for each camera that takes part: [row][column], in 1/256
 };
 
 // CameraDistance() returns the approximate distance between neighbouring LF cameras around the

@@ -11,7 +11,7 @@ namespace lf {
 namespace {
 
 // Finds the natural neighbours of a place, and the area that a cell of this place would take from
-// each.
+// each of them.
 class HatMaker {
  public:
   explicit HatMaker(std::span<const Vec2> points) : points_(points), grid_(points) {}

@@ -66,7 +66,7 @@ class PointGrid {
   double bucket_size_ = 1;
   int columns_ = 1;
   int rows_ = 1;
-  std::vector<size_t> begin_;   // [rows * columns + 1]
+  std::vector<size_t> begin_;   // [rows * columns + 1]: index in sorted_ of a bucket's first point
   std::vector<size_t> sorted_;  // indices of points, by bucket
 };
 
