@@ -12,8 +12,8 @@ namespace lf {
 //   kBilinear  interpolates linearly between four pixels
 //   kBicubic   interpolates between sixteen pixels by Catmull and Rom's cubics. This restores some
 //              of the sharpness that is lost because a camera averages over each pixel, and takes
-//              three times as long. If one of the outer twelve pixels is outside the image or
-//              masked, the ray is bilinear
+//              three times as long as kBilinear. If one of the outer twelve pixels is outside the
+//              image or masked, the ray is bilinear
 //   kMosaic    is for RGB pixels made from a mosaic. It uses sixteen pixels, or four where kAuto
 //              does. A recorded colour counts more than an interpolated one (mosaic_filter.h), and
 //              the ray adds a count from 1 to kRecordedShare to each colour
@@ -28,7 +28,7 @@ inline constexpr int kBilinearFrom = 3;
 
 // If LF pixels are finer than elements by at most this factor, an element samples one position.
 inline constexpr double kFinerAtMost = 1.25;
-inline constexpr int kMostSamples = 16;  // along each edge of an element
+inline constexpr int kMostSamples = 16;  // number of samples along each edge of an element
 
 // Returns the magnification, the number of elements per LF pixel along an edge: the square root of
 // the area, in elements, that an LF pixel covers on the plate. It is computed at nine points of the
@@ -46,7 +46,7 @@ struct GatherSampling {
   bool is_cubic = false;  // interpolates between sixteen pixels where possible
   // Number of samples along each edge of an element: the number of LF pixels along an edge, rounded
   // up, at most kMostSamples; 1 if that number is at most kFinerAtMost. The element's ray is the
-  // mean of samples^2 evenly spaced rays, or of those of them that exist.
+  // mean of samples^2 evenly spaced rays, or of as many of these as exist.
   int samples = 1;
 };
 GatherSampling SamplingOf(const PinholeCamera& lf_camera, const RenderCamera& render_camera,

@@ -51,7 +51,7 @@ bool FindRoot(const Function& at, double sign_before, double rounding, double sl
   for (int k = 0; k < kMaxSteps; ++k) {
     const ValueAndSlope here = at(*root);
     const double step = here.value / here.slope;
-    // This also catches a step that is NaN.
+    // Written so that a step of NaN is rejected.
     if (!(std::abs(step) < 2)) {
       *root = 0.5;
       return false;

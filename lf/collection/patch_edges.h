@@ -1,6 +1,6 @@
 // Finds where the scanlines of a patch of ideal positions cross the edges of lens and plate. The
-// accepted pixels of a scanline end there, so that it need not be halved to find them. Internal to
-// collection.
+// accepted pixels of a scanline end there, so that the scanline need not be halved to find them.
+// Internal to collection.
 #pragma once
 
 #include <array>
@@ -42,7 +42,7 @@ class PatchEdges {
 
  private:
   using Values =
-      std::array<double, IdealPatch::kControls>;  // of a form at a scanline's control points
+      std::array<double, IdealPatch::kControls>;  // values of a form at a scanline's control points
 
   // The values of a linear form at the control points of the patch.
   struct Grid {

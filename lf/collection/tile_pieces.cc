@@ -15,7 +15,7 @@ int Floor(float f) {
   return static_cast<float>(i) > f ? i - 1 : i;
 }
 
-// A crossing of a border between tiles. `index` is the first position behind the border.
+// A crossing of a border between tiles. `index` is the first position beyond the border.
 struct Crossing {
   uint16_t index;
   int16_t step;  // change of the column or row of tiles

@@ -32,7 +32,7 @@ class TilePieces {
 
  private:
   std::vector<TilePiece> sorted_;
-  std::vector<uint32_t> tile_begin_;  // [tile_count + 1]
+  std::vector<uint32_t> tile_begin_;  // [tile_count + 1]: index in sorted_ of a tile's first piece
 };
 
 }  // namespace lf
