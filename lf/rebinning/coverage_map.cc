@@ -130,7 +130,7 @@ void CoverageMap::Spawn(const Slab& slab, const FrameQueries& frame) {
   const double step_px = std::max(kSpawnStep * width_w_[1] / element_uv_w, 0.5);
   const double step_w = kSpawnStep * width_w_[0];
   const size_t point_count = frame.points.point_count();
-  std::map<std::vector<bool>, std::vector<Vec2>> places_of;  // by the lens points that are queried
+  std::map<std::vector<bool>, std::vector<Vec2>> places_of;  // key: is each point queried?
   std::vector<bool> asked(point_count, true);
   const auto steps = [&](int size_px) {
     return static_cast<int>(std::ceil((size_px + 2 * margin_px) / step_px));

@@ -19,7 +19,7 @@ namespace lf {
 struct FrameRay {
   float lens_x_w = 0;  // lens coordinates: right, up
   float lens_y_w = 0;
-  float x_px = 0;  // on the sensor plate, continuous
+  float x_px = 0;  // continuous position on the sensor plate
   float y_px = 0;
   std::array<float, 3> rgb = {};  // linear, 0 to 65535
 };

@@ -7,7 +7,8 @@
 namespace lf {
 namespace {
 
-// Returns a camera 0.01 behind the st plane that looks a little aside. Its focus plane is tilted.
+// Returns a camera 0.01 world units behind the st plane that looks a little aside. Its focus plane
+// is tilted.
 RenderCamera TestFrame(double horizontal_rad) {
   RenderCamera frame;
   frame.pinhole.intrinsics = {400, 400, 160, 120, 0, 320, 240};

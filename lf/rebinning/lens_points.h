@@ -22,7 +22,7 @@ struct LensPointSets {
     return spreads.empty() ? 1 : spreads[set][point];
   }
   double MostSpread() const;
-  size_t point_count() const;  // of all sets
+  size_t point_count() const;  // number of points in all sets together
 };
 // Returns `count` points in each of k * k sets, spread uniformly over the opening, all different
 // (camera/aperture.h, SampleLens). A pinhole has one point in one set.

@@ -32,7 +32,7 @@ struct BinnedCell {
   // too wide if one of them gets this many rays.
   static constexpr uint32_t kMostRays = 65537;
 
-  CellKey cell = 0;  // 0: none
+  CellKey cell = 0;  // 0: the slot is empty
   std::array<uint32_t, 3> rgb = {};
   uint32_t count = 0;
 
@@ -49,8 +49,8 @@ struct BinnedCell {
 
 class RayMap {
  public:
-  // Number of parts that may be filled at the same time. It does not depend on the number of
-  // threads.
+  // Number of shards, which are parts of the map that may be filled at the same time. It does not
+  // depend on the number of threads.
   static constexpr size_t kShards = 32;
 
   //   max_cells       number of cells that Trim() leaves at most; at least 1

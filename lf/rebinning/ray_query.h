@@ -3,7 +3,7 @@
 //   L   = sum w_i L_i / sum w_i
 //   w_i = exp(-|l - l_i|^2 / 2 sigma_st^2 - |p - p_i|^2 / 2 sigma_uv^2)
 //
-// where l is the ray's point on the lens and p its position on the plate. The sums run over the
+// Here l is the ray's point on the lens and p its position on the plate. The sums run over the
 // rebinned rays with |l - l_i|^2 / sigma_st^2 + |p - p_i|^2 / sigma_uv^2 <= kReach_sigmas^2, or
 // over the k rays that are nearest by this measure. (The factor before Eq. 4.5's exponentials is
 // the same for all rays and cancels.)

@@ -51,7 +51,7 @@ Ray RayOfPoint(const Slab& slab, const SlabPoint& point);
 using CellKey = uint64_t;
 inline constexpr int kCellOffset = 32768;
 inline constexpr int kCellAxes = 4;
-inline constexpr int kMostCells = 32767;  // on either side of the origin, along each axis
+inline constexpr int kMostCells = 32767;  // cells on either side of the origin, along each axis
 
 // Returns the key of the cell that contains a point, given in cells instead of world units. Returns
 // none if a coordinate is beyond kMostCells.
@@ -65,7 +65,7 @@ SlabPoint MiddleOf(const Slab& slab, CellKey key);
 //   point[k] = numerators[k] p / denominators[k / 2] p
 struct SlabForms {
   std::array<PixelForm, kCellAxes> numerators;
-  std::array<PixelForm, 2> denominators;  // of the st and of the uv plane
+  std::array<PixelForm, 2> denominators;  // one for the st plane, one for the uv plane
   // The ray cuts a plane at the parameter distances[plane] / (denominators[plane] p).
   std::array<double, 2> distances;
 };

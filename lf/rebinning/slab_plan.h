@@ -28,15 +28,15 @@ namespace lf {
 struct LfSampling {
   double camera_distance_w = 0;      // between neighbouring LF cameras
   double pixel_rad = 0;              // angle that one LF pixel sees
-  Vec3 middle_world = Vec3::Zero();  // of the LF cameras
+  Vec3 middle_world = Vec3::Zero();  // mean position of the LF cameras
 };
 
 // Each value that is set overrides the planner's choice.
 struct SlabChoices {
-  std::optional<Vec3> position_world;    // of the st plane
+  std::optional<Vec3> position_world;    // position of the st plane
   std::optional<Vec3> forward_world;     // direction that the st plane faces
-  std::optional<double> uv_distance_w;   // of the uv plane from the st plane; above 0
-  std::optional<double> r_st_w, r_uv_w;  // above 0
+  std::optional<double> uv_distance_w;   // distance of the uv plane from the st plane; above 0
+  std::optional<double> r_st_w, r_uv_w;  // widths of cells; above 0
 };
 
 // Bounds of points of a slab, in world units along its axes.
@@ -50,7 +50,7 @@ struct SlabSection {
   size_t begin = 0;
   size_t end = 0;
   Slab slab;
-  SlabBounds bounds;      // of the rays that the frames query, their reach included
+  SlabBounds bounds;      // bounds of the rays that the frames query, their reach included
   double pixel_uv_w = 0;  // width of an LF pixel on the uv plane
 };
 
