@@ -23,14 +23,15 @@ Spread SpreadOf(std::vector<double> values) {
   return {*least, *middle, *largest};
 }
 
-// Returns the sum of the angles from the ray of `a_px` to the ray of the midpoint and from there to
-// the ray of `b_px`, because a fish-eye may see more than half a turn. If the lens ends within the
-// image, the angle is measured only up to its end.
+// Returns the angle between the rays of two pixels, as the sum of their angles to the ray of the
+// pixels' midpoint, because a fish-eye may see more than half a turn. Pixels near the border have
+// no ray if the distortion model cannot be inverted there; the angle is then measured only up to
+// the last position that has a ray.
 double AngleBetween(const Intrinsics& k, const Vec2& a_px, const Vec2& b_px) {
   const DistortionMap map(k.distortion);
   const Vec2 middle_px = (a_px + b_px) / 2;
-  // Returns the ray of the pixel. If the lens ends before the pixel, returns the last ray between
-  // the midpoint and the pixel.
+  // Returns the ray of the pixel. If the pixel has no ray, returns the last ray on the way from the
+  // midpoint to the pixel.
   const auto direction = [&](const Vec2& pixel) -> Vec3 {
     const auto position = [&](double share) {
       const Vec2 at = middle_px + share * (pixel - middle_px);

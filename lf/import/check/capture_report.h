@@ -71,8 +71,8 @@ struct CaptureReport {
   std::optional<DepthRange> depth_range;
   double unit_m = 1;
   std::optional<AlphaMeaning> alpha;             // of the images, if known
-  std::array<double, 3> background = {0, 0, 0};  // behind the images, if alpha is light
-  bool keeps_opacity = false;                    // nothing is behind the images
+  std::array<double, 3> background = {0, 0, 0};  // behind the images, if alpha is no mask
+  bool keeps_opacity = false;                    // nothing is behind them: frames have opacity
   std::optional<Density> density;                // if a distance is known
   std::optional<FoundBrackets> brackets;         // poses with several exposures
   std::vector<CaptureWarning> warnings;
@@ -86,10 +86,10 @@ struct CaptureReportOptions {
 // Kinds of warnings:
 //   facing-away         cameras that look away from the common point or direction of most cameras
 //   diverging-axes      most cameras look away from the point where their axes meet
-//   upside-down         cameras whose up axis opposes that of most (by more than 120 degrees)
+//   upside-down         cameras whose up axis is more than 120 degrees away from the common up axis
 //   repeated-positions  cameras at the position of another camera, unless they are brackets
 //   brackets            poses with several exposures that are not merged yet
-//   sparse              ghosts at 0.75 z of more than 1 % of the image width
+//   sparse              ghosts at 0.75 z that are more than 1 % of the image width apart
 // The light field must have an LF image.
 CaptureReport ReportCapture(const LightField& light_field, const CaptureReportOptions& options,
                             ThreadPool& pool);

@@ -100,7 +100,7 @@ TEST(CaptureReport, GroupsCamerasByModelAndSize) {
 
 TEST(CaptureReport, TheFieldOfViewEndsWhereTheLensDoes) {
   LightField field = Grid();
-  // x (1 - 0.9 x^2) grows up to x = 1 / sqrt(2.7).
+  // The distorted position x (1 - 0.9 x^2) grows only up to x = 1 / sqrt(2.7); no ray is beyond it.
   field.intrinsics[0] = {100, 100, 100, 50,
                          0,   200, 100, {DistortionModel::kRadialTangential, {-0.9}}};
   EXPECT_NEAR(ReportOf(field).groups[0].horizontal_fov_rad.median,

@@ -14,8 +14,9 @@ namespace {
 
 LfImageId IdOf(size_t index) { return LfImageId{static_cast<uint32_t>(index)}; }
 
-// Returns true if the cameras surround something or face it: the median axis passes the point
-// within a fifth of the distance to it. Otherwise the point tells nothing about the cameras.
+// Returns true if the cameras surround `point` or face it: the distance from a camera's axis to the
+// point is, in the median, less than a fifth of the camera's distance to the point. Otherwise the
+// point tells nothing about the cameras.
 bool AxesConverge(const std::vector<Ray>& axes, const Vec3& point) {
   std::vector<double> ratios;
   for (const Ray& axis : axes) {
@@ -73,9 +74,9 @@ std::vector<CaptureWarning> WarnOfUpsideDown(const LightField& light_field) {
     ups.push_back(light_field.Camera(IdOf(i)).UpWorld());
     spread += ups.back() * ups.back().transpose() / static_cast<double>(light_field.size());
   }
-  // Find the axis along which most up vectors lie, in either direction. On a dome it has 2/3 of the
-  // spread. Cameras that lie on their side around a ring have no common up direction; in arcs of
-  // such rings an axis has up to 0.61 of the spread.
+  // The eigenvector of the largest eigenvalue of `spread` is the axis along which most up vectors
+  // lie, in either direction. The eigenvalue is 2/3 for cameras on a dome. Cameras that lie on
+  // their side around a ring have no common up direction; for arcs of such rings it is up to 0.61.
   constexpr double kCommonUp = 0.65;
   const Eigen::SelfAdjointEigenSolver<Mat3> eigen(spread);
   if (!(eigen.eigenvalues()[2] >= kCommonUp)) return {};

@@ -33,7 +33,7 @@ class CodeChecker {
   const LightField& light_field_;
   const std::vector<PackedCode> codes_;
   mutable std::mutex mutex_;
-  mutable std::vector<PackedCodeReader> readers_;  // not in use now; kept for later calls
+  mutable std::vector<PackedCodeReader> readers_;  // open readers that no call uses now
 };
 
 }  // namespace lf

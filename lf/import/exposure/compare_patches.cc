@@ -16,8 +16,8 @@ constexpr int kPadded = kPatchWindowSide;  // side of the window: the patch and 
 static_assert(kPadded == kSide + 2);
 constexpr double kLeastShare = 2. / 3;  // least share of the pixels that must be used
 constexpr double kDarkest = 0.01;  // radiance; darker light is as small as noise and quantisation
-// Deviations of one pixel's light: relative, absolute (radiance), and as a part of the step to the
-// neighbour that differs most.
+// The three parts of the standard deviation of one pixel's light: relative to the light; absolute,
+// in radiance; and relative to the step to the neighbour that differs most.
 constexpr double kNoise = 0.005, kDarkNoise = 0.001, kOfStep = 0.15;
 constexpr double kLeastDeviation = 5e-4;  // least deviation of a ratio
 
@@ -32,8 +32,8 @@ PatchWindow WindowOf(const ExposureView& view, const PatchGrid& grid) {
 
 float Sum(const std::array<float, 3>& light) { return light[0] + light[1] + light[2]; }
 
-// Returns the largest step from a pixel to one of its neighbours; NaN if one of the five pixels is
-// not recorded.
+// Returns the largest difference between the light of a pixel and of one of its four neighbours;
+// NaN if one of the five pixels is not recorded.
 float StepAt(const PatchWindow& window, size_t pixel) {
   const float own = Sum(window[pixel]);
   float step = own > 0 ? 0 : std::numeric_limits<float>::quiet_NaN();
@@ -45,7 +45,7 @@ float StepAt(const PatchWindow& window, size_t pixel) {
   return step;
 }
 
-// The pixels that are used, one after the other.
+// The pixels of a patch that both LF images recorded. Every array has one entry for each of them.
 struct Pixels {
   std::array<std::array<float, kSide * kSide>, 3> a, b;  // light, by channel
   std::array<float, kSide * kSide> a_sum, b_sum, a_step, b_step, weight, level;
@@ -74,9 +74,9 @@ void Gather(const PatchWindow& window_a, const PatchWindow& window_b, const Patc
     }
 }
 
-// Sets the weights of the pixels. Both images have equal influence, with b's light multiplied by
-// `gain`. The noise in the dark is the geometric mean of that in both images, relative to the
-// light.
+// Sets the weights of the pixels. The light of image b is multiplied by `gain`, and then both
+// images have equal influence. The absolute noise, kDarkNoise, is the geometric mean over both
+// images, because the gain also multiplies the noise of b.
 void Weigh(double gain, double scale, Pixels* pixels) {
   const auto g = static_cast<float>(gain);
   for (size_t i = 0; i < pixels->count; ++i) {

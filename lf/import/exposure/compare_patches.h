@@ -1,6 +1,6 @@
-// Compares the light of a patch in two LF images. Pixels at edges get little weight: their light
-// depends on how the pixel grid and the interpolation cut the edge, and so differs much more than
-// smooth light does.
+// Compares the light of a patch in two LF images. Pixels at the edges of objects get little weight,
+// because their light depends on where the pixel grid lies and differs much more than smooth light
+// does.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@
 
 namespace lf {
 
-// Light in R, G and B of 13 x 13 pixels and of the pixels next to them; 0 if the light of a pixel
-// was not recorded.
+// Light in R, G and B of a patch of 13 x 13 pixels and of the pixels around it; 0 if the light of a
+// pixel was not recorded.
 inline constexpr int kPatchWindowSide = 15;
 using PatchWindow = std::array<std::array<float, 3>, kPatchWindowSide * kPatchWindowSide>;
 
@@ -33,10 +33,10 @@ class ComparedPatch {
   ComparedPatch(const ComparedImage& a, const Place& place, double white);
 
   // Returns the sample of this patch and of the same place in b. A pixel is used if it and its four
-  // neighbours are recorded in both LF images. Its weight is its inverse variance, estimated from
-  // noise and from a share of the gradient. The deviations of the sample's ratios are computed from
-  // the residuals of the pixels. None if fewer than two thirds of the pixels are used, or if all
-  // channels are dark.
+  // neighbours are recorded in both LF images. The weight of a pixel is the inverse of its
+  // variance, estimated from noise and from a share of the gradient. The deviations of the sample's
+  // ratios are computed from the residuals of the pixels. None if fewer than two thirds of the
+  // pixels are used, or if all channels are dark.
   //   grid  pixels of b that show the place (PatchSeenBy())
   std::optional<ExposureSample> CompareWith(const ComparedImage& b, const PatchGrid& grid) const;
 

@@ -20,9 +20,9 @@ namespace lf {
 
 struct ExposureView {
   std::shared_ptr<const ReducedImage> grey;  // null: the image could not be loaded
-  // Light in R, G and B of the pixels of `grey`  [height][width][3]: 1 + kLightSteps times the
-  // share of the largest light that the light field can hold; 0 if one of the LF pixels in the
-  // pixel is masked or clipped.
+  // Light in R, G and B of the pixels of `grey`  [height][width][3]: 1 + kLightSteps * light /
+  // (largest light that the light field can hold); 0 if one of the LF pixels in the pixel is masked
+  // or clipped.
   Image<uint16_t> light;
 
   // Returns the light at a position in the LF image, interpolated between four pixels; 0 if one of

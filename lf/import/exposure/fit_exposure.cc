@@ -19,9 +19,9 @@ constexpr double kLeastFactor = 0.2;   // least factor_
 constexpr double kUnit = 0.01;         // deviation of a sample whose weight is 1
 constexpr double kLeastShare = 0.05;   // lower bound of the light that a lens leaves, while fitting
 constexpr double kPriorDeviation = 1;  // prior standard deviation of falloff coefficients
-constexpr size_t kLeastPerImage = 12;  // agreeing samples of an LF image, over all channels
+constexpr size_t kLeastPerImage = 12;  // least agreeing samples of an LF image, all channels
 constexpr double kAgrees = 0.1;        // a sample agrees if its robust weight is larger
-constexpr double kMostDeviation = 0.02;  // of the gain, for an LF image that is matched
+constexpr double kMostDeviation = 0.02;  // largest deviation of a gain that is used
 constexpr double kCommonShare = 0.25;    // share of a pair's spread that more samples do not reduce
 constexpr double kBelievedSamples = 8;   // weight of the spread of all pairs, in samples of a pair
 
@@ -157,9 +157,9 @@ class Fit {
     }
   }
 
-  // Adds the samples of channel c to the equations of the falloffs (`matrix`, `right`) and to the
-  // ties: C, which couples gains and falloffs, and the right-hand side y of the gains as its last
-  // column. Returns L^-1 [C y], where L is the Laplacian of the channel.
+  // Adds the samples of channel c to the equations of the falloffs (`matrix`, `right`) and to
+  // `ties` = [C y]: C couples gains and falloffs, and y is the right-hand side of the equations of
+  // the gains. Returns L^-1 [C y], where L is the Laplacian of the channel.
   Eigen::MatrixXd SolveGains(size_t c, Eigen::MatrixXd* ties, Eigen::MatrixXd* matrix,
                              Eigen::VectorXd* right) const {
     std::vector<double> of_pairs(pairs_.size());
@@ -217,10 +217,10 @@ class Fit {
 
   bool Agrees(size_t sample, size_t c) const { return agreements_[3 * sample + c] > kAgrees; }
 
-  // Returns the variance of the log ratio of each pair of LF images, estimated from the differences
-  // between its places. If a lamp stands still while the object turns, each place becomes brighter
-  // or darker by a factor that it shares only with the places around it. In this case no gain is
-  // right, and more samples do not help.
+  // Returns the variance of the log ratio of each pair of LF images, estimated from how much the
+  // places that both images show differ in their residuals. If a lamp stands still while the object
+  // turns, each place becomes brighter or darker by a factor that it shares only with the places
+  // around it. In this case no gain is right, and more samples do not help.
   std::vector<double> PairVariances() {
     std::vector<std::vector<double>> sizes(pairs_.size());
     std::vector<double> all;

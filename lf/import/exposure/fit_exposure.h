@@ -37,8 +37,8 @@ struct ExposureFit {
   uint32_t component_count = 0;
   size_t sample_count = 0;  // number of samples, over all channels, that agree with the result
   double step = 0;          // mean |ln ratio| that remains in these samples
-  // Spread of ln ratio between the places that two LF images share; median over all pairs of
-  // images.
+  // Standard deviation of ln ratio over the places that two LF images share; median over all pairs
+  // of images.
   double spread = 0;
   // Final robust weight of each sample, in [0, 1]: the weight of the channel that agrees best; 0 if
   // no channel agrees, or if the images are kAlone.
@@ -50,11 +50,10 @@ inline constexpr uint32_t kAlone = UINT32_MAX;
 //
 //   ln(a / b) = g_b - g_a + ln F_a(r_a) - ln F_b(r_b)
 //
-// ln F is its mean over the compared pixels, computed as the value at the mean of r^2 plus a term
-// of second order. The weight of a sample is its inverse variance. Samples that do not fit the
-// model (hidden by something in front, shining, watermarked) lose weight by Huber's and then
-// Tukey's function of their residual, relative to their deviation. Falloffs about which the samples
-// tell nothing stay 0.
+// ln F(r) is averaged over the compared pixels: its value at the mean of r^2, plus a term of second
+// order. The weight of a sample is its inverse variance. Samples that do not fit the model (hidden
+// by something in front, shining, watermarked) lose weight by Huber's and then Tukey's function of
+// their residual, relative to their deviation. Falloffs that no sample determines stay 0.
 //   groups  for each LF image, the number of its falloff, from 0
 //   known   falloffs of the groups, which are used if options.vignetting is false
 ExposureFit FitExposure(const std::vector<ExposureSample>& samples,

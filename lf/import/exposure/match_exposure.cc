@@ -179,7 +179,7 @@ Result<std::vector<ExposureSample>> TakeSamples(const LightField& plain,
   return samples;
 }
 
-// Returns the mean |ln ratio| that remains in the agreeing samples with the exposure of the
+// Returns the mean |ln ratio| of the agreeing samples if gains and falloffs are those of the
 // calibration.
 double StepBefore(const LightField& field, const std::vector<ExposureSample>& samples,
                   const ExposureFit& fit, const CameraGroups& groups) {

@@ -46,8 +46,8 @@ struct MatchedExposure {
   std::vector<LfImageId> unreadable;  // cannot be read; the gain stays as it was
 };
 
-// Returns the light field without gains and falloffs and with no clipped pixels masked.
-// MatchExposure() reads the store of this light field.
+// Returns a copy of the light field that has no gains and falloffs and masks no clipped pixels.
+// MatchExposure() reads a store of this copy.
 LightField WithoutExposure(const LightField& light_field);
 
 // Finds the depth of the textured places of each LF image, at which the LF images around it agree

@@ -58,8 +58,8 @@ void NearbyCameras::Split(size_t begin, size_t end) {
   Split(middle + 1, end);
 }
 
-// Visits the cameras of a range, on the near side of each split first. Skips ranges that are
-// farther from the point than `limit`, which a visit may lower.
+// Visits the cameras of a range. Of the two halves of each split, the one on the point's side comes
+// first. Skips halves that are farther from the point than `limit`, which a visit may lower.
 template <typename Visit>
 void NearbyCameras::Search(size_t begin, size_t end, const Vec3& point_world, const double& limit,
                            const Visit& visit) const {

@@ -22,9 +22,9 @@ class NearbyCameras {
   // direction as `camera` (within 37 degrees); `camera` itself is not among them.
   std::vector<uint32_t> Nearest(const Vec3& point_world, size_t count, LfImageId camera) const;
 
-  // Returns rings of up to six views around `camera` for DepthOf(); each ring is twice as wide as
-  // the one before. The depths must be more precise than those with ChooseRings(), because a wrong
-  // disparity makes the estimated falloff too weak. Images are not loaded.
+  // Returns rings of up to six views around `camera` for DepthOf() (focus/place_depth.h); each ring
+  // is twice as wide as the one before. Depths from the rings of ChooseRings() would not be precise
+  // enough: a wrong disparity makes the estimated falloff too weak. Images are not loaded.
   Rings DepthRings(LfImageId camera) const;
 
   // Returns the views whose light is compared with the light of `camera`: the views of the rings

@@ -119,9 +119,9 @@ struct ColmapPose {
 };
 
 // A model of COLMAP 3.12 or later. Rig 7 has the cameras 1 and 4 and an IMU (sensor type 1) with an
-// unknown pose, and took two frames. Frame 5 comes first although its images have the larger ids.
-// The functions return the content of a .bin file if `is_binary` is true, otherwise of a .txt file,
-// with the layout of COLMAP's reconstruction_io_*.cc.
+// unknown pose, and took two frames. In the files, frame 5 comes first although its images have the
+// larger ids. The functions return the content of a .bin file if `is_binary` is true, otherwise of
+// a .txt file, with the layout of COLMAP's reconstruction_io_*.cc.
 class RigModel {
  public:
   RigModel() {

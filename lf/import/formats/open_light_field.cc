@@ -32,7 +32,8 @@ constexpr const char* kCalibrationName = "transforms.json";
 constexpr const char* kAosName = "poses.json";
 constexpr const char* kImagesName = "images";
 
-// Returns a hint that names calibrations with other names, such as Blender's transforms_train.json.
+// Returns a hint that names calibrations in a folder without transforms.json that are called
+// differently, such as Blender's transforms_train.json.
 std::string OtherCalibrations(const fs::path& folder) {
   std::vector<std::string> names;
   std::error_code error;
@@ -207,7 +208,8 @@ Result<void> FindImages(const OpenOptions& options, const fs::path& path, LightF
   return {};
 }
 
-// Decides what alpha means: first by the options, then by the calibration, then by the pixels.
+// Sets the meaning of alpha: from the options; if they do not state it, from the calibration; if
+// that does not either, from the pixels.
 Result<void> CompleteAlpha(const OpenOptions& options, const fs::path& path,
                            LightField* light_field) {
   RadianceEncoding& encoding = light_field->encoding;

@@ -227,7 +227,7 @@ TEST_F(RealLightFieldTest, GroundTruthBandLooksAtOnePointFortyCentimetresAhead) 
   Vec3 target = Vec3::Zero();
   for (uint32_t i = 0; i < light_field->size(); ++i)
     target += point_ahead(i) / static_cast<double>(light_field->size());
-  for (uint32_t i = 0; i < light_field->size(); ++i)  // jittered by 0.2 mm and 0.05 degrees
+  for (uint32_t i = 0; i < light_field->size(); ++i)  // poses are off by 0.2 mm and 0.05 degrees
     EXPECT_LT((point_ahead(i) - target).norm(), 0.001) << i;
 }
 

@@ -23,7 +23,7 @@ inline constexpr const char* kLlffName = "poses_bounds.npy";
 //   bytes        the file's content
 //   path         the file's name for messages; its folder becomes LightField::folder
 //   image_names  the files in images/, sorted
-//   image_size   called for the first image only
+//   image_size   returns the size of an image; called for the first image only
 // The principal point is the image centre; depth_range extends from the smallest near bound to the
 // largest far bound.
 // kInput: another type or shape; different numbers of rows and images; a first image of another

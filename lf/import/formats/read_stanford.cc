@@ -30,9 +30,9 @@ struct StanfordImage {
   StanfordName name;
 };
 
-// The images whose names have the form that is used, by row and column, and the names of all other
-// files. If some names state positions, images without one are other files, such as
-// sheet_01_02.png.
+// The images of the light field, sorted by row and column, and the names of all other files. If
+// some names state positions, an image whose name states none (such as sheet_01_02.png) belongs to
+// the other files.
 struct Listing {
   std::vector<StanfordImage> images;
   std::vector<std::string> others;

@@ -113,7 +113,7 @@ TEST_F(StanfordFolderTest, ARectifiedPlaneHasNoDisparity) {
     // The camera is (-0.4, 0.4) away from the middle of the grid, which is (0.1, -0.3).
     EXPECT_NEAR(light_field->Camera({0}).intrinsics.cx_px, 18 - sign * 90 * 0.4 / 8, 1e-12);
     EXPECT_NEAR(light_field->Camera({0}).intrinsics.cy_px, 10 + sign * 90 * 0.4 / 8, 1e-12);
-    // In the plane without disparity: projected to the same pixel in all images.
+    // This point is in the plane without disparity: all images show it at the same pixel.
     const Vec3 point(0.7, 0.2, 8);
     for (uint32_t i = 0; i < 3; ++i)
       EXPECT_LT(
