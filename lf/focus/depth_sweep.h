@@ -1,4 +1,5 @@
-// The depths that a plane sweep tests, and how it tells the best of them. Internal to this folder.
+// The depths that a plane sweep tests, and functions that find the best of them. Internal to this
+// folder.
 #pragma once
 
 #include <algorithm>
@@ -26,8 +27,8 @@ inline double MeanOfLargest(std::vector<double>* values, size_t count) {
   return sum / static_cast<double>(count);
 }
 
-// Returns the largest local maximum that lies more than `width` indices before `first` or behind
-// `last`; at least `none`.
+// Returns the largest local maximum of `scores` that lies more than `width` indices before `first`
+// or after `last`. Returns `none` if no such maximum is larger.
 inline double PeakElsewhere(std::span<const double> scores, size_t first, size_t last, size_t width,
                             double none) {
   double rival = none;

@@ -56,8 +56,8 @@ ExampleFocus FocusOf(const Subject& subject, const char* things) {
   return focus;
 }
 
-// Returns at most kMost focus distances to try: the guess, then the depths of the pixels, then
-// those of the points. A distance within 3 % of an earlier one is left out.
+// Returns at most kMost focus distances to try: the guess, then the depths found in the pixels,
+// then the depths of the points. Leaves out a distance within 3 % of one that is already listed.
 std::vector<double> CandidatesOf(const std::vector<SubjectDepth>& depths, const Subject& points,
                                  double guess_w) {
   constexpr size_t kMost = 3;

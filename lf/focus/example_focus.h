@@ -15,8 +15,8 @@ namespace lf {
 struct ExampleFocus {
   double distance_w = 0;
   std::string reason;
-  // The reason why the focus may be wrong; empty if it is sure. If it may be wrong, candidates_w
-  // holds at most three focus distances to try, the most likely first.
+  // The reason why the focus may be wrong; empty if the focus is sure. If there is a doubt,
+  // candidates_w holds at most three focus distances to try, the most likely first.
   std::string doubt = {};
   std::vector<double> candidates_w = {};
   // The nearest and farthest depth of the scene; equal if they are not known.

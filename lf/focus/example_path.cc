@@ -79,8 +79,8 @@ Intrinsics InscribedFrame(const PinholeCamera& camera, const Vec3& up_world) {
   return frame_of(seen);
 }
 
-// The keyframes of the path. At time 0, they have the values that the sections above them in the
-// file give.
+// The keyframes of the path. At time 0, their values are those that the sections above them in the
+// file state.
 struct Movement {
   std::string keyframes;
   double first_focus_distance_w = 0;

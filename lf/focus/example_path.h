@@ -36,8 +36,8 @@ struct ExamplePath {
   std::string focus_reason;  // how the focus distance was found, for people
   double aperture_diameter_w = 0;
   std::string aperture_reason;  // for people; to be printed after "DIAMETER, "
-  // The reason why the focus may be wrong; empty if it is sure. If it may be wrong, candidates_w
-  // holds at most three focus distances to try, the most likely first.
+  // The reason why the focus may be wrong; empty if the focus is sure. If there is a doubt,
+  // candidates_w holds at most three focus distances to try, the most likely first.
   std::string doubt;
   std::vector<double> candidates_w;
 };
@@ -49,9 +49,9 @@ struct ExamplePath {
 //   where the optical axes meet, the middle of the depth range, the best depth found, the depth at
 //   which the disparity of neighbouring LF images is one pixel.
 // - Lens: eight spacings of the LF cameras wide; down to 2.5 spacings if the LF cameras are so far
-//   apart that ghosts would be visible. It is not wider than the capture, or than 2.2 spacings if
-//   the capture is narrower. If the ghosts would be too far apart, or the focus is not sure, the
-//   lens is almost a pinhole: the first frame is the view of one LF camera.
+//   apart that ghosts would be visible. It is never wider than the larger of the capture and 2.2
+//   spacings. If the ghosts would be too far apart, or the focus is not sure, the lens is almost a
+//   pinhole: the first frame is the view of one LF camera.
 // - Picture: the largest rectangle within the view of the LF camera, in the proportions of the LF
 //   image. Its horizon is level if the LF camera is rolled by at most 30 degrees against the mean
 //   up direction of all LF cameras.

@@ -15,7 +15,7 @@ namespace lf {
 
 struct SubjectDepth {
   double distance_w = 0;   // along the optical axis, in world units
-  double share = 0;        // share of the weight of all found depths
+  double share = 0;        // weight of the places near this depth, as a share of all weight
   size_t place_count = 0;  // number of places of the image near this depth
 };
 

@@ -133,7 +133,8 @@ std::optional<float> ValueAt(const LfPixels& pixels, const Vec2& place) {
 }
 
 // Reads the patch around the point of the ray at a depth, as the view sees it, and subtracts the
-// patch's mean. Returns its standard deviation; none if the view does not show the whole patch.
+// patch's mean. Returns the patch's standard deviation; none if the view does not show the whole
+// patch.
 std::optional<double> ReadPatch(const View& view, const SearchRay& search, double depth_w,
                                 Patch* patch) {
   double sum = 0, squares = 0;
@@ -155,8 +156,8 @@ std::optional<double> ReadPatch(const View& view, const SearchRay& search, doubl
 }
 
 struct Agreement {
-  double score = -1;   // mean correlation of views with the reference; -1: not seen
-  double texture = 0;  // standard deviation of the reference
+  double score = -1;   // mean of the best 60 % of correlations; -1: unknown
+  double texture = 0;  // standard deviation of the reference's patch
 };
 
 Agreement AgreementAt(std::span<const View> views, const SearchRay& search, double depth_w) {

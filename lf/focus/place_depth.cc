@@ -304,7 +304,7 @@ std::optional<Place> PlaceIn(const LightField& field, LfImageId camera, const Re
   place.deviation = Centre(&place.patch);
   const Intrinsics& k = pinhole.intrinsics;
   const Vec2 off = (place.at_px - Vec2(k.width_px, k.height_px) / 2) / (0.5 * k.width_px);
-  constexpr double kMiddle = 0.5;  // as a share of half the width
+  constexpr double kMiddle = 0.5;  // standard deviation of the weight, as a share of half the width
   place.weight = std::min(1.0, best / (3 * kLeastTexture)) *
                  std::exp(-0.5 * off.squaredNorm() / (kMiddle * kMiddle));
   return place;

@@ -25,7 +25,7 @@ using Patch = std::array<float, kPatchSize>;
 struct View {
   LfImageId id;
   RayThrough rays;
-  double offset_w = 0;  // distance from the compared camera, across its optical axis
+  double offset_w = 0;  // distance to the searched camera, normal to that camera's axis
   std::shared_ptr<const ReducedImage> image = nullptr;
 };
 
@@ -81,8 +81,10 @@ struct FoundDepth {
 // if the place does not move from view to view, as a watermark; or if it is so far away that it
 // moves by less than a reduced pixel.
 //   rings      rings of views whose images are loaded; at least one ring, each with at least two
-//   views k          intrinsics of the camera divisor    divisor of the reduced images nearest_w no
-//   nearer depths are tested; 0: tests from the nearest depth that the images of the
+//              views
+//   k          intrinsics of the camera
+//   divisor    divisor of the reduced images
+//   nearest_w  no nearer depths are tested; 0: tests from the nearest depth that the images of the
 //              innermost ring can show
 std::optional<FoundDepth> DepthOf(const Rings& rings, const Place& place, const Intrinsics& k,
                                   int divisor, double nearest_w = 0);

@@ -13,8 +13,8 @@ namespace lf {
 // Returns the depths around which most points lie. The weight of a point is larger the nearer it is
 // to the middle of the image. Points behind the camera or outside its image are not used;
 // textured_count and place_count are the number of the remaining points. The best depth is sure if
-// 24 points with a quarter of the whole weight lie around it, and if its weight is at least 1.5
-// times the weight at the next best depth.
+// at least 24 points with at least a quarter of the whole weight lie around it, and if its weight
+// is at least 1.5 times the weight of the next best depth.
 Subject FindPointSubject(const PinholeCamera& camera, std::span<const Vec3> points_world);
 
 // Returns true if the camera sees at least 24 points, and at most 1 % of them are within 10 % of
