@@ -22,12 +22,12 @@ enum class CameraUse : uint8_t {
   kUsed,  // pixels of its LF image are read for the frame
   // no ray that passes through the lens and hits the plate passes its position (Fig. 4.4)
   kOutside,
-  // the angle between its optical axis and the frame's exceeds --max-angle
+  // the angle between its optical axis and the optical axis of the frame exceeds --max-angle
   kAngle,
-  // its position would allow it, but no pixel of its LF image sees both the lens and the filmed
+  // such rays pass its position, but no pixel of its LF image sees both the lens and the filmed
   // region (Fig. 4.5)
   kSeesNone,
-  kLimit,     // the frame has reached the limit --max-images before its place in the order
+  kLimit,     // LF images before it in the order already reach the limit --max-images
   kNoWeight,  // it has no lens weight: no point of the lens is nearest to it (doc/lens-integral.md)
 };
 inline constexpr size_t kCameraUseCount = 6;
@@ -37,7 +37,8 @@ std::string_view NameOf(CameraUse use);
 struct FrameUse {
   std::vector<CameraUse> of_cameras;    // [LF camera]
   std::vector<FrameNeeds::Image> used;  // LF images that are read, in reading order
-  // distance between LF cameras around the lens, about; set if NeedsOptions::HasNeighbours()
+  // approximate distance between neighbouring LF cameras around the lens; set if
+  // NeedsOptions::HasNeighbours()
   std::optional<double> camera_distance_w;
 };
 

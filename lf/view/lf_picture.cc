@@ -11,7 +11,7 @@ namespace lf {
 namespace {
 
 constexpr uint8_t kMaskedGrey = 128;
-constexpr int kSteps = 8192;  // of linear light; in the dark, a step is 0.4 display values
+constexpr int kSteps = 8192;  // steps of linear light; near black, a step is 0.4 display values
 
 uint8_t DisplayValue(double linear) {
   static const std::vector<uint8_t> values = [] {

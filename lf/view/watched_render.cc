@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostNested = 2;  // as deep as partial/package-0000/
+constexpr int kMostNested = 2;  // the deepest folder of a checkpoint is partial/package-0000/
 constexpr size_t kMostDigits = 7;
 
 // Returns the frame number in a file name such as frame_0001.exr or frame_0001.png; nullopt for
@@ -43,7 +43,8 @@ int64_t ChangedNanoseconds(const fs::path& path) {
   return int64_t{facts.st_mtim.tv_sec} * 1'000'000'000 + facts.st_mtim.tv_nsec;
 }
 
-// Adds the frames in a folder and, to some depth, in the folders of its state.
+// Adds the frames in a folder, and those of checkpoints in its subfolders, down to kMostNested
+// levels.
 void AddFramesIn(const fs::path& folder, int nested, std::map<uint32_t, WatchedFrame>* frames) {
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;

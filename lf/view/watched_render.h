@@ -33,7 +33,8 @@ struct GrowingPicture {
   bool has_rays = false;
   // [height][width][4]: R, G, B in linear light, and the number of rays of an element, averaged
   // over its channels (-1 if has_rays is false). If the longer side of the frame exceeds
-  // max_side_px, these are means over squares of elements. A frame with alpha is shown over black.
+  // max_side_px, each entry is the mean of a square of elements. A frame with alpha is shown over
+  // black.
   Image<float> elements;
 };
 

@@ -77,8 +77,8 @@ TEST_F(WatchedRenderTest, PngFilesTellNoRays) {
 }
 
 TEST_F(WatchedRenderTest, FramesWithAlphaAreShownOverBlack) {
-  // Two elements have light 0.25 and alpha 0.5, so that their straight colours are 0.5. Two
-  // elements are empty.
+  // Two elements have light 0.25 and alpha 0.5, so that their colours without alpha are 0.5. The
+  // other two elements are empty.
   Image<uint16_t> straight(4, 1, 4);
   Image<float> light(4, 1, 3), alpha(4, 1);
   for (int x = 0; x < 2; ++x) {
