@@ -1,5 +1,6 @@
-// Frames of a job to finish early, because the user finds them good enough: they are finished with
-// the rays that they have, while the other frames continue (lfrenderer --finish).
+// The list of the frames of a job that the user wants to finish early, because they are good
+// enough: they are finished with the rays that they have, while the other frames continue
+// (lfrenderer --finish).
 #pragma once
 
 #include <string>
@@ -11,12 +12,12 @@
 
 namespace lf {
 
-// Adds frames ("10-20", "7") to the list of frames to finish early. Returns how many of them are
-// not finished yet. kUsage: the text has another form; a frame is not in the job, or has no rays
-// yet because it was not started or has no checkpoint.
+// Adds frames ("10-20", "7") to the list. Returns how many of these frames are not finished yet.
+// kUsage: the text has another form; a frame is not in the job, or has no rays yet because it was
+// not started or has no checkpoint.
 Result<size_t> AskToFinish(const ClusterJob& job, const std::string& frames_text);
 
-// Returns the frames of a package that are on this list, ascending. kInput: the file of the list is
+// Returns the frames of a package that are on the list, ascending. kInput: the file of the list is
 // damaged.
 Result<std::vector<FrameId>> FramesToFinish(const ClusterJob& job, const JobPackage& package);
 

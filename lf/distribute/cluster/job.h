@@ -54,7 +54,7 @@ struct ClusterJob {
   int thread_count = 1;        // threads of each task
   uint64_t memory_bytes = 0;   // --memory of each task
   uint32_t most_crashes = 10;  // a package that crashes more often fails
-  double time_limit_s = 0;     // of a task (slurm); 0: that of the partition
+  double time_limit_s = 0;     // time limit of a task (slurm); 0: the partition's limit
   std::vector<std::string> sbatch_options;
 
   // The job ids that sbatch returned for arrays of packages, oldest first.

@@ -18,8 +18,8 @@ struct TaskStatus {
   std::string message;  // latest message of the task
   size_t frames_done = 0;
   size_t frame_total = 0;
-  std::optional<uint64_t> rays_left;  // last report of lfrenderer; unset: none
-  uint64_t rays_done = 0;             // of ray_total, which is a forecast
+  std::optional<uint64_t> rays_left;  // as lfrenderer last reported; unset: no report
+  uint64_t rays_done = 0;             // how much of the forecast ray_total is done
   uint64_t ray_total = 0;
   uint64_t image_done = 0;  // LF images read since the last start
   uint64_t image_total = 0;
@@ -34,10 +34,14 @@ struct TaskStatus {
   }
 };
 
-// The phase of the whole job is the first that applies: kDone if all packages, all frames and the
-// finishing task are done; kRunning if the local engine or a task runs; if a task is queued,
-// kRunning if any task was ever started, otherwise kWaiting; kFailed if a task failed; kInterrupted
-// if any task was ever started; kWaiting.
+// The phase of the whole job is the first of these that applies:
+//   kDone         all packages, all frames and the finishing task are done
+//   kRunning      the local engine or a task runs
+//   kRunning      a task is queued, and any task was ever started
+//   kWaiting      a task is queued
+//   kFailed       a task failed
+//   kInterrupted  any task was ever started
+//   kWaiting      otherwise
 struct JobStatus {
   TaskPhase phase = TaskPhase::kWaiting;
   bool is_cancelled = false;

@@ -100,16 +100,18 @@ Result<std::vector<size_t>> PrepareResume(const ClusterJob& job) {
         task.state.phase == TaskPhase::kDone && task.frames_done == task.frame_total;
     if (is_done || task.IsQueued()) continue;
     numbers.push_back(i);
-    // A package that still runs will end soon, because its engine has died. RunPackage() waits for
-    // its lock. Its state is not changed here.
+    // A package that still runs will end soon, because its engine has died: the caller holds the
+    // job's lock. RunPackage() waits for the package's lock. The state of the package is not
+    // changed here.
     if (task.state.start_count == 0 || task.state.phase == TaskPhase::kRunning) continue;
     TaskState state = task.state;
     state.phase = TaskPhase::kInterrupted;
     state.crash_count = 0;
     LF_RETURN_IF_ERROR(WriteTaskState(state, PackageTask(job, i).state));
   }
-  // If the film was finished before, something of it is missing now. The state of the finishing
-  // task is removed, so that the job is not reported as done until the task has run again.
+  // If the film was finished before, a frame or another part of it is missing now. The state of the
+  // finishing task is removed, so that the job is not reported as done until the task has run
+  // again.
   if (status.finishing.state.phase == TaskPhase::kDone && !status.finishing.IsQueued()) {
     std::error_code error;
     fs::remove(FinishingTask(job).state, error);

@@ -23,14 +23,14 @@ Result<FileLock> TakeJob(const ClusterJob& job);
 Result<void> MakeRoomForJob(const ClusterJob& job, bool overwrite);
 
 // Removes the request to cancel the job, and returns the packages to start: those that are neither
-// done nor queued. Resets the crash counts of those that do not run. If something must be rendered
-// again although the film was finished, the state of the finishing task is removed. The caller must
-// hold the lock of TakeJob(). kOutput: the batch system does not answer, or a file cannot be
-// written or removed.
+// done nor queued. Resets the crash counts of the packages to start that do not run. If the film
+// was finished, but packages must be rendered again, removes the state of the finishing task. The
+// caller must hold the lock of TakeJob(). kOutput: the batch system does not answer, or a file
+// cannot be written or removed.
 Result<std::vector<size_t>> PrepareResume(const ClusterJob& job);
 
 // Requests all packages to write a checkpoint and end, and waits until they have ended. kOutput:
-// some still run after three minutes, or when `stop` becomes true; they end later.
+// some packages still run after three minutes, or when `stop` becomes true; they end later.
 Result<void> CancelJob(const ClusterJob& job, const std::atomic<bool>& stop);
 
 // Waits until no task of the job runs or is queued, and returns the outcome of the finishing task

@@ -11,14 +11,14 @@
 
 namespace lf {
 
-// Renders these packages, at most job.at_once at the same time (at least one), then finishes the
-// film with FinishFilm(). Returns when everything is done. A failed package does not stop the
-// others.
+// Renders some packages of the job, job.at_once of them at the same time (at least one), then
+// finishes the film with FinishFilm(). Returns when everything is done. A failed package does not
+// stop the others.
 //   lock     the lock of TakeJob(), which the caller must hold
 //   numbers  indices of the packages in job.packages
 //   look     called about twice a second
-// kInterrupted: `stop` became true, or the job was cancelled. Otherwise returns the first error of
-// RunPackage(), such as a state that cannot be read or written; if there is none, the result of
+// Returns kInterrupted if `stop` became true or the job was cancelled; otherwise the first error of
+// RunPackage(), such as a state that cannot be read or written; otherwise the result of
 // FinishFilm().
 Result<void> RunLocally(const ClusterJob& job, const FileLock& lock,
                         const std::vector<size_t>& numbers, const std::atomic<bool>& stop,

@@ -28,8 +28,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr auto kTick = std::chrono::milliseconds(50);
-// files that other processes write are looked at once a second, because they may be on a file
-// server
+// Ticks from one look at the files of other processes to the next: one second, because these files
+// may be on a file server.
 constexpr int kTicksPerLook = 20;
 
 double SecondsSince1970() {
@@ -71,8 +71,8 @@ class TaskRun {
   TaskState state_;
 };
 
-// Waits for the lock for up to two minutes. The process that held it may have just died, while its
-// lfrenderer still holds it to write a checkpoint.
+// Waits for the lock for up to two minutes. The process that held the lock may have just died,
+// while the lfrenderer that it started still holds the lock and writes a checkpoint.
 Result<void> TaskRun::Begin() {
   constexpr double kPatience_s = 120;
   const double begin_s = SecondsSince1970();
@@ -81,7 +81,7 @@ Result<void> TaskRun::Begin() {
     if (lock) {
       lock_ = *std::move(lock);
     } else if (!FileLock::IsHeld(task_.lock)) {
-      // Either it was released in the meantime, or the lock file cannot be created.
+      // Either the lock was released in the meantime, or the lock file cannot be created.
       lock = FileLock::Take(task_.lock);
       if (!lock && !FileLock::IsHeld(task_.lock)) return lock.error();
       if (lock) lock_ = *std::move(lock);
@@ -197,8 +197,8 @@ std::vector<FrameId> MissingFrames(const ClusterJob& job, const JobPackage& pack
   return missing;
 }
 
-// Returns an error that names all packages that are not done. Its kind is that of the first failed
-// package, or kInterrupted if no package failed.
+// Returns an error that names all packages that are not done. The kind of the error is the kind
+// with which the first failed package ended; kInterrupted if no package failed.
 Result<void> CheckAllDone(const ClusterJob& job) {
   std::string words;
   ErrorKind kind = ErrorKind::kInterrupted;
@@ -317,7 +317,7 @@ Result<void> FinishFilm(const ClusterJob& job, const std::string& node,
   if (!is_whole) words.insert(words.end(), {"--frames", FrameRangeText(frames)});
   if (job.video) words.insert(words.end(), {"--video", job.video->string()});
   if (!job.contact_sheet) words.emplace_back("--no-contact-sheet");
-  // The report of an earlier finishing task is removed. Otherwise, if this one fails, that report
+  // Remove the report of an earlier finishing task. Otherwise, if this task fails, the old report
   // would look like its result.
   const fs::path report = job.Folder() / "report.json";
   std::error_code ignored;

@@ -27,15 +27,15 @@ Result<TaskState> RunPackage(const ClusterJob& job, size_t number, const std::st
                              const std::atomic<bool>& stop);
 
 // Converts the state of a task that has ended to a result. No error if the task is done and
-// lfrenderer succeeded; kBelowRequired if it is done, but lfrenderer ended with that error;
-// otherwise an error with the kind of lfrenderer's exit code, or kInterrupted.
+// lfrenderer succeeded; kBelowRequired if the task is done, but lfrenderer ended with
+// kBelowRequired; otherwise an error with the kind of lfrenderer's exit code, or kInterrupted.
 //   name  for messages
 Result<void> OutcomeOf(const std::string& name, const TaskState& state);
 
 // Runs the finishing task: checks that every frame exists, then runs lfrenderer to write the
-// contact sheet and the video. If packages are not done, the error names them all; its kind is that
-// of the first failed package, or kInterrupted if no package failed. kBelowRequired if lfrenderer
-// ends with that error.
+// contact sheet and the video. If packages are not done, the error names them all; its kind is the
+// kind with which the first failed package ended, or kInterrupted if no package failed.
+// kBelowRequired if lfrenderer ends with kBelowRequired.
 Result<void> FinishFilm(const ClusterJob& job, const std::string& node,
                         const std::atomic<bool>& stop);
 

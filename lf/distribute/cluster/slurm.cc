@@ -44,7 +44,7 @@ std::string TimeText(double seconds) {
   return fmt::format("{}:{:02}:00", minutes / 60, minutes % 60);
 }
 
-// Returns the lines that begin both scripts.
+// Returns the lines that both batch scripts begin with.
 std::string Head(const ClusterJob& job, const char* name) {
   const std::string folder = job.output_folder.filename().string();
   std::string text = fmt::format(
@@ -55,7 +55,8 @@ std::string Head(const ClusterJob& job, const char* name) {
       "#SBATCH --nodes=1 --ntasks=1 --cpus-per-task={}\n",
       ShellWord("lf-" + (folder.empty() ? "film" : folder)),
       ShellWord((job.Folder() / fmt::format("slurm-{}.out", name)).string()), job.thread_count);
-  // The limit of lfrenderer, and a margin for the other processes of the task.
+  // Slurm's limit is the memory limit of lfrenderer plus a margin for the other processes of the
+  // task.
   if (job.memory_bytes > 0)
     text += fmt::format("#SBATCH --mem={}M\n", (job.memory_bytes >> 20) + 256);
   if (job.time_limit_s > 0) text += fmt::format("#SBATCH --time={}\n", TimeText(job.time_limit_s));

@@ -1,5 +1,5 @@
-// The state of a task of a job, in a small file that the process that runs the task writes; and its
-// progress, read from the log of lfrenderer.
+// The state of a task of a job, in a small file that is written by the process that runs the task;
+// and the progress of the task, read from the log of lfrenderer.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ struct TaskState {
   int64_t process = 0;       // process id of lfrenderer on this node
   uint32_t start_count = 0;  // number of starts of lfrenderer
   uint32_t crash_count = 0;  // number of crashes of lfrenderer or its node
-  int exit_code = 0;         // of the last run; 0 or 6 if kDone
+  int exit_code = 0;         // of the last lfrenderer; 0 or 6 if `phase` is kDone
   std::string message;       // why the task does not run
   double begin_s = 0;        // time of the last start, in seconds since 1970
   double end_s = 0;

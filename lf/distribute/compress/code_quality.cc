@@ -24,7 +24,8 @@ CodeError ErrorOf(const CodecPixels& coded, const DecodedPart& decoded, double g
       [&]<class Pixel>(const Image<Pixel>& image) {
         const auto& other = std::get<Image<Pixel>>(decoded.pixels);
         LF_CHECK(other.pixels().size() == image.pixels().size());
-        // A sum of integers does not depend on the order.
+        // Adds up integers, because their sum is exact: it is the same in whatever order a compiler
+        // adds the squares.
         uint64_t sum = 0;
         for (size_t i = 0; i < image.pixels().size(); ++i) {
           const int64_t difference = int64_t{image.pixels()[i]} - other.pixels()[i];

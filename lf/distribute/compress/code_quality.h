@@ -27,9 +27,9 @@ struct CodeError {
 };
 
 // Returns the size of a grey step in stored values: the range from black to white has 255 steps. It
-// is 1 for 8 bits and 257 for 16 bits, unless levels are stated. Half floats are measured by their
-// bit patterns, of which 1024 are a factor of two in radiance; their step is 16, which is about 1
-// %.
+// is 1 for 8 bits and 257 for 16 bits, unless levels are stated. Half floats are measured as
+// integers with the same bits, because 1024 such integers are a factor of two in radiance; their
+// step is 16, which is about 1 %.
 double GreyStep(const RadianceEncoding& encoding, StoredValues values);
 
 // Returns the error of one image. `decoded` must be the whole image.

@@ -57,7 +57,7 @@ Result<PackedStoreWriter> OpenWriter(const CompressSource& source, const Compres
   return PackedStoreWriter::Create(store, source.light_field, plan, std::move(lock));
 }
 
-// Removes the lock at the end, unless a writer has taken it over.
+// Removes the file of the lock at the end, unless a PackedStoreWriter has taken over the lock.
 struct HeldLock {
   std::optional<FileLock> lock;
   HeldLock() = default;
@@ -293,7 +293,7 @@ Result<CompressReport> Compressor::Run() {
   HeldLock held;
   if (!report_.was_there) {
     LF_ASSIGN_OR_RETURN(held.lock, PackedStoreWriter::Lock(options_.store));
-    LF_RETURN_IF_ERROR(CheckTarget());  // another program may have finished it meanwhile
+    LF_RETURN_IF_ERROR(CheckTarget());  // another program may have finished the store meanwhile
   }
   LF_RETURN_IF_ERROR(ChooseThreshold());
   if (report_.was_there) {

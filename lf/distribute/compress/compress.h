@@ -22,15 +22,16 @@ struct CompressOptions {
   std::filesystem::path store;  // STORE.lfs
   // The threshold is in grey steps (GreyStep() of code_quality.h) of the images' values.
   CodecSettings codec;
-  // Replaces the threshold by the one at which a sample of the LF images has this PSNR.
+  // If set, replaces codec's threshold by the largest one at which a sample of the LF images has at
+  // least this PSNR.
   std::optional<double> target_psnr_db;
   uint64_t shard_bytes = 0;  // as in PackedStorePlan
   bool resume = false;       // resume an unfinished store; a complete one must match the options
   bool overwrite = false;    // replace an existing store, unfinished or complete
   bool strict = false;       // an LF image that cannot be read is an error
   // Reads all encoded images back from the disk. Each must equal the result of encoding its LF
-  // image, and be decoded without damage. If the store exists already and is not replaced, it is
-  // only checked.
+  // image, and be decoded without damage. If a complete store exists already and is not replaced,
+  // it is only checked.
   bool verify = false;
   std::string source_name;  // LIGHTFIELD or packages, as the user gave them
   std::string version;      // of the program
@@ -40,8 +41,8 @@ struct CompressOptions {
 struct CompressProgress {
   size_t done = 0;  // number of LF images
   size_t total = 0;
-  uint64_t pixel_bytes = 0;  // of the LF images that this call encoded, as stored in their files'
-                             // type
+  // Size of the pixels of the LF images that this call encoded, in the number type of their files.
+  uint64_t pixel_bytes = 0;
   uint64_t code_bytes = 0;
   bool is_verifying = false;
 };
@@ -64,7 +65,7 @@ struct CompressReport {
   uint64_t pixel_bytes = 0;   // size of their pixels as stored
   uint64_t code_bytes = 0;
   CodeError error;
-  double worst_psnr_db = 0;  // lowest of one LF image; infinite if all are exact
+  double worst_psnr_db = 0;  // lowest PSNR of an LF image; infinite if all are exact
   std::string worst_name;
   double encode_cpu_s = 0;
   double total_s = 0;
@@ -77,9 +78,9 @@ struct CompressReport {
 std::string NameOf(const CodecSettings& settings);
 
 // kUsage: wrong settings, the store exists, or its name belongs to another file. kInput: no LF
-// image can be read, or one cannot with `strict`; the files are not those that an unfinished store
-// was made from; or the store differs from the result of encoding its LF images (`verify`).
-// kOutput: the disk or the memory fails. kInterrupted: finished work is kept.
+// image can be read, or `strict` is true and one cannot be read; the files are not those that an
+// unfinished store was made from; or the store differs from the result of encoding its LF images
+// (`verify`). kOutput: the disk or the memory fails. kInterrupted: finished work is kept.
 Result<CompressReport> Compress(const CompressSource& source, const CompressOptions& options,
                                 ThreadPool& pool,
                                 const std::function<void(const CompressProgress&)>& progress);

@@ -23,7 +23,8 @@ struct CompressSource {
   std::vector<PixelRect> rects;     // wanted pixels, in the order of light_field.cameras
 };
 
-// Returns a whole light field. kUsage: it is a packed store already.
+// Returns all LF images of the light field, with all their pixels. kUsage: it is a packed store
+// already.
 Result<CompressSource> SourceOfAll(LightField light_field);
 
 // Returns the LF images from which frames of the packages take rays, in the order of the light

@@ -13,8 +13,8 @@ namespace lf {
 // Returns a threshold in grey steps: the largest at which a sample of LF images, spread over the
 // light field, has a PSNR of at least `psnr_db` over all its values. Thresholds are tried in steps
 // of 5 %. The result does not depend on the number of threads. kUsage: no threshold of the profile
-// reaches the quality, or the profile has no threshold; kInput: no image of the sample can be read;
-// kInterrupted.
+// reaches the quality, or the profile has no threshold; kInput: no image of the sample can be read.
+// kInterrupted: is_interrupted() returned true.
 Result<double> FindThreshold(const CompressSource& source, const CodecSettings& settings,
                              double psnr_db, ThreadPool& pool,
                              const std::function<bool()>& is_interrupted);

@@ -24,7 +24,7 @@ class ImageCoder {
   std::optional<DisplayLevels> display_levels() const;
 
   // Measures the error in stored values. The error of linear values of 16 bits is measured along
-  // the display curve for all profiles, because an error is seen on this curve.
+  // the display curve for all profiles, because equal errors along this curve are equally visible.
   CodeError ErrorOf(const RecordedImage& image, const CodedImage& coded) const;
 
  private:

@@ -28,7 +28,8 @@ Result<void> CheckStoreFacts(const CompressSource& source, const VerifyOptions& 
 // Reads all encoded images back. Each must equal the result of encoding its LF image, and be
 // decoded without damage. Returns the number of encoded images. An LF image that is missing in the
 // store must not be readable. kInput: an encoded image differs or is damaged (the message states
-// the first and the count), or the store is of another light field or other settings; kInterrupted.
+// the first and the count), or the store is of another light field or other settings. kInterrupted:
+// is_interrupted() returned true.
 Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& options,
                            ThreadPool& pool, const std::function<void(size_t)>& progress);
 

@@ -22,9 +22,9 @@ struct Around {
   std::vector<Vec3> centres_world;
 };
 
-// Returns the distance from the lens centre of the nearest ray that an LF camera has for the
-// element at (x_px, y_px), measured in the lens plane. Returns 0 if the element has no focus point,
-// infinity if there is no such ray.
+// Returns the distance, in the lens plane, from the lens centre to the nearest ray that an LF
+// camera recorded from the focus point of the element at (x_px, y_px). Returns 0 if the element has
+// no focus point, infinity if no LF camera sees it.
 double NearestRay(const LightField& light_field, const Around& around, const RenderCamera& frame,
                   double x_px, double y_px) {
   double nearest_w = std::numeric_limits<double>::infinity();

@@ -111,8 +111,8 @@ class Preprocessor {
     if (options_.interrupted == nullptr || !*options_.interrupted) return {};
     return Error{ErrorKind::kInterrupted, "interrupted: no package is kept"};
   }
-  // Returns the needs of a frame, from kept_needs_ if they are there. They are not used after an
-  // interruption, because they may be incomplete.
+  // Returns the needs of a frame, from kept_needs_ if they are there. An interruption is an error,
+  // because the needs may then be incomplete.
   Result<FrameNeeds> Needs(FrameId frame) {
     FrameNeeds needs;
     if (const auto kept = kept_needs_.find(frame); kept != kept_needs_.end()) {
@@ -341,7 +341,8 @@ Result<void> Preprocessor::MakePackage(size_t number, const Section& section, si
   return {};
 }
 
-// Counts the missing files of the package, and adds those that are new to the totals of the film.
+// Counts the missing files of the package. Adds the LF images and missing files that no earlier
+// package counted to the totals of the film.
 Result<void> Preprocessor::CountMissing(const Package& package, PackageForecast* forecast) {
   is_counted_.resize(light_field_.size(), false);
   for (size_t i = 0; i < package.images.size(); ++i) {
@@ -379,7 +380,7 @@ Package Preprocessor::PackageOf(const Section& section, const Gathering& gatheri
   part.unit_m = light_field_.unit_m;
   part.depth_range = light_field_.depth_range;
   package.places.end = places_.end;
-  // from index in the whole light field to index in the package
+  // Index of intrinsics in the package, by their index in the whole light field.
   std::map<uint32_t, uint32_t> intrinsics;
   for (const auto& [id, gathered] : gathering.images()) {
     LfCamera camera = light_field_.cameras[id.value];

@@ -55,7 +55,7 @@ struct PreprocessOptions {
   std::optional<size_t> frames_per_package;
   PackageBalance balance = PackageBalance::kRays;
 
-  std::optional<DepthRange> depths;  // of the scene; unset: those of the light field
+  std::optional<DepthRange> depths;  // of the scene; unset: depth_range of the light field
   bool strict = false;               // true: a missing LF image is an error
   std::string version;               // version of the program
   std::string light_field_name;      // the argument LIGHTFIELD, as the user wrote it
@@ -78,8 +78,8 @@ struct PackageForecast {
   uint64_t read_bytes = 0;     // size of the files of image_count LF images
   uint64_t ray_count = 0;
   size_t memory_bytes = 0;
-  // passes over the LF images; above 1 if the plates do not all fit into the memory at the same
-  // time
+  // Number of passes over the LF images; above 1 if the plates do not all fit into the memory at
+  // the same time.
   size_t pass_count = 0;
   double cpu_s = 0;  // CPU time to render; 0 without `rate`
 };
@@ -88,14 +88,14 @@ struct PreprocessReport {
   size_t light_field_image_count = 0;
   size_t needed_count = 0;    // LF images that packages need, each counted once
   size_t missing_count = 0;   // of needed_count, the number that is missing or empty
-  std::string first_missing;  // path of the first of these
+  std::string first_missing;  // path of the first missing one
   std::vector<FrameForecast> frames;
   std::vector<PackageForecast> packages;
   std::optional<RenderRate> rate;
   std::string rate_error;  // reason why `rate` is unset; empty if it is set
   double index_s = 0;      // time to compute the order and the octree
-  // time to compute the needs of frames: once to divide the film, and again to make packages,
-  // unless they fit in the memory for kept needs
+  // Time to compute the needs of frames, once to divide the film; and again to make packages, for
+  // needs that did not fit into the memory in between.
   double select_s = 0;
   double density_s = 0;
   double write_s = 0;

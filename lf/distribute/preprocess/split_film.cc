@@ -22,7 +22,7 @@ std::vector<Section> SplitByCost(std::span<const uint64_t> costs, size_t count) 
         std::lower_bound(first + static_cast<ptrdiff_t>(begin), cost_before.end(), target) - first);
     if (end > begin && target - cost_before[end - 1] < cost_before[end] - target) --end;
     end = k == count ? frame_count
-                     // at least one frame each
+                     // every section gets at least one frame
                      : std::clamp(end, begin + 1, frame_count - (count - k));
     sections.push_back({begin, end});
     begin = end;
