@@ -56,7 +56,8 @@ std::string BlockLine(const CameraFact& fact) {
   return line + "\n";
 }
 
-// Appends the column to the lines of the table: name, parts, frames.
+// Appends a column to the lines of the table: the name of the fact, the names of its parts, and one
+// line for each frame.
 void AppendColumn(const TableColumn& column, std::vector<std::string>* lines) {
   const CameraFact& fact = column.fact;
   std::vector<size_t> widths;

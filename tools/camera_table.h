@@ -9,12 +9,12 @@
 
 namespace lf {
 
-// Returns one line for each fact that is the same in all frames, then a table of the others: one
-// line per frame, with aligned columns below two header lines for names and parts. Numbers have
-// five digits.
+// Returns one line for each fact that is the same in all frames, then a table of the other facts:
+// one line per frame, with aligned columns below two header lines for the names of the facts and of
+// their parts. Numbers have five digits.
 std::string CameraTable(const CameraPath& path, const std::vector<FrameId>& frames);
 
-// Returns one frame, with one line per fact.
+// Returns the facts of one frame, one per line.
 std::string CameraBlock(const CameraPath& path, FrameId frame);
 
 // Returns one line per frame below a header line, with all digits; infinity is "inf".

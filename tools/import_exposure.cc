@@ -52,7 +52,8 @@ void Warn(const LightField& light_field, const ExposureArguments& arguments,
          {});
 }
 
-// Returns all LF images, or those that share their pose.
+// Returns all LF images if `asks_all` is true, otherwise the LF images that share their pose with
+// another one.
 std::vector<LfImageId> ImagesToAsk(const LightField& light_field, bool asks_all) {
   std::vector<bool> is_asked(light_field.size(), asks_all);
   if (!asks_all) {
@@ -129,7 +130,7 @@ Result<std::optional<ExifGains>> StateBrackets(const ExposureArguments& argument
     LF_ASSIGN_OR_RETURN(gains, GainFromExif(stated, light_field));
   }
   if (arguments.mask_clipped) light_field->encoding.masks_clipped = true;
-  ApplyBrackets(light_field);  // --exclude and gains changed the result of reading
+  ApplyBrackets(light_field);  // again, because --exclude and gains changed the light field
   return gains;
 }
 

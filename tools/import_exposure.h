@@ -29,9 +29,10 @@ struct ExposureArguments {
 };
 
 // Applies --gain-from-exif and --mask-clipped to the light field, if they are given.
-//   lights  set to LightOf() each file, for the report: for all LF images if gains are asked for,
-//           otherwise for those that share their pose; NaN for the others; empty if there are none
-// Returns the gains, if they were asked for. kUsage for a packed store; kInput as for
+//   lights  set to LightOf() of the file of each LF image, for the report. If --gain-from-exif is
+//           not given, only files of LF images that share their pose are read; the entries of the
+//           others are NaN, and `lights` is empty if no LF images share a pose
+// Returns the gains if --gain-from-exif is given. kUsage for a packed store; kInput as for
 // GainFromExif().
 Result<std::optional<ExifGains>> StateBrackets(const ExposureArguments& arguments, ThreadPool& pool,
                                                LightField* light_field,
@@ -41,7 +42,8 @@ Result<std::optional<ExifGains>> StateBrackets(const ExposureArguments& argument
 void WarnOfBracketOptions(const ExposureArguments& arguments, const std::optional<ExifGains>& gains,
                           LightField* light_field, CaptureReport* report);
 
-// Estimates the exposure and writes it into the light field. Warns about what stays unchanged.
+// Estimates the exposure and writes it into the light field. Warns about gains and falloffs that
+// stay unchanged.
 Result<MatchedExposure> MatchAndApply(const ExposureArguments& arguments,
                                       const CommonOptions& common,
                                       const std::atomic<bool>& interrupted, ThreadPool& pool,

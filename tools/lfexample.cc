@@ -31,8 +31,8 @@ a COLMAP model. A warning says when the depth is uncertain, and what to try. Ren
   lfrenderer LIGHTFIELD PATH.yaml -o DIR)",
 };
 
-// Returns the readable LF camera nearest to the middle that is nearly level, since levelling a
-// picture crops it. kOutput: the machine lacks memory or open files.
+// Returns the LF camera nearest to the middle whose LF image can be read and that is nearly level,
+// because levelling a picture crops it. kOutput: the machine lacks memory or open files.
 lf::Result<lf::LfImageId> FindMiddleCamera(const lf::LightField& light_field,
                                            const lf::LfImageStore& store) {
   lf::MachineFailure failure;

@@ -129,8 +129,8 @@ lf::Result<lf::Vec2> ParsePitch(const std::string& text) {
   return lf::UsageError(fmt::format("--pitch {}: expected P or PX,PY, in world units", text));
 }
 
-// Returns true if the folder that is read holds the transforms.json that is written, and the
-// calibration that it was made from.
+// Returns true if lfimport reads and writes the same folder, which holds both a transforms.json
+// that an earlier lfimport wrote and the calibration that this file was made from.
 bool WritesAgain(const Arguments& a) {
   std::error_code error;
   return !a.output.empty() && std::filesystem::equivalent(a.light_field.path, a.output, error) &&
@@ -150,7 +150,8 @@ lf::Result<lf::OpenOptions> MakeOpenOptions(const Arguments& a) {
   return options;
 }
 
-// Returns the light field as it is to be written. Reports which images were excluded.
+// Opens the light field and applies --exclude, --transform, --scale and --unit-m. Sets the number
+// of excluded LF images.
 lf::Result<lf::LightField> OpenChanged(const Arguments& a, size_t* excluded_count) {
   LF_ASSIGN_OR_RETURN(const lf::OpenOptions options, MakeOpenOptions(a));
   LF_ASSIGN_OR_RETURN(lf::LightField light_field, lf::OpenLightField(a.light_field.path, options));

@@ -109,8 +109,8 @@ int main(int argc, char** argv) {
     lf::RenderSignals& signals = lf::CatchRenderSignals();
     LF_RETURN_IF_ERROR(arguments.Check(program.app().count("--seed") > 0));
     lf::ThreadPool pool(common.threads);
-    // The total of this unit is known before the render: every pixel of a needed rectangle is tried
-    // as a ray, or read.
+    // The progress is counted in pixels of the needed rectangles, because their number is known
+    // before the render. With the estimator nearest, each of these pixels is a ray to be tested.
     const char* unit = arguments.estimator == "nearest" ? "rays" : "px";
     lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), unit);
     const auto progress = [&](const lf::RenderProgress& now) {

@@ -40,7 +40,7 @@ struct RenderArguments {
   bool HasPackages() const;
   // Must be called before MakeOptions(). kUsage if options contradict each other, or cannot be used
   // with packages.
-  //   seed_given  --seed is given, although packages contain a seed
+  //   seed_given  true if --seed is given; packages contain a seed of their own
   Result<void> Check(bool seed_given) const;
 
   // Converts the arguments.

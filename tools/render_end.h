@@ -9,7 +9,8 @@
 
 namespace lf {
 
-// Returns the LF images that the render left out. A percentage refers to the pass that reads most.
+// Returns the LF images that the render left out. `asked` is the number of LF images that the
+// largest pass reads.
 //   advice  remedy that the message gives to the user
 MissingImages MissingOf(const RenderReport& report, const std::string& advice);
 

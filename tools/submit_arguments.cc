@@ -24,7 +24,7 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// Options of lfrenderer that the job sets.
+// Options of lfrenderer that the job sets, so that a user must not.
 constexpr std::array kOfTheJob = {
     "-o",         "--output", "--resume", "--overwrite", "--progress",        "--json", "--frames",
     "--video",    "--shard",  "--finish", "--threads",   "--memory",          "--help", "-h",
@@ -262,8 +262,8 @@ Result<void> SubmitArguments::Change(ClusterJob* job, const CommonOptions& commo
   const ClusterEngine before = job->engine;
   LF_RETURN_IF_ERROR(TakeResources(job, common, false));
   if (before == ClusterEngine::kSlurm && job->engine == ClusterEngine::kLocal) {
-    // If Slurm is not installed on this machine, the queue is unknown. The job is then assumed to
-    // have no tasks in it.
+    // If Slurm is not installed on this machine, the queue is unknown. The queue is then assumed to
+    // have no tasks of the job.
     const auto queue = AskSlurm(*job);
     if (queue && !queue->empty())
       return UsageError(

@@ -48,14 +48,14 @@ struct MissingImages {
   uint64_t count = 0;
   uint64_t asked = 0;
   std::string what;    // such as "3 of 25 LF images were left out: ..."
-  std::string advice;  // a remedy, other than accepting it
+  std::string advice;  // a remedy, other than accepting the loss
 };
 
 // Ends a program; to be called when all of its results are written. Succeeds if nothing is missing,
 // or, with a warning, if the limit accepts what is missing. Otherwise kBelowRequired.
 Result<void> EndWithMissing(const MissingImages& missing, const MissingLimit& limit);
-// As above, for a caller that has compared the numbers with the limit itself, such as separately
-// for each package.
+// As above, for a caller that has itself compared the numbers with the limit, for example
+// separately for each package.
 //   is_accepted  result of this comparison
 Result<void> EndWithMissing(const MissingImages& missing, const MissingLimit& limit,
                             bool is_accepted);

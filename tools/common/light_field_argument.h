@@ -23,7 +23,8 @@ struct LightFieldArgument {
   Result<OpenOptions> Options() const;
   Result<LightField> Open() const;
   // kUsage if an option is given that packages would ignore: they contain their calibration and the
-  // meaning of alpha. With --lightfield (`path`) the remaining options apply to that light field.
+  // meaning of alpha. If --lightfield (`path`) is given, the other options apply to the light field
+  // that it names.
   Result<void> CheckWithPackages() const;
   // Returns the options as they were given, for the command line of another program.
   std::vector<std::string> Words() const;

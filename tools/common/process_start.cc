@@ -25,7 +25,7 @@ namespace {
   std::_Exit(status);
 }
 
-// Uses only functions that signal handlers may call.
+// Ends the program, or ignores SIGUSR1. Calls only functions that signal handlers may call.
 void OnEarlySignal(int signal) {
   if (signal == SIGUSR1) return;
   constexpr const char* kClearLine = "\r\x1b[K";

@@ -25,7 +25,7 @@ namespace lf {
 
 // Values of the common options. An option that the program does not offer keeps its default.
 struct CommonOptions {
-  int threads = 0;  // 0: all
+  int threads = 0;  // 0: as many as the machine has
   uint64_t seed = 0;
   bool strict = false;
   std::string progress =

@@ -37,7 +37,7 @@ ProgressMeter::~ProgressMeter() {
   if (style_ == ProgressStyle::kBar) LogProgressLine("");
 }
 
-// Cheap, so that callers can test this before they format texts.
+// Returns true if it is time to print. Cheap, so that callers can test it before they format texts.
 bool ProgressMeter::IsDue() const {
   if (style_ == ProgressStyle::kNone) return false;
   const double interval_s = style_ == ProgressStyle::kBar    ? 0.2

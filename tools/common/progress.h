@@ -27,8 +27,9 @@ class ProgressMeter {
   ProgressMeter(ProgressStyle style, std::string unit);
   ~ProgressMeter();
 
-  // Reports `done` of `total` units; `detail` is shown before the numbers. Cheap: prints at most a
-  // few times per second (bar), once per second (json) or every few seconds (plain).
+  // Reports `done` of `total` units. `detail` is shown before the numbers; JSON leaves it out.
+  // Cheap: prints at most a few times per second (bar), once per second (json) or every few seconds
+  // (plain).
   void Update(uint64_t done, uint64_t total, const std::string& detail);
   // As above, with "LF image 3/10, frame 1/4" as detail; in JSON, "counts": {"frame": [1, 4]}.
   void Update(uint64_t done, uint64_t total, const std::vector<ProgressCount>& counts);

@@ -12,7 +12,8 @@ namespace lf {
 
 class AnswerThreads {
  public:
-  // Starts threads with the first tasks, at most `most_count`. Further tasks wait in a queue.
+  // Run() starts up to `most_count` threads, when they are needed. If all are busy, tasks wait in a
+  // queue.
   explicit AnswerThreads(size_t most_count) : most_count_(most_count) {}
   ~AnswerThreads() { Stop(); }
   AnswerThreads(const AnswerThreads&) = delete;

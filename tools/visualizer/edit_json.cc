@@ -8,7 +8,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The parser calls it for each token; returning false ends the parse.
+// The parser calls one of these functions for each token. A function that returns false ends the
+// parse.
 class EditReader : public nlohmann::json_sax<Json> {
  public:
   bool null() override { return Keep(nullptr); }

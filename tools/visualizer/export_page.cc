@@ -32,7 +32,7 @@ class Exporter {
     facts.byte_count += bytes.size();
     return {};
   }
-  // Writes what the page would get under this name.
+  // Writes the answer that the server would give for this name. Warns if the answer is an error.
   Result<void> WriteAnswer(const std::string& name) {
     const PageAnswer answer = Answer(scene_, name);
     if (answer.status == 200) return Write(name, answer.body);
@@ -82,7 +82,7 @@ Result<ExportFacts> ExportPage(PageScene& scene, const fs::path& folder, size_t 
   std::vector<uint32_t> images;
   for (uint32_t i = 0; i < frames_of_image.size(); ++i)
     if (frames_of_image[i] > 0) images.push_back(i);
-  // The exported LF images are spread evenly over those used.
+  // The exported LF images are spread evenly over the LF images that the film uses.
   const size_t image_count = std::min(images.size(), most_images);
   const size_t total = 2 * frame_count + image_count;
   size_t done = frame_count;

@@ -17,14 +17,15 @@ struct ExportFacts {
   size_t file_count = 0;
   uint64_t byte_count = 0;
   size_t image_count = 0;     // LF images that the film uses
-  size_t missing_count = 0;   // those of them that cannot be read and were left out
-  std::string first_missing;  // the reason
+  size_t missing_count = 0;   // how many of them were left out: they cannot be read
+  std::string first_missing;  // why the first of these cannot be read
 };
 
 // Exports everything that the page reads about the path: cameras, frames, what each frame uses, and
 // the LF images that the film uses, at most `most_images`. An exported path cannot be edited.
 //   folder  new or empty
-// kUsage: the folder is not empty. kOutput: the disk; a build without the page. kInterrupted.
+// kUsage: the folder is not empty. kOutput: the disk fails, or the program was built without the
+// page. kInterrupted: `interrupted` is true.
 Result<ExportFacts> ExportPage(PageScene& scene, const std::filesystem::path& folder,
                                size_t most_images, const std::atomic<bool>& interrupted,
                                const std::function<void(size_t done, size_t total)>& progress);

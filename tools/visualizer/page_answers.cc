@@ -53,8 +53,8 @@ PageAnswer NotFound() { return Refusal(404, "there is nothing of this name"); }
 PageAnswer JsonAnswer(std::string body) { return {200, "application/json", std::move(body)}; }
 PageAnswer BytesAnswer(std::string body) { return {200, kBytes, std::move(body)}; }
 
-// Answers with the path in its file now, or with the first one if the file has a fault, which the
-// news report.
+// Answers scene.json with the path that is in PATH.yaml now. If that has a fault, which an event
+// reports, answers with the path that was there when lfvisualizer started.
 PageAnswer OfScene(PageScene& scene) {
   if (const auto text = scene.TextOnDisk())
     if (const auto draft = scene.AddDraft(*text)) return JsonAnswer(SceneJson(scene, **draft, {}));

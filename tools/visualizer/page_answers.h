@@ -41,8 +41,8 @@ std::string FilmJson(const FilmUse::Facts& facts);
 std::string DensityJson(PageScene& scene, const PathDraft& draft, FrameId frame);
 // Returns {"id": ..., "name": ..., "centre": [...], ...}.
 std::string CameraJson(const PageScene& scene, LfImageId id);
-// Returns {"rect": [x_begin, y_begin, x_end, y_end], "outlines": [[[x, y], ...]]}; without a ray
-// there is no rect.
+// Returns {"rect": [x_begin, y_begin, x_end, y_end], "outlines": [[[x, y], ...]]}; "rect" is left
+// out if no ray of the LF image can contribute.
 std::string OverlapJson(PageScene& scene, const PathDraft& draft, FrameId frame, LfImageId id);
 
 // Largest width and height of LF images for the page.

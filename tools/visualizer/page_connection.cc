@@ -23,7 +23,7 @@ MHD_Result AddHeader(void* headers, MHD_ValueKind, const char* key, size_t key_s
   try {
     to.all.emplace_back(std::string(key, key_size),
                         value ? std::string(value, value_size) : std::string());
-  } catch (const std::exception&) {  // must not reach C code
+  } catch (const std::exception&) {  // exceptions must not reach C code
     to.is_whole = false;
   }
   return to.is_whole ? MHD_YES : MHD_NO;

@@ -27,13 +27,13 @@ namespace {
 constexpr unsigned kMode = MHD_USE_EPOLL_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME;
 constexpr size_t kHeaderBytes = 32 << 10;
 constexpr size_t kThreads = 8, kMostStreams = 16;
-constexpr int kMostRequests = 96;  // past their headers; browsers open six per address
+constexpr int kMostRequests = 96;  // whose headers were read; browsers open six per address
 constexpr size_t kMostWaiting = 128;
-// Must exceed the sum of both. At this limit libmicrohttpd accepts no more connections, and no new
-// client would get an answer.
+// Must exceed kMostRequests + kMostWaiting: at this limit libmicrohttpd accepts no more
+// connections, and a new client would not even get a refusal.
 constexpr unsigned kMostConnections = 256;
 constexpr std::chrono::milliseconds kPatience(5000);
-constexpr unsigned kSilence_s = 10;  // of a client that sends no more of a body, or reads nothing
+constexpr unsigned kSilence_s = 10;  // limit for a client that sends no more or reads nothing
 constexpr size_t kMostBodiesBytes = 2 * kMostBodyBytes;
 constexpr size_t kMostAnswersBytes = size_t{256} << 20;  // for comparison, a million LF cameras are
                                                          // 12 MB
@@ -45,7 +45,7 @@ struct Request {
   MHD_Connection* connection = nullptr;
   RequestHead head;
   std::string body;
-  size_t body_bytes = 0;  // taken from the budget
+  size_t body_bytes = 0;  // share of the byte budget that `body` takes
   bool is_begun = false;  // a thread makes the answer and then resumes the connection
   std::optional<PageAnswer> answer;
 };

@@ -21,7 +21,7 @@ namespace lf {
 class PageDaemon {
  public:
   // Makes an answer. Called by several threads at the same time. May throw.
-  //   name  below the token's folder
+  //   name  path below the folder /TOKEN/
   using Answerer =
       std::function<PageAnswer(const RequestHead& head, std::string_view name, std::string&& body)>;
 

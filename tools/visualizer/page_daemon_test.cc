@@ -139,7 +139,7 @@ TEST(PageDaemon, SlowAnswersHoldUpNeitherOthersNorTheEnd) {
     changed.wait(lock, [&] { return slow_count == 7; });
   }
   EXPECT_TRUE(Request(daemon, "GET", "quick").Whole().starts_with("HTTP/1.1 200 "));
-  // There are more requests than threads; those in the queue remain when the daemon stops.
+  // There are more requests than threads: some are still in the queue when the daemon stops.
   for (int i = 0; i < 20; ++i) slow.push_back(std::make_unique<Request>(daemon, "GET", "slow"));
   {
     std::unique_lock lock(mutex);

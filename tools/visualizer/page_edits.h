@@ -17,7 +17,8 @@ namespace lf {
 //                 -> {"id"}; "conflict" with "error" if the file was changed meanwhile
 //   preview       {"text", "frame"} -> {}; events report its progress
 //   preview/stop  {} -> {}
-//   focus         {"path": id, "frame", "x", "y"} in elements, or with "camera", in its pixels
+//   focus         {"path": id, "frame", "x", "y"} in elements of the frame, or, with "camera", in
+//                 pixels of its LF image
 //                 -> {"point", "focus_distance", "certainty", "cameras"}
 PageAnswer Edit(PageScene& scene, PreviewRender& preview, std::string_view name,
                 const std::string& body);

@@ -23,7 +23,7 @@ std::vector<std::string_view> ValuesOf(const RequestHead& head, std::string_view
   return values;
 }
 
-// Takes a time that does not depend on where the texts differ.
+// Returns true if the texts are equal, after a time that does not depend on where they differ.
 bool AreEqual(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
   unsigned char difference = 0;
@@ -36,7 +36,8 @@ bool IsOurHost(std::string_view host, int port) {
   return host == fmt::format("127.0.0.1:{}", port) || host == fmt::format("localhost:{}", port);
 }
 
-// Browsers state the page that a request comes from. Other programs send neither header.
+// Browsers state in Origin or Sec-Fetch-Site which page a request comes from. Other programs send
+// neither of these headers.
 bool ComesFromOurPage(const RequestHead& head, int port) {
   constexpr std::string_view kScheme = "http://";
   for (const std::string_view origin : ValuesOf(head, "Origin"))

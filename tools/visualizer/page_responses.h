@@ -37,7 +37,8 @@ class ByteBudget {
   std::atomic<size_t> held_bytes_ = 0;
 };
 
-// Forbids to show the page inside another page, to cache it, and to load anything from elsewhere.
+// Adds headers that forbid showing the page inside another page, caching it, and loading anything
+// from elsewhere.
 void AddHeaders(MHD_Response* response, const char* type);
 
 // The body is sent uncompressed, because compression gains nothing on one machine. It counts in the

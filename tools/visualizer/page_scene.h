@@ -50,7 +50,8 @@ struct PathDraft {
 
 class PageScene {
  public:
-  // kInput: path, packages, packed stores. Packages of another film are ignored with a warning.
+  // kInput: the path, a package or a packed store cannot be read. Packages of another film are
+  // ignored with a warning.
   static Result<std::unique_ptr<PageScene>> Open(LightField light_field, PageArguments arguments);
 
   const PageArguments& arguments() const { return arguments_; }

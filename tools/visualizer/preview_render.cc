@@ -83,7 +83,7 @@ void PreviewRender::Render(const Wish& wish) {
   Result<std::string> end = std::string();
   try {
     end = RenderFrame(wish);
-  } catch (const std::exception& error) {  // such as memory that is not there
+  } catch (const std::exception& error) {  // such as lack of memory
     end = OutputError(error.what());
   }
   if (end)

@@ -53,14 +53,14 @@ class PreviewRender {
   void Say(const Wish& wish, const std::string& state, const std::string& message);
 
   PageScene& scene_;
-  ThreadPool pool_;  // of its own: the page's answers do not wait for steps of the render
+  ThreadPool pool_;  // separate, so that the page's answers do not wait for the render
   std::atomic<bool> interrupted_ = false;  // the current render is to end
   mutable std::mutex mutex_;               // guards all below
   std::condition_variable changed_;
   std::optional<Wish> wish_;
   bool is_ending_ = false;
   FrameId shown_;
-  std::shared_ptr<const GrowingPicture> picture_;  // of the frame shown; null before the first
+  std::shared_ptr<const GrowingPicture> picture_;  // shows frame `shown_`; null before the first
   uint64_t picture_count_ = 0;
   std::thread thread_;
 };

@@ -16,7 +16,8 @@ constexpr int kPictureSide_px = 1280;
 std::string RenderJson(const std::filesystem::path& folder) {
   Json frames = Json::array();
   for (const WatchedFrame& frame : LookAtRender(folder))
-    // As text, because the page compares it and JavaScript numbers have only 53 bits.
+    // "changed" is text, because the page compares it exactly, and JavaScript numbers have only 53
+    // bits.
     frames.push_back({{"frame", frame.frame.value},
                       {"finished", frame.is_finished},
                       {"changed", std::to_string(frame.changed_ns)},
