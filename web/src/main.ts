@@ -51,7 +51,7 @@ async function start(): Promise<void> {
   if (scene.packages_note) state.say(scene.packages_note);
   view.look("overview");
   state.emit("theme");
-  // For measurements and tests.
+  // Measurements (bench/) and tests read this object.
   Object.assign(window, { lfvisualizer: { state, view, receivedBytes } });
   document.body.dataset.ready = "yes";
 }

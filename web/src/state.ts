@@ -58,7 +58,7 @@ export class State {
   isDark = true;
 
   private savedText = "";
-  // The points clicked so far of three that define the focus plane, in `frame`.
+  // The points of the focus plane that were clicked so far in `frame`. Three points define the plane.
   planePoints: { frame: number; points: Vec3[] } | null = null;
   private savedId = "";
   private readonly listeners = new Map<Change, (() => void)[]>();

@@ -25,8 +25,8 @@ function setFocus(document: PathDocument, name: string, time: number, value: Pat
   else document.setBase(name, value);
 }
 
-// Sets the focus distance. If the file defines the focus in another way, or by a motion, replaces that and returns a
-// text that says so; otherwise returns "".
+// Sets the focus distance. If the file defines the focus in another way, or by a motion, replaces this definition and
+// returns a text that says so; otherwise returns "".
 function setFocusDistance(document: PathDocument, time: number, distance: number): string {
   const { given, hasAccelerations } = document.quantity("focus_distance");
   if (given) setFocus(document, "focus_distance", time, distance);

@@ -235,8 +235,8 @@ export class RenderPanel {
     this.wantedName = "";
   }
 
-  // Reads a picture and shows it, unless this version is already shown. Only one picture is read at a time. If a newer
-  // version or another frame is requested while one is read, it is read afterwards.
+  // Reads a picture and shows it, unless this version of it is already shown. Only one picture is read at a time. If
+  // another picture is requested meanwhile, the one requested last is read afterwards.
   private async load(name: string, version: string): Promise<void> {
     const wanted = `${name}?${version}`;
     this.wantedName = wanted;
@@ -254,7 +254,7 @@ export class RenderPanel {
       // If the server says "no such frame", the file was just being replaced, and an event about its next version
       // follows.
       if (!(error instanceof Error && /no such frame/.test(error.message))) {
-        this.picture = null; // it would be that of another frame
+        this.picture = null; // it would show another frame
         this.shownName = "";
         this.state.fail(error);
         this.fault = this.state.message?.text ?? "";

@@ -7,7 +7,7 @@ export interface LightFieldOptions {
   images?: string;
 }
 
-// Options of both programs. `seed` decides the order of the LF images.
+// Options that lfpreprocessor and lfrenderer share. `seed` decides the order of the LF images.
 export interface SharedOptions extends LightFieldOptions {
   frames?: string;
   memory?: string;

@@ -22,9 +22,9 @@ export class History {
     return this.entries[this.at].text;
   }
 
-  // Adds an edit. merge: true if the edit belongs to a drag or to typing. It then replaces the previous edit, if that
-  // was also pushed with `merge` and the same label, and without seal(), undo() or redo() in between. Pushing the
-  // current text changes nothing.
+  // Adds an edit. merge: true if the edit belongs to a drag or to typing. The edit then replaces the previous edit, if
+  // that was also pushed with `merge` and the same label, and if neither seal() nor undo() nor redo() was called in
+  // between. Pushing the current text changes nothing.
   push(text: string, label: string, options: { merge?: boolean } = {}): void {
     const merge = options.merge ?? false;
     if (text === this.text) return;

@@ -9,7 +9,7 @@ import { closed, Faces, Lines } from "./lines";
 
 const GRID = 6; // number of cells along the width of the focus plane
 const BEHIND = 0.35; // length of the widened frustum behind the lens, about, in focus distances
-const BEYOND = 1.5; // the same in front of the lens
+const BEYOND = 1.5; // length in front of the lens, about, in focus distances
 
 export class RenderCameraModel {
   readonly object = new THREE.Group();
@@ -97,7 +97,7 @@ export class RenderCameraModel {
     this.widenedLines.set(rays, origin);
   }
 
-  // false: only the lens is drawn; true: also the frustum, the focus plane, the widened frustum and the depths.
+  // Shows or hides everything but the lens: the frustum, the focus plane, the widened frustum and the depths.
   showFocus(isShown: boolean): void {
     for (const part of [this.focusFace, this.focusLines, this.frustum]) part.object.visible = isShown;
     this.widened.visible = isShown;
