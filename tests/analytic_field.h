@@ -61,7 +61,7 @@ class FormulaStore : public LfImageStore {
 };
 
 // Images that are black except for the pixel that shows a point of the scene. Only that pixel is
-// loaded: black ones would add rays but no light.
+// loaded: the black pixels would add rays but no light.
 class PointStore : public LfImageStore {
  public:
   PointStore(const LightField& field, const Vec3& point) : field_(field), point_(point) {}

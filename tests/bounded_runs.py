@@ -1,4 +1,5 @@
-"""Runs programs on hostile files with limits of memory, time and temporary disk, and records the most used."""
+"""Runs programs on hostile files with limits of memory, time and temporary disk, and records how much of each they
+used."""
 import concurrent.futures
 import os
 import pathlib
@@ -11,7 +12,7 @@ import threading
 import time
 
 MIB = 1 << 20
-CPU_LIMIT_S = 60  # so that every run ends; a good one takes less than a tenth of a second
+CPU_LIMIT_S = 60  # so that every run ends; a run on good files takes less than a tenth of a second
 ADDRESS_LIMIT = 8 << 30
 FILE_LIMIT = 1024 * MIB
 WAIT_S = 240
@@ -67,7 +68,8 @@ class BoundedRuns:
         self.begin = time.monotonic()
 
     def all(self, kind, calls, accepts=(2, 3, 6)):
-        """calls: (name, words) or (name, words, environment)"""
+        """Runs `calls`, which are (name, words) or (name, words, environment). A run must end with a status in
+        `accepts`."""
         calls = [(*call, {})[:3] for call in calls]
         assert calls, kind
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count() or 1) as pool:

@@ -18,8 +18,8 @@ from program_test_case import ProgramTestCase
 IMPORTER = RENDERER = SYNTH = EXAMPLE = PREPROCESSOR = COMPRESSOR = None
 STOPS = (2, 0, -2)
 POSES = 25
-READ_NOISE, SHOT_NOISE = 0.002, 0.0004  # deviation, and variance at radiance 1, of a stored picture
-MOST_ERROR = {"highlights": (12, 8), "shadows": (6, 2)}  # in %: root mean square, mean
+READ_NOISE, SHOT_NOISE = 0.002, 0.0004  # of stored pictures: standard deviation; variance at radiance 1
+MOST_ERROR = {"highlights": (12, 8), "shadows": (6, 2)}  # largest errors in %: root mean square, mean
 MOST = 3.8  # radiance; the dark exposure clips from 4 on
 EXIF_IFD, TIME, F_NUMBER, ISO = 0x8769, 0x829A, 0x829D, 0x8827
 

@@ -37,7 +37,7 @@ def project(model, parameters, points):
 
 
 def by_opencv(parameters, points):
-    """parameters: k1 k2 p1 p2 k3 k4 k5 k6"""
+    """Returns the pixels that OpenCV computes. parameters: k1 k2 p1 p2 k3 k4 k5 k6"""
     zero = np.zeros(3)
     return cv2.projectPoints(points, zero, zero, K, np.array(parameters))[0][:, 0]
 
@@ -48,7 +48,7 @@ def by_opencv_fisheye(parameters, points):
 
 
 def by_numpy_fisheye(parameters, points):
-    """OpenCV's own function stops at 90 degrees."""
+    """Returns the pixels of OpenCV's fisheye model. OpenCV's own function stops at 90 degrees."""
     across = np.hypot(points[:, 0], points[:, 1])
     theta = np.arctan2(across, points[:, 2])
     rd = theta + sum(k * theta ** (2 * i + 3) for i, k in enumerate(parameters))
@@ -63,7 +63,7 @@ def by_numpy_fov(parameters, points):
 
 
 def by_numpy_division(parameters, points):
-    """Returns the smaller root of k r rd^2 - rd + r = 0."""
+    """Returns the pixels of the division model, where rd is the smaller root of k r rd^2 - rd + r = 0."""
     u = points[:, :2] / points[:, 2:]
     r = np.hypot(*u.T)
     k, = parameters
@@ -90,7 +90,7 @@ def by_numpy_thin_prism(parameters, points):
 
 
 def by_numpy_rad_tan_thin_prism(parameters, points):
-    """Project Aria's Fisheye624, with the angle in place of the slope as in COLMAP."""
+    """Returns the pixels of Project Aria's Fisheye624, with the angle in place of the slope as in COLMAP."""
     radial, (p0, p1), prism = parameters[:6], parameters[6:8], parameters[8:]
     across = np.hypot(points[:, 0], points[:, 1])
     theta = np.arctan2(across, points[:, 2])

@@ -19,7 +19,7 @@ from PIL import Image
 from first_picture_case import FirstPictureCase, detail, expose, grey, write_sheet
 
 DATA = None
-TILES = 12  # of a picture along each axis
+TILES = 12  # number of tiles of a picture along each axis
 SUFFIXES = (".jpg", ".jpeg", ".png", ".PNG")
 SHOP = range(9, 18)  # rows and columns in the middle of 27
 
@@ -37,7 +37,7 @@ def pose(x, y):
 
 
 def shop(folder):
-    """The 81 images in the middle, at a third of their size."""
+    """Writes the 81 images in the middle, at a third of their size."""
     frames = []
     for file in sorted((DATA / "blender-shop" / "images").glob("Original Camera_*.jpg")):
         _, row, column, y, x, _, _ = file.stem.split("_")
@@ -49,7 +49,7 @@ def shop(folder):
 
 
 def cards(folder):
-    """Images at a third of their size; the rays through the cameras' principal points meet at distance 100."""
+    """Writes images at a third of their size; the rays through the cameras' principal points meet at distance 100."""
     frames = []
     for file in sorted((DATA / "stanford-cards-9x9" / "images").glob("out_*.jpg")):
         shrunk(file, folder / "images" / file.name, 3)
@@ -61,7 +61,7 @@ def cards(folder):
 
 
 def temple(folder):
-    """Calibration as rows of text, above the folder of the images."""
+    """Copies a calibration of rows of text, into the folder above the images."""
     source = DATA / "middlebury-templeRing" / "templeRing"
     for file in source.glob("*.png"):
         shutil.copyfile(file, folder / "images" / file.name)
@@ -69,7 +69,7 @@ def temple(folder):
 
 
 def beer(folder):
-    """A COLMAP model of a video that was taken with a phone."""
+    """Copies a COLMAP model of a video that was taken with a phone."""
     source = DATA / "beer-colmap"
     for file in (source / "images").glob("*.jpg"):
         shutil.copyfile(file, folder / "images" / file.name)

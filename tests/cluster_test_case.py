@@ -30,8 +30,8 @@ def digests(folder):
 class ClusterTestCase(ProgramTestCase):
     packages = 3
     frames = 9
-    side, pitch = 4, 0.01  # of the LF cameras
-    resolution = None      # that of small_field
+    side, pitch = 4, 0.01  # LF cameras per side of their grid; their pitch
+    resolution = None      # None: the resolution of small_field
 
     @classmethod
     def setUpClass(cls):

@@ -33,7 +33,7 @@ def covering_cells(axes, strength=2, seed=0):
 
 
 def _best_value(values, axis, cell, missing, chance):
-    """Returns the value of an axis that completes most missing combinations with those of a cell."""
+    """Returns the value of an axis that, together with the values of a cell, completes most missing combinations."""
     def completed(value):
         filled = {**cell, axis: value}
         return sum(tuple(filled[c] for c in columns) in combinations

@@ -7,8 +7,8 @@ import numpy as np
 WIDTH, HEIGHT, FOCAL_PX = 96, 72, 100
 SIDE, PITCH = 13, 0.006
 FOCUS = 1.0
-CENTRE = (0.001, 0.002)  # of the lens
-SAMPLES = 4  # per pixel and axis
+CENTRE = (0.001, 0.002)  # centre of the lens
+SAMPLES = 4  # samples of a pixel along each axis
 
 PATH_YAML = """format: lfpath 1
 fps: 25
@@ -53,7 +53,7 @@ def ring_and_glass(x, y, depth):
 def photograph(x, y, shift=(0, 0), scene=ring_and_glass, depths=(0.8, FOCUS)):
     """Returns the premultiplied light and opacity that a pinhole camera at x, y records.
 
-    shift  displacement of the plane of focus, with which it stays in place for points of a lens
+    shift  offset of the camera from the lens centre; the picture is moved so that points at depth FOCUS stay in place
     scene  light and opacity of points of a plane at one of the depths, which ascend
     """
     at = (np.arange(SAMPLES) + 0.5) / SAMPLES
@@ -72,7 +72,8 @@ def photograph(x, y, shift=(0, 0), scene=ring_and_glass, depths=(0.8, FOCUS)):
 
 
 def lens_picture(opening, **scene):
-    """Returns premultiplied light and opacity, averaged over points of a lens relative to its centre."""
+    """Returns premultiplied light and opacity, averaged over points of a lens. `opening` lists them relative to its
+    centre."""
     pictures = [photograph(CENTRE[0] + x, CENTRE[1] + y, (x, y), **scene) for x, y in opening]
     return tuple(np.mean([picture[k] for picture in pictures], axis=0) for k in (0, 1))
 

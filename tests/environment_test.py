@@ -1,16 +1,16 @@
 #!/usr/bin/python3
-"""Every program on a machine that lacks something: memory, open files, processes, space on the disk, standard
+"""Runs every program on a machine that lacks something: memory, open files, processes, space on the disk, standard
 streams, a point in decimal numbers, plain names.
 
-A program may end with 0 only with the files (or the text) of an undisturbed run, and no temporary file left. Else its
-status is 2, 3, 4 or 6, its last line begins with "error: ", files with final names are old or right, and the same
-call, or going on, gives the right files once the machine lacks nothing.
+A program may end with 0 only if its files (or its text) are those of an undisturbed run, and no temporary file is left.
+Otherwise its status must be 2, 3, 4 or 6, its last line must begin with "error: ", and files with final names must be
+old or right. The same call, or a call that resumes, must make the right files once the machine lacks nothing.
 
 usage: environment_test.py FOLDER_OF_PROGRAMS [--all] [--part PART] [--only WORD] [--say]
 
 --all   long sweeps: more limits for each program, and each odd name alone (about an hour of CPU time)
 --part  memory, files, processes, size, disk, streams, locale, names or inputs; default: all of them
---only  calls whose name holds the word
+--only  only calls whose name contains the word
 --say   print every try
 """
 import argparse

@@ -8,11 +8,11 @@ or the right one, and a run with --resume, or the same run again, must end with 
 
 usage: faults_test.py SHIM FOLDER_OF_PROGRAMS [--points N] [--only WORD] [--say] [--workers N]
 
---points  number of system calls that fail in each group: one kind of call, by one function, on
-          files of one pattern (default 1, with fewer ways to fail; 0: all of them, which takes hours)
+--points  number of system calls that fail in each group. A group is one kind of call, by one function, on files of one
+          pattern (default 1, with fewer ways to fail; 0: all of them, which takes hours)
 --only    tests only programs whose name contains the word
 --say     print every try
---workers hunts side by side (default 2)
+--workers number of hunts at the same time (default 2)
 """
 import argparse
 import collections
@@ -47,7 +47,7 @@ QUICK_WAYS = {"open": ["24"], "read": ["5", "short"], "write": ["28+", "short", 
 FEWER_WAYS = {"open": ["24"], "write": ["28+", "kill"], "fsync": ["kill"], "rename": ["28"], "unlink": ["5"],
               "thread": ["11+"]}
 LIKE_OTHERS = ("shards", "rebin", "hybrid")
-FEWER_POINTS = 2  # for lfsubmit, per kind
+FEWER_POINTS = 2  # for lfsubmit, per kind of call
 GROUPS_OF_MALLOC = 6  # sizes form no pattern: this many points for all of them
 HANGS_S = 120
 

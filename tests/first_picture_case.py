@@ -13,7 +13,7 @@ def grey(image):
 
 
 def detail(pixels):
-    """Returns the standard deviation of edges, relative to the mean brightness."""
+    """Returns the standard deviation of the Laplacian, relative to the mean brightness."""
     return cv2.Laplacian(pixels, cv2.CV_32F)[2:-2, 2:-2].std() / max(1, pixels.mean())
 
 

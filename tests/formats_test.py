@@ -205,7 +205,8 @@ class FormatsTest(unittest.TestCase):
                    reads_itself=False)
 
     def test_every_lens_gives_the_picture_of_the_pinhole(self):
-        """Films the scene through other lenses. The tolerance is larger, because their pixels have other positions."""
+        """Films the scene through other lenses. The tolerance is larger, because pixels behind these lenses are at
+        other positions."""
         path, expected = self.native_frame(self.jittered)
         for native in (self.brown, self.rational, self.fisheye, self.fov):
             out = self.folder / f"{native.name}-as-pinhole"

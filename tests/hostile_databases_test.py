@@ -4,7 +4,7 @@ correct checksums. Programs must keep to the limits of memory and time and repor
 
 usage: hostile_databases_test.py LFRENDERER LFPREPROCESSOR LFCOMPRESSOR LFIMPORT [--all]
 
---all  every value in every column, and a thousand damages, in place of a selection
+--all  tests every value in every column, and a thousand damages, instead of a selection
 """
 import pathlib
 import random

@@ -108,7 +108,7 @@ class CompressorTest(StoreTest):
         self.assertEqual(codes[0], codes[1])
 
     def test_levels_of_a_sensor_scale_the_threshold(self):
-        """12 of 16 bits are encoded as well as 16 bits."""
+        """Values of 12 bits in 16-bit files must be encoded with the same quality as values of 16 bits."""
         def picture(scale):
             return lambda index: (smooth(index).astype(np.uint16)[..., 1] * scale)
         psnr = []
@@ -121,7 +121,7 @@ class CompressorTest(StoreTest):
                                  [("display16",)])
         self.assertAlmostEqual(psnr[0], psnr[1], delta=0.3)
         self.assertGreater(psnr[0], 40)
-        # Levels in the calibration that were corrected later are not those of the encoded curve.
+        # If levels of the calibration are corrected later, the encoded curve keeps its own levels.
         path = write_path(self.folder)
         frames = []
         for white in 65280, 32640:

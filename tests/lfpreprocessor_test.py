@@ -61,7 +61,7 @@ class PackagesTest(ProgramTestCase):
                                          name=f"packages{number}")
                 whole, parts = self.folder / f"whole{number}", self.folder / f"parts{number}"
                 self.succeeds(RENDERER, field, path, "-o", whole, "-q", *render)
-                # Packages contain these choices; the bits are those of the same options.
+                # Packages contain these choices, so lfrenderer needs no options for them. The bits are the same.
                 if set(render) & {"--seed", "off"}:
                     render = render[:-2]
                 self.succeeds(RENDERER, *files, "-o", parts, "-q", *render)
@@ -101,7 +101,7 @@ class PackagesTest(ProgramTestCase):
             self.assertEqual(self.digests(self.folder / f"out-{order}"), self.digests(whole))
 
     def test_lf_cameras_beyond_the_angle_have_no_say(self):
-        """They are treated as if they had not been recorded."""
+        """LF cameras beyond --max-angle are treated as if they had not been recorded."""
         field, path = self.film()
         text = json.loads(field.read_text())
         kept = []

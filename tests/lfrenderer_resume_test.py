@@ -93,7 +93,7 @@ class ResumeTest(unittest.TestCase):
         return self.folder / name / "partial"
 
     def wait_for_lock(self, name, process):
-        """Waits until the process handles signals. A killed one leaves its lock file behind."""
+        """Waits until the process handles signals. (A killed process leaves its lock file behind.)"""
         lock = self.partial(name) / "lock"
         while process.poll() is None:
             try:
@@ -216,7 +216,7 @@ class ResumeTest(unittest.TestCase):
     def test_pictures_stand_beside_unfinished_plates(self):
         self.assertTrue(list(self.partial("it's begun").glob("frame_*.exr")))
 
-    # The finished frame is the one that the picture of the last checkpoint showed; the others are not affected.
+    # The finished frame equals the picture of the last checkpoint; other frames are not affected.
     def test_frames_are_finished_with_the_rays_they_have(self):
         self.begun("early")
         path = sorted(self.partial("early").glob("frame_*.exr"))[-1]

@@ -44,7 +44,7 @@ class VisualizerTest(ProgramTestCase):
                 self.assertAlmostEqual(got, wanted, 12, index)
         self.assertEqual([line[0] for line in words["render_camera"]], [1, 2, 3])
 
-    # The number of collected LF images is that of lfrenderer, with weights and without.
+    # The number of collected LF images equals the number that lfrenderer reports, with weights and without.
     def test_what_is_collected_is_what_a_render_collects(self):
         for weights in ("auto", "none"):
             words = self.lines("--lens-weights", weights, "--frames", "1,3")
@@ -73,7 +73,8 @@ class VisualizerTest(ProgramTestCase):
             server.send_signal(signal.SIGINT)
             self.assertEqual(server.wait(), 0)
 
-    # Another page in the same browser can send requests, but has no token and names another host.
+    # Another page in the same browser can send requests to the server, but does not know the token. After DNS
+    # rebinding, its requests also have another Host header. The server must refuse either.
     @unittest.skipIf("pageless" in sys.argv, "it has no page")
     def test_only_its_own_page_can_write_files(self):
         before = self.path.read_text()

@@ -49,7 +49,7 @@ class Rendered(NamedTuple):
     digests: dict = {}   # SHA-256 of the frames' files
     facts: dict = {}     # what reports say of each frame
     skipped: list = []   # names of LF images
-    early: dict = {}     # frames that were finished early, before which place
+    early: dict = {}     # by frame that was finished early: place of the first LF image that it lacks
     early_pixels: dict = {}  # pixels_of() these frames
     seconds: float = 0
 

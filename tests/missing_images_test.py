@@ -50,8 +50,8 @@ class MissingImagesTest(ProgramTestCase):
         return json.loads((self.folder / out / name).read_text())
 
     def check_accepted(self, command, text, least):
-        """A limit of `least` LF images or more accepts them, a smaller one does not; everything is written each
-        time."""
+        """A limit of `least` LF images or more accepts the missing ones, a smaller limit does not; everything is
+        written each time."""
         for limit, code in ((least - 1, 6), (least, 0), (f"{100 * (least - 1) // 25}%", 6),
                             ("100%", 0)):
             with self.subTest(limit=limit):

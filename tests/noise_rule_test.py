@@ -154,7 +154,7 @@ class NoiseRuleTest(ProgramTestCase):
                       RENDERER, "--", *options)
         self.assertEqual(digests(self.folder / "b"), expected)
 
-    # A frame that stops is the frame of exactly the LF images that it used.
+    # A frame that stops early equals a frame that is rendered with only the LF images that it used.
     def test_a_stopped_frame_is_that_of_fewer_lf_images(self):
         for way in ("nearest", "auto"):
             self.render(way, *self.rule(way))
@@ -171,7 +171,7 @@ class NoiseRuleTest(ProgramTestCase):
             np.testing.assert_array_equal(self.pixels("max", 3), self.pixels(way, 3))
             self.assertTrue((self.pixels(way, 3) > 0).any())
 
-    # Frames that do not reach the noise are the frames without a rule, although other frames stop.
+    # Frames that do not reach the noise equal the frames of a render without a rule, although other frames stop.
     def test_frames_that_do_not_stop_are_as_without_a_rule(self):
         text = self.path.read_text().replace("value: 0.1}", "value: 0.03}")
         self.path.write_text(text.replace("aperture_diameter: 0.045", "aperture_diameter: 0.03"))
@@ -185,7 +185,7 @@ class NoiseRuleTest(ProgramTestCase):
             for (name, digest), stopped in zip(sorted(ruled.items()), early):
                 self.assertEqual(digest != plain[name], stopped, (mode, name))
 
-    # Rebinned rays in a state that are ahead of a frame are useless for that frame.
+    # Rebinned rays of a state are useless for a frame if they contain more LF images than the frame's plate.
     def test_a_plate_that_is_gone_does_not_mix_lf_images(self):
         for way in ("hybrid, previews", "rebin"):
             tag = way.replace(", ", "-")

@@ -26,7 +26,8 @@ testing::Radiance PaintedPlane(const Plane& plane) {
   };
 }
 
-// Returns the largest difference between the frame and the pattern where it is in focus.
+// Returns the largest difference between the frame and the pattern, at places where the pattern is
+// in focus.
 double ErrorOfPaintedPlane(const FocusTilt& painted, const FocusTilt& focused) {
   const GridRig rig;
   const LightField field = GridField(rig);

@@ -1,15 +1,15 @@
 #!/usr/bin/python3
-"""Every program that writes, while the power fails: after each step of it, what was not flushed is lost.
+"""Runs every program that writes, and lets the power fail after each of its steps: what was not flushed is lost.
 
-A call is logged once (faults/written_log.c). Then the disk is put together as it would be if the power
-had failed after one event of the log, by two rules: names count once their folder is flushed, or at once;
-content counts once its file is flushed. On each of these disks, files with final names must be absent,
-old or right, and going on must end with the right files. After status 0 all files must be there.
+A call is logged once (faults/written_log.c). Then the disk is composed as it would be if the power had failed after one
+event of the log. By one rule, a name is on the disk once its folder is flushed; by the other, at once. Content is on
+the disk once its file is flushed. On each of these disks, files with final names must be absent, old or right, and a
+call that resumes must make the right files. After status 0, all files must be there.
 
 usage: power_failure_test.py LOGGER FOLDER_OF_PROGRAMS [--points N] [--only WORD] [--say]
 
---points  moments of each call and rule (default 5; 0: all, which takes some minutes)
---only    calls whose name holds the word
+--points  number of moments tried for each call and rule (default 5; 0: all, which takes some minutes)
+--only    only calls whose name contains the word
 --say     print every try
 """
 import argparse

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""A Slurm of one's own on the loopback: several nodes on this machine, without root, systemd or
-cgroups, in one folder, to be tried and to be killed.
+"""Runs a private Slurm on the loopback, to be tried and to be killed: several nodes on this machine, in one folder,
+without root, systemd or limits by cgroups.
 
-usage: private_slurm.py FOLDER [--nodes 4] [--cpus 1]     runs until Ctrl-C, and says what a shell
-                                                          needs: export SLURM_CONF=...
+usage: private_slurm.py FOLDER [--nodes 4] [--cpus 1]     runs until Ctrl-C, and prints the command that a shell needs:
+                                                          export SLURM_CONF=...
 
-Needs slurmctld, slurmd, slurm-client and munge (Debian 12). What is stopped is what was started,
-and what these nodes run: nothing is looked for by name.
+Needs slurmctld, slurmd, slurm-client and munge (Debian 12). It stops only processes that it started, and those that its
+nodes run; it looks for no process by name.
 """
 import argparse
 import os

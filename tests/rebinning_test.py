@@ -70,7 +70,7 @@ class RebinningTest(ProgramTestCase):
         self.assertNotEqual(self.render("a", *options, "--seed", "1"),
                             self.render("b", *options, "--seed", "2"))
 
-    # Kills at any moment, also between the files of a state.
+    # Kills the render at any moment, also between writing two files of a state.
     def test_killed_and_resumed_the_same_bits(self):
         self.path(aperture=0.02, frames=6)
         for mode in ("rebin", "hybrid"):
@@ -210,8 +210,8 @@ class RebinningTest(ProgramTestCase):
         self.fails(2, ["--nearest", "--back-end reference"],
                    *self.command("no", "--mode", "rebin", "--nearest", "4"))
 
-    # The reference back end queries a k-d tree element by element. Within reach the result is that of splats; with the
-    # nearest rays, every point of the lens has an answer.
+    # The reference back end queries a k-d tree element by element. If it uses the rays within reach, the result equals
+    # the result of splats. If it uses the nearest rays (--nearest), it finds a ray for every point of the lens.
     def test_the_reference_back_end_asks_a_tree(self):
         self.path(aperture=0.004, frames=1, x=0.005)
         options = ["--mode", "rebin", "--lens-points", "4"]

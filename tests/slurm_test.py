@@ -43,7 +43,7 @@ class SlurmTest(ClusterTestCase):
         return self.status()["packages"][number]
 
     def begun(self, number):
-        """Returns the state of a package that has a checkpoint, and whose renderer is held."""
+        """Waits until a package has a checkpoint and its renderer is held, and returns the state of the package."""
         self.wait_for(lambda: self.is_held(number))
         name = f"package-{number:04d}.json"
         return json.loads((self.film / "cluster" / "packages" / name).read_text())
@@ -81,7 +81,7 @@ class SlurmTest(ClusterTestCase):
         self.assertGreater((self.folder / "film.mp4").stat().st_size, 1000)
         self.assertTrue((self.film / "contact_sheet.png").exists())
 
-    # As at a time limit, the batch script passes the signal on and its task is requeued.
+    # This happens at a time limit: the batch script passes the signal on, and its task is requeued.
     def test_what_is_told_to_end_is_requeued(self):
         process = self.start(*self.OPTIONS, "--wait", "--lfrenderer", self.held_renderer([0]),
                              *self.ARGUMENTS)

@@ -91,7 +91,8 @@ class TinyCalls:
                 Call("lfmerge", merge, [[*merge, "--resume"], [*merge, "--overwrite"]])]
 
     def submitters(self):
-        """Returns calls of lfsubmit: of the program itself, of its renderers, and of resuming."""
+        """Returns calls of lfsubmit, in which lfsubmit or its lfrenderer is disturbed, and calls that resume or
+        overwrite a job."""
         job = self.submit()
         resume = [self.programs / "lfsubmit", "--resume", str(self.out), "--progress", "none"]
         again = [resume, [*job, "--overwrite"]]

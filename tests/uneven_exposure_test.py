@@ -61,7 +61,7 @@ def seam_percent(frame, true):
 
 
 def error_percent(frame, true):
-    """Returns the mean difference, up to one scale per channel."""
+    """Returns the mean difference of a frame and the true frame, up to one scale per channel."""
     lit = (true > 0.03).all(-1) & (true < 0.95).all(-1)
     ratio = np.log(np.maximum(frame, 1e-4) / np.maximum(true, 1e-4))[lit]
     return 100 * np.abs(ratio - np.median(ratio, 0)).mean()

@@ -107,7 +107,7 @@ def nerfstudio(field, source, folder):
 
 
 def blender(field, source, folder):
-    """The form of NeRF's synthetic scenes: a field of view, no size, names without extension."""
+    """Writes the form of NeRF's synthetic scenes: a field of view, no size, names without extension."""
     copy_images(field, source, folder / "train")
     frames = [{"file_path": "./train/" + pathlib.Path(f["file_path"]).stem, "rotation": 0.01,
                "transform_matrix": f["transform_matrix"]} for f in field["frames"]]
@@ -162,7 +162,7 @@ def grid(field):
 
 
 def stanford(field, source, folder):
-    """The names contain positions in millimetres and the lens."""
+    """Writes images whose names contain positions in millimetres, and the lens."""
     places = grid(field)
 
     def name(index, _):
@@ -182,8 +182,8 @@ def stanford_without_positions(field, source, folder):
 
 
 def hci(field, source, folder):
-    """The 4D Light Field Benchmark: a grid row by row from the upper left, with the plane without disparity at
-    infinity."""
+    """Writes the form of the 4D Light Field Benchmark: a grid row by row from the upper left, with the plane without
+    disparity at infinity."""
     places = grid(field)
     rows, columns = (max(place[axis] for place in places) + 1 for axis in (0, 1))
     copy_images(field, source, folder, lambda index, _:

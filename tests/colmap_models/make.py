@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""Makes the COLMAP models beside it, with COLMAP itself, so that the tests need no COLMAP.
+"""Makes the COLMAP models in this folder, with COLMAP itself, so that the tests need no COLMAP.
 
 usage: make.py        needs COLMAP 3.8 (Debian 12: apt-get install --no-install-recommends colmap)
 
 ten_cameras: one camera of each model that COLMAP 3.8 and we have in common, two images each, all of
 which see the same twelve points. The 2D points are projected here, by the formulas of the models;
-COLMAP must find its reprojection error to be nothing, or this fails. COLMAP writes both forms: the
-text is its own export of the binary files.
+This program fails unless COLMAP finds that their reprojection error is 0. COLMAP writes both the binary files and the
+text files, which it exports from them.
 """
 import pathlib
 import re

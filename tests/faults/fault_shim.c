@@ -1,12 +1,13 @@
-// A preload library that makes one call fail: the k-th of a kind, on files whose path contains a
-// word. tests/faults_test.py judges what programs then do. For Linux and glibc; one fault per
-// process.
+// A preload library that makes one system call or allocation fail: the k-th of a kind, on files
+// whose path contains a word. tests/faults_test.py judges what programs then do. For Linux and
+// glibc; one fault per process.
 //
 //   FAULT_PROGRAM  only in the program of this name
 //   FAULT_PATH     only on paths that contain this word
 //   FAULT_KIND     open read write fsync rename unlink mkdir stat mmap thread malloc
 //   FAULT_K        which call of the kind, from 1; with FAULT_ALWAYS=1, also every later one
-//   FAULT_ONCE     1: in no process if FAULT_LOG exists, because programs start other programs
+//   FAULT_ONCE     1: no call fails if FAULT_LOG exists, so that programs started by others add no
+//                  fault
 //   FAULT_ERRNO    a number; "kill": kills the process; "short": half is read or written
 //   FAULT_LOG      file for the fault that happened
 //   FAULT_TRACE    file for every call: KIND K FUNCTION PATH

@@ -12,7 +12,7 @@ lf::Result<lf::Image<float>> FirstFrame(const char* calibration, const char* pat
   LF_ASSIGN_OR_RETURN(lf::LightField light_field, lf::OpenLightField(calibration));
   LF_ASSIGN_OR_RETURN(lf::CameraPath path, lf::ReadPathYaml(path_file, light_field.unit_m));
   lf::ThreadPool pool(2);
-  constexpr uint64_t kSeed = 0;  // of the order of the LF images
+  constexpr uint64_t kSeed = 0;  // seed of the order of the LF images
   lf::Package film = lf::PackageOfAll(std::move(light_field), std::move(path), kSeed);
   LF_ASSIGN_OR_RETURN(const auto renderer,
                       lf::FilmRenderer::Open(std::move(film), lf::FilmOptions(), lf::WorkOptions(),
