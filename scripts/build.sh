@@ -5,8 +5,8 @@
 #        scripts/build.sh programs             every program
 #        scripts/build.sh [tests [TARGET...]]  every program and test, or some targets of CMake
 #
-# Each takes over what another has compiled, because all compile with the same options.
-# In the environment, LF_PRESET=clang or scalar takes another preset than release, and CI=true makes compiler warnings
+# Each of these calls reuses what another one has compiled, because all compile with the same options. The environment
+# variable LF_PRESET=clang or LF_PRESET=scalar selects another preset than release, and CI=true makes compiler warnings
 # errors.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -20,7 +20,7 @@ case $what in
     groups=(render)
     targets=(lfsynth lfrenderer)
     options=()
-    # A later call for tests turns these on, and no call turns them off again.
+    # A later call that needs these options turns them on, and no call turns them off again.
     [[ -e $build/CMakeCache.txt ]] || options=(-DLF_TESTS=OFF -DLF_VISUALIZER=OFF)
     ;;
   programs)

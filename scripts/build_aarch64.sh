@@ -12,7 +12,8 @@ fi
 dpkg --add-architecture arm64
 apt-get -q update
 wanted=(g++-aarch64-linux-gnu)
-# Programs of render.txt run on this machine; libraries are those of the other, except those that are headers alone.
+# Packages of programs in render.txt are installed for this machine, and packages of libraries for arm64, except
+# libraries that consist of headers alone.
 mapfile -t packages < <(awk '!/^#/ && NF { print $1 }' scripts/packages/render.txt)
 for package in "${packages[@]}"; do
   case $(apt-cache show --no-all-versions "$package" | sed -n 's/^Architecture: //p') in

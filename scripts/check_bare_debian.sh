@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Proves ./demo and ./test on a bare Debian 12: a fresh system with nothing but git, the last
-# commit cloned into it, everything else left to the two commands.
+# Tests ./demo and ./test on a bare Debian 12: a fresh system that has only git and a clone of the last commit. The two
+# commands must install everything else.
 #
 # usage: scripts/check_bare_debian.sh FOLDER [COMMAND...]     (root; default: ./demo, then ./test)
 #
-# FOLDER takes the base system (kept: the next run starts from it), the system of this run and the
-# log of every step. Mirror and proxy are those of this machine's apt, certificates its Node.js's. Commands run as root, then
-# once more as an ordinary user, who must need no rights any more; before the first one, an
-# ordinary user must be told what to install. No command may compile again what an earlier one has compiled.
+# FOLDER receives the base system (kept: the next run starts from it), the system of this run, and the log of every
+# step. Mirror and proxy are those of this machine's apt, certificates those of its Node.js. Commands run as root, then
+# once more as an ordinary user, who must not need any rights then. Before the first command, an ordinary user must be
+# told what to install. No command may compile again what an earlier one has compiled.
 set -euo pipefail
 
 if ((EUID != 0)) || ! command -v debootstrap >/dev/null || (($# == 0)); then
@@ -36,7 +36,7 @@ checkout=/home/user/lfrendertools
 
 say() { printf '%5d s  %s\n' "$SECONDS" "$*"; }
 
-# The first archive of apt's that has bookworm: a "SITE CODENAME" a line.
+# The first mirror of this machine's apt that has bookworm. apt-get prints one "SITE CODENAME" per line.
 mirror=$(apt-get indextargets --format '$(SITE) $(CODENAME)' 'Identifier: Packages' |
   awk '$2 == "bookworm" { print $1; exit }')
 mirror=${mirror:-http://deb.debian.org/debian}
@@ -66,7 +66,7 @@ chroot "$root" chown -R user:user /home/user
 chroot "$root" git config --system --add safe.directory "$checkout"
 say "cloned $(git -C "$repository" log -1 --format='%h %s')"
 
-# inside USER COMMAND...
+# inside USER COMMAND...: runs the command as this user in the new system.
 inside() {
   local user=$1 home=/root
   shift
@@ -77,7 +77,7 @@ inside() {
     bash -c 'cd "$0" && exec "$@"' "$checkout" "$@"
 }
 
-# step NAME USER COMMAND...: runs it, says how long it took, shows the last lines it wrote.
+# step NAME USER COMMAND...: runs the command, and prints how long it took and the last lines that it wrote.
 step() {
   local name=$1 user=$2 start=$SECONDS code=0
   shift 2

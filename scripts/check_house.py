@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""House rules that no compiler checks. Every fault is one line: file, place, what is wrong.
+"""Checks house rules that no compiler checks. Prints one line for each fault: file, place, what is wrong.
 
 usage: check_house.py REPOSITORY CHECK
 
@@ -12,15 +12,15 @@ usage: check_house.py REPOSITORY CHECK
   tables   every table of figures in doc/ has a record in bench/results/ that fits it, made with the
            defaults that bench/defaults.txt lists today (table_rules.py); every table that
            doc_tables.py makes is what the sources say
-  mutants  every mistake of scripts/mutants.toml can be planted: its old text is in its file exactly
-           once, and tests are named like those that must notice it
+  mutants  every mistake of scripts/mutants.toml can be planted: its old text is in its file exactly once, and its
+           regular expression matches names of tests
   headers  a header says "Internal to" if its folder lists it as INTERNAL, and only then; installed headers
            include no internal ones (header_rules.py)
-  comments how comments begin and end (doc/style.md; comment_rules.py)
+  comments comments begin and end as doc/style.md requires (comment_rules.py)
   commits  the commits that tables were made from are ancestors of HEAD
-  messages subjects and bodies of commits (doc/style.md; commit_rules.py)
+  messages subjects and bodies of commits are as doc/style.md requires (commit_rules.py)
 
-commits and messages exit with 77, skipped, where there is no history to look into.
+commits and messages exit with 77 (skipped) if there is no history.
 """
 import functools
 import pathlib

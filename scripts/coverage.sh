@@ -4,13 +4,15 @@
 #
 # usage: scripts/coverage.sh [CTEST OPTIONS]      scripts/coverage.sh -L unit  counts unit tests alone
 #
-# Installs missing Debian packages first (root or sudo). A failed test does not end it: the exit code is then 1.
+# Installs missing Debian packages first (root or sudo). A failed test does not end this script: its exit code is then
+# 1.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/patiently.sh
 
-# Programs write their counts when they end, as files. Tests that make writing fail, that count files, or that end
-# programs at once see more than they expect. Other tests left out run no program of ours, or whole films for hours.
+# Programs write their counts into files when they end. Left out are therefore tests that make writing fail, that count
+# files, or that kill programs. The other tests that are left out run no program of ours, or render whole films for
+# hours.
 left_out='^house\.|^web\.|^tests\.(faults|power_failure|environment|safe_outputs|writers|install|listed_defaults|matrix|slurm)'
 
 scripts/install_packages.sh render visualizer test hunt

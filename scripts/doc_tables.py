@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Makes the tables of the pages that say what the sources say: folders, programs, options, exit codes.
+"""Makes the tables of pages whose content is in the sources: folders, programs, options, exit codes.
 
 usage: scripts/doc_tables.py REPOSITORY            prints what is wrong with these tables; exits with 1 if something is
        scripts/doc_tables.py REPOSITORY --write    makes them again in the pages, between their markers
 
 A table stands between <!-- table: scripts/doc_tables.py NAME --> and <!-- end of table -->. The check `tables` of
-scripts/check_house.py fails if the text there is another one. The names are the keys of TABLES.
+scripts/check_house.py fails if the text there differs. The names are the keys of TABLES.
 """
 import ast
 import functools
@@ -157,7 +157,8 @@ def pages(root, files, text_lines):
 
 
 def folders_without_a_row(root):
-    """Yields each folder that the table of tasks in lf/README.md lacks, which is written by hand."""
+    """Yields a fault for each folder that has no row in the table of tasks in lf/README.md. That table is written by
+    hand."""
     text = (root / "lf/README.md").read_text()
     for folder in allowed_includes(root):
         if not re.search(rf"^\| `([\w/]+/)?{folder.rpartition('/')[2]}`", text, re.M):

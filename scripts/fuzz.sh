@@ -2,7 +2,7 @@
 # Fuzzes every parser of foreign bytes for a while (clang 14, libFuzzer, address and undefined behaviour sanitizers),
 # with as many targets at a time as there are processors, and prints the results.
 #
-# usage: scripts/fuzz.sh MINUTES [TARGET...]     in all; TARGET as path_yaml, default: all of them
+# usage: scripts/fuzz.sh MINUTES [TARGET...]     MINUTES in all; a TARGET is a name such as path_yaml; default: all
 #
 # New inputs stay in build/fuzz/corpus/TARGET, so that the next call continues with them. An input that breaks a parser
 # is written to build/fuzz/found/: mend the parser, and copy the input to fuzz/corpus/TARGET, which every test run

@@ -1,5 +1,5 @@
 """Checks which headers are installed, for check_house.py. lf_folder(... INTERNAL ...) names the headers of its folder
-that are not (cmake/LfFolder.cmake); their first comment says so to readers: "Internal to ...".
+that are not installed (cmake/LfFolder.cmake); the first comment of such a header says so: "Internal to ...".
 """
 import pathlib
 import re
@@ -33,7 +33,7 @@ def header_fault(name, lines, is_listed):
 
 
 def check_headers(root: pathlib.Path, text_lines):
-    """Yields faults: headers that are internal by their comment or by INTERNAL alone, and public headers that include
+    """Yields faults: headers that only their comment or only INTERNAL calls internal, and public headers that include
     internal ones."""
     internal, headers = set(), {}
     for folder, words in folder_list.read_folders(root).items():

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs the long tests that ./test has no time for, one after the other, and prints what came of each.
+# Runs the long tests that ./test has no time for, one after the other, and prints the outcome of each.
 #
 # usage: scripts/hunt.sh [--resume] [STEP...]      default: every step, some hours on two cores
 #        scripts/hunt.sh --list                    prints the steps
@@ -17,8 +17,9 @@ python=/usr/bin/python3
 [[ -x $python ]] || python=python3
 release=build/release
 bin=$release/bin
-# Tests that say nothing more under sanitizers: of files that no compiler sees, of limits of memory (sanitizers
-# take terabytes of addresses), of other people's compilers, and whole films in many ways, which take hours.
+# Tests that are not run under sanitizers: tests of files that are not compiled, tests with limits of memory (sanitizers
+# take terabytes of addresses), tests that run other compilers, and renders of whole films in many ways, which take
+# hours.
 not_sanitized='^house\.|^web\.|^tests\.(hostile|environment|power|install|matrix|listed_defaults|slurm)'
 
 # Each step is a function; its comment is what --list prints.
@@ -36,7 +37,7 @@ asan() { # all tests but those of the page in a browser, with the address and un
   cmake --preset asan && cmake --build build/asan -j "$(nproc)"
   ctest --test-dir build/asan -j "$(nproc)" --output-on-failure -E "$not_sanitized"
 }
-tsan() { # the same with the thread sanitizer
+tsan() { # the tests of asan, with the thread sanitizer
   cmake --preset tsan && cmake --build build/tsan -j "$(nproc)"
   TSAN_OPTIONS="suppressions=$PWD/scripts/tsan.supp" \
     ctest --test-dir build/tsan -j "$(nproc)" --output-on-failure -E "$not_sanitized"
@@ -59,7 +60,7 @@ power() { # the power fails after every step of every writer
 databases() { # every value of every column of a package and of a store, and a thousand damages of each
   $python tests/hostile_databases_test.py $bin/{lfrenderer,lfpreprocessor,lfcompressor,lfimport} --all
 }
-matrix() { # every three axes of doc/matrix.md
+matrix() { # cells of doc/matrix.md that cover all combinations of any three axes
   $python scripts/matrix.py $bin --strength 3
 }
 mutants() { # planted mistakes, each of which some test must notice

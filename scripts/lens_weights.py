@@ -11,9 +11,9 @@ captures        thinned captures of the ground truth cases; LF images are droppe
                 always the same
 lenses          lenses as small as pinholes, in two scenes of lfsynth (beside LFRENDERER)
 magnifications  the same scenes with frames finer and coarser than their LF images
-mosaics         mosaics instead of RGB images (doc/quality.md); not unless asked for
+mosaics         mosaics instead of RGB images (doc/quality.md); made only if --tables names them
 
-Each table has a record of its own; NAME-captures and so on if there are several.
+Each table has its own record. If several tables are made, their records are called NAME-captures and so on.
 """
 import argparse
 import copy
@@ -63,7 +63,7 @@ def psnr(truth, picture):
 
 
 def decibels(renderer, truth, calibration, path, options):
-    """Returns (PSNR, number of contributing LF images); None without a ray."""
+    """Returns (PSNR, number of contributing LF images); None if the frame has no ray."""
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
         result = subprocess.run(
@@ -93,7 +93,7 @@ class Table:
         print(*cells, sep=" | ", file=sys.stderr, flush=True)
 
     def publish(self, arguments, words, record):
-        """words: of the marker, after scripts/"""
+        """Prints the table and writes it (bench/record.py). words: the words of its marker after scripts/"""
         line = lambda cells: "| " + " | ".join(cells) + " |"
         record |= {"columns": list(self.columns), "rows": self.rows}
         text = [results.sentence(record), "", line(self.columns), "| --- " * len(self.columns) + "|",
@@ -233,7 +233,7 @@ def table_of_magnifications(renderer, scenes, only):
     for scene in SYNTHETIC_SCENES:
         if only not in scene:
             continue
-        for scale in (0.4, 0.8, 1.2, 1.6):  # the frame sees 0.8 of what LF images do
+        for scale in (0.4, 0.8, 1.2, 1.6):  # the field of view of a frame is 0.8 times an LF image's
             path, truth = scenes.truth(scene, 8 * SYNTHETIC_SPACING, scale)
             table.add(scene, f"{scale / 0.8:g}",
                       *(text(decibels(renderer, truth, scenes.calibration(scene), path, options))

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Renders the matrix of doc/matrix.md, every mode by every way, and tells which cells are wrong.
+"""Renders the matrix of doc/matrix.md, every mode in every way, and reports the wrong cells.
 
-scripts/matrix.py BIN -o matrix.json             whole, in a shuffled order
-scripts/matrix.py BIN -o matrix.json --resume    goes on after an interruption
-scripts/matrix.py BIN --strength 3               every three axes
+scripts/matrix.py BIN -o matrix.json             renders all cells, in a shuffled order
+scripts/matrix.py BIN -o matrix.json --resume    resumes after an interruption
+scripts/matrix.py BIN --strength 3               renders cells that cover all combinations of any three axes
 scripts/matrix.py BIN --cell rgb/folder/whole/rebin/killed --keep /tmp/cell
 scripts/matrix.py --again matrix.json --write doc/matrix.md
 
@@ -97,7 +97,7 @@ def tell(done, total, kinds, start_s, tried):
 def run(options):
     cells = cells_of(options)
     defaults_today = defaults.of_programs([options.bin.resolve() / name for name in defaults.PROGRAMS])
-    # Cells call programs with thousands of different options, so the record names this script alone.
+    # Cells call programs with thousands of different options, so the record names only the call of this script.
     result = {**record.context(), "cells": len(cells), "page": hash_of_page(),
               "commands": [shlex.join(map(record.shown, sys.argv))], "defaults": defaults_today,
               "defaults_hash": defaults.hash_of(defaults_today)}

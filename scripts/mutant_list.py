@@ -2,10 +2,10 @@
 
 A mutant is a mistake that somebody could make, planted into one file. Its fields:
 
-    name      of letters, digits and hyphens; once in the list
+    name      letters, digits and hyphens; occurs once in the list
     area      the part of the project it is in
     file      where it is planted, from the top of the repository
-    old, new  the text that is replaced, which the file has exactly once, and its replacement
+    old, new  the text that is replaced, which occurs in the file exactly once, and its replacement
     effect    one sentence: what a user would see
     targets   what is built for the tests: test programs, programs, or "page"
     tests     a regular expression of test names of ctest: the tests expected to fail

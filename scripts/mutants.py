@@ -1,16 +1,16 @@
 #!/usr/bin/python3
-"""Plants mistakes into a copy of the project, one at a time, and tells which of them no test notices.
+"""Plants mistakes into a copy of the project, one at a time, and reports those that no test notices.
 
 scripts/mutants.py BUILD_DIR -o mutants.json             every mutant of scripts/mutants.toml
-scripts/mutants.py BUILD_DIR -o mutants.json --resume    goes on; those that survived are tried again
+scripts/mutants.py BUILD_DIR -o mutants.json --resume    resumes; mutants that survived are tried again
 scripts/mutants.py BUILD_DIR --only count-limit,red-is-counted
 scripts/mutants.py --list
 scripts/mutants.py --again mutants.json --write doc/mutants.md
 
 The working tree is only read: it is copied with its build folder, which must be up to date, and the copy is
 mounted in the place of the original in a mount namespace of its own (root, or user namespaces), so that only
-what a mutant changes is built. Before the mutants, the tests must pass without any. The exit code is 3 if a
-mutant survived, or could not be built.
+what a mutant changes is built. Before that, the tests must pass without any mutant. The exit code is 3 if a mutant
+survived, or could not be built.
 """
 import argparse
 import collections

@@ -6,10 +6,10 @@ usage: quality.py LFRENDERER GROUNDTRUTH [--name NAME] [--write doc/quality.md] 
        quality.py --again JSON [--write doc/quality.md]
 
 GROUNDTRUTH  folder with cases.json, gt/, data/, compare.py and exr2pfm.py
---check      exit 1 if a case falls more than 0.3 dB below the columns of its README: scatter for
-             the estimator nearest, gather for bilinear, the better of both for the default
+--check      exit 1 if a case falls more than 0.3 dB below a column of GROUNDTRUTH/README.md: scatter for the estimator
+             nearest, gather for bilinear, the better of both for the default
 --keep DIR   leave paths, frames and difference pictures there
-Exit 77 if GROUNDTRUTH is absent: a test that is skipped, not passed.
+Exit 77 if GROUNDTRUTH is absent: the test then counts as skipped, not as passed.
 """
 import argparse
 import json

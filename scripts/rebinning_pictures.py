@@ -7,9 +7,9 @@ FOLDER  receives rebinning_small_lens.jpg   a lens narrower than the spacing: co
                                             truth
                  rebinning_few_images.jpg   every 4th LF image, focus near the lens: collected;
                                             rebinned; the truth
-                 rebinning_kept.jpg         rebinned from all rays; from those at edges, with two xi
-                 rebinning_kernel.jpg       a large sigma_uv; a large sigma_st; a small one with few
-                                            lens points
+                 rebinning_kept.jpg         rebinned from all rays; from rays at edges, with xi by default; with xi =
+                                            0.2
+                 rebinning_kernel.jpg       a large sigma_uv; a large sigma_st; a small sigma_st with few lens points
 """
 import json
 import pathlib

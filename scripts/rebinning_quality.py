@@ -7,9 +7,9 @@ usage: rebinning_quality.py LFRENDERER GROUNDTRUTH [--name NAME] [--write doc/re
        rebinning_quality.py --again JSON [--write doc/rebinning.md]
 
 GROUNDTRUTH  as for quality.py
---check      exit 1 if a hybrid frame is more than 0.05 dB below the one that is collected, or, of
-             a lens that leaves elements without rays, not 3 dB above it; or if the pinhole between
-             the LF cameras is below 30 dB
+--check      exit 1 if a hybrid frame is more than 0.05 dB below the collected frame; if, for a lens that leaves
+             elements without rays, it is not 3 dB above the collected frame; or if the frame of the pinhole between the
+             LF cameras is below 30 dB
 """
 import argparse
 import json

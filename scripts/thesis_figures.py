@@ -112,7 +112,7 @@ def tilt(capture, folder):
     scene, denser = capture("lights"), capture("lights", 2)
     lens = "  aperture_diameter: 0.03\n  focus_distance: 0.8\n  focus_tilt_deg: {horizontal: 50, vertical: 0}"
     whole = scene.frames(scene.path("tilt", 1, lens))[0]
-    # Without lens weights, so that the density of LF cameras is visible.
+    # The parts are rendered without lens weights, so that the density of LF cameras is visible.
     parts = [magnified(c.frames(c.path("tilt", 1, lens), THESIS)[0], 0.15, 0.15) for c in (scene, denser)]
     side_by_side(folder / "thesis_tilt.jpg", [whole, *parts])
 
@@ -121,7 +121,8 @@ def rebinned(capture, folder):
     scene = capture("still-life")
     path = scene.path("rebinned", 1, "  aperture_diameter: 0.02\n  focus_distance: 0.8")
     collected = scene.frames(path)[0]
-    # Rays at edges, and few of them per element: the noise and the artefacts that the thesis describes.
+    # This frame uses only rays at edges, and few of them per element. It shows the noise and the artefacts that the
+    # thesis describes.
     sparse = scene.frames(path, "--mode rebin --kept edges --lens-points 21 --lens-sets 4")[0]
     side_by_side(folder / "thesis_rebinned.jpg",
                  [stacked([[collected, sparse], [magnified(collected, 0.4, 0.5), magnified(sparse, 0.4, 0.5)]])])
