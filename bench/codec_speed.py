@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""How fast LF images are coded and decoded: 2048 x 2048 RGGB mosaics of 8 bits, one thread.
+"""Measures how fast LF images are encoded and decoded: 2048 x 2048 RGGB mosaics of 8 bits, one thread.
 
 usage: bench/codec_speed.py BUILD_DIR [--data ../shared] [--runs 5] [--name NAME] [--write doc/codec.md]
        bench/codec_speed.py --again JSON [--write doc/codec.md]
 
-Pictures of `blender-shop` (the densest) and of `beer-colmap` (photographs) side by side, and the picture of waves and
-noise that lf_pixels_codec_bench draws. Each is coded by the thesis's scheme, by the default's, and without loss.
-MB/s are of pixels, 10^6 bytes; CPU time, medians.
+The mosaics are made of pictures of `blender-shop` (the densest light field) side by side, of pictures of `beer-colmap`
+(photographs) side by side, and of the picture of waves and noise that lf_pixels_codec_bench draws. Each is encoded by
+the profiles thesis, default and lossless. Figures are medians of 10^6 bytes of pixels per second of CPU time.
 """
 import argparse
 import json

@@ -1,21 +1,19 @@
 #!/usr/bin/python3
-"""Table 5.3 of the thesis again: how small LF images become, and what that does to rendered frames.
+"""Measures Table 5.3 of the thesis again: how small LF images become, and what that does to rendered frames.
 
 usage: bench/codec_table.py BUILD_DIR [--data ../shared] [--only shop,synth,noisy] [--no-peers] [--views 7]
                             [--size 480x320] [--frames 1-50x12] [--name NAME] [--write doc/codec.md]
                             [--pictures doc/images]
        bench/codec_table.py --again JSON [--write doc/codec.md]
 
-Light fields of RGGB mosaics: `shop`, the 7 x 7 views (--views) in the middle of blender-shop, of whose colours every
-pixel keeps one (8 bits, sRGB); `synth` and `noisy`, as many LF images of lfsynth's still life, of --size (16 bits,
-linear), without and with sensor noise. Each is coded by `lfcompressor` with many settings, and frames of a focus pull
-are rendered from the store and from the originals: all of them by plain interpolation without lens weights, those
-of our own codec by the defaults, too. The thesis's bytes are also given to xz, bzip2 and zstd -19 (by an
-implementation of the thesis's scheme of its own, in NumPy, on three LF images): "best" takes the shortest.
-Peers code the four planes of each mosaic side by side as one grey picture: JPEG and JPEG 2000 by OpenCV,
-PNG, and JPEG XL where `cjxl` is installed (libjxl-tools).
-
-PSNR of images is that of stored values, PSNR of frames that of 16-bit sRGB pictures.
+The light fields are RGGB mosaics: `shop`, the 7 x 7 views (--views) in the middle of blender-shop, reduced to one
+colour per pixel (8 bits, sRGB); `synth` and `noisy`, as many LF images of lfsynth's still life, --size large (16 bits,
+linear), without and with sensor noise. Each is encoded by `lfcompressor` with many settings, and frames of a focus pull
+are rendered from the store and from the originals: by plain interpolation without lens weights, and for our own codec
+also by the defaults. The thesis's bytes are also compressed by xz, bzip2 and zstd -19 (with a separate implementation
+of the thesis's scheme, in NumPy, on three LF images); "best" is the shortest result. Peers encode the four planes of
+each mosaic side by side as one grey picture: JPEG and JPEG 2000 by OpenCV, PNG, and JPEG XL if `cjxl` is installed
+(libjxl-tools). The PSNR of images is computed from stored values, the PSNR of frames from 16-bit sRGB pictures.
 """
 import argparse
 import bz2
@@ -182,7 +180,8 @@ def best_lossless(content, levels, threshold, quantizer):
 
 
 def at(rows, key, target):
-    """Returns the ratio at which the PSNR `key` is reached, interpolated between rows; None outside them."""
+    """Returns the ratio at which the PSNR `key` reaches `target`, interpolated between rows; None if no row reaches it,
+    or if all exceed it."""
     points = sorted((row[key], math.log(row["best"])) for row in rows
                     if row[key] is not None and math.isfinite(row[key]))
     values = [value for value, _ in points]
@@ -246,7 +245,7 @@ def number(value, digits=1):
 
 def measure(content, with_peers, pictures):
     rows, drawn = [], [content.frames["none"][1]]
-    # With 16 bits, highlights alone take most of 256 values.
+    # With 16 bits, highlights alone take most of the 256 values of the 8-bit quantizer.
     quantizers = ("8bit",) if content.bits == 8 else ("8bit", 4096)
     for quantizer, (levels, threshold) in itertools.product(quantizers, THESIS):
         row, frames = content.code("--profile", "thesis", "--levels", levels, "--threshold", threshold,

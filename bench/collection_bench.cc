@@ -62,8 +62,8 @@ Difference Compare(const Picture& a, const Picture& b) {
   return difference;
 }
 
-// The case that is measured, with the plates of all contenders. Only one exists at a time, because
-// they are large.
+// The case that is measured, with the plates of all contenders. Only one arena exists at a time,
+// because arenas are large.
 class Arena {
  public:
   explicit Arena(const CaseSpec& spec) : case_(MakeCase(spec)) {

@@ -1,4 +1,4 @@
-// The work of lfrenderer written with OpenCV, for light fields whose cameras lie in the lens plane:
+// Does the work of lfrenderer with OpenCV, for light fields whose cameras lie in the lens plane:
 // imread, sRGB to linear float by table, warpPerspective (bilinear, with the border's weights as a
 // fourth channel), accumulate, divide. Threads share the LF images; each adds to its own frames.
 // bench/compare_opencv.py runs it.

@@ -8,14 +8,15 @@ usage: bench/compare_opencv.py BUILD_DIR LIGHTFIELD [--threads 2] [--frames 1,10
 
 LIGHTFIELD  8-bit sRGB images of parallel cameras in one plane; measured with the 27 x 27 views of
             960 x 640 of Linus Mossberg's light-field-renderer, folder light-fields/shop
---diameter  of the lens, in world units (1.2: all 729 views are within)
+--diameter  diameter of the lens, in world units (1.2: all 729 views are within it)
 --frames    lengths of the focus pulls that are rendered; a pull of one frame is its beginning
---rounds    of each of them
+--rounds    number of rounds for each of these lengths
 
-Ours renders in three ways: by plain interpolation, which is what OpenCV's program does; as the thesis does; and
-by the defaults. The programs take turns; figures are medians over the rounds, ratios those of the medians. Rates are
-LF images a second of the clock. lfrenderer is all of it: selection, developing and the EXR files of
-all frames; OpenCV's program writes one picture. Before anything is timed their first frames are compared.
+lfrenderer renders in three ways: by plain interpolation, which is what OpenCV's program does; as the thesis does; and
+by the defaults. The programs take turns. Figures are medians over the rounds, and ratios are computed from these
+medians. Rates are LF images per second of wall time. The time of lfrenderer includes everything: selection, developing
+and the EXR files of all frames; OpenCV's program writes one picture. Before anything is timed their first frames are
+compared.
 """
 import argparse
 import json

@@ -43,8 +43,8 @@ std::unique_ptr<OurKernel> MakeOurKernel(const KernelCase& kernel_case, bool is_
 // Evaluates the ray model for every pixel (or element), in double precision.
 std::unique_ptr<Contender> MakeReference(const KernelCase& kernel_case);
 
-// The loop that the thesis describes (4.3.1), with Eigen. The second one is compiled for the
-// machine that it is built on.
+// Make the loop that the thesis describes (4.3.1), with Eigen. The second function makes the loop
+// that is compiled for the instruction set of the building machine.
 std::unique_ptr<Contender> MakeThesisLoop(const KernelCase& kernel_case);
 std::unique_ptr<Contender> MakeThesisLoopNative(const KernelCase& kernel_case);
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The defaults of the programs, that figures depend on: bench/defaults.txt, made and compared.
+"""Makes and checks bench/defaults.txt: the defaults of the programs, which figures depend on.
 
 usage: bench/defaults.py FOLDER            prints the defaults of the programs in the folder
        bench/defaults.py FOLDER --write    writes them into bench/defaults.txt
@@ -13,7 +13,7 @@ without a default, such as a flag that is off, is not listed. Neither is --progr
 The order is that of bench/defaults.txt, and new options come last: help may be arranged anew without another hash.
 
 Each table's record holds the lines of the programs that made it, and their hash (bench/record.py). The check
-`tables` of scripts/check_house.py tells which tables were made with defaults that are others today.
+`tables` of scripts/check_house.py reports tables that were made with defaults that differ today.
 """
 import argparse
 import functools

@@ -5,9 +5,10 @@ usage: bench/forecast_table.py BUILD_DIR [--count 1000000] [--packages 1,8,64,30
                                [--write doc/cluster.md]
        bench/forecast_table.py --again JSON [--write doc/cluster.md]
 
-1000 x 1000 LF cameras 123 µm apart, raw mosaics of 1280 x 1024, of which one exists and stands for all: a forecast
-loads a few. The film is `bokeh` of bench/workloads.py, in frames of 1920 x 1080. Forecasts are made as the
-thesis renders (nearest, without lens weights) and, for the most packages, of the defaults.
+The light field has 1000 x 1000 LF cameras, 123 µm apart. Its LF images are raw mosaics of 1280 x 1024 pixels; one file
+stands for all of them, because a forecast loads only a few. The film is `bokeh` of bench/workloads.py, in frames of
+1920 x 1080. Forecasts are made for rendering as in the thesis (nearest, without lens weights) and, for the largest
+number of packages, by the defaults.
 """
 import argparse
 import json

@@ -7,14 +7,13 @@ usage: bench/hybrid_cost.py BUILD_DIR [--density 0.05] [--size 480x320] [--runs 
        bench/hybrid_cost.py --again JSON [--write PAGE]
 
 All five movements of Table 5.1 are rendered in turns, by one thread, so that a busy machine disturbs
-all alike. CPU seconds are those of the whole program. Each hybrid is compared with its own
-collection: by the thesis's estimator and without lens weights, as in Table 5.2, and by the default.
-ns per LF pixel are of the LF pixels that rebinning looked at: their probabilities, the choice, and
-the cells of those that are kept.
+all alike. CPU seconds are those of the whole program. Each hybrid is compared with a collection by the same estimator
+and lens weights: those of the thesis (nearest, none), as in Table 5.2, and the defaults. ns per LF pixel is the time of
+rebinning for each LF pixel that it examined: for its probability, the choice, and the cell if it is kept.
 
---frames-share S  only this share of the frames of each movement, over the same path
+--frames-share S  render only this share of the frames of each movement, over the same path
 
---field DIR  keep the light field there, or take the one that is there
+--field DIR  folder of the light field, which is kept; an existing one is used again
 """
 import argparse
 import json

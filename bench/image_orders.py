@@ -1,12 +1,13 @@
 #!/usr/bin/python3
-"""How evenly the orders of LF images fill the frames of a film, as lfpreprocessor plans it.
+"""Measures how evenly the orders of LF images fill the frames of a film, as lfpreprocessor plans it.
 
 usage: bench/image_orders.py BUILD_DIR [--density 1] [--size 480x320] [--name NAME] [--write PAGE]
        bench/image_orders.py --again JSON [--write PAGE]
 
-The movement `bokeh` of Table 5.1, whose lens opens and closes, through a grid as dense as the thesis's band
-(calibration only). Packages are made without lens weights and by the default. After a tenth of the LF images: the
-rays of each frame, as pixels of rectangles that its package tells, and their spread over the frames.
+The film is the movement `bokeh` of Table 5.1, whose lens opens and closes, through a grid as dense as the thesis's band
+(calibration only). Packages are made without lens weights and by the default. The table shows how many rays each frame
+has after a tenth of the LF images (the pixels of the rectangles in its package), and how these numbers spread over the
+frames.
 """
 import argparse
 import itertools
@@ -23,7 +24,7 @@ from workloads import WORKLOADS, path_yaml, photograph
 def filled_after_a_tenth(packages):
     """Returns the number of rays of each frame that has any.
 
-    packages  of one frame each, so that the needs of a package are those of its frame
+    packages  packages with one frame each, so that the needs of a package are those of its frame
     """
     frames = []
     for package in packages:

@@ -13,7 +13,7 @@
 namespace lf::bench {
 namespace {
 
-constexpr double kFocalLength_px = 2000;  // of LF images of 2048 x 2048
+constexpr double kFocalLength_px = 2000;  // for LF images of 2048 x 2048 pixels
 constexpr double kFocusDistance_w = 1;
 // LF cameras are this far in front of or behind the lens, so that its rim cuts every image.
 constexpr double kDepthOffset_w = 0.03;

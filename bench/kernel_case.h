@@ -51,7 +51,7 @@ struct KernelCase {
   std::vector<PixelRect> rects;  // pixels that can contribute (selection); others are not visited
   // For lens distortion: shared by all images, which have the same intrinsics.
   std::optional<IdealPixels> ideal_pixels;
-  Image<float> ideal_positions;  // [height][width][2]: of the centre of every pixel
+  Image<float> ideal_positions;  // [height][width][2]: ideal position of every pixel centre
 };
 
 // Makes a case from 8-bit sRGB, converted by the table of lf/light_field/model/radiance.h to 16-bit

@@ -4,8 +4,8 @@
 usage: bench/kernel_table.py BUILD_DIR [--rounds 5] [--cases REGEX] [--name NAME] [--write PAGE]
        bench/kernel_table.py --again JSON [--write PAGE]
 
-Rounds are interleaved: a ratio is taken within a round, printed is the median over the rounds and,
-in brackets, the least and the largest. Times are CPU times of one thread.
+Rounds are interleaved: a ratio compares two times of the same round. The table shows the median of a ratio over the
+rounds and, in brackets, the smallest and the largest. Times are CPU times of one thread.
 """
 import argparse
 import json

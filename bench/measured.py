@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Runs one command and writes what the system says of it, as JSON, into RESULT.
+"""Runs one command and writes how much time, memory, files and disk it used, as JSON, into RESULT.
 
 usage: measured.py RESULT PERIOD_S FOLDER COMMAND...
 
-PERIOD_S  how often open files, and the space that FOLDER takes, are looked at; 0: not at all
+PERIOD_S  time between counts of the open files and of the space that FOLDER takes; 0: nothing is counted
 FOLDER    a folder that the command writes to; - for none
 
 bench/record.py starts it. It stands between a script and the program that is measured because Linux counts

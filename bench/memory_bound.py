@@ -1,14 +1,14 @@
 #!/usr/bin/python3
-"""Peak memory of lfrenderer, beside the --memory that it was given.
+"""Measures the peak memory of lfrenderer, to compare it with its limit --memory.
 
 usage: bench/memory_bound.py BUILD_DIR LIGHTFIELD [--bounds 1G,4G] [--frames 1,60] [--images 24]
                              [--name NAME] [--write PAGE]
        bench/memory_bound.py --again JSON [--write PAGE]
 
-LIGHTFIELD  that of bench/compare_opencv.py; frames of its focus pull have 1920 x 1080 elements
+LIGHTFIELD  the light field of bench/compare_opencv.py; frames of its focus pull have 1920 x 1080 elements
 --images    LF images of each frame: they are loaded a few at a time, however many there are
 
-Renders are those of plain interpolation without lens weights, and of the defaults.
+Frames are rendered by plain interpolation without lens weights, and by the defaults.
 """
 import argparse
 import json

@@ -6,9 +6,10 @@ usage: bench/million_cameras.py BUILD_DIR [--counts 10000,100000,1000000] [--fra
        bench/million_cameras.py --again JSON [--write PAGE]
 
 LF cameras stand on half a circle of 1 m, within 1 cm of height (thesis 5.1), and look at its middle; there
-are no images. A lens of 30 mm sees 1 % of them, one of 150 mm 5 %. Frame counts are of the largest light
-field; smaller ones film the first of them. Packages are of at most 64 frames, without lens weights. The
-figures are medians over the runs.
+are no images. A lens of 30 mm sees 1 % of the LF cameras, a lens of 150 mm 5 %. The largest light field is filmed with
+each number of frames in --frames, smaller light fields only with the first one. Packages have at most 64 frames. They
+are made without lens weights and, for the first number of frames, also by the defaults. Figures are medians over the
+runs.
 """
 import argparse
 import json
@@ -28,7 +29,7 @@ WEIGHTS = {"none": ("--estimator", "bilinear", "--lens-weights", "none"), "defau
 
 
 def band(count, path):
-    """Writes a transforms.json: camera-to-world, OpenGL axes."""
+    """Writes a transforms.json, whose matrices are camera-to-world with OpenGL axes."""
     random = np.random.default_rng(1)
     angle = math.pi * random.random(count)
     lift = HEIGHT_M * (random.random(count) - 0.5)

@@ -6,14 +6,14 @@ usage: bench/noise_remedies.py BUILD_DIR GROUNDTRUTH [--electrons 1000] [--read-
        bench/noise_remedies.py --again JSON [--write PAGE]
 
 GROUNDTRUTH  as for scripts/quality.py: LF images without noise, and true thin-lens pictures
---electrons  electrons that a pixel of the sensor collects at white; their noise is that of photons
---read-noise electrons, standard deviation, that reading adds to every pixel
+--electrons  electrons that a pixel of the sensor collects at white; their noise is photon noise
+--read-noise standard deviation, in electrons, of the noise that reading adds to every pixel
 
-Noise is added to the linear light of the LF images with a fixed seed, which are then stored as before, in 8 bits by
-the sRGB curve. Each way of rendering is called twice: with the noisy LF images and with the clean ones. The noise of
-a frame is the root mean square of the difference of both, in grey steps (1/255 of display values), over the whole
-frame and over its darkest quarter. PSNR is that of the noisy frame against the truth, of linear light and of display
-values, whose errors in shadows count as much as in light.
+Noise with a fixed seed is added to the linear light of the LF images. The LF images are then stored as before, in 8
+bits by the sRGB curve. Each way of rendering is called twice: with the noisy LF images and with the clean ones. The
+noise of a frame is the root mean square of the difference of both results, in grey steps (1/255 of display values),
+over the whole frame and over its darkest quarter. The PSNR compares the noisy frame with the truth, once in linear
+light and once in display values, in which errors in shadows count as much as errors in light areas.
 
 "recorded" renders average stored values as they are: the light field claims that they are linear light (--transfer of
 the thesis: no inverse response curve), and the curve is applied to the finished frame.

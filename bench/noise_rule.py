@@ -1,19 +1,20 @@
 #!/usr/bin/python3
-"""Checks that frames stopped by --stop-when "noise<=X" have the requested noise, and that this noise is
-their difference from frames of all LF images.
+"""Checks that frames stopped by --stop-when "noise<=X" have the requested noise, and that this noise equals their
+difference from frames of all LF images.
 
 usage: bench/noise_rule.py BUILD_DIR [--data ../shared] [--size 480x320] [--noise 0.012,0.009,...]
                            [--only WAY,...] [--name NAME] [--write PAGE]
        bench/noise_rule.py --again JSON [--write PAGE]
 
-Light field: the 729 LF images of blender-shop, through a lens 0.9 m wide, which most of them see. Three frames,
-focused on the foreground, the counter and the shelf behind it. Ways: see WAYS.
+The light field is blender-shop with 729 LF images; most of its LF cameras are in the lens, which is 0.9 m wide. Three
+frames are focused on the foreground, the counter and the shelf behind it, and rendered in the ways of WAYS.
 
-Each frame is rendered with all LF images, and with a rule for every X. The kept plates tell the second moments
-of the measured elements (progress.noise), and so the standard error s of each of them, computed here again. LF images
-are taken at random out of the N that an element has in the end: after n of them it is expected to differ from its end
-by s * sqrt(1 - n / N). Compared are the root mean square of the difference over the measured elements and channels,
-and the 90th percentile of its amount, as it would be if the differences were normally distributed.
+Each frame is rendered with all LF images, and with a rule for every X. The kept plates contain the second moments of
+the measured elements (progress.noise), from which the standard error s of each element is computed here again. LF
+images are taken in random order, and N of them contribute to an element in the end. After n of them, its difference
+from its final value is expected to have the standard deviation s * sqrt(1 - n / N). The script compares the measured
+and the expected root mean square of the difference over the measured elements and channels, and the 90th percentile of
+its absolute value; the expected percentile assumes that differences are normally distributed.
 """
 import argparse
 import json

@@ -1,5 +1,6 @@
-// The usual implementation with OpenCV: demosaic (Bayer), warp the LF image onto the focus plane as
-// the frame sees it (bilinear), accumulate where its rays pass the lens. Linear light throughout.
+// The usual implementation with OpenCV: it demosaics the LF image (Bayer), warps it onto the focus
+// plane as the frame sees it (bilinear), and accumulates it where its rays pass the lens. All
+// values are linear light.
 //
 // In OpenCV's favour, everything is cut to the pixels and elements that can contribute, the mask of
 // image border and lens is filled as a polygon instead of being warped, and with lens distortion
@@ -24,7 +25,7 @@ constexpr int kDiskEdges = 128;
 using Polygon = std::vector<Vec2>;  // of ideal positions or of elements
 
 // Returns the part of the polygon with form (x, y, 1) <= 0. For a concave polygon the result may
-// contain edges that coincide, but fills correctly.
+// contain edges that coincide, but it is filled correctly.
 Polygon Clip(const Polygon& polygon, const PixelForm& form) {
   Polygon kept;
   for (size_t i = 0; i < polygon.size(); ++i) {
@@ -108,7 +109,7 @@ class OpenCv final : public Contender {
     return prepared;
   }
 
-  // Maps the ideal image, large enough for all rays, to the recorded one.
+  // Makes the maps from the ideal image, large enough for all rays, to the recorded image.
   void MakeMaps() {
     const Intrinsics& k = case_.cameras[0].intrinsics;
     const DistortionMap distortion(k.distortion);
@@ -244,8 +245,8 @@ class OpenCv final : public Contender {
   cv::Rect plate_;
   cv::Mat sums_, counts_, mask_;
   std::vector<cv::Mat> images_;
-  // For lens distortion: the border, the part of the ideal image that the recorded one fills, and
-  // the maps from one to the other.
+  // For lens distortion: the border, the part of the ideal image that the recorded image fills, and
+  // the maps that find the recorded position of each ideal pixel.
   Polygon border_;
   cv::Rect ideal_;
   cv::Mat map_1_, map_2_;

@@ -5,13 +5,13 @@ usage: bench/packages.py BUILD_DIR [--density 0.03] [--size 480x320] [--runs 3] 
                          [--packages 4] [--name NAME] [--write PAGE]
        bench/packages.py --again JSON [--write PAGE]
 
-The movement `long` is cut into packages by rays and by frames, and each package is rendered by itself, with all
-threads: the longest decides when a film on so many machines is ready. It is rendered as the thesis does (nearest,
-without lens weights) and by the defaults. `short` is rendered with rectangles and without, by a lens that sees as
-much as the LF cameras and by one of twice their focal length: by nearest and bilinear without lens weights, and
-by the defaults (the longer lens alone). Without rectangles every LF image that may give rays to some frame is tried
-whole in all frames, as in the thesis; such a render is not repeated. Frames of all runs are compared: they must
-have the same bits.
+The movement `long` is cut into packages of equal rays or of equal frames, and each package is rendered by itself, with
+all threads: the slowest package decides when a film is ready that is rendered on as many machines. It is rendered as in
+the thesis (nearest, without lens weights) and by the defaults. `short` is rendered with and without rectangles, by a
+render camera that sees as much as the LF cameras, and by one with twice their focal length: by nearest and bilinear
+without lens weights, and by the defaults (only with the longer lens). Without rectangles, every LF image that may have
+rays for some frame is tested whole in all frames, as in the thesis; such a render is not repeated. The frames of all
+runs must have the same bits.
 """
 import argparse
 import hashlib
@@ -23,7 +23,7 @@ import tempfile
 import record as results
 from workloads import WAYS, WORKLOADS, path_yaml, photograph
 
-# Options of lfpreprocessor with which its forecast is for the measured render.
+# Options of lfpreprocessor with which it forecasts the measured render.
 PREPROCESSING = {"nearest": ("--estimator", "nearest", "--lens-weights", "none"), "default": ()}
 # Options and focal lengths of the renders of `short`.
 RECTANGLES = (("nearest", 36), ("nearest", 72), ("bilinear", 72), ("default", 72))
@@ -39,7 +39,7 @@ def digest(folder):
 
 def render(build, inputs, out, *options):
     """Returns the seconds of one render."""
-    for report in out.glob("report*.json"):  # of an earlier render, which only --resume would use
+    for report in out.glob("report*.json"):  # a report of an earlier render, which only --resume would use
         report.unlink()
     used = results.timed([build / "bin/lfrenderer", *inputs, "-o", out, "-q", "--no-contact-sheet", *options])
     return used["seconds"]

@@ -1,13 +1,14 @@
 #!/usr/bin/python3
-"""Measures what rendering from a packed store costs beside rendering from pixels in memory.
+"""Measures what rendering from a packed store costs, compared with rendering from pixels in memory.
 
 usage: bench/packed_stores.py BUILD_DIR [--count 64] [--size 1024x1024] [--runs 3] [--name NAME] [--write PAGE]
        bench/packed_stores.py --again JSON [--write PAGE]
 
-The movement `stack` of Table 5.1 (30 frames), from noisy RGGB mosaics of lfsynth, as they are (16 bits) and with 8
-bits: as uncompressed TIFF files in memory (/dev/shm), which are as good as decoded, as packed stores without loss and
-with the default's, and as PNG files. Each is rendered as the thesis does (nearest, without lens weights) and by the
-defaults. Renders take turns; medians of their seconds and of the CPU seconds that went into loading.
+The movement `stack` of Table 5.1 (30 frames) is rendered from noisy RGGB mosaics of lfsynth, with 16 bits (as lfsynth
+writes them) and with 8 bits. They are stored as uncompressed TIFF files in memory (/dev/shm), which are almost as fast
+as decoded pixels; as packed stores of the profiles lossless and default; and as PNG files. Each is rendered as in the
+thesis (nearest, without lens weights) and by the defaults. Renders take turns. Figures are medians of the seconds, and
+of the CPU seconds of loading.
 """
 import argparse
 import json

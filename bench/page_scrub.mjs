@@ -67,7 +67,7 @@ for (const count of counts.length > 0 ? counts : [1_000, 100_000, 1_000_000]) {
     script.push(1000 * ((await scriptSeconds()) - before));
   }
   const sent = await page.evaluate(() => window.lfvisualizer.receivedBytes());
-  // The time of drawing alone, which the processor does instead of a graphics card.
+  // The time of drawing alone. The processor draws, because there is no graphics card.
   const drawn = await page.evaluate(() => {
     const { view } = window.lfvisualizer;
     const start = performance.now();

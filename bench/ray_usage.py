@@ -4,9 +4,9 @@
 usage: bench/ray_usage.py BUILD_DIR [--density 1] [--size 480x320] [--name NAME] [--write PAGE]
        bench/ray_usage.py --again JSON [--write PAGE]
 
-The movement `short` of Table 5.1 through an LF camera grid as dense as the thesis's (calibration only: the
-ray model's spans tell, without pixels). LF images are ordered by their usage, accepted / tried, over all frames.
-With --write the figures go into PAGE, and the picture into doc/images/ray_usage.svg.
+The film is the movement `short` of Table 5.1, through a grid of LF cameras as dense as the thesis's. Only its
+calibration exists, because the spans of the ray model need no pixels. LF images are ordered by their usage, accepted /
+tried, over all frames. With --write the figures go into PAGE, and the picture into doc/images/ray_usage.svg.
 """
 import argparse
 import csv
@@ -33,7 +33,7 @@ def usage(build, density, size):
 
 
 def panel(left, title, shares):
-    """one curve: LF images by falling usage"""
+    """Returns one curve: LF images by falling usage."""
     across = lambda i: left + MARGIN + i / max(1, len(shares) - 1) * (WIDTH - 2 * MARGIN)
     down = lambda share: MARGIN + (1 - share) * (HEIGHT - 2 * MARGIN)
     step = max(1, len(shares) // 400)

@@ -47,8 +47,8 @@ void InsertOurs(benchmark::State& state) {
   const std::vector<BinnedRay> rays = RaysOfImages(static_cast<size_t>(state.range(0)));
   for (auto _ : state) {
     RayMap map(rays.size());
-    // The rays are added in batches of the size that LF images give: some thousands, sorted by
-    // shard.
+    // The rays are added in batches that are sorted by shard, with some thousands of rays for each
+    // shard, as rays of LF images are.
     constexpr size_t kBatch = 1 << 17;
     std::array<std::vector<BinnedRay>, RayMap::kShards> shards;
     for (size_t begin = 0; begin < rays.size(); begin += kBatch) {
@@ -121,7 +121,7 @@ FrameCase CaseOf(size_t count) {
     const double grey = 30000 + 20000 * std::sin(ray.x_px / 3) * std::cos(ray.y_px / 4);
     for (int c = 0; c < 3; ++c) ray.rgb[c] = static_cast<float>(grey + random.Uniform(-5000, 5000));
   }
-  // Row by row, like the cells of RayMap::Cells().
+  // The rays are sorted row by row, like the cells of RayMap::Cells().
   std::sort(a.rays.begin(), a.rays.end(), [](const FrameRay& one, const FrameRay& other) {
     return std::pair(std::floor(one.y_px), one.x_px) <
            std::pair(std::floor(other.y_px), other.x_px);

@@ -1,11 +1,12 @@
 #!/usr/bin/python3
-"""Rebinned rays against their peers (lf_rebinning_peers_bench): frames by splats and by a k-d tree, cells into maps.
+"""Compares rebinning with its peers (lf_rebinning_peers_bench): frames from splats and from a k-d tree, cells in hash
+maps.
 
 usage: bench/rebinning_peers.py BUILD_DIR [--runs 3] [--name NAME] [--write doc/rebinning.md]
        bench/rebinning_peers.py --again JSON [--write doc/rebinning.md]
 
-One thread, 1920 x 1080 elements, 16 lens points, a kernel that finds about 16 rays. CPU time, medians. The frame by the
-k-d tree is measured on its first 36 rows.
+Frames have 1920 x 1080 elements and 16 lens points; the kernel finds about 16 rays. Figures are medians of the CPU time
+of one thread. Only the first 36 rows of the frame from the k-d tree are measured.
 """
 import argparse
 import json

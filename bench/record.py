@@ -17,7 +17,7 @@ bench/results/NAME.json, has
     made_by   the command line of the script
     commands  each different command with its options; only the last part of paths
     defaults  the lines of bench/defaults.txt for the programs among the commands, as these programs print them
-    defaults_hash   of these lines
+    defaults_hash   hash of these lines
     and what the script adds: its rows
 
 NAME.md beside it is the text between the markers. scripts/check_house.py . tables compares all of them.
@@ -39,7 +39,7 @@ END = "<!-- end of table -->"
 # Figures depend on these: compiled sources, and the scripts that measure.
 SOURCES = ("../lf", "../tools", "../cmake", "../CMakeLists.txt", "*.cc", "*.h", "*.py", "../scripts/*.py")
 
-_commands = []  # of this run, each once
+_commands = []  # commands of this run, each once
 _programs = {}  # name -> path
 _is_noting = True
 

@@ -9,13 +9,14 @@ usage: bench/scale.py BUILD_DIR [--counts 1000,10000,100000] [--weighed 1000,100
 lfsynth photographs the scene `chart` from a square grid, 0.1 m wide whatever the number of LF cameras. The film
 winds over all of it; its lens is so wide that frames together see every LF camera, each in two or three frames.
 It is rendered in one go (lfrenderer LIGHTFIELD PATH) and from packages (lfpreprocessor, then lfrenderer
-PACKAGE...), without lens weights; frames of both ways must have the same bits. Light fields of --weighed are
-rendered with the defaults, too.
+PACKAGE...), without lens weights; frames of both ways must have the same bits. Light fields of --weighed are also
+rendered with the defaults.
 
-Peak memory is that of each program alone; open files, and the space that the frames' folder takes, are looked at
-20 times a second. CPU per LF image is of the whole program, less what the smallest light field took, by LF images
-more than that: frames are as many in all of them. --folder DIR  work there instead of a new folder; it is emptied of
-light fields as they are done with
+Peak memory is that of each program alone. Open files, and the space that the frames' folder takes, are counted 20 times
+a second. CPU per LF image is the additional CPU time compared with the smallest light field, divided by the number of
+additional LF images; all light fields are filmed with the same number of frames.
+
+--folder DIR  folder to work in, instead of a new one; each light field in it is removed once it is measured
 """
 import argparse
 import hashlib

@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Times selection in the band of the thesis (lf_selection_bench): by the octree, and by asking every LF image.
+"""Times selection in the band of the thesis (lf_selection_bench): by the octree, and by testing every LF camera.
 
 usage: bench/selection_table.py BUILD_DIR [--name NAME] [--write PAGE]
        bench/selection_table.py --again JSON [--write PAGE]
 
-One thread, CPU time. LF cameras on half a circle, a path along a tenth of it; a lens of 30 mm sees 1 % of them,
-one of 150 mm 5 %.
+Figures are CPU times of one thread. LF cameras stand on half a circle, and the path goes along a tenth of it. A lens of
+30 mm sees 1 % of the LF cameras, a lens of 150 mm 5 %.
 """
 import argparse
 import json

@@ -8,14 +8,15 @@ usage: bench/simultaneous_packages.py BUILD_DIR [--movement long] [--density 0.0
 
 The thesis rendered its packages on four machines with four cores each, and was ready in a half to a third of the time.
 Here `lfsubmit --jobs N --threads 1` renders N packages at the same time on one machine, so that N cores stand for
-N machines; beyond the machine's cores nothing can be gained. What more machines would gain is told by the package that
-takes longest when it is rendered alone, which is when a film on so many machines is ready.
+N machines; beyond the machine's cores nothing can be gained. The gain of more machines can be seen from the package
+that takes longest when each package is rendered alone: on as many machines as packages, the film is ready when this
+package is.
 
 Films are rendered in turns, so that a busy machine disturbs all alike; their frames must have the same bits. Seconds
 are from the call of lfsubmit to its end, CPU seconds are those of all its processes. lfpreprocessor's time does not
 count.
 
---frames-share S  only this share of the movement's frames, over the same path
+--frames-share S  render only this share of the movement's frames, over the same path
 """
 import argparse
 import json

@@ -5,12 +5,12 @@ usage: bench/tables.py BUILD_DIR [--only NAME,...] [--resume] [--tiny] [--data .
        bench/tables.py --list
 
 --only    these tables alone (names of --list)
---resume  leave out tables whose record is of these sources and these defaults already
---tiny    run every script with settings of a few seconds, and write nothing: do they work?
+--resume  leave out tables whose record was made with the present sources and defaults
+--tiny    run every script with settings that take a few seconds, and write nothing: tests whether the scripts work
 --data    folder with data/blender-shop, data/beer-colmap and groundtruth
 
-Sources must be committed: a record names the commit that it was made from. A table that fails is told at the end; the
-others are made all the same. bench/run tables builds first. On two free cores all of it takes about two
+Sources must be committed: a record names the commit that it was made from. A script that fails is reported at the end;
+the other tables are made nevertheless. bench/run tables builds first. On two free cores all of it takes about two
 hours, half of it a million LF cameras with lens weights.
 """
 import argparse

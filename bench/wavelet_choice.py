@@ -1,13 +1,13 @@
 #!/usr/bin/python3
-"""Which transform, quantiser and packing: prototypes in NumPy, before any was built (doc/codec.md).
+"""Compares transforms, quantisers and packings as prototypes in NumPy, to choose those of the codec (doc/codec.md).
 
 usage: bench/wavelet_choice.py [--data ../shared] [--name NAME] [--write doc/codec.md]
        bench/wavelet_choice.py --again JSON [--write doc/codec.md]
 
-One LF image each of `blender-shop` and of `beer-colmap`, as RGGB mosaics of 8 bits. Ratios at equal PSNR (found by
-bisection of the step). All but the thesis's scheme: uniform quantisers with a dead zone, steps such that every
-band gives the same error per coefficient; coefficients packed one, two or four in a byte as makes them
-shorter (escapes apart), zstd -1. The whole image is one tile.
+The data are one LF image of `blender-shop` and one of `beer-colmap`, as RGGB mosaics of 8 bits. The table shows ratios
+at equal PSNR (found by bisection of the step). All schemes but the thesis's have uniform quantisers with a dead zone,
+whose steps give the same error per coefficient in every band. They pack one, two or four coefficients into a byte,
+whichever is shortest (escapes are stored separately), and compress the bytes by zstd -1. The whole image is one tile.
 """
 import argparse
 import json
@@ -100,7 +100,7 @@ class Scheme:
         self.planes, self.wavelet, self.levels, self.dead_zone = planes, wavelet, levels, dead_zone
 
     def split(self, mosaic):
-        """Returns the planes, and the norms of their synthesis along both dimensions or together."""
+        """Returns the planes, and for each plane the norm of the synthesis of one of its values."""
         quads = [mosaic[y::2, x::2] for y in (0, 1) for x in (0, 1)]
         if self.planes == "colours":
             return quads, [1] * 4

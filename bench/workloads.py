@@ -5,18 +5,18 @@ usage: bench/workloads.py BUILD_DIR [--density 0.03] [--size 480x320] [--runs 3]
                           [--threads 1,2] [--only stack,short] [--field DIR] [--name NAME] [--write PAGE]
        bench/workloads.py --again JSON [--write PAGE]
 
-Lengths, times, frames, apertures and focus distances are the thesis's; of its LF cameras
-only a share is there (--density). LF images have --size, frames half of it, which gives an element the
-rays of four times as many LF cameras. lfsynth photographs a planar grid
-of noisy raw Bayer mosaics. A path sweeps the area that makes the LF images it needs the thesis's
-number times the density; the grid is a square where the thesis had a band, so long paths wind.
+Lengths, times, frames, apertures and focus distances are those of the thesis; only a share of its LF cameras exists
+(--density). LF images have the size --size, frames half of it, so that an element gets as many rays as from four times
+as many LF cameras. lfsynth photographs a planar grid of noisy raw Bayer mosaics. Each path sweeps over an area that
+contains as many LF cameras as it needs in the thesis, times the density. The grid is a square, whereas the thesis had a
+band, so long paths wind.
 
 Each workload is rendered in three ways: as the thesis does (nearest, without lens weights), by plain
 interpolation (bilinear, without lens weights), and by the defaults. Ways and numbers of threads take turns, so
 that a busy machine disturbs all alike; each is repeated up to `runs` times, but not beyond --most-seconds.
 Seconds and peak memory are those of the whole program, CPU seconds those of the last run, ns/ray is collection alone.
 
---field DIR  keep the light field there, or take the one that is there
+--field DIR  folder of the light field, which is kept; an existing one is used again
 """
 import argparse
 import json
