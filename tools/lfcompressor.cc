@@ -64,13 +64,13 @@ void AddInput(CLI::App& app, Arguments& a) {
       ->check(lf::NotEmpty());
   input
       .Add("--lightfield LIGHTFIELD", a.light_field.path,
-           "With packages: the light field of their LF images\n"
-           "Needed if the light field was moved after the packages were made.")
+           "Light field of the packages, if it was moved\n"
+           "Packages state where their light field was when they were made.")
       ->check(lf::NotEmpty());
-  input.AddFlag("--needed-pixels", a.needed_pixels,
-                "With packages: store only the needed pixels\n"
-                "Of each LF image, only the smallest rectangle is stored that contains the pixels "
-                "that the packages need.");
+  input.AddFlag(
+      "--needed-pixels", a.needed_pixels,
+      "Store only the pixels that the packages need\n"
+      "Of each LF image, only the smallest rectangle is stored that contains these pixels.");
   a.light_field.AddOptionsTo(app);
   a.allow_missing.AddTo(app, "the LF images to be encoded");
 }
@@ -116,7 +116,7 @@ void AddQuality(CLI::App& app, Arguments& a) {
       ->check(CLI::Range(10., 90.))
       ->excludes(threshold);
   quality.Add("--quantizer N", a.quantizer,
-              "With --profile thesis: values per coefficient\n"
+              "Values per coefficient, for --profile thesis\n"
               "8bit: 256 values, one byte per coefficient. More than 256 values take two bytes.");
 }
 

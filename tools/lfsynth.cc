@@ -121,7 +121,7 @@ void AddQuality(CLI::App& app, Arguments& a) {
                     "background. The frames of --truth have premultiplied alpha.\n"
                     "none: the whole scene, without alpha");
   picture.AddFlag("--bayer", a.bayer, "Write raw-like 16-bit RGGB mosaics instead");
-  quality.Add("--noise X", a.noise, "With --bayer: noise (standard deviation) at radiance 1")
+  quality.Add("--noise X", a.noise, "Standard deviation of noise at radiance 1, for --bayer")
       ->check(CLI::Range(0.0, 10.0));
   quality.Add("--samples N", a.samples, "Rays per pixel at edges (by the scene)")
       ->check(CLI::Range(0, 4096));

@@ -36,7 +36,7 @@ void AddProbabilities(OptionGroup& group, RebinArguments& a) {
   ProbabilityOptions& edges = a.options.rebin.probability;
   group
       .Add("--alpha X", edges.alpha,
-           "With edges: probability per change of the image\n"
+           "Probability per change of the image, for --kept edges\n"
            "With --kept edges, a ray is kept with the probability X * change + --xi. The change of "
            "the image is measured in stored values, where the step from black to white is 1.")
       ->check(CLI::Range(0.0, kMostAlpha));

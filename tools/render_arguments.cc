@@ -44,9 +44,9 @@ void AddInput(CLI::App& app, RenderArguments& a) {
       ->required();
   input
       .Add("--lightfield LIGHTFIELD", a.light_field.path,
-           "With packages: the light field of their LF images\n"
-           "Needed if the light field was moved after the packages were made. It may be a packed "
-           "store that contains their LF images.")
+           "Light field of the packages, if it was moved\n"
+           "Packages state where their light field was when they were made. LIGHTFIELD may be a "
+           "packed store that contains their LF images.")
       ->check(NotEmpty());
   a.light_field.AddOptionsTo(app);
   a.allow_missing.AddTo(
@@ -153,7 +153,7 @@ void AddRunning(CLI::App& app, RenderArguments& a) {
       ->excludes(resume);
   running
       .Add("--finish RANGE", a.finish,
-           "With --resume: finish frames with their rays so far\n"
+           "Frames to finish with their rays so far, for --resume\n"
            "RANGE: frames, such as 1-10,20. The other frames are continued. The report states "
            "which LF images the finished frames contain.")
       ->check(NotEmpty());

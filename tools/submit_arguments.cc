@@ -169,16 +169,16 @@ void AddResources(CLI::App& app, SubmitArguments& a) {
               "% of its memory.");
   running
       .Add("--time-limit TIME", a.time_limit,
-           "slurm: time limit of each task, such as 2h\n"
+           "Time limit of each Slurm task, such as 2h\n"
            "A task that reaches it is requeued and resumed.")
       ->check(NotEmpty());
   running
       .Add("--sbatch OPTION", a.sbatch_options,
-           "slurm: option for sbatch: --sbatch=--partition=long\n"
+           "Option for Slurm's sbatch: --sbatch=--partition=long\n"
            "May be given several times.")
       ->allow_extra_args(false);
   running.AddFlag("--wait", a.wait,
-                  "slurm: wait until the film is done\n"
+                  "Wait until the film is done, for --engine slurm\n"
                   "The exit code then is the one described below.");
   running.Add(
       "--crashes N", a.most_crashes,
