@@ -45,7 +45,7 @@ std::string WhyNotSure(const Subject& subject, const Subject& points) {
                      subject.place_count, subject.textured_count, why);
 }
 
-// Returns a focus on the subject's best depth, subject.depths[0].
+// Returns the focus at the subject's best depth, subject.depths[0].
 //   things  for people: what was found at this depth, such as "places of the image"
 ExampleFocus FocusOf(const Subject& subject, const char* things) {
   const SubjectDepth& best = subject.depths[0];
@@ -137,7 +137,8 @@ ExampleAperture ChooseAperture(const ExampleFocus& focus, double fx_px, double s
   if (!focus.doubt.empty())
     return {kSharpSpacings,
             "which holds one LF camera, so that the first frame is sharp at any distance"};
-  // If the depths are unknown, points are taken to be as near as focus distance / (1 + this).
+  // If the depths are unknown, the nearest point is assumed to be at the focus distance / (1 +
+  // kUnknownRange).
   constexpr double kUnknownRange = 0.25;
   double range_per_w = kUnknownRange / focus.distance_w;
   if (focus.near_w < focus.far_w)

@@ -23,9 +23,9 @@ struct ExampleFocus {
   double near_w = 0, far_w = 0;
 };
 
-// Returns the focus as described at MakeExamplePath(). If the depth found in the pixels contradicts
-// the points of a reconstruction, the depth of the points is used if it is sure; otherwise `doubt`
-// is set.
+// Returns the focus as described at MakeExamplePath(). If the points of a reconstruction contradict
+// the depth found in the pixels, uses the depth of the points if that depth is sure; otherwise sets
+// `doubt`.
 //   spacing_w  distance between neighbouring LF cameras
 Result<ExampleFocus> ChooseFocus(const LightField& light_field, const LfImageStore& store,
                                  const ExampleOptions& options, double spacing_w, ThreadPool& pool);

@@ -24,9 +24,9 @@ std::string Text(const Vec3& v) {
   return fmt::format("[{:.9g}, {:.9g}, {:.9g}]", v.x(), v.y(), v.z());
 }
 
-// Returns the up direction of a camera that looks the same way with a level horizon. Returns the
-// camera's own up direction if the LF cameras have no mean up direction, or if the camera is rolled
-// by more than kMostRoll_deg against it.
+// Returns the up direction of a camera that looks in the same direction as `camera`, with a level
+// horizon. Returns the up direction of `camera` itself if the LF cameras have no mean up direction,
+// or if `camera` is rolled by more than kMostRoll_deg against that direction.
 Vec3 LevelUp(const LightField& light_field, const PinholeCamera& camera) {
   const Vec3 up = MeanUpWorld(light_field);
   const double roll_rad = RollOf(camera, up);

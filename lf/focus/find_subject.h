@@ -20,7 +20,7 @@ struct SubjectDepth {
 };
 
 struct Subject {
-  std::vector<SubjectDepth> depths;  // at most three, the best first; empty: nothing was found
+  std::vector<SubjectDepth> depths;  // at most three, the best first; empty: no depth was found
   bool is_sure = false;              // true if the first depth is sure
   size_t place_count = 0;            // number of places whose depth was found
   size_t textured_count = 0;         // number of places with texture, whose depth was searched

@@ -16,7 +16,7 @@
 namespace lf {
 namespace {
 
-constexpr int kHalfPatch = 5;  // in elements or LF pixels, whichever are larger
+constexpr int kHalfPatch = 5;  // half width, in elements or LF pixels, whichever are larger
 constexpr int kPatchSide = 2 * kHalfPatch + 1;
 constexpr int kPatchSize = kPatchSide * kPatchSide;
 constexpr double kStep_px = 0.5;  // change of the largest disparity from one depth to the next

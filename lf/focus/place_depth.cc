@@ -66,8 +66,8 @@ bool Sample(const ReducedImage& image, const PatchGrid& grid, Patch* patch) {
             corner.y() < light.height() - 1))
         return false;
     }
-  // Parallel cameras show the place at the same scale, so that all its pixels are interpolated with
-  // the same weights.
+  // Parallel cameras show the place at the same scale, so that all pixels of the patch are
+  // interpolated with the same weights.
   constexpr double kSamePixel = 1e-7;
   if ((step_x - Vec2(1, 0)).norm() + (step_y - Vec2(0, 1)).norm() < kSamePixel) {
     const int column = static_cast<int>(first.x()), row = static_cast<int>(first.y());

@@ -16,7 +16,7 @@
 
 namespace lf {
 
-inline constexpr int kHalfPatch = 4;  // in pixels of the reduced image
+inline constexpr int kHalfPatch = 4;  // half width of a patch, in pixels of the reduced image
 inline constexpr int kPatchSide = 2 * kHalfPatch + 1;
 inline constexpr int kPatchSize = kPatchSide * kPatchSide;
 using Patch = std::array<float, kPatchSize>;
@@ -78,7 +78,7 @@ struct FoundDepth {
 };
 
 // Returns the depth on which most views agree. None if no depth is clearly better than the others;
-// if the place does not move from view to view, as a watermark; or if it is so far away that it
+// if the place does not move from view to view, like a watermark; or if it is so far away that it
 // moves by less than a reduced pixel.
 //   rings      rings of views whose images are loaded; at least one ring, each with at least two
 //              views

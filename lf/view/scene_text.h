@@ -1,5 +1,5 @@
-// Writes the light field, the path and the selected LF images as plain text, for scripts that plot
-// them (thesis 4.5).
+// Writes the cameras of the light field and of the path, and the LF images that each frame uses, as
+// plain text, for scripts that plot them (thesis 4.5).
 #pragma once
 
 #include <functional>

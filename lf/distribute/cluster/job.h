@@ -39,7 +39,7 @@ struct JobPackage {
 
 struct ClusterJob {
   std::filesystem::path output_folder;   // DIR
-  std::filesystem::path working_folder;  // where lfrenderer runs; relative paths start here
+  std::filesystem::path working_folder;  // lfrenderer runs here; relative paths start here
   std::filesystem::path renderer;        // path of lfrenderer
   std::filesystem::path submitter;       // path of lfsubmit, for batch scripts
   std::vector<JobPackage> packages;

@@ -26,7 +26,7 @@ std::set<std::string> NamesIn(const fs::path& folder) {
   return names;
 }
 
-// Returns the status of a task as far as its state file and log contain it.
+// Returns the part of a task's status that its state file and its log contain.
 TaskStatus LookAtTask(const ClusterTask& task) {
   TaskStatus status;
   status.name = task.name;

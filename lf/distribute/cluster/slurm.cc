@@ -245,7 +245,7 @@ Result<std::vector<QueuedTask>> AskSlurm(const ClusterJob& job) {
                                           "--jobs=" + AllIds(job), "--format=%F|%K|%T|%N|%r"};
   const Result<CommandAnswer> answer = RunCommand(words, kPatience_s);
   if (!answer) return answer.error();
-  // squeue fails if it is asked about a single job that Slurm has forgotten.
+  // squeue fails if its only argument is a job that Slurm has forgotten.
   if (answer->exit_code != 0 && answer->complaints.find("Invalid job id") != std::string::npos)
     return std::vector<QueuedTask>();
   if (answer->exit_code != 0)

@@ -17,8 +17,8 @@ struct QueuedTask {
   bool is_finishing = false;
   size_t number = 0;   // index in job.packages; unused for the finishing task
   std::string state;   // "PENDING", "RUNNING", "COMPLETING", ...
-  std::string node;    // where it runs; empty while it waits
-  std::string reason;  // why it waits, in Slurm's words
+  std::string node;    // node that runs the task; empty while the task waits
+  std::string reason;  // why the task waits, in Slurm's words
 };
 
 // Return the batch scripts DIR/cluster/packages.sbatch and finish.sbatch. People may edit them and

@@ -46,7 +46,7 @@ Result<void> WriteTaskState(const TaskState& state, const std::filesystem::path&
 
 // The last progress that lfrenderer wrote to its log (--progress json).
 struct TaskProgress {
-  uint64_t done = 0, total = 0;  // in `unit`; after a resume, only the work that was left
+  uint64_t done = 0, total = 0;  // number of units; after a resume, only of the work that was left
   std::string unit;
   double rate = 0;  // in `unit` per second
   double seconds_left = 0;

@@ -102,7 +102,7 @@ class Compressor {
   CompressReport report_;
   CompressProgress now_;
   std::optional<Error> error_;
-  bool ended_ = false;  // by an error or by an interruption
+  bool ended_ = false;  // true after an error or an interruption
 };
 
 Error Compressor::Interrupted() const {
@@ -170,7 +170,8 @@ void Compressor::Count(const RecordedImage& image, const CodedImage& coded, cons
   now_.code_bytes = report_.code_bytes;
 }
 
-// Checks by their sizes that the files are still those from which the unfinished store was made.
+// Checks that each file of an LF image in the unfinished store still has the same size, because it
+// may have been replaced.
 Result<void> Compressor::CheckFiles(const PackedStoreWriter& writer) {
   const LightField& light_field = source_.light_field;
   pool_.ForEach(light_field.size(), [&](size_t i) {

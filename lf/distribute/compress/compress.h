@@ -25,7 +25,7 @@ struct CompressOptions {
   // If set, replaces codec's threshold by the largest one at which a sample of the LF images has at
   // least this PSNR.
   std::optional<double> target_psnr_db;
-  uint64_t shard_bytes = 0;  // as in PackedStorePlan
+  uint64_t shard_bytes = 0;  // size of a shard, as in PackedStorePlan
   bool resume = false;       // resume an unfinished store; a complete one must match the options
   bool overwrite = false;    // replace an existing store, unfinished or complete
   bool strict = false;       // an LF image that cannot be read is an error
@@ -34,7 +34,7 @@ struct CompressOptions {
   // it is only checked.
   bool verify = false;
   std::string source_name;  // LIGHTFIELD or packages, as the user gave them
-  std::string version;      // of the program
+  std::string version;      // version of the program
   const std::atomic<bool>* interrupted = nullptr;
 };
 
@@ -51,7 +51,7 @@ struct CompressReport {
   size_t image_count = 0;
   size_t resumed_count = 0;  // LF images that the unfinished store already had
   bool was_there = false;    // true if the store was complete, so that nothing was written
-  double threshold = 0;      // in grey steps
+  double threshold = 0;      // used threshold, in grey steps
   size_t rounded_count = 0;  // LF images with floats that half floats cannot represent exactly
   struct Skipped {
     std::string name;

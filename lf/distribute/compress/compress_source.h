@@ -16,7 +16,7 @@
 namespace lf {
 
 struct CompressSource {
-  LightField light_field;           // only the LF images to compress
+  LightField light_field;           // contains only the LF images to compress
   LightFieldIdentity whole;         // the light field that they are from
   std::vector<uint32_t> whole_ids;  // ids in `whole`, in the order of light_field.cameras; empty:
                                     // 0, 1, 2, ...

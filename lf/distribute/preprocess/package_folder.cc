@@ -81,7 +81,8 @@ Result<void> PackageFolder::Publish() {
   RemoveFiles(Packages());
   const Result<void> renamed = RenameFlushed(renamings_);
   if (!renamed) {
-    // No package is left, because some packages alone could be mistaken for all of them.
+    // Removes all renamed packages, because a part of the packages could be mistaken for all of
+    // them.
     for (const Renaming& file : renamings_) RemoveFiles({file.to});
     return renamed.error();
   }

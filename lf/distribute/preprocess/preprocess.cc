@@ -135,7 +135,7 @@ class Preprocessor {
   NeedsOptions needs_;
   std::vector<FrameId> frames_;
   std::optional<PackageFolder> folder_;  // unset: nothing is written
-  std::unique_ptr<LfImageStore> store_;  // to ask for file sizes and kept pixels
+  std::unique_ptr<LfImageStore> store_;  // states file sizes and which pixels are kept
   LightFieldIdentity whole_;
   ImagePlaces places_;
   std::optional<ImageIndex> index_;

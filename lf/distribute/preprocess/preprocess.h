@@ -48,14 +48,14 @@ struct PreprocessOptions {
   RenderMode mode = RenderMode::kCollect;
 
   // Number of packages: package_count if it is set; otherwise, if frames_per_package is set, as
-  // many as it requires; otherwise as few as possible such that all plates of a package fit into
+  // many as that requires; otherwise as few as possible such that all plates of a package fit into
   // memory_bytes at the same time.
   size_t memory_bytes = size_t{8} << 30;
   std::optional<size_t> package_count;
   std::optional<size_t> frames_per_package;
   PackageBalance balance = PackageBalance::kRays;
 
-  std::optional<DepthRange> depths;  // of the scene; unset: depth_range of the light field
+  std::optional<DepthRange> depths;  // depths of the scene; unset: those of the light field
   bool strict = false;               // true: a missing LF image is an error
   std::string version;               // version of the program
   std::string light_field_name;      // the argument LIGHTFIELD, as the user wrote it
@@ -70,10 +70,10 @@ struct FrameForecast {
 };
 
 struct PackageForecast {
-  std::string name;  // such as package-0000; for a part of the film package-0000-of-frames-1-4
+  std::string name;  // package-0000, or package-0000-of-frames-1-4 for a part of the film
   std::vector<FrameId> frames;
   size_t image_count = 0;      // LF images that are read
-  size_t missing_count = 0;    // of these LF images, the number that is missing or empty
+  size_t missing_count = 0;    // number of these LF images that are missing or empty
   size_t neighbour_count = 0;  // other LF cameras, whose images are not read
   uint64_t read_bytes = 0;     // size of the files of image_count LF images
   uint64_t ray_count = 0;
@@ -87,7 +87,7 @@ struct PackageForecast {
 struct PreprocessReport {
   size_t light_field_image_count = 0;
   size_t needed_count = 0;    // LF images that packages need, each counted once
-  size_t missing_count = 0;   // of needed_count, the number that is missing or empty
+  size_t missing_count = 0;   // number of these LF images that are missing or empty
   std::string first_missing;  // path of the first missing one
   std::vector<FrameForecast> frames;
   std::vector<PackageForecast> packages;

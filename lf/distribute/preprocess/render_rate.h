@@ -14,9 +14,9 @@ namespace lf {
 
 // CPU time of the parts of a render, in seconds.
 struct RenderRate {
-  double load_s = 0;     // to load one LF image
-  double collect_s = 0;  // to collect, for each tested ray
-  double finish_s = 0;   // for each frame: lens weights, developing, writing
+  double load_s = 0;     // loading one LF image
+  double collect_s = 0;  // collecting one tested ray
+  double finish_s = 0;   // lens weights, developing and writing of one frame
 };
 
 // Computes the lens weights of the frame, loads a few of the LF images that the frame needs,

@@ -1,5 +1,5 @@
-// Reports what the calibration of a light field says about the capture, and what looks wrong in it.
-// No file is read.
+// Reports what the calibration of a light field says about the capture, and which parts of the
+// calibration look wrong. No file is read.
 #pragma once
 
 #include <array>
@@ -61,7 +61,7 @@ struct CaptureWarning {
 struct CaptureReport {
   size_t image_count = 0;
   size_t mask_count = 0;
-  std::vector<CameraGroup> groups;  // by falling image_count
+  std::vector<CameraGroup> groups;  // the largest image_count first
   Vec3 box_min_w = Vec3::Zero();    // bounding box of the positions
   Vec3 box_max_w = Vec3::Zero();
   // Distance from a camera to its nearest neighbour. None for fewer than two cameras. LF images of
@@ -70,16 +70,16 @@ struct CaptureReport {
   std::optional<Vec3> meeting_point_w;  // AxesMeetingPoint()
   std::optional<DepthRange> depth_range;
   double unit_m = 1;
-  std::optional<AlphaMeaning> alpha;             // of the images, if known
+  std::optional<AlphaMeaning> alpha;             // meaning of the images' alpha, if known
   std::array<double, 3> background = {0, 0, 0};  // behind the images, if alpha is no mask
   bool keeps_opacity = false;                    // nothing is behind them: frames have opacity
-  std::optional<Density> density;                // if a distance is known
+  std::optional<Density> density;                // set if a distance is known
   std::optional<FoundBrackets> brackets;         // poses with several exposures
   std::vector<CaptureWarning> warnings;
 };
 
 struct CaptureReportOptions {
-  std::optional<double> distance_w;  // to the scene, for the density; overrides other sources
+  std::optional<double> distance_w;  // distance to the scene; overrides other sources
   std::vector<double> lights = {};   // LightOf() of each file, for FindBrackets(); empty: unknown
 };
 

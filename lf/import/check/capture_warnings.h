@@ -23,8 +23,8 @@ std::vector<CaptureWarning> WarnOfRepeats(const LightField& light_field,
                                           std::span<const LfImageId> ids,
                                           std::span<const double> nearest_w);
 
-// Returns the warning brackets if the light field does not state how exposures differ, or if it
-// keeps clipped pixels.
+// Returns the warning brackets if the light field does not state how the exposures of a pose
+// differ, or if clipped pixels are not masked.
 std::vector<CaptureWarning> WarnOfBrackets(const FoundBrackets& brackets, bool masks_clipped);
 
 // Returns the warning sparse, for images `width_px` wide and cameras `spacing_w` apart.

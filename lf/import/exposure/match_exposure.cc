@@ -36,7 +36,7 @@ constexpr double kLeastCornerLight = 0.05, kMostCornerLight = 1.25;
 struct CameraGroups {
   std::vector<uint32_t> of_images;
   std::vector<uint32_t> of_intrinsics;
-  std::vector<Vignetting> known;  // of each group
+  std::vector<Vignetting> known;  // known falloff of each group
 };
 
 CameraGroups GroupCameras(const LightField& field) {
@@ -86,8 +86,8 @@ class Sampler {
     nearest_w_ = *near / 2;
   }
 
-  // Returns samples that compare one LF image with those around it. If there are more than `most`,
-  // they are thinned evenly to `most`.
+  // Returns samples that compare one LF image with the LF images around it. If there are more than
+  // `most` samples, they are thinned evenly to `most`.
   std::vector<ExposureSample> SamplesOf(LfImageId id, size_t most) const {
     std::vector<ExposureSample> samples;
     const ExposureView& own = views_[id.value];

@@ -42,8 +42,8 @@ struct MatchedExposure {
   double step_before = 0, step_after = 0;
   size_t sample_count = 0;  // number of compared colours that agree in two LF images
   size_t component_count = 0;
-  std::vector<LfImageId> left_alone;  // too little overlap; the gain stays as it was
-  std::vector<LfImageId> unreadable;  // cannot be read; the gain stays as it was
+  std::vector<LfImageId> left_alone;  // LF images with too little overlap, which keep their gains
+  std::vector<LfImageId> unreadable;  // LF images that cannot be read, and keep their gains
 };
 
 // Returns a copy of the light field that has no gains and falloffs and masks no clipped pixels.

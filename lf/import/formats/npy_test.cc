@@ -51,7 +51,8 @@ TEST(Npy, ReadsDoublesAndFloatsInCOrder) {
   EXPECT_EQ(floats.values, (std::vector<double>{1.5, 0.1F}));
 }
 
-// The bytes that numpy.save writes for [[1, 2.5]]: its header is padded to a multiple of 64 bytes.
+// Reads the bytes that numpy.save writes for [[1, 2.5]], whose header is padded to a multiple of 64
+// bytes.
 TEST(Npy, ReadsTheBytesOfNumpyItself) {
   std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': (1, 2), }";
   header += std::string(117 - header.size(), ' ') + "\n";

@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 #define EXPECT_HAS(message, part) EXPECT_NE((message).find(part), std::string::npos) << (message)
 
-// A model that COLMAP itself made (make.py in that folder): one camera of each camera model, with
-// two images each.
+// A model that COLMAP itself made (by make.py in the folder of models): one camera of each camera
+// model, with two images each.
 const fs::path kTenCameras = fs::path(LF_COLMAP_MODELS) / "ten_cameras";
 
 class ReadColmapTest : public FolderTest {

@@ -26,7 +26,7 @@ std::string_view Trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
 }
 
-// Returns the keys of all sections together, with their values. The syntax is that of Python's
+// Returns the keys of all sections together, with their values. The syntax is the one of Python's
 // configparser: KEY = VALUE, [SECTION], and comments after # and ;.
 std::map<std::string, std::string, std::less<>> KeysOf(std::string_view text) {
   std::map<std::string, std::string, std::less<>> keys;
@@ -79,7 +79,7 @@ class Parameters {
 };
 
 // Returns the depth range by Z = F b / (F b / Z0 + d): points with a larger disparity d are nearer.
-// Returns nullopt if an end of the range is at infinity or beyond, or if it is not stated.
+// Returns nullopt if an end of the range is not stated, or is at infinity or beyond.
 Result<std::optional<DepthRange>> DepthsOf(const Parameters& parameters, double focal_baseline,
                                            double plane_per_w) {
   constexpr double kMostDisparity_px = 1e6, kRounding_px = 0.05;

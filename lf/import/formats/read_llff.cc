@@ -102,8 +102,8 @@ Result<void> CheckShape(const NpyArray& array, size_t image_count, const fs::pat
   return {};
 }
 
-// Returns kInput if the image does not have the stated size. This happens because LLFF keeps
-// downsampled copies (images_4, images_8) beside the images that it was run on.
+// Returns kInput if the image does not have the stated size. The size differs if the images are
+// LLFF's downsampled copies (images_4, images_8) instead of the images that LLFF was run on.
 Result<void> CheckSize(const Intrinsics& k, const std::array<int, 2>& size, const fs::path& image,
                        const fs::path& path) {
   if (k.width_px == size[0] && k.height_px == size[1]) return {};

@@ -34,7 +34,7 @@ Result<LightField> ParseLlff(std::string_view bytes, const std::filesystem::path
                              std::span<const std::string> image_names,
                              const ImageSizeSource& image_size);
 
-// Reads a file as ParseLlff() does; the images are in images/ beside it.
+// Reads a file as ParseLlff() does; the images are in the folder images/ beside the file.
 Result<LightField> ReadLlff(const std::filesystem::path& path);
 
 }  // namespace lf

@@ -22,7 +22,7 @@ struct StanfordName {
     double focal_mm = 0;
     double sensor_width_mm = 0;  // both above 0
   };
-  std::optional<Lens> lens;  // only with a position
+  std::optional<Lens> lens;  // set only if `position` is set
 };
 
 // Returns nullopt if the name has another form. NAME may contain blanks and underscores; ROW and
