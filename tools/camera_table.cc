@@ -20,7 +20,7 @@ std::string Exact(double value) { return fmt::format("{}", value == 0 ? 0.0 : va
 
 // A column of the table: the texts [frame][part] of one fact.
 struct TableColumn {
-  CameraFact fact;  // in the first frame
+  CameraFact fact;  // the fact in the first frame
   std::vector<std::vector<std::string>> texts;
 
   bool IsConstant() const {

@@ -9,7 +9,7 @@
 
 namespace lf {
 
-// Distance of two copies of an edge, in elements, that still look like one edge.
+// Largest distance, in elements, at which two copies of an edge still look like one edge.
 inline constexpr double kDoubleEdge_px = 2;
 
 // Lengths are in world units. All figures keep 2 % away from the limit, so that they may be

@@ -12,7 +12,7 @@
 namespace lf {
 
 struct ForecastFacts {
-  std::string light_field;     // as the user typed it
+  std::string light_field;     // LIGHTFIELD as the user typed it
   std::string output;          // folder of the packages; empty: nothing is written (--plan)
   std::string render_options;  // options of lfrenderer that the packages need
   bool rebins = false;         // RenderMode::kRebin or kHybrid

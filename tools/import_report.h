@@ -12,13 +12,13 @@
 namespace lf {
 
 struct ImportReport {
-  std::string light_field;  // as the user typed it
+  std::string light_field;  // LIGHTFIELD as the user typed it
   std::string first_image;  // path of its file, which shows where the images were found
   CaptureReport capture;
   std::optional<ImageFaults> faults;  // nullopt: not checked
   size_t excluded_count = 0;
-  std::optional<ExifGains> exif_gains;      // nullopt: not asked for
-  std::optional<MatchedExposure> exposure;  // nullopt: not asked for
+  std::optional<ExifGains> exif_gains;      // nullopt: not requested
+  std::optional<MatchedExposure> exposure;  // nullopt: not requested
   std::string written;                      // path of the transforms.json; "": not written
 };
 

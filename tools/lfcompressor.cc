@@ -1,4 +1,4 @@
-// lfcompressor LIGHTFIELD|PACKAGE... -o STORE.lfs: compresses a light field into one file.
+// lfcompressor LIGHTFIELD|PACKAGE... -o STORE.lfs: compresses a light field into a packed store.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -82,7 +82,7 @@ lf::Result<lf::LfImageId> FindCamera(const lf::LightField& light_field,
                   text, light_field.image_names[0]));
 }
 
-// Warns where the focus is, why it is uncertain, and how to choose another one.
+// Warns where the focus is, why the focus is uncertain, and how to choose another focus.
 //   words  the options of the light field, to show the whole command
 void WarnOfDoubt(const lf::ExamplePath& example, const std::string& light_field,
                  const std::vector<std::string>& words, const std::string& output,

@@ -1,4 +1,5 @@
-// lfimport LIGHTFIELD [-o DIR]: converts any calibration to the native one, and reports on it.
+// lfimport LIGHTFIELD [-o DIR]: converts any calibration to a transforms.json, and reports on the
+// capture.
 #include <filesystem>
 #include <string>
 #include <vector>

@@ -36,7 +36,7 @@ renders left out LF images because they were missing or broken.)",
 };
 
 // Returns the LF images of a light field that is in the folder of the frames. They must not be
-// overwritten, and the plates do not state where they are.
+// overwritten, and the plates do not state where the LF images are.
 std::vector<std::filesystem::path> LfImagesIn(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> images;
   std::error_code error;

@@ -20,7 +20,7 @@ namespace lf {
 
 struct RenderArguments {
   std::vector<std::string> inputs;  // LIGHTFIELD PATH.yaml, or PACKAGE...
-  LightFieldArgument light_field;   // with packages: their light field, if it was moved
+  LightFieldArgument light_field;   // options of the light field; path: --lightfield
   std::string output, video, frames, memory = "8G", format = "exr", mode = "collect";
   std::string estimator = "auto", filter = "auto", lens_weights = "auto", back_end = "fast";
   std::string order = "shuffle", rectangles = "on", dump_every = "30s", stop_when, require, shard,

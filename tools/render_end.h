@@ -18,8 +18,8 @@ MissingImages MissingOf(const RenderReport& report, const std::string& advice);
 // packages together, in which each LF image counts once; a percentage with each package.
 bool Accepts(const MissingLimit& limit, const RenderReport& report);
 
-// Warns about LF images that were left out, if the limit accepts them. kBelowRequired if it does
-// not, or if `required` is an error; the message then contains both.
+// Warns about LF images that were left out, if the limit accepts them. kBelowRequired if the limit
+// does not accept them, or if `required` is an error; the message contains both faults.
 //   required  the result of CheckRequired()
 Result<void> EndOfRender(const RenderReport& report, const MissingLimit& limit,
                          const Result<void>& required);

@@ -1,4 +1,4 @@
-// The options that programs which render frames, or prepare it, have in common.
+// The options that are common to programs that render frames or prepare their rendering.
 #pragma once
 
 #include <string>

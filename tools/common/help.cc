@@ -79,7 +79,7 @@ std::string NamesOf(const CLI::Option& option) {
   return names + " " + type_name.substr(0, type_name.find(':'));
 }
 
-// Returns the default as it is parsed, or nothing if there is none.
+// Returns the default of an option as the parser states it; "" if there is none.
 std::string DefaultOf(const CLI::Option& option) {
   if (option.get_type_size() == 0 || option.get_positional()) return "";
   const std::string value = option.get_default_str();

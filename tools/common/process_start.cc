@@ -37,7 +37,7 @@ void OnEarlySignal(int signal) {
 }
 
 void OccupyStandardFiles() {
-  // open() returns the lowest free descriptor, which is the closed one.
+  // open() returns the lowest free descriptor, which is the descriptor of the closed file.
   for (const int file : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(file, F_GETFD) < 0 && errno == EBADF && ::open("/dev/null", O_RDONLY) < 0) return;
 }

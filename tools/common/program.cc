@@ -33,8 +33,8 @@ CLI::Validator WholeNumber() {
         const auto [rest, error] = std::from_chars(word.data(), end, number);
         if (error != std::errc{} || rest != end)
           return fmt::format("expected a whole number from 0 to {}, found '{}'", UINT64_MAX, word);
-        word = fmt::format("{}", number);  // without leading zeros, with which CLI11 would read an
-                                           // octal number
+        // Removes leading zeros, with which CLI11 would read an octal number.
+        word = fmt::format("{}", number);
         return {};
       },
       "");

@@ -33,8 +33,8 @@ struct CommonOptions {
   bool json = false;
 };
 
-// The common options that a program offers, because it obeys them. Others are refused as unknown.
-// A text is passed to OptionGroup::Add(); nullptr: the option is not offered.
+// The common options that a program offers, because it obeys them. The other common options are
+// refused as unknown. A text is passed to OptionGroup::Add(); nullptr: the option is not offered.
 struct OfferedOptions {
   bool threads = false;
   const char* seed = nullptr;    // what the seed decides

@@ -1,5 +1,5 @@
-// The HTTP server for the page. Only it, page_connection, page_responses and page_streams use
-// libmicrohttpd.
+// The HTTP server for the page. Only page_daemon, page_connection, page_responses and page_streams
+// use libmicrohttpd.
 #pragma once
 
 #include <functional>

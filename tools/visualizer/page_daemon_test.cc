@@ -66,8 +66,8 @@ class Request {
   Request(const Request&) = delete;
   Request& operator=(const Request&) = delete;
 
-  // Returns what was received once it contains the words; without words, at the end of the
-  // connection.
+  // Waits until the received text contains `words` (if they are empty, until the connection ends),
+  // and returns that text.
   const std::string& Until(const std::string& words) {
     char bytes[4096];
     while (words.empty() || received_.find(words) == std::string::npos) {

@@ -17,7 +17,7 @@ inline constexpr size_t kMostBodyBytes = size_t{9} << 20;
 
 struct RequestHead {
   std::string method;  // GET
-  std::string path;    // as it was sent, up to the first question mark
+  std::string path;    // the path as it was sent, up to the first question mark
   std::vector<std::pair<std::string, std::string>> headers;
 };
 

@@ -49,7 +49,7 @@ TEST(PageRequest, AnotherHostIsRefused) {
   RequestHead head = Head();
   head.headers.clear();
   EXPECT_EQ(StatusOf(head), 403);
-  EXPECT_EQ(StatusWith("host", "evil.example:8080"), 403);  // in addition to the right one
+  EXPECT_EQ(StatusWith("host", "evil.example:8080"), 403);  // this is the second Host header
 }
 
 TEST(PageRequest, PathsWithoutTheTokenAreRefused) {

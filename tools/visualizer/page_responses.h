@@ -23,7 +23,7 @@ class ByteBudget {
   explicit ByteBudget(size_t most_bytes) : most_bytes_(most_bytes) {}
 
   // Returns false if these bytes and those of other holders would exceed the bound. A single holder
-  // may exceed it.
+  // may exceed the bound.
   bool Take(size_t bytes) {
     const size_t held_before = held_bytes_.fetch_add(bytes);
     if (held_before == 0 || held_before + bytes <= most_bytes_) return true;

@@ -40,10 +40,10 @@ struct PageArguments {
 
 // A path while it is edited: its text, checked by the parser of the programs.
 struct PathDraft {
-  std::string id;  // of the text: 16 hexadecimal digits
+  std::string id;  // IdOfText(text)
   std::string text;
   std::shared_ptr<const CameraPath> path;
-  std::string cameras_hash;       // in the form that packages store
+  std::string cameras_hash;       // hash of the cameras, in the form that packages store
   std::shared_ptr<FilmUse> film;  // created on demand
   uint64_t film_number = 0;       // number of this film in the order of their starts
 };
@@ -74,8 +74,8 @@ class PageScene {
   // Returns what a frame uses, as decided by its package if the draft has the cameras of that
   // package.
   FrameUse UseOf(const PathDraft& draft, FrameId frame);
-  // Starts to examine all frames of the draft in the background. The last few films continue, one
-  // for each page; older ones are stopped.
+  // Starts to examine all frames of the draft in the background. Only the three films that were
+  // started last continue; older films are stopped.
   std::shared_ptr<FilmUse> FilmOf(PathDraft& draft);
 
   // Returns the current content of PATH.yaml.

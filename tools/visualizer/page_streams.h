@@ -30,7 +30,7 @@ class PageStreams {
     PageStreams& streams;
     MHD_Connection* connection;
     uint64_t seen = 0;  // number of the last news
-    // Text to be sent. The first one is sent at once, so that the page knows that it is connected.
+    // Text to be sent. The first text is sent at once, so that the page knows that it is connected.
     std::string text = ": hello\n\n";
     bool is_woken = false;
   };

@@ -106,7 +106,7 @@ Result<std::string> PreviewRender::RenderFrame(const Wish& wish) {
       const std::unique_ptr<FilmRenderer> renderer,
       FilmRenderer::Open(std::move(film), OptionsOf(arguments), work, {wish.frame}, pool_));
   LF_RETURN_IF_ERROR(renderer->CheckAnyContributes());
-  Clock::time_point next_picture = Clock::now();  // at once, with the first LF images
+  Clock::time_point next_picture = Clock::now();  // the first picture is made at once
   for (bool is_going_on = true; is_going_on;) {
     LF_ASSIGN_OR_RETURN(is_going_on, renderer->Step());
     const Clock::time_point begin = Clock::now();

@@ -27,8 +27,8 @@ namespace lf {
 class PreviewRender {
  public:
   // Posts "preview" to the scene's board: {"frame": 7, "state": "rendering", "message": "",
-  // "changed": "3"}. States are rendering, finished, stopped, and failed with a message. Every
-  // picture has another value of "changed"; it is "" before the first.
+  // "changed": "3"}. States are rendering, finished, stopped, and failed with a message. "changed"
+  // differs for every picture, and is "" before the first picture.
   explicit PreviewRender(PageScene& scene);
   ~PreviewRender();  // stops the render
   PreviewRender(const PreviewRender&) = delete;

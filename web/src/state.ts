@@ -316,7 +316,7 @@ export class State {
       this.framesOfCamera = new Uint16Array(counts);
       this.emit("film");
     } catch {
-      // The curves stay empty. No message here, because the request of the frame's data shows the error.
+      // The curves stay empty. Shows no message, because the request of the frame's data shows the error.
     } finally {
       if (this.filmAsked === id) this.filmAsked = "";
       if (this.filmIsStale) void this.askFilm();

@@ -86,7 +86,7 @@ export function focusPoint(camera: FrameCamera, x: number, y: number, mostDepths
 }
 
 // Returns the corners of the aperture (if it is a disk, `diskPoints` points of its rim), counter-clockwise as seen from
-// behind the lens. At rotation 0, the first is at the top.
+// behind the lens. At rotation 0, the first corner is at the top.
 export function lensRim(camera: FrameCamera, diskPoints = 48): Vec3[] {
   const count = camera.blades >= 3 ? camera.blades : diskPoints;
   const rim: Vec3[] = [];

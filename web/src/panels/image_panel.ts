@@ -102,7 +102,7 @@ export class ImagePanel {
       const overlap = await getJson<OverlapFacts>(`path/${path.id}/overlap/${frame}/${selected.id}.json`);
       if (number === this.asked) this.drawShapes(overlap, selected.width, selected.height);
     } catch {
-      // No message here, because the request of the frame's data fails with the same error and shows it.
+      // Shows no message, because the request of the frame's data fails with the same error and shows that.
       if (number === this.asked) this.drawing.replaceChildren();
     }
   }

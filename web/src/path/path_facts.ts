@@ -1,4 +1,4 @@
-// Types of what a path file contains about quantities and constants, and the keys of these in the file.
+// Types of what a path file contains about quantities and constants, and functions that return their keys in the file.
 import type { ConstantSpec, ConstantValue, PathValue, QuantitySpec, Section, Shape, Unit } from "./path_quantities";
 
 export type Interpolation = "smooth" | "linear" | "step";
