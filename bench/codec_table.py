@@ -55,7 +55,7 @@ def mosaic_of(picture):
 
 
 class Content:
-    """A light field of mosaics, a path, and its frames from the originals."""
+    """A light field of mosaics, a path, and the frames rendered from the original mosaics."""
 
     def __init__(self, arguments, name, folder):
         build, data, reach = arguments.build.resolve(), arguments.data, arguments.views // 2

@@ -113,7 +113,7 @@ class Arena {
     const double count_limit = is_mosaic ? 1e9 : 0.002, mean_limit = is_mosaic ? 300 : 60;
     CheckSame("thesis", MakeThesisLoop(case_), count, ours, count_limit, mean_limit);
     CheckSame("thesis_native", MakeThesisLoopNative(case_), count, ours, count_limit, mean_limit);
-    // OpenCV interpolates and demosaics although nearest does not, so its counts differ.
+    // OpenCV interpolates and demosaics although nearest does not, so the counts of OpenCV differ.
     const bool same_rays = case_.spec.estimator == Estimator::kBilinear && !is_mosaic;
     CheckSame("opencv", MakeOpenCv(case_), count, ours, same_rays ? 0.002 : 1e9, 300);
   }

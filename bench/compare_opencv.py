@@ -58,7 +58,7 @@ def psnr_db(a, b):
 
 
 class Comparison:
-    """The programs, on one light field."""
+    """Times all programs on one light field."""
 
     def __init__(self, arguments, folder):
         self.arguments, self.folder = arguments, folder

@@ -22,7 +22,7 @@ from workloads import WORKLOADS, path_yaml, photograph
 
 
 def filled_after_a_tenth(packages):
-    """Returns the number of rays of each frame that has any.
+    """Returns the number of rays that each frame has after a tenth of the LF images. Frames without rays are left out.
 
     packages  packages with one frame each, so that the needs of a package are those of its frame
     """

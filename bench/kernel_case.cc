@@ -15,7 +15,8 @@ namespace {
 
 constexpr double kFocalLength_px = 2000;  // for LF images of 2048 x 2048 pixels
 constexpr double kFocusDistance_w = 1;
-// LF cameras are this far in front of or behind the lens, so that its rim cuts every image.
+// LF cameras are this far in front of or behind the lens, so that the rim of the lens cuts every
+// image.
 constexpr double kDepthOffset_w = 0.03;
 constexpr double kLateralOffset_w = 0.004;
 constexpr double kWideLens_w = 10;
@@ -186,7 +187,7 @@ std::vector<CaseSpec> AllCases() {
   add("distortion_fisheye").distortion = {kFisheye, {-0.02, 0.004, -0.002, 3e-4}};
   CaseSpec& separable = add("separable");
   separable.parallel = true;
-  separable.accepted_share = 1;  // in the lens plane, each LF image passes completely
+  separable.accepted_share = 1;  // LF cameras in the lens plane: the lens lets all rays pass
   add("turned_3_deg").turn_deg = 3;
   add("rolled_90_deg").roll_deg = 90;
   add("accepted_10").accepted_share = 0.1;

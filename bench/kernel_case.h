@@ -23,18 +23,18 @@ enum class Estimator { kNearest, kBilinear };
 struct CaseSpec {
   std::string name;
   Estimator estimator = Estimator::kNearest;
-  PixelFilter filter = PixelFilter::kBilinear;  // for Estimator::kBilinear
+  PixelFilter filter = PixelFilter::kBilinear;  // used by Estimator::kBilinear
   BayerPattern bayer = BayerPattern::kRggb;
   int image_size_px = 2048;  // LF images are square
   int plate_width = 1920;
   int plate_height = 1080;
   double magnification = 1;  // elements per LF pixel, in the middle of the frame
-  // Share of the rays landing on the plate that pass the lens; its rim cuts every image. 1: the
-  // lens is so wide that all rays pass.
+  // Share of the rays landing on the plate that pass the lens. The rim of the lens cuts every
+  // image. 1: the lens is so wide that all rays pass.
   double accepted_share = 0.95;
   int blades = 0;
   FocusTilt tilt;
-  Distortion distortion;  // of the LF cameras
+  Distortion distortion;  // lens distortion of all LF cameras
   double turn_deg = 1;    // LF cameras are rotated about each axis by up to this
   double roll_deg = 0;    // all LF cameras are also rotated about the optical axis by this
   bool parallel = false;  // no LF camera is rotated, and all are in the lens plane

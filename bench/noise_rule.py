@@ -80,7 +80,7 @@ def read_plate(path):
 
 
 class Measured:
-    """The measured elements of a frame: radiance, its standard error, LF images; [rows][columns][channel]."""
+    """The measured elements of a frame: radiance, its standard error, number of LF images; [rows][columns][channel]."""
 
     def __init__(self, path):
         entries, words = read_plate(path)

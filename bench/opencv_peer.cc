@@ -22,7 +22,7 @@ namespace {
 // Number of edges of the polygon that masks a disk.
 constexpr int kDiskEdges = 128;
 
-using Polygon = std::vector<Vec2>;  // of ideal positions or of elements
+using Polygon = std::vector<Vec2>;  // corners are ideal positions or elements
 
 // Returns the part of the polygon with form (x, y, 1) <= 0. For a concave polygon the result may
 // contain edges that coincide, but it is filled correctly.

@@ -57,7 +57,7 @@ def measure_packages(build, field, folder, size, count, balance, way, runs):
     for _ in range(runs):
         for times, file in zip(seconds, files):
             times.append(render(build, [file], parts, *WAYS[way]))
-    if balance == "rays":  # the other balance is compared with the same whole film
+    if balance == "rays":  # packages by frames are compared with the same whole film
         render(build, [field, path], whole, *WAYS[way])
     if digest(folder / f"whole-rays-{way}") != digest(parts):
         raise SystemExit(f"packages give other frames than the whole film ({balance}, {way})")

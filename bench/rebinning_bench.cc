@@ -16,8 +16,8 @@
 namespace lf {
 namespace {
 
-// Rays in the order of LF images: one image after the other, its pixels row by row, of which one in
-// six is kept.
+// Returns rays in the order in which LF images yield them: one image after the other, and row by
+// row in each image. One pixel in six is kept.
 std::vector<BinnedRay> RaysOfImages(size_t count) {
   constexpr int kWidth = 1024, kHeight = 768;
   Slab slab;

@@ -35,8 +35,8 @@ MIB = 1 << 20
 
 
 def film(frames, size):
-    """Returns a PATH.yaml of lines from edge to edge of the grid. The distance of lines equals that of frames on a
-    line, and the lens reaches the corners of the squares between them."""
+    """Returns a PATH.yaml of lines from edge to edge of the grid. The distance between two lines equals the distance
+    between two frames of a line. The lens reaches the corners of the squares between lines."""
     pitch_m = SIDE_M / math.sqrt(frames)
     lines = max(1, math.floor(SIDE_M / pitch_m))
     reach, gap = SIDE_M / 2, SIDE_M / lines

@@ -30,7 +30,7 @@ import types
 import record as results
 
 PER_MM2 = 66    # LF cameras: 827 within a disk of 4 mm (stack)
-DISTANCE_M = 1  # from the grid to the middle of the scene
+DISTANCE_M = 1  # distance from the grid to the middle of the scene
 FPS = 30
 
 # Ways of rendering. Each states every choice; the defaults are measured beside them.

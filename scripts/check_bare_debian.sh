@@ -15,7 +15,7 @@ if ((EUID != 0)) || ! command -v debootstrap >/dev/null || (($# == 0)); then
   echo "error: needs a FOLDER, root, and the package debootstrap" >&2
   exit 2
 fi
-# Mounts made below vanish with this process's own view of the file system.
+# The mounts below are made in a mount namespace of this process, and vanish with it.
 if [[ ${LF_UNSHARED:-} != yes ]]; then
   LF_UNSHARED=yes exec unshare --mount --propagation private "$0" "$@"
 fi

@@ -38,7 +38,7 @@ class Capture:
         right, up, back = poses[0, :3, :3].T
         middle = poses[:, :3, 3].mean(axis=0)
         offsets = poses[:, :3, 3] - middle
-        self.places = np.stack([offsets @ right, offsets @ up], axis=1)  # in the lens plane
+        self.places = np.stack([offsets @ right, offsets @ up], axis=1)  # positions of the LF cameras in the lens plane
         self.radius = 0.98 * self.places[:, 0].max()
         fov = 2 * np.degrees(np.arctan(0.5 * SIZE[0] / self.field["fl_x"]))
         numbers = lambda v: "[" + ", ".join(repr(float(x)) for x in v) + "]"

@@ -118,7 +118,7 @@ def captures(case, frames):
         dice = random.Random(SEED)
         return [f for f, p in zip(frames, places) if dice.random() < share(p @ right)]
 
-    # The frames are in the order of their names: by the grid, or along the row.
+    # The frames are in the order of their names: row by row for a grid, and along a single row.
     yield "full", frames
     yield "every 2nd", frames[::2]
     yield "every 4th", frames[::4]

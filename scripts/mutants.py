@@ -183,7 +183,7 @@ def check_baseline(copy, mutants, options):
     if code != 0:
         sys.exit(f"error: the copy does not build without a mutant either:\n{output[-3000:]}")
     copy.keep()
-    # The regular expressions have no groups, because those of CMake may have at most nine.
+    # The regular expressions are joined without groups, because CMake allows at most nine groups.
     failing, ran = copy.failing("|".join(sorted({mutant.tests for mutant in mutants})), options)
     copy.restore()
     if ran == 0:

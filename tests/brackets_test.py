@@ -8,7 +8,7 @@ import pathlib
 import sys
 import unittest
 
-os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # before the import
+os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # must be set before cv2 is imported
 import cv2
 import numpy as np
 from PIL import Image
@@ -18,7 +18,7 @@ from program_test_case import ProgramTestCase
 IMPORTER = RENDERER = SYNTH = EXAMPLE = PREPROCESSOR = COMPRESSOR = None
 STOPS = (2, 0, -2)
 POSES = 25
-READ_NOISE, SHOT_NOISE = 0.002, 0.0004  # of stored pictures: standard deviation; variance at radiance 1
+READ_NOISE, SHOT_NOISE = 0.002, 0.0004  # noise of stored pictures: standard deviation; variance at radiance 1
 MOST_ERROR = {"highlights": (12, 8), "shadows": (6, 2)}  # largest errors in %: root mean square, mean
 MOST = 3.8  # radiance; the dark exposure clips from 4 on
 EXIF_IFD, TIME, F_NUMBER, ISO = 0x8769, 0x829A, 0x829D, 0x8827
@@ -78,7 +78,8 @@ class Capture:
 
 
 def relative_error(frame, true, where):
-    """Returns the root mean square and the mean of the difference of these elements, in % of their true mean."""
+    """Returns the root mean square and the mean of the difference between a frame and the true frame, over the elements
+    `where`, in % of their true mean."""
     difference, light = (frame - true)[where], true[where].mean()
     return 100 * np.sqrt((difference ** 2).mean()) / light, 100 * difference.mean() / light
 

@@ -3,7 +3,7 @@
 tests/program_options_test.py compares the lists with the programs. scripts/doc_tables.py makes the table of
 doc/design.md of them.
 """
-# How a page shows the option, and its effect.
+# How a page shows each option, and the effect of the option.
 COMMON = {
     "--threads": ("--threads N", "number of threads; 0: as many as the machine has. Results have the same bits for any "
                   "number"),

@@ -1,7 +1,7 @@
 """Computes the content of a disk after a power failure, from the log of tests/faults/written_log.c.
 
-Two disks are modelled. A patient one does not store names before their folder is flushed. A hasty one stores them at
-once, in order. Neither stores any byte of a file that was not flushed.
+Two disks are modelled. The patient disk does not store names before their folder is flushed. The hasty disk stores
+names at once, in order. Neither disk stores any byte of a file that was not flushed.
 """
 import pathlib
 

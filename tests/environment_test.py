@@ -232,7 +232,7 @@ class Environments:
             self.try_call("locale", call, Lack("decimal comma", environment=environment))
 
     def disk(self):
-        """Runs in its own mount namespace."""
+        """Tests limits of the disk, in its own mount namespace."""
         if "LF_OWN_MOUNTS" not in os.environ:
             self.disk_elsewhere()
             return

@@ -47,7 +47,7 @@ QUICK_WAYS = {"open": ["24"], "read": ["5", "short"], "write": ["28+", "short", 
 FEWER_WAYS = {"open": ["24"], "write": ["28+", "kill"], "fsync": ["kill"], "rename": ["28"], "unlink": ["5"],
               "thread": ["11+"]}
 LIKE_OTHERS = ("shards", "rebin", "hybrid")
-FEWER_POINTS = 2  # for lfsubmit, per kind of call
+FEWER_POINTS = 2  # points for lfsubmit, for each kind of call
 GROUPS_OF_MALLOC = 6  # sizes form no pattern: this many points for all of them
 HANGS_S = 120
 
@@ -135,7 +135,7 @@ class Hunt:
             return faults_of_success(final, [] if kind == "unlink" else temporary, right)
         if code == 6 and way == str(EIO):  # a disk that cannot deliver an LF image: it is left out and reported
             return []
-        # 5: lfsubmit did not see that a package is done; it reports this, and that --resume resumes.
+        # Exit code 5: lfsubmit did not see that a package is done, and reports this and that --resume resumes.
         codes = (3, 4, 5, 6) if kind == "stat" and call.victim == "lfsubmit" else (3, 4, 6)
         faults = [] if way == "kill" and code == -signal.SIGKILL else faults_of_status(code, errors, codes)
         if way == str(EIO) and call.victim != call.command[0].name and kind in ("open", "read"):
@@ -152,7 +152,7 @@ class Hunt:
         return final, [name for name in temporary if not name.endswith("lock")]
 
     def hunt(self, call):
-        """Returns the number of tries, and the places of those that failed."""
+        """Returns the number of tries, and the failed system call of each try that found a fault."""
         old = self.make_old(call)
         self.fresh(call)
         self.trace.unlink(missing_ok=True)

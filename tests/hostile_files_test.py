@@ -218,7 +218,8 @@ class HostileFilesTest(unittest.TestCase):
         return folder
 
     def whole_field_of(self, file_name, make):
-        """Returns a light field without sizes and with this one image, which must therefore be read for its size."""
+        """Returns a light field that states no image size and has only this image, so that programs must read the image
+        to find its size."""
         folder = self.new_folder() / "field"
         folder.mkdir()
         make(folder / file_name)

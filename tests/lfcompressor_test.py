@@ -249,7 +249,7 @@ class CompressorTest(StoreTest):
                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             self.wait_for_work(process)
             time.sleep(chance.uniform(0.1, 0.5))
-            # On a busy machine nothing is written in so short a time, so some kills wait for it.
+            # On a busy machine nothing is written in so short a time, so some kills wait until an LF image is written.
             while number % 7 == 3 and self.written_count() <= before and process.poll() is None:
                 time.sleep(0.05)
             process.kill()

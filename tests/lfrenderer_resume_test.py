@@ -20,7 +20,7 @@ import tempfile
 import time
 import unittest
 
-os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # before the import
+os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # must be set before cv2 is imported
 import cv2
 import numpy as np
 from PIL import Image
@@ -430,7 +430,7 @@ class ResumeTest(unittest.TestCase):
                                  *self.common, *options], capture_output=True, text=True)
         self.assertEqual(result.returncode, 2)
         self.assertIn("light_field.calibration", result.stderr)
-        # Finished frames are protected as well. The report names all options; the library distinguishes each of them.
+        # Finished frames are also protected: the report names all options, and a changed option is refused.
         choices = ["--frames", "1-2", "--resume", "--seed", "3", "--max-images", "9",
                    "--stop-when", "samples>=3", "--estimator", "bilinear"]
         self.finish("complete", *choices)

@@ -193,7 +193,7 @@ class RendererTest(unittest.TestCase):
         self.assertLess(abs(float(frame.mean())), 1e-4)
         self.assertLess(float(frame.min()), 0)
 
-    # Faults that it survives
+    # Faults that lfrenderer survives
 
     def test_a_broken_image_gives_the_bits_of_its_absence(self):
         field, path = write_field(self.folder / "field"), write_path(self.folder)

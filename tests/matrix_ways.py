@@ -10,7 +10,7 @@ import subprocess
 import time
 from typing import NamedTuple
 
-os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # before the import
+os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # must be set before cv2 is imported
 import cv2
 import numpy as np
 
@@ -39,7 +39,7 @@ VALUES = {"field": FIELDS, "input": INPUTS, "cut": CUTS, "mode": tuple(MODES), "
 
 
 class Step(NamedTuple):
-    words: list   # of a program
+    words: list   # command line of a program
     resume: list  # the call that resumes after an interruption
 
 

@@ -17,7 +17,7 @@ import small_field
 from program_test_case import ProgramTestCase
 
 RENDERER = PREPROCESSOR = COMPRESSOR = MERGE = IMPORT = None
-BROKEN = (7, 12, 18)  # of 25 LF images
+BROKEN = (7, 12, 18)  # indices of broken LF images, among 25
 
 
 class MissingImagesTest(ProgramTestCase):
@@ -222,12 +222,12 @@ class MissingImagesTest(ProgramTestCase):
             self.assertEqual(frame.read_bytes(), (self.folder / "out" / frame.name).read_bytes())
         for limit, code in ((3, 0), (2, 6), ("12%", 0), ("11%", 6)):
             self.succeeds(*merge, "--resume", "--allow-missing", limit, code=code)
-        # The plates that a whole render kept also count them.
+        # The plates that a whole render kept also count the missing LF images.
         kept = sorted((self.folder / "whole").glob("*.plate"))
         self.assertIn("3 of 25", self.last_line(6, MERGE, *kept, "-o", self.folder / "again"))
 
     def test_plates_have_the_same_bytes_for_any_memory(self):
-        """This includes the plates' count of missing LF images."""
+        """The bytes include the plates' count of missing LF images."""
         small_field.write_path(self.folder, frames=12)
         few = self.call(*self.render("few", "--threads", 2, "--memory", "2M"))
         least = re.search(r"at least (\d+) MiB", few.stderr).group(1)

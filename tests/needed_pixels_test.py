@@ -138,7 +138,7 @@ class NeededPixelsTest(ProgramTestCase):
                    RENDERER, *packages, "--lightfield", store, "--mode", "rebin", "-o",
                    self.folder / "none")
         self.assertFalse(list((self.folder / "none").glob("frame_*")))
-        # Packages that could not be rendered from the store are not made from it either.
+        # lfpreprocessor does not make packages from the store that could not be rendered from it.
         self.fails(3, ["frame 1 needs pixels of", "not in this packed store"],
                    PREPROCESSOR, store, path, "--mode", "rebin", "-o", self.folder / "made")
         self.assertFalse(list((self.folder / "made").glob("*.lfp")))
@@ -182,8 +182,7 @@ class OrderTest(ProgramTestCase):
                 self.succeeds(RENDERER, *arguments, "-o", out, "-q", "--no-contact-sheet")
                 digests[order, name] = {frame.name: hashlib.sha256(frame.read_bytes()).hexdigest()
                                         for frame in sorted(out.glob("frame_*.exr"))}
-                # Lens weights reach beyond small lenses, and LF images that only they use are counted as well as
-                # others.
+                # Lens weights reach beyond small lenses. LF images that have only such a weight are also counted.
                 for report in out.glob("report*.json"):
                     for frame in json.loads(report.read_text())["frames"]:
                         self.assertGreaterEqual(frame["lf_images"], 3, (order, name))

@@ -15,7 +15,7 @@ import sys
 import time
 import unittest
 
-os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # before the import
+os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # must be set before cv2 is imported
 import cv2
 import numpy as np
 
@@ -112,7 +112,7 @@ class NoiseRuleTest(ProgramTestCase):
             process = subprocess.Popen(
                 self.arguments(tag + "-cut", *rule, "--resume", "--dump-every", "0.001s", "--threads",
                                "1"), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-            # Waits from the checkpoint of one batch to that of the next.
+            # Waits until the checkpoint of the next batch.
             partial, end = self.folder / (tag + "-cut") / "partial", time.monotonic() + 20
             before = self.checkpoints(partial)
             while process.poll() is None and time.monotonic() < end:
@@ -214,7 +214,7 @@ class NoiseRuleTest(ProgramTestCase):
             self.fails(6, ["noise<=1e-05", "4 of 4 frames", f"frame 2 ({frame['reached']:.3g})"],
                        *self.arguments(way + "-6", *WAYS[way], "--require", "noise<=0.00001"))
             self.assertEqual(len(list((self.folder / (way + "-6")).glob("*.exr"))), 4)
-        # The frames stopped by one rule are below the other one.
+        # Frames that --stop-when stops are below the quality that --require demands.
         self.fails(6, ["noise<=0.01"], *self.arguments(
             "both", *WAYS["auto"], "--stop-when", "noise<=0.045", "--require", "noise<=0.01"))
 

@@ -7,7 +7,7 @@ import os
 import sys
 import unittest
 
-os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # before the import
+os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # must be set before cv2 is imported
 import cv2
 import numpy as np
 

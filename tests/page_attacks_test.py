@@ -25,7 +25,7 @@ import small_field
 from program_test_case import ProgramTestCase
 
 VISUALIZER = None
-MOST_MIB = 32    # the server's peak memory may grow by this in an attack
+MOST_MIB = 32    # the server's peak memory may grow by this much in an attack
 GIVE_UP_S = 60   # a server that has not answered after this time never will
 MIB = 1 << 20
 TABLE = []

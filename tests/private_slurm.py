@@ -67,7 +67,7 @@ def find(program):
 def missing():
     """Returns the programs and mounts that are needed and missing on this machine."""
     lacking = [program for program in PROGRAMS if find(program) is None]
-    # slurmd needs it even if no resource is limited by cgroups.
+    # slurmd needs this mount even if no resource is limited by cgroups.
     if not os.path.ismount("/sys/fs/cgroup"):
         lacking.append("cgroups mounted at /sys/fs/cgroup")
     return lacking

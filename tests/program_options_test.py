@@ -50,7 +50,7 @@ def options_in(text):
 
 
 def hint(count):
-    """Returns the last line of --help, if --help-all shows so many options more."""
+    """Returns the last line that --help must have if --help-all shows `count` more options."""
     if count == 0:
         return "--help-all shows the details."
     return f"--help-all shows {count} more option{'s' if count > 1 else ''} and the details."

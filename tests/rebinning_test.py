@@ -92,7 +92,7 @@ class RebinningTest(ProgramTestCase):
                 process.communicate()
                 if process.returncode == 0:
                     break
-                # A program that cannot catch signals yet is ended by them.
+                # A signal ends a program that cannot catch signals yet.
                 self.assertIn(process.returncode, (-signal.SIGKILL, -signal.SIGTERM, 5))
             self.assertGreater(kills, 2)
             self.assertEqual(self.render("cut-" + mode, *options, "--resume"), expected)

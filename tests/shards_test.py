@@ -61,7 +61,7 @@ class ShardsTest(ProgramTestCase):
         self.assertEqual(len(self.merge("out", plates)), 3)
         self.assertFalse(lock.parent.exists())
 
-    # Also tested with one shard more than LF images, so that a shard is empty.
+    # The cuts include one with more shards than LF images, so that a shard is empty.
     def test_any_cut_gives_the_same_bits(self):
         for weights in ("auto", "none"):
             options = ["--lens-weights", weights]

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Tests signals at any moment of a program, from its start on, and starts in a poor environment: the program ends
-correctly, and the next call makes the right files and removes those of the killed one.
+correctly, and the next call makes the right files and removes the files of the killed program.
 
 usage: signals_test.py FOLDER_OF_PROGRAMS
 """

@@ -111,7 +111,7 @@ class SlurmTest(ClusterTestCase):
         self.succeeds(cluster_test_case.SUBMIT, "--resume", self.film, "--wait")
         self.assertEqual(digests(self.film), self.expected)
 
-    # A user's scancel ends the job as well, and is distinguished from a time limit.
+    # A user's scancel also ends tasks, but must not be mistaken for a time limit.
     def test_what_is_removed_from_the_queue_stays_away(self):
         process = self.start(*self.OPTIONS, "--wait", "--lfrenderer", self.held_renderer([0]),
                              *self.ARGUMENTS)

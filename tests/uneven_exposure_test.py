@@ -10,7 +10,7 @@ import pathlib
 import sys
 import unittest
 
-os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # before the import
+os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # must be set before cv2 is imported
 import cv2
 import numpy as np
 
@@ -18,7 +18,7 @@ from program_test_case import ProgramTestCase
 
 IMPORTER = RENDERER = SYNTH = EXAMPLE = PREPROCESSOR = COMPRESSOR = DATA = None
 FALLOFF = (-0.3, 0.05, -0.15)  # 60 % of the light remain in the corners
-DARKER = 0.75  # so that gains of +20 % clip only highlights
+DARKER = 0.75  # factor of all exposures, so that gains of +20 % clip only highlights
 
 
 def light_of(stored):
@@ -89,7 +89,7 @@ class UnevenExposureTest(ProgramTestCase):
         return self.folder / "matched", report, exposures
 
     def gain_percent(self, matched, exposures):
-        """Returns the largest error of a gain, up to one scale per channel."""
+        """Returns the largest error of a gain in %, up to one scale per channel."""
         frames = json.loads((matched / "transforms.json").read_text())["frames"]
         left = np.array([np.ones(3) * frame["lf_gain"] for frame in frames]) * exposures
         left /= np.exp(np.log(left).mean(0))
@@ -141,8 +141,8 @@ class UnevenExposureTest(ProgramTestCase):
         (field / "transforms.json").write_text(json.dumps(
             {"fl_x": 200, "w": 240, "h": 160, "frames": frames}))
         matched, after, exposures = self.expect_even(field, 0.7, 0.9, 0.03)
-        # Most of the remaining error belongs to the shop itself: matching changes even its evenly exposed photographs.
-        # Relative to them, gains and frames are correct to 0.5 %.
+        # Most of the remaining error belongs to the shop itself: matching changes even the evenly exposed photographs
+        # of the shop. Relative to these matched photographs, gains and frames are correct to 0.5 %.
         even = self.folder / "even shop matched"
         self.succeeds(IMPORTER, field, "-o", even, "--match-exposure", "--vignetting")
         frames = json.loads((even / "transforms.json").read_text())["frames"]

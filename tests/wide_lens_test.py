@@ -9,7 +9,7 @@ import re
 import sys
 import unittest
 
-os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # before the import
+os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # must be set before cv2 is imported
 import cv2
 import numpy as np
 
@@ -34,7 +34,8 @@ def png16(file, light, opacity):
 
 
 def covered_lens(diameter):
-    """Returns points of the part of a lens that the capture covers; its centre is beside that of the capture."""
+    """Returns points of the part of a lens that the capture covers; the centre of the lens is beside the centre of the
+    capture."""
     grid = np.linspace(-COVERED, COVERED, 29)
     grid = (grid[1:] + grid[:-1]) / 2
     return [(x - 0.001, y - 0.002) for x in grid for y in grid

@@ -66,8 +66,8 @@ class WritersCase(ProgramTestCase):
 
     @staticmethod
     def digest(path):
-        """Returns the sha256 of a file's content, which does not depend on its place or the order of writing. The
-        number that each store has is left out."""
+        """Returns the sha256 of a file's content, which does not depend on the file's folder or the order of writing.
+        The folder and the random number of a store are left out."""
         content = path.read_bytes()
         if path.suffix in (".lfp", ".lfs"):
             with contextlib.closing(sqlite3.connect(f"file:{path}?immutable=1", uri=True)) as database:
@@ -91,7 +91,8 @@ class WritersCase(ProgramTestCase):
                 for path in sorted(out.glob(kinds[program])) if path.is_file()}
 
     def expect(self, program, way):
-        """Returns what the call makes when it runs alone; made once."""
+        """Returns the digests of the files that the call makes when it runs alone. The call runs only once for all
+        tests."""
         if (program, way) not in self.expected:
             out = self.world / f"{program}_{way}"
             out.mkdir()
