@@ -22,7 +22,7 @@ from lens_weights import linear_exr
 
 COUNT, SIZE, FOCUS, SEED = 441, (360, 240), 0.6, 5
 TRUTH_SAMPLES = 1000
-GAP = 6  # between pictures, px
+GAP = 6  # width of the gap between pictures, px
 
 
 class Capture:

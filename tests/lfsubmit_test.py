@@ -190,7 +190,7 @@ class LocalJobTest(ClusterTestCase):
     def test_a_folder_of_a_job_that_lost_files_is_repaired(self):
         self.submit("--frames", "1-4")
         submit = cluster_test_case.SUBMIT
-        self.succeeds(submit, "--resume", self.film)  # is done
+        self.succeeds(submit, "--resume", self.film)  # the job is done already
         shutil.rmtree(self.film / "cluster" / "packages")
         self.assertNotEqual(self.status()["state"], "done")
         self.succeeds(submit, "--resume", self.film, "--video", self.folder / "film.mp4")

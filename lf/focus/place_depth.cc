@@ -15,7 +15,7 @@ namespace {
 constexpr int kColumns = 16, kRows = 11;   // cells of the image; each has one place
 constexpr double kLeastTexture = 0.006;    // least step between pixels, in the weakest direction
 constexpr double kLeastDeviation = 0.002;  // lower bound that keeps noise from correlating
-constexpr double kLeastAgreement = 0.65;   // least correlation
+constexpr double kLeastAgreement = 0.65;   // least score of a depth that is found
 constexpr double kAgreeing = 0.6;  // share of views that must agree; others may not see the place
 constexpr size_t kLeastViews = 2;
 constexpr double kStep_px = 0.5;  // change of the largest disparity from one depth to the next

@@ -20,7 +20,7 @@ struct StanfordName {
   std::optional<Position> position;
   struct Lens {
     double focal_mm = 0;
-    double sensor_width_mm = 0;  // both above 0
+    double sensor_width_mm = 0;  // both lengths are above 0
   };
   std::optional<Lens> lens;  // set only if `position` is set
 };
