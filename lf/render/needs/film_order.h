@@ -1,5 +1,5 @@
-// Computes the order in which the LF images of a film are taken (selection/image_order.h) from the
-// needs of all its frames.
+// Computes the order of the LF images (selection/image_order.h) from the needs of all frames of a
+// film.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +15,10 @@
 namespace lf {
 
 // Returns the rank of every LF image in the order. The order is computed for all frames of the
-// film, even if only some are rendered, so that a rank means the same for any choice of frames. LF
-// images that no frame sees, or that have no lens weight in any frame, come last.
-//   needs  options of the renders that follow; max_image_count is ignored
+// film, even if only some are rendered, so that a rank means the same for any choice of frames.
+// Unless `order` is kShuffle, LF images that no frame sees, or that have no lens weight in any
+// frame, come last.
+//   needs  options with which the film will be rendered; max_image_count is ignored
 // kInterrupted: *needs.select.interrupted is true.
 Result<ImagePlaces> PlacesOfFilm(ImageOrder order, uint64_t seed, const LightField& light_field,
                                  const CameraPath& path, const NeedsOptions& needs,

@@ -120,7 +120,7 @@ class NeedsFinder {
     }
     std::vector<LfImageId> all, read;
     for (const SelectedImage& image : near) all.push_back(image.id);
-    // If LF cameras are far apart, their hats reach farther than reach_w.
+    // If LF cameras are far apart, their hat weights reach farther than reach_w.
     if (lens_.camera().aperture.radius_w > frame_.aperture.radius_w + reach_w)
       for (const SelectedImage& image :
            SelectImages(index_, std::span(&lens_.camera(), 1), widest, pool_))

@@ -1,6 +1,6 @@
 // Computes which LF images, pixels and LF cameras of a light field one frame needs (thesis 4.2.1).
 //
-// All parts of the program use this result: packages contain these LF cameras, packed stores keep
+// All parts of the program use FrameNeeds: packages contain these LF cameras, packed stores keep
 // these pixels, orders and limits count these LF images, forecasts count these rays, and a render
 // reads exactly these pixels (tests/needed_pixels_test.py).
 #pragma once
@@ -32,7 +32,8 @@ struct NeedsOptions {
   LensWeights lens_weights = LensWeights::kAuto;
   std::optional<size_t> max_image_count;  // must be unset unless the mode is kCollect
   RenderMode mode = RenderMode::kCollect;
-  RebinPassOptions rebin;  // its query, previews and margins; unused if the mode is kCollect
+  // Only its members query, previews and rebin are used; none if the mode is kCollect.
+  RebinPassOptions rebin;
 
   // Returns true if the picture of a frame depends on LF cameras whose LF images it does not read.
   bool HasNeighbours() const { return lens_weights != LensWeights::kNone || Rebins(mode); }
@@ -42,14 +43,15 @@ struct FrameNeeds {
   struct Image {
     LfImageId id;
     PixelRect rect;  // bounds of all pixels that are read
-    // pixels that are tested as rays of the frame, plus pixels that are rebinned
+    // number of pixels that are tested as rays of the frame, plus number of pixels that are
+    // rebinned
     uint64_t ray_count = 0;
   };
   std::vector<Image> images;  // the LF images that are read, by ascending ranks
-  // Other LF cameras that are needed to compute lens weights and gaps, by ascending ids. With
-  // `images` and these LF cameras alone, lens weights, limits in numbers of LF images, and rebinned
-  // rays (for the default options) are the same as in the whole light field. Empty if
-  // HasNeighbours() is false.
+  // Other LF cameras that are needed to compute lens weights and gaps (render/hybrid/lens_gaps.h),
+  // by ascending ids. The LF cameras of `images` and `neighbours` alone give the same lens weights,
+  // the same LF images within max_image_count, and the same rebinned rays (for the default options)
+  // as the whole light field. Empty if HasNeighbours() is false.
   std::vector<LfImageId> neighbours;
   // Density of the LF cameras around the lens; set if HasNeighbours() is true, or if NeedsOf() was
   // given it.

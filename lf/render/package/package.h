@@ -1,8 +1,8 @@
 // A package contains all that one machine needs to render a section of a film (thesis 4.2): frames,
-// the LF cameras that they need out of a million, and the order in which LF images are taken. It is
-// itself a small light field with a camera path, is rendered like a whole light field
-// (render/pipeline/render.h), and gives the same bits. If no LF image contributes to its frames,
-// the package has no LF images, and the frames are black.
+// those LF cameras of the light field that the frames need, and the order in which LF images are
+// taken. A package is itself a small light field with a camera path. It is rendered like a whole
+// light field (render/pipeline/render.h), and its frames have the same bits. If no LF image
+// contributes to its frames, the package has no LF images, and the frames are black.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ namespace lf {
 struct PackageFrame {
   FrameId id;
   uint64_t image_count = 0;  // approximate number of LF images with a ray
-  uint64_t ray_count = 0;    // number of pixels of their rectangles
+  uint64_t ray_count = 0;    // number of pixels in the rectangles of these LF images
 };
 
 // Density of LF cameras around the lens of a frame (render/hybrid/frame_sampling.h). It is measured
@@ -39,9 +39,11 @@ struct FrameSurroundings {
 struct PackageChoices {
   ImageOrder order = ImageOrder::kShuffle;
   uint64_t seed = 0;
-  std::optional<size_t> max_image_count;  // limit for each frame; the first LF images in the order
-                                          // are kept
-  std::optional<double> max_angle_rad;    // largest angle between the axes of LF camera and frame
+  // Largest number of LF images for each frame: the first ones in the order are kept. Unset: no
+  // limit.
+  std::optional<size_t> max_image_count;
+  // Largest angle between the axes of LF camera and frame. Unset: no limit.
+  std::optional<double> max_angle_rad;
   // True if the package has the LF cameras beside the lens. Lens weights are measured against them,
   // and rebinned rays are made from their LF images.
   bool has_neighbours = true;
@@ -53,32 +55,34 @@ struct PackageChoices {
 
 // The part of an LF image that the frames of a package need.
 struct PackageImage {
-  uint32_t id = 0;           // in the whole light field, from 0
-  uint64_t file_bytes = 0;   // size of the image file when the package was made; 0: it did not
-                             // exist, or this is a neighbour
+  // Number of the LF image in the whole light field, from 0.
+  uint32_t id = 0;
+  // Size of the image file when the package was made. 0: the file did not exist, or the LF image is
+  // a neighbour.
+  uint64_t file_bytes = 0;
   PixelRect rect;            // bounds of the pixels that are read
-  uint32_t frame_count = 0;  // number of frames that need it; 0: a neighbour
-  uint64_t ray_count = 0;    // number of pixels that are tested as rays, in all of these frames
+  uint32_t frame_count = 0;  // number of frames that need the LF image; 0: a neighbour
+  uint64_t ray_count = 0;    // number of pixels that are tested as rays, in all frames together
 };
 
 struct Package {
   std::string name;   // name of the file without extension; empty for a package in memory
-  size_t number = 1;  // number of this package among the `count` of the film
+  size_t number = 1;  // number of this package among the `count` of the film, from 1
   size_t count = 1;
   LightField light_field;
   ImagePlaces places;                // ranks in the order of the whole light field
-  CameraPath path;                   // of the whole film
-  std::vector<PackageFrame> frames;  // ascending
-  LightFieldIdentity whole;          // the light field that this is a part of
+  CameraPath path;                   // camera path of the whole film
+  std::vector<PackageFrame> frames;  // the frames to render, by ascending ids
+  LightFieldIdentity whole;          // identity of the light field from which the package is made
   PackageChoices choices;
-  std::vector<PackageImage> images;  // in the order of light_field.cameras; empty for a package in
-                                     // memory
-  // One for each frame of the film, [frame - 1]. Empty: not measured yet, which needs the whole
+  // In the order of light_field.cameras. Empty for a package in memory.
+  std::vector<PackageImage> images;
+  // One for each frame of the film, [frame - 1]. Empty: not measured; measuring needs the whole
   // light field.
   std::vector<FrameSurroundings> surroundings;
 
   std::vector<FrameId> FrameIds() const;
-  // Returns camera_distance_w around a frame of the film; none if it is not measured yet.
+  // Returns camera_distance_w around a frame of the film; nullopt if it was not measured.
   std::optional<double> CameraDistance(FrameId frame) const;
 };
 

@@ -28,14 +28,15 @@ Result<void> WritePackageAs(const std::filesystem::path& as, const std::filesyst
                             const Package& package, const PackageNotes& notes);
 
 struct ReadPackageOptions {
-  // False in tests that damage the file on purpose. Otherwise the checksum covers every byte.
+  // True: checks that the file's checksum footer matches its bytes. False is for tests that damage
+  // the file on purpose, to reach the code behind this check.
   bool check_seal = true;
 };
 
-// Reads a package. Its name is the file's name without extension. light_field.folder is the folder
-// where the LF images were; if that no longer exists, the folder at the same relative path from the
-// package, so that a light field and its packages may be moved together. kInput: the file cannot be
-// read, is damaged, or has another version.
+// Reads a package. Its name is the file's name without extension. light_field.folder is the path
+// that the LF images had when the package was made. If that path no longer exists, the path with
+// the same position relative to the package is used instead, so that a light field and its packages
+// may be moved together. kInput: the file cannot be read, is damaged, or has another version.
 Result<Package> ReadPackage(const std::filesystem::path& path,
                             const ReadPackageOptions& options = {});
 

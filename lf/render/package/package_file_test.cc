@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Returns a package of every third frame of twelve, with 40 LF images of 1000, of which the last
-// five are neighbours.
+// Returns a package with every third of the film's twelve frames, and with 40 of the light field's
+// 1000 LF images. The last five of these 40 are neighbours.
 Package TestPackage() {
   Package package;
   package.number = 4;
@@ -196,8 +196,9 @@ TEST_F(PackageFileTest, EveryFlippedByteIsAnError) {
     const size_t at = RandomBits(5, 0, i) % whole.size();
     damaged[at] = static_cast<char>(damaged[at] ^ (1 << i % 8));
     EXPECT_NE(Fault(damaged), "") << at;
-    Fault(damaged, false);  // without the footer the damage may remain undetected, but must not
-                            // crash
+    // Without the check of the footer, the damage may remain undetected, but reading must not
+    // crash.
+    Fault(damaged, false);
   }
 }
 

@@ -28,7 +28,8 @@ inline constexpr size_t kCameraNumbers = 33;
 std::array<double, kCameraNumbers> NumbersOfCamera(const RenderCamera& camera);
 RenderCamera CameraOfNumbers(std::span<const double, kCameraNumbers> numbers);
 
-// Number of fields of FrameSurroundings, stored in their order.
+// Number of values that describe a FrameSurroundings, in the order of its fields: middle_world has
+// three.
 inline constexpr size_t kSurroundingsNumbers = 6;
 
 }  // namespace lf

@@ -108,8 +108,9 @@ Result<void> Reader::ReadChoices() {
   return {};
 }
 
-// Returns the folder of the LF images, or the packed store, as it was when the package was made. If
-// it no longer exists, returns the path that has the same position relative to the package.
+// Returns the path that the folder of the LF images, or the packed store, had when the package was
+// made. If it no longer exists, returns the path with the same position relative to the package, if
+// that exists.
 fs::path Reader::Folder() const {
   const fs::path folder = settings_.Text("folder");
   std::error_code error;
@@ -120,7 +121,7 @@ fs::path Reader::Folder() const {
   return fs::exists(from_here, error) ? from_here : folder;
 }
 
-// Reads LF images in the order of the whole light field, as WritePackage() got them.
+// Reads LF images by ascending ids, as WritePackage() got them.
 Result<void> Reader::ReadImages() {
   LF_RETURN_IF_ERROR(ForEachRow(
       database_,
@@ -131,7 +132,8 @@ Result<void> Reader::ReadImages() {
   if (std::all_of(light_field.mask_names.begin(), light_field.mask_names.end(),
                   [](const std::string& name) { return name.empty(); }))
     light_field.mask_names.clear();
-  // All exposures of a pose see the same pixels, and the package has all of them or none.
+  // The LF images of one pose (a bracket) see the same rays, so that the package has all of them or
+  // none.
   if (light_field.encoding.masks_clipped) ApplyBrackets(&light_field);
   std::vector<uint32_t> places = package_.places.of_images;
   std::sort(places.begin(), places.end());
@@ -219,7 +221,7 @@ Result<void> Reader::ReadFrames() {
         LF_ASSIGN_OR_RETURN(const int64_t images, row.Integer(3, 0, kMostImages));
         LF_ASSIGN_OR_RETURN(const int64_t rays, row.Integer(4, 0, INT64_MAX));
         LF_ASSIGN_OR_RETURN(const std::string_view surroundings, row.Blob(5));
-        // LF_RETURN_IF_ERROR cannot be used here, because it is in use around this lambda.
+        // LF_RETURN_IF_ERROR cannot be used here, because this lambda is an argument of that macro.
         const auto read = ReadSurroundings(NumbersOf<double>(surroundings), number);
         if (!read || is_rendered == 0) return read;
         PackageFrame frame;

@@ -99,7 +99,7 @@ class Writer {
     return insert->Run();
   }
 
-  // Writes all frames of the film; the package's own are marked as rendered.
+  // Writes all frames of the film, and marks those of the package as rendered.
   Result<void> WriteFrames() {
     LF_ASSIGN_OR_RETURN(
         Statement insert,
@@ -127,7 +127,7 @@ class Writer {
     return {};
   }
 
-  // Returns nothing if the surroundings were not measured.
+  // Returns an empty list if the surroundings were not measured.
   std::vector<double> SurroundingsOf(uint32_t frame) const {
     if (package_.surroundings.empty()) return {};
     const FrameSurroundings& around = package_.surroundings[frame - 1];
