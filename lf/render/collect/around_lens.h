@@ -12,9 +12,10 @@
 namespace lf {
 
 // Returns the LF cameras whose line to the focus point of the plate's middle passes through the
-// lens, and some LF cameras beside them. If fewer than kCamerasAround lines pass through the lens,
-// it is widened until there are enough. Ascending; empty if the middle of the plate has no focus
-// point.
+// lens, and some LF cameras beside them. If fewer than kCamerasAround
+// (selection/lens_weights/frame_weights.h) of these lines pass through the lens, the lens is
+// widened until enough do. The ids are ascending; there are none if the middle of the plate has no
+// focus point.
 std::vector<LfImageId> CamerasAroundLens(const ImageIndex& index, const RenderCamera& frame);
 
 // Returns about the distance between neighbouring cameras of CamerasAroundLens() in the lens plane,
@@ -22,8 +23,8 @@ std::vector<LfImageId> CamerasAroundLens(const ImageIndex& index, const RenderCa
 // such LF camera.
 double CameraDistanceAround(const ImageIndex& index, const RenderCamera& frame);
 
-// Returns true if the LF camera's image shows the point, as far as its borders decide: occlusion is
-// not considered.
+// Returns true if the point lies within the borders of the LF camera's image. Does not test whether
+// something hides the point.
 bool IsSeenBy(const RayThrough& lf_camera, const Vec3& point_world);
 
 }  // namespace lf

@@ -23,7 +23,7 @@ double SecondsSince(Clock::time_point start) {
 
 // An LF image of a batch while it is decoded.
 struct Loading {
-  size_t index = 0;  // in order_
+  size_t index = 0;  // index in order_
   std::optional<Result<LfPixels>> pixels;
 };
 
@@ -31,7 +31,7 @@ struct Loading {
 struct Batch {
   size_t begin = 0;
   size_t end = 0;
-  uint32_t place_end = 0;      // all places before it are done once the batch is
+  uint32_t place_end = 0;      // when the batch is done, all places before this one are done
   std::vector<size_t> frames;  // frames that take the batch; empty: all
   std::vector<Loading> loading;
   std::vector<BatchImage> images;  // the LF images that are not broken, once all are loaded
@@ -110,8 +110,8 @@ class FrameCollector::State {
   size_t images_done_ = 0;
   size_t announced_ = 0;  // number of LF images of order_ that were announced to the store
   std::mutex spare_mutex_;
-  std::vector<LfPixels> spare_;     // pixels that are done; their memory is used again
-  std::optional<LfImageId> whole_;  // the last LF image that was loaded
+  std::vector<LfPixels> spare_;     // pixels of collected LF images; their memory is used again
+  std::optional<LfImageId> whole_;  // the last LF image that was loaded without an error
   Batch batch_;                     // the batch to be collected
   Batch next_;                      // the batch to be decoded at the same time
 };
@@ -271,7 +271,7 @@ Result<void> FrameCollector::State::FinishLoading(Batch* batch) {
       batch->images.push_back({image.id, image.place, std::move(pixels), std::move(opacity)});
       continue;
     }
-    // Only an error of the LF image itself (kInput) is skipped. If the machine lacks something,
+    // An LF image is skipped only if it is broken itself (kInput). If the machine lacks something,
     // such as memory, the other LF images would fail for the same reason.
     const Error& error = loading.pixels->error();
     if (options_.strict || error.kind != ErrorKind::kInput) return error;

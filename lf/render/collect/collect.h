@@ -24,7 +24,8 @@
 namespace lf {
 
 // The rule "samples>=N" may stop a frame only at places that are multiples of this number
-// (doc/ray.md, "Same bits"). Rules of noise have the places of NoiseDecisionAfter().
+// (doc/ray.md, "Same bits"). The rule "noise<=X" may stop it at the places of NoiseDecisionAfter()
+// (noise_rule.h).
 inline constexpr uint32_t kDecisionPlaces = 64;
 
 struct CollectOptions {
@@ -39,7 +40,7 @@ struct CollectOptions {
   // because an interruption waits until the frames that are begun are finished.
   uint64_t batch_ray_count = 10'000'000'000;
   uint64_t batch_frame_ray_count = 500'000'000;
-  size_t plan_bytes = size_t{64} << 20;  // for the plans of a batch's rays
+  size_t plan_bytes = size_t{64} << 20;  // memory for the plans of a batch's rays
   // No batch extends beyond a place that is a multiple of this number, so that stop rules may be
   // applied there. Must be 0 or a multiple of kDecisionPlaces. 0: batches do not end for this
   // reason.
@@ -67,13 +68,13 @@ struct FrameProgress {
 struct SkippedImage {
   std::string name;
   std::string reason;
-  uint32_t place = 0;  // of the LF image in the order
+  uint32_t place = 0;  // rank of the LF image in the order
 };
 
 struct CollectTimes {
-  double load_cpu_s = 0;     // CPU time to read and decode LF images, all threads
-  double load_wall_s = 0;    // the same work with waits for the disk, all threads
-  double collect_cpu_s = 0;  // CPU time to plan and add rays, all threads
+  double load_cpu_s = 0;     // CPU time to read and decode LF images, sum of all threads
+  double load_wall_s = 0;    // time for this work including waits for the disk, likewise
+  double collect_cpu_s = 0;  // CPU time to plan and add rays, sum of all threads
   double wall_s = 0;         // duration of all steps
 };
 
@@ -86,8 +87,8 @@ struct CollectTimes {
 class FrameCollector {
  public:
   // order   LF images that the frames take, by ascending places, each with the bounds of the pixels
-  // that the frames need: the result of SelectImages(), where SelectOptions::takes must be true
-  // exactly for the LF images that CollectedFrame::weights gives a weight
+  //         that the frames need: the result of SelectImages(), where SelectOptions::takes must be
+  //         true exactly for the LF images to which CollectedFrame::weights gives a weight above 0
   // The plates and moments of the frames, and all arguments except `frames` and `options`, must
   // outlive the collector. Only Step() changes plates and moments.
   FrameCollector(const LightField& light_field, const LfImageStore& store,
@@ -103,8 +104,8 @@ class FrameCollector {
   // kInterrupted: *options.interrupted became true. Every frame is consistent: it has either all LF
   // images of the batch or none. Step() may be called again to continue.
   // kInput: an LF image is broken and `strict` is set, or an LF image that was read before has
-  // vanished. kOutput: loading needs something that the machine lacks, such as memory. The plates
-  // are as after the last step; Step() must not be called again.
+  // vanished. kOutput: loading needs something that the machine lacks, such as memory. After both,
+  // the plates are as after the last successful step, and Step() must not be called again.
   Result<bool> Step();
 
   // Stops a frame: it takes no more LF images.

@@ -43,7 +43,8 @@ struct RayReading {
   PixelFilter filter = PixelFilter::kAuto;  // only used by kBilinear
 };
 
-// Returns which pixels the rays of an LF image need. Selection includes these pixels.
+// Returns from which pixels of an LF image the estimator computes the value of a ray. Selection
+// (SelectOptions::reach) includes all of these pixels.
 PixelReach ReachOf(Estimator estimator);
 
 // kReference applies the ray model literally to every pixel, on one thread. It is about 50 times
@@ -51,19 +52,19 @@ PixelReach ReachOf(Estimator estimator);
 enum class CollectBackEnd { kFast, kReference };
 
 struct FrameRays {
-  uint64_t image_count = 0;   // LF images with an accepted ray
-  uint64_t tested_count = 0;  // pixels in the rectangles of all LF images
+  uint64_t image_count = 0;   // number of LF images with an accepted ray
+  uint64_t tested_count = 0;  // number of pixels in the rectangles of all LF images
   uint64_t accepted_count = 0;
 };
 
 struct BatchImage {
   LfImageId id;
-  uint32_t place = 0;  // of the LF image in the order
+  uint32_t place = 0;  // rank of the LF image in the order
   LfPixels pixels;
-  // of these pixels (LfPixels::TakeOpacity()); only used by plates with opacity
+  // opacity of these pixels (LfPixels::TakeOpacity()); only used by plates with opacity
   LfPixels opacity = {};
-  // BatchCollector fills these. If the LF camera has no lens distortion, there are no cells and no
-  // ideal pixels.
+  // BatchCollector sets the members below. If the LF camera has no lens distortion, `cells` is
+  // empty and `ideal_pixels` is null.
   std::shared_ptr<const std::vector<IdealCell>> cells = nullptr;
   std::shared_ptr<const IdealPixels> ideal_pixels = nullptr;
   std::optional<ImageOverlap> overlap = std::nullopt;
@@ -73,7 +74,7 @@ struct BatchImage {
 struct BatchFrame {
   size_t frame = 0;
   PlaceRange places;
-  bool is_done = false;  // set by Add(): true if all of them are in the plate, false if none is
+  bool is_done = false;  // set by Add(): true if the plate has all these LF images, false if none
   FrameRays rays;        // set by Add() if is_done
 };
 
@@ -91,7 +92,8 @@ size_t PlanBytes(Estimator estimator, bool has_distortion, int image_width, int 
 
 class BatchCollector {
  public:
-  // frames        must outlive the object; `places` is not used, BatchFrame has its own
+  // frames        must outlive the object; their `places` are not used, because BatchFrame has its
+  //               own
   // plan_bytes    memory for the plans of frames that are planned together; exceeded if one frame
   //               needs more
   // whole_images  true: tests all loaded pixels of an LF image instead of the rectangle that a
@@ -147,7 +149,7 @@ class BatchCollector {
   size_t plan_bytes_;
   bool whole_images_;
   ThreadPool& pool_;
-  std::vector<std::vector<PlateTile>> tiles_;  // of each frame's plate
+  std::vector<std::vector<PlateTile>> tiles_;  // tiles of each frame's plate
   std::deque<Contribution>
       contributions_;  // [frame][LF image] of a batch; the next batch reuses their memory
   // Ideal pixels of the LF cameras of the last batch, by the index of their intrinsics.

@@ -1,4 +1,4 @@
-// A frame for whose plate rays are collected.
+// A frame into whose plate rays are collected.
 #pragma once
 
 #include <functional>
@@ -21,16 +21,17 @@ using ImageWeights = std::function<RayWeights(LfImageId id)>;
 struct CollectedFrame {
   RenderCamera camera;
   SensorPlate* plate = nullptr;  // receives the rays; must not be null
-  // The LF images that the frame takes. The plate must have the rays of the places before `begin`.
+  // The frame takes the LF images at these places. The plate must already have the rays of those at
+  // places before `begin`.
   PlaceRange places = {};
   ImageWeights weights = {};
-  // Moments of the plate, of its size. They are updated with the plate, and always include exactly
-  // the LF images in it. Null: no moments are kept.
+  // Moments of the plate, made for its width and height. They are updated with the plate, and
+  // always include exactly the LF images whose rays the plate has. Null: no moments are kept.
   NoiseMoments* moments = nullptr;
 };
 
 // Returns frames that take all LF images, with weight 1.
-//   plates  one for each camera, of its size
+//   plates  one plate for each camera, with the size of the camera's image
 inline std::vector<CollectedFrame> FramesOf(std::span<const RenderCamera> cameras,
                                             std::vector<SensorPlate>& plates) {
   std::vector<CollectedFrame> frames;

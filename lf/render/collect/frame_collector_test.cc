@@ -12,7 +12,8 @@
 namespace lf {
 namespace {
 
-// so that more than 128 LF images contribute: there are two decisions
+// LF cameras per side of the grid. More than 128 LF images contribute, so that a stop rule would be
+// applied twice: at places 64 and 128.
 constexpr uint32_t kSide = 14;
 
 struct Job {

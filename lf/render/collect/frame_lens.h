@@ -27,12 +27,12 @@ Result<void> CheckHasArea(const RenderCamera& camera, FrameId frame);
 // cameras beside the lens may then also have a weight, as described in doc/ray.md, "What is added".
 class FrameLens {
  public:
-  // LF images with rays up to this distance beside the lens may get a share of it. The unit is the
-  // distance of neighbouring LF cameras.
+  // LF images with rays up to this distance beside the lens may get a share of the lens. The unit
+  // is the distance between neighbouring LF cameras.
   static constexpr double kReach_distances = 8;
 
-  // With kArea, CheckHasArea() must accept the lens. The object refers to the light field of
-  // `index`.
+  // If `kind` is kArea, CheckHasArea() must accept the lens. The object refers to the light field
+  // of `index`.
   //   camera_distance_w  CameraDistanceAround() in the whole light field. Must be set if the index
   //                      covers only a part of the light field: a part that contains all LF images
   //                      of near() then gives the same weights. Unset: measured in `index`
@@ -45,14 +45,16 @@ class FrameLens {
   const RenderCamera& camera() const { return camera_; }
 
   // Returns the weights of the LF image's rays. They refer to this object. They are 0 if the LF
-  // camera's axis is tilted by more than SelectOptions::max_angle_rad against the frame's.
+  // image has no share of the lens, or if the LF camera's axis is tilted by more than
+  // SelectOptions::max_angle_rad against the frame's.
   RayWeights WeightsOf(LfImageId id) const;
 
   // Returns false if WeightsOf() is 0 in all elements.
   bool Takes(LfImageId id) const;
 
-  // LF images that may get a share of the lens, ascending; and the distance between neighbouring LF
-  // cameras around the lens, in world units. Empty and 0 if there are no lens weights.
+  // near() returns the LF images that may get a share of the lens, by ascending ids;
+  // camera_distance_w() the distance between neighbouring LF cameras around the lens, in world
+  // units. Empty and 0 if there are no lens weights.
   std::vector<LfImageId> near() const;
   double camera_distance_w() const { return camera_distance_w_; }
 
@@ -64,10 +66,10 @@ class FrameLens {
   std::optional<Facts> facts() const;
 
   // Returns effective numbers of LF images, (sum w)^2 / sum w^2: the number of LF images of equal
-  // weight that would give the same noise. The sums are over the LF images that contain what an
-  // element sees; the result is 0 if no LF image does. Computed for the middle element of each
-  // square of EffectiveStep() x EffectiveStep() elements. Does not take broken LF images and masks
-  // into account.
+  // weight that would give the same noise. Here w is the weight of an LF image in an element. The
+  // sums are over the LF images that contain the element's focus point; the result is 0 if no LF
+  // image does. Computed for the middle element of each square of EffectiveStep() x EffectiveStep()
+  // elements. Does not take broken LF images and masks into account.
   // Shape: [rows][columns] of EffectiveSquares(). Empty if there are no lens weights.
   Image<float> EffectiveCounts() const;
 
@@ -80,8 +82,9 @@ class FrameLens {
   std::map<uint32_t, size_t> cameras_;  // from LfImageId to index in weights_
 };
 
+// Returns the side of these squares, in elements.
 int EffectiveStep(const Intrinsics& plate);
-// Returns the numbers of columns and rows of squares.
+// Returns the numbers of columns and rows of squares on a plate.
 std::pair<int, int> EffectiveSquares(const Intrinsics& plate);
 // Interpolates effective numbers to every element, ignoring those that are 0. Returns
 // [height][width].

@@ -174,7 +174,7 @@ TEST(FrameLens, BordersOfLfImagesLeaveNoSeam) {
   LightField field = testing::NoiseField(7);
   field.intrinsics[0] = {700, 700, 320, 240, 0, 640, 480};
   RenderCamera frame = testing::NoiseFrames()[0];
-  // sees beyond the borders of the LF images
+  // The frame sees beyond the borders of the LF images.
   frame.pinhole.intrinsics = {560, 560, 320, 240, 0, 640, 480};
   std::vector<FrameLens> lenses;
   lenses.emplace_back(ImageIndex(field), frame, LensWeights::kArea, SelectOptions{}, pool);
@@ -204,8 +204,8 @@ TEST(FrameLens, BordersOfLfImagesLeaveNoSeam) {
     };
     for (int y = 60; y < 420; ++y)
       for (int x = 60; x < 580; ++x)
-        // Farther out, only some LF images remain, and their weights are too coarsely rounded for a
-        // smooth transition.
+        // Elements with smaller counts see only a few LF images, whose weights are rounded too
+        // coarsely for a smooth transition.
         if (std::min(plates[0].At(x, y, 1).count, plates[0].At(x - 1, y, 1).count) > kMaxWeight)
           most = std::max(most, std::abs(value(x, y) / value(x - 1, y) - 1));
     return most;
@@ -215,15 +215,15 @@ TEST(FrameLens, BordersOfLfImagesLeaveNoSeam) {
   EXPECT_GT(without, 2.5 * with);
 }
 
-// Compares with sums over the weights of all LF images, for frames that every LF image sees
-// completely.
+// Compares EffectiveCounts() with (sum w)^2 / sum w^2 over the weights w of all LF images, for
+// frames that lie completely within every LF image.
 TEST(FrameLens, EffectiveCountsAreThoseOfTheWeights) {
   ThreadPool pool(2);
   const LightField field = testing::NoiseField(15);
   for (RenderCamera frame : testing::NoiseFrames()) {
     Intrinsics& k = frame.pinhole.intrinsics;
     const int width = k.width_px;
-    // sees only a small part of the LF images
+    // The frame sees only a small part of each LF image.
     for (double* value : {&k.fx_px, &k.fy_px}) *value *= 4;
     const FrameLens lens(ImageIndex(field), frame, LensWeights::kArea, {}, pool);
     const Image<float> counts = lens.EffectiveCounts();

@@ -17,12 +17,12 @@ class ImageConsumer {
 
   // Returns the place before which all LF images are done, like FrameProgress::places_done.
   virtual uint32_t places_done() const = 0;
-  // Returns the bounds of the pixels that the object needs of the LF image at this place; empty if
-  // it needs none. Any thread may call this, for LF images that Take() has not had yet.
+  // Returns the bounds of the pixels that the object needs of the LF image at `place`; empty if it
+  // needs none. Any thread may call this, for LF images that have not been passed to Take() yet.
   virtual PixelRect RectOf(LfImageId id, uint32_t place) const = 0;
   // Processes the LF images of a batch, by ascending places from places_done() on. They have at
-  // least the pixels that RectOf() returned. All other LF images before place_end are not needed or
-  // broken.
+  // least the pixels that RectOf() returned. All other LF images at places before place_end are
+  // broken or not needed.
   virtual void Take(std::span<const BatchImage> images, uint32_t place_end) = 0;
 };
 

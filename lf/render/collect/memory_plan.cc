@@ -20,7 +20,7 @@ constexpr size_t kDevelopBytesPerElement = 64;
 // Additional memory to develop a frame with opacity, for each element: opacity, its counts and
 // tables.
 constexpr size_t kOpacityBytes = 16;
-constexpr size_t kSheetBytesPerElement = 3;  // of each picture of the contact sheet
+constexpr size_t kSheetBytesPerElement = 3;  // for each picture of the contact sheet
 constexpr size_t kMostSheetPictures = 12;
 
 // Memory while one LF image is decoded, for each pixel: the file, its stored values, and the
@@ -29,10 +29,9 @@ constexpr size_t kDecodeBytesPerPixel = 16;
 constexpr size_t kDecodeFloatBytesPerPixel = 32;
 constexpr size_t kTileBytes = kMiB;  // for the sums of the tile that a thread works on
 
-// Limits of the size of a batch. A batch of this size is large enough that adding its tiles to the
-// plate, and waiting for its last task, take little time compared with its rays. Larger batches
-// would cost time, because the first use of memory can take as long as decoding an LF image into
-// it.
+// Limits of the size of a batch. Adding the tiles of a batch of this size to the plate, and waiting
+// for its last task, take little time compared with collecting its rays. Larger batches would cost
+// time, because the first use of memory can take as long as decoding an LF image into it.
 constexpr size_t kRaysPerElement = 8;
 constexpr size_t kEnoughBatchImages = 16;
 constexpr size_t kEnoughBatchImagesPerThread = 2;
@@ -42,9 +41,9 @@ constexpr size_t kMostPlanBytes = 64 * kMiB;
 // Memory that the largest LF image needs.
 struct ImageNeed {
   size_t pixels = 1;
-  size_t kept_bytes = 1;    // 16-bit radiance, mask, ideal pixels if distorted
+  size_t kept_bytes = 1;    // for its 16-bit radiance, mask, and ideal pixels if it is distorted
   size_t decode_bytes = 1;  // while a thread decodes it
-  size_t plan_bytes = 1;    // of its rays in one frame
+  size_t plan_bytes = 1;    // for the plan of its rays in one frame
 };
 
 ImageNeed NeedOf(const LightField& light_field, Estimator estimator, int plate_width,
@@ -91,7 +90,7 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
       kProgramBytes + light_field.size() * (sizeof(LfCamera) + 128) +
       element_count * (develop_bytes + sheet_pictures * kSheetBytesPerElement) +
       static_cast<size_t>(thread_count) * (need.decode_bytes + kTileBytes);
-  // one LF image of each of the two batches
+  // Memory for one LF image of each of the two batches, and for one plan.
   const size_t pair_bytes = 2 * need.kept_bytes + need.plan_bytes;
   const size_t frame_bytes = plan.plate_bytes + bytes_per_frame;
   const size_t least = set_aside + frame_bytes + pair_bytes;

@@ -24,7 +24,7 @@ class HexReader {
  public:
   explicit HexReader(std::string_view text) : rest_(text) {}
 
-  // Returns the next number; nullopt if the text does not continue with one in this form.
+  // Returns the next number; nullopt if the text does not continue with a number in this form.
   std::optional<UInt128> Next() {
     if (count_++ > 0) {
       if (rest_.empty() || rest_.front() != ' ') return std::nullopt;
@@ -50,8 +50,8 @@ class HexReader {
   size_t count_ = 0;
 };
 
-// Returns false if no integers S_i and W_i can have these sums and moments, as far as some
-// inequalities can show. All products fit in 128 bits.
+// Tests some inequalities that hold for all integers S_i and W_i. Returns false if one of them does
+// not hold for these sums and moments. All products fit in 128 bits.
 bool CanBe(const ElementSum& total, const ElementMoments& moments) {
   const UInt128 sum = total.sum, count = total.count, n = moments.image_count;
   const UInt128 squares = moments.sum_squares, cross = moments.cross_sum;

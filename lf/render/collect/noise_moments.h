@@ -1,16 +1,17 @@
 // Exact second moments of the sums and counts that LF images add to an element. The standard error
-// of the element's mean is computed from them. They are kept for some elements, spread evenly over
-// the plate.
+// of the element's mean is computed from them. Moments are kept for some elements, spread evenly
+// over the plate.
 //
 // Rays of one LF image are similar: they are neighbouring pixels, or several samples of one pixel.
-// The independent unit is therefore the LF image. Image i adds the sum S_i and the count W_i to an
-// element and channel (film/plate/sensor_plate.h; with lens weights W_i is a sum of weights), and
+// The independent unit is therefore the LF image. LF image i adds the sum S_i and the count W_i to
+// an element and channel (film/plate/sensor_plate.h; with lens weights W_i is a sum of weights),
+// and
 //
 //   m = sum S_i / sum W_i
 //   variance of m = n / (n - 1) * sum (S_i - m W_i)^2 / (sum W_i)^2
 //
-// over the n LF images with W_i > 0: the variance of a ratio estimator (Cochran, Sampling
-// Techniques, 1977, Sec. 6.4) in a large population.
+// where the sums are over the n LF images with W_i > 0. This is the variance of a ratio estimator
+// (Cochran, Sampling Techniques, 1977, Sec. 6.4) in a large population.
 //
 // Moments are integers, so that they do not depend on the order in which LF images, threads, passes
 // or interrupted runs add them. 128 bits always suffice: a plate counts up to 2^44 rays
@@ -74,18 +75,19 @@ class NoiseMoments {
   // Returns the indices of the measured elements that lie in `rect`, ascending.
   std::vector<size_t> IndicesIn(const PixelRect& rect) const;
 
-  // Adds the moments of one LF image to an element. Must be called once for the LF image, with the
-  // total that it adds to the element. Several threads may call it at the same time, for different
-  // elements.
+  // Adds the moments of one LF image to an element and channel. Must be called once for each LF
+  // image that adds something there, with the total that it adds. Several threads may call it at
+  // the same time, for different elements.
   void AddImage(size_t index, int channel, const ElementSum& of_image);
 
   // Returns the moments as text, at most 420 kB: hexadecimal numbers separated by one space. The
   // numbers are columns, rows, and the four members of ElementMoments for every element and
   // channel. Read() restores the same moments.
   std::string Text() const;
-  // Returns the moments of a plate from the text that was written for it. kInput if the text is
+  // Returns the moments of a plate from the text that Text() returned for it. kInput if the text is
   // damaged or belongs to another plate: numbers are missing, or cannot be moments of the sums and
-  // counts in the plate. The message says which number is wrong; the caller adds the file.
+  // counts in the plate. The message says which number is wrong; the caller adds the name of the
+  // file.
   static Result<NoiseMoments> Read(std::string_view text, const SensorPlate& plate);
 
   friend bool operator==(const NoiseMoments&, const NoiseMoments&) = default;

@@ -67,14 +67,14 @@ TEST(NoiseMoments, GiveTheStandardErrorOfTwoPasses) {
 }
 
 TEST(NoiseMoments, KnownAnswers) {
-  // For two LF images of equal count, it is half of the difference of their means, whatever the
-  // count.
+  // For two LF images of equal count, the standard error is half of the difference of their means,
+  // whatever the count.
   EXPECT_EQ((ImageSums{{{100, 1}, {300, 1}}}).StandardError(), 100);
   EXPECT_EQ((ImageSums{{{25500, 255}, {76500, 255}}}).StandardError(), 100);
   // LF images with the same mean, which is not an integer here, have no noise, whatever their
   // counts.
   EXPECT_NEAR((ImageSums{{{5, 2}, {500, 200}, {50, 20}}}).StandardError(), 0, 1e-6);
-  // Many rays of one LF image are one sample.
+  // However many rays one LF image has, they count as one sample.
   EXPECT_TRUE(std::isinf((ImageSums{{{1000, 500}}}).StandardError()));
   EXPECT_TRUE(std::isinf(StandardErrorOfMean({}, {})));
   // An LF image that adds nothing does not count.
@@ -106,7 +106,7 @@ TEST(NoiseMoments, MeasuresElementsAllOverThePlate) {
     }
     EXPECT_LT(elements.front().x, std::max(1, width / 90));
     EXPECT_GE(elements.back().y, height - 1 - height / 60);
-    // Every element is in one tile.
+    // Every measured element is in exactly one tile.
     size_t found = 0;
     const TileGrid grid = TileSums::GridOf(width, height);
     for (size_t tile = 0; tile < grid.tile_count(); ++tile)

@@ -42,7 +42,8 @@ TEST(NoiseRule, IsAskedEightTimesForEachDoubling) {
     if (place >= 16) {
       EXPECT_LE(next - place, place / 8);
     }
-    // Rebinned rays are chosen anew at the places 64, 256, 1024, ...: no batch may cross them.
+    // Rebinned rays are chosen anew at the places 64, 256, 1024, ...: no batch may extend beyond
+    // one of them.
     for (uint32_t phase = 64; phase < 1'000'000; phase *= 4)
       EXPECT_FALSE(place < phase && phase < next) << phase;
     place = next;

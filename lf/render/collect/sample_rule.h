@@ -44,8 +44,8 @@ class ReachableElements {
   bool Holds(int x, int y) const {
     return is_reachable_[static_cast<size_t>(y / kGrid) * columns_ + x / kGrid] != 0;
   }
-  size_t count() const { return count_; }              // of reachable elements
-  size_t image_count() const { return image_count_; }  // of LF images selected within `places`
+  size_t count() const { return count_; }              // number of reachable elements
+  size_t image_count() const { return image_count_; }  // LF images selected within `places`
 
  private:
   size_t columns_ = 0;
@@ -54,10 +54,10 @@ class ReachableElements {
   size_t image_count_ = 0;
 };
 
-// Returns a number of places: the rule of a frame is applied at its multiples. It is 64 if the
-// frame takes every LF image of the light field, and 64 * 2^k if it takes one in 2^k, so that the
-// frame gets about 64 LF images between. Of the numbers of any two frames, one is a multiple of the
-// other.
+// Returns the number at whose multiples (as places) the rule of a frame is applied: 64 if the frame
+// takes every LF image of the light field, and 64 * 2^k if it takes one in 2^k, so that the frame
+// gets 32 to 64 LF images from one multiple to the next. For any two frames, the larger number is a
+// multiple of the smaller.
 uint32_t DecisionPlaces(size_t light_field_image_count, size_t frame_image_count);
 
 // Returns true if at least the share kMostElements of the reachable elements has `samples` rays in

@@ -29,7 +29,8 @@ TEST(SampleRule, IsAskedAboutEvery64ImagesOfAFrame) {
   EXPECT_EQ(DecisionPlaces(size_t{1} << 32, 1), 1u << 30);
 }
 
-// Compares with the counts of a plate that bilinear collected, because it tests every element.
+// Compares ReachableElements with the counts of a plate that was collected by the estimator
+// bilinear, which tests every element.
 TEST(SampleRule, ElementsAreReachableWhereTheyGetRays) {
   const LightField field = testing::NoiseField();
   const testing::NoiseStore store;

@@ -17,14 +17,17 @@ struct BatchImage;
 
 class SharedIdealPixels {
  public:
-  // Calls its argument once for every i in [0, count), in parallel (as ThreadPool::ForEach).
+  // A function that calls its second argument for every i in [0, count), in parallel, such as
+  // ThreadPool::ForEach().
   using ForEach = std::function<void(size_t count, const std::function<void(size_t)>&)>;
 
-  // Makes what the LF images of a batch need and the batch before did not, and drops the rest.
+  // Makes the ideal pixels that the LF images of the batch need and that are not kept yet. Drops
+  // those that this batch does not need.
   void Keep(const LightField& light_field, std::span<const BatchImage> batch,
             const ForEach& for_each);
 
-  // Returns nullptr without lens distortion. Any number of threads may call it at the same time.
+  // Returns the ideal pixels that are kept for these intrinsics; null if there are none, as without
+  // lens distortion. Any number of threads may call it at the same time.
   std::shared_ptr<const IdealPixels> Of(uint32_t intrinsics_index) const;
 
  private:
