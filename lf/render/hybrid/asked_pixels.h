@@ -31,7 +31,8 @@ inline constexpr size_t kPreviewImages = 64;
 
 // Returns the first place of the phase that contains `place`. Phases divide the order of the LF
 // images: they begin at place 0 and at kDecisionPlaces (render/collect/collect.h) times the powers
-// of four. The queries of previews are updated at the beginning of each phase.
+// of four. At the beginning of each phase, the queries of previews (the rays to be interpolated,
+// rebinning/frame_queries.h) are updated.
 uint32_t PhaseOf(uint32_t place);
 
 class AskedPixels {
@@ -42,18 +43,16 @@ class AskedPixels {
   // Returns true if the frame needs rebinned rays, for its final picture or for a preview.
   bool AsksForAny() const { return asks_in_the_end_ || IsPreviewed(0); }
   bool asks_in_the_end() const { return asks_in_the_end_; }
-  // Returns true if rays are kept for a preview that shows the frame with the LF images before
-  // `phase`.
+  // Returns true if rays are kept for previews in the phase that begins at place `phase`.
   bool IsPreviewed(uint32_t phase) const { return is_previewed_ && phase < changes_until_; }
 
-  // A camera whose lens and plate contain all rays that the frame needs. Selection uses it to find
-  // the LF images.
+  // A camera whose lens and plate contain all rays that the finished frame needs. Selection uses it
+  // to find the LF images.
   const RenderCamera& camera() const { return camera_; }
 
   // Returns the bounds of the pixels of an LF image whose rays may be kept; empty if there are
   // none.
-  //   overlap  of the LF image
-  //   place    of the LF image
+  //   overlap, place  overlap and place of this LF image
   PixelRect RectOf(const LfCamera& lf_camera, const ImageOverlap& overlap, uint32_t place,
                    const SelectOptions& select) const;
 
@@ -67,7 +66,7 @@ class AskedPixels {
 
 // Returns the rectangle of an LF image that must be read to rebin the pixels of `rect`: `rect` with
 // a margin on all sides, clipped to the image.
-//   around_px  width of the margin: PixelsAround() (rebinning/rebin_image.h) of a mosaic
+//   around_px  width of the margin: PixelsAround() (rebinning/rebin_image.h) for mosaics
 PixelRect GrownBy(const PixelRect& rect, int around_px, const Intrinsics& image);
 
 }  // namespace lf

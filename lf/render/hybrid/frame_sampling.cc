@@ -125,7 +125,7 @@ FrameQueries QueriesOf(const RenderCamera& frame, const FrameSampling& sampling,
   queries.kernel = {
       sigma_w, std::min(options.sigma_uv * LfPixelsPerElement(frame, sampling.lf), kMostSigma_px)};
   // The kernel of a lens point is widened if there are so few points that each represents a large
-  // part of the lens, and if the nearest LF camera is far from the point.
+  // part of the lens, or if the nearest LF camera is far from the point.
   const double few = 0.5 * std::sqrt(area_w2 / count) / sigma_w;
   const double most_w = kFarthestDistances * sampling.lf.camera_distance_w;
   for (const auto& set : queries.points.sets) {

@@ -18,13 +18,17 @@
 
 namespace lf {
 
-// The rays of an LF camera contribute to a lens point only up to this distance, in distances
-// between LF cameras around the lens.
+// LF images with rays through the lens, or up to this distance beside it, are near the lens
+// (ImagesNearLens()). The kernel of a lens point is not widened further for LF cameras that are
+// farther from the point than this distance. The unit is the distance between LF cameras around the
+// lens.
 inline constexpr double kFarthestDistances = 8;
 
 struct FrameSampling {
-  LfSampling lf;      // lf.camera_distance_w is 0 if there is no LF camera around the lens
-  double hole_w = 0;  // upper bound of the distance from a lens point to the nearest LF camera
+  LfSampling lf;  // lf.camera_distance_w is 0 if there is no LF camera around the lens
+  // Upper bound of the distance, in world units, from a lens point to the nearest point of
+  // SeenThrough(); limited to kFarthestDistances times lf.camera_distance_w.
+  double hole_w = 0;
 };
 
 // Returns the LF images with rays through the lens or within kFarthestDistances of it, by ascending
@@ -33,8 +37,8 @@ std::vector<SelectedImage> ImagesNearLens(const ImageIndex& index, const RenderC
                                           double camera_distance_w, const SelectOptions& select,
                                           ThreadPool& pool);
 
-// Returns, for each LF image, the intersection of the lens plane with the line from its LF camera
-// to the focus point of the plate's middle. Empty if there is no such focus point.
+// Returns, for each LF image of `near`, the intersection of the lens plane with the line from its
+// LF camera to the focus point of the plate's middle. Empty if there is no such focus point.
 std::vector<Vec2> SeenThrough(const ImageIndex& index, const RenderCamera& frame,
                               std::span<const SelectedImage> near);
 
@@ -54,10 +58,13 @@ FrameSampling SamplingOf(const ImageIndex& index, const RenderCamera& frame,
 inline constexpr PixelReach kWidestReach = PixelReach::kNeighbours;
 
 struct QueryOptions {
-  double sigma_st = 0.5;     // in distances between LF cameras; the least width
-  double sigma_uv = 0.35;    // in elements, or in LF pixels if these are larger
-  int lens_point_count = 0;  // in a set; 0: 8 to 256, so that kernels overlap
-  int lens_sets = 1;         // k: sets of k x k elements (lens_points.h)
+  // Least width of the kernels in the lens plane, in distances between LF cameras.
+  double sigma_st = 0.5;
+  // Width of the kernels on the plate, in elements, or in LF pixels if these are larger.
+  double sigma_uv = 0.35;
+  // Number of lens points in a set; 0: 8 to 256, chosen so that their kernels overlap.
+  int lens_point_count = 0;
+  int lens_sets = 1;  // k of LensPointSets (rebinning/lens_points.h): there are k x k sets
   uint64_t seed = 0;
 };
 
@@ -70,8 +77,8 @@ FrameQueries QueriesOf(const RenderCamera& frame, const FrameSampling& sampling,
                        std::optional<std::span<const Vec2>> seen_through = {});
 
 // Returns the distance from the rim of the lens, in world units, up to which a frame depends on LF
-// cameras. These are the LF cameras whose rays are rebinned with the default options, and those
-// against which lens weights are measured.
+// cameras beside the lens. These are the LF cameras whose rays are rebinned with the default
+// options, and those against which lens weights are measured.
 double NeighbourReach_w(const RenderCamera& frame, const FrameSampling& sampling);
 
 }  // namespace lf

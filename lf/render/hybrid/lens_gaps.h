@@ -1,4 +1,4 @@
-// Finds the parts of a frame's lens that no collected ray passes through, for each element. Needs
+// Finds, for each element, the parts of a frame's lens that no collected ray passes through. Needs
 // only calibrations, so that it can be done before an LF image is read (thesis 4.3.3).
 //
 // The lens is represented by points spread over it (lens points). A lens point is covered for an
@@ -30,8 +30,8 @@ inline constexpr double kCoveredDistances = 1.5;
 // Gaps are tested at nodes: positions on a grid over the plate. A node needs no rebinned rays if at
 // most this share of its lens points are gaps.
 inline constexpr double kLittleMissing = 0.1;
-// Returns the weights with which the frame collects the rays of an LF image; RayWeights::are_none()
-// if it collects none of them.
+// A function that returns the weights with which the frame collects the rays of an LF image. Their
+// are_none() is true if the frame collects none of these rays.
 using CollectedWeights = std::function<RayWeights(LfImageId id)>;
 
 class LensGaps {
@@ -51,20 +51,21 @@ class LensGaps {
   bool can_be_asked() const { return sampling_.lf.camera_distance_w > 0; }
   const FrameSampling& sampling() const { return sampling_; }
   const RenderCamera& camera() const { return all_.camera; }
-  // Number of LF images that have a collected ray at a node.
+  // Number of LF images that have a collected ray at any node.
   size_t collected_count() const { return collected_places_.size(); }
-  // Returns one more than the rank of LF image number `count`, counted by rank among those of
-  // collected_count(). If there are fewer, the last of them is used. Returns 0 if `count` is 0.
+  // Returns the end (exclusive) of the ranks of the first `count` LF images, by rank, among those
+  // that collected_count() counts; of all of these if they are fewer. 0 if there is none, or if
+  // `count` is 0.
   uint32_t PlaceAfter(size_t count) const;
 
   // QueriesAt() returns the queries when exactly the LF images at places before `place` are
-  // collected. AsksAt() returns true if there is a gap then.
+  // collected. AsksAt() returns true if any node then needs rebinned rays.
   FrameQueries QueriesAt(uint32_t place) const;
   bool AsksAt(uint32_t place) const;
   bool asks_in_the_end() const { return asks_in_the_end_; }
   // Rank from which on QueriesAt() returns the same queries for all higher ranks.
   uint32_t changes_until() const { return changes_until_; }
-  // Rank after all LF images.
+  // A rank behind all LF images: the end of the render.
   static constexpr uint32_t kInTheEnd = UINT32_MAX - 1;
 
   // Returns the frame's camera with its lens and plate enlarged by the reach of the kernels,

@@ -53,7 +53,8 @@ struct RebinnedRays::Section {
   std::unique_ptr<RayMap> map;
   uint32_t phase = 0;
   uint32_t places_done = 0;
-  std::optional<std::vector<BinnedCell>> cells = {};  // cached cells of the map; unset: changed
+  // The cells of the map, cached; unset if the map has changed since.
+  std::optional<std::vector<BinnedCell>> cells = {};
 };
 
 RebinnedRays::RebinnedRays(const ImageIndex& index, const FilmSlabs& slabs,
@@ -103,9 +104,9 @@ void RebinnedRays::MakeSections(const FilmSlabs& slabs, std::span<const FrameId>
 
 RebinnedRays::~RebinnedRays() = default;
 
-// Estimates the number of rays that finished frames need: for some LF images, spread over the
-// order, it finds the share of their squares of pixels that in_the_end covers. Then decides which
-// rays are kept, and makes the maps.
+// Estimates the number of rays that finished frames need: finds, for some LF images spread over the
+// order, the share of their pixels that in_the_end covers. Then decides which rays are kept, and
+// makes the maps.
 void RebinnedRays::MakeMaps(const ImageIndex& index, std::span<const PlaceRange> places) {
   std::vector<PlaceRange> taken;
   for (const size_t f : asking_) taken.push_back({0, places[f].end});

@@ -2,12 +2,13 @@
 // LF image, and interpolates the frames from these rays (thesis 4.3.2, 4.3.3).
 //
 // The rays that a finished frame needs are known from calibrations (lens_gaps.h). All of them are
-// kept if there is room, otherwise only rays at edges (Eq. 4.4). Previews need more rays: while few
-// LF images are collected, rebinned rays at edges fill the rest of the picture. The queries of
-// previews are updated before the LF images at places 64, 256, 1024, ...: cells that no query can
-// use any more are dropped, and rebinning stops once no frame needs more rays. All of this depends
-// on places, not on time, so that the kept rays depend neither on the number of threads nor on
-// interruptions.
+// kept if there is room, otherwise only rays at edges in the LF images (Eq. 4.4). A preview (a
+// picture of an unfinished frame, asked_pixels.h) needs more rays: while few LF images are
+// collected, rebinned rays at edges fill the lens points that no collected ray covers yet. The
+// queries of previews (the rays to be interpolated, rebinning/frame_queries.h) are updated before
+// the LF images at places 64, 256, 1024, ...: cells that no query can use any more are dropped, and
+// rebinning stops once no frame needs more rays. All of this depends on places, not on time, so
+// that the kept rays depend neither on the number of threads nor on interruptions.
 #pragma once
 
 #include <atomic>
@@ -36,7 +37,7 @@ namespace lf {
 enum class KeptRays {
   kAuto,   // kAll if they fit in max_cells, otherwise kEdges
   kAll,    // all rays
-  kEdges,  // rays at edges, by Eq. 4.4
+  kEdges,  // rays at edges in the LF images, by Eq. 4.4
 };
 // Returns "auto", "all" or "edges".
 const char* NameOf(KeptRays kept);
@@ -49,12 +50,13 @@ struct RebinPassOptions {
   // If true, distances between rays are measured on each frame's lens plane and focus plane. If
   // false, they are measured on the planes of the slab; query.lens_sets must then be 1.
   bool reparameterise = true;
-  // If true, the slower SplatReference() interpolates the rays, with `nearest` as its argument.
+  // If true, the slower SplatReference() interpolates the rays, with `nearest` as its argument
+  // (rebinning/splat.h).
   bool is_reference = false;
   size_t nearest = 0;
   SlabChoices slab;
   CoverageOptions coverage;
-  size_t max_cells = 0;  // total for all sections
+  size_t max_cells = 0;  // largest number of cells in the maps of all sections together
 };
 
 class RebinnedRays : public ImageConsumer {
@@ -75,8 +77,8 @@ class RebinnedRays : public ImageConsumer {
   void Take(std::span<const BatchImage> images, uint32_t place_end) override;
 
   // Returns the cameras for which LF images are selected. Their lenses and plates contain all rays
-  // that the frames need. There is one for each frame that needs rebinned rays at any stage;
-  // asking_frames() returns the indices of these frames.
+  // that the finished frames need. There is one for each frame that needs rebinned rays at any
+  // stage; asking_frames() returns the indices of these frames in the constructor's `frames`.
   std::vector<RenderCamera> ReachedCameras() const;
   const std::vector<size_t>& asking_frames() const { return asking_; }
 
@@ -106,9 +108,9 @@ class RebinnedRays : public ImageConsumer {
   struct Facts {
     size_t section_count = 0;
     size_t cell_count = 0;
-    uint64_t looked_at = 0;  // LF pixels within the coverage maps
+    uint64_t looked_at = 0;  // number of LF pixels within the coverage maps
     double cpu_s = 0;        // CPU time of all threads
-    // true: all rays that finished frames need are kept; false: only those at edges
+    // true: all rays that finished frames need are kept; false: only their rays at edges
     bool keeps_all = false;
     bool is_full = false;        // true: cells were dropped because there were more than max_cells
     bool is_too_coarse = false;  // true if RayMap::is_too_coarse() is true for a section

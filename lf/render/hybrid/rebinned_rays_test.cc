@@ -24,7 +24,7 @@ struct Fixture {
     select.reach = PixelReach::kNeighbours;
     options.max_cells = 4000000;
     options.previews = Previews::kOn;
-    frames[2].aperture.radius_w = 0.0004;  // between the LF cameras
+    frames[2].aperture.radius_w = 0.0004;  // a small lens between the LF cameras
   }
 
   std::unique_ptr<RebinnedRays> Make(ThreadPool& pool) const {
@@ -135,7 +135,7 @@ TEST(RebinnedRays, TheSameForAnyThreadsBatchesAndInterruptions) {
       Fixture fixture;
       fixture.collects = collects;
       fixture.options.kept = kept;
-      if (kept == KeptRays::kEdges) fixture.options.max_cells = 900;  // far too few
+      if (kept == KeptRays::kEdges) fixture.options.max_cells = 900;  // far too few cells
       const Fixture::Outcome expected = fixture.Run(1, 16);
       EXPECT_GT(MeanShare(expected.completions[2]), 0.01);
       for (const size_t cells : expected.cells) EXPECT_LE(cells, fixture.options.max_cells);

@@ -13,7 +13,7 @@ namespace lf {
 
 struct RenderMemory {
   MemoryPlan plan;
-  size_t max_cells = 0;    // of rebinned rays; 0 if the mode is kCollect
+  size_t max_cells = 0;    // largest number of rebinned rays; 0 if the mode is kCollect
   size_t rebin_bytes = 0;  // memory of the rebinned rays, in addition to plan.total_bytes
 };
 
