@@ -11,7 +11,7 @@ class DumpClock {
   // Largest share of the time that checkpoints may take (doc/design.md, "Failure and load").
   static constexpr double kMostShare = 0.05;
 
-  //   every_s  seconds from the end of a checkpoint to the next; 0: never
+  //   every_s  seconds from the end of a checkpoint until the next is due; 0: none is ever due
   //   now_s    time of a monotonic clock, in seconds; all calls must use the same clock. The first
   //            checkpoint is due every_s later.
   DumpClock(double every_s, double now_s)

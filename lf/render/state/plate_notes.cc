@@ -22,8 +22,8 @@ std::string Words(std::span<const double> numbers) {
   return fmt::format("{}", fmt::join(numbers, " "));
 }
 
-// Returns the names, up to kMostBytes, as a JSON list. It consists of printable ASCII, because
-// names may have any bytes.
+// Returns the first names, as many as fit in kMostBytes, as a JSON list. It consists of printable
+// ASCII, because names may have any bytes.
 std::string NamesText(const std::vector<std::string>& names) {
   constexpr size_t kMostBytes = size_t{256} << 10;
   const auto text_of = [](const Json& json) {

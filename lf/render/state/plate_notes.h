@@ -32,7 +32,7 @@ struct PlateNotes {
   // TextOf() writes only the first names, up to 256 KiB.
   uint64_t skipped_count = 0;
   std::vector<std::string> skipped = {};
-  DevelopOptions develop;  // without completion and is_interrupted
+  DevelopOptions develop;  // completion and is_interrupted are unset
 
   // Facts about lens weights (render/collect/frame_lens.h); unset if there are no lens weights.
   struct Weighed {
@@ -47,7 +47,7 @@ struct PlateNotes {
 PlateEntries TextOf(const PlateNotes& notes);
 
 // Reads the entries that TextOf() returned. Numbers have the same bits as in the original notes.
-//   width_px, height_px  of the plate
+//   width_px, height_px  size of the plate
 // kInput: a key is missing, or its value is invalid. The message begins with `name`.
 Result<PlateNotes> PlateNotesOf(const PlateEntries& entries, int width_px, int height_px,
                                 const std::string& name);

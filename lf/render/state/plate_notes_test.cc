@@ -116,7 +116,7 @@ TEST(PlateNotes, FaultsAreNamed) {
   }
   EXPECT_NE(fault("sheet.aperture", "1 2 0"), "");
   EXPECT_NE(fault("sheet.develop", "0 0 1 1 1 1 0 0 0 1 0 0 0 1"), "");
-  EXPECT_EQ(fault("sheet.weights", {}), "");  // as for a frame without lens weights
+  EXPECT_EQ(fault("sheet.weights", {}), "");  // valid: a frame without lens weights
 }
 
 }  // namespace

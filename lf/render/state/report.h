@@ -40,8 +40,9 @@ struct FrameNoise {
 struct FrameReport {
   FrameId frame;
   FrameRays rays;
-  // The next three have one value for each of the channels R, G, B.
-  std::array<uint64_t, 3> empty_element_count{};  // without a collected ray, and not interpolated
+  // The next three have a number for each of the channels R, G, B: elements without a collected ray
+  // that are not interpolated; smallest and median number of rays that an element collected.
+  std::array<uint64_t, 3> empty_element_count{};
   std::array<uint64_t, 3> min_count{};
   std::array<uint64_t, 3> median_count{};
   double develop_s = 0;
@@ -66,13 +67,13 @@ struct FrameReport {
 
 // Facts about rebinned rays (render/hybrid/rebinned_rays.h).
 struct RebinReport {
-  size_t slab_count = 0;         // largest number in a pass
-  uint64_t cell_count = 0;       // largest number at the end of a pass
-  uint64_t looked_at_count = 0;  // LF pixels within the coverage maps
-  double cpu_s = 0;              // CPU time from LF pixels to cells
-  // Which of the rays that finished frames need were kept. "all": all of them; "edges": those at
-  // edges; "some": not even these, because there was no room. Unless it is "all", the picture of a
-  // frame depends on which other frames are rendered in the same pass.
+  size_t slab_count = 0;         // largest number of slabs in a pass
+  uint64_t cell_count = 0;       // largest number of cells at the end of a pass
+  uint64_t looked_at_count = 0;  // number of LF pixels within the coverage maps
+  double cpu_s = 0;              // CPU time to make cells from LF pixels
+  // Which of the rays that finished frames need were kept. "all": all of them; "edges": only rays
+  // at edges in the LF images; "some": not even all of these, because there was no room. Unless it
+  // is "all", the picture of a frame depends on which other frames are rendered in the same pass.
   std::string kept = "all";
 };
 
@@ -92,7 +93,7 @@ struct RenderReport {
   int thread_count = 0;
   size_t lf_image_count = 0;  // number of LF images of the light field
   bool has_masks = false;     // true if LF images have masks, as files or alpha; not in the JSON
-  size_t selected_image_count = 0;  // LF images that the largest pass reads
+  size_t selected_image_count = 0;  // largest number of LF images that a pass reads
   size_t pass_count = 0;
   std::vector<FrameReport> frames;
   // LF images that were skipped because they are missing or broken, each once.

@@ -1,5 +1,5 @@
 // The inputs of a frame as readable pairs of key and value. A resumed render compares its inputs
-// with those that it was begun with. If an input differs, the error message names it.
+// with the inputs that it was begun with. If an input differs, the error message names it.
 #pragma once
 
 #include <optional>
@@ -24,7 +24,7 @@ namespace lf {
 using RunInputs = std::vector<std::pair<std::string, std::string>>;
 
 // The options that decide the rays of a frame. The last three options decide only how its picture
-// is made of the rays.
+// is made from the rays.
 struct RunChoices {
   RayReading reading;
   CollectBackEnd back_end = CollectBackEnd::kFast;
@@ -68,7 +68,8 @@ inline constexpr const char* kFilmOfPackage = "picture.film";
 // same hash.
 std::string HashOfCameras(const CameraPath& path);
 
-// The first input that differs, and its two values. The value is "(none)" if a side lacks the key.
+// The first input that differs, and its values on both sides; "(none)" for a side that lacks the
+// key.
 struct InputDifference {
   std::string key;
   std::string recorded;

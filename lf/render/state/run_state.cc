@@ -145,7 +145,8 @@ Result<std::unique_ptr<RunState>> RunState::Open(const RunStateOptions& options,
   return state;
 }
 
-// Finds what an earlier run left, and continues, removes or refuses it, by the options.
+// Finds the state that an earlier run left. Depending on the options, reads it, removes it, or
+// returns an error.
 Result<void> RunState::FindEarlierRun() {
   RemoveTemporaryFiles(partial_, options_.frames, false);
   RemoveTemporaryFiles(options_.folder, options_.frames, !Name().empty());
@@ -216,7 +217,7 @@ Result<void> RunState::Read() {
     LF_ASSIGN_OR_RETURN(earlier_, ReadReport(run));
   }
   for (auto plate = plates_.begin(); plate != plates_.end();) {
-    if (finished_.contains(*plate)) {  // the process was killed before it removed it
+    if (finished_.contains(*plate)) {  // the process was killed before it removed the plate
       std::error_code ignored;
       fs::remove(PlatePath(*plate), ignored);
       plate = plates_.erase(plate);
@@ -236,7 +237,7 @@ Result<void> RunState::Read() {
 // to exist). Otherwise the frame is rendered again.
 bool RunState::IsKept(const fs::path& picture) const {
   if (!fs::exists(picture)) return false;
-  if (options_.shard) return true;  // it is checked when it is read
+  if (options_.shard) return true;  // the plate is checked when it is read
   const Result<void> whole = CheckFileIsWhole(picture);
   if (!whole) LogWarning("{}; the frame is rendered again", whole.error().message);
   return whole.has_value();

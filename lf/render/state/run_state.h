@@ -9,8 +9,9 @@
 //   frame_0001.exr    a picture of the unfinished frame, about as recent as its plate
 //   frame_0002.json   the report and the inputs of a finished frame
 //
-// The state of a shard (shard.h) is in DIR/partial/shard_1_of_5/, or NAME.shard_1_of_5/. Its
-// finished frames are plates, DIR/partial/shards/shard_1_of_5/frame_0001.plate.
+// The state of a shard (shard.h) is in DIR/partial/shard_1_of_5/, or in
+// DIR/partial/NAME.shard_1_of_5/ for a package NAME. The finished frames of a shard are plates,
+// DIR/partial/shards/shard_1_of_5/frame_0001.plate.
 #pragma once
 
 #include <filesystem>
