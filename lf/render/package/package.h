@@ -32,7 +32,7 @@ struct FrameSurroundings {
   double camera_distance_w = 0;  // approximate spacing of the LF cameras; 0: there are none
   double pixel_rad = 0;          // angle that one LF pixel covers
   Vec3 middle_world = Vec3::Zero();
-  double hole_w = 0;  // largest distance from a point of the lens to the nearest LF camera
+  double hole_w = 0;  // FrameSampling::hole_w: distance from lens points to LF cameras
 };
 
 // Options of the selection, which a render of the package cannot change.

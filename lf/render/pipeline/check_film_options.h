@@ -15,8 +15,8 @@ namespace lf {
 // lfrenderer does.
 //   options  as the caller has them; the function resolves them (Resolved())
 //   frames   numbers of the frames to render; empty: all frames of the package
-// Returns kUsage if the options are not compatible, and if the lens of a frame is a pinhole but
-// lens weights by area need its area.
+// Returns kUsage if the options are not compatible, or if the lens of a frame is a pinhole but lens
+// weights by area need its area.
 Result<void> CheckFilmOptions(const Package& package, const FilmOptions& options,
                               const std::vector<FrameId>& frames);
 

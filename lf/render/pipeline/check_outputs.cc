@@ -69,7 +69,7 @@ class Replaced {
  private:
   std::map<FileNumber, fs::path> numbers_;
   std::set<std::string, std::less<>> names_;
-  std::map<std::string, fs::path> paths_;  // canonical
+  std::map<std::string, fs::path> paths_;  // from the canonical path to the path as given
   std::map<fs::path, fs::path> folders_;   // from the path as written to the canonical path
 };
 

@@ -18,7 +18,7 @@ struct RenderedFrame {
   FrameReport report;  // without `samples` and `noise`, which FilmRenderer::Measure() adds
 };
 
-// Returns the notes by which DevelopFrame() makes the picture of the frame. The caller must still
+// Returns the notes from which DevelopFrame() makes the picture of the frame. The caller must still
 // set estimator, fps, develop.smooth_below and develop.fill_radius_px. It may set version,
 // places_done and the skipped LF images.
 PlateNotes MakePlateNotes(FrameId frame, const RenderCamera& camera, const FrameRays& rays,

@@ -46,15 +46,18 @@ struct FilmOptions {
   // rule is applied only at places of the order that are multiples of 64 (of 128, 256, ... if a
   // frame takes only a part of the LF images), so that the frame has the same bits in any run.
   std::optional<uint32_t> stop_at_samples;
-  std::optional<uint32_t> require_samples;  // if set, measured for the report of each frame
+  // If set, the report of each frame states the share of its elements that have this number of
+  // rays.
+  std::optional<uint32_t> require_samples;
   // If set, a frame is finished when its noise is at most this (noise_rule.h), in linear radiance
   // where the light field's white is 1. The rule is applied at the places that NoiseDecisionAfter()
   // gives. It can be combined with every mode, estimator, filter and weights: with kRebin, frames
   // collect rays only to measure the noise, and their pictures do not use these rays.
   std::optional<double> stop_at_noise;
-  std::optional<double> require_noise;  // if set, measured for the report of each frame
-  uint32_t smooth_below = 0;            // see DevelopOptions in film/develop/develop.h, also for
-                                        // fill_radius_px
+  // If set, the report of each frame states its noise beside this limit.
+  std::optional<double> require_noise;
+  // smooth_below and fill_radius_px: see DevelopOptions in film/develop/develop.h.
+  uint32_t smooth_below = 0;
   int fill_radius_px = kFillRadius_px;
 
   bool Collects() const { return lf::Collects(mode); }
@@ -81,7 +84,7 @@ FilmOptions Resolved(FilmOptions options, const Package& package);
 struct WorkOptions {
   size_t memory_bytes = size_t{8} << 30;
   bool strict = false;        // true: a broken LF image is an error; false: it is skipped
-  bool whole_images = false;  // SelectOptions::whole_images: slower
+  bool whole_images = false;  // SelectOptions::whole_images; true is slower
   // If not null: when any thread sets it to true, a step ends soon with kInterrupted. The caller
   // then clears the flag, and may continue with the next step.
   const std::atomic<bool>* interrupted = nullptr;

@@ -223,8 +223,8 @@ Result<void> FilmRenderer::PrepareRebinning(std::span<const PlaceRange> places,
 }
 
 // Selects the LF images to load. An LF image that is collected into plates has the rectangle of the
-// pixels to collect. Rebinned rays name the pixels that they need when an LF image is loaded
-// (ImageConsumer).
+// pixels to collect. When an LF image is loaded, RebinnedRays names the pixels that it needs of it
+// (ImageConsumer::RectOf()).
 void FilmRenderer::SelectForFrames(std::span<const PlaceRange> places) {
   images_.clear();
   if (film_.HasPlates()) {
@@ -259,7 +259,7 @@ void FilmRenderer::AddRebinnedImages(std::span<const PlaceRange> places) {
   images_ = std::move(all);
 }
 
-// With kRebin, the rebinned rays alone decide what the earlier run has of a frame. If it has none,
+// With kRebin, the earlier run kept only rebinned rays for the picture of a frame. If it kept none,
 // the frame is not finished early.
 void FilmRenderer::EndEarlyFrames() {
   if (film_.Collects()) return;

@@ -50,8 +50,8 @@ class EarlierRun {
   //            needed
   virtual Result<FrameProgress> LoadPlate(FrameId frame, SensorPlate* plate,
                                           std::optional<NoiseMoments>* moments) const = 0;
-  // The rebinned rays of a section (RebinnedRays::map()), made of the LF images before places_done.
-  // LoadRays() returns nullopt if the earlier run kept none.
+  // The rebinned rays of a section (RebinnedRays::map()), made from the LF images at places before
+  // places_done. LoadRays() returns nullopt if the earlier run kept none.
   struct Rays {
     RayMap map;
     uint32_t places_done = 0;
@@ -102,7 +102,7 @@ class FilmRenderer {
 
   // True if the frame is to be finished with the rays of the earlier run.
   bool EndsEarly(size_t f) const { return frames_[f].is_early; }
-  // Returns the frames that the stop rule has stopped and that are not released yet.
+  // Returns the indices of the frames that the stop rule has stopped and that are not released yet.
   std::vector<size_t> StoppedFrames() const;
   // Returns the end (exclusive) of the frame's places in the order: the place where its stop rule
   // stopped it, otherwise the end of the places that the frame takes. Does not depend on how the
@@ -115,12 +115,12 @@ class FilmRenderer {
   // Develops the rays that the frame has so far. The report lacks `samples` and `noise`, which
   // Measure() adds. Several threads may call the second form at the same time, for different
   // frames.
-  //   completion  of this frame, from Complete(); null if the mode has no rebinned rays
+  //   completion  result of Complete() for this frame; null if the mode has no rebinned rays
   // with_effective and is_interrupted are explained at DevelopFrame().
   RenderedFrame Develop(size_t f);
   RenderedFrame Develop(size_t f, const Completion* completion, bool with_effective,
                         const std::function<bool()>& is_interrupted) const;
-  // Adds the measurements of samples and noise that the options require to the report. Several
+  // Adds to the report the measurements of samples and noise that the options require. Several
   // threads may call it at the same time, for different frames. kInterrupted: WorkOptions::stop is
   // set.
   Result<void> Measure(size_t f, FrameReport* report);
@@ -134,11 +134,14 @@ class FilmRenderer {
   bool AreAllReleased() const;
 
   const FilmSetup& setup() const { return setup_; }
-  const std::vector<SelectedImage>& images() const { return images_; }  // that all steps load
-  CollectProgress progress() const { return done_; }                    // of the steps done
+  // The LF images that all steps together load.
+  const std::vector<SelectedImage>& images() const { return images_; }
+  // Progress of the steps so far.
+  CollectProgress progress() const { return done_; }
   std::span<const SkippedImage> skipped() const { return collector_->skipped(); }
   const CollectTimes& times() const { return collector_->times(); }
-  const RebinnedRays* rebinned() const { return rebinned_.get(); }  // may be null
+  // Null if the mode has no rebinned rays.
+  const RebinnedRays* rebinned() const { return rebinned_.get(); }
   // kInput: no LF image contributes to any frame, and no ray was collected before. This is so if no
   // recorded ray passes both a frame's lens and the region that the frame sees.
   Result<void> CheckAnyContributes() const;
@@ -152,17 +155,17 @@ class FilmRenderer {
   struct Frame {
     FrameId id;
     std::optional<FrameLens> lens;  // set by Begin()
-    RenderCamera camera;            // with this lens
+    RenderCamera camera;            // lens->camera()
     SensorPlate plate{0, 0};
-    NoiseMoments moments;          // of the plate; empty if noise is not measured
-    PlaceRange places;             // of the LF images that it takes, in all runs
-    FrameRays earlier_rays;        // in the plate when this run began
-    uint32_t decision_places = 0;  // stop_at_samples is decided at its multiples
+    NoiseMoments moments;          // moments of the plate; empty if noise is not measured
+    PlaceRange places;             // places of the LF images that the frame takes, in all runs
+    FrameRays earlier_rays;        // rays in the plate when this run began
+    uint32_t decision_places = 0;  // stop_at_samples is applied at multiples of this place
     uint32_t next_decision = 0;    // next place at which the stop rule is applied
     bool is_released = false;
-    bool is_stopped = false;  // by the stop rule, after the LF images before next_decision
+    bool is_stopped = false;  // true: stopped by its rule, with the LF images before next_decision
     bool has_noise = false;   // true if the moments include all LF images in the plate
-    bool is_early = false;    // true if it is finished with the rays of the earlier run
+    bool is_early = false;    // true if the frame is finished with the rays of the earlier run
     std::unique_ptr<ReachableElements> reachable;
   };
 
@@ -190,7 +193,7 @@ class FilmRenderer {
 
   std::unique_ptr<FilmSetup> own_setup_;  // null unless made by Open()
   const FilmSetup& setup_;
-  const FilmOptions& film_;  // of the setup
+  const FilmOptions& film_;  // options of the setup
   const SelectOptions select_;
   std::vector<Frame> frames_;
   std::vector<SelectedImage> images_;

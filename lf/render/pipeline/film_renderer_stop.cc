@@ -32,7 +32,7 @@ Result<void> FilmRenderer::PrepareStops(std::span<const PlaceRange> places,
     if (frame.is_released) continue;
     const ReachableElements& reachable = ReachableOf(f);
     if (film_.stop_at_samples) {
-      // The decision places of every frame are multiples of the smallest one.
+      // The decision_places of every frame is a multiple of the smallest one.
       frame.decision_places = DecisionPlaces(setup_.index().place_end(), reachable.image_count());
       collect->decision_places = collect->decision_places == 0
                                      ? frame.decision_places

@@ -26,7 +26,7 @@ class FilmSetup {
   // Resolves the options, opens the LF images and plans the memory. With kBilinear, also makes room
   // in the radiance encoding for values below black (MakeRoomForUndershoot()). The pool must
   // outlive the object.
-  //   frames  of the package, ascending; empty: all of its frames
+  //   frames  some frames of the package, ascending; empty: all of its frames
   // kUsage: the options are not compatible with each other or with the package.
   // kInput: the packed store lacks pixels of a frame (CheckKept() of render/needs/frame_needs.h).
   // kOutput: one frame needs more memory than memory_bytes; the message names the least memory that
@@ -55,7 +55,7 @@ class FilmSetup {
   // part of the film. Does nothing if the mode has no rebinned rays, or if the slabs are planned
   // already. kInterrupted: WorkOptions::stop is set.
   Result<void> PlanSlabs();
-  const FilmSlabs& slabs() const { return *slabs_; }  // after PlanSlabs()
+  const FilmSlabs& slabs() const { return *slabs_; }  // only after PlanSlabs()
 
  private:
   FilmSetup(Package package, const FilmOptions& film, const WorkOptions& work,

@@ -8,8 +8,8 @@
 
 namespace lf {
 
-// Returns "Software" and entries "lf:...", whose names end in their units. There is no time of day,
-// so that equal frames have equal files.
+// Returns "Software" and entries "lf:...". The name of an entry ends in the unit of its value, if
+// it has one. No entry is a time of day, so that equal frames have equal files.
 ImageMetadata FrameMetadata(FrameId frame, const RenderCamera& camera, const FrameRays& rays,
                             Estimator estimator, double fps, const std::string& version);
 

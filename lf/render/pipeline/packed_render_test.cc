@@ -134,7 +134,7 @@ TEST_F(PackedRenderTest, OneDamagedCodeIsOneSkippedImage) {
   ASSERT_EQ(report->skipped.size(), 1u);
   EXPECT_EQ(report->skipped[0].name, "image5.png");
   EXPECT_NE(report->skipped[0].reason.find("store.lfs/image5.png: "), std::string::npos);
-  // The frames are those of a light field without the image.
+  // The frames are those of a light field without this LF image.
   std::filesystem::remove(field_.ImagePath({5}));
   ASSERT_TRUE(RenderTo("files", field_));
   EXPECT_EQ(Frames("files"), Frames("frames"));

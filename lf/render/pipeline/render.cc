@@ -352,8 +352,9 @@ Result<void> Renderer::RunPass(const PassContext& context, std::span<const Frame
   done_.ray_total = done_.ray_count + rays * passes_left;
   LF_RETURN_IF_ERROR(pass.Collect());
 
-  // The number of passes depends on the memory, but whether this error occurs must not. It is
-  // therefore returned only if every LF image of every pass is broken.
+  // CheckNotAllBroken() of one pass would make the result depend on the number of passes, and
+  // thereby on the memory. Its error is therefore returned only after the last pass, and only if
+  // every LF image of every pass is broken.
   all_broken_ = all_broken_ && pass.renderer().AllBroken();
   const bool is_last = frames_left == frames.size();
   if (all_broken_ && is_last && !setup_->film().shard && !pass.renderer().skipped().empty() &&

@@ -50,16 +50,16 @@ struct FolderOptions {
   // say at which place of the order they ended. A frame without rays in the state is rendered as
   // usual. Needs `resume`; must be empty for a shard.
   std::vector<FrameId> finish_early;  // ascending
-  std::string version;                // of the program, for the metadata of the files
+  std::string version;                // version of the program, for the metadata of the files
 };
 
 // If FilmOptions::shard is set, the render writes plates for MergeShards() instead of frames and a
 // contact sheet.
 struct RenderOptions {
-  std::vector<FrameId> frames;  // some of the package, ascending; empty: all
-  FilmOptions film;             // what the frames are made of
-  WorkOptions work;             // how the work is done; Render() takes its flags from `signals`
-  FolderOptions folder;         // where the frames are written
+  std::vector<FrameId> frames;       // some frames of the package, ascending; empty: all
+  FilmOptions film;                  // what the frames are made of
+  WorkOptions work;                  // how the work is done; its flags become those of `signals`
+  FolderOptions folder;              // where the frames are written
   RenderSignals* signals = nullptr;  // read often; may be null
 };
 
@@ -68,7 +68,7 @@ struct RenderProgress {
   size_t frame_total = 0;
   uint64_t ray_count = 0;  // rays that are tested; ray_total is an estimate
   uint64_t ray_total = 0;
-  size_t image_count = 0;  // LF images that are read; image_total: in all passes
+  size_t image_count = 0;  // LF images that are read, in all passes; image_total is an estimate
   size_t image_total = 0;
 };
 
@@ -78,8 +78,8 @@ struct RenderProgress {
 // a frame is a pinhole, but lens weights by area need its area.
 Result<void> CheckRenderOptions(const Package& package, const RenderOptions& options);
 
-// Puts the LF images of a whole light field (a package without surroundings) in the order that
-// suits the film and the options: sets package->places.
+// Puts the LF images of a whole light field (a package without surroundings) in `order`, computed
+// for the film and the options: sets package->places and package->choices.order.
 // kUsage: the options are not compatible. kInterrupted: RenderSignals::stop is set.
 Result<void> PutInOrder(ImageOrder order, const RenderOptions& options, ThreadPool& pool,
                         Package* package);

@@ -242,7 +242,8 @@ Result<std::vector<PackagePart>> PartsWith(const PackagedFilm& film,
   return parts;
 }
 
-// Other packages are likely to be rendered into the same folder as a single package.
+// A single package gets a contact sheet with its own name, because other packages are likely to be
+// rendered into the same folder.
 std::string ContactSheetName(const std::vector<fs::path>& paths) {
   return paths.size() == 1 ? fmt::format("contact_sheet-{}.png", paths.front().stem().string())
                            : kContactSheet;

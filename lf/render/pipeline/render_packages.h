@@ -20,7 +20,7 @@ namespace lf {
 // Location and identity of the packages' light field, whose files may have moved since the packages
 // were made.
 struct LightFieldPlace {
-  std::string name;  // for messages
+  std::string name;  // name of the light field in messages
   LightFieldIdentity identity;
   // Only for a packed store: the light field that the store was made from.
   std::optional<LightFieldIdentity> whole;
@@ -28,7 +28,7 @@ struct LightFieldPlace {
 };
 
 // Returns the LightFieldPlace of an opened light field.
-//   name  for messages
+//   name  name of the light field in messages
 // kInput: a damaged packed store.
 Result<LightFieldPlace> PlaceOf(const std::string& name, const LightField& light_field);
 
@@ -76,9 +76,9 @@ Result<std::vector<PackagePart>> PartsWith(const PackagedFilm& film,
 // Returns "contact_sheet.png"; if there is a single package NAME.lfp, "contact_sheet-NAME.png".
 std::string ContactSheetName(const std::vector<std::filesystem::path>& paths);
 
-// Renders one package after the other with Render(), each with its own report and state. Then
-// writes the contact sheet (ContactSheetName()) and the video of the frames of all packages. Of
-// options.frames, each package renders those that it contains. Returns one report about all
+// Renders one package after the other with Render(), each with its own report and state. Each
+// package renders those of options.frames that it contains. Then writes the contact sheet
+// (ContactSheetName()) and the video of the frames of all packages. Returns one report about all
 // packages. If a package file was changed since the film was opened, it is checked again.
 // kInput: every frame of a whole film is black. Other errors are those of Render() and PartsWith().
 Result<RenderReport> RenderPackages(PackagedFilm film, const RenderOptions& options,

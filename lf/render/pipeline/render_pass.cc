@@ -185,7 +185,7 @@ Result<FrameReport> RenderPass::WriteFiles(size_t f, const Completion* completio
 Result<void> RenderPass::WriteFinishedPlate(size_t f, std::filesystem::path path) const {
   const FilmSetup& setup = context_.setup;
   FrameProgress progress = renderer_.Progress(f);
-  progress.places_done = renderer_.PlaceOfEnd(f);  // must not depend on passes
+  progress.places_done = renderer_.PlaceOfEnd(f);  // places_done must not depend on the passes
   PlateEntries text = context_.state.PlateText(ids_[f], progress, renderer_.moments(f));
   PlateNotes notes = NotesOf(f);
   notes.skipped = SkippedOf(

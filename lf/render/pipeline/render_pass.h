@@ -29,9 +29,10 @@ struct PassContext {
   RenderSignals* signals;  // may be null
   RunState& state;
   DumpClock& clock;
-  RenderReport& totals;  // of finished passes and earlier runs; total_s: of earlier runs only
-  double begin_s;        // time when this run began
-  size_t& black_count;   // frames that no LF image contributes to
+  // Totals of finished passes and earlier runs; its total_s is that of earlier runs alone.
+  RenderReport& totals;
+  double begin_s;       // time when this run began
+  size_t& black_count;  // number of frames that no LF image contributes to
   std::function<void(const CollectProgress&, size_t finished_count)> progress;
 };
 
@@ -56,7 +57,7 @@ class RenderPass : private EarlierRun {
   Result<void> Finish();
 
  private:
-  // How far a frame is in the folder.
+  // How much of a frame is saved in the folder.
   struct Saved {
     uint32_t places = 0;   // places_done of the plate in the state on the disk
     double picture_s = 0;  // NowSeconds() when its picture was last written

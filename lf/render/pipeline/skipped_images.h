@@ -18,7 +18,7 @@ struct FrameTakes {
   const FrameLens& lens;
   PlaceRange places;
   PixelReach reach = PixelReach::kOwn;
-  std::optional<Shard> shard;  // of the render; unset: all LF images
+  std::optional<Shard> shard;  // shard of the render; unset: all LF images
 };
 
 // Returns the names of the skipped LF images that the frame would have taken, ascending by
