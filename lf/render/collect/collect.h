@@ -31,8 +31,9 @@ inline constexpr uint32_t kDecisionPlaces = 64;
 struct CollectOptions {
   RayReading reading;
   CollectBackEnd back_end = CollectBackEnd::kFast;
-  // Largest number of LF images in a batch: they are collected together into a tile of a plate. The
-  // next batch is decoded at the same time, so that twice this number of LF images is in memory.
+  // Largest number of LF images in a batch. A thread adds all LF images of a batch to one tile of a
+  // plate before it takes another tile. The next batch is decoded at the same time, so that twice
+  // this number of LF images is in memory.
   int batch_image_count = 16;
   // Largest number of rays that a batch of two or more LF images tests. batch_ray_count limits the
   // rays in all frames to some seconds of work, so that progress can be reported and a state be
@@ -55,7 +56,7 @@ struct CollectOptions {
   // package must set it, because its places are those of the whole light field.
   uint32_t place_end = 0;
   bool strict = false;  // true: a broken LF image is an error; false: it is skipped
-  const std::atomic<bool>* interrupted = nullptr;  // may be null; read about every 10 ms
+  const std::atomic<bool>* interrupted = nullptr;  // may be null; true: Step() returns kInterrupted
 };
 
 // Progress of a frame. Its plate has the rays of exactly those LF images that the frame takes and

@@ -82,9 +82,9 @@ class FrameLens {
   std::map<uint32_t, size_t> cameras_;  // from LfImageId to index in weights_
 };
 
-// Returns the side of these squares, in elements.
+// Returns the side of the squares of FrameLens::EffectiveCounts(), in elements.
 int EffectiveStep(const Intrinsics& plate);
-// Returns the numbers of columns and rows of squares on a plate.
+// Returns the numbers of columns and rows of these squares on a plate.
 std::pair<int, int> EffectiveSquares(const Intrinsics& plate);
 // Interpolates effective numbers to every element, ignoring those that are 0. Returns
 // [height][width].

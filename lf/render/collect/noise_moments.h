@@ -117,7 +117,7 @@ class NoiseTally {
       for (int c = 0; c < SensorPlate::kChannels; ++c) before_[i][c] = total_of(i, c);
   }
 
-  // Adds what was added to the totals since the last call to the moments, as one LF image.
+  // Adds to the moments, as one LF image, what the totals have gained since the last call.
   template <class TotalOf>
   void TakeImage(const TotalOf& total_of) {
     for (size_t i = 0; i < elements_.size(); ++i)

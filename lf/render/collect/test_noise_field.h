@@ -19,7 +19,7 @@ namespace lf::testing {
 inline constexpr int kWidth = 64, kHeight = 48;
 
 // Returns a grid of `side` x `side` LF cameras with jittered positions, whose LF images are noise
-// (NoiseStore). NoiseFrames() look at them with wide lenses.
+// (NoiseStore). NoiseFrames() returns frames with wide lenses for this light field.
 inline LightField NoiseField(uint32_t side = 7) {
   LightField field;
   field.intrinsics = {{70, 70, 32, 24, 0, kWidth, kHeight}};

@@ -43,8 +43,8 @@ LensGaps::LensGaps(const ImageIndex& index, const RenderCamera& frame,
 }
 
 // Chooses the number of nodes. From one node to the next, the point where an LF camera's ray meets
-// the lens plane shall move by at most half the distance kCoveredDistances. There are kLeastNodes
-// to kMostNodes columns and rows, and at most kMostNodeValues values unless kLeastNodes need more.
+// the lens plane shall move by at most half of kCoveredDistances. There are kLeastNodes to
+// kMostNodes columns and rows, and at most kMostNodeValues values unless kLeastNodes need more.
 void LensGaps::SetNodes(const std::vector<LfImageId>& near, const ImageIndex& index) {
   constexpr size_t kAsked = 64;
   const RenderCamera& frame = all_.camera;

@@ -9,8 +9,8 @@
 namespace lf {
 namespace {
 
-// Returns `rows` rows of 12 parallel LF cameras, 0.01 apart, in the lens plane of a frame with z =
-// 0.
+// Returns `rows` rows of 12 parallel LF cameras, 0.01 apart, in the plane z = 0, which is the lens
+// plane of Frame() by default.
 LightField Grid(int rows = 12) {
   LightField field;
   field.intrinsics = {{70, 70, 32, 24, 0, 64, 48}};

@@ -14,8 +14,8 @@
 namespace lf {
 namespace {
 
-// Largest number of LF pixels, about, whose rays are computed before they are inserted into the
-// map. A ray that waits takes 16 bytes.
+// Approximate largest number of LF pixels whose rays are computed before these rays are inserted
+// into the map. A ray that waits to be inserted takes 16 bytes.
 constexpr long long kPixelsAtOnce = 4 << 20;
 // If all rays are kept, LF images are divided into strips of this number of rows, which limits the
 // number of rays that wait.
@@ -49,7 +49,7 @@ const char* NameOf(KeptRays kept) {
 struct RebinnedRays::Section {
   SlabSection plan;        // begin and end are indices of asking_
   CoverageMap in_the_end;  // covers the rays that finished frames need
-  CoverageMap previews;    // covers the rays that previews of this phase need
+  CoverageMap previews;    // covers the rays that previews of the current phase need
   std::unique_ptr<RayMap> map;
   uint32_t phase = 0;
   uint32_t places_done = 0;

@@ -14,7 +14,7 @@ namespace lf {
 bool IsPackageName(const std::filesystem::path& path);
 
 struct PackageNotes {
-  std::string version;      // of the program
+  std::string version;      // version of the program
   std::string light_field;  // LIGHTFIELD, as the user gave it
 };
 

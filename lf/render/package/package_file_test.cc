@@ -45,7 +45,7 @@ Package TestPackage() {
         {pair.lf_camera.cam_from_world, i % 10, 0.5f + 0.1f * static_cast<float>(i)});
     if (i % 4 == 1) field.cameras.back().gain = {1.0f / 3, 1, 2.0f / 3};
     if (i % 3 == 1 && i < 10) field.intrinsics.back().vignetting.v = {-1e-9 / 3, 0, 0.0025};
-    if (i == 1) {  // brackets
+    if (i == 1) {  // LF images 0 and 1 are a bracket
       field.cameras[1].cam_from_world = field.cameras[0].cam_from_world;
       field.cameras[1].intrinsics_index = 0;
     }

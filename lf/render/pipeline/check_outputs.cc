@@ -54,7 +54,7 @@ class Replaced {
     const auto found = numbers_.find(*number);
     return found == numbers_.end() ? nullptr : &found->second;
   }
-  // Returns the output whose canonical path is that of folder/name with links to folders followed;
+  // Returns the output whose canonical path equals folder/name after links to folders are followed;
   // null if there is none. Accesses the disk once for each folder, and not for each file.
   const fs::path* FindByName(const fs::path& folder, const std::string& name) {
     if (!names_.contains(NameIn(name))) return nullptr;
@@ -70,7 +70,7 @@ class Replaced {
   std::map<FileNumber, fs::path> numbers_;
   std::set<std::string, std::less<>> names_;
   std::map<std::string, fs::path> paths_;  // from the canonical path to the path as given
-  std::map<fs::path, fs::path> folders_;   // from the path as written to the canonical path
+  std::map<fs::path, fs::path> folders_;   // from a folder as given to its canonical path
 };
 
 Error Refusal(const fs::path& output, std::string_view what, const fs::path& input) {

@@ -1,4 +1,5 @@
-// Work before a render starts: checks its options, and puts the LF images in order.
+// The functions of render.h that run before a render starts: they check its options, and put the LF
+// images in order.
 #include "lf/render/needs/film_order.h"
 #include "lf/render/pipeline/check_film_options.h"
 #include "lf/render/pipeline/check_outputs.h"

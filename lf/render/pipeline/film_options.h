@@ -28,8 +28,9 @@ struct FilmOptions {
   // The filter must not be kMosaic if the estimator is kBilinear and CountsRays() is true, because
   // the filter counts a ray up to 8 times.
   RayReading reading;
-  // Must be kNone if CountsRays() is true, because weighted counts are not ray counts, and if the
-  // package has no neighbours.
+  // If CountsRays() is true, must be kNone or kAuto (which Resolved() then replaces by kNone),
+  // because weighted counts are not ray counts. Otherwise, must be kNone if the package has no
+  // neighbours.
   LensWeights lens_weights = LensWeights::kNone;
   CollectBackEnd back_end = CollectBackEnd::kFast;
 
@@ -46,15 +47,15 @@ struct FilmOptions {
   // rule is applied only at places of the order that are multiples of 64 (of 128, 256, ... if a
   // frame takes only a part of the LF images), so that the frame has the same bits in any run.
   std::optional<uint32_t> stop_at_samples;
-  // If set, the report of each frame states the share of its elements that have this number of
-  // rays.
+  // If set, the report of each frame states the share of its reachable elements that have this
+  // number of rays.
   std::optional<uint32_t> require_samples;
   // If set, a frame is finished when its noise is at most this (noise_rule.h), in linear radiance
   // where the light field's white is 1. The rule is applied at the places that NoiseDecisionAfter()
   // gives. It can be combined with every mode, estimator, filter and weights: with kRebin, frames
   // collect rays only to measure the noise, and their pictures do not use these rays.
   std::optional<double> stop_at_noise;
-  // If set, the report of each frame states its noise beside this limit.
+  // If set, the report of each frame states its noise and this limit.
   std::optional<double> require_noise;
   // smooth_below and fill_radius_px: see DevelopOptions in film/develop/develop.h.
   uint32_t smooth_below = 0;

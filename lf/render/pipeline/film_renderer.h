@@ -6,8 +6,9 @@
 //     Show(renderer->Develop(0).picture);                  // the frame with the rays so far
 //   }
 //
-// Between two steps, every frame has exactly the rays of the LF images before one place of the
-// order. Frames have the same bits however the work is divided into batches.
+// Between two steps, every frame has exactly the rays of those LF images that it takes and that
+// come before one place of the order. Frames have the same bits however the work is divided into
+// batches.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// The parts of FilmRenderer that stop frames by a rule, and measure finished ones.
+// The parts of FilmRenderer that stop frames by a rule, and measure finished frames.
 #include <algorithm>
 #include <cmath>
 

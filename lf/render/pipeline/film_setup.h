@@ -28,7 +28,8 @@ class FilmSetup {
   // outlive the object.
   //   frames  some frames of the package, ascending; empty: all of its frames
   // kUsage: the options are not compatible with each other or with the package.
-  // kInput: the packed store lacks pixels of a frame (CheckKept() of render/needs/frame_needs.h).
+  // kInput: the packed store lacks pixels that a frame needs (CheckKept() of
+  // render/needs/frame_needs.h).
   // kOutput: one frame needs more memory than memory_bytes; the message names the least memory that
   // suffices.
   static Result<std::unique_ptr<FilmSetup>> Make(Package package, const FilmOptions& film,

@@ -219,9 +219,9 @@ class Merger {
     return {};
   }
 
-  // Warns about frames without plates between others. It is no error, because lfrenderer --frames
-  // may have left them out on purpose. Without the warning, a user who forgot the plates of one
-  // machine would only get a shorter film.
+  // Warns about frames without plates between frames with plates. It is no error, because
+  // lfrenderer --frames may have left them out on purpose. Without the warning, a user who forgot
+  // the plates of one machine would only get a shorter film.
   void WarnOfGaps() const {
     std::vector<std::string> gaps;
     for (auto next = std::next(frames_.begin()); next != frames_.end(); ++next) {

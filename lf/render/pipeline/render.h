@@ -38,7 +38,7 @@ struct FolderOptions {
   FrameFormat format = FrameFormat::kExrHalf;
   std::optional<std::filesystem::path> video;  // an mp4 of the frames; must be unset for a shard
   bool contact_sheet = true;                   // contact_sheet.png beside the frames
-  bool keep_plates = false;  // writes frame_0001.plate, ...; not with kRebin or a shard
+  bool keep_plates = false;  // writes frame_0001.plate, ...; must be false with kRebin or a shard
 
   // Interval between checkpoints (run_state.h), in seconds; 0: checkpoints are written only when a
   // signal requests one. The interval is extended if checkpoints would take more than 5 % of the
@@ -46,9 +46,9 @@ struct FolderOptions {
   double dump_every_s = 30;
   bool resume = false;     // continue with the state in the folder
   bool overwrite = false;  // remove the state in the folder
-  // Frames to finish at once with the rays that the state in the folder has of them. Their reports
-  // say at which place of the order they ended. A frame without rays in the state is rendered as
-  // usual. Needs `resume`; must be empty for a shard.
+  // Frames to finish at once, with the rays that the state in the folder already has of each. The
+  // report of such a frame says at which place of the order it ended. A frame without rays in the
+  // state is rendered as usual. Needs `resume`; must be empty for a shard.
   std::vector<FrameId> finish_early;  // ascending
   std::string version;                // version of the program, for the metadata of the files
 };

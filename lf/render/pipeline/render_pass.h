@@ -40,8 +40,7 @@ class RenderPass : private EarlierRun {
  public:
   //   frames  frames of the pass, ascending. Finished frames are not rendered, but must be listed,
   //           because which rebinned rays are kept depends on all frames of the pass.
-  //   early   those of the frames that are to be finished with the rays of the state alone,
-  //           ascending
+  //   early   those of `frames` that are to be finished with the rays of the state alone, ascending
   RenderPass(const PassContext& context, std::span<const FrameId> frames,
              std::span<const FrameId> early);
 

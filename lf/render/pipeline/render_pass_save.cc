@@ -8,8 +8,8 @@
 namespace lf {
 namespace {
 
-// Largest share of the time that checkpoints may spend on pictures: half of the share that they may
-// take in all (dump_clock.h).
+// Largest share of the time that checkpoints may spend on pictures: half of the share that
+// checkpoints may take altogether (dump_clock.h).
 constexpr double kPictureShare = DumpClock::kMostShare / 2;
 // Time for pictures after a signal to stop, in addition to the time for the plates.
 constexpr double kLastPictures_s = 2;

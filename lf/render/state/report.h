@@ -47,7 +47,7 @@ struct FrameReport {
   std::array<uint64_t, 3> median_count{};
   double develop_s = 0;
   std::optional<FrameSamples> samples;  // set if a rule of samples was given
-  RunInputs camera;                     // InputsOfCamera()
+  RunInputs camera;                     // result of InputsOfCamera()
   // Facts about lens weights; unset if there are none. With lens weights, counts are sums of
   // weights.
   struct Weighed {
