@@ -138,7 +138,7 @@ class NeededPixelsTest(ProgramTestCase):
                    RENDERER, *packages, "--lightfield", store, "--mode", "rebin", "-o",
                    self.folder / "none")
         self.assertFalse(list((self.folder / "none").glob("frame_*")))
-        # lfpreprocessor does not make packages from the store that could not be rendered from it.
+        # lfpreprocessor writes no package if the packed store lacks pixels that the package needs.
         self.fails(3, ["frame 1 needs pixels of", "not in this packed store"],
                    PREPROCESSOR, store, path, "--mode", "rebin", "-o", self.folder / "made")
         self.assertFalse(list((self.folder / "made").glob("*.lfp")))

@@ -27,8 +27,8 @@ void AddKeptRays(OptionGroup& group, RebinArguments& a) {
                   "Average rays that are not kept into existing cells\n"
                   "This gives less noise and takes more time.");
   group.AddChoice("--preview", a.preview, {"auto", "on", "off"},
-                  "Keep rays for unfinished pictures of --mode hybrid\n"
-                  "Such rays are kept until enough LF images are collected.\n"
+                  "Interpolate previews of frames in --mode hybrid\n"
+                  "Rays are kept for unfinished frames until enough LF images are collected.\n"
                   "auto: on for frames that need more than 256 LF images");
 }
 
@@ -90,9 +90,9 @@ void AddInterpolation(OptionGroup& group, RebinArguments& a) {
            "noise.")
       ->check(CLI::Range(1, 8));
   group.AddChoice("--reparameterise", a.reparameterise, {"on", "off"},
-                  "Where distances between rays are measured\n"
-                  "on: on the lens and the focus plane of each frame\n"
-                  "off: on the planes of the slab");
+                  "Measure distances of rays on lens and focus plane\n"
+                  "on: of each frame\n"
+                  "off: distances are measured on the planes of the slab");
 }
 
 void AddSlab(OptionGroup& group, RebinArguments& a) {
@@ -132,7 +132,7 @@ void RebinArguments::AddTo(CLI::App& app) {
   OptionGroup measuring(app, kMeasuringGroup);
   measuring
       .Add("--nearest N", nearest,
-           "Interpolate from the N nearest rays (within 3 sigma)\n"
+           "Interpolate from the N nearest rays (all within 3 sigma)\n"
            "Needs --back-end reference. Uses the N nearest rays, at any distance. 0: uses all rays "
            "within 3 sigma.")
       ->check(CLI::Range(0, 1000));

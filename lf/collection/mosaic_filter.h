@@ -2,18 +2,20 @@
 // which it was interpolated (doc/ray.md, "What is added"). It calculates in integers and single
 // precision, so that results are bit-identical everywhere. Internal to collection.
 //
-// The share k of a pixel in a colour is kRecordedShare, or 1 if the colour was interpolated there.
+// The share s of a pixel in a colour is kRecordedShare, or 1 if the colour was interpolated there.
 //
-// The columns of sixteen pixels are mixed as in cubic_weights.h, but with shares,
-//   column_k = round(sum_i d_i k_ik (p_ik - 2^15) / 2^10),   d = CubicTapsAt(down, 11)
-//   S = sum_k c_k column_k,  D = sum_k c_k sum_i d_i k_ik,   c = CubicTapsAt(right, 11)
-// and the ray's value is 2^10 S / D + 2^15, rounded half up, clipped to 16 bits. The ray counts as
+// A ray interpolated between sixteen pixels p_ik, in rows i and columns k, mixes columns as in
+// cubic_weights.h, but with the shares s_ik of the pixels:
+//   column_k = round(sum_i d_i s_ik (p_ik - 2^15) / 2^10),   d = CubicTapsAt(down, 11)
+//   S = sum_k c_k column_k,  D = sum_k c_k sum_i d_i s_ik,   c = CubicTapsAt(right, 11)
+// The ray's value is 2^10 S / D + 2^15, rounded half up, clipped to 16 bits. The ray counts as
 // D / 2^22 rays, rounded half up: from 1 to kRecordedShare, because the weights of every second
 // pixel add up to a number from 0 to 1. All sums fit into 32 bits.
 //
-// A ray of four pixels lies `right` / 256 px to the right of the upper left one and `down` / 256 px
-// below it. The bilinear weights a_x a_y of the pixels add up to 2^16, and each pixel gets
-//   t = floor(a_x a_y k / 2^9).
+// A ray interpolated between four pixels lies `right` / 256 px to the right of the upper left one
+// and `down` / 256 px below it. The bilinear weights a_x a_y of the pixels add up to 2^16, and each
+// pixel gets
+//   t = floor(a_x a_y s / 2^9).
 // With D = sum t and S = sum t p, at most 2^10 and 2^26, the ray's value is S / D, rounded half
 // up, and it counts as D / 2^7 rays, rounded half up.
 #pragma once

@@ -9,7 +9,8 @@
 //   change   min(|left + right + above + below - 4 here| >> 4, 65535), of values of smooth
 //   p        min((change * alpha >> 8) + xi, 65535)  where change >= beta, else 0
 //
-// If p is smoothed again, it takes the place of grey, and the result is (smooth + 8) >> 4.
+// If p itself is smoothed (second_sigma_px), it takes the place of grey, and the result is (smooth
+// + 8) >> 4.
 #pragma once
 
 #include <algorithm>

@@ -94,9 +94,9 @@ Result<Head> ReadHead(const entry_file::Source& source, const std::string& bytes
   std::memcpy(&head, bytes.data(), sizeof(head));
   if (head.shard_count != RayMap::kShards || head.is_too_coarse > 1)
     return InputError(
-        fmt::format("{}: has {} shards, and the mark {} for cells that are too coarse: expected {} "
-                    "shards, and 0 or 1",
-                    source.name(), head.shard_count, head.is_too_coarse, RayMap::kShards));
+        fmt::format("{}: is damaged: it states {} shards, expected {}, and {} as 'cells are too "
+                    "coarse', expected 0 or 1; make it again",
+                    source.name(), head.shard_count, RayMap::kShards, head.is_too_coarse));
   constexpr uint64_t kLeast = RayMap::kShards * sizeof(ShardHead);
   if (source.left() < kLeast || head.cell_count > (source.left() - kLeast) / sizeof(BinnedCell))
     return InputError(

@@ -33,7 +33,7 @@ class InnerMosaic {
   }
 
   // Each channel is the value of the pixel itself, or the mean of two or four neighbours. It is
-  // always computed as a sum of four values.
+  // always computed as the mean of four values, some of which are then equal pixels.
   std::array<uint16_t, 3> At(const uint16_t* v, int x, int y) const {
     std::array<uint16_t, 3> rgb;
     const std::array<FourOffsets, 3>& of = offsets_[2 * (y & 1) + (x & 1)];

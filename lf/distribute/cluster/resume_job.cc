@@ -144,7 +144,7 @@ Result<void> CancelJob(const ClusterJob& job, const std::atomic<bool>& stop) {
   if (IsAtWork(status))
     return OutputError(
         fmt::format("{} packages are still running: they end as soon as they see {}; lfsubmit "
-                    "--status shows whether they have",
+                    "--status shows whether they have ended",
                     status.Count(TaskPhase::kRunning), job.CancelFile().string()));
   LogInfo("cancelled: {} of {} frames are done, and the state of the others is kept; {}",
           status.frames_done(), status.frame_total(), again);

@@ -37,8 +37,8 @@ struct ExposureFit {
   uint32_t component_count = 0;
   size_t sample_count = 0;  // number of samples, over all channels, that agree with the result
   double step = 0;          // mean |ln ratio| that remains in these samples
-  // Standard deviation of ln ratio over the places that two LF images share; median over all pairs
-  // of images.
+  // Robust standard deviation of what the fit leaves of ln ratio in the samples of one pair of LF
+  // images; median over all pairs.
   double spread = 0;
   // Final robust weight of each sample, in [0, 1]: the weight of the channel that agrees best; 0 if
   // no channel agrees, or if the images are kAlone.

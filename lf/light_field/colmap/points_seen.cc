@@ -63,7 +63,7 @@ Result<std::vector<Vec3>> ParseColmapPointsSeen(ColmapStreams streams, uint32_t 
   const std::optional<uint32_t> image_id = scene.ImageIdAt(position);
   if (!image_id)
     return InputError(
-        fmt::format("{}: has {} images, but image {} of them is needed: the file was replaced "
+        fmt::format("{}: has {} images, but image {} is needed: the file was replaced "
                     "while the program ran; start again",
                     streams.images.path().string(), scene.image_count(), position + 1));
   ColmapPointsSeen seen(*image_id, camera);

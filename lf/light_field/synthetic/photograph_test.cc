@@ -160,7 +160,8 @@ TEST(Photograph, ALensOfOnePointIsAPinhole) {
     EXPECT_NEAR(lens.pixels()[i], pinhole.pixels()[i], 1e-4F);
 }
 
-// In a white room, a white ball's brightness equals its opacity.
+// A white ball in white ambient light has radiance 1, so that the premultiplied colour of each
+// pixel equals its alpha.
 TEST(Photograph, BeforeTransparentSurroundingsAlphaIsTheShareOfRaysThatMeetASurface) {
   ThreadPool pool(2);
   const Scene scene = WhiteBall({0.2, 0.1, 4}, 1);

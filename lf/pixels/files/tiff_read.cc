@@ -122,7 +122,8 @@ Result<void> TiffDecoder::CheckBlocksLieInFile() const {
   for (uint32_t index = 0; index < count; ++index) {
     const Block block = BlockAt(index);
     const uint64_t offset = TIFFGetStrileOffset(handle_->tiff(), index);
-    // libtiff reads no more than the pixels if they are not compressed, whatever the count.
+    // libtiff reads no more bytes of an uncompressed block than its pixels need, even if the file
+    // states a larger number.
     const uint64_t bytes = layout_.compression == COMPRESSION_NONE
                                ? block.bytes
                                : TIFFGetStrileByteCount(handle_->tiff(), index);

@@ -44,8 +44,9 @@ struct PackageChoices {
   std::optional<size_t> max_image_count;
   // Largest angle between the axes of LF camera and frame. Unset: no limit.
   std::optional<double> max_angle_rad;
-  // True if the package has the LF cameras beside the lens. Lens weights are measured against them,
-  // and rebinned rays are made from their LF images.
+  // True if the package also has the LF cameras around the lens (neighbours). They bound the part
+  // of the lens that each LF camera gets as its lens weight, and rebinned rays are made from their
+  // LF images.
   bool has_neighbours = true;
   // Render mode for which the images' `rect` and `frame_count` are computed: "collect", "rebin" or
   // "hybrid" (render/hybrid/render_mode.h). A package with neighbours can be rendered in any mode

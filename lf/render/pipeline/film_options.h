@@ -89,8 +89,9 @@ struct WorkOptions {
   // If not null: when any thread sets it to true, a step ends soon with kInterrupted. The caller
   // then clears the flag, and may continue with the next step.
   const std::atomic<bool>* interrupted = nullptr;
-  // If not null: when any thread sets it to true, every function ends soon with kInterrupted. That
-  // thread must then set `interrupted` to true, because a step reads only that flag.
+  // If not null: when any thread sets it to true, all functions that take these options end soon
+  // with kInterrupted. That thread must then set `interrupted` to true as well, because a step
+  // (FilmRenderer::Step()) reads only `interrupted`.
   const std::atomic<bool>* stop = nullptr;
 
   bool IsStopped() const { return stop != nullptr && *stop; }

@@ -231,7 +231,7 @@ class Merger {
     }
     if (gaps.empty()) return;
     const size_t said = std::min<size_t>(gaps.size(), 10);
-    LogWarning("no plates are given of frames {}{}: the film is made without them",
+    LogWarning("no plates are given for frames {}{}: the film is made without them",
                fmt::join(gaps.begin(), gaps.begin() + static_cast<std::ptrdiff_t>(said), ", "),
                gaps.size() > said ? ", ..." : "");
   }

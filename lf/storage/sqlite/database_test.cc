@@ -278,7 +278,7 @@ TEST_F(DatabaseTest, BatchesAreAppended) {
   }
   EXPECT_EQ(told, 36);
   EXPECT_EQ(CountWhole(path), 36);
-  // There is one file, which is read like any other.
+  // No journal is left beside the file, and Open() reads it like a database written at once.
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
   EXPECT_TRUE(Database::Open(path, kFormat, {kBatches}));
 }

@@ -27,7 +27,7 @@ Result<void> WriteSettings(const SettingList& settings, Database* database);
 // kInput, and name file and key.
 class Settings {
  public:
-  // what  name of this kind of file in messages: "package"
+  // what  name of this kind of file in messages, such as "package"
   static Result<Settings> Read(Database& database, const char* what);
 
   // Returns "" if the key does not exist.

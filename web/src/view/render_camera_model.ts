@@ -104,8 +104,9 @@ export class RenderCameraModel {
     for (const part of [...this.depthLines, ...this.depthFaces]) part.object.visible = isShown;
   }
 
-  // Draws planes at the nearest and the farthest depth of the scene. Their colour shows the displacement of points
-  // there between neighbouring LF cameras: green up to 1.5 elements, red above 4, yellow in between.
+  // Draws a plane at the nearest depth of the scene and one at the farthest, but at most four focus distances away.
+  // Their colour shows the displacement of points at the nearest and the farthest depth between neighbouring LF
+  // cameras: green up to 1.5 elements, yellow up to 4, red above or if unknown. null hides the planes.
   setDensity(camera: FrameCamera, density: DensityFacts | null): void {
     this.depths.visible = density !== null;
     if (!density) return;
