@@ -4,18 +4,15 @@
 #include <array>
 #include <optional>
 
+#include "lf/pixels/files/file_bytes.h"
 #include "lf/pixels/files/tiff_directories.h"
 
 namespace lf {
 
 int OrientationOfTiff(std::span<const uint8_t> tiff) {
-  const ByteSource source = [&](uint64_t offset, std::span<uint8_t> to) -> size_t {
-    if (offset >= tiff.size()) return 0;
-    const auto part = tiff.subspan(offset, std::min<uint64_t>(to.size(), tiff.size() - offset));
-    std::copy(part.begin(), part.end(), to.begin());
-    return part.size();
-  };
-  const std::optional<TiffDirectory> directory = FirstTiffDirectory(source);
+  const FileBytes file =
+      FileInMemory({reinterpret_cast<const char*>(tiff.data()), tiff.size()}, "Exif data");
+  const std::optional<TiffDirectory> directory = FirstTiffDirectory(file.read);
   constexpr int kOrientationTag = 0x112;
   const double orientation = directory ? directory->Number(kOrientationTag, 1) : 1;
   return orientation >= 1 && orientation <= 8 ? static_cast<int>(orientation) : 1;

@@ -1,8 +1,8 @@
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
 #include "lf/pixels/files/exposure_facts.h"
+#include "lf/pixels/files/file_bytes.h"
 #include "lf/pixels/files/image_file.h"
 #include "lf/pixels/files/whole_file.h"
 
@@ -14,12 +14,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
     for (const auto& fact : {facts->time_s, facts->f_number, facts->iso})
       LF_CHECK(!fact || (*fact > 0 && *fact < 1e300));
   }
-  const auto source = [&](uint64_t offset, std::span<uint8_t> to) -> size_t {
-    const std::string_view part = offset < file.size() ? file.substr(offset, to.size()) : "";
-    std::copy(part.begin(), part.end(), to.begin());
-    return part.size();
-  };
-  if (const auto whole = lf::CheckIsWhole(source, file.size(), "fuzz"); !whole)
+  const lf::FileBytes bytes_of = lf::FileInMemory(file, "fuzz");
+  if (const auto whole = lf::CheckIsWhole(bytes_of.read, bytes_of.size_bytes, "fuzz"); !whole)
     LF_CHECK(whole.error().message.starts_with("fuzz: "));
   const auto info = lf::ReadImageInfoBytes(file, "fuzz");
   if (!info) {

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <thread>
 
+#include "lf/pixels/files/file_bytes.h"
 #include "lf/pixels/files/image_probe.h"
 #include "lf/pixels/files/picture_decoder.h"
 #include "lf/pixels/files/picture_encoder.h"
@@ -18,15 +19,7 @@ namespace lf {
 namespace {
 using namespace std::string_literals;
 
-FileBytes FileOf(const std::string& bytes) {
-  const auto read = [&bytes](uint64_t offset, std::span<uint8_t> to) -> size_t {
-    if (offset >= bytes.size()) return 0;
-    const size_t count = std::min<size_t>(to.size(), bytes.size() - offset);
-    std::memcpy(to.data(), bytes.data() + offset, count);
-    return count;
-  };
-  return {read, bytes.size(), "a.png"};
-}
+FileBytes FileOf(const std::string& bytes) { return FileInMemory(bytes, "a.png"); }
 
 Result<ImageFileInfo> InfoOf(const std::string& bytes) {
   const FileBytes file = FileOf(bytes);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <thread>
 
+#include "lf/pixels/files/file_bytes.h"
 #include "lf/pixels/files/libtiff_handle.h"
 #include "lf/pixels/files/picture_decoder.h"
 #include "lf/pixels/files/picture_encoder.h"
@@ -16,15 +17,7 @@
 namespace lf {
 namespace {
 
-FileBytes FileOf(const std::string& bytes) {
-  return {[&bytes](uint64_t offset, std::span<uint8_t> to) -> size_t {
-            if (offset >= bytes.size()) return 0;
-            const size_t count = std::min<size_t>(to.size(), bytes.size() - offset);
-            std::memcpy(to.data(), bytes.data() + offset, count);
-            return count;
-          },
-          bytes.size(), "a.tif"};
-}
+FileBytes FileOf(const std::string& bytes) { return FileInMemory(bytes, "a.tif"); }
 
 Result<ImageWithInfo> Decode(const std::string& bytes) {
   const FileBytes file = FileOf(bytes);

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <fstream>
 #include <optional>
 #include <string_view>
 
+#include "lf/pixels/files/file_bytes.h"
 #include "lf/pixels/files/image_probe.h"
 #include "lf/pixels/files/tiff_directories.h"
 
@@ -140,17 +140,16 @@ Result<void> CheckIsWhole(const ByteSource& source, uint64_t size_bytes, const s
 }
 
 Result<void> CheckFileIsWhole(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::error_code error;
-  const uint64_t size = std::filesystem::file_size(path, error);
-  if (!file || error) return InputError(fmt::format("{}: cannot be read", path.string()));
-  const ByteSource source = [&file](uint64_t offset, std::span<uint8_t> to) -> size_t {
-    file.clear();
-    file.seekg(static_cast<std::streamoff>(offset));
-    file.read(reinterpret_cast<char*>(to.data()), static_cast<std::streamsize>(to.size()));
-    return static_cast<size_t>(std::max<std::streamsize>(0, file.gcount()));
-  };
-  return CheckIsWhole(source, size, path.string());
+  DiskFile file(path);
+  Result<void> whole;
+  if (file.error() == 0)
+    whole = CheckIsWhole(
+        [&file](uint64_t offset, std::span<uint8_t> to) { return file.Read(offset, to); },
+        file.size_bytes(), path.string());
+  if (file.error() != 0)
+    return InputError(
+        fmt::format("{}: cannot be read: {}", path.string(), std::strerror(file.error())));
+  return whole;
 }
 
 }  // namespace lf
