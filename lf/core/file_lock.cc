@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <ctime>
 #include <string>
 #include <utility>
 
@@ -39,11 +40,28 @@ bool Write(int fd, const std::string& text) {
   return written >= 0;
 }
 
-std::string Owner(int fd) {
+// Returns the number of the process that locked the file last, or "" if the file has none.
+std::string OwnerNumber(int fd) {
   char text[32] = {};
   if (::pread(fd, text, sizeof(text) - 1, 0) <= 0) return "";
-  const std::string number(text, std::strspn(text, "0123456789"));
-  return number.empty() ? "" : fmt::format(" (process {})", number);
+  return {text, std::strspn(text, "0123456789")};
+}
+
+// An attempt to lock the file is repeated after a pause. Another process may have locked it a
+// moment ago, and not have written its number yet, or be in IsHeld(), which locks it for a moment.
+constexpr timespec kPause = {.tv_sec = 0, .tv_nsec = 2'000'000};
+constexpr int kAttempts = 3, kAttemptsWithoutNumber = 500;
+
+// Locks the open file. False if it cannot be locked, with the reason in errno.
+bool LockOpenFile(int fd) {
+  for (int attempt = 1;; ++attempt) {
+    if (Flock(fd, LOCK_EX | LOCK_NB) == 0) return true;
+    if (errno != EWOULDBLOCK) return false;
+    if (attempt >= (OwnerNumber(fd).empty() ? kAttemptsWithoutNumber : kAttempts)) break;
+    ::nanosleep(&kPause, nullptr);
+  }
+  errno = EWOULDBLOCK;
+  return false;
 }
 
 }  // namespace
@@ -85,13 +103,14 @@ Result<FileLock> FileLock::Take(const std::filesystem::path& path) {
       return OutputError(
           fmt::format("{}: cannot be created: {}", path.string(), std::strerror(errno)));
     FileLock lock(path, fd);
-    if (Flock(fd, LOCK_EX | LOCK_NB) != 0) {
-      if (errno == EWOULDBLOCK)
+    if (!LockOpenFile(fd)) {
+      if (errno != EWOULDBLOCK)
         return OutputError(
-            fmt::format("{}: is locked: another program{} is at work here; wait for it to end",
-                        path.string(), Owner(fd)));
+            fmt::format("{}: cannot be locked: {}", path.string(), std::strerror(errno)));
+      const std::string number = OwnerNumber(fd);
       return OutputError(
-          fmt::format("{}: cannot be locked: {}", path.string(), std::strerror(errno)));
+          fmt::format("{}: is locked: another program{} is at work here; wait for it to end",
+                      path.string(), number.empty() ? "" : fmt::format(" (process {})", number)));
     }
     if (!IsStill(fd, path)) continue;
     // The process number is for people and messages only. The lock does not depend on it.

@@ -11,9 +11,10 @@ namespace lf {
 
 class FileLock {
  public:
-  // Locks the file without waiting, and creates it if it is missing. kOutput if another process
-  // (the message gives its number) or another FileLock holds the lock, or if the file cannot be
-  // created, locked or written.
+  // Locks the file, and creates it if it is missing. kOutput if another process (the message gives
+  // its number) or another FileLock holds the lock, or if the file cannot be created, locked or
+  // written. Does not wait for the lock, but up to a second for the number of a process that has
+  // locked the file and not written its number yet.
   static Result<FileLock> Take(const std::filesystem::path& path);
   // True if any process holds the lock now. False if none does, if the file is missing, or if this
   // process may not read it.

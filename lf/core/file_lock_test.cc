@@ -1,10 +1,16 @@
 #include "lf/core/file_lock.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
 
 namespace lf {
 namespace {
@@ -65,6 +71,63 @@ TEST(FileLock, DiesWithItsProcess) {
   Result<FileLock> lock = FileLock::Take(path);
   ASSERT_TRUE(lock);
   lock->Remove();
+}
+
+// Locks an empty file, as a program has it that has not written its number yet.
+class LockedEmptyFile {
+ public:
+  LockedEmptyFile(const std::filesystem::path& path, int operation)
+      : fd_(::open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+    EXPECT_EQ(::flock(fd_, operation), 0);
+  }
+  ~LockedEmptyFile() { Close(); }
+  void Close() {
+    if (fd_ >= 0) ::close(std::exchange(fd_, -1));
+  }
+  void Write(std::string_view text) {
+    EXPECT_EQ(::write(fd_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  }
+
+ private:
+  int fd_;
+};
+
+constexpr std::chrono::milliseconds kMoment{20};
+
+TEST(FileLock, WaitsForTheNumberOfItsOwner) {
+  const auto path = LockPath("d");
+  LockedEmptyFile owner(path, LOCK_EX);
+  std::jthread writes([&] {
+    std::this_thread::sleep_for(kMoment);
+    owner.Write("123\n");
+  });
+  const Result<FileLock> lock = FileLock::Take(path);
+  ASSERT_FALSE(lock);
+  EXPECT_NE(lock.error().message.find("another program (process 123) is"), std::string::npos)
+      << lock.error().message;
+  std::filesystem::remove(path);
+}
+
+TEST(FileLock, IsTakenAfterAMomentInWhichSomebodyLooked) {
+  const auto path = LockPath("e");
+  LockedEmptyFile looks(path, LOCK_SH);
+  std::jthread ends([&] {
+    std::this_thread::sleep_for(kMoment);
+    looks.Close();
+  });
+  Result<FileLock> lock = FileLock::Take(path);
+  ASSERT_TRUE(lock) << lock.error().message;
+  lock->Remove();
+}
+
+TEST(FileLock, AnOwnerWithoutANumberLocksToo) {
+  const auto path = LockPath("f");
+  const LockedEmptyFile owner(path, LOCK_EX);
+  const Result<FileLock> lock = FileLock::Take(path);
+  ASSERT_FALSE(lock);
+  EXPECT_NE(lock.error().message.find("another program is at work"), std::string::npos)
+      << lock.error().message;
+  std::filesystem::remove(path);
 }
 
 TEST(FileLock, NeedsAFolder) {
