@@ -236,7 +236,8 @@ TEST_F(RayMapFile, WhatItSaysIsCheckedBeforeAnythingIsAllocated) {
   const std::string bytes = FileOf(MapOf(RandomRays(50, UINT64_MAX, 1)));
   ExpectError(WithHead(bytes, [](Head* head) { head->version = 7; }), "version 7");
   ExpectError(WithHead(bytes, [](Head* head) { head->shard_count = 16; }), "16 shards");
-  ExpectError(WithHead(bytes, [](Head* head) { head->is_too_coarse = 2; }), "2 as 'cells are too coarse'");
+  ExpectError(WithHead(bytes, [](Head* head) { head->is_too_coarse = 2; }),
+              "2 as 'cells are too coarse'");
   ExpectError(WithHead(bytes, [](Head* head) { head->cell_count = 51; }), "51 cells need more");
   ExpectError(WithHead(bytes, [](Head* head) { head->cell_count = UINT64_MAX; }), "need more");
   ExpectError(WithHead(bytes, [](Head* head) { head->cell_count = 49; }), "24 bytes follow");
