@@ -31,10 +31,15 @@ function(lf_needed_by name)
   endif()
 endfunction()
 
-# The main function of unit test programs: a suite with a skipped test and no failed one is shown as skipped.
+# The main functions of unit test programs (a suite with a skipped test and no failed one is shown as skipped), and of
+# fuzz targets without libFuzzer. Release builds optimise unit tests less than what they test, which saves a third of the
+# time that the tests take to build.
 if(LF_TESTS)
   add_library(lf_unit_main STATIC ${PROJECT_SOURCE_DIR}/tests/unit_main.cc)
   target_link_libraries(lf_unit_main PUBLIC GTest::gtest PRIVATE lf_options)
+  target_compile_options(lf_unit_main INTERFACE $<$<CONFIG:Release>:-O1>)
+  add_library(lf_replay_main STATIC ${PROJECT_SOURCE_DIR}/fuzz/replay_main.cc)
+  target_link_libraries(lf_replay_main PRIVATE lf_options)
 endif()
 
 # lf_unit_tests(target group): each suite of the program is a test of ctest, group.Suite. The group of lf/camera/path
