@@ -1,7 +1,7 @@
 // Runs a fuzz target over the files of its corpus folders without libFuzzer. Every test run replays
 // in this way the inputs that once broke a parser.
 //
-// usage: x_fuzz FOLDER...      exit 1 if a folder is missing or holds no file
+// usage: x_fuzz FOLDER...      exit 1 if a folder is missing, or if the folders hold no file
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
