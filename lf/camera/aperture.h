@@ -19,9 +19,9 @@ struct Aperture {
 };
 
 // Relative tolerance of the rim. The rim counts as inside, because LF cameras of regular grids lie
-// exactly on it. The squared length of a point may exceed the squared radius of a disk by this
-// share, and its distance along an edge's normal may exceed distance_w by half of this share
-// (doc/ray.md).
+// exactly on it. In a disk, the squared length of a point may exceed the squared radius by this
+// share. In a polygon, the distance of a point along the normal of an edge may exceed distance_w by
+// half of this share (doc/ray.md).
 inline constexpr double kRimTolerance = 1e-9;
 
 // One edge of the opening: normal . l <= distance_w for every point l inside; |normal| = 1.
@@ -59,9 +59,9 @@ class ApertureTest {
 double Area(const Aperture& aperture);
 
 // Returns `count` points spread uniformly over the opening: the R2 low-discrepancy sequence,
-// shifted by random offsets that depend on `seed`. A point (a, b) of it is mapped to the disk by
-// radius_w sqrt(a) (cos 2 pi b, sin 2 pi b) (thesis Eq. 4.7), or to the polygon by triangles of
-// equal area. Equal arguments give equal points on every machine.
+// shifted by random offsets that depend on `seed`. A point (a, b) of the sequence is mapped to the
+// disk by radius_w sqrt(a) (cos 2 pi b, sin 2 pi b) (thesis Eq. 4.7), or to the polygon by
+// triangles of equal area. Equal arguments give equal points on every machine.
 std::vector<Vec2> SampleLens(const Aperture& aperture, int count, uint64_t seed = 0);
 
 }  // namespace lf

@@ -222,9 +222,9 @@ std::optional<Vec2> UnbendRadialTangential(const DistortionParameters& p, const 
   return Unbend([&](const Vec2& at) { return Bend(p, curve, at); }, distorted, u, limit);
 }
 
-// Returns the direction whose ideal fish-eye image bend() maps to `distorted`. None if that image
-// is farther than `limit` from the origin. The iteration starts at the solution for the radial part
-// alone.
+// Returns the direction whose ideal fish-eye image bend() maps to `distorted`. None if the
+// iteration does not find that image, or if the image is farther than `limit` from the origin. The
+// iteration starts at the solution for the radial part alone.
 template <class Curve, class BendIt>
 std::optional<Vec3> UnbendEquidistant(const Curve& curve, const BendIt& bend, const Vec2& distorted,
                                       double limit, double distorted_limit) {

@@ -51,7 +51,8 @@ enum class DistortionModel : uint8_t {
   kRadialTangentialThinPrism,
 };
 
-// Parameters in the order listed at their model. Parameters that the model does not have are 0.
+// Parameters of a model, in the order that the comment of the model states. Parameters that the
+// model does not have are 0.
 using DistortionParameters = std::array<double, 12>;
 
 struct Distortion {
@@ -96,7 +97,7 @@ class DistortionMap {
  private:
   Distortion distortion_;
   double limit_;  // largest r = tan(theta), or theta for fish-eyes; used for polynomials only
-  double distorted_limit_;  // largest rd
+  double distorted_limit_;  // largest rd that the radial part of the model reaches
 };
 
 }  // namespace lf

@@ -15,7 +15,8 @@ constexpr int kControls = IdealPatch::kControls;
 
 using Points = std::array<Vec3, kControls>;
 
-// Returns the control points of the arc that goes through `points` at kQuinticPlaces.
+// Returns the control points of the arc that goes through `points` at the parameters kQuinticPlaces
+// (core/quintic.h).
 Points ControlsThrough(const Points& points) {
   // kValues[i][k] / kDivisors[k] is the blossom (polar form) of t^k that gives control point i.
   constexpr int kValues[kControls][kControls] = {{1, -5, 10, -10, 5, -1}, {1, -3, 2, 2, -3, 1},

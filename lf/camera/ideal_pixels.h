@@ -68,8 +68,8 @@ class IdealPixels {
  public:
   // Largest error of a patch: the distance, in LF pixels, between a pixel and the position at which
   // the camera would record the ray of the pixel's ideal position on the patch. A patch is exact at
-  // the points that it is made from, and its error is checked where it is largest
-  // (kQuinticWorstPlaces).
+  // the points that it is made from. Its error is checked at the parameters where such an error is
+  // largest (kQuinticWorstPlaces in core/quintic.h).
   static constexpr double kTolerance_px = 3e-5;
 
   explicit IdealPixels(const Intrinsics& k);

@@ -33,8 +33,8 @@ struct RayForms {
 };
 
 RayForms MakeRayForms(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
-// Same as above. Saves time if one LF camera has forms for many frames, because they share
-// `direction`.
+// Same as above. Saves time if the forms of one LF camera are made for many frames, because all of
+// them use the same `direction`.
 //   direction  R^T K^-1 of the LF camera
 RayForms MakeRayForms(const Mat3& direction, const Vec3& centre_world,
                       const RenderCamera& render_camera);
@@ -44,8 +44,8 @@ RayForms MakeRayForms(const Mat3& direction, const Vec3& centre_world,
 // therefore nothing has to be projected through the plane of the LF camera. Rays with n.d > 0 and
 // rays with n.d < 0 have different half-planes: plane_sign, +1 or -1, is the sign of n.d.
 
-// Returns the half-planes of plane_sign n.d >= 0, of `forward` and `front`, and of the four edges
-// of the plate. Each edge is moved outwards by margin_px elements.
+// Returns the half-planes plane_sign n.d >= 0, `forward p` >= 0 and plane_sign `front p` >= 0, and
+// those of the four edges of the plate. Each edge is moved outwards by margin_px elements.
 inline constexpr size_t kPlateHalfPlanes = 7;
 std::array<PixelForm, kPlateHalfPlanes> PlateHalfPlanes(const RayForms& forms,
                                                         const RenderCamera& render_camera,

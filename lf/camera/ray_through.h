@@ -1,5 +1,5 @@
-// The ray of an LF camera through a point of the world, directed as in the ray model of a frame
-// (doc/ray.md, 2, 3).
+// The ray of an LF camera through a point of the world. Its direction points forward in a frame, as
+// in the ray model (doc/ray.md, steps 2 and 3).
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@ namespace lf {
 
 class RayThrough {
  public:
-  //   forward_world  the optical axis of the frame
+  //   forward_world  the direction in which the camera of the frame looks
   //   map            made from the distortion of the LF camera; a caller that has such a map saves
   //                  the time to make it again
   RayThrough(const PinholeCamera& lf_camera, const Vec3& forward_world)

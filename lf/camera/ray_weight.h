@@ -64,7 +64,7 @@ class RayWeights {
 
   bool are_same() const { return of_row_ == nullptr; }
   uint32_t same() const { return same_; }
-  // True if all weights are 0, so that the image adds nothing to the plate.
+  // True if the whole plate has the weight 0, so that the image adds nothing to it.
   bool are_none() const { return are_same() && same_ == 0; }
   bool has_feather() const { return feather_of_row_ != nullptr; }
   const WeightBlocks& blocks() const { return blocks_; }

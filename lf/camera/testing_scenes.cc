@@ -10,8 +10,8 @@ Vec3 Vector(RandomSequence* random, double reach) {
   return {x, y, random->Uniform(-reach, reach)};
 }
 
-// The pose is also rolled about the optical axis, so that scanlines run in any direction over the
-// plate.
+// Returns the pose of a camera that looks along `forward` and is rolled about its optical axis, so
+// that scanlines run in any direction over the plate.
 RigidTransform Pose(const Vec3& centre, const Vec3& forward, double roll_rad) {
   RigidTransform pose = *LookAlong(centre, forward, {0.01, -1, 0.02});
   const RigidTransform roll{Eigen::AngleAxisd(roll_rad, Vec3::UnitZ()).toRotationMatrix(),

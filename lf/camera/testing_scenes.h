@@ -18,14 +18,14 @@ struct CameraPair {
 // seed modulo small numbers.
 CameraPair RandomCameraPair(uint64_t seed);
 
-// Same as RandomCameraPair(), but with an LF image of 200 x 140 pixels and lens distortion: radial
-// (as of a phone), with tangential terms, rational, with a fold within the image, FOV, or a
-// fish-eye.
+// Same as RandomCameraPair(), but with an LF image of 200 x 140 pixels and lens distortion. The
+// seed selects one of seven distortions: radial (a phone), radial with tangential terms, rational,
+// radial with a fold within the image, FOV, or one of two fish-eyes.
 CameraPair RandomDistortedPair(uint64_t seed);
 
-// A pair from a grid rig: the LF camera is (column, row) pitches beside the render camera, in its
-// lens plane and parallel to it; one LF pixel is as large as one element. Accepted rays may lie
-// exactly on the rim of the lens and on element borders.
+// Returns a pair as in a grid rig. The LF camera is `column` pitches to the right of the render
+// camera and `row` pitches below it, in its lens plane and parallel to it. One LF pixel is as large
+// as one element. Accepted rays may lie exactly on the rim of the lens and on element borders.
 CameraPair ParallelPair(int column, int row, double pitch_w, double radius_w);
 
 }  // namespace lf::testing

@@ -29,7 +29,8 @@ FalloffRange FalloffRangeOf(const Intrinsics& k) {
     range.max = std::max(range.max, share);
   };
   take(most);
-  // Between the least and the largest r^2, F has its extremes where v1 + 2 v2 q + 3 v3 q^2 = 0.
+  // Between the least and the largest r^2, F has its extremes where v1 + 2 v2 q + 3 v3 q^2 = 0,
+  // with q = r^2.
   const auto [v1, v2, v3] = falloff.v;
   const double root = std::sqrt(v2 * v2 - 3 * v1 * v3);
   for (const double extreme : {(-v2 + root) / (3 * v3), (-v2 - root) / (3 * v3), -v1 / (2 * v2)})

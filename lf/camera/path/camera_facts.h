@@ -1,4 +1,5 @@
-// Facts about one frame's camera that a photographer asks for, as named numbers for lfcammvminfo.
+// Facts about the camera of one frame, as a photographer states them: named numbers, which
+// lfcammvminfo prints.
 #pragma once
 
 #include <string>
@@ -10,7 +11,7 @@
 namespace lf {
 
 struct CameraFact {
-  std::string name;                // "position_w"; ends in its unit: _w, _mm, _deg, _s
+  std::string name;                // "position_w"; ends in the unit, if any: _w, _mm, _deg, _s
   std::vector<std::string> parts;  // "x", "y", "z"; empty if there is only one value
   std::vector<double> values;
 };
@@ -20,7 +21,7 @@ struct CameraFact {
 //   position_w         x y z
 //   forward, up        x y z of the axes, length 1
 //   focal_length_mm    independent of the focus distance
-//   field_of_view_deg  horizontal, vertical; at this frame's focus
+//   field_of_view_deg  horizontal, vertical; at the focus distance of this frame
 //   aperture_diameter_mm, f_number (thesis Eq. 2.11; infinite for a pinhole)
 //   blades, blade_rotation_deg
 //   focus_distance_w   along the optical axis

@@ -7,13 +7,16 @@
 
 namespace lf {
 
-// Returns the cameras of frames 1, 2, ...: frame i is the state at time (i - 1) / fps, without
-// motion blur. Elements are squares, and the principal point is the centre of the plate.
+// Returns the cameras of frames 1, 2, ...: the camera of frame i has the state at time (i - 1) /
+// fps, without motion blur. Elements are squares, and the principal point is the centre of the
+// plate.
 //
 // kInput, with frame, time, quantity and its position in the file, if at some frame
 //   a quantity leaves its range: an aperture below 0, a focus distance of 0, a tilt of 90 degrees
 //   the camera is at the point it looks at, or looks along `up`
-//   the focus point is not in front of the lens
+//   the focus point, or the point where the focus plane meets the optical axis, is not in front of
+//   the lens
+//   the field of view is almost 0 or 180 degrees, or the aperture is wider than 1e9 world units
 //   `breathing` is set and the focus distance does not exceed the focal length
 Result<CameraPath> EvaluatePath(const PathDescription& path);
 

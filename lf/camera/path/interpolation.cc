@@ -17,8 +17,8 @@ double EndSlope(double h0, double h1, double d0, double d1) {
   return slope;
 }
 
-// Returns the weighted harmonic mean of the slopes of two chords; 0 if the values have a peak
-// between them.
+// Returns the weighted harmonic mean of the slopes of two chords; 0 if the slopes do not have the
+// same sign, as at a peak.
 double InnerSlope(double h0, double h1, double d0, double d1) {
   if (d0 * d1 <= 0) return 0;
   const double w0 = 2 * h1 + h0;

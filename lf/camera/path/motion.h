@@ -42,7 +42,8 @@ struct Key {
   Interpolation interpolation = Interpolation::kSmooth;
 };
 
-// The curve that kSmooth selects. For kRotation, kLinear also selects slerp.
+// The curve that leads to a key with kSmooth. To a key with kLinear leads a straight line, or slerp
+// for unit quaternions (kRotation).
 enum class SmoothCurve {
   kMonotone,    // every component is a monotone cubic, without overshoot
   kCatmullRom,  // points: centripetal Catmull-Rom, whose parameter is a monotone cubic of time
@@ -50,8 +51,8 @@ enum class SmoothCurve {
 };
 
 // The curve through keys. Smooth keys form one curve up to the last key before a linear or step
-// key; the next smooth curve begins at this linear or step key. Before the first key and after the
-// last one, the value of that key holds.
+// key; the next smooth curve begins at this linear or step key. Before the first key, the value of
+// the first key holds; after the last key, the value of the last.
 class KeyframeCurve {
  public:
   // keys   at least one, times strictly increasing, values of one size

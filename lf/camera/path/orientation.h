@@ -15,7 +15,7 @@ namespace lf {
 //   roll   clockwise, about the camera's z axis
 Eigen::Quaterniond WorldFromCam(double yaw_rad, double pitch_rad, double roll_rad);
 
-// Returns the pose of a camera at `centre_world` with this orientation.
+// Returns the pose of a camera at `centre_world` with the orientation `world_from_cam`.
 RigidTransform CamFromWorld(const Eigen::Quaterniond& world_from_cam, const Vec3& centre_world);
 
 // Returns the pose after a further roll about the optical axis, clockwise for the photographer.

@@ -14,7 +14,7 @@ namespace lf {
 // A quantity that may change over time.
 struct Quantity {
   Motion motion;
-  // These are for the check of the range and for messages.
+  // The members below are used to check the range and in messages.
   std::string label;          // "lens.focus_distance_mm"
   YamlPlace place;            // position in the file where the motion is stated
   NumberRange range;          // limits of every component, in units of the file

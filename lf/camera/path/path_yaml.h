@@ -11,12 +11,13 @@
 namespace lf {
 
 // text                content of the file
-// name                its name in messages: "path.yaml:12:5: ..."
-// light_field_unit_m  metres per world unit of the light field, if there is one; a path that states
-//                     another unit is an error. nullopt: the path's own unit is used, or 1 if the
-//                     path states none.
-// Every key is checked; kInput if anything is wrong. The message states file:line:column, the value
-// found, the allowed keys and, for a misspelt key, the nearest allowed key.
+// name                name of the file in messages: "path.yaml:12:5: ..."
+// light_field_unit_m  metres per world unit of the light field; a path that states another unit is
+//                     an error. nullopt if there is no light field: the unit of the path is used,
+//                     or 1 if the path states none.
+// Returns the cameras of all frames. Every key is checked; kInput if anything is wrong. The message
+// states file:line:column and the value found; for an unknown key, it lists the allowed keys and
+// suggests the nearest one.
 Result<CameraPath> ParsePathYaml(std::string_view text, std::string_view name,
                                  std::optional<double> light_field_unit_m);
 Result<CameraPath> ReadPathYaml(const std::filesystem::path& path,

@@ -1,5 +1,5 @@
-// Reads the quantities of a path file that may change over time: their start and speed from a
-// section of the file, and their `accelerations` or `keyframes`.
+// Reads the quantities of a path file that may change over time: their *start* (the value at time
+// 0) and their speed from a section of the file, and their `accelerations` or `keyframes`.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,8 @@
 namespace lf {
 
 // Units of a quantity. A key in the file is the quantity's name with the suffix of a unit, such as
-// "focus_distance_mm". kDegreesUnsaid: degrees, but without a suffix.
+// "focus_distance_mm"; a length in world units has no suffix. kDegreesUnsaid: the unit is degrees,
+// but the key has no suffix.
 enum class QuantityUnit { kNone, kLength, kDegrees, kDegreesUnsaid };
 
 struct QuantitySpec {
@@ -26,7 +27,7 @@ struct QuantitySpec {
 
 class QuantityReader {
  public:
-  //   keyframes, accelerations   entries of these keys of the file; null if the file lacks them
+  //   keyframes, accelerations   the entries of the file with these keys; null if it has none
   QuantityReader(const YamlEntry* keyframes, const YamlEntry* accelerations, double unit_m,
                  YamlErrors* errors);
 
@@ -70,8 +71,8 @@ class QuantityReader {
   // Returns the quantity without its motion. `given` is the entry of its keyframes or start, if it
   // has any.
   Quantity Unmoved(const YamlMap& section, const QuantitySpec& spec, const Given& given) const;
-  // Returns the periods of the quantity's accelerations, and sets `place` to the last of them if
-  // there is any.
+  // Returns the periods of the quantity's accelerations. If there is any, sets `place` to the
+  // position of the last one in the file.
   std::vector<AccelerationPeriod> TakePeriods(const QuantitySpec& spec, YamlPlace* place);
   std::optional<AcceleratedMotion> ReadAccelerated(const QuantitySpec& spec, const Given& start,
                                                    const Given& speed,
@@ -86,7 +87,7 @@ class QuantityReader {
   YamlErrors* errors_;
   YamlMap keyframes_;
   std::vector<Acceleration> accelerations_;
-  std::vector<std::string> accelerable_;  // quantities that were read so far
+  std::vector<std::string> accelerable_;  // keys, with units, that may accelerate
 };
 
 }  // namespace lf

@@ -12,8 +12,8 @@ namespace lf {
 enum class ValueShape {
   kNumber,      // 0.4
   kPoint,       // [x, y, z]
-  kTilt,        // {horizontal: , vertical: }, 0 if left out
-  kAngles,      // {yaw: , pitch: , roll: }, 0 if left out
+  kTilt,        // {horizontal: , vertical: }; an angle that is left out is 0
+  kAngles,      // {yaw: , pitch: , roll: }; an angle that is left out is 0
   kQuaternion,  // [w, x, y, z], length 1
 };
 

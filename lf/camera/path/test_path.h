@@ -25,7 +25,7 @@ struct TestPath {
   Result<CameraPath> Parse(std::optional<double> light_field_unit_m = std::nullopt) const {
     return ParsePathYaml(Text(), "p.yaml", light_field_unit_m);
   }
-  // Returns the message without the file's name; "" if there is no error.
+  // Returns the error message of Parse() without the file's name; "" if there is no error.
   std::string Error() const {
     const auto path = Parse();
     return path ? "" : path.error().message.substr(std::string("p.yaml:").size());

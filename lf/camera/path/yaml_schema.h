@@ -25,7 +25,8 @@ class YamlErrors {
   void AddFirst(const YamlPlace& place, std::string message);
 
   bool empty() const { return errors_.empty(); }
-  // Returns true if further errors are dropped, because more than these would not help the author.
+  // Returns true if there are 20 errors. Further errors are dropped, because they would not help
+  // the author.
   bool full() const { return errors_.size() >= 20; }
   const std::string& file_name() const { return file_name_; }
 
@@ -95,7 +96,7 @@ class YamlMap {
   std::vector<std::string> asked_;
 };
 
-// Returns the message "unknown key 'fsp' in camera; did you mean 'fps'? Known are: ...".
+// Returns the message "unknown key 'fsp' in camera; did you mean 'fps'? known are: ...".
 std::string UnknownWord(std::string_view kind, std::string_view word, std::string_view where,
                         const std::vector<std::string>& known);
 

@@ -36,20 +36,22 @@ struct YamlNode {
   std::vector<YamlEntry> entries;  // kMap, in the order of the file; keys may repeat
 };
 
-// Limits that are checked before the text is parsed. No path made by people or programs comes near
-// them, and parsing the worst text within them takes about 350 MB and 2 s.
+// Limits of the text. The first two are checked before the text is parsed, the depth while it is
+// parsed. No path made by people or programs comes near these limits, and parsing the worst text
+// within them takes about 350 MB and 2 s.
 inline constexpr size_t kMaxYamlBytes = size_t{8} << 20;
 inline constexpr size_t kMaxYamlMarks = 1'000'000;  // number of characters that mark structure
 inline constexpr size_t kMaxYamlDepth = 16;
 
 // Returns the only document of the text. Aliases share the node of their anchor.
 //
-// name   name of the file in messages: "name:line:column: ..."
-// kInput: the text is not YAML, exceeds a limit, or has several documents, keys that are not words,
-// tags, or an alias inside its own anchor.
+// name   name of the file in messages: "name:line:column: ..." kInput: the text is empty or not
+// YAML, exceeds a limit, or has several documents, keys that are not words, tags, or an alias
+// inside its own anchor.
 Result<YamlNodePtr> ParseYaml(std::string_view text, std::string_view name);
 
-// Returns text of the file for a message: in quotes, at most 40 characters, all printable.
+// Returns the text in quotes, for a message. Cuts it after 40 bytes, and replaces control
+// characters by "?".
 std::string QuoteForMessage(std::string_view text);
 
 }  // namespace lf
