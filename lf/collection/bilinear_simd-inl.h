@@ -1,5 +1,5 @@
-// Adds several rays at once to their elements, each interpolated between four pixels. Internal to
-// collection. Highway includes this file once for each instruction set.
+// Adds several rays at once to their elements. Each ray is interpolated between four pixels.
+// Internal to collection. Highway includes this file once for each instruction set.
 #if defined(LF_COLLECTION_BILINEAR_SIMD_INL_H_) == \
     defined(HWY_TARGET_TOGGLE)  // NOLINT: Highway's guard
 #ifdef LF_COLLECTION_BILINEAR_SIMD_INL_H_
@@ -22,8 +22,9 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Half of the sum of the weights of a ray's four pixels. It is added to round half up. The largest
-// sum, 65535 * 65536 + kHalf, just fits into 32 bits.
+// Half of the sum of the weights of a ray's four pixels. It is added to the weighted sum of the
+// pixels, which is thereby rounded half up. The largest result, 65535 * 65536 + kHalf, just fits
+// into 32 bits.
 constexpr uint32_t kHalf = kOne * kOne / 2;
 
 // AddRays() adds rays [i, i + kRaysAtOnce) of `places` to the elements with the same indices in

@@ -53,8 +53,8 @@ inline const CubicTables& TablesOfCubics() {
 #if HWY_TARGET == HWY_SCALAR
 
 // Adds the ray between the sixteen pixels that begin at `first` to element i of `sums`. `right` and
-// `down` are its distances from the upper left one of the inner four pixels, in steps of 1 /
-// kCubicSteps px.
+// `down` are the distances of the ray from the upper left one of the inner four pixels, in steps of
+// 1 / kCubicSteps px.
 template <class Weights>
 HWY_INLINE void AddCubicRay(const CubicTables& tables, uint32_t right, uint32_t down,
                             const uint16_t* first, ptrdiff_t row_values, const Weights& weights,
@@ -139,8 +139,8 @@ HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<int32_t>> MixSixteen(D d, const ColumnWe
 }
 
 // Adds the ray between the sixteen pixels that begin at `first` to element i of `sums`. `right` and
-// `down` are its distances from the upper left one of the inner four pixels, in steps of 1 /
-// kCubicSteps px.
+// `down` are the distances of the ray from the upper left one of the inner four pixels, in steps of
+// 1 / kCubicSteps px.
 template <class Weights>
 HWY_ATTR HWY_INLINE void AddCubicRay(const CubicTables& tables, uint32_t right, uint32_t down,
                                      const uint16_t* first, ptrdiff_t row_values,

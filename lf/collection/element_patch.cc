@@ -17,7 +17,7 @@ std::optional<ElementPatch> ElementPatch::Fit(const PixelForm& x, const PixelFor
   fit.middle_y_ = 0.5 * (patch.rect.y_begin + patch.rect.y_end);
   const double half_x = 0.5 * (x_end - x_begin), half_y = 0.5 * patch.rect.height();
   const double width = patch.rect.width();
-  // In these two functions, t and s run from -1 to 1.
+  // In position() and arc_at(), t and s run from -1 to 1.
   const auto position = [&](const IdealArc& arc, double t) -> Vec2 {
     const Vec3 p = arc.At((fit.middle_x_ + half_x * t - patch.rect.x_begin) / width);
     const double inverse = 1 / Value(denominator, p);

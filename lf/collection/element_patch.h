@@ -15,8 +15,8 @@ class ElementPatch {
  public:
   // Fits a polynomial through the positions on the plate, (x p, y p) / (denominator p), of six by
   // six ideal positions p in columns [x_begin, x_end) of `patch`. Returns none if the polynomial
-  // deviates from positions between these by more than SegmentMaker::kTolerance, or if positions
-  // are too far apart for single precision (IsNearMiddle()).
+  // deviates from the positions between these six by six by more than SegmentMaker::kTolerance, or
+  // if positions are too far apart for single precision (IsNearMiddle()).
   static std::optional<ElementPatch> Fit(const PixelForm& x, const PixelForm& y,
                                          const PixelForm& denominator, const IdealPatch& patch,
                                          int x_begin, int x_end);
@@ -34,8 +34,8 @@ class ElementPatch {
 
   int x_begin_ = 0, x_end_ = 0;
   double middle_x_ = 0, middle_y_ = 0;
-  // [k][l]: coefficients of t^k s^l, where t and s are the distances in pixels from the middle,
-  // along the scanline and across it.
+  // [k][l]: coefficients of t^k s^l, where t and s are the distances in pixels from (middle_x_,
+  // middle_y_), along the scanline and across it.
   double x_[kTerms][kTerms];
   double y_[kTerms][kTerms];
 };

@@ -10,10 +10,10 @@
 //      polynomial.
 //   2. GatherTile, called once per (LF image, frame, tile of the plate), adds the rays of these
 //      elements.
-// Tolerance: both accept the same rays, except for rays within 1e-9 of a border of lens or image.
-// Positions of the fast back end are accurate to 1e-4 px. Its interpolation weights, in steps of
-// 1/256, may therefore differ by one step from those of the reference. Its results are
-// bit-identical for any cut into tiles and on every instruction set.
+// Tolerance: both accept the same rays, except for rays that a relative error of 1e-9 would move
+// across a border of lens or image. Positions of the fast back end are accurate to 1e-4 px. Its
+// interpolation weights, in steps of 1/256, may therefore differ by one step from those of the
+// reference. Its results are bit-identical for any cut into tiles and on every instruction set.
 #pragma once
 
 #include <array>
@@ -57,8 +57,8 @@ std::optional<RgbRay> InterpolatePixels(const LfPixels& pixels, int width_px, in
 // fold of the lens distortion recorded none.
 bool RaysArriveAround(const Intrinsics& k, const DistortionMap& map, double x_px, double y_px);
 
-// Adds to each element the ray that this LF image recorded for it, if there is one. Returns the
-// number of rays.
+// Adds to each element the ray that the LF image recorded for the element, if there is one. Returns
+// the number of rays.
 //   plate    must have the size of the render camera's plate
 //   weights  weight w multiplies the value and the count that a ray adds
 uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& pixels,

@@ -23,9 +23,9 @@ class GatherModel {
   // if the ray does not pass through the lens.
   std::optional<Vec3> Direction(int x, int y) const;
 
-  // Returns the position, in pixels, where the LF camera records this ray; none if Direction()
-  // returns none, if one of the four pixels around the position is not in the image, or if one of
-  // them recorded no ray.
+  // Returns the position, in pixels, where the LF camera records the ray of element (x, y); none if
+  // Direction() returns none, if one of the four pixels around the position is not in the image, or
+  // if one of them recorded no ray.
   std::optional<Vec2> Position(int x, int y) const;
 
   // True if some pixels of the LF image have no ray, so that each position has to be tested.
@@ -35,7 +35,7 @@ class GatherModel {
   RenderCamera render_camera_;
   Vec3 forward_, right_, up_;
   RayThrough ray_;
-  Vec3 offset_;  // c - c'
+  Vec3 offset_;  // from the lens centre to the LF camera, in the world
   ApertureTest aperture_;
   bool may_lack_rays_ = false;
 };

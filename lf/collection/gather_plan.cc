@@ -13,8 +13,9 @@ namespace lf {
 namespace {
 
 // Linear forms of an element position e for one (LF camera, render camera). X is the point of the
-// focus plane that the element sees, c the centre of the LF camera. The direction d of the
-// element's ray is X - c or c - X, whichever runs forward.
+// focus plane that the element sees, n the normal of that plane, c the centre of the LF camera; c'
+// is the lens centre and f the forward axis of the render camera. The direction d of the element's
+// ray is X - c or c - X, whichever runs forward.
 struct GatherForms {
   PixelForm plane;       // > 0 where X is in front of the lens
   PixelForm forward;     // f.(X - c) times a positive number: > 0 if d = X - c
@@ -86,8 +87,8 @@ class GatherPlanner {
         plan_(std::move(memory)) {
     for (const int side : {0, 1})
       rows_.half_planes[side] = HalfPlanes(forms_, k_, finer.aperture, side == 0 ? -1 : 1);
-    // All rays of an LF camera in the lens plane cross this plane at one point. If the point is
-    // near the rim, the ray model decides about each span by its ends.
+    // All rays of an LF camera in the lens plane cross this plane at one point. Unless the point is
+    // surely inside the disk, the ray model decides about each span by its ends.
     const bool is_disk = finer.aperture.blades == 0;
     if (is_disk && LiesInLensPlane(lf_camera, finer))
       rows_.model_decides = !IsSurelyInDisk(lf_camera, finer);

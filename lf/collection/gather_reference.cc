@@ -28,7 +28,7 @@ uint16_t Bilinear(const Pixel& pixel, uint32_t right, uint32_t down) {
 }
 
 // Like Bilinear(), with the shares of mosaic_filter.h. Returns the value of the ray and its count.
-// share(dx, dy) returns the share k of the pixel whose value is pixel(dx, dy).
+// share(dx, dy) returns the share s of the pixel whose value is pixel(dx, dy).
 template <class Pixel, class Share>
 std::pair<uint16_t, uint32_t> BilinearByShares(const Pixel& pixel, const Share& share,
                                                uint32_t right, uint32_t down) {

@@ -1,5 +1,5 @@
-// Decides how an element samples an LF image in *bilinear* (doc/ray.md, "What is added"): with
-// which filter, and at how many positions.
+// Decides how the estimator *bilinear* samples an LF image for an element (doc/ray.md, "What is
+// added"): with which filter, and at how many positions.
 #pragma once
 
 #include "lf/camera/pinhole.h"
@@ -18,7 +18,7 @@ namespace lf {
 //              does. A recorded colour counts more than an interpolated one (mosaic_filter.h), and
 //              the ray adds a count from 1 to kRecordedShare to each colour
 //   kAuto      is kBicubic, or kBilinear if an element has kBilinearFrom x kBilinearFrom samples or
-//              more, because their mean hides the difference
+//              more, because the mean of the samples hides the difference
 enum class PixelFilter { kAuto, kNearest, kBilinear, kBicubic, kMosaic };
 
 // Returns "auto", "nearest", "bilinear", "bicubic" or "mosaic".

@@ -30,7 +30,7 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // True if `rect` holds the sixteen pixels around each of the rays [begin, begin + count) of the
-// segment. May be false although it does.
+// segment. May be false even if `rect` holds them, if a ray is near the border.
 bool IsInner(const Segment& s, int begin, int count, const PixelRect& rect) {
   const float t = s.t_begin + static_cast<float>(begin);
   const auto is_inner = [](const PositionRange& range, int base, int pixel_begin, int pixel_end) {
@@ -83,8 +83,8 @@ class RayAdder {
     return values_ + static_cast<ptrdiff_t>(places_.pixel[i]) * LfPixels::kRgbLanes;
   }
 
-  // Prefetches one cache line of a row below. The processor does not prefetch rows by itself,
-  // because they are too far apart. It can have few pending requests at a time, so that lines are
+  // Prefetches one cache line of a row below ray i. The processor does not prefetch rows by itself,
+  // because they are too far apart. It can have few pending requests at a time; therefore lines are
   // requested one by one.
   HWY_INLINE void FetchAhead(int i) const {
     constexpr int kRowsAhead = 2;

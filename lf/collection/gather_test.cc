@@ -77,7 +77,7 @@ TEST(Gather, TheFastBackEndAgreesWithTheReference) {
           differing_counts += !same_count;
           if (!same_count || a == b) continue;
           ++differing_values;
-          if (filter == PixelFilter::kNearest) continue;  // the nearest pixel may be another
+          if (filter == PixelFilter::kNearest) continue;  // rounding may choose another pixel
           // The tolerance is one step (1/256) of the weight along x and one along y, between
           // neighbours that differ by the whole range.
           const double steps = is_mosaic ? 1.0 * kRecordedShare : 1;
@@ -131,9 +131,8 @@ TEST(Gather, AnyCutIntoTilesGivesTheSameBits) {
   }
 }
 
-// A wall in focus whose radiance is linear in the plane: bilinear interpolation is exact, so every
-// element has the radiance of the wall at its focus point, whatever the lens distortion of the LF
-// camera is.
+// A wall in focus whose radiance is linear in the plane: bilinear interpolation is exact (nearly,
+// with lens distortion), so every element has the radiance of the wall at its focus point.
 TEST(Gather, AWallInFocusReproducesItself) {
   for (const Distortion& distortion :
        {Distortion{}, Distortion{DistortionModel::kRadialTangential, {-0.2, 0.05, 0.002, -0.001}},

@@ -36,7 +36,7 @@ inline constexpr int kMosaicCountBits = 2 * kMosaicTapBits;
 inline constexpr int kShareShift = 9;
 inline constexpr int kShareBits = 7;  // D / 2^kShareBits is the count of a ray of four pixels
 
-// Returns the share k of pixel (x, y) in colour `channel`, for an LF image whose mosaic had the
+// Returns the share s of pixel (x, y) in colour `channel`, for an LF image whose mosaic had the
 // pattern `recorded`. kNone means that all pixels recorded all colours.
 inline uint32_t RecordedShareOf(BayerPattern recorded, int x, int y, int channel) {
   const bool is_recorded =

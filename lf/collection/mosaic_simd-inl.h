@@ -27,20 +27,20 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Tables for one Bayer pattern, with d and k as in mosaic_filter.h. They are indexed by the phase
-// (Places::phase) of the upper left one of the inner four pixels. In the last lane, which counts
-// rays, every pixel has the share of a recorded one.
+// Tables for one Bayer pattern, with d and the share s as in mosaic_filter.h. They are indexed by
+// the phase (Places::phase) of the upper left one of the inner four pixels. In the last lane, which
+// counts rays, every pixel has the share of a recorded one.
 struct MosaicTable {
-  // For rays of sixteen pixels. Columns 0 and 2 of the pixels have index 0, columns 1 and 3 have
-  // index 1.
+  // Weights for rays of sixteen pixels. Columns 0 and 2 of the pixels have index 0, columns 1 and 3
+  // have index 1.
   struct Columns {
-    // [column % 2][row / 2]: d k of two successive rows, interleaved for each lane.
+    // [column % 2][row / 2]: d s of two successive rows, interleaved for each lane.
     HWY_ALIGN int16_t weights[2][2][8];
-    HWY_ALIGN int32_t counts[2][4];  // d k of all four rows added up
+    HWY_ALIGN int32_t counts[2][4];  // d s of all four rows added up
   };
   Columns columns[4][kCubicSteps + 1];  // [phase][down]
-  // For rays of four pixels, [phase][row]: 2 k of the left and the right pixel, interleaved for
-  // each lane.
+  // Weights for rays of four pixels, [phase][row]: 2 s of the left and the right pixel, interleaved
+  // for each lane.
   HWY_ALIGN uint16_t rows[4][2][8];
 
   explicit MosaicTable(BayerPattern recorded) {
@@ -81,7 +81,7 @@ inline const MosaicTable& TableOfMosaic(BayerPattern recorded) {
   return tables[static_cast<int>(recorded)];
 }
 
-// a_x a_y k / 2^9 is the upper half of the 32-bit product of 64 a_x and 2 a_y k.
+// a_x a_y s / 2^9 is the upper half of the 32-bit product of 64 a_x and 2 a_y s.
 constexpr int kSideShift = 16 - kShareShift - 1;
 
 // AddMosaicRay() and AddCubicMosaicRay() add ray i of `places` to element i of `sums`.
@@ -139,7 +139,7 @@ HWY_INLINE void AddCubicMosaicRay(const CubicTables& cubics, const MosaicTable& 
 
 #else
 
-// Rounds down. Numbers must be from 0 to 2^22.
+// Rounds each lane down to an integer. The numbers must be from 0 to 2^22.
 HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<int32_t>> RoundedDown(hn::Vec<hn::Full128<float>> v) {
   const hn::Full128<int32_t> di;
   const hn::Full128<float> df;
@@ -147,8 +147,8 @@ HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<int32_t>> RoundedDown(hn::Vec<hn::Full12
   return hn::Sub(hn::BitCast(di, whole), hn::Set(di, std::bit_cast<int32_t>(kWhole)));
 }
 
-// Adds a ray to element i of `sums`. `value` holds its colours, integers of 16 bits, and `rays` its
-// count in each colour.
+// Adds a ray to element i of `sums`. `value` holds the ray's colours, integers of 16 bits, and
+// `rays` the ray's count in each colour.
 template <class Weights>
 HWY_ATTR HWY_INLINE void AddCounted(hn::Vec<hn::Full128<int32_t>> value,
                                     hn::Vec<hn::Full128<int32_t>> rays, const Weights& weights,

@@ -23,7 +23,7 @@ struct ValueAndSlope {
   double slope;
 };
 
-// A polynomial in powers of t, made from its values at control points.
+// A polynomial in powers of t, made from the values of a form at the control points of a scanline.
 class Powers {
  public:
   explicit Powers(const Values& values) : c_(values) {
@@ -43,9 +43,9 @@ class Powers {
 };
 
 // Searches a root by Newton's method, starting from *root, and writes it to *root. Returns true if
-// it is verified: at `slack` before and behind the root (but within [0, 1]) the function differs
-// from 0 by more than `rounding`, with the sign `sign_before` before the root and the opposite sign
-// behind it.
+// the root is verified: at `slack` before and behind the root (but within [0, 1]) the function
+// differs from 0 by more than `rounding`, with the sign `sign_before` before the root and the
+// opposite sign behind it.
 template <class Function>
 bool FindRoot(const Function& at, double sign_before, double rounding, double slack, double* root) {
   for (int k = 0; k < kMaxSteps; ++k) {

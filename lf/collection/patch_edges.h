@@ -23,8 +23,8 @@ class PatchEdges {
     double sure_begin, sure_end;
   };
 
-  // Removes all conditions, and makes `patch` the current patch. It must outlive the calls of
-  // Find().
+  // Removes all conditions, and makes `patch` the current patch. The patch must outlive the calls
+  // of Find().
   void Begin(const IdealPatch& patch);
 
   // Adds the condition form <= 0.

@@ -36,7 +36,7 @@ struct Range {
   double LargestSquare() const { return Most() * Most(); }
 };
 
-// Rounding error, relative to the terms that a value is summed from.
+// Bound of the rounding error of a form's value, relative to the sum of its absolute terms.
 inline constexpr double kFormRounding = 1e-9;
 
 inline Range RangeOn(const Hull& hull, const PixelForm& form) {

@@ -29,8 +29,8 @@ RayShare AtMostZero(const Hull& hull, const PixelForm& form) {
 
 constexpr int kControls = IdealPatch::kControls;
 
-// Writes the control points of the two parts of the curve, up to t and from t on (De Casteljau's
-// construction).
+// Splits the curve with the control points c at the parameter t, and writes the control points of
+// both parts (De Casteljau's construction).
 void SplitBezier(const Vec3 (&c)[kControls], double t, Vec3 (&left)[kControls],
                  Vec3 (&right)[kControls]) {
   std::copy(std::begin(c), std::end(c), std::begin(right));
@@ -78,7 +78,7 @@ class PatchPlanner {
   // The open conditions: those that are not known to hold on a whole hull. A condition that holds
   // on a hull holds on all its parts.
   struct Conditions {
-    bool sides[2] = {true, true};  // [0] for n.d < 0, [1] for n.d > 0; false: no ray accepted
+    bool sides[2] = {true, true};  // [0]: n.d < 0, [1]: n.d > 0; false: accepts no ray
     uint64_t plate[2];             // for each side, a bit for each half-plane
     uint64_t lens;                 // a bit for each edge of a polygonal lens
     bool disk;
@@ -281,8 +281,8 @@ class PatchPlanner {
     const Range forward = RangeOn(hull, forms_.forward);
     if (!(forward.low > 0)) return RayShare::kSome;
     const double r2 = render_camera_.aperture.radius_w * render_camera_.aperture.radius_w;
-    // If the LF camera lies in the lens plane, lens_right = l_x forward, with the same l_x for all
-    // rays. The quotient is then a tighter bound.
+    // If the LF camera lies in the lens plane, all rays meet that plane at one point (l_x, l_u):
+    // lens_right = l_x forward, lens_up = l_u forward. The quotient is then a tighter bound.
     if (in_lens_plane_) {
       const double l2 = (right.LargestSquare() + up.LargestSquare()) /
                         std::max(forward.high * forward.high, 1e-300);

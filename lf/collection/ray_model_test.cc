@@ -7,8 +7,9 @@
 namespace lf {
 namespace {
 
-// The plate has 100 x 100 elements, the LF image as many pixels; f is 100 elements. The render
-// camera looks along +z from the origin. The focus plane is at z = 2.
+// The plate has 100 x 100 elements and the LF image 100 x 100 pixels. The focal length of both
+// cameras is 100 elements or pixels. The render camera looks along +z from the origin. The focus
+// plane is at z = 2.
 struct Scene {
   PinholeCamera lf_camera;
   RenderCamera render;
@@ -104,8 +105,8 @@ TEST(RayModel, ElementsBeyondTheHorizonOfATiltedPlaneGetNothing) {
   scene.render.focus_plane =
       FocusPlane(scene.render.pinhole, 1, {RadiansFromDegrees(75), 0});  // depth 1 + 3.73 x
   const RayModel model(scene.lf_camera, scene.render);
-  // Pixel x looks along (x - 49.5) / 100. The horizon of the focus plane is at slope 1 / tan 75 =
-  // 0.268, which is column 76.8.
+  // Pixel x looks along (x - 49.5) / 100. The horizon of the focus plane is at slope 1 / tan 75
+  // degrees = 0.268, in pixel 76.
   int last = -1;
   for (int x = 0; x < 100; ++x)
     if (model.Collect(x, 50)) {

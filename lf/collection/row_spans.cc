@@ -9,8 +9,9 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Margins by which candidate intervals reach beyond the exact conditions; the ray model then
-// decides at their ends. They are relative: to the largest value of a form on the scanline, and to
-// the square of the disk's radius. They are far above rounding errors and far below a pixel.
+// decides at their ends. kFormMargin is relative to the largest value of a form on the scanline,
+// kDiskMargin to the square of the disk's radius. Both are far above rounding errors and far below
+// a pixel.
 constexpr double kFormMargin = 1e-9;
 constexpr double kDiskMargin = 1e-7;
 constexpr double kSlack = 0.01;  // margin at the ends of intervals, in pixels

@@ -31,12 +31,13 @@ class RowSpans {
     double radius = 0;
   };
 
-  // A position p fulfils the conditions of a side if form p <= 0 for all forms of the side, and if
-  // it is in the disk. No position fulfils both sides.
+  // There are two alternative sets of conditions, called sides, such as n.d < 0 and n.d > 0. A
+  // position p fulfils the conditions of a side if form p <= 0 for all half-planes of the side, and
+  // if p is in the disk. No position may fulfil the conditions of both sides.
   std::vector<PixelForm> half_planes[2];
   std::optional<Disk> disk;
-  // True if the ray model has more conditions than these. It then tests the ends of every span, and
-  // a span with accepted ends is accepted as a whole.
+  // True if the ray model has more conditions than the half-planes and the disk. The ray model then
+  // tests the ends of every span, and a span with accepted ends is accepted as a whole.
   bool model_decides = false;
 
   // Removes the conditions that are decided on all of `rect`: half-planes and a disk that hold
@@ -88,7 +89,7 @@ void RowSpans::Find(int y, int x_begin, int x_end, const Accepted& accepted,
       x = stop + 1;
     }
   }
-  // Each of the two sides has at most one span, unless it has a tie.
+  // Each of the two sides has at most one span, unless rounding decides about its positions (tie).
   if (spans->size() > 1) std::sort(spans->begin(), spans->end());
 }
 

@@ -51,8 +51,8 @@ void BM_Fast(benchmark::State& state, BayerPattern bayer) {
 BENCHMARK_CAPTURE(BM_Fast, rgb, BayerPattern::kNone);
 BENCHMARK_CAPTURE(BM_Fast, bayer, BayerPattern::kRggb);
 
-// Lens distortions. Ideal pixels are computed once, before the measurement, because a render
-// computes them once for many frames.
+// Lens distortions for the benchmarks below. Ideal pixels are computed once, before the
+// measurement, because a render computes them once for many frames.
 constexpr Distortion kPhone{DistortionModel::kRadialTangential, {0.035}};
 constexpr Distortion kBarrel{DistortionModel::kRadialTangential, {-0.25, 0.07, 0.002, -0.003}};
 constexpr Distortion kFisheyeLens{DistortionModel::kFisheye, {-0.02, 0.004, -0.002, 3e-4}};

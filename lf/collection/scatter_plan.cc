@@ -27,9 +27,9 @@ void PlanOnLines(const PinholeCamera& lf_camera, const RenderCamera& render_came
     const std::vector<PixelForm> lens = LensHalfPlanes(forms, render_camera, kLensMargin);
     rows.half_planes[side].insert(rows.half_planes[side].end(), lens.begin(), lens.end());
   }
-  // All rays of an LF camera in the lens plane cross this plane at one point. If the point is near
-  // the rim, the ray model decides about each span by its ends, because the quadratic would have a
-  // double root.
+  // All rays of an LF camera in the lens plane cross this plane at one point. The quadratic of the
+  // disk would have a double root. Unless the point is surely inside the disk, the ray model
+  // therefore decides about each span by its ends.
   if (is_disk && LiesInLensPlane(lf_camera, render_camera))
     rows.model_decides = !IsSurelyInDisk(lf_camera, render_camera);
   else if (is_disk)

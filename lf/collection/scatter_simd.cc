@@ -27,8 +27,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr int kGroup = 8;  // number of LF pixels that are added together
 // Groups are rarely runs if the step from one position to the next differs from (1, 0) by this many
-// elements or more: the elements then change the row, or skip or repeat a column, every 1 /
-// kRareRun pixels.
+// elements or more: the elements then change the row, or skip or repeat a column, at least every 1
+// / kRareRun pixels.
 constexpr float kRareRun = 1.0F / 6;
 
 // An integer below 2^23 is exact in single precision. If it is added to 2^23, the last bits of the
@@ -111,7 +111,8 @@ struct RgbPixels {
   }
 };
 
-// Adds the rays of a piece of a mosaic's scanline to packed words. Addresses are as in RgbPixels.
+// Adds the rays of a piece of a mosaic's scanline to packed words, each of which holds a sum and a
+// count. Addresses are as in RgbPixels.
 template <class Weights>
 struct MosaicPixels {
   static constexpr int kLanesPerPixel = 1;
@@ -199,9 +200,9 @@ struct MosaicPixels {
   }
 };
 
-// Computes, for each of the positions [begin, begin + count) of a segment, the address of its
-// element minus its index counted from `begin`. These differences are equal for neighbours that hit
-// neighbouring elements.
+// Computes, for each of the positions [begin, begin + count) of a segment, the *start*: the address
+// of the element that the position hits, minus the index of the position counted from `begin`.
+// Neighbouring positions that hit neighbouring elements have the same start.
 //   kClamp  if true, positions that rounding has put outside the tile are moved back to its border
 template <int kDegree, bool kClamp>
 HWY_ATTR HWY_INLINE void FindStarts(const Segment& s, int begin, int count, const TileLayout& tile,
@@ -242,8 +243,8 @@ HWY_ATTR HWY_INLINE void FindStarts(const Segment& s, int begin, int count, cons
     FindStarts<5, kClamp>(s, begin, count, tile, starts);
 }
 
-// True if each position of the segment hits the element to the right of the one that the previous
-// position hits.
+// True if each position of the segment surely hits the element to the right of the element that the
+// previous position hits.
 bool IsOneRun(const Segment& s) {
   // A position at least this far from the borders of an element hits this element in spite of
   // rounding to single precision.

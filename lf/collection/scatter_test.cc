@@ -103,7 +103,7 @@ TEST(Scatter, AnyCutOfTheImageGivesTheSameBits) {
 TEST(Scatter, RaysOnBordersAreNeitherLostNorDoubled) {
   for (int column = -6; column <= 6; ++column)
     for (int row = -6; row <= 6; ++row) {
-      // Half an element of disparity per pitch.
+      // The disparity is half an element per pitch.
       const testing::CameraPair pair = testing::ParallelPair(column, row, 0.01, 0.05);
       const LfPixels pixels = testing::NoisePixels(WholeImage(pair), BayerPattern::kNone, 3);
       SensorPlate expected = PlateFor(pair), fast = PlateFor(pair), bands = PlateFor(pair);

@@ -9,7 +9,8 @@
 namespace lf {
 namespace {
 
-// Positions with larger coordinates are never accepted, and could overflow integers.
+// Largest coordinate of a position. Larger coordinates are never accepted, and could overflow
+// integers.
 constexpr double kFarthest = 1 << 24;
 
 // RangeOf() widens its bounds by this margin, which is far above the rounding of single precision.
@@ -29,7 +30,7 @@ class PieceFitter {
       segments_->push_back(MakeSegment(y_, x_begin, x_end, 0.5 * (begin + end), polynomials));
       return;
     }
-    if (end - begin == 1) return;  // there is no position
+    if (end - begin == 1) return;  // the pixel has no position
     const int split = begin + (end - begin) / 2;
     if (x_begin < split) Add(x_begin, std::min(x_end, split), begin, split);
     if (x_end > split) Add(std::max(x_begin, split), x_end, split, end);
@@ -110,8 +111,8 @@ void SegmentMaker::Add(int y, int x_begin, int x_end, std::vector<Segment>* segm
   }
 }
 
-// With the distance t from the middle of the block, and the denominator d_0 + d_1 t, the position
-// is
+// At the distance t from the middle of the block, with the numerator n_0 + n_1 t and the
+// denominator d_0 + d_1 t, the position is
 //   e(t) = (n_0 + n_1 t) / (d_0 + d_1 t) = e_0 + s t / (1 + q t),  q = d_1 / d_0,
 //   s = (n_1 - e_0 d_1) / d_0.
 // This is a geometric series. Its term of t^4 is replaced by lower powers with the help of

@@ -1,7 +1,7 @@
 // Cuts spans of a row of pixels into segments. Along each segment, a polynomial maps the pixels to
-// the positions of their rays on the plate. For *bilinear* it is the other way round: elements are
-// mapped to positions in the LF image. Kernels evaluate the polynomials; other code only passes
-// segments on.
+// the positions of their rays on the plate. For the estimator *bilinear*, segments consist of
+// elements, and the polynomials map them to positions in the LF image. Kernels evaluate the
+// polynomials; other code only passes segments on.
 #pragma once
 
 #include <cstdint>
@@ -51,7 +51,8 @@ Segment MakeSegment(int y, int x_begin, int x_end, double middle, const Polynomi
 
 // True if no coordinate of a position on the piece differs by more than
 // SegmentMaker::kFarthestFromMiddle from the same coordinate of the position of its middle. The
-// piece extends by `half` to both sides of its middle.
+// piece extends by `half` pixels (or elements) to both sides of its middle. The test adds up
+// absolute values, and may therefore be false although no coordinate differs that much.
 bool IsNearMiddle(const Polynomials& polynomials, double half);
 
 // Makes the segments of rows. A pixel with the centre p = (column + 0.5, row + 0.5, 1), or with the
@@ -59,10 +60,12 @@ bool IsNearMiddle(const Polynomials& polynomials, double half);
 // forms x, y and denominator.
 class SegmentMaker {
  public:
-  // Largest error of positions, before polynomials are rounded to single precision.
+  // Largest error of positions, in elements (or LF pixels), before polynomials are rounded to
+  // single precision.
   static constexpr double kTolerance = 1e-5;
-  // Largest difference of a piece's positions from the position of its middle. Rounding of
-  // coefficients, products and sums to single precision then changes a position by at most 9.5e-5.
+  // Largest difference of a piece's positions from the position of its middle, in elements (or LF
+  // pixels), along each axis. Rounding of coefficients, products and sums to single precision then
+  // changes a position by at most 9.5e-5.
   static constexpr double kFarthestFromMiddle = 530;
 
   SegmentMaker(const PixelForm& x, const PixelForm& y, const PixelForm& denominator)

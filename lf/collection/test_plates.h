@@ -72,8 +72,8 @@ inline uint64_t DifferingCount(const SensorPlate& a, const SensorPlate& b) {
   return count;
 }
 
-// Calls collect(tile, &sums) for all tiles of the plate and flushes each. Returns the sum of the
-// results.
+// Calls collect(tile, &sums) for every tile of the plate, and flushes the sums to the plate after
+// each call. Returns the sum of the results of collect().
 //   ray_limit  passed to TileSums
 template <class Collect>
 uint64_t InTiles(SensorPlate* plate, const TileGrid& grid, const Collect& collect,

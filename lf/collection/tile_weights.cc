@@ -25,7 +25,7 @@ void TileWeights::Fill(const RayWeights& weights, const PixelRect& tile, int pit
   of_blocks_.resize(static_cast<size_t>(block_count));
   above_.resize(of_blocks_.size() + 1);
   below_.resize(of_blocks_.size() + 1);
-  // below_ is not filled yet. FillBlocks() knows this because the value differs from the upper y of
+  // below_ is not filled yet. FillBlocks() knows this because below_y_ differs from the upper y of
   // the first row of blocks.
   below_y_ = blocks.EndY(tile.y_begin);
   uint8_t* row = bytes_.data() + kMargin;

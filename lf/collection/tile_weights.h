@@ -1,5 +1,5 @@
-// The weights of one LF image's rays in one tile, one byte per element. The index of a weight is
-// the address of the sums that it belongs to. Internal to collection.
+// The weights of one LF image's rays in one tile, one byte per element. A weight has the same index
+// as the sums of its element (TileSums). Internal to collection.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ class TileWeights {
   //   pitch  bytes from one row of elements to the next
   void Fill(const RayWeights& weights, const PixelRect& tile, int pitch);
 
-  // All weights of the tile lie between these two. If they are equal, all weights are the same.
+  // Bounds of the weights of the tile. If both are equal, all weights are the same.
   uint32_t least() const { return least_; }
   uint32_t most() const { return most_; }
 
