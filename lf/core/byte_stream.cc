@@ -76,7 +76,7 @@ bool ByteStream::ReadMore(size_t count) {
     held += static_cast<size_t>(got);
     window_end_ += static_cast<uint64_t>(got);
   }
-  // If the file has grown since it was opened, it still ends at the size that it had then.
+  // Ignores bytes that were appended to the file after it was opened.
   if (window_end_ > size_) {
     held -= std::min<uint64_t>(held, window_end_ - size_);
     window_end_ = size_;

@@ -1,4 +1,4 @@
-// Reads a file from front to back, one block at a time, so that it may be larger than memory.
+// Reads a file from front to back, one block at a time, so that the file may be larger than memory.
 #pragma once
 
 #include <bit>
@@ -30,9 +30,9 @@ class ByteStream {
   uint64_t position() const { return window_end_ - window_.size(); }
   uint64_t remaining() const { return size_ - position(); }
 
-  // Returns the next bytes: all that are in memory already, at least one. The result is empty only
-  // at the end of the file, or if the file cannot be read (see Status()). It is valid until Skip()
-  // or Take() is called.
+  // Returns the unread bytes that are in memory; reads a block first if there are none. The result
+  // is empty only at the end of the file, or if the file cannot be read (see Status()). The result
+  // is valid until Skip() or Take() is called.
   std::string_view Window() {
     Fill(1);
     return window_;

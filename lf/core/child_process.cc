@@ -61,13 +61,13 @@ std::string TextOf(int file, off_t most_bytes = std::numeric_limits<off_t>::max(
 // All that a new process needs to become a program.
 struct Launch {
   char* const* argv = nullptr;
-  const char* working_folder = nullptr;  // nullptr: ours
+  const char* working_folder = nullptr;  // nullptr: our own
   int input = -1, output = -1, complaints = -1;
   int kept = -1;  // -1: none
   bool ends_with_parent = false;
 };
 
-// Lets the program inherit no other file than the standard files and `kept`.
+// Lets the program inherit no open file except the standard files and `kept`.
 void CloseOtherFilesAtExec(int kept) {
   if (::close_range(kFirstOther, ~0u, CLOSE_RANGE_CLOEXEC) != 0) {  // Linux older than 5.11
     constexpr int kHighest = 65536;  // the limit of open files may be a billion
@@ -105,8 +105,8 @@ void CloseOtherFilesAtExec(int kept) {
 }
 
 // Starts a process and waits until it has become the program. Returns 0, or the errno of the
-// failure. vfork, unlike fork, does not copy the page tables, which would take long in a large
-// render and might exceed the memory it is allowed.
+// failure. vfork, unlike fork, does not copy the page tables. In a large render the copy would take
+// long, and might exceed the memory that the render may use.
 int Spawn(const Launch& launch, pid_t* pid) {
   int alarm[2] = {-1, -1};
   if (::pipe2(alarm, O_CLOEXEC) != 0) return errno;
@@ -178,7 +178,7 @@ ChildProcess::~ChildProcess() {
 
 void ChildProcess::Kill() {
   if (pid_ == 0 || end_) return;
-  ::kill(-pid_, SIGKILL);  // its whole group
+  ::kill(-pid_, SIGKILL);  // the whole process group
   while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) continue;
   end_ = {.exit_code = 0, .signal = SIGKILL};
 }

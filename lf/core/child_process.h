@@ -1,5 +1,5 @@
-// Runs other programs as child processes: lfrenderer, until it ends; the commands of a batch
-// system, for their answers; and ffmpeg, which reads pictures from its standard input.
+// Runs other programs as child processes: lfrenderer; the commands of a batch system, whose output
+// is read; and ffmpeg, which reads pictures from its standard input.
 #pragma once
 
 #include <sys/types.h>
@@ -18,18 +18,18 @@ namespace lf {
 
 struct ProcessEnd {
   int exit_code = 0;
-  int signal = 0;  // the signal that killed the process; 0: it exited by itself
+  int signal = 0;  // the signal that killed the process; 0: no signal did
 };
 
-// A program that runs as a child process. It has a process group of its own, so that a Ctrl-C for
-// us does not reach it. It inherits none of our open files except `kept`, no blocked signals, and
-// of the signals that we ignore only SIGXFSZ. It leaves no zombie. An object may be used by one
-// thread at a time.
+// A program that runs as a child process. It has a process group of its own, so that a Ctrl-C in
+// our terminal does not reach it. It inherits none of our open files except Options::kept, and no
+// blocked signals. Of the signals that we ignore, it ignores only SIGXFSZ. It leaves no zombie. An
+// object may be used by one thread at a time.
 class ChildProcess {
  public:
   struct Options {
     std::vector<std::string> words;        // the program, searched in PATH, and its arguments
-    std::filesystem::path working_folder;  // empty: ours
+    std::filesystem::path working_folder;  // empty: our own
     int output = -1;                       // descriptor of standard output; -1: /dev/null
     int complaints = -1;     // standard error; -1: a file in memory, whose end is quoted in errors
     int kept = -1;           // a descriptor that the program inherits; -1: none
@@ -46,11 +46,11 @@ class ChildProcess {
   void Signal(int signal);
 
   // Writes to the program's input, and raises no SIGPIPE. kOutput if the program has closed its
-  // input, or if it has read nothing for patience_s; in the second case it is killed.
+  // input, or if it has read nothing for patience_s; in the second case the program is killed.
   Result<void> Write(std::span<const uint8_t> bytes, double patience_s);
 
   // Closes the input and waits for the program, which is killed if it still runs after patience_s.
-  // kOutput unless it exits with code 0.
+  // kOutput unless the program exits with code 0.
   Result<void> Finish(double patience_s);
 
  private:
@@ -61,9 +61,9 @@ class ChildProcess {
   std::string name_;
   pid_t pid_ = 0;                  // 0: not started
   std::optional<ProcessEnd> end_;  // how the program ended; nullopt while it runs
-  int lost_reason_ = 0;            // errno if waitpid() failed and `end_` is a guess; 0: it did not
+  int lost_reason_ = 0;            // errno if waitpid() failed and `end_` is a guess; else 0
   int input_ = -1;                 // socket; -1: closed
-  int complaints_ = -1;            // standard error: file in memory; -1: Options::complaints
+  int complaints_ = -1;            // standard error, a file in memory; -1: another file
 };
 
 struct CommandAnswer {
@@ -73,7 +73,7 @@ struct CommandAnswer {
 };
 
 // Runs a program and waits for its end. kOutput if it cannot be run, dies of a signal, takes longer
-// than patience_s, or prints more than 256 MiB. In the last two cases it is killed.
+// than patience_s, or prints more than 256 MiB. In the last two cases the program is killed.
 Result<CommandAnswer> RunCommand(const std::vector<std::string>& words, double patience_s);
 
 }  // namespace lf

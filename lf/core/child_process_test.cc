@@ -73,7 +73,7 @@ TEST_F(ChildProcessTest, AProgramThatDoesNotExistIsNamed) {
   }
 }
 
-// If a write raised SIGPIPE, this test would end.
+// If a write raised SIGPIPE, the signal would kill this test.
 TEST_F(ChildProcessTest, ALeavingProgramIsQuotedAndRaisesNoSignal) {
   auto child = Shell("echo 'no room left' >&2; exit 3");
   const std::vector<uint8_t> bytes(1'000'000);

@@ -1,4 +1,5 @@
-// Reads and writes whole files. All our files get their final names through these functions.
+// Reads and writes whole files. All files of this project get their final names through these
+// functions.
 #pragma once
 
 #include <cstddef>
@@ -15,12 +16,13 @@
 namespace lf {
 
 // Returns the kind of error to report if a file could not be opened or read, with the errno `code`.
-// It is kOutput if the machine lacks something (file descriptors, memory), because any other file
-// would then fail as well, and the file must not be reported as damaged. Otherwise it is kInput.
+// The kind is kOutput if the machine lacks something (file descriptors, memory), because any other
+// file would then fail in the same way, and this file must not be reported as damaged. Otherwise
+// the kind is kInput.
 ErrorKind KindOfReadFailure(int code);
-// Returns the kind of error to report if a library threw `thrown` while it read a file. For a
-// std::system_error it is the kind for its errno, because the library may have been unable to start
-// a thread. Otherwise it is kInput.
+// Returns the kind of error to report if a library threw `thrown` while it read a file. If `thrown`
+// is a std::system_error with an errno, returns KindOfReadFailure(errno), because the library may
+// have been unable to start a thread. Otherwise returns kInput.
 ErrorKind KindOfReadFailure(const std::exception& thrown);
 
 // Returns the bytes of a file. The error has the kind KindOfReadFailure() if the file cannot be

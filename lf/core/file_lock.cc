@@ -32,7 +32,8 @@ int Flock(int fd, int operation) {
   return result;
 }
 
-// Writes the whole text or nothing: it is too short to be written in parts.
+// Writes the whole text or nothing, because the text is too short to be written in parts. Returns
+// true if it was written.
 bool Write(int fd, const std::string& text) {
   ssize_t written = 0;
   do written = ::pwrite(fd, text.data(), text.size(), 0);
@@ -47,8 +48,10 @@ std::string OwnerNumber(int fd) {
   return {text, std::strspn(text, "0123456789")};
 }
 
-// An attempt to lock the file is repeated after a pause. Another process may have locked it a
-// moment ago, and not have written its number yet, or be in IsHeld(), which locks it for a moment.
+// Locking is attempted kAttempts times, with pauses, because IsHeld() in another process locks the
+// file for a moment. While the file contains no process number, it is attempted up to
+// kAttemptsWithoutNumber times, because the owner may have locked the file a moment ago and be
+// about to write its number.
 constexpr timespec kPause = {.tv_sec = 0, .tv_nsec = 2'000'000};
 constexpr int kAttempts = 3, kAttemptsWithoutNumber = 500;
 

@@ -1,5 +1,5 @@
 // A lock file, which lets only one process at a time work in a folder, for example. The kernel
-// holds the lock, and releases it when the process ends, even if it is killed.
+// holds the lock, and releases it when the process ends, even if the process is killed.
 #pragma once
 
 #include <filesystem>
@@ -13,8 +13,8 @@ class FileLock {
  public:
   // Locks the file, and creates it if it is missing. kOutput if another process (the message gives
   // its number) or another FileLock holds the lock, or if the file cannot be created, locked or
-  // written. Does not wait for the lock, but up to a second for the number of a process that has
-  // locked the file and not written its number yet.
+  // written. Waits a few milliseconds for the lock, and up to a second for a process that has
+  // locked the file to write its number.
   static Result<FileLock> Take(const std::filesystem::path& path);
   // True if any process holds the lock now. False if none does, if the file is missing, or if this
   // process may not read it.

@@ -73,7 +73,7 @@ TEST(FileLock, DiesWithItsProcess) {
   lock->Remove();
 }
 
-// Locks an empty file, as a program has it that has not written its number yet.
+// Locks an empty file, like a program that has not written its process number yet.
 class LockedEmptyFile {
  public:
   LockedEmptyFile(const std::filesystem::path& path, int operation)

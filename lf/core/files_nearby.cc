@@ -16,7 +16,7 @@ constexpr size_t kMostEntries = 4096, kMostNamed = 3;
 
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
-// Returns the base name without details that often differ by accident.
+// Returns the file name without its suffix and without details that often differ by accident.
 std::string Key(const fs::path& file) {
   std::string stem = file.stem().string();
   std::transform(stem.begin(), stem.end(), stem.begin(),

@@ -46,7 +46,7 @@ TEST(RigidTransform, ActsAsTheMatrixOfTheThesisOnHomogeneousVectors) {
   }
 }
 
-// A quarter turn about z takes x to y, y to -x; then the point is moved.
+// A quarter turn about z maps the x axis to y and the y axis to -x. The translation follows.
 TEST(RigidTransform, TurnsFirstAndMovesAfterwards) {
   RigidTransform transform;
   transform.rotation << 0, -1, 0,  //

@@ -10,7 +10,7 @@
 
 namespace lf {
 
-// A view does not own its pixels. It is copied freely and must not outlive them.
+// A view does not own its pixels. A view may be copied, but must not outlive the pixels.
 template <class T>
 struct ImageView {
   T* data = nullptr;

@@ -1,7 +1,7 @@
 // Vectors for images and plates. They begin at the boundary of a cache line (64 bytes), so that
-// SIMD loads cross as few cache lines as possible. For vectors of 4 MiB and more, the system is
-// asked for huge pages: otherwise each access to a distant row walks through the page tables, which
-// took a tenth to a sixth of the time of ray collection.
+// SIMD loads cross as few cache lines as possible. Vectors of 4 MiB and more request huge pages
+// from the system. With small pages, each access to a distant row walks through the page tables,
+// which took a tenth to a sixth of the time of ray collection.
 #pragma once
 
 #include <sys/mman.h>

@@ -12,16 +12,16 @@ namespace lf {
 
 enum class LogLevel { kDebug, kInfo, kWarning, kError };
 
-// Drops all messages below `level` from now on. The level is kInfo until this is called. Meant for
-// main().
+// Drops all messages below `level` from now on. Until this function is called, the level is kInfo.
+// Meant for main().
 void SetLogLevel(LogLevel level);
 
 // Returns the text as one line: control characters become \n, \t, \x1b and the like, as in C. File
 // names may contain any of them, and must neither look like another message nor move the cursor.
 std::string OneLine(std::string_view text);
 
-// Writes the message as OneLine(), with "warning: " or "error: " before it at these levels.
-// Thread-safe. Clears a line in progress (a progress bar) first.
+// Writes the message in one line (OneLine()), after "warning: " or "error: " if `level` is kWarning
+// or kError. Clears a line in progress (a progress bar) first. Thread-safe.
 void LogMessage(LogLevel level, std::string_view message);
 
 // Replaces the line in progress on a terminal; "" clears it. For progress bars.

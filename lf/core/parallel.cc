@@ -25,7 +25,7 @@ void ComesAfter(void* place) { __tsan_acquire(place); }
 void ComesBefore(void*) {}
 void ComesAfter(void*) {}
 #endif
-char loop_begins;  // global: only after ComesAfter() may a thread read the loop's variables
+char loop_begins;  // global, because threads must not read a loop's variables before ComesAfter()
 
 }  // namespace
 

@@ -8,7 +8,7 @@
 
 namespace lf {
 
-// A fixed number of threads that loops run on. No result of ours depends on that number.
+// A fixed number of threads that loops run on. No result of this project depends on that number.
 class ThreadPool {
  public:
   // thread_count 0: as many threads as the machine (or the process's CPU set) has processors.

@@ -1,5 +1,5 @@
-// Counter-based random numbers: the value depends on (seed, stream, index) alone, so it is the
-// same on any thread, in any order, on any machine.
+// Counter-based random numbers: a number depends on (seed, stream, index) alone, so that it is the
+// same on any thread, in any order of calls, on any machine.
 #pragma once
 
 #include <cstdint>

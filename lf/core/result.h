@@ -93,14 +93,14 @@ class [[nodiscard]] Result<void> {
   std::optional<Error> error_;
 };
 
-// Returns the error of `expression` from the calling function, if it has one.
+// Returns from the calling function with the error of the Result `expression`, if it has an error.
 #define LF_RETURN_IF_ERROR(expression)                                       \
   do {                                                                       \
     if (auto lf_result = (expression); !lf_result) return lf_result.error(); \
   } while (false)
 
-// Initializes a variable with the value of a Result, or returns its error from the calling
-// function:
+// Initializes a variable with the value of a Result. If the Result has an error, returns from the
+// calling function with the error:
 //   LF_ASSIGN_OR_RETURN(auto image, ReadImage(path));
 #define LF_ASSIGN_OR_RETURN(declaration, expression) \
   LF_ASSIGN_OR_RETURN_(LF_CONCAT_(lf_result_, __LINE__), declaration, expression)

@@ -26,7 +26,7 @@ namespace {
 constexpr std::string_view kMark = ".tmp";
 constexpr size_t kHostDigits = 8;
 
-// Returns a hash of the machine's name and its PID namespace, because a process number has a
+// Returns a hash of the machine's name and of our PID namespace, because a process number has a
 // meaning only within one namespace. The first namespace of a machine has the same number after
 // each reboot.
 std::string HostName() {
@@ -81,8 +81,8 @@ fs::path FolderOf(const fs::path& path) {
   return error ? folder : absolute.lexically_normal();
 }
 
-// The temporary files in one folder that other processes of this host have made, by their final
-// names.
+// The temporary files in one folder that other processes of this host have made, listed under the
+// final names of the files.
 using Leftovers = std::map<std::string, std::vector<fs::path>>;
 
 Leftovers LeftoversIn(const fs::path& folder) {

@@ -14,16 +14,16 @@ namespace lf {
 // Returns the temporary name that this process gives to `path`, in the same folder.
 std::filesystem::path TemporaryPath(const std::filesystem::path& path);
 
-// Removes temporary files of `path` whose process ran on this host and is dead. Files of other
-// hosts and of living processes stay. This process lists each folder only once, when the function
-// is called for the first file in it. May be called at the same time from any thread.
+// Removes the temporary files for `path` that processes of this host made which are dead now. Files
+// of other hosts and of living processes stay. This process lists each folder only once, when the
+// function is called for the first file in it. May be called at the same time from any thread.
 void RemoveLeftovers(const std::filesystem::path& path);
 
 // True if the name (without a folder) has the form that TemporaryPath() gives, for any file and any
 // process.
 bool IsTemporaryName(const std::string& name);
 
-// A temporary file. The destructor removes it, also if memory has run out, unless Keep() was
+// A temporary file. The destructor removes the file, even if memory has run out, unless Keep() was
 // called.
 class TemporaryFile {
  public:
