@@ -8,7 +8,7 @@ namespace lf {
 namespace {
 
 // A found depth supports the depths around it by a Gaussian in the logarithm of depth. WidthOf()
-// returns its width, ShareAt() its value.
+// returns the standard deviation of the Gaussian, ShareAt() its value.
 double WidthOf(const FoundDepth& found) { return std::max(0.03, found.error); }
 double ShareAt(double distance_w, const FoundDepth& found) {
   const double off = std::log(found.distance_w / distance_w) / WidthOf(found);

@@ -1,5 +1,4 @@
-// The depths that a plane sweep tests, and functions that find the best of them. Internal to this
-// folder.
+// The depths that a plane sweep tests, and functions that find the best of them. Internal to focus.
 #pragma once
 
 #include <algorithm>
@@ -39,9 +38,10 @@ inline double PeakElsewhere(std::span<const double> scores, size_t first, size_t
   return rival;
 }
 
-// Returns the index of the vertex of the parabola through the best score and its neighbours, or
-// `best` if there is none.
-//   counts  tells whether a neighbour's score may be used
+// Returns the index, in fractions, where the parabola through the best score and the two scores
+// beside it is largest. Returns `best` if one of the two is missing or may not be used, or if the
+// parabola has no maximum.
+//   counts  returns true if a score beside the best one may be used
 template <class Counts>
 double VertexAround(std::span<const double> scores, size_t best, const Counts& counts) {
   const auto index = static_cast<double>(best);

@@ -19,7 +19,8 @@ struct ExampleFocus {
   // candidates_w holds at most three focus distances to try, the most likely first.
   std::string doubt = {};
   std::vector<double> candidates_w = {};
-  // The nearest and farthest depth of the scene; equal if they are not known.
+  // A range of depths that contains the focus and four fifths of the depths found in the scene.
+  // Both are 0 if the focus is given or not sure.
   double near_w = 0, far_w = 0;
 };
 

@@ -39,9 +39,9 @@ Vec3 LevelUp(const LightField& light_field, const PinholeCamera& camera) {
 // Rounds down to an even size (at least 2), because video needs even sizes.
 int Even(int size) { return std::max(2, size - size % 2); }
 
-// Returns the largest frame within the LF camera's view, at most as large as the LF image and at
-// least a quarter of it. It has the proportions of the LF image. Its elements are as large as the
-// LF pixels in the middle of the LF image.
+// Returns the largest frame within the LF camera's view, at most as wide as the LF image and at
+// least a quarter as wide. The frame has the proportions of the LF image. Its elements are as large
+// as the LF pixels in the middle of the LF image.
 Intrinsics InscribedFrame(const PinholeCamera& camera, const Vec3& up_world) {
   const Intrinsics& k = camera.intrinsics;
   const RayThrough rays(camera, camera.ForwardWorld());
@@ -79,7 +79,7 @@ Intrinsics InscribedFrame(const PinholeCamera& camera, const Vec3& up_world) {
   return frame_of(seen);
 }
 
-// The keyframes of the path. At time 0, their values are those that the sections above them in the
+// The keyframes of the path. At time 0, they have the values that the sections above them in the
 // file state.
 struct Movement {
   std::string keyframes;

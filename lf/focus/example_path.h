@@ -25,8 +25,8 @@ struct ExampleOptions {
   LfImageId camera;  // the path starts at the LF camera of this LF image
   ExampleMove move = ExampleMove::kFocusPull;
   std::optional<double> focus_distance_w;  // unset: MakeExamplePath() finds it
-  // Returns points of the scene that the LF image shows, in world coordinates. May be empty: the
-  // light field has no points. Called only if focus_distance_w is unset.
+  // Returns points of the scene that the LF image shows, in world coordinates. May be left empty if
+  // the light field has no points. Called only if focus_distance_w is unset.
   std::function<Result<std::vector<Vec3>>()> points_world = {};
 };
 
@@ -35,28 +35,28 @@ struct ExamplePath {
   double focus_distance_w = 0;
   std::string focus_reason;  // how the focus distance was found, for people
   double aperture_diameter_w = 0;
-  std::string aperture_reason;  // text for people, to be printed after "DIAMETER, "
+  std::string aperture_reason;  // for people; continues the sentence "DIAMETER, "
   // The reason why the focus may be wrong; empty if the focus is sure. If there is a doubt,
   // candidates_w holds at most three focus distances to try, the most likely first.
   std::string doubt;
   std::vector<double> candidates_w;
 };
 
-// Returns a path that shows something of the scene: one frame if nothing moves, otherwise 50.
-// - Focus: at the subject (focus/find_subject.h). If the subject is not sure, or the points of a
-//   reconstruction contradict it, at the depth of most points (focus/point_subject.h). If the
-//   points are not sure either, `doubt` is set, and the focus is the first known of: the point
-//   where the optical axes meet, the middle of the depth range, the best depth found, the depth at
-//   which the disparity of neighbouring LF images is one pixel.
-// - Lens: eight spacings of the LF cameras wide; down to 2.5 spacings if the LF cameras are so far
-//   apart that ghosts would be visible. It is never wider than the larger of the capture and 2.2
-//   spacings. If the ghosts would be too far apart, or the focus is not sure, the lens is almost a
-//   pinhole: the first frame is the view of one LF camera.
+// Returns a path that shows something of the scene. It has one frame if nothing moves, otherwise 50.
+// - Focus: on the subject (focus/find_subject.h). If the subject is not sure, or the points of a
+//   reconstruction contradict it, the focus is at the depth of most points (focus/point_subject.h).
+//   If that depth is not sure either, `doubt` is set, and the focus is the first of these that is
+//   known: the point where the optical axes meet, the middle of the depth range, the best depth
+//   found, the depth at which the disparity of neighbouring LF images is one pixel.
+// - Lens: its diameter is eight spacings of the LF cameras, or less, down to 2.5 spacings, if ghosts
+//   would otherwise be visible. It is never wider than the capture or 2.2 spacings, whichever is
+//   larger. If the ghosts would still be too far apart, or the focus is not sure, the lens is almost
+//   a pinhole, and the first frame is the view of one LF camera.
 // - Picture: the largest rectangle within the view of the LF camera, in the proportions of the LF
 //   image. Its horizon is level if the LF camera is rolled by at most 30 degrees against the mean
 //   up direction of all LF cameras.
-// kInput: the light field has fewer than two LF cameras, or most of them share a position; there is
-// no LF image options.camera, or it is broken.
+// kInput: the light field has fewer than two LF cameras, or most of them share a position; the LF
+// image options.camera does not exist, or is broken.
 Result<ExamplePath> MakeExamplePath(const LightField& light_field, const LfImageStore& store,
                                     const ExampleOptions& options, ThreadPool& pool);
 

@@ -74,7 +74,7 @@ Light CardBefore(double card_w, double wall_w) {
   };
 }
 
-// Draws the same words into a corner of every image.
+// Draws the same texture into the lower right corner of every image.
 Light Watermarked(Light light) {
   return [light = std::move(light)](const Ray& ray, LfImageId id, const Vec2& at) {
     if (at.x() > 150 && at.y() > 100) return ValueNoise(at.x() / 4, at.y() / 4, 9);

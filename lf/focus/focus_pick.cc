@@ -16,15 +16,15 @@
 namespace lf {
 namespace {
 
-constexpr int kHalfPatch = 5;  // half width, in elements or LF pixels, whichever are larger
+constexpr int kHalfPatch = 5;  // of a patch, in elements or LF pixels, whichever are larger
 constexpr int kPatchSide = 2 * kHalfPatch + 1;
 constexpr int kPatchSize = kPatchSide * kPatchSide;
 constexpr double kStep_px = 0.5;  // change of the largest disparity from one depth to the next
 constexpr double kMostDisplaced = 0.45;  // largest disparity, as a share of the LF image's width
-constexpr double kLeastTexture = 0.004;  // standard deviation of the root of light in a patch
+constexpr double kLeastTexture = 0.004;  // least standard deviation of the root of light in a patch
 constexpr double kLeastAgreement = 0.6;  // least score of a depth that is found
-constexpr size_t kLeastViews = 3;        // least number of views in addition to the reference
-constexpr double kAgreeing = 0.6;        // share of views that agree; others may not see it
+constexpr size_t kLeastViews = 3;        // least number of views besides the first, the reference
+constexpr double kAgreeing = 0.6;        // share of views that must agree on a depth
 constexpr double kLeastCosine = 0.5;     // least cosine of the angle between optical axis and ray
 
 using Patch = std::array<float, kPatchSize>;
@@ -71,8 +71,8 @@ std::vector<Vec2> WantedPlaces(double radius_w) {
   return places;
 }
 
-// Chooses the LF camera nearest to each wanted position. If fewer than eight LF cameras lie within
-// the ring, it is widened.
+// Chooses the LF camera nearest to each wanted position. If fewer than nine LF cameras lie within
+// the outer ring, both rings are widened.
 std::vector<View> ChooseViews(const LightField& field, const SearchRay& search, double radius_w) {
   struct Candidate {
     LfImageId id;
@@ -156,8 +156,8 @@ std::optional<double> ReadPatch(const View& view, const SearchRay& search, doubl
 }
 
 struct Agreement {
-  double score = -1;   // mean of the best 60 % of correlations; -1: unknown
-  double texture = 0;  // standard deviation of the reference's patch
+  double score = -1;   // mean of the largest 60 % of the correlations; -1: unknown
+  double texture = 0;  // standard deviation of the first view's patch
 };
 
 Agreement AgreementAt(std::span<const View> views, const SearchRay& search, double depth_w) {
@@ -187,7 +187,7 @@ DepthSweep MakeSweep(std::span<const View> views) {
   double baseline_w = 0;
   for (const View& view : views) baseline_w = std::max(baseline_w, view.offset_w);
   const Intrinsics& k = views[0].rays.intrinsics();
-  const double px_per_w = std::max(1e-12, k.fx_px * baseline_w);  // disparity at 1 / depth = 1
+  const double px_per_w = std::max(1e-12, k.fx_px * baseline_w);  // largest, at 1 / depth = 1
   DepthSweep sweep;
   sweep.from_per_w = kMostDisplaced * k.width_px / px_per_w;
   sweep.step_per_w = kStep_px / px_per_w;

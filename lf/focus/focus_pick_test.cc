@@ -19,8 +19,8 @@ double Texture(double x, double y) {
                       std::sin(71 * x + 5 * y * y));
 }
 
-// Returns the light of a wall, and of a nearer wall that covers only x < 0. The right end of the
-// far wall (x > 0.6) is white.
+// Returns the light along a ray to a near wall, which covers only x < 0, or to the far wall behind
+// it. The right end of the far wall (x > 0.6) is white.
 double Light(const Ray& ray) {
   const Vec3 near = ray.At((kNear_w - ray.origin.z()) / ray.direction.z());
   if (near.x() < 0) return Texture(near.x(), near.y());

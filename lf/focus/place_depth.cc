@@ -12,24 +12,24 @@
 namespace lf {
 namespace {
 
-constexpr int kColumns = 16, kRows = 11;   // cells of the image; each has one place
-constexpr double kLeastTexture = 0.006;    // least step between pixels, in the weakest direction
-constexpr double kLeastDeviation = 0.002;  // lower bound that keeps noise from correlating
+constexpr int kColumns = 16, kRows = 11;   // cells of the image; each has at most one place
+constexpr double kLeastTexture = 0.006;    // least gradient, per pixel, in the weakest direction
+constexpr double kLeastDeviation = 0.002;  // least deviation; keeps noise from correlating
 constexpr double kLeastAgreement = 0.65;   // least score of a depth that is found
-constexpr double kAgreeing = 0.6;  // share of views that must agree; others may not see the place
+constexpr double kAgreeing = 0.6;  // share of views that must agree; the others may not see it
 constexpr size_t kLeastViews = 2;
 constexpr double kStep_px = 0.5;  // change of the largest disparity from one depth to the next
 constexpr double kMostDisplaced = 0.45;  // largest disparity, as a share of the image's width
-constexpr double kLeastMove_px = 1;      // reduced pixels; a place that moves less is not used
-constexpr double kStill = 0.9;           // correlation of a place that does not move
+constexpr double kLeastMove_px = 1;      // in reduced pixels; places that move less are not used
+constexpr double kStill = 0.9;           // least correlation of a place that does not move
 constexpr size_t kMostRings = 5;
 constexpr int kViewsPerRing = 6;
 constexpr double kInnerRing = 2;      // radius of the innermost ring, in spacings
-constexpr double kRingFactor = 4;     // radius of a ring relative to the one before
+constexpr double kRingFactor = 4;     // radius of a ring, relative to the next smaller ring
 constexpr double kLeastCosine = 0.8;  // least cosine of the angle between optical axes
 
-// Returns the sum over a patch. It is computed in as many independent chains of additions as a
-// processor runs at the same time.
+// Returns the sum of value(i) over the pixels i of a patch. It is computed in about as many
+// independent chains of additions as a processor runs at the same time.
 template <typename Value>
 double SumOf(const Value& value) {
   constexpr size_t kChains = 9;
@@ -158,8 +158,8 @@ double StillAgreement(const Rings& rings, const Place& place, int divisor) {
   return Agreement(&correlations);
 }
 
-// Returns the largest displacement of the place in a view from its own pixel position, in reduced
-// pixels.
+// Returns the largest displacement, in reduced pixels, of the place in any view from the position
+// of the place in its own image.
 double LargestMove(const Rings& rings, const Place& place, double depth_w, int divisor) {
   double largest = 0;
   for (const std::vector<View>& ring : rings)
@@ -217,7 +217,7 @@ std::optional<FoundDepth> DepthOf(const Rings& rings, const Place& place, const 
   sweep.count = static_cast<size_t>(sweep.from_per_w / sweep.step_per_w) + 1;
   Peak peak = FindPeak(sweep, rings[0], place);
   if (peak.score < kLeastAgreement) return std::nullopt;
-  // Repeated patterns agree at several depths.
+  // LF images of a repeated pattern agree at several depths.
   constexpr double kClear = 0.1, kLeastClear = 0.3;
   const double clear = std::min(1.0, (peak.score - peak.rival) / kClear);
   if (clear < kLeastClear) return std::nullopt;
@@ -246,8 +246,8 @@ std::optional<FoundDepth> DepthOf(const Rings& rings, const Place& place, const 
 
 namespace {
 
-// Returns the square root of the smaller eigenvalue of the mean of g g^T, where g is the gradient.
-// It is 0 on straight edges, whose disparity is known only across the edge.
+// Returns the square root of the smaller eigenvalue of the mean of g g^T over a patch, where g is
+// the gradient. It is 0 on straight edges, whose disparity is known only across the edge.
 double TextureAt(const Image<float>& light, int x, int y) {
   double xx = 0, xy = 0, yy = 0;
   for (int j = y - kHalfPatch; j <= y + kHalfPatch; ++j)
@@ -260,7 +260,7 @@ double TextureAt(const Image<float>& light, int x, int y) {
     }
   const double mean = (xx + yy) / 2;
   const double least = mean - std::sqrt(std::pow((xx - yy) / 2, 2) + xy * xy);
-  return std::sqrt(std::max(0.0, least) / kPatchSize) / 2;  // NaN stays
+  return std::sqrt(std::max(0.0, least) / kPatchSize) / 2;  // NaN becomes 0
 }
 
 // Returns the place with the most texture in one cell of the image; none if its texture is too

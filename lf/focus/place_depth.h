@@ -25,7 +25,7 @@ using Patch = std::array<float, kPatchSize>;
 struct View {
   LfImageId id;
   RayThrough rays;
-  double offset_w = 0;  // distance to the searched camera, normal to that camera's axis
+  double offset_w = 0;  // distance to the camera of the place, normal to its optical axis
   std::shared_ptr<const ReducedImage> image = nullptr;
 };
 
@@ -36,7 +36,8 @@ using Rings = std::vector<std::vector<View>>;  // the innermost ring first
 // loaded.
 Rings ChooseRings(const LightField& field, LfImageId camera);
 
-// A place of the camera's image: its ray, and the directions to the pixels around it.
+// A place in the image of one LF camera (the camera of the place): the ray of the place, and the
+// directions to the pixels around it.
 struct Place {
   Vec2 at_px;              // position in the LF image
   Vec3 origin, direction;  // the direction has length 1 along the optical axis
@@ -65,7 +66,8 @@ struct PatchGrid {
            (index / kPatchSide - kHalfPatch) * step_y;
   }
 };
-// Returns the grid of a place at a depth in a view; none if the view's lens has no image of it.
+// Returns the grid of a place at a depth in a view; none if the view's lens has no image of the
+// place.
 std::optional<PatchGrid> PatchSeenBy(const View& view, const Place& place, double depth_w);
 
 // Returns the correlation of the place's patch with the view's pixels at a depth, in [-1, 1]; -1 if
@@ -82,7 +84,7 @@ struct FoundDepth {
 // moves by less than a reduced pixel.
 //   rings      rings of views whose images are loaded; at least one ring, each with at least two
 //              views
-//   k          intrinsics of the camera
+//   k          intrinsics of the camera of the place
 //   divisor    divisor of the reduced images
 //   nearest_w  no nearer depths are tested; 0: tests from the nearest depth that the images of the
 //              innermost ring can show
