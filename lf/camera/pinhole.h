@@ -1,5 +1,6 @@
-// The pinhole camera (thesis 2.2.2-2.2.4). It describes an LF camera, whose lens may have
-// distortion, and the view of a render camera through its lens centre, which has no distortion.
+// The pinhole camera (thesis 2.2.2-2.2.4). An LF camera is a pinhole camera, whose lens may have
+// distortion. The rays through the lens centre of a render camera are those of a pinhole camera
+// without distortion.
 #pragma once
 
 #include <optional>

@@ -33,8 +33,8 @@ class RayThrough {
     return forward_.dot(d) < 0 ? Vec3(-d) : d;
   }
 
-  // Returns the position, in pixels, at which the LF camera records a ray of this direction; it may
-  // lie outside the image. None if the lens has no image of the direction.
+  // Returns the position, in pixels, at which the LF camera records a ray with this direction. The
+  // position may lie outside the image. None if the lens has no image of the direction.
   std::optional<Vec2> RecordedAt(const Vec3& direction_world) const {
     const std::optional<Vec2> distorted = map_.Distort(rotation_ * direction_world);
     if (!distorted) return std::nullopt;

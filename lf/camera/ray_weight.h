@@ -50,7 +50,7 @@ inline uint32_t FeatheredWeight(uint32_t weight, const uint16_t* above, const ui
 // Weights of the rays of one LF image in one frame.
 class RayWeights {
  public:
-  // The whole plate has one weight, at most kMaxWeight.
+  // Gives all elements of the plate the same weight, at most kMaxWeight.
   RayWeights(uint32_t weight = 1) : same_(weight) {}  // NOLINT: implicit on purpose
   // Writes the weights, at most kMaxWeight, of `count` blocks side by side. (end_x, end_y) is the
   // exclusive end of the first block.

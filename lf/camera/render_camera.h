@@ -9,8 +9,8 @@
 
 namespace lf {
 
-// Depth of the focus plane at (x right, u up), in camera coordinates:
-//   g + x tan(horizontal) + u tan(vertical)
+// Tilt of the focus plane. At x to the right and u up, in camera coordinates, the plane has the
+// depth  g + x tan(horizontal) + u tan(vertical),  where g is the focus distance.
 struct FocusTilt {
   double horizontal_rad = 0;
   double vertical_rad = 0;

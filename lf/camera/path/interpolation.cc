@@ -26,7 +26,8 @@ double InnerSlope(double h0, double h1, double d0, double d1) {
   return (w0 + w1) / (w0 / d0 + w1 / d1);
 }
 
-// Returns the indices of the first point, and of points whose knot differs from the knot before it.
+// Returns the indices of the first point and of all points whose knot differs from the knot of the
+// point before.
 std::vector<size_t> DistinctKnots(std::span<const double> knots) {
   std::vector<size_t> distinct;
   for (size_t i = 0; i < knots.size(); ++i)

@@ -26,14 +26,14 @@ struct AcceleratedMotion {
   std::vector<AccelerationPeriod> periods;
 };
 
-// Returns the value after constant accelerations. The speed reached in a period is kept after it,
+// Returns the value after constant accelerations. The speed reached at the end of a period is kept,
 // and the accelerations of overlapping periods add up:
 //
 //   x(t) = x0 + v0 t + sum over periods of  a (s^2 / 2 + s (t - from - s)),
-//   s    = min(t, to) - from, the time spent in the period; 0 before it
+//   s    = min(t, to) - from, the time spent in the period; 0 if t < from
 MotionValue ValueAt(const AcceleratedMotion& motion, double time_s);
 
-// Tells how the curve goes from the previous key to this one.
+// Tells how the curve goes from the previous key to the key that has this value.
 enum class Interpolation { kSmooth, kLinear, kStep };
 
 struct Key {

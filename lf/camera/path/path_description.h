@@ -30,22 +30,22 @@ struct PathDescription {
   int height_px = 0;
 
   Quantity position_w;
-  std::optional<Quantity> look_at_w;    // either this or orientation
+  std::optional<Quantity> look_at_w;    // set unless `orientation` is
   std::optional<Quantity> orientation;  // yaw, pitch, roll in radians, or quaternion w, x, y, z
   Vec3 up = -Vec3::UnitY();             // used with look_at
   bool keep_direction = false;          // with look_at: keeps the direction of time 0 while the
                                         // camera moves
   Quantity roll_rad;                    // applied after look_at or orientation
 
-  // Two of these three are given; the third follows from them. If the file gives only the focal
-  // length or only the field of view, the sensor width is 36 mm.
+  // Two of the three members below are set; they determine the third quantity. If the file gives
+  // only the focal length or only the field of view, the sensor width is 36 mm.
   std::optional<double> sensor_width_w;
   std::optional<Quantity> focal_length_w;
   std::optional<Quantity> field_of_view_rad;  // horizontal, when focused at infinity
 
-  std::optional<Quantity> aperture_diameter_w;  // either this or f_number
+  std::optional<Quantity> aperture_diameter_w;  // set unless `f_number` is
   std::optional<Quantity> f_number;
-  std::optional<Quantity> focus_distance_w;  // either this or focus_point
+  std::optional<Quantity> focus_distance_w;  // set unless `focus_point_w` is
   std::optional<Quantity> focus_point_w;
   Quantity focus_tilt_rad;  // horizontal, vertical
   bool breathing = false;

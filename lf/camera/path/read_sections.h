@@ -7,8 +7,8 @@
 
 namespace lf {
 
-// Each function fills in its part of the description. It adds an error for a key that is unknown,
-// missing, of a wrong type or range, or contradicts another.
+// Both functions fill in their part of `path`. They add an error for each key that is unknown, is
+// missing, has a wrong type, is out of range, or contradicts another key.
 void ReadCameraSection(const YamlNode& node, QuantityReader* quantities, PathDescription* path,
                        YamlErrors* errors);
 void ReadLensSection(const YamlNode& node, QuantityReader* quantities, PathDescription* path,

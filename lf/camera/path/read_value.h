@@ -20,11 +20,12 @@ enum class ValueShape {
 // Returns the number of components, 1 to 4.
 int ComponentCount(ValueShape shape);
 
-// Returns an example of such a value as a file writes it, for messages.
+// Returns an example of a value with this shape, as it is written in a file, for messages.
 std::string_view ExampleOf(ValueShape shape);
 
-// Returns the value times `units_per_file`. None, with an error, if it has another shape or a
-// component is out of range. Quaternions are normalised; their length may deviate from 1 by 1 %.
+// Returns the value of the node times `units_per_file`. None, with an error, if the node has
+// another shape or a component is out of range. Quaternions are normalised; their length may
+// deviate from 1 by 1 %.
 std::optional<MotionValue> ReadValue(const YamlNode& node, std::string_view label, ValueShape shape,
                                      const NumberRange& range, double units_per_file,
                                      YamlErrors* errors);

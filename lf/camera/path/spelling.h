@@ -1,4 +1,4 @@
-// Finds the word that a misspelt one was meant to be.
+// Finds the known word that a misspelt word was meant to be.
 #pragma once
 
 #include <cstddef>

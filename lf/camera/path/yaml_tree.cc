@@ -133,9 +133,9 @@ Error ErrorAt(std::string_view name, const YAML::Exception& error, std::string_v
   return InputError(fmt::format("{}:{}:{}: {}", name, place.line, place.column, message));
 }
 
-// Every token of YAML except the first follows one of the characters that are counted here. Their
-// number therefore limits the memory of the parser, no matter what it considers a key, a quotation
-// or a comment.
+// Limits the memory of the parser. Every token of YAML except the first follows one of the
+// characters that this function counts, no matter what the parser considers a key, a quotation or a
+// comment.
 Result<void> CheckBounds(std::string_view text, std::string_view name) {
   if (text.size() > kMaxYamlBytes)
     return InputError(
