@@ -57,8 +57,8 @@ using AllLanes = hn::CappedTag<uint32_t, 16>;
 using LanesOfOne = hn::Full128<uint32_t>;
 constexpr int kRaysAtOnce = static_cast<int>(hn::MaxLanes(AllLanes())) / LfPixels::kRgbLanes;
 
-// For each ray, loads two adjacent pixels into a block of 128 bits: pixel number pixel[k] of
-// `values` and the pixel to its right into block k.
+// Loads two adjacent pixels for each ray into a block of 128 bits. Block k gets the pixel with the
+// index pixel[k] in `values` and the pixel to the right of it.
 HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<uint16_t>> LoadPairs(hn::Full128<uint16_t> d,
                                                              const uint16_t* values,
                                                              const int32_t* pixel) {
@@ -94,7 +94,8 @@ HWY_ATTR HWY_INLINE V Mix(V first, V second, V weight) {
   return hn::Add(hn::ShiftLeft<kWeightBits>(first), hn::Mul(hn::Sub(second, first), weight));
 }
 
-// Interleaves the lanes of the two pixels in each block.
+// Interleaves the lanes of the two pixels in each block, so that both values of a colour are
+// adjacent.
 template <class D16>
 HWY_ATTR HWY_INLINE hn::Vec<D16> SideBySide(D16 d16, hn::Vec<D16> pairs) {
   HWY_ALIGN static constexpr uint8_t kBytes[16] = {0, 1, 8,  9,  2, 3, 10, 11,
@@ -122,7 +123,8 @@ HWY_ATTR HWY_INLINE void AddRaysOf(D d, const Places& places, int i, const uint1
   };
   const auto sum =
       Mix(mix_row(values), mix_row(values + row_values), LoadWeights(d, places.lower + i));
-  // Adds kMiddle back, times the sum of all weights (65536), and kHalf.
+  // Adds back kMiddle, which was subtracted from each pixel, times the sum of all weights (65536).
+  // Adds kHalf to round half up.
   constexpr uint32_t kBack = uint32_t{kMiddle} * kOne * kOne + kHalf;
   auto rays = hn::ShiftRight<2 * kWeightBits>(hn::Add(sum, hn::Set(d, kBack)));
   if constexpr (!Weights::kIsOne) rays = hn::Mul(rays, weights.OfPixels(d, i));

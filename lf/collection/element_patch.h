@@ -15,8 +15,8 @@ class ElementPatch {
  public:
   // Fits a polynomial through the positions on the plate, (x p, y p) / (denominator p), of six by
   // six ideal positions p in columns [x_begin, x_end) of `patch`. Returns none if the polynomial
-  // deviates from the positions between these six by six by more than SegmentMaker::kTolerance, or
-  // if positions are too far apart for single precision (IsNearMiddle()).
+  // deviates by more than SegmentMaker::kTolerance from the positions at nine other points
+  // (kQuinticWorstPlaces), or if positions are too far apart for single precision (IsNearMiddle()).
   static std::optional<ElementPatch> Fit(const PixelForm& x, const PixelForm& y,
                                          const PixelForm& denominator, const IdealPatch& patch,
                                          int x_begin, int x_end);

@@ -13,7 +13,7 @@
 namespace lf {
 namespace {
 
-// Returns a pair whose LF pixels are `magnification` times as large as elements.
+// Returns a pair of cameras whose LF pixels are `magnification` times as large as elements.
 testing::CameraPair PairOf(double magnification) {
   testing::CameraPair pair = testing::ParallelPair(3, 2, 0.01, 0.05);
   const Intrinsics& plate = pair.render_camera.pinhole.intrinsics;
@@ -31,7 +31,7 @@ TEST(GatherSampling, MagnificationIsElementsPerLfPixel) {
     EXPECT_NEAR(Magnification(pair.lf_camera, pair.render_camera), magnification,
                 1e-6 * magnification);
   }
-  // An LF camera that sees nothing of the frame.
+  // This LF camera sees nothing of the frame.
   testing::CameraPair pair = PairOf(1);
   pair.lf_camera.cam_from_world.translation += Vec3(1000, 0, 0);
   EXPECT_NEAR(Magnification(pair.lf_camera, pair.render_camera), 1, 1e-6);

@@ -60,8 +60,9 @@ struct MosaicTable {
           for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane) {
             of_step.counts[column][lane] = 0;
             for (int row = 0; row < 4; ++row) {
-              // The sixteen pixels begin one column to the left of the four and one row above them.
-              // x and y are odd there if they are even here.
+              // The sixteen pixels begin one column to the left of the inner four and one row above
+              // them. At their first pixel, x and y are therefore odd if they are even at the first
+              // of the four.
               const int32_t weight =
                   taps[row] * static_cast<int32_t>(share(x + 1 + column, y + 1 + row, lane));
               of_step.weights[column][row / 2][2 * lane + row % 2] = static_cast<int16_t>(weight);

@@ -95,7 +95,7 @@ class PatchPlanner {
     Conditions open = all_conditions_;
     const RayShare share = AcceptedShare(hull, &open);
     if (share == RayShare::kNone) return;
-    // Columns are fitted to the whole patch, so that positions do not depend on `rect`.
+    // Polynomials are fitted to the whole patch, so that positions do not depend on rect_.
     columns_.clear();
     FitColumns(patch, patch.rect.x_begin, patch.rect.x_end);
     AddRows(patch, patch, share, open);

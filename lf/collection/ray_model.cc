@@ -46,7 +46,7 @@ std::optional<PlateElement> RayModel::Collect(int x, int y) const {
 }
 
 std::optional<PlateElement> RayModel::CollectIdeal(const Vec3& position) const {
-  // 1. The ray.
+  // The numbers are those of doc/ray.md, Geometry. 1. The ray.
   const Ray ray{centre_, direction_ * position};
 
   // 2. Forward.
@@ -63,7 +63,7 @@ std::optional<PlateElement> RayModel::CollectIdeal(const Vec3& position) const {
   const Vec3 on_lens = offset - ray.direction * (forward_.dot(offset) / along);
   if (!aperture_.Contains({right_.dot(on_lens), up_.dot(on_lens)})) return std::nullopt;
 
-  // 4. The sensor: floor, never truncate.
+  // 4. The element: coordinates are rounded down, never truncated.
   const Vec3 p = plate_from_world_ * (*focus_point - lens_centre_);
   const double element_x = std::floor(p.x() / p.z());
   const double element_y = std::floor(p.y() / p.z());

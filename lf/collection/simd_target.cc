@@ -6,7 +6,7 @@ namespace lf {
 
 std::vector<std::string> SimdTargets() {
   std::vector<std::string> names;
-  // Targets are listed from the lowest bit; better targets have lower bits.
+  // Highway lists the targets from the lowest bit on; better targets have lower bits.
   for (const int64_t target : hwy::SupportedAndGeneratedTargets())
     names.emplace_back(hwy::TargetName(target));
   return names;

@@ -13,7 +13,7 @@ namespace lf {
 
 // Positions [begin, end) of a segment, counted from its first one. All of them land in one tile, if
 // positions outside the plate are clamped to it. At most `crowd` of them land in the same element,
-// not counting clamped ones.
+// not counting clamped positions.
 struct TilePiece {
   uint32_t segment = 0;
   uint16_t begin = 0;
