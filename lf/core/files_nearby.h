@@ -8,7 +8,7 @@
 namespace lf {
 
 // Returns text to append to "... no such file". It begins with "; ", for example:
-//   "; similar there: image_7.png"           equal names, apart from the suffix, case, zeros
+//   "; similar there: image_7.png"           names that are equal but for suffix, case, zeros
 //                                            before numbers, blanks, _, -, and (1) or copy
 //                                            at the end
 //   "; its folder holds 24 files, such as image_00.png", "; its folder is empty"

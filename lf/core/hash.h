@@ -9,7 +9,8 @@
 
 namespace lf {
 
-// The hash is the same on every machine and in every version, so that files may contain it.
+// Returns the hash of the bytes. It is the same on every machine and in every version, so that
+// files may contain it.
 uint64_t HashBytes(std::string_view bytes, uint64_t seed = 0);
 
 // Hashes bytes that come in parts. Hash() is HashBytes() of all parts together.
