@@ -144,7 +144,7 @@ struct Case {
   std::string name;
   LightField field;
   Light light;
-  double depth_w = 0;        // 0: cannot be found
+  double depth_w = 0;        // 0: no depth can be found
   LightField drawn_by = {};  // the true calibration, if `field` has a wrong one
 };
 

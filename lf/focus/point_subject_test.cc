@@ -66,7 +66,7 @@ Depth Behind(Depth depth) {
 struct Case {
   std::string name;
   std::vector<Vec3> points;
-  double depth_w = 0;      // 0: cannot be found
+  double depth_w = 0;      // 0: no depth can be found
   bool may_doubt = false;  // "not sure" is also right
 };
 
