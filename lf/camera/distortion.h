@@ -78,7 +78,7 @@ bool IsDistortion(const Distortion& distortion);
 //
 // A polynomial describes a lens only up to the first angle at which the polynomial stops increasing
 // or its denominator becomes 0. Directions beyond this angle have no pixel, and pixels farther from
-// the axis have no ray.
+// the axis than the image of this angle have no ray.
 class DistortionMap {
  public:
   // The parameters must be finite, and IsDistortion() must be true.

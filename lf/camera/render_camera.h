@@ -19,7 +19,7 @@ struct FocusTilt {
 struct RenderCamera {
   PinholeCamera pinhole;  // projects points through the lens centre to elements of the sensor plate
   Aperture aperture;      // in the plane through the lens centre normal to the optical axis
-  Plane focus_plane;      // in the world
+  Plane focus_plane;      // in world coordinates
 
   // The settings that the members above were computed from, for people and metadata.
   double time_s = 0;

@@ -39,7 +39,7 @@ CameraPair RandomCameraPair(uint64_t seed) {
   pair.lf_camera.intrinsics = {60, 62, 25.3, 17.1, 0.5, 50, 35};
   const double turn = seed % 3 == 0 ? 3 : 0.1;
   Vec3 centre = Vector(&random, seed % 11 ? 0.35 : 3);
-  if (seed % 5 == 0) {  // in the lens plane
+  if (seed % 5 == 0) {  // moves the LF camera into the lens plane
     const Vec3 f = render.pinhole.ForwardWorld();
     centre -= f * f.dot(centre - render.pinhole.CentreWorld());
   }
@@ -62,7 +62,7 @@ CameraPair RandomDistortedPair(uint64_t seed) {
   CameraPair pair = RandomCameraPair(seed);
   Intrinsics& k = pair.lf_camera.intrinsics;
   k = {240, 248, 101.2, 68.4, 0.5, 200, 140, kDistortions[seed % 7]};
-  if (seed % 7 == 6) k.fx_px = k.fy_px = 55;  // sees behind itself
+  if (seed % 7 == 6) k.fx_px = k.fy_px = 55;  // the fish-eye then sees behind itself
   return pair;
 }
 

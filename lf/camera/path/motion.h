@@ -17,12 +17,12 @@ using MotionValue = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 4,
 struct AccelerationPeriod {
   double from_s = 0;
   double to_s = 0;
-  MotionValue acceleration;  // per second squared
+  MotionValue acceleration;  // change of the speed, per second
 };
 
 struct AcceleratedMotion {
-  MotionValue initial;  // at time 0
-  MotionValue speed;    // at time 0, per second
+  MotionValue initial;  // value at time 0
+  MotionValue speed;    // change of the value at time 0, per second
   std::vector<AccelerationPeriod> periods;
 };
 
@@ -46,8 +46,8 @@ struct Key {
 // for unit quaternions (kRotation).
 enum class SmoothCurve {
   kMonotone,    // every component is a monotone cubic, without overshoot
-  kCatmullRom,  // points: centripetal Catmull-Rom, whose parameter is a monotone cubic of time
-  kRotation,    // unit quaternions: slerp
+  kCatmullRom,  // for points: centripetal Catmull-Rom; its parameter is a monotone cubic of time
+  kRotation,    // for unit quaternions: slerp
 };
 
 // The curve through keys. Smooth keys form one curve up to the last key before a linear or step

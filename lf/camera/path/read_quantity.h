@@ -87,7 +87,8 @@ class QuantityReader {
   YamlErrors* errors_;
   YamlMap keyframes_;
   std::vector<Acceleration> accelerations_;
-  std::vector<std::string> accelerable_;  // keys, with units, that may accelerate
+  // Keys, with the suffix of the unit, of the quantities read so far that may accelerate.
+  std::vector<std::string> accelerable_;
 };
 
 }  // namespace lf

@@ -16,7 +16,7 @@ struct TestPath {
   std::string optics = "sensor_width_mm: 36, focal_length_mm: 50";
   std::string aperture = "aperture_diameter_mm: 4";
   std::string focus = "focus_distance: 2";
-  std::string more = "";  // after the sections
+  std::string more = "";  // text after the sections
 
   std::string Text() const {
     return "format: lfpath 1\n" + clock + "camera: {" + pose + ", " + optics + "}\nlens: {" +

@@ -31,9 +31,9 @@ struct YamlNode {
 
   Kind kind = Kind::kNull;
   YamlPlace place;
-  std::string text;                // kPlain, kQuoted
-  std::vector<YamlNodePtr> items;  // kSequence
-  std::vector<YamlEntry> entries;  // kMap, in the order of the file; keys may repeat
+  std::string text;                // only of kPlain and kQuoted
+  std::vector<YamlNodePtr> items;  // only of kSequence
+  std::vector<YamlEntry> entries;  // only of kMap; in the order of the file; keys may repeat
 };
 
 // Limits of the text. The first two are checked before the text is parsed, the depth while it is
