@@ -28,7 +28,7 @@ inline constexpr int kBilinearFrom = 3;
 
 // If LF pixels are finer than elements by at most this factor, an element samples one position.
 inline constexpr double kFinerAtMost = 1.25;
-inline constexpr int kMostSamples = 16;  // number of samples along each edge of an element
+inline constexpr int kMostSamples = 16;  // largest number of samples along an edge of an element
 
 // Returns the magnification, the number of elements per LF pixel along an edge: the square root of
 // the area, in elements, that an LF pixel covers on the plate. It is computed at nine points of the
@@ -42,8 +42,8 @@ bool MayLackRays(const Intrinsics& k);
 
 // How the elements of one frame sample one LF image.
 struct GatherSampling {
-  PixelFilter filter = PixelFilter::kBilinear;  // not kAuto
-  bool is_cubic = false;  // interpolates between sixteen pixels where possible
+  PixelFilter filter = PixelFilter::kBilinear;  // never kAuto
+  bool is_cubic = false;  // true: interpolates between sixteen pixels where possible
   // Number of samples along each edge of an element: the number of LF pixels along an edge, rounded
   // up, at most kMostSamples; 1 if that number is at most kFinerAtMost. The element's ray is the
   // mean of samples^2 evenly spaced rays, or of as many of these as exist.

@@ -255,6 +255,7 @@ uint64_t GatherAs(const GatherPlan& plan, const LfPixels& pixels, const Weights&
   return gather(plan, pixels, weights, sums.rect(), sums.stride(), elements);
 }
 
+// Adds the rays of `plan` to the tile of `sums`. Returns the number of rays.
 //   most_weight  the largest of the weights
 template <class Weights>
 uint64_t GatherBy(const GatherPlan& plan, const LfPixels& pixels, const Weights& weights,

@@ -88,7 +88,7 @@ constexpr int kSideShift = 16 - kShareShift - 1;
 // AddMosaicRay() and AddCubicMosaicRay() add ray i of `places` to element i of `sums`.
 #if HWY_TARGET == HWY_SCALAR
 
-//   upper  the upper left of four pixels
+//   upper  the upper left one of the four pixels of ray i
 template <class Weights>
 HWY_INLINE void AddMosaicRay(const MosaicTable& table, const Places& places, int i,
                              const uint16_t* upper, ptrdiff_t row_values, const Weights& weights,
@@ -111,7 +111,7 @@ HWY_INLINE void AddMosaicRay(const MosaicTable& table, const Places& places, int
   }
 }
 
-//   first  the first of sixteen pixels
+//   first  the upper left one of the sixteen pixels of ray i
 template <class Weights>
 HWY_INLINE void AddCubicMosaicRay(const CubicTables& cubics, const MosaicTable& table,
                                   const Places& places, int i, const uint16_t* first,
@@ -163,7 +163,7 @@ HWY_ATTR HWY_INLINE void AddCounted(hn::Vec<hn::Full128<int32_t>> value,
   hn::Store(hn::Add(hn::Load(du, element.counts), counted), du, element.counts);
 }
 
-//   upper  the upper left of four pixels
+//   upper  the upper left one of the four pixels of ray i
 template <class Weights>
 HWY_ATTR HWY_INLINE void AddMosaicRay(const MosaicTable& table, const Places& places, int i,
                                       const uint16_t* upper, ptrdiff_t row_values,
@@ -196,7 +196,7 @@ HWY_ATTR HWY_INLINE void AddMosaicRay(const MosaicTable& table, const Places& pl
              hn::ShiftRight<kShareBits>(hn::Add(all_t, half)), weights, i, sums);
 }
 
-//   first  the first of sixteen pixels
+//   first  the upper left one of the sixteen pixels of ray i
 template <class Weights>
 HWY_ATTR HWY_INLINE void AddCubicMosaicRay(const CubicTables& cubics, const MosaicTable& table,
                                            const Places& places, int i, const uint16_t* first,

@@ -27,7 +27,7 @@ class PatchEdges {
   // of Find().
   void Begin(const IdealPatch& patch);
 
-  // Adds the condition form <= 0.
+  // Adds the condition that `form` is at most 0.
   void AddForm(const PixelForm& form);
 
   // Adds the condition of a disk. Returns false, and adds nothing, if scanlines may cross its rim

@@ -38,9 +38,9 @@ class RayModel {
  private:
   Intrinsics intrinsics_;
   std::optional<DistortionMap> distortion_;
-  Vec3 centre_;       // c
-  Mat3 direction_;    // R^T K^-1
-  Vec3 lens_centre_;  // c'
+  Vec3 centre_;       // c of doc/ray.md
+  Mat3 direction_;    // R^T K^-1 of doc/ray.md
+  Vec3 lens_centre_;  // c' of doc/ray.md
   Vec3 right_, up_, forward_;
   Plane focus_plane_;
   Mat3 plate_from_world_;  // K' R', to be applied to X - c'

@@ -82,7 +82,7 @@ Interval AtMostZero(const LineForm& form, const Interval& range, bool* tie, Inte
 Interval WithinDisk(const LineForm& right, const LineForm& up, const LineForm& forward,
                     double radius, const Interval& range) {
   const double r2 = radius * radius * (1 + kDiskMargin);
-  // a x^2 + 2 b x + c <= 0
+  // The condition is a x^2 + 2 b x + c <= 0.
   const double a =
       right.slope * right.slope + up.slope * up.slope - r2 * forward.slope * forward.slope;
   const double b =

@@ -60,7 +60,7 @@ class RowSpans {
   struct Candidate {
     int begin = 0;
     int end = 0;
-    bool tie = false;  // rounding decides about every position
+    bool tie = false;  // true if rounding decides about every position
     Interval sure;     // positions where all half-planes hold in spite of rounding
   };
   bool IsSurelyInDisk(double centre_x, double centre_y) const;

@@ -211,7 +211,7 @@ HWY_ATTR HWY_INLINE void FindStarts(const Segment& s, int begin, int count, cons
   const LaneI di;
   const PolynomialLanes<kDegree> x_poly(s.x_poly), y_poly(s.y_poly);
   const auto row_stride = hn::Set(df, static_cast<float>(tile.row_stride));
-  // The corner of the tile, counted from the base of the segment.
+  // The upper left corner of the tile, counted from the base of the segment.
   const int left = tile.rect.x_begin - s.base_x, upper = tile.rect.y_begin - s.base_y;
   const auto x_corner = hn::Set(df, static_cast<float>(left));
   const auto y_corner = hn::Set(df, static_cast<float>(upper));
@@ -306,6 +306,7 @@ HWY_ATTR uint32_t ScatterPiece(const Segment& s, const TilePiece& piece, const P
   return pixels.CountRays(count);
 }
 
+// Adds the rays of `plan` that land in tile `tile` to `sums`. Returns the number of rays.
 //   most_weight  the largest of the weights
 template <class Weights>
 HWY_ATTR uint64_t ScatterTileBy(const ScatterPlan& plan, size_t tile, const LfPixels& pixels,

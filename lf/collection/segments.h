@@ -76,7 +76,7 @@ class SegmentMaker {
   // and x_end.
   void Add(int y, int x_begin, int x_end, std::vector<Segment>* segments) const;
 
-  // Like Add(), with the ideal positions of `arc`, which belongs to scanline y.
+  // Like Add(), but maps the ideal positions of `arc`, the arc of scanline y.
   void AddOnArc(int y, int x_begin, int x_end, const IdealArc& arc,
                 std::vector<Segment>* segments) const;
 

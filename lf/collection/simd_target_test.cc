@@ -52,7 +52,7 @@ TEST(SimdTarget, EveryTargetGivesTheSameBits) {
   for (uint64_t seed = 0; seed < 120; ++seed) {
     testing::CameraPair pair =
         seed % 3 == 0 ? testing::RandomDistortedPair(seed) : testing::RandomCameraPair(seed);
-    if (seed % 4 == 0) {  // LF pixels smaller than elements
+    if (seed % 4 == 0) {  // makes elements larger than LF pixels
       pair.render_camera.pinhole.intrinsics.fx_px *= 0.3;
       pair.render_camera.pinhole.intrinsics.fy_px *= 0.3;
     }

@@ -163,7 +163,8 @@ void TilePieces::Cut(const std::vector<Segment>& segments, const TileGrid& grid)
   for (size_t tile = 1; tile < tile_begin_.size(); ++tile)
     tile_begin_[tile] += tile_begin_[tile - 1];
   sorted_.resize(cuttings.size());
-  // Moves the begin of each tile's pieces to their end, where the pieces of the next tile begin.
+  // Sorts the pieces by tile. Each entry of tile_begin_ advances from the first piece of its tile
+  // to the first piece of the next tile.
   for (const Cutting& cutting : cuttings)
     sorted_[tile_begin_[static_cast<size_t>(cutting.tile)]++] = cutting.piece;
   std::copy_backward(tile_begin_.begin(), tile_begin_.end() - 1, tile_begin_.end());
