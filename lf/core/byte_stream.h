@@ -58,7 +58,8 @@ class ByteStream {
 
  private:
   ByteStream(int fd, uint64_t size, std::filesystem::path path);
-  // Reads more if the window holds fewer than `count` bytes. True if it then holds `count` or more.
+  // Reads more if the window holds fewer than `count` bytes. Returns true if the window then holds
+  // `count` bytes or more.
   bool Fill(size_t count) { return window_.size() >= count || ReadMore(count); }
   bool ReadMore(size_t count);
 

@@ -61,7 +61,7 @@ std::string TextOf(int file, off_t most_bytes = std::numeric_limits<off_t>::max(
 // All that a new process needs to become a program.
 struct Launch {
   char* const* argv = nullptr;
-  const char* working_folder = nullptr;  // nullptr: our own
+  const char* working_folder = nullptr;  // nullptr: the same as ours
   int input = -1, output = -1, complaints = -1;
   int kept = -1;  // -1: none
   bool ends_with_parent = false;
@@ -70,7 +70,7 @@ struct Launch {
 // Lets the program inherit no open file except the standard files and `kept`.
 void CloseOtherFilesAtExec(int kept) {
   if (::close_range(kFirstOther, ~0u, CLOSE_RANGE_CLOEXEC) != 0) {  // Linux older than 5.11
-    constexpr int kHighest = 65536;  // the limit of open files may be a billion
+    constexpr int kHighest = 65536;  // not the limit of open files, which may be a billion
     for (int file = kFirstOther; file < kHighest; ++file) ::fcntl(file, F_SETFD, FD_CLOEXEC);
   }
   if (kept >= 0) ::fcntl(kept, F_SETFD, 0);
@@ -115,7 +115,7 @@ int Spawn(const Launch& launch, pid_t* pid) {
   const pid_t parent = ::getpid();
   sigset_t all, usual;
   ::sigfillset(&all);
-  ::pthread_sigmask(SIG_SETMASK, &all, &usual);  // until Become() has reset our handlers
+  ::pthread_sigmask(SIG_SETMASK, &all, &usual);  // blocked until Become() has reset our handlers
   const pid_t child = ::vfork();  // NOLINT(clang-analyzer-security.insecureAPI.vfork)
   if (child == 0) Become(launch, parent, told.fd());  // NOLINT(clang-analyzer-unix.Vfork)
   const int reason = errno;

@@ -29,7 +29,7 @@ class ChildProcess {
  public:
   struct Options {
     std::vector<std::string> words;        // the program, searched in PATH, and its arguments
-    std::filesystem::path working_folder;  // empty: our own
+    std::filesystem::path working_folder;  // empty: the same as ours
     int output = -1;                       // descriptor of standard output; -1: /dev/null
     int complaints = -1;     // standard error; -1: a file in memory, whose end is quoted in errors
     int kept = -1;           // a descriptor that the program inherits; -1: none

@@ -107,7 +107,7 @@ Result<std::string> ReadFile(const fs::path& path, size_t limit_bytes) {
     if (n < 0)
       return Error{KindOfReadFailure(errno),
                    fmt::format("{}: cannot be read: {}", path.string(), SystemReason())};
-    if (n == 0) break;  // became shorter while we read
+    if (n == 0) break;  // the file became shorter while it was read
     done += static_cast<size_t>(n);
   }
   bytes.resize(done);

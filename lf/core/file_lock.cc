@@ -55,7 +55,7 @@ std::string OwnerNumber(int fd) {
 constexpr timespec kPause = {.tv_sec = 0, .tv_nsec = 2'000'000};
 constexpr int kAttempts = 3, kAttemptsWithoutNumber = 500;
 
-// Locks the open file. False if it cannot be locked, with the reason in errno.
+// Locks the open file. Returns false if it cannot be locked, with the reason in errno.
 bool LockOpenFile(int fd) {
   for (int attempt = 1;; ++attempt) {
     if (Flock(fd, LOCK_EX | LOCK_NB) == 0) return true;

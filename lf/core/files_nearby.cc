@@ -31,7 +31,7 @@ std::string Key(const fs::path& file) {
     if (c == ' ' || c == '_' || c == '-') continue;
     const bool begins_number = i == 0 || !IsDigit(stem[i - 1]);
     if (c == '0' && begins_number && i + 1 < stem.size() && IsDigit(stem[i + 1])) {
-      stem[i] = ' ';  // the next digit begins the number
+      stem[i] = ' ';  // so that the next digit begins the number
       continue;
     }
     key += c;

@@ -80,7 +80,7 @@ inline PixelRect Intersection(const PixelRect& a, const PixelRect& b) {
   return r.empty() ? PixelRect{} : r;
 }
 
-// Returns the smallest rectangle that contains both. Empty rectangles are ignored.
+// Returns the smallest rectangle that contains a and b. An empty rectangle is ignored.
 inline PixelRect Bounds(const PixelRect& a, const PixelRect& b) {
   if (a.empty()) return b;
   if (b.empty()) return a;
