@@ -169,7 +169,8 @@ Result<ExamplePath> MakeExamplePath(const LightField& light_field, const LfImage
   const ExampleAperture aperture = ChooseAperture(focus, camera.intrinsics.fx_px, spacing_w);
   example.aperture_reason = aperture.reason;
   const double largest_w = 2 * std::max(reach.right_w, reach.up_w);
-  // The lens may be this wide, in spacings, even if the capture is narrower.
+  // Diameter, in spacings of the LF cameras, that the lens may have even if the capture is
+  // narrower.
   constexpr double kLeastOfBand = 2.2;
   example.aperture_diameter_w =
       std::min(aperture.spacings * spacing_w, std::max(kLeastOfBand * spacing_w, largest_w));

@@ -35,7 +35,7 @@ struct ExamplePath {
   double focus_distance_w = 0;
   std::string focus_reason;  // how the focus distance was found, for people
   double aperture_diameter_w = 0;
-  std::string aperture_reason;  // for people; continues the sentence "DIAMETER, "
+  std::string aperture_reason;  // reason, for people; to be printed after "DIAMETER, "
   // The reason why the focus may be wrong; empty if the focus is sure. If there is a doubt,
   // candidates_w holds at most three focus distances to try, the most likely first.
   std::string doubt;

@@ -16,7 +16,7 @@ namespace lf {
 namespace {
 
 constexpr size_t kLeastViews = 2;
-constexpr size_t kMostAtOnce = 4;  // number of whole LF images in memory at the same time
+constexpr size_t kMostAtOnce = 4;  // largest number of whole LF images in memory
 
 // Loads the views. Removes views that cannot be loaded, and rings with too few views. kOutput: the
 // machine lacks memory or open files.

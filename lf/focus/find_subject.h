@@ -38,8 +38,8 @@ struct Subject {
 // image to image do not count: watermarks, and places that are too far away.
 //
 // The best depth is the one around which most weight lies, within a few percent. It is sure if at
-// least eight places with a tenth of the whole weight lie around it, and if depths were found for
-// at least a quarter of the textured places.
+// least eight places, with together at least a tenth of the whole weight, lie around it, and if
+// depths were found for at least a quarter of the textured places.
 //   store  a store with Mosaics::kToRgb
 // kInput: the image of `camera` cannot be loaded. Other images that cannot be loaded are left out.
 // kOutput: the machine lacks memory or open files.

@@ -16,7 +16,7 @@
 namespace lf {
 namespace {
 
-constexpr int kHalfPatch = 5;  // of a patch, in elements or LF pixels, whichever are larger
+constexpr int kHalfPatch = 5;  // half width of a patch, in elements or LF pixels (the larger ones)
 constexpr int kPatchSide = 2 * kHalfPatch + 1;
 constexpr int kPatchSize = kPatchSide * kPatchSide;
 constexpr double kStep_px = 0.5;  // change of the largest disparity from one depth to the next
@@ -32,7 +32,7 @@ using Patch = std::array<float, kPatchSize>;
 struct View {
   LfImageId id;
   RayThrough rays;
-  double offset_w = 0;  // distance of the LF camera from the ray, in the plane normal to it
+  double offset_w = 0;  // distance of the LF camera from the ray, normal to the ray
   LfPixels pixels = {};
 };
 
@@ -187,7 +187,8 @@ DepthSweep MakeSweep(std::span<const View> views) {
   double baseline_w = 0;
   for (const View& view : views) baseline_w = std::max(baseline_w, view.offset_w);
   const Intrinsics& k = views[0].rays.intrinsics();
-  const double px_per_w = std::max(1e-12, k.fx_px * baseline_w);  // largest, at 1 / depth = 1
+  // The largest disparity, in LF pixels, at 1 / depth = 1.
+  const double px_per_w = std::max(1e-12, k.fx_px * baseline_w);
   DepthSweep sweep;
   sweep.from_per_w = kMostDisplaced * k.width_px / px_per_w;
   sweep.step_per_w = kStep_px / px_per_w;

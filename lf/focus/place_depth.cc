@@ -178,7 +178,7 @@ double PixelsPerW(std::span<const View> views, const Intrinsics& k, int divisor)
 
 // The best depth of a sweep.
 struct Peak {
-  double score = -1, rival = -1;        // agreement; rival: the best local maximum elsewhere
+  double score = -1, rival = -1;        // agreement; rival: at the best local maximum elsewhere
   double per_w = 0;                     // 1 / depth, refined between the steps
   double from_per_w = 0, to_per_w = 0;  // range around per_w that is almost as good
 };

@@ -43,7 +43,7 @@ struct Place {
   Vec3 origin, direction;  // the direction has length 1 along the optical axis
   Vec3 right, down;        // steps to the next reduced pixel, at depth 1
   double weight = 0;       // larger with more texture and nearer to the middle of the image
-  Patch patch;             // pixels of the camera's image, minus their mean
+  Patch patch;             // pixels of the reduced image, minus their mean
   double deviation = 0;    // standard deviation of the patch
 
   Vec3 At(double depth_w, double x, double y) const {
