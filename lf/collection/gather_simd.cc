@@ -261,7 +261,7 @@ template <class Weights>
 uint64_t GatherBy(const GatherPlan& plan, const LfPixels& pixels, const Weights& weights,
                   uint32_t most_weight, TileSums* sums) {
   const Reading reading = ReadingOf(plan.sampling);
-  // Each element gets at most one ray, so that the sums need room for only one.
+  // Each element gets at most one ray, so that the sums need room for only one more ray.
   if (IsMosaic(reading)) {
     const auto gather = reading == Reading::kMosaicSixteen
                             ? GatherAs<Reading::kMosaicSixteen, Weights>

@@ -49,7 +49,7 @@ std::optional<PlateElement> RayModel::CollectIdeal(const Vec3& position) const {
   // The numbers are those of doc/ray.md, Geometry. 1. The ray.
   const Ray ray{centre_, direction_ * position};
 
-  // 2. Forward.
+  // 2. The ray must run forward.
   const double along = forward_.dot(ray.direction);
   if (!(along > 0)) return std::nullopt;
 
