@@ -14,9 +14,9 @@ namespace lf {
 // Returns the temporary name that this process gives to `path`, in the same folder.
 std::filesystem::path TemporaryPath(const std::filesystem::path& path);
 
-// Removes the temporary files for `path` that processes of this host made which are dead now. Files
-// of other hosts and of living processes stay. This process lists each folder only once, when the
-// function is called for the first file in it. May be called at the same time from any thread.
+// Removes the temporary files that dead processes of this host have left for `path`. Files of other
+// hosts and of living processes stay. This process lists each folder only once, when the function
+// is called for the first file in it. May be called at the same time from any thread.
 void RemoveLeftovers(const std::filesystem::path& path);
 
 // True if the name (without a folder) has the form that TemporaryPath() gives, for any file and any
