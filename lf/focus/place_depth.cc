@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kColumns = 16, kRows = 11;   // cells of the image; each has at most one place
 constexpr double kLeastTexture = 0.006;    // least gradient, per pixel, in the weakest direction
-constexpr double kLeastDeviation = 0.002;  // least deviation; keeps noise from correlating
+constexpr double kLeastDeviation = 0.002;  // smaller deviations count as this, against noise
 constexpr double kLeastAgreement = 0.65;   // least score of a depth that is found
 constexpr double kAgreeing = 0.6;  // share of views that must agree; the others may not see it
 constexpr size_t kLeastViews = 2;
