@@ -287,7 +287,7 @@ Result<void> FrameCollector::State::FinishLoading(Batch* batch) {
 }
 
 void FrameCollector::State::Skip(const SelectedImage& image, const Error& error) {
-  // The first kTold are logged at once; the report of the render lists all of them.
+  // Only the first kTold skipped LF images are logged; the report of the render lists all of them.
   constexpr size_t kTold = 10;
   if (skipped_.size() < kTold) LogWarning("LF image skipped: {}", error.message);
   if (skipped_.size() == kTold)

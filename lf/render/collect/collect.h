@@ -1,6 +1,7 @@
-// Collects the rays of many LF images into the plates of many frames. LF images are read once, in
-// order. All CPU cores work together, even if there is only one frame (doc/design.md, "Work is cut
-// by destination").
+// Collects the rays of many LF images into the plates of many frames. Each LF image is read once,
+// by ascending places. The place of an LF image is its rank in the order (doc/terminology.md). All
+// CPU cores work together, even if there is only one frame (doc/design.md, "Work is cut by
+// destination").
 #pragma once
 
 #include <atomic>
@@ -23,9 +24,9 @@
 
 namespace lf {
 
-// The rule "samples>=N" may stop a frame only at places that are multiples of this number
-// (doc/ray.md, "Same bits"). The rule "noise<=X" may stop it at the places of NoiseDecisionAfter()
-// (noise_rule.h).
+// The rule "samples>=N" (sample_rule.h) may stop a frame only at places that are multiples of this
+// number (doc/ray.md, "Same bits"). The rule "noise<=X" may stop it at the places of
+// NoiseDecisionAfter() (noise_rule.h).
 inline constexpr uint32_t kDecisionPlaces = 64;
 
 struct CollectOptions {
@@ -36,12 +37,12 @@ struct CollectOptions {
   // this number of LF images is in memory.
   int batch_image_count = 16;
   // Largest number of rays that a batch of two or more LF images tests. batch_ray_count limits the
-  // rays in all frames to some seconds of work, so that progress can be reported and a state be
-  // written. batch_frame_ray_count limits the rays in one frame to less than a second of work,
-  // because an interruption waits until the frames that are begun are finished.
+  // rays in all frames to some seconds of work, so that progress is reported and checkpoints are
+  // written between two batches. batch_frame_ray_count limits the rays in one frame to less than a
+  // second of work, because an interruption waits until the frames that are begun are finished.
   uint64_t batch_ray_count = 10'000'000'000;
   uint64_t batch_frame_ray_count = 500'000'000;
-  size_t plan_bytes = size_t{64} << 20;  // memory for the plans of a batch's rays
+  size_t plan_bytes = size_t{64} << 20;  // memory for the plans (PlanBytes()) of a batch's rays
   // No batch extends beyond a place that is a multiple of this number, so that stop rules may be
   // applied there. Must be 0 or a multiple of kDecisionPlaces. 0: batches do not end for this
   // reason.
@@ -74,7 +75,7 @@ struct SkippedImage {
 
 struct CollectTimes {
   double load_cpu_s = 0;     // CPU time to read and decode LF images, sum of all threads
-  double load_wall_s = 0;    // time for this work including waits for the disk, likewise
+  double load_wall_s = 0;    // time for this work with waits for the disk, sum of all threads
   double collect_cpu_s = 0;  // CPU time to plan and add rays, sum of all threads
   double wall_s = 0;         // duration of all steps
 };
@@ -105,8 +106,9 @@ class FrameCollector {
   // kInterrupted: *options.interrupted became true. Every frame is consistent: it has either all LF
   // images of the batch or none. Step() may be called again to continue.
   // kInput: an LF image is broken and `strict` is set, or an LF image that was read before has
-  // vanished. kOutput: loading needs something that the machine lacks, such as memory. After both,
-  // the plates are as after the last successful step, and Step() must not be called again.
+  // vanished. kOutput: loading needs something that the machine lacks, such as memory. After either
+  // of these two errors, the plates are as after the last successful step, and Step() must not be
+  // called again.
   Result<bool> Step();
 
   // Stops a frame: it takes no more LF images.

@@ -10,7 +10,9 @@
 namespace lf {
 namespace {
 
-// Decides once, at the first item of a frame, whether the frame is collected.
+// Decides for one frame whether the batch is collected into it: yes, unless *interrupted is true
+// when the first thread asks. All threads get the same answer, so that the frame gets all of the
+// batch or nothing.
 class FrameGate {
  public:
   bool IsOpen(const std::atomic<bool>* interrupted) {
@@ -144,8 +146,8 @@ void BatchCollector::UndoDistortion(std::vector<BatchImage>& batch) {
   }
 }
 
-// Returns the frames that may get rays of the batch. On a long path through a large light field,
-// these are few. The other frames are marked as done and moved to the end of `frames`.
+// Returns the frames that may get rays of the batch. If a long camera path leads through a large
+// light field, these are few. The other frames are marked as done and moved to the end of `frames`.
 std::span<BatchFrame> BatchCollector::FramesThatMayTake(const std::vector<BatchImage>& batch,
                                                         std::span<BatchFrame> frames) {
   ForEachTimed(frames.size(), [&](size_t f) {

@@ -78,15 +78,17 @@ struct BatchFrame {
   FrameRays rays;        // set by Add() if is_done
 };
 
-// Other work that the same threads do at the same time. run(i) does item i.
+// Work other than collection, which the threads of the pool do at the same time: `count` items, of
+// which run(i) does item i.
 struct OtherItems {
   size_t count = 0;
   std::function<void(size_t)> run;
 };
 
-// Returns about the number of bytes that the plan of the rays of one LF image in one frame takes.
-// kNearest plans the scanlines of the LF image. kBilinear plans the scanlines of the plate, or of a
-// finer plate with at most twice the resolution of the LF image.
+// Returns the approximate size, in bytes, of the plan of one LF image's rays in one frame: a
+// ScatterPlan (kNearest) or GatherPlan (kBilinear). kNearest plans the scanlines of the LF image.
+// kBilinear plans the scanlines of the plate, or of a finer plate with at most twice the resolution
+// of the LF image.
 size_t PlanBytes(Estimator estimator, bool has_distortion, int image_width, int image_height,
                  int plate_width, int plate_height);
 
@@ -104,7 +106,7 @@ class BatchCollector {
 
   // Adds the LF images to the plates of `frames` and runs the other items. May change the order of
   // `frames`. Once *interrupted is true, no further frame is begun, and the frames that are begun
-  // are finished; other items may then be left out.
+  // are finished. Items of `other_items` may then be left out.
   void Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>& frames,
            const OtherItems& other_items, const std::atomic<bool>* interrupted);
 

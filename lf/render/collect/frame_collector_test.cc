@@ -283,7 +283,7 @@ TEST(FrameCollector, ALightFieldThatVanishesIsNotSkipped) {
   EXPECT_EQ(step.error().kind, ErrorKind::kInput);
   EXPECT_NE(step.error().message.find("have disappeared"), std::string::npos);
   EXPECT_TRUE(collector.skipped().empty());
-  EXPECT_LE(collector.images_done(), done + 10);  // one more batch may have been decoded before
+  EXPECT_LE(collector.images_done(), done + 10);  // one more batch may have been decoded already
 
   // The LF images can be read again.
   job.store.broken.clear();

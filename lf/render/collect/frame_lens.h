@@ -35,7 +35,8 @@ class FrameLens {
   // of `index`.
   //   camera_distance_w  CameraDistanceAround() in the whole light field. Must be set if the index
   //                      covers only a part of the light field: a part that contains all LF images
-  //                      of near() then gives the same weights. Unset: measured in `index`
+  //                      of near() then gives the same weights as the whole light field. Unset:
+  //                      measured in `index`
   FrameLens(const ImageIndex& index, const RenderCamera& frame, LensWeights kind,
             const SelectOptions& select, ThreadPool& pool,
             std::optional<double> camera_distance_w = {});
@@ -52,9 +53,9 @@ class FrameLens {
   // Returns false if WeightsOf() is 0 in all elements.
   bool Takes(LfImageId id) const;
 
-  // near() returns the LF images that may get a share of the lens, by ascending ids;
-  // camera_distance_w() the distance between neighbouring LF cameras around the lens, in world
-  // units. Empty and 0 if there are no lens weights.
+  // near() returns the LF images that may get a share of the lens, by ascending ids.
+  // camera_distance_w() returns the distance between neighbouring LF cameras around the lens, in
+  // world units. Without lens weights, near() is empty and the distance is 0.
   std::vector<LfImageId> near() const;
   double camera_distance_w() const { return camera_distance_w_; }
 
@@ -86,8 +87,8 @@ class FrameLens {
 int EffectiveStep(const Intrinsics& plate);
 // Returns the numbers of columns and rows of these squares on a plate.
 std::pair<int, int> EffectiveSquares(const Intrinsics& plate);
-// Interpolates effective numbers to every element, ignoring those that are 0. Returns
-// [height][width].
+// Interpolates effective numbers between the squares, ignoring those that are 0. Returns one number
+// for each element: [height][width].
 Image<float> SpreadOverPlate(const Image<float>& effective_counts, const Intrinsics& plate);
 
 }  // namespace lf

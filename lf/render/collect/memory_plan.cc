@@ -29,9 +29,10 @@ constexpr size_t kDecodeBytesPerPixel = 16;
 constexpr size_t kDecodeFloatBytesPerPixel = 32;
 constexpr size_t kTileBytes = kMiB;  // for the sums of the tile that a thread works on
 
-// Limits of the size of a batch. Adding the tiles of a batch of this size to the plate, and waiting
-// for its last task, take little time compared with collecting its rays. Larger batches would cost
-// time, because the first use of memory can take as long as decoding an LF image into it.
+// Limits of the number of LF images in a batch (PlanMemory()). In a batch that reaches them, adding
+// the tiles to the plates and waiting for the last task take little time compared with collecting
+// the rays. Larger batches would cost time, because the first use of memory can take as long as
+// decoding an LF image into it.
 constexpr size_t kRaysPerElement = 8;
 constexpr size_t kEnoughBatchImages = 16;
 constexpr size_t kEnoughBatchImagesPerThread = 2;

@@ -13,7 +13,7 @@ struct MemoryPlan {
   // number of plates in memory at the same time; each pass reads the LF images again
   size_t frames_per_pass = 1;
   size_t batch_image_count = 1;  // two batches are in memory at the same time (collect.h)
-  size_t plan_bytes = 0;         // memory for the plans of a batch's rays
+  size_t plan_bytes = 0;         // memory for the plans (PlanBytes()) of a batch's rays
   // number of frames that are developed at the same time after the last batch, in the memory that
   // its LF images had
   size_t frames_finished_at_once = 1;
@@ -22,12 +22,13 @@ struct MemoryPlan {
   size_t total_bytes = 0;  // expected memory of the program; includes all of the above
 };
 
-// Divides memory_bytes. First sets memory aside for the program itself, its threads and a frame
-// that is developed. At most a quarter of the rest is for two batches of LF images; the plates get
-// what remains. If not all plates fit, the frames are divided into passes. A batch has at most the
-// largest of these numbers of LF images, because larger batches gain nothing: 16; two for each
-// thread; as many as have the pixels of eight plates together (at most 64). kOutput if the memory
-// does not suffice for one plate and two LF images; the message names the least memory that
+// Divides memory_bytes. First sets memory aside for the program itself, its threads, the contact
+// sheet and a frame that is developed. About a quarter of the rest, at most, is for two batches of
+// LF images and the plans of their rays; more only if one LF image in each batch needs more. The
+// plates get what remains. If not all plates fit, the frames are divided into passes. A batch has
+// at most the largest of these numbers of LF images, because larger batches gain nothing: 16; two
+// for each thread; as many as have the pixels of eight plates together (at most 64). kOutput if the
+// memory does not suffice for one plate and two LF images; the message names the least memory that
 // suffices.
 //   bytes_per_frame  further memory for each frame, such as its moments (noise_moments.h)
 Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field,

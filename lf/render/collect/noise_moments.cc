@@ -59,7 +59,7 @@ bool CanBe(const ElementSum& total, const ElementMoments& moments) {
   if (n > count || moments.count_squares < count || moments.count_squares > count * count)
     return false;
   if (cross < sum || cross > sum * count || squares < sum || squares > sum * sum) return false;
-  return n * moments.count_squares >= count * count;  // Cauchy and Schwarz
+  return n * moments.count_squares >= count * count;  // Cauchy-Schwarz inequality
 }
 
 }  // namespace

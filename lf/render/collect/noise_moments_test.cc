@@ -82,7 +82,7 @@ TEST(NoiseMoments, KnownAnswers) {
   EXPECT_EQ((ImageSums{{{1000, 500}, {0, 0}}}).Moments().image_count, 1u);
 }
 
-// The largest counts that a plate can have, and the brightest rays.
+// Tests the largest counts that a plate can have, with the brightest rays.
 TEST(NoiseMoments, NothingWraps) {
   constexpr uint64_t kCount = uint64_t{1} << 43;
   const ImageSums sums{{{65535 * kCount, kCount}, {0, kCount}}};

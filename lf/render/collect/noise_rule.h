@@ -4,9 +4,9 @@
 // The noise of a frame is a percentile (the 90th, kMostNoiseElements) over those elements that
 // NoiseMoments measures and that are reachable (ReachableElements). Each element contributes the
 // standard error of its noisiest channel. The unit is linear radiance before white balance and
-// colour matrix; 1 is the light field's white (1.0 in an EXR frame). This is the one scale that
-// does not depend on brightness, and in which noise falls as 1 / sqrt(n) with the number n of LF
-// images.
+// colour matrix; 1 is the light field's white (1.0 in an EXR frame). Linear radiance is used,
+// because in it a noise means the same for dark and bright elements, and falls as 1 / sqrt(n) with
+// the number n of LF images.
 #pragma once
 
 #include <cstdint>

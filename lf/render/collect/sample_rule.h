@@ -54,19 +54,18 @@ class ReachableElements {
   size_t image_count_ = 0;
 };
 
-// Returns the number at whose multiples (as places) the rule of a frame is applied: 64 if the frame
+// Returns the number of places from one application of a frame's rule to the next: 64 if the frame
 // takes every LF image of the light field, and 64 * 2^k if it takes one in 2^k, so that the frame
-// gets 32 to 64 LF images from one multiple to the next. For any two frames, the larger number is a
-// multiple of the smaller.
+// gets 32 to 64 LF images from one application to the next. The rule is applied at the multiples of
+// this number. For any two frames, the larger number is a multiple of the smaller.
 uint32_t DecisionPlaces(size_t light_field_image_count, size_t frame_image_count);
 
 // Returns true if at least the share kMostElements of the reachable elements has `samples` rays in
 // every channel, or if no element is reachable. Returns quickly if far fewer elements have them.
 bool HasSamples(const SensorPlate& plate, const ReachableElements& reachable, uint32_t samples);
 
-// share: share of the reachable elements that have `samples` rays in every channel; 1 if no element
-// is reachable. most_have: the largest number of rays that the share kMostElements of the reachable
-// elements has in every channel.
+// share: share of the reachable elements that have at least `samples` rays in every channel; 1 if
+// no element is reachable. most_have: the largest N for which the rule "samples>=N" is met.
 struct SampleShare {
   double share = 1;
   uint64_t most_have = 0;

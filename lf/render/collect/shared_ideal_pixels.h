@@ -22,12 +22,13 @@ class SharedIdealPixels {
   using ForEach = std::function<void(size_t count, const std::function<void(size_t)>&)>;
 
   // Makes the ideal pixels that the LF images of the batch need and that are not kept yet. Drops
-  // those that this batch does not need.
+  // the kept ideal pixels that this batch does not need.
   void Keep(const LightField& light_field, std::span<const BatchImage> batch,
             const ForEach& for_each);
 
-  // Returns the ideal pixels that are kept for these intrinsics; null if there are none, as without
-  // lens distortion. Any number of threads may call it at the same time.
+  // Returns the ideal pixels that are kept for these intrinsics; null if none are kept. None are
+  // ever kept for intrinsics without lens distortion. Any number of threads may call it at the same
+  // time.
   std::shared_ptr<const IdealPixels> Of(uint32_t intrinsics_index) const;
 
  private:

@@ -25,14 +25,14 @@ enum class Previews {
 // Returns "auto", "on" or "off".
 const char* NameOf(Previews previews);
 inline constexpr size_t kPreviewedFrom = 256;
-// The rays of the first kPreviewImages LF images that a frame collects are kept for its previews.
-// These LF images are spread over the whole lens (thesis 4.2.1).
+// For the previews of a frame, rays are kept only up to the place of the kPreviewImages-th LF image
+// that the frame collects. The LF images up to there are spread over the whole lens (thesis 4.2.1).
 inline constexpr size_t kPreviewImages = 64;
 
 // Returns the first place of the phase that contains `place`. Phases divide the order of the LF
 // images: they begin at place 0 and at kDecisionPlaces (render/collect/collect.h) times the powers
-// of four. At the beginning of each phase, the queries of previews (the rays to be interpolated,
-// rebinning/frame_queries.h) are updated.
+// of four. At the beginning of each phase, the queries of the previews (the rays to be interpolated
+// for them, rebinning/frame_queries.h) are updated.
 uint32_t PhaseOf(uint32_t place);
 
 class AskedPixels {
@@ -50,8 +50,8 @@ class AskedPixels {
   // to find the LF images.
   const RenderCamera& camera() const { return camera_; }
 
-  // Returns the bounds of the pixels of an LF image whose rays may be kept; empty if there are
-  // none.
+  // Returns the bounds of those pixels of an LF image whose rays may be kept; empty if no ray may
+  // be kept.
   //   overlap, place  overlap and place of this LF image
   PixelRect RectOf(const LfCamera& lf_camera, const ImageOverlap& overlap, uint32_t place,
                    const SelectOptions& select) const;

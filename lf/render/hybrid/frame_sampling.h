@@ -31,8 +31,8 @@ struct FrameSampling {
   double hole_w = 0;
 };
 
-// Returns the LF images with rays through the lens or within kFarthestDistances of it, by ascending
-// places.
+// Returns the LF images with rays through the lens, or up to kFarthestDistances * camera_distance_w
+// beside it, by ascending places.
 std::vector<SelectedImage> ImagesNearLens(const ImageIndex& index, const RenderCamera& frame,
                                           double camera_distance_w, const SelectOptions& select,
                                           ThreadPool& pool);
@@ -42,15 +42,16 @@ std::vector<SelectedImage> ImagesNearLens(const ImageIndex& index, const RenderC
 std::vector<Vec2> SeenThrough(const ImageIndex& index, const RenderCamera& frame,
                               std::span<const SelectedImage> near);
 
-// Returns the sampling around the lens of a frame.
+// Measures how densely the LF cameras of `near` sample the lens of a frame.
 //   near               the result of ImagesNearLens()
 //   camera_distance_w  CameraDistanceAround() (render/collect/around_lens.h) in the whole light
 //                      field
 FrameSampling SamplingOf(const ImageIndex& index, const RenderCamera& frame,
                          std::span<const SelectedImage> near, double camera_distance_w);
 
-// Returns the sampling around the lens for any estimator: it considers the LF images near the lens
-// that have rays for at least one estimator.
+// Finds the LF images near the lens of a frame, and measures how densely their LF cameras sample
+// it. The result is the same for every estimator: it includes each LF image that has rays for at
+// least one estimator.
 FrameSampling SamplingOf(const ImageIndex& index, const RenderCamera& frame,
                          const SelectOptions& select, ThreadPool& pool);
 // Value of SelectOptions::reach that selects the LF images that have rays for at least one
@@ -58,9 +59,9 @@ FrameSampling SamplingOf(const ImageIndex& index, const RenderCamera& frame,
 inline constexpr PixelReach kWidestReach = PixelReach::kNeighbours;
 
 struct QueryOptions {
-  // Least width of the kernels in the lens plane, in distances between LF cameras.
+  // Least sigma of the kernels (ray_query.h) in the lens plane, in distances between LF cameras.
   double sigma_st = 0.5;
-  // Width of the kernels on the plate, in elements, or in LF pixels if these are larger.
+  // Sigma of the kernels on the plate, in elements, or in LF pixels if these are larger.
   double sigma_uv = 0.35;
   // Number of lens points in a set; 0: 8 to 256, chosen so that their kernels overlap.
   int lens_point_count = 0;
@@ -70,15 +71,16 @@ struct QueryOptions {
 
 // Returns the queries of a frame: the rays through all of its lens points.
 // sampling.lf.camera_distance_w must be above 0.
-//   seen_through  the result of SeenThrough(): the kernel of a lens point is the wider, the farther
-//                 the nearest of these points is; unset: hole_w is used instead of this distance
+//   seen_through  the result of SeenThrough(): the farther the nearest of these points is from a
+//                 lens point, the wider is the kernel of the lens point; unset: sampling.hole_w is
+//                 used as this distance
 FrameQueries QueriesOf(const RenderCamera& frame, const FrameSampling& sampling,
                        const QueryOptions& options,
                        std::optional<std::span<const Vec2>> seen_through = {});
 
 // Returns the distance from the rim of the lens, in world units, up to which a frame depends on LF
 // cameras beside the lens. These are the LF cameras whose rays are rebinned with the default
-// options, and those against which lens weights are measured.
+// options, and those that limit the lens weights of LF cameras nearer to the lens.
 double NeighbourReach_w(const RenderCamera& frame, const FrameSampling& sampling);
 
 }  // namespace lf

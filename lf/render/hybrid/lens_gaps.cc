@@ -42,9 +42,10 @@ LensGaps::LensGaps(const ImageIndex& index, const RenderCamera& frame,
   asks_in_the_end_ = AsksAt(kInTheEnd);
 }
 
-// Chooses the number of nodes. From one node to the next, the point where an LF camera's ray meets
-// the lens plane shall move by at most half of kCoveredDistances. There are kLeastNodes to
-// kMostNodes columns and rows, and at most kMostNodeValues values unless kLeastNodes need more.
+// Chooses the numbers of columns and rows of nodes, from kLeastNodes to kMostNodes. From one node
+// to the next, the point where an LF camera's ray through the node's focus point meets the lens
+// plane shall move by at most half of kCoveredDistances. The grid is made coarser if nodes times
+// lens points would exceed kMostNodeValues.
 void LensGaps::SetNodes(const std::vector<LfImageId>& near, const ImageIndex& index) {
   constexpr size_t kAsked = 64;
   const RenderCamera& frame = all_.camera;
@@ -90,8 +91,8 @@ void LensGaps::FindGaps(const std::vector<LfImageId>& near, const ImageIndex& in
   const double near_w =
       std::max(kCoveredDistances * distance_w,
                std::sqrt(Area(frame.aperture) / static_cast<double>(points.size())));
-  // Squared reach of each lens point: only LF cameras within the reach may cover the point, or have
-  // rays for its kernel.
+  // Squared reach of each lens point, over all sets. Only LF cameras seen within the reach may
+  // cover the point, or have rays for its kernel.
   std::vector<double> reach2_w2;
   for (size_t set = 0; set < all_.points.sets.size(); ++set)
     for (size_t i = 0; i < all_.points.sets[set].size(); ++i) {

@@ -53,9 +53,9 @@ class LensGaps {
   const RenderCamera& camera() const { return all_.camera; }
   // Number of LF images that have a collected ray at any node.
   size_t collected_count() const { return collected_places_.size(); }
-  // Returns the end (exclusive) of the ranks of the first `count` LF images, by rank, among those
-  // that collected_count() counts; of all of these if they are fewer. 0 if there is none, or if
-  // `count` is 0.
+  // Returns the place after the first `count`, by ascending places, of the LF images that
+  // collected_count() counts; the place after all of them if they are fewer. 0 if there is none, or
+  // if `count` is 0.
   uint32_t PlaceAfter(size_t count) const;
 
   // QueriesAt() returns the queries when exactly the LF images at places before `place` are
@@ -63,9 +63,9 @@ class LensGaps {
   FrameQueries QueriesAt(uint32_t place) const;
   bool AsksAt(uint32_t place) const;
   bool asks_in_the_end() const { return asks_in_the_end_; }
-  // Rank from which on QueriesAt() returns the same queries for all higher ranks.
+  // Place from which on QueriesAt() returns the same queries for all higher places.
   uint32_t changes_until() const { return changes_until_; }
-  // A rank behind all LF images: the end of the render.
+  // A place behind those of all LF images: the end of the render.
   static constexpr uint32_t kInTheEnd = UINT32_MAX - 1;
 
   // Returns the frame's camera with its lens and plate enlarged by the reach of the kernels,

@@ -20,8 +20,9 @@ constexpr long long kPixelsAtOnce = 4 << 20;
 // If all rays are kept, LF images are divided into strips of this number of rows, which limits the
 // number of rays that wait.
 constexpr int kStripRows = 64;
-// At most kEstimatedFrom LF images are used to estimate the number of rays that frames need. All
-// rays are kept if the estimate is at most kFitShare times the number of cells that fit.
+// At most kEstimatedFrom LF images are used to estimate the number of rays that the frames of a
+// section need. All rays are kept if no section's estimate exceeds kFitShare times
+// max_cells_per_section_.
 constexpr size_t kEstimatedFrom = 256;
 constexpr double kFitShare = 0.9;
 // Expected cells per estimated ray: kRoom if all rays are kept, kRoomByEdges if only rays at edges
@@ -80,9 +81,9 @@ RebinnedRays::RebinnedRays(const ImageIndex& index, const FilmSlabs& slabs,
   for (const auto& section : sections_) Begin(0, *section);
 }
 
-// Makes a section of each group of consecutive frames with the same slab. The bounds of a section
-// contain only the rays of its frames in this pass, so that coverage maps are not coarser than
-// necessary.
+// Makes a section of each group of consecutive frames of asking_ with the same slab. The bounds of
+// a section contain only the rays of its frames in this pass, so that coverage maps are not coarser
+// than necessary.
 void RebinnedRays::MakeSections(const FilmSlabs& slabs, std::span<const FrameId> frames) {
   for (size_t begin = 0; begin < asking_.size();) {
     const size_t slab = *slabs.SlabOf(frames[asking_[begin]]);
@@ -229,8 +230,8 @@ void RebinnedRays::Rebin(std::span<const BatchImage> images, Section& section) {
   std::vector<Task> tasks;
   for (size_t i = 0; i < images.size(); ++i) {
     if (rects[i].empty()) continue;
-    // If only rays at edges are kept, an LF image is not divided into strips, so that its edges are
-    // computed once.
+    // If rays at edges are kept (for previews, or because not all rays fit), an LF image is not
+    // divided into strips, so that its edges are computed only once.
     const int rows = by_edges ? rects[i].y_end : kStripRows;
     for (int y = rects[i].y_begin / rows * rows; y < rects[i].y_end; y += rows)
       tasks.push_back(
@@ -287,7 +288,9 @@ SplatFrame RebinnedRays::SplatOf(const Section& section, const FrameQueries& que
   return SplatBy(rays, queries, queries.points, queries.shares ? &*queries.shares : nullptr);
 }
 
-// Interpolates with distances on the planes of the slab: the mean of one splat for each lens point.
+// Interpolates a frame if !options_.reparameterise: distances between rays are measured on the
+// planes of the slab. Splats the rays of each lens point separately, and returns the mean of these
+// pictures.
 SplatFrame RebinnedRays::SplatOfPoints(const Section& section, const FrameQueries& queries) const {
   const Intrinsics& plate = queries.camera.pinhole.intrinsics;
   SplatFrame sum{Image<float>(plate.width_px, plate.height_px, 3),

@@ -112,7 +112,7 @@ class RebinnedRays : public ImageConsumer {
     double cpu_s = 0;        // CPU time of all threads
     // true: all rays that finished frames need are kept; false: only their rays at edges
     bool keeps_all = false;
-    bool is_full = false;        // true: cells were dropped because there were more than max_cells
+    bool is_full = false;        // true: cells were dropped because a section had too many
     bool is_too_coarse = false;  // true if RayMap::is_too_coarse() is true for a section
   };
   Facts facts() const;

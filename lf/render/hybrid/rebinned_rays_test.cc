@@ -51,8 +51,8 @@ struct Fixture {
     std::vector<size_t> cells;
   };
 
-  // Collects all batches. After `interrupted_after` batches, it moves the maps to another object,
-  // as a render that resumes does.
+  // Collects all batches. After `interrupted_after` batches, it copies the maps to a new
+  // RebinnedRays, as a render that resumes does.
   Outcome Run(int threads, int batch, size_t interrupted_after = SIZE_MAX) const {
     ThreadPool pool(threads);
     const testing::NoiseStore store;
@@ -147,7 +147,7 @@ TEST(RebinnedRays, TheSameForAnyThreadsBatchesAndInterruptions) {
 TEST(RebinnedRays, OthersMayBeAveragedInTheSameWayEachTime) {
   Fixture fixture;
   fixture.options.kept = KeptRays::kEdges;
-  fixture.options.rebin.probability.alpha = 0.01;  // so that the noise images have edges everywhere
+  fixture.options.rebin.probability.alpha = 0.01;  // low enough for edges everywhere in the noise
   fixture.options.slab.r_st_w = 0.01;              // cells so wide that many rays share one
   fixture.options.slab.r_uv_w = 0.03;
   const Fixture::Outcome plain = fixture.Run(1, 16);

@@ -44,9 +44,9 @@ Result<RenderMemory> PlanRenderMemory(size_t memory_bytes, RenderMode mode, size
                              plan.error().message, memory.rebin_bytes >> 20, memory.max_cells)};
   if (!plan) return plan.error();
   memory.plan = *plan;
-  // Which rays are kept depends on the frames of a pass, and must not depend on whether noise is
-  // measured. Without noise, all frames are in one pass; with noise, they must therefore fit in
-  // one.
+  // With kRebin, which rays are kept depends on the frames of a pass, but must not depend on
+  // whether noise is measured. If noise is not measured, all frames are in one pass. If it is
+  // measured, all frames must therefore fit in one pass.
   if (!Collects(mode) && has_plates && plan->frames_per_pass < frame_count)
     return OutputError(fmt::format(
         "--mode rebin: \"noise<=X\" needs a plate of {} MiB for each frame, but --memory {} MiB "

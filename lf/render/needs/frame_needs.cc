@@ -16,7 +16,7 @@
 namespace lf {
 namespace {
 
-// FrameLens::near() has the same reach as ImagesNearLens(), so that Near() may use it instead.
+// Near() may use FrameLens::near() instead of ImagesNearLens(), because both have the same reach.
 static_assert(FrameLens::kReach_distances == kFarthestDistances);
 
 std::optional<double> DistanceOf(const std::optional<FrameSampling>& sampling) {

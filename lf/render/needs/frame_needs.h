@@ -35,7 +35,8 @@ struct NeedsOptions {
   // Only its members query, previews and rebin are used; none if the mode is kCollect.
   RebinPassOptions rebin;
 
-  // Returns true if the picture of a frame depends on LF cameras whose LF images it does not read.
+  // Returns true if the picture of a frame may depend on LF cameras whose LF images are not read
+  // for it.
   bool HasNeighbours() const { return lens_weights != LensWeights::kNone || Rebins(mode); }
 };
 
@@ -66,8 +67,8 @@ FrameSurroundings SurroundingsOf(const FrameSampling& sampling);
 FrameSampling SamplingOf(const FrameSurroundings& surroundings);
 
 // Returns what a frame needs.
-//   sampling  must be given, as measured in the whole light field, if the index covers only a part
-//             of it; unset: measured in `index`
+//   sampling  density of the LF cameras around the lens in the whole light field. Must be set if
+//             `index` covers only a part of the light field; unset: measured in `index`
 FrameNeeds NeedsOf(const ImageIndex& index, const RenderCamera& frame, const NeedsOptions& options,
                    ThreadPool& pool, const std::optional<FrameSampling>& sampling = {});
 

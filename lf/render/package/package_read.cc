@@ -121,7 +121,7 @@ fs::path Reader::Folder() const {
   return fs::exists(from_here, error) ? from_here : folder;
 }
 
-// Reads LF images by ascending ids, as WritePackage() got them.
+// Reads LF images by ascending ids. This is their order in the package that was written.
 Result<void> Reader::ReadImages() {
   LF_RETURN_IF_ERROR(ForEachRow(
       database_,

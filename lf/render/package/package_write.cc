@@ -127,7 +127,7 @@ class Writer {
     return {};
   }
 
-  // Returns an empty list if the surroundings were not measured.
+  // Returns the numbers that describe the surroundings of a frame; empty if they were not measured.
   std::vector<double> SurroundingsOf(uint32_t frame) const {
     if (package_.surroundings.empty()) return {};
     const FrameSurroundings& around = package_.surroundings[frame - 1];
