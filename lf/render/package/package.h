@@ -22,8 +22,8 @@ namespace lf {
 
 struct PackageFrame {
   FrameId id;
-  uint64_t image_count = 0;  // approximate number of LF images with a ray
-  uint64_t ray_count = 0;    // number of pixels in the rectangles of these LF images
+  uint64_t image_count = 0;  // number of LF images that are read for the frame
+  uint64_t ray_count = 0;    // number of their pixels that are tested as rays or rebinned
 };
 
 // Density of LF cameras around the lens of a frame (render/hybrid/frame_sampling.h). It is measured
@@ -63,7 +63,7 @@ struct PackageImage {
   uint64_t file_bytes = 0;
   PixelRect rect;            // bounds of the pixels that are read
   uint32_t frame_count = 0;  // number of frames that need the LF image; 0: a neighbour
-  uint64_t ray_count = 0;    // number of pixels that are tested as rays, in all frames together
+  uint64_t ray_count = 0;    // its pixels that are tested as rays or rebinned, sum of all frames
 };
 
 struct Package {

@@ -18,8 +18,8 @@ Result<void> CheckReplacesNone(const std::vector<std::filesystem::path>& outputs
 
 // Returns kUsage if a file that the render writes into its folder is an LF image or a mask of the
 // package, or one of options.folder.inputs. CheckVideoTarget() checks the video. Links to folders
-// are followed. Links to files are followed only if the light field has at most 20,000 LF images,
-// because each file then costs one access to the disk.
+// are followed. Links to image files and masks are followed only if the light field has at most
+// 20,000 LF images, because following them costs one access to the disk for each file.
 Result<void> CheckOutputs(const Package& package, const RenderOptions& options);
 
 }  // namespace lf

@@ -222,9 +222,9 @@ Result<void> FilmRenderer::PrepareRebinning(std::span<const PlaceRange> places,
   return {};
 }
 
-// Selects the LF images to load. An LF image that is collected into plates has the rectangle of the
-// pixels to collect. When an LF image is loaded, RebinnedRays names the pixels that it needs of it
-// (ImageConsumer::RectOf()).
+// Selects the LF images to load (images_). SelectedImage::rect bounds the pixels that are collected
+// into plates; it is empty for an LF image that is only rebinned. RebinnedRays names the pixels to
+// rebin only when an LF image is loaded (ImageConsumer::RectOf()).
 void FilmRenderer::SelectForFrames(std::span<const PlaceRange> places) {
   images_.clear();
   if (film_.HasPlates()) {
@@ -297,9 +297,10 @@ uint32_t FilmRenderer::PlaceOfEnd(size_t f) const {
                           : std::min(frame.places.end, setup_.index().place_end());
 }
 
-// A frame that has all LF images that it takes is in its final state, even if it takes only a part
-// of the light field. A frame that was stopped or is finished early has more gaps, because the
-// remaining LF images do not cover them.
+// A frame that has all LF images that it takes is completed as at the end of the render
+// (kInTheEnd), even if it takes only a part of the light field. A frame that was stopped or is
+// finished early is completed at its last place: it has more gaps, because the remaining LF images
+// do not cover them.
 std::vector<Completion> FilmRenderer::Complete(std::span<const size_t> frames) {
   std::vector<Completion> completions;
   if (!rebinned_) return completions;

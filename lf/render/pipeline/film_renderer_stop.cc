@@ -32,7 +32,8 @@ Result<void> FilmRenderer::PrepareStops(std::span<const PlaceRange> places,
     if (frame.is_released) continue;
     const ReachableElements& reachable = ReachableOf(f);
     if (film_.stop_at_samples) {
-      // The decision_places of every frame is a multiple of the smallest one.
+      // Batches end at the multiples of the smallest decision_places of all frames. The
+      // decision_places of each frame is a multiple of it.
       frame.decision_places = DecisionPlaces(setup_.index().place_end(), reachable.image_count());
       collect->decision_places = collect->decision_places == 0
                                      ? frame.decision_places

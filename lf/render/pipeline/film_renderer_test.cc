@@ -111,7 +111,7 @@ TEST_F(FilmRendererTest, StopRulesAreThoseOfAFolder) {
 
 TEST_F(FilmRendererTest, PicturesBetweenStepsChangeNothing) {
   const auto looked_at = Open({FrameId{2}}), alone = Open({FrameId{2}});
-  std::map<float, int> sums;  // how many pictures have this sum of values
+  std::map<float, int> sums;  // number of pictures, by the sum of their values
   for (bool is_going_on = true; is_going_on;) {
     is_going_on = looked_at->Step().value();
     const RenderedFrame frame = looked_at->Develop(0);

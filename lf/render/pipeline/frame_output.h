@@ -22,8 +22,9 @@ namespace lf {
 bool HasEffectiveCounts(FrameFormat format);
 
 // Writes a developed picture with its notes to the file `to`.
-//   is_interrupted  called often, by any thread; empty: nothing interrupts. The caller may pass an
-//                   unusable picture if it returns true, because nothing is written then.
+//   is_interrupted  called often, by any thread; empty: nothing interrupts. If it returns true at
+//                   once, nothing is written, so that `picture` may be the unusable result of an
+//                   interrupted DevelopFrame().
 // kOutput: the file cannot be written. kInterrupted: nothing is written.
 Result<void> WritePicture(const PlateNotes& notes, const DevelopedFrame& picture,
                           const std::filesystem::path& to, FrameFormat format,

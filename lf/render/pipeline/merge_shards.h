@@ -1,5 +1,6 @@
-// Makes frames from plates. Adds the plates of a render that was divided into shards: the frames
-// are bit-identical to those of an undivided render. Also develops kept plates again.
+// Makes frames from plate files. If a render was divided into shards, adds the plates of all shards
+// of a frame: the frames are bit-identical to those of an undivided render. Also develops the
+// plates of lfrenderer --keep-plates again, with other options.
 #pragma once
 
 #include <filesystem>
@@ -32,11 +33,12 @@ struct MergeProgress {
   size_t frame_total = 0;
 };
 
-// Merges plates into frames. The entries of all plates are read and compared first. Then frames are
-// made one by one, which needs the memory of one plate and its picture. The file of a frame appears
-// only when the frame is done. The report names the LF images that were skipped when the plates
-// were rendered, as far as the plates name them (plate_notes.h). RenderReport::selected_image_count
-// is the largest number of LF images of a frame, skipped ones included.
+// Merges plates into frames. First reads and compares the entries (doc/formats/plate.md) of all
+// plate files. Then makes frames one by one, which needs the memory of one plate and its picture.
+// The file of a frame appears only when the frame is done. The report names the LF images that were
+// skipped when the plates were rendered, as far as the plates name them (plate_notes.h).
+// RenderReport::selected_image_count is the largest number of LF images of a frame, skipped ones
+// included.
 // With `resume`, the frame of an earlier merge is kept if its file is whole, the earlier report
 // names it, and the film and the render camera are the same.
 //   plates  plate files and folders, in any order; the files *.plate anywhere below a folder are

@@ -140,7 +140,7 @@ class Renderer {
   const double begin_s_ = NowSeconds();
   size_t black_count_ = 0;
   bool had_plates_ = false;  // true if an earlier run left plates
-  bool all_broken_ = true;   // every LF image of every pass so far was broken
+  bool all_broken_ = true;   // true if every LF image of every pass so far was broken
 };
 
 Result<RenderReport> Renderer::Run(Package package) {
@@ -297,8 +297,8 @@ Result<void> Renderer::CheckAnyContributes(std::span<const FrameId> frames) cons
   return {};
 }
 
-// Returns those of `frames` that are to be finished with the rays that the state has of them. Warns
-// about a frame of which the state has none.
+// Returns those of `frames` that are to be finished early, with the rays that the state has of
+// them. Warns about each frame of finish_early of which the state has no rays.
 std::vector<FrameId> Renderer::EarlyOf(std::span<const FrameId> frames) const {
   std::vector<FrameId> early;
   for (const FrameId frame : folder_.finish_early) {

@@ -58,7 +58,7 @@ struct FolderOptions {
 struct RenderOptions {
   std::vector<FrameId> frames;       // some frames of the package, ascending; empty: all
   FilmOptions film;                  // what the frames are made of
-  WorkOptions work;                  // how the work is done; its flags become those of `signals`
+  WorkOptions work;                  // how the work is done; `signals` sets its interrupted and stop
   FolderOptions folder;              // where the frames are written
   RenderSignals* signals = nullptr;  // read often; may be null
 };
@@ -88,8 +88,8 @@ Result<void> PutInOrder(ImageOrder order, const RenderOptions& options, ThreadPo
 // the video. A package with a name has the report report-NAME.json and its own state, so that
 // several packages may be rendered into one folder at the same time. A file appears under its final
 // name only when it is whole. The bits of the frames depend neither on the number of threads, nor
-// on the memory (except for rebin.max_cells, see WorkOptions), nor on how often the render was
-// interrupted, killed and resumed. A kill loses at most the work since the last checkpoint.
+// on the memory (with one exception, see WorkOptions), nor on how often the render was interrupted,
+// killed and resumed. A kill loses at most the work since the last checkpoint.
 //   kUsage        the options are not compatible; the folder has an unfinished render, or one from
 //                 other inputs (run_state.h)
 //   kInput        no LF image contributes to any frame, or no frame gets a ray (both only for a

@@ -22,7 +22,8 @@ namespace lf {
 struct LightFieldPlace {
   std::string name;  // name of the light field in messages
   LightFieldIdentity identity;
-  // Only for a packed store: the light field that the store was made from.
+  // Identity of the light field that a packed store was made from; unset if `folder` is no packed
+  // store.
   std::optional<LightFieldIdentity> whole;
   std::filesystem::path folder;  // folder of the image files, or the packed store
 };

@@ -90,7 +90,7 @@ class RenderPass : private EarlierRun {
   const PassContext& context_;
   const std::vector<FrameId> ids_;
   const std::vector<FrameId> early_;
-  const std::string rays_frames_;  // description of the frames, in the files of rebinned rays
+  const std::string rays_frames_;  // text in the files of rebinned rays that identifies the frames
   FilmRenderer renderer_;
   std::vector<Saved> saved_;                 // one for each frame
   std::vector<uint32_t> saved_rays_places_;  // places_done of each section in the state on the disk

@@ -22,8 +22,8 @@ std::string Words(std::span<const double> numbers) {
   return fmt::format("{}", fmt::join(numbers, " "));
 }
 
-// Returns the first names, as many as fit in kMostBytes, as a JSON list. It consists of printable
-// ASCII, because names may have any bytes.
+// Returns the first names, as many as fit in kMostBytes, as a JSON list. Other characters than
+// printable ASCII are escaped, because names may have any bytes.
 std::string NamesText(const std::vector<std::string>& names) {
   constexpr size_t kMostBytes = size_t{256} << 10;
   const auto text_of = [](const Json& json) {
@@ -38,8 +38,8 @@ std::string NamesText(const std::vector<std::string>& names) {
   return "[" + text + "]";
 }
 
-// Reads the values of keys, one after the other. fault() is the first fault; a value with a fault
-// is arbitrary.
+// Reads values from the entries of a plate file, by their keys. If an entry is missing or invalid,
+// the returned value is arbitrary, and fault() is set to the first such fault.
 class NotesReader {
  public:
   NotesReader(const PlateEntries& entries, const std::string& name)

@@ -132,8 +132,8 @@ inline std::string RecordText(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-// Returns the text of a JSON value on one line, without a newline, as RecordText() does on several.
-// Both functions write infinity as null.
+// Returns the text of a JSON value on one line, without a newline at its end. Like RecordText(),
+// replaces bytes that are not UTF-8. Both functions write infinity as null.
 inline std::string RecordLine(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

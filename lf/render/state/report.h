@@ -22,8 +22,8 @@
 
 namespace lf {
 
-// Samples of a frame with --stop-when or --require "samples>=N": N (`asked`), and the measured
-// samples.
+// Samples of a frame, set with --stop-when or --require "samples>=N"
+// (render/collect/sample_rule.h). `asked` is N.
 struct FrameSamples {
   uint32_t asked = 0;
   SampleShare measured;
@@ -32,7 +32,7 @@ struct FrameSamples {
 // Noise of a frame with --stop-when or --require "noise<=X" (render/collect/noise_rule.h).
 struct FrameNoise {
   double asked = 0;               // X, in linear radiance
-  std::optional<double> reached;  // unset: too few LF images, or no reachable element
+  std::optional<double> reached;  // unset: cannot be measured (MeasureNoise() is infinite)
   uint32_t places = 0;            // the LF images before this place of the order were collected
   uint64_t image_count = 0;       // number of these LF images that have rays in the frame
 };
@@ -60,7 +60,7 @@ struct FrameReport {
   // If set, the frame was finished early (FolderOptions::finish_early): it has only the LF images
   // before this place of the order.
   std::optional<uint32_t> places_done = std::nullopt;
-  // The share of the picture that is interpolated from rebinned rays; unset if there are none.
+  // The share of the picture that is interpolated from rebinned rays; unset if the mode has none.
   std::optional<double> interpolated_share = std::nullopt;
   std::optional<FrameNoise> noise = std::nullopt;  // set if a rule of noise was given
 };

@@ -49,8 +49,8 @@ std::vector<fs::path> FilesOf(const fs::path& folder) {
   return files;
 }
 
-// Removes temporary files that killed processes left, on any host. The lock ensures that no other
-// process renders these frames now.
+// Removes temporary files that killed processes left, on any host. The caller holds the lock of the
+// state, so that no other process renders `frames` now.
 //   frames     ascending; temporary files of other frames stay
 //   is_shared  true if other processes may write into the folder: files that belong to no frame
 //              stay
