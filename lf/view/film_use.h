@@ -20,7 +20,7 @@ namespace lf {
 class FilmUse {
  public:
   struct Facts {
-    size_t frames_done = 0;  // number of counted frames, the first ones; counts of others are 0
+    size_t frames_done = 0;  // counted are the first frames_done frames; other counts are 0
     std::vector<uint32_t> image_counts;  // [frame]: number of LF images
     std::vector<uint64_t> ray_counts;    // [frame]: number of rays to be tested
     // [LF image]: number of frames that use it, at most 65535

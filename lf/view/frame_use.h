@@ -24,8 +24,8 @@ enum class CameraUse : uint8_t {
   kOutside,
   // the angle between its optical axis and the optical axis of the frame exceeds --max-angle
   kAngle,
-  // such rays pass its position, but no pixel of its LF image sees both the lens and the filmed
-  // region (Fig. 4.5)
+  // rays through the lens to the plate pass its position, but no pixel of its LF image sees both
+  // the lens and the filmed region (Fig. 4.5)
   kSeesNone,
   kLimit,     // LF images before it in the order already reach the limit --max-images
   kNoWeight,  // it has no lens weight: no point of the lens is nearest to it (doc/lens-integral.md)
@@ -37,8 +37,8 @@ std::string_view NameOf(CameraUse use);
 struct FrameUse {
   std::vector<CameraUse> of_cameras;    // [LF camera]
   std::vector<FrameNeeds::Image> used;  // LF images that are read, in reading order
-  // approximate distance between neighbouring LF cameras around the lens; set if
-  // NeedsOptions::HasNeighbours()
+  // approximate distance between neighbouring LF cameras around the lens, in world units; set if
+  // NeedsOptions::HasNeighbours() is true
   std::optional<double> camera_distance_w;
 };
 

@@ -1,5 +1,5 @@
-// Encodes the data that the page draws as arrays of little-endian numbers, so that a browser can
-// use them without parsing (doc/formats/page_data.md).
+// Encodes the data that the page of lfvisualizer draws as arrays of little-endian numbers, so that
+// a browser can use them without parsing (doc/formats/page_data.md).
 #pragma once
 
 #include <cstddef>
@@ -14,9 +14,9 @@
 
 namespace lf {
 
-// Returns the mean position of the LF cameras. Positions are encoded relative to it, because the
-// world's origin may be so far away that floats relative to it would round all LF cameras to the
-// same position.
+// Returns the mean position of the LF cameras. CamerasBytes() encodes positions relative to this
+// mean, because the world's origin may be so far away that floats relative to the origin would
+// round all LF cameras to the same position.
 Vec3 SceneOrigin(const LightField& light_field);
 
 // Returns the position of every LF camera relative to SceneOrigin(), in world units: float x, y, z
@@ -30,10 +30,10 @@ std::string CamerasBytes(const LightField& light_field);
 inline constexpr size_t kFrameNumbers = 31;
 std::string FramesBytes(const CameraPath& path);
 
-// Returns a head of 16 bytes: uint32 number of LF cameras; uint32 number of used ones; float camera
-// distance (NaN if unset); uint32 0. Then, for all used LF images in reading order, their ids
-// (uint32), followed by the shares of their pixels that are read (float). Then one byte per LF
-// camera: its CameraUse.
+// Returns a head of 16 bytes: uint32 number of LF cameras; uint32 number of LF images that are
+// read; float camera distance (NaN if unset); uint32 0. Then the ids (uint32) of the LF images that
+// are read, in reading order. Then, in the same order, the share of each one's pixels that is read
+// (float). Then one byte per LF camera: its CameraUse.
 std::string FrameUseBytes(const LightField& light_field, const FrameUse& use);
 
 // Returns one uint16 per LF camera: the number of frames that use its image.

@@ -22,7 +22,7 @@ namespace lf {
 //   collected FRAME ID SHARE           every LF camera that the frame uses, by ascending ID, and
 //                                      the share of the LF image's pixels that are read
 //
-//   emit  receives the text in parts; the function returns its first error
+//   emit  receives the text in parts. If it returns an error, WriteSceneText() returns this error
 Result<void> WriteSceneText(const LightField& light_field, const CameraPath& path,
                             const std::vector<FrameId>& frames, uint64_t seed,
                             const NeedsOptions& options, ThreadPool& pool,

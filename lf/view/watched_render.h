@@ -1,5 +1,5 @@
 // Finds the frames of a running or finished render in the output folder of lfrenderer
-// (doc/checkpoints.md), and makes small pictures of them for the page.
+// (doc/checkpoints.md), and makes small pictures of them for the page of lfvisualizer.
 #pragma once
 
 #include <cstdint>
