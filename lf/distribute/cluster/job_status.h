@@ -19,7 +19,7 @@ struct TaskStatus {
   size_t frames_done = 0;
   size_t frame_total = 0;
   std::optional<uint64_t> rays_left;  // as lfrenderer last reported; unset: no report
-  uint64_t rays_done = 0;             // how much of the forecast ray_total is done
+  uint64_t rays_done = 0;             // how many of the forecast ray_total rays are done
   uint64_t ray_total = 0;
   uint64_t image_done = 0;  // LF images read since the last start
   uint64_t image_total = 0;

@@ -19,8 +19,9 @@ namespace lf {
 //   stop  true: lfrenderer writes a checkpoint and ends
 //
 // The phase of the result is kDone; kInterrupted, because of `stop` or because the job was
-// cancelled; or kFailed, because lfrenderer ended with another exit code or crashed more often than
-// the job allows. A package that is done and whose frames all exist is not rendered again.
+// cancelled; or kFailed, because lfrenderer could not be started, ended with an exit code other
+// than 0, 5 and 6, or crashed more often than the job allows. A package that is done and whose
+// frames all exist is not rendered again.
 // kOutput: another process holds the task's lock for two minutes; the state cannot be written.
 // kInput: the state is damaged.
 Result<TaskState> RunPackage(const ClusterJob& job, size_t number, const std::string& node,

@@ -65,7 +65,7 @@ TaskProgress ReadProgress(const std::filesystem::path& log);
 // Returns the messages in a log since the last start.
 std::vector<std::string> LinesOfLastStart(const std::filesystem::path& log);
 
-// The beginning of the line that precedes each start in a log.
+// The beginning of the line in a log that precedes the output of each start.
 inline constexpr std::string_view kLogStart = "-- ";
 
 }  // namespace lf

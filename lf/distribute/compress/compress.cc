@@ -137,8 +137,8 @@ void Compressor::AddOne(PackedStoreWriter* writer, LfImageId id) {
   report_.encode_cpu_s += static_cast<double>(timer.Nanoseconds()) * 1e-9;
   ++now_.done;
   if (error) {
-    // Only errors of the image itself are skipped. If the machine lacks memory or disk space, the
-    // call fails.
+    // Only an LF image that is broken itself (kInput) is skipped. If the machine lacks memory or
+    // disk space, Compress() fails.
     const bool is_image = !image && error->kind == ErrorKind::kInput;
     if (is_image) report_.skipped.push_back({name, error->message});
     if ((!is_image || options_.strict) && !ended_) {
@@ -251,7 +251,8 @@ Result<void> Compressor::FindSkipped() {
   return {};
 }
 
-// Determines whether there is a store, and whether the options allow it.
+// Sets report_.was_there. kUsage: a store exists, complete or unfinished, and no option says what
+// to do with it.
 Result<void> Compressor::CheckTarget() {
   const fs::path& store = options_.store;
   LF_ASSIGN_OR_RETURN(const bool is_there, IsThere(store));

@@ -62,7 +62,7 @@ struct CompressReport {
   // Sums over the LF images that this call encoded.
   size_t coded_count = 0;
   uint64_t source_bytes = 0;  // size of their files
-  uint64_t pixel_bytes = 0;   // size of their pixels as stored
+  uint64_t pixel_bytes = 0;   // size of their pixels, as in CompressProgress
   uint64_t code_bytes = 0;
   CodeError error;
   double worst_psnr_db = 0;  // lowest PSNR of an LF image; infinite if all are exact
@@ -74,13 +74,15 @@ struct CompressReport {
   uint64_t store_bytes = 0;  // size of all files of the store
 };
 
-// Returns the settings in words. An unfinished store is resumed only with equal settings.
+// Returns the settings in words, as a store records them. A store is resumed or verified only with
+// equal words.
 std::string NameOf(const CodecSettings& settings);
 
-// kUsage: wrong settings, the store exists, or its name belongs to another file. kInput: no LF
-// image can be read, or `strict` is true and one cannot be read; the files are not those that an
-// unfinished store was made from; or the store differs from the result of encoding its LF images
-// (`verify`). kOutput: the disk or the memory fails. kInterrupted: finished work is kept.
+// Compresses the LF images of `source` into options.store. kUsage: wrong settings, the store
+// exists, or its name belongs to another file. kInput: no LF image can be read, or `strict` is true
+// and one cannot be read; the files are not those that an unfinished store was made from; or the
+// store differs from the result of encoding its LF images (`verify`). kOutput: the disk or the
+// memory fails. kInterrupted: finished work is kept.
 Result<CompressReport> Compress(const CompressSource& source, const CompressOptions& options,
                                 ThreadPool& pool,
                                 const std::function<void(const CompressProgress&)>& progress);

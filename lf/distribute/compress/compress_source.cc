@@ -55,7 +55,7 @@ Result<CompressSource> SourceOfPackages(std::span<const Package> packages, bool 
                       packages.front().name, package.name));
     for (size_t i = 0; i < package.images.size(); ++i) {
       const PackageImage& image = package.images[i];
-      if (image.ray_count == 0) continue;  // is in the package for lens weights only
+      if (image.ray_count == 0) continue;  // a neighbour, of which no pixel is read
       const auto [at, is_new] = needed.try_emplace(image.id, Needed{p, i, image.rect});
       if (!is_new) at->second.rect = Bounds(at->second.rect, image.rect);
     }

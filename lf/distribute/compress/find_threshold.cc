@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t kLookedAt = 12;  // LF images in the sample
 
-// Thresholds that are tried: from 0.05 on, each 5 % above the one before.
+// Thresholds that are tried, in grey steps: from 0.05 on, each 5 % above the previous one.
 constexpr int kSteps = 160;
 double ThresholdOf(int step) { return std::round(0.05 * std::pow(1.05, step) * 1e4) / 1e4; }
 

@@ -54,7 +54,7 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
     LF_ASSIGN_OR_RETURN(PackedCodeReader reader, PackedCodeReader::Open(options.store));
     return std::make_unique<PackedCodeReader>(std::move(reader));
   };
-  // Returns what is wrong with an encoded image, if anything.
+  // Checks LF image i and its encoded image. The error says what is wrong with them.
   const auto check = [&](uint32_t i) -> Result<void> {
     const LfImageId id{i};
     const PixelRect rect = RectToRecord(light_field, id, source.rects[i]);

@@ -22,14 +22,15 @@ struct VerifyOptions {
   std::function<bool()> is_interrupted;
 };
 
-// kInput: the store is of other LF images, another calibration or other settings, or there is none.
+// Checks what the store states about itself, without reading encoded images. kInput: the store is
+// of other LF images, another calibration or other settings, or there is no store.
 Result<void> CheckStoreFacts(const CompressSource& source, const VerifyOptions& options);
 
 // Reads all encoded images back. Each must equal the result of encoding its LF image, and be
-// decoded without damage. Returns the number of encoded images. An LF image that is missing in the
-// store must not be readable. kInput: an encoded image differs or is damaged (the message states
-// the first and the count), or the store is of another light field or other settings. kInterrupted:
-// is_interrupted() returned true.
+// decoded without damage. If an LF image is missing in the store, its file must not be readable.
+// Returns the number of encoded images that were read. kInput: an encoded image differs or is
+// damaged (the message states the first and the count), or the store is of another light field or
+// other settings. kInterrupted: is_interrupted() returned true.
 Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& options,
                            ThreadPool& pool, const std::function<void(size_t)>& progress);
 

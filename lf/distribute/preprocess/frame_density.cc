@@ -24,7 +24,7 @@ struct Around {
 
 // Returns the distance, in the lens plane, from the lens centre to the nearest ray that an LF
 // camera recorded from the focus point of the element at (x_px, y_px). Returns 0 if the element has
-// no focus point, infinity if no LF camera sees it.
+// no focus point, infinity if no LF camera sees the focus point.
 double NearestRay(const LightField& light_field, const Around& around, const RenderCamera& frame,
                   double x_px, double y_px) {
   double nearest_w = std::numeric_limits<double>::infinity();

@@ -8,8 +8,8 @@
 //   delta(z) = f s |1 / z - 1 / z_f|
 //
 // elements apart (f: the frame's focal length in elements). A displacement up to about one element
-// looks like blur, a larger one like double edges. It would be one element if the LF cameras were s
-// / delta apart.
+// looks like blur, a larger one like double edges. The displacement would be one element if the LF
+// cameras were s / delta apart.
 #pragma once
 
 #include <cstddef>
@@ -23,13 +23,14 @@
 namespace lf {
 
 struct FrameDensity {
-  // number of LF cameras in the lens, as seen from the middle of the plate
+  // number of LF cameras whose line to the focus point of the plate's middle passes through the
+  // lens
   size_t cameras_in_lens = 0;
   double camera_distance_w = 0;  // s, the distance of neighbouring LF cameras in the lens plane
   LensCoverage coverage;         // bokeh is cut off where the lens is not covered
   // Diameter of the smallest lens around the same centre through which each of nine elements,
-  // spread over the plate, has a ray. Infinite if none of the LF cameras around the lens sees one
-  // of these elements.
+  // spread over the plate, has a ray. Infinite if none of the LF cameras around the lens sees the
+  // focus point of one of these elements.
   double least_aperture_w = 0;
   // The nearest and farthest depth of the scene along the frame's axis, and delta(z) at these
   // depths.

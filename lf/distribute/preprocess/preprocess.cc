@@ -47,7 +47,7 @@ std::string NameOfPart(const std::vector<FrameId>& frames, size_t film_frame_cou
   return "-of-frames-" + ranges;
 }
 
-// Unites the needs of the frames of a package.
+// Joins the needs of all frames of a package.
 class Gathering {
  public:
   struct Image {
@@ -267,7 +267,7 @@ void Preprocessor::Keep(FrameId frame, FrameNeeds needs) {
   kept_needs_.emplace(frame, std::move(needs));
 }
 
-// Measures the rate with the frame that has the median number of rays.
+// Measures report_.rate with the frame that has the median number of rays.
 Result<void> Preprocessor::Measure() {
   std::vector<size_t> by_rays(frames_.size());
   std::iota(by_rays.begin(), by_rays.end(), size_t{0});
