@@ -1,4 +1,5 @@
-// Finds the LF cameras that a lens looks through, and the distance between them in the lens plane.
+// Finds the LF cameras whose rays pass through the lens of a frame, and the distance between these
+// rays in the lens plane.
 #pragma once
 
 #include <vector>
@@ -18,9 +19,9 @@ namespace lf {
 // focus point.
 std::vector<LfImageId> CamerasAroundLens(const ImageIndex& index, const RenderCamera& frame);
 
-// Returns about the distance between neighbouring cameras of CamerasAroundLens() in the lens plane,
-// in world units (CameraDistance() in selection/lens_weights/frame_weights.h); 0 if there is no
-// such LF camera.
+// Returns the approximate distance, in world units, between the lines of neighbouring cameras of
+// CamerasAroundLens() in the lens plane (CameraDistance() in
+// selection/lens_weights/frame_weights.h); 0 if there is no such LF camera.
 double CameraDistanceAround(const ImageIndex& index, const RenderCamera& frame);
 
 // Returns true if the point lies within the borders of the LF camera's image. Does not test whether

@@ -27,7 +27,7 @@ struct Loading {
   std::optional<Result<LfPixels>> pixels;
 };
 
-// LF images [begin, end) of the order.
+// A batch: the LF images with indices [begin, end) in order_.
 struct Batch {
   size_t begin = 0;
   size_t end = 0;
@@ -126,7 +126,7 @@ Result<bool> FrameCollector::State::Step() {
     batch_ = next_.end > next_.begin ? std::move(next_) : BatchFrom(images_done_);
     next_ = {};
     if (batch_.begin == batch_.end) {
-      spare_.clear();  // other code needs the memory now
+      spare_.clear();  // frames are developed in this memory next
       return false;
     }
     takers = FramesOf(batch_);

@@ -47,7 +47,7 @@ PixelReach ReachOf(Estimator estimator) {
 size_t PlanBytes(Estimator estimator, bool has_distortion, int image_width, int image_height,
                  int plate_width, int plate_height) {
   const bool is_nearest = estimator == Estimator::kNearest;
-  // A plate that is made finer has at most twice the resolution of the LF image.
+  // kBilinear may plan a finer plate, with at most twice the resolution of the LF image.
   const auto width =
       static_cast<size_t>(is_nearest ? image_width : std::max(plate_width, 2 * image_width));
   const auto height =

@@ -1,4 +1,4 @@
-// Adds a batch of decoded LF images to the plates of all frames, with all threads.
+// Adds the rays of a batch of decoded LF images to the plates of all frames, with all threads.
 #pragma once
 
 #include <atomic>
@@ -43,8 +43,8 @@ struct RayReading {
   PixelFilter filter = PixelFilter::kAuto;  // only used by kBilinear
 };
 
-// Returns from which pixels of an LF image the estimator computes the value of a ray. Selection
-// (SelectOptions::reach) includes all of these pixels.
+// Returns which pixels the estimator reads for one ray: the pixel of the ray itself, or also its
+// neighbours. Selection (SelectOptions::reach) includes all of them.
 PixelReach ReachOf(Estimator estimator);
 
 // kReference applies the ray model literally to every pixel, on one thread. It is about 50 times
@@ -53,7 +53,7 @@ enum class CollectBackEnd { kFast, kReference };
 
 struct FrameRays {
   uint64_t image_count = 0;   // number of LF images with an accepted ray
-  uint64_t tested_count = 0;  // number of pixels in the rectangles of all LF images
+  uint64_t tested_count = 0;  // number of LF pixels in the rectangles that the frame needs
   uint64_t accepted_count = 0;
 };
 

@@ -69,8 +69,8 @@ TEST(Collect, FramesThatPassByTakeWhatTheyTakeAlone) {
   std::vector<RenderCamera> frames;
   for (int i = 0; i < 20; ++i) {
     frames.push_back(NoiseFrames()[i % 3]);
-    // The frames move across the grid of LF cameras, from beyond one side of it to beyond the
-    // other.
+    // The frames move across the grid of LF cameras. The first and the last ones are beside the
+    // grid.
     frames.back().pinhole.cam_from_world =
         *LookAlong({0.012 * (i - 10), 0, 0}, {0, 0, 1}, {0, -1, 0});
     frames.back().aperture.radius_w = 0.006;

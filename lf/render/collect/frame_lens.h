@@ -45,9 +45,9 @@ class FrameLens {
   // rays with a weight pass through.
   const RenderCamera& camera() const { return camera_; }
 
-  // Returns the weights of the LF image's rays. They refer to this object. They are 0 if the LF
-  // image has no share of the lens, or if the LF camera's axis is tilted by more than
-  // SelectOptions::max_angle_rad against the frame's.
+  // Returns the weights of the LF image's rays, which refer to this object. The weights are 0 if
+  // the LF image has no share of the lens, or if the angle between the axes of LF camera and frame
+  // exceeds SelectOptions::max_angle_rad.
   RayWeights WeightsOf(LfImageId id) const;
 
   // Returns false if WeightsOf() is 0 in all elements.

@@ -25,7 +25,7 @@ Result<double> ParseNoiseRule(const std::string& text, const std::string& option
 // Returns true if a text begins with "noise", so that it is meant as such a rule, whether valid or
 // not.
 bool IsNoiseRule(const std::string& text);
-// Returns the rule as text. ParseNoiseRule() of the text returns exactly the same X.
+// Returns the rule with X = `noise` as text. ParseNoiseRule() of this text returns exactly `noise`.
 std::string TextOfNoiseRule(double noise);
 
 inline constexpr double kMostNoiseElements = 0.9;
@@ -34,8 +34,8 @@ inline constexpr double kMostNoiseElements = 0.9;
 // 72, ...: eight places for each doubling. From one of these places to the next, a frame gets at
 // most an eighth more LF images, whatever share of the light field it takes. When it stops, it
 // therefore has at most 6 % less noise than at the previous place, where the noise was still too
-// high. A million LF images are divided into at most 130 parts. Up to 1024, the places include all
-// multiples of 64; above, all multiples of a larger power of two.
+// high. For a million LF images, noise is measured at most 130 times. Up to 1024, the places
+// include all multiples of 64; above, all multiples of a larger power of two.
 uint32_t NoiseDecisionAfter(uint32_t place);
 
 // Returns the noise of a frame in units of the rays' values v: divide by RadianceEncoding::Scale()

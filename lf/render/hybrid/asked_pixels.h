@@ -15,8 +15,8 @@
 
 namespace lf {
 
-// Which frames have previews. A preview is a picture of an unfinished frame; more rebinned rays are
-// kept for it. Only a frame that also collects rays can have previews.
+// Says which frames have previews. A preview is a picture of an unfinished frame; more rebinned
+// rays are kept for it. Only a frame that also collects rays can have previews.
 enum class Previews {
   kAuto,  // frames that collect more than kPreviewedFrom LF images
   kOn,

@@ -33,7 +33,7 @@
 
 namespace lf {
 
-// Which of the rays that finished frames need are kept.
+// Says which of the rays that finished frames need are kept.
 enum class KeptRays {
   kAuto,   // kAll if they fit in max_cells, otherwise kEdges
   kAll,    // all rays
@@ -116,7 +116,7 @@ class RebinnedRays : public ImageConsumer {
     bool is_too_coarse = false;  // true if RayMap::is_too_coarse() is true for a section
   };
   Facts facts() const;
-  // Returns one line of text for each section, about its slab and coverage.
+  // Returns one line of text for each section, which describes its slab and coverage for the log.
   std::vector<std::string> Describe() const;
 
  private:

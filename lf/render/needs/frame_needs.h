@@ -54,8 +54,8 @@ struct FrameNeeds {
   // the same LF images within max_image_count, and the same rebinned rays (for the default options)
   // as the whole light field. Empty if HasNeighbours() is false.
   std::vector<LfImageId> neighbours;
-  // Density of the LF cameras around the lens; set if HasNeighbours() is true, or if NeedsOf() was
-  // given it.
+  // Density of the LF cameras around the lens; set if HasNeighbours() is true, or if it was passed
+  // to NeedsOf().
   std::optional<FrameSampling> sampling;
 
   std::optional<double> camera_distance_w() const;

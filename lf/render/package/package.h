@@ -68,8 +68,8 @@ struct PackageImage {
 
 struct Package {
   std::string name;   // name of the file without extension; empty for a package in memory
-  size_t number = 1;  // number of this package among the `count` of the film, from 1
-  size_t count = 1;
+  size_t number = 1;  // number of this package, from 1 to `count`
+  size_t count = 1;   // number of packages of the film
   LightField light_field;
   ImagePlaces places;                // ranks in the order of the whole light field
   CameraPath path;                   // camera path of the whole film
@@ -83,7 +83,8 @@ struct Package {
   std::vector<FrameSurroundings> surroundings;
 
   std::vector<FrameId> FrameIds() const;
-  // Returns camera_distance_w around a frame of the film; nullopt if it was not measured.
+  // Returns camera_distance_w around the lens of a frame of the film; nullopt if it was not
+  // measured.
   std::optional<double> CameraDistance(FrameId frame) const;
 };
 

@@ -229,10 +229,10 @@ TEST_F(PackageFileTest, CutAndForeignFilesAreErrors) {
     EXPECT_NE(Fault(whole.substr(0, size)), "") << size;
   EXPECT_NE(Fault("no package"), "");
   std::string newer = whole;
-  newer[63] = 3;  // user_version, big-endian at 60
+  newer[63] = 3;  // last byte of user_version (big-endian, offset 60)
   EXPECT_NE(Fault(newer).find("of version 3, which a newer"), std::string::npos) << Fault(newer);
   std::string other = whole;
-  other[71] = 'X';  // application_id, at 68
+  other[71] = 'X';  // last byte of application_id (offset 68)
   EXPECT_NE(Fault(other).find("is no package"), std::string::npos);
 }
 

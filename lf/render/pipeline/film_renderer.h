@@ -121,7 +121,7 @@ class FilmRenderer {
   RenderedFrame Develop(size_t f);
   RenderedFrame Develop(size_t f, const Completion* completion, bool with_effective,
                         const std::function<bool()>& is_interrupted) const;
-  // Adds to the report the measurements of samples and noise that the options require. Several
+  // Measures samples and noise if the options require them, and adds them to the report. Several
   // threads may call it at the same time, for different frames. kInterrupted: WorkOptions::stop is
   // set.
   Result<void> Measure(size_t f, FrameReport* report);
@@ -161,7 +161,7 @@ class FilmRenderer {
     NoiseMoments moments;          // moments of the plate; empty if noise is not measured
     PlaceRange places;             // places of the LF images that the frame takes, in all runs
     FrameRays earlier_rays;        // rays in the plate when this run began
-    uint32_t decision_places = 0;  // stop_at_samples is applied at multiples of this place
+    uint32_t decision_places = 0;  // stop_at_samples is applied at multiples of this number
     uint32_t next_decision = 0;    // next place at which the stop rule is applied
     bool is_released = false;
     bool is_stopped = false;  // true: stopped by its rule, with the LF images before next_decision

@@ -179,7 +179,7 @@ Result<void> Renderer::Begin(Package package) {
   return {};
 }
 
-// Opens the state in the folder, and adds the totals of earlier runs to totals_.
+// Opens the state in the folder, and sets totals_ to the totals of earlier runs.
 Result<void> Renderer::OpenState() {
   LF_ASSIGN_OR_RETURN(const std::string pixels, PixelsOf(setup_->light_field()));
   const RunStateOptions state_options = StateOptions(*setup_, folder_, pixels);

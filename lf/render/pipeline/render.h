@@ -58,7 +58,7 @@ struct FolderOptions {
 struct RenderOptions {
   std::vector<FrameId> frames;       // some frames of the package, ascending; empty: all
   FilmOptions film;                  // what the frames are made of
-  WorkOptions work;                  // how the work is done; `signals` sets its interrupted and stop
+  WorkOptions work;                  // how the work is done; `signals` sets its flags
   FolderOptions folder;              // where the frames are written
   RenderSignals* signals = nullptr;  // read often; may be null
 };

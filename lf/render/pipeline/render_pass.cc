@@ -211,7 +211,7 @@ Result<void> RenderPass::RecordFinished(size_t f, const FrameReport& report) {
   const FrameId frame = ids_[f];
   if (!context_.setup.film().shard && report.rays.image_count == 0 &&
       report.interpolated_share.value_or(0) == 0) {
-    // Only the first kTold black frames are logged; report.json names all of them.
+    // Only the first kTold black frames are logged; report.json states 0 LF images for all of them.
     constexpr size_t kTold = 10;
     if (++context_.black_count <= kTold)
       LogWarning("frame {} is black: no LF image contributes to it", frame.value);

@@ -71,9 +71,10 @@ struct RebinReport {
   uint64_t cell_count = 0;       // largest number of cells at the end of a pass
   uint64_t looked_at_count = 0;  // number of LF pixels within the coverage maps
   double cpu_s = 0;              // CPU time to make cells from LF pixels
-  // Which of the rays that finished frames need were kept. "all": all of them; "edges": only rays
-  // at edges in the LF images; "some": not even all of these, because there was no room. Unless it
-  // is "all", the picture of a frame depends on which other frames are rendered in the same pass.
+  // Says which of the rays that finished frames need were kept. "all": all of them; "edges": only
+  // rays at edges in the LF images; "some": not even all of these, because there was no room.
+  // Unless it is "all", the picture of a frame depends on which other frames are rendered in the
+  // same pass.
   std::string kept = "all";
 };
 

@@ -61,7 +61,8 @@ RunInputs InputsOfCamera(FrameId frame, const RenderCamera& camera);
 // Returns the inputs that decide only the pictures.
 RunInputs InputsOfPicture(const RunChoices& choices);
 
-// The key of HashOfCameras() in the inputs of packages. Other renders do not have this input.
+// The key under which the inputs of a package contain HashOfCameras(). A render without a package
+// file does not have this input.
 inline constexpr const char* kFilmOfPackage = "picture.film";
 
 // Returns a hash of all cameras of a film. Packages that are rendered into one folder must have the
