@@ -20,9 +20,9 @@ namespace lf {
 class FilmUse {
  public:
   struct Facts {
-    size_t frames_done = 0;  // counted are the first frames_done frames; other counts are 0
-    std::vector<uint32_t> image_counts;  // [frame]: number of LF images
-    std::vector<uint64_t> ray_counts;    // [frame]: number of rays to be tested
+    size_t frames_done = 0;              // number of frames counted so far, from the first on
+    std::vector<uint32_t> image_counts;  // [frame]: number of LF images; 0 until counted
+    std::vector<uint64_t> ray_counts;    // [frame]: number of rays to be tested; 0 until counted
     // [LF image]: number of frames that use it, at most 65535
     std::vector<uint16_t> frames_of_image;
   };

@@ -27,7 +27,7 @@ struct TaskState {
   int64_t process = 0;       // process id of lfrenderer on this node
   uint32_t start_count = 0;  // number of starts of lfrenderer
   uint32_t crash_count = 0;  // number of crashes of lfrenderer or its node
-  int exit_code = 0;         // of the last lfrenderer; 0 or 6 if `phase` is kDone
+  int exit_code = 0;         // exit code of the last lfrenderer; 0 or 6 if `phase` is kDone
   std::string message;       // why the task does not run
   double begin_s = 0;        // time of the last start, in seconds since 1970
   double end_s = 0;
@@ -59,10 +59,10 @@ struct TaskProgress {
 // done and total are those of the previous start. The log may be any bytes: lines that begin with
 // '{' but are no progress are skipped; all other lines are messages.
 TaskProgress ParseProgress(std::string_view log);
-// Returns ParseProgress() of the last lines of a log file; an empty progress if there is no file.
+// Returns ParseProgress() of the last 16 KiB of a log file; an empty progress if there is no file.
 TaskProgress ReadProgress(const std::filesystem::path& log);
 
-// Returns the messages in a log since the last start.
+// Returns the messages since the last start, as far as they are in the last 16 KiB of the log.
 std::vector<std::string> LinesOfLastStart(const std::filesystem::path& log);
 
 // The beginning of the line in a log that precedes the output of each start.

@@ -14,7 +14,7 @@ namespace lf {
 
 // The error of one image. Errors of several images can be added.
 struct CodeError {
-  double squared = 0;  // sum of squared differences, relative to the range from black to white
+  double squared = 0;  // sum of (difference / range from black to white)^2
   uint64_t count = 0;  // number of values
 
   CodeError& operator+=(const CodeError& other) {

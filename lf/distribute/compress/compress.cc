@@ -170,8 +170,8 @@ void Compressor::Count(const RecordedImage& image, const CodedImage& coded, cons
   now_.code_bytes = report_.code_bytes;
 }
 
-// Checks that each file of an LF image in the unfinished store still has the same size, because it
-// may have been replaced.
+// Checks that the file of each LF image in the unfinished store still has the size that it had when
+// it was encoded, because it may have been replaced.
 Result<void> Compressor::CheckFiles(const PackedStoreWriter& writer) {
   const LightField& light_field = source_.light_field;
   pool_.ForEach(light_field.size(), [&](size_t i) {
