@@ -24,9 +24,9 @@ namespace lf {
 // Requests to a render in progress. Code that sets `stop` or `save` must set `attention`
 // afterwards. Signal handlers may set all three.
 struct RenderSignals {
-  std::atomic<bool> attention = false;  // end the step, to read the other flags
-  std::atomic<bool> stop = false;       // write the state and end
-  std::atomic<bool> save = false;       // write the state and continue
+  std::atomic<bool> attention = false;  // true: the step ends soon, and the other flags are read
+  std::atomic<bool> stop = false;       // true: the state is written, and the render ends
+  std::atomic<bool> save = false;       // true: the state is written, and the render continues
 };
 
 // The folder that the frames and the state of a render go into.
