@@ -22,7 +22,7 @@ ChannelFill::ChannelFill(const Image<float>& mean, const Image<uint32_t>& ray_co
       height_(mean.height()),
       channel_(channel),
       rays_needed_(rays_needed),
-      // No two elements of a plate are further apart.
+      // No two elements of a plate are further apart than width + height.
       fill_radius_px_(std::min(fill_radius_px, width_ + height_)) {
   const size_t size = SumIndex(width_ + 1, height_);
   element_sums_.resize(size);
@@ -67,8 +67,8 @@ ChannelFill::Collected ChannelFill::InSquare(int x, int y, int half_side) const 
 }
 
 // Returns the smallest half side whose square around (x, y) contains enough collected elements and
-// rays; `most` + 1 if even the square of `most` does not. Doubles the side first, because most
-// elements find enough close by.
+// rays; `most` + 1 if the square of half side `most` does not. Doubles the half side at first,
+// because for nearly all elements a small square is enough.
 int ChannelFill::SmallestSquare(int x, int y, int most) const {
   if (!IsEnough(InSquare(x, y, most))) return most + 1;
   int too_small = 0, enough = 1;  // one element is never enough
@@ -84,14 +84,15 @@ int ChannelFill::SmallestSquare(int x, int y, int most) const {
   return enough;
 }
 
-// Finds the collected elements of a disk, row by row, and so always in the same order.
+// Finds the collected elements within the squared radius `radius2` of (x, y), always in the same
+// order (row by row), because At() adds floating-point numbers in this order.
 void ChannelFill::FindNeighbours(int x, int y, int64_t radius2, Scratch& scratch) const {
   scratch.neighbours_.clear();
   const int radius = static_cast<int>(std::sqrt(static_cast<double>(radius2)));
   const int x_begin = std::max(x - radius, 0), x_end = std::min(x + radius + 1, width_);
   const int y_begin = std::max(y - radius, 0), y_end = std::min(y + radius + 1, height_);
-  // Numbers of collected elements above row v and to the left of x_begin or x_end. Their increase
-  // at row v is the number in row v.
+  // Numbers of collected elements above row v and to the left of x_begin, and to the left of x_end.
+  // From row v to row v + 1, each of them grows by the number of such elements in row v.
   uint32_t above_begin = element_sums_[SumIndex(x_begin, y_begin)];
   uint32_t above_end = element_sums_[SumIndex(x_end, y_begin)];
   for (int v = y_begin; v < y_end; ++v) {
@@ -107,8 +108,8 @@ void ChannelFill::FindNeighbours(int x, int y, int64_t radius2, Scratch& scratch
   }
 }
 
-// Returns the squared radius of the smallest disk that contains enough of the neighbours; if they
-// are too few, of the disk that contains all of them.
+// Returns the squared radius of the smallest disk that contains enough of the neighbours. If there
+// are too few, the disk contains all of them.
 int64_t ChannelFill::SmallestDisk(Scratch& scratch) const {
   const auto further = [](const Scratch::Ring& a, const Scratch::Ring& b) {
     return a.distance2 > b.distance2;
@@ -134,7 +135,8 @@ float ChannelFill::At(int x, int y, Scratch& scratch) const {
   const int most = RadiusAt(x, y);
   const int square = SmallestSquare(x, y, most);
   if (square > most && InSquare(x, y, most).elements == 0) return 0;
-  // A square of half side k lies within the disk of radius k sqrt(2).
+  // A square of half side k lies within the disk of radius k sqrt(2), which therefore contains
+  // enough neighbours, too.
   FindNeighbours(x, y, std::min(2 * int64_t{square} * square, int64_t{most} * most), scratch);
   const int64_t radius2 = SmallestDisk(scratch);
   double sum = 0, weights = 0;

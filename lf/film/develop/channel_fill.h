@@ -1,5 +1,5 @@
-// Fills thin elements (elements with too few rays) of one colour channel from the collected
-// elements (elements with rays) around them (develop.h). Internal to this folder.
+// Fills thin elements (elements with too few rays) of one channel from the collected elements
+// (elements with rays) around them (develop.h). Internal to this folder.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@ namespace lf {
 
 class ChannelFill {
  public:
-  //   mean, ray_count  own average and number of rays of every element [height][width][channels];
-  //                    must outlive this object
+  //   mean, ray_count  mean value and number of the rays of each element
+  //                    [height][width][channels]; must outlive this object
   //   rays_needed      least number of rays that the neighbours of an element have together; at
   //                    least 1
   //   fill_radius_px   DevelopOptions::fill_radius_px
@@ -41,7 +41,7 @@ class ChannelFill {
     int64_t distance2;
   };
 
-  // Returns the largest distance, in elements, of neighbours that an element takes light from.
+  // Returns the distance, in elements, within which element (x, y) takes light from other elements.
   int RadiusAt(int x, int y) const;
   bool IsEnough(const Collected& collected) const;
   size_t SumIndex(int x, int y) const { return (static_cast<size_t>(width_) + 1) * y + x; }
@@ -58,14 +58,14 @@ class ChannelFill {
   uint32_t rays_needed_;
   int fill_radius_px_;
 
-  // Summed-area tables (Crow 1984), [height + 1][width + 1]: sums over the elements above and to
-  // the left.
+  // Summed-area tables (Crow 1984), [height + 1][width + 1]: entry (x, y) is the sum over all
+  // elements of the columns before x and the rows before y.
   std::vector<uint32_t> element_sums_;
   std::vector<uint64_t> ray_sums_;  // empty if rays_needed is 1: element_sums_ are the same then
   // Column of every collected element, row by row, and the index at which each row begins.
   std::vector<int> columns_;
   std::vector<size_t> row_begin_;
-  std::vector<double> weights_;  // 1 / d, by d^2
+  std::vector<double> weights_;  // weights_[d^2] = 1 / d: weight of a neighbour at distance d
 };
 
 class ChannelFill::Scratch {
@@ -75,7 +75,7 @@ class ChannelFill::Scratch {
     uint64_t rays;
   };
   std::vector<Neighbour> neighbours_;
-  std::vector<Ring> nearest_first_;  // heap
+  std::vector<Ring> nearest_first_;  // heap with the nearest neighbour on top
 };
 
 }  // namespace lf

@@ -13,11 +13,12 @@ namespace {
 constexpr int kBorderPx = 4;
 constexpr uint8_t kBorderGrey = 24;
 
-// The source columns (or rows) that one target column (or row) covers, from `begin` on, and the
-// share of each in the target column. The first and the last may be covered in part.
+// The columns (or rows) of a picture that are averaged into one column (or row) of the reduced
+// picture, from `begin` on, and the share of each in the average. Only parts of the first and of
+// the last may be covered.
 struct Cover {
   int begin = 0;
-  std::vector<float> shares;  // sum 1
+  std::vector<float> shares;  // their sum is 1
 };
 
 std::vector<Cover> Covers(int source_size, int target_size) {
@@ -33,7 +34,8 @@ std::vector<Cover> Covers(int source_size, int target_size) {
   return covers;
 }
 
-// Returns the area average in linear light, because a mean of sRGB values would be too dark.
+// Returns the picture reduced to width x height by area average in linear light, because a mean of
+// sRGB values would be too dark.
 Image<uint8_t> Reduced(const Image<uint8_t>& picture, int width, int height) {
   static const Display8 display8;
   std::array<float, 256> linear;
@@ -42,7 +44,8 @@ Image<uint8_t> Reduced(const Image<uint8_t>& picture, int width, int height) {
   const std::vector<Cover> columns = Covers(picture.width(), width);
   const std::vector<Cover> rows = Covers(picture.height(), height);
   Image<uint8_t> reduced(width, height, 3);
-  std::vector<float> row(3 * static_cast<size_t>(picture.width()));  // mean of source rows
+  // weighted mean of the picture's rows
+  std::vector<float> row(3 * static_cast<size_t>(picture.width()));
   for (int y = 0; y < height; ++y) {
     std::fill(row.begin(), row.end(), 0.0f);
     for (size_t j = 0; j < rows[y].shares.size(); ++j) {

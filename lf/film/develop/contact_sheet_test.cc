@@ -41,7 +41,7 @@ TEST_F(ContactSheetTest, SmallPicturesStandSideBySideUnchanged) {
   std::vector<Image<uint8_t>> pictures;
   for (int i = 0; i < 3; ++i) pictures.emplace_back(20, 10, 3, static_cast<uint8_t>(80 + 50 * i));
   const auto sheet = Sheet(pictures, 1920);
-  EXPECT_EQ(sheet.width(), 2 * 20 + 3 * 4);  // 2 x 2 with borders, one place empty
+  EXPECT_EQ(sheet.width(), 2 * 20 + 3 * 4);  // a grid of 2 x 2 cells with borders, one cell empty
   EXPECT_EQ(sheet.height(), 2 * 10 + 3 * 4);
   EXPECT_EQ(sheet.at(4, 4), 80);
   EXPECT_EQ(sheet.at(23, 13), 80);
@@ -59,7 +59,7 @@ TEST_F(ContactSheetTest, LightIsAveragedNotItsCode) {
   const auto sheet = Sheet({checkerboard}, 32 + 8);
   EXPECT_EQ(sheet.width(), 40);
   for (int y = 4; y < 36; ++y)
-    for (int x = 4; x < 36; ++x) ASSERT_EQ(sheet.at(x, y, 1), 188);  // sRGB of 0.5
+    for (int x = 4; x < 36; ++x) ASSERT_EQ(sheet.at(x, y, 1), 188);  // sRGB value of linear 0.5
 }
 
 TEST_F(ContactSheetTest, APageIsNeverWiderThanAskedForAndKeepsUniformColours) {

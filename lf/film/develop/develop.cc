@@ -23,14 +23,15 @@ double ShareOf(const Completion* completion, int x, int y, uint64_t count) {
   return count == 0 && share > 0 ? 1 : share;
 }
 
-// Returns the number of rays that decides about filling: an interpolated element needs no fill.
+// Returns the number of rays that decides whether a channel is filled: `count`, or the largest
+// number if the element is interpolated, because it then needs no fill.
 uint32_t KnownCount(const Completion* completion, int x, int y, uint32_t count) {
   const bool is_completed = completion != nullptr && completion->share.at(x, y) > 0;
   return is_completed ? std::numeric_limits<uint32_t>::max() : count;
 }
 
-// Computes own averages, counts and coverage of row y. Returns which channels have elements to
-// fill.
+// Computes the averages, ray counts and coverage of the elements of row y. Returns, for each
+// channel, true if an element of the row must be filled or smoothed.
 std::array<bool, kChannels> AverageRow(const SensorPlate& plate, const DevelopOptions& options,
                                        uint32_t rays_needed, int y, DevelopedFrame& frame,
                                        Image<float>& mean) {

@@ -22,8 +22,8 @@ struct Completion {
   Image<float> share;
 };
 
-// Default fill radius. It fills the elements that lie between the rays of mosaics, or of LF pixels
-// that are larger than elements. kMostFillRadius_px is the largest allowed.
+// Default and largest DevelopOptions::fill_radius_px. The default is enough to fill the elements
+// between the rays of mosaics, or of LF pixels that are larger than elements.
 inline constexpr int kFillRadius_px = 2;
 inline constexpr int kMostFillRadius_px = 4096;
 // An element that is smoothed takes light from collected elements (elements with rays) at most this
@@ -39,9 +39,9 @@ struct DevelopOptions {
   // An element with fewer rays than this in a channel, but at least one, is smoothed. 0 or 1: no
   // element is smoothed.
   uint32_t smooth_below = 0;
-  // A channel without a ray takes light from collected elements at most this far away. It stays
-  // black if there is none, because light that was not recorded must not be invented. 0: nothing is
-  // filled.
+  // A channel without a ray takes light from collected elements at most this far away. The channel
+  // stays black if there are none, because light that was not recorded must not be invented. 0:
+  // nothing is filled.
   int fill_radius_px = kFillRadius_px;
 
   // For a plate with opacities: opacity = (sum / count - transparent) / (opaque - transparent).
@@ -52,8 +52,8 @@ struct DevelopOptions {
   // with opacities.
   const Completion* completion = nullptr;
 
-  // If given, called by any thread, at least before each row and every 64 elements to be filled.
-  // Once it returns true, the remaining work is skipped, and the result must not be used.
+  // If given, any thread calls it, before each row and at least once for every 64 elements that are
+  // filled. Once it returns true, the remaining work is skipped, and the result must not be used.
   std::function<bool()> is_interrupted = {};
 };
 

@@ -1,4 +1,4 @@
-// Develops the fourth channel of a plate (develop.h). Internal to this folder.
+// Develops the opacities of a plate, its fourth channel (develop.h). Internal to this folder.
 #pragma once
 
 #include <functional>

@@ -11,8 +11,8 @@
 namespace lf {
 namespace {
 
-// Returns a plate whose elements have, with probability `density` for each channel, 1 to `max_rays`
-// rays.
+// Returns a plate of noise: each channel of an element has 1 to `max_rays` rays with the
+// probability `density`, otherwise none.
 SensorPlate RandomPlate(int width, int height, double density, uint64_t max_rays, uint64_t seed) {
   SensorPlate plate(width, height);
   uint64_t i = 0;
@@ -26,7 +26,7 @@ SensorPlate RandomPlate(int width, int height, double density, uint64_t max_rays
   return plate;
 }
 
-// Computes the header's formula literally: sorts all collected elements by distance.
+// Computes the formula above Develop() literally: sorts all collected elements by distance.
 double BruteForce(const SensorPlate& plate, int x, int y, int channel,
                   const DevelopOptions& options) {
   const auto value = [&](const ElementSum& rays) {
@@ -66,7 +66,7 @@ double BruteForce(const SensorPlate& plate, int x, int y, int channel,
   return weights > 0 ? sum / weights : 0;
 }
 
-// Returns a plate whose opacity is its red channel.
+// Returns a plate with the colours of `colours`, whose opacity is its red channel.
 SensorPlate WithRedOpacity(const SensorPlate& colours) {
   SensorPlate plate = SensorPlate::WithOpacity(colours.width(), colours.height());
   for (int y = 0; y < plate.height(); ++y)
@@ -212,7 +212,7 @@ TEST(Develop, ValuesBelowThePedestalStayNegative) {
   EXPECT_EQ(Develop(plate, options, pool).rgb.at(0, 0, 0), -0.5f);
 }
 
-// Elements with rays have 3000, the completion has 7000 or 5000; the pedestal of both is 1000.
+// Rays have the mean 3000, the completion has 7000 or 5000. The pedestal is subtracted from both.
 TEST(Develop, ACompletionIsInTheUnitsOfThePlate) {
   SensorPlate plate(3, 1);
   for (int c = 0; c < 3; ++c) plate.Add(0, 0, c, {2 * 3000, 2});
@@ -245,7 +245,7 @@ TEST(Develop, AnInterruptionIsAnsweredWithinSomeElements) {
   const SensorPlate plate = RandomPlate(width, height, 0.4, 3, 8);
   ThreadPool pool(1);
   DevelopOptions options;
-  options.smooth_below = 100;  // all are smoothed or filled
+  options.smooth_below = 100;  // all elements are smoothed or filled
   int asked = 0, last = 0;
   options.is_interrupted = [&] { return ++asked == last; };
   const DevelopedFrame whole = Develop(plate, options, pool);

@@ -7,7 +7,8 @@
 
 namespace lf {
 
-// Both values are in [0, 1]; the formulas are also used outside of this range.
+// Linear and display values are in [0, 1] between black and white. The formulas are also used
+// outside of this range.
 inline double DisplayFromLinear(double linear) {
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }
@@ -15,8 +16,8 @@ inline double LinearFromDisplay(double display) {
   return display <= 0.04045 ? display / 12.92 : std::pow((display + 0.055) / 1.055, 2.4);
 }
 
-// Returns the 8-bit display value nearest to a linear value, clipped; NaN gives 0. It is exact,
-// because it compares with the linear values half-way between the display values.
+// Returns the 8-bit display value nearest to a linear value, clipped; 0 for NaN. The value is
+// exact, because the linear value is compared with those half-way between the display values.
 class Display8 {
  public:
   Display8() {
@@ -33,14 +34,15 @@ class Display8 {
     if (!(linear > 0)) return 0;
     if (linear >= 1) return 255;
     uint8_t value = first_[static_cast<int>(linear * kCells)];
-    while (above_[value] <= linear) ++value;  // at most once: cells are narrower than steps
+    while (above_[value] <= linear) ++value;  // at most once: a cell is narrower than a step
     return value;
   }
 
  private:
   static constexpr int kCells = 4096;
-  std::array<float, 256> above_;       // smallest linear value that is rounded to the next step
-  std::array<uint8_t, kCells> first_;  // value at the beginning of each of kCells parts of [0, 1]
+  std::array<float, 256> above_;  // [i] smallest linear value whose display value is i + 1
+  // Display value at the beginning of each of kCells parts of [0, 1]
+  std::array<uint8_t, kCells> first_;
 };
 
 }  // namespace lf

@@ -13,7 +13,7 @@
 namespace lf {
 namespace {
 
-// Returns display values, which the encoder of the file clips to [0, 1] and rounds. None if
+// Returns display values, which the encoder of the file clips to [0, 1] and rounds; nullopt if
 // interrupted.
 std::optional<Image<float>> DisplayValues(const Image<float>& linear,
                                           const std::function<bool()>& is_interrupted) {
@@ -27,7 +27,7 @@ std::optional<Image<float>> DisplayValues(const Image<float>& linear,
   return display;
 }
 
-// Divides colours by alpha, in linear light, as PNG needs them. Black if alpha is 0.
+// Returns colours divided by alpha, in linear light, as PNG needs them; black if alpha is 0.
 Image<float> StraightOf(const Image<float>& rgb, const Image<float>& opacity) {
   Image<float> straight = rgb;
   for (int y = 0; y < rgb.height(); ++y)
@@ -60,8 +60,8 @@ struct DisplayStep {
   }
 };
 
-// Returns a stored colour, which is not multiplied with alpha, over black. Alpha is a share of
-// linear light.
+// Returns the display value of a stored colour, which is not multiplied with alpha, over black.
+// Alpha is a share of linear light.
 template <class T>
 uint8_t OverBlack(T display, T alpha) {
   static const Display8 display8;
@@ -69,8 +69,8 @@ uint8_t OverBlack(T display, T alpha) {
   return display8(static_cast<float>(LinearFromDisplay(display / kMost) * (alpha / kMost)));
 }
 
-// Returns the first three channels. In files with alpha, floats (EXR) are multiplied with it
-// already, and integers (PNG) are not.
+// Returns the first three channels as display values over black. In files with alpha, floats (EXR)
+// are multiplied with alpha already, and integers (PNG) are not.
 template <class T>
 Image<uint8_t> Picture(const Image<T>& image) {
   Image<uint8_t> picture(image.width(), image.height(), 3);

@@ -1,4 +1,4 @@
-// The file of a finished frame, and its picture for display.
+// Writes the file of a finished frame, and reads a picture for display from it.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ enum class FrameFormat {
   // channel interpolated. Colours are half, counts 32-bit integers.
   kExrHalf,
   kExrFloat,  // exr-float: as exr, with colours as float
-  kPng8,      // png: sRGB, 8 bit; plates with opacities add alpha, which is not multiplied in
+  kPng8,      // png: sRGB, 8 bit; plates with opacities add alpha, by which RGB is not multiplied
   kPng16,     // png16: as png, with 16 bit
 };
 

@@ -14,7 +14,7 @@ namespace {
 
 class FrameFileTest : public FolderTest {
  protected:
-  // Returns the frame's colours, which are over black, as they are shown.
+  // Returns the display values of a frame's colours, which are multiplied with the opacity already.
   Image<uint8_t> OverBlack(DevelopedFrame frame) const {
     frame.opacity = {};
     EXPECT_TRUE(WriteFrame(folder_ / "over_black.png", frame, FrameFormat::kPng8, {}));

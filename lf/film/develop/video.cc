@@ -57,7 +57,7 @@ Result<void> CheckVideoTool() {
     return OutputError(error.message +
                        "; a video needs ffmpeg with libx264 (Debian: apt-get install ffmpeg)");
   };
-  // Encodes one small picture, because a program of that name may lack the encoder.
+  // Encodes one small picture, because an installed ffmpeg may lack the encoder.
   auto ffmpeg = StartFed({"ffmpeg", "-hide_banner", "-nostats", "-loglevel", "error", "-f",
                           "rawvideo", "-pixel_format", "rgb24", "-video_size", "16x16", "-i",
                           "pipe:0", "-c:v", "libx264", "-f", "null", "-"});

@@ -21,7 +21,8 @@ Result<void> CheckVideoTarget(const std::filesystem::path& path);
 // is complete. One thread at a time may use a VideoWriter.
 class VideoWriter {
  public:
-  //   patience_s  ffmpeg is killed if it reads nothing, or does not end in Close(), for this time
+  //   patience_s  seconds after which ffmpeg is killed if it reads nothing, or does not end in
+  //   Close()
   // kOutput: ffmpeg cannot be started, there are fewer than 2 x 2 pixels, or fps is no frame rate.
   static Result<std::unique_ptr<VideoWriter>> Open(const std::filesystem::path& path, int width,
                                                    int height, double fps, double patience_s = 300);

@@ -54,7 +54,8 @@ constexpr std::array<std::array<uint8_t, 3>, 8> kPatches = {{{255, 0, 0},
                                                              {200, 120, 60},
                                                              {30, 90, 160}}};
 
-// Returns patches of 32 x 32 pixels in a row, shifted by `shift` patches.
+// Returns a picture of vertical stripes, 32 pixels wide, in the colours kPatches. `shift` is the
+// index of the first colour.
 Image<uint8_t> Patches(int width, int height, int shift) {
   Image<uint8_t> picture(width, height, 3);
   for (int y = 0; y < height; ++y)
@@ -123,7 +124,7 @@ TEST_F(VideoTest, AnUnfinishedFilmLeavesNothing) {
   EXPECT_TRUE(fs::is_empty(folder_));
   {
     auto video = VideoWriter::Open(folder_ / "film.mp4", 64, 32, 10).value();
-    EXPECT_EQ(video->Close().error().kind, ErrorKind::kOutput);  // no picture
+    EXPECT_EQ(video->Close().error().kind, ErrorKind::kOutput);  // no picture was added
   }
   EXPECT_TRUE(fs::is_empty(folder_));
 }

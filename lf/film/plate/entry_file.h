@@ -26,7 +26,7 @@ struct Kind {
   std::string_view if_broken;  // what damage means to the user, and what to do
 };
 
-// The beginning of every head.
+// Every head begins with these fields.
 struct HeadBegin {
   char magic[8];
   uint32_t version;
@@ -37,10 +37,10 @@ static_assert(sizeof(HeadBegin) == 16);
 // Reads the bytes of a file, or of memory, from front to back.
 class Source {
  public:
-  // kInput if the file cannot be opened or is no regular file.
+  // Opens a file. kInput if it cannot be opened or is no regular file.
   static Result<std::unique_ptr<Source>> OfFile(const std::filesystem::path& path,
                                                 const Kind& kind);
-  // The bytes must outlive the source; messages call them `name`.
+  // Reads from `bytes`, which must outlive the source; messages call them `name`.
   static std::unique_ptr<Source> OfBytes(std::string_view bytes, const std::string& name,
                                          const Kind& kind);
   Source(std::string name, const Kind& kind) : name_(std::move(name)), kind_(kind) {}
@@ -52,7 +52,7 @@ class Source {
   const Kind& kind() const { return kind_; }
   uint64_t left() const { return left_; }
 
-  // kInput if fewer than `size` bytes are left, or if they cannot be read.
+  // Reads the next `size` bytes. kInput if fewer are left, or if they cannot be read.
   Result<void> Read(void* to, size_t size);
   // Returns the error for a damaged file.
   Error Damaged(const std::string& reason) const;
@@ -74,8 +74,8 @@ struct Front {
 // version, truncated or damaged, or if its text is not made of lines "key: value".
 Result<Front> ReadFront(Source& source, size_t head_bytes);
 
-// Returns head, text and checksum. Fills in the beginning of the head. The entries must be as
-// PlateEntries demands.
+// Returns head, text and checksum. Writes magic, version and text_bytes (HeadBegin) into the head.
+// The entries must be as PlateEntries demands.
 std::string FrontOf(const Kind& kind, std::string head, const PlateEntries& entries);
 
 // Writes a file from front to back.
@@ -87,7 +87,7 @@ class OutputFile {
   void Write(const void* bytes, size_t size);
   void Write(std::string_view bytes) { Write(bytes.data(), bytes.size()); }
 
-  // kOutput if the file could not be created or written.
+  // Flushes the file. kOutput if the file could not be created or written.
   Result<void> Close();
 
  private:

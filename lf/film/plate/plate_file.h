@@ -39,11 +39,11 @@ Result<void> WritePlate(const std::filesystem::path& path, const PlateEntries& e
 // rays.
 class PlateReader {
  public:
-  static constexpr uint32_t kMaxSide = 1u << 16;       // elements
-  static constexpr uint32_t kMaxTextBytes = 1u << 20;  // size of the entries
+  static constexpr uint32_t kMaxSide = 1u << 16;       // largest width and height, in elements
+  static constexpr uint32_t kMaxTextBytes = 1u << 20;  // largest size of the entries as text
 
-  // kInput if the file cannot be read, is no plate, has another version, is too large, or is
-  // damaged; the message names file and reason.
+  // Opens a file and reads its head and entries. kInput if the file cannot be read, is no plate,
+  // has another version, is too large, or is damaged; the message names file and reason.
   static Result<PlateReader> Open(const std::filesystem::path& path);
   // As Open(), for a file in memory, which must outlive the reader; messages call it `name`.
   static Result<PlateReader> OpenBytes(std::string_view bytes, const std::string& name);
@@ -56,7 +56,7 @@ class PlateReader {
   bool has_opacity() const { return channels_ > SensorPlate::kChannels; }
   const PlateEntries& entries() const { return entries_; }
 
-  // Adds all rays to a plate of this size and with these channels. Takes about a megabyte of memory
+  // Adds all rays to a plate of the file's size and channels. Takes about a megabyte of memory
   // beside the plate. Must be called only once. kInput if the file is truncated or damaged; the
   // plate then holds a part of the rays and must not be used.
   Result<void> AddTo(SensorPlate* plate);

@@ -55,7 +55,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size_bytes) {
     LF_CHECK(reader.error().message.starts_with("p: "));
     return 0;
   }
-  // Callers know the size that they expect, and refuse others.
+  // Callers refuse plates of another size than they expect, so that very large ones need no test.
   if (int64_t{reader->width()} * reader->height() > 1 << 20) return 0;
   lf::SensorPlate plate =
       lf::SensorPlate::WithOpacity(reader->width(), reader->height(), reader->has_opacity());

@@ -54,7 +54,7 @@ Result<void> PlateReader::ReadHead() {
   if (head.rows_per_chunk < 1 || head.rows_per_chunk > most_rows)
     return InputError(fmt::format("{}: chunks of {} rows; expected 1 to {}", source_->name(),
                                   head.rows_per_chunk, most_rows));
-  // This is checked before anybody allocates a plate of this size.
+  // Refuses a file that is too short for its size, before anybody allocates a plate of this size.
   const uint64_t least = uint64_t{(head.height - 1) / head.rows_per_chunk + 1} * sizeof(ChunkHead);
   if (head.wide_count > source_->left() / sizeof(WideWord) ||
       least + head.wide_count * sizeof(WideWord) > source_->left())
@@ -128,7 +128,7 @@ Result<void> PlateReader::AddWide(SensorPlate* plate) {
     LF_RETURN_IF_ERROR(source_->Read(block.data(), block.size() * sizeof(WideWord)));
     hasher.Add({reinterpret_cast<const char*>(block.data()), block.size() * sizeof(WideWord)});
     for (const WideWord& word : block) {
-      // A count above 2^44 is beyond any run. Without such counts, sums of plates cannot wrap.
+      // No render adds 2^44 rays to one element. Without larger counts, sums of plates cannot wrap.
       if (word.index < next_index || word.index >= word_count ||
           word.count <= SensorPlate::kMaxCount || word.count > uint64_t{1} << 44 ||
           word.sum > 65535 * word.count)

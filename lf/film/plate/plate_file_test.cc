@@ -56,7 +56,7 @@ void ExpectError(const std::string& bytes, const std::string& word) {
   EXPECT_NE(message.find(word), std::string::npos) << message;
 }
 
-// Returns the bytes with a changed head, whose checksum is corrected.
+// Returns the bytes of a plate's file with a changed head, and with the checksum of the new head.
 std::string WithHead(std::string bytes, const std::function<void(plate_format::Head*)>& change) {
   plate_format::Head head;
   std::memcpy(&head, bytes.data(), sizeof(head));

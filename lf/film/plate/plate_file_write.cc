@@ -17,8 +17,8 @@ namespace {
 
 using namespace plate_format;
 
-// Measured on plates of 1280 x 960 elements: 1.25 GB/s and a sixth of the bytes; level 3 takes a
-// third longer and writes 3 % less.
+// Measured on plates of 1280 x 960 elements: level 1 compresses 1.25 GB/s to a sixth of the bytes;
+// level 3 takes a third longer and writes 3 % less.
 constexpr int kCompressionLevel = 1;
 
 // Elements of the wide table that a packed word could hold are written packed, because which

@@ -26,7 +26,7 @@ struct Head {
 };
 static_assert(sizeof(Head) == 40);
 
-// Precedes each chunk.
+// Precedes each chunk, which holds the packed words of some rows, compressed.
 struct ChunkHead {
   uint32_t stored_bytes;
   uint32_t reserved;  // 0
@@ -34,21 +34,22 @@ struct ChunkHead {
 };
 static_assert(sizeof(ChunkHead) == 16);
 
-// A word of the wide table. The wide words follow the chunks, by ascending index. The XXH3 of all
-// wide words ends the file.
+// A sum and count that do not fit in a packed word (sensor_plate.h), and the index of that word.
+// The wide words follow the chunks, by ascending index. The XXH3 of all wide words ends the file.
 struct WideWord {
   uint64_t index;
   uint64_t sum;
   uint64_t count;
 };
 static_assert(sizeof(WideWord) == 24);
-inline constexpr size_t kWideBlock = 4096;  // wide words read together
+inline constexpr size_t kWideBlock = 4096;  // number of wide words that are read at once
 
 // A chunk holds about this number of words, in whole rows.
 inline constexpr size_t kChunkWords = size_t{1} << 16;
 
 // Writes the first byte of all words, then the second byte of all words, and so on. Bytes that
-// hardly differ are then neighbours, which doubles the speed of compression and its gain.
+// hardly differ are then neighbours, which more than doubles the speed of compression
+// (doc/formats/plate.md).
 inline void ToPlanes(std::span<const uint64_t> words, char* planes) {
   for (int byte = 0; byte < 8; ++byte)
     for (size_t i = 0; i < words.size(); ++i)

@@ -109,7 +109,8 @@ PlateTile::PlateTile(SensorPlate* plate, const PixelRect& rect) : plate_(plate),
 
 void PlateTile::MakeRoom(uint32_t rays) {
   LF_CHECK(rays <= max_reserve());
-  // The largest count decides, so that room that was reserved and not used can be reserved again.
+  // The new headroom depends on the largest count that a word really has, so that room that was
+  // reserved but not used can be reserved again.
   const uint32_t limit = plate_->count_limit_;
   headroom_ = limit - plate_->Promote(rect_, limit - rays);
 }

@@ -94,7 +94,8 @@ class SensorPlate {
   int channels_;
   uint32_t count_limit_;
   LargeVector<uint64_t> packed_;
-  // A total is packed + wide. Wide words are rare, so that one lock is enough for all tiles.
+  // The total of an element's channel is its packed word plus its wide word. Wide words are rare,
+  // so that one lock is enough for all tiles.
   std::map<size_t, ElementSum> wide_;
   std::unique_ptr<std::mutex> wide_mutex_;
 };

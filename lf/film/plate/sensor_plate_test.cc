@@ -18,8 +18,8 @@ TEST(SensorPlate, HoldsTheMostRaysOfTheBrightestLight) {
   EXPECT_EQ(plate.At(0, 0, 2), ElementSum{});
 }
 
-// Three sums and three counts, as in width x height x 6 x 4 B (thesis 5.2). Further rays take no
-// more memory.
+// The thesis (5.2) needs width x height x 6 x 4 B, for three sums and three counts. A plate needs
+// the same, and no more when rays are added.
 TEST(SensorPlate, TakesTheBytesOfTheThesis) {
   SensorPlate plate(1920, 1080);
   EXPECT_EQ(plate.size_bytes(), size_t{1920} * 1080 * 6 * 4);
@@ -28,7 +28,7 @@ TEST(SensorPlate, TakesTheBytesOfTheThesis) {
 }
 
 TEST(SensorPlate, LosesNothingWhenWordsArePromoted) {
-  SensorPlate plate(4, 4, 10);  // words hold ten rays
+  SensorPlate plate(4, 4, 10);  // a packed word holds at most ten rays
   ElementSum expected[4][4][3] = {};
   for (uint64_t i = 0; i < 5000; ++i) {
     const int x = RandomBits(1, 0, i) % 4, y = RandomBits(1, 1, i) % 4, c = RandomBits(1, 2, i) % 3;

@@ -6,8 +6,8 @@
 
 namespace lf::testing {
 
-// A plate of noise. About every tenth word is empty. If `has_wide`, the rays of two words exceed
-// any packed word; other words may be wide only because of the plate's count_limit.
+// Returns a plate of noise. About every tenth word is empty. If `has_wide`, the rays of two words
+// exceed any packed word; other words may be wide only because of the plate's count_limit.
 inline SensorPlate NoisePlate(int width, int height, uint64_t seed, uint32_t count_limit,
                               bool has_wide) {
   SensorPlate plate(width, height, count_limit);
@@ -27,7 +27,7 @@ inline SensorPlate NoisePlate(int width, int height, uint64_t seed, uint32_t cou
   return plate;
 }
 
-// A plate of noise in four channels.
+// Returns a plate of noise in four channels.
 inline SensorPlate WithNoiseOpacity(int width, int height, uint64_t seed) {
   SensorPlate plate = SensorPlate::WithOpacity(width, height);
   for (int y = 0; y < height; ++y)

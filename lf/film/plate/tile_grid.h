@@ -1,4 +1,4 @@
-// A plate cut into tiles, for kernels.
+// A plate cut into tiles: rectangles, to each of which one thread at a time adds rays.
 #pragma once
 
 #include <algorithm>

@@ -51,7 +51,8 @@ class TileSums {
   // Largest number of rays of value 65535 whose sum fits in 32 bits.
   static constexpr uint32_t kMaxRays = 65537;
 
-  // ray_limit: below kMaxRays for tests only.
+  // ray_limit: number of rays after which sums are flushed (those of mosaics later, unless a test
+  // sets it below kMaxRays).
   explicit TileSums(uint32_t ray_limit = kMaxRays)
       : ray_limit_(ray_limit),
         mosaic_limit_(ray_limit == kMaxRays ? SensorPlate::kMaxCount : ray_limit) {}
@@ -59,12 +60,12 @@ class TileSums {
   // The channels of the plate that sums of RGB LF images go to.
   enum class Target : uint8_t {
     kColours,  // R, G and B are added to the three colours
-    kOpacity,  // R is added to the fourth; for opacities, with R = G = B
+    kOpacity,  // R is added to the fourth channel; opacities have R = G = B
   };
 
   // Makes `tile` the destination of everything that is added until Flush().
   //   watched  elements of the tile whose sums Added() returns; they must live until its last
-  //            call. Empty: nothing is kept beside the sums.
+  //            call. If empty, nothing is kept beside the sums.
   //   target   kOpacity: the plate must have opacity; only RGB may be reserved, and nothing watched
   void Begin(PlateTile* tile, std::span<const PlateElement> watched = {},
              Target target = Target::kColours);
@@ -117,7 +118,7 @@ class TileSums {
   void FlushRgbBy(const AddTo& add_to);
   void FlushCounted();
   void FlushMosaic();
-  // Sums that are not flushed yet, one function for each layout; 0 if the layout is not in use.
+  // Return the sums that are not flushed yet, one function for each layout; 0 if it is not in use.
   ElementSum PendingRgb(const PlateElement& element, int channel) const;
   ElementSum PendingCounted(const PlateElement& element, int channel) const;
   ElementSum PendingMosaic(const PlateElement& element, int channel) const;
@@ -131,7 +132,7 @@ class TileSums {
   bool has_rgb_ = false;
   bool has_counted_ = false;
   bool has_mosaic_ = false;
-  // Number of rays that still fit; 0 if the layout is not in use.
+  // Numbers of rays that may still be added before a flush; 0 if the layout is not in use.
   uint32_t rgb_headroom_ = 0;
   uint32_t counted_headroom_ = 0;
   uint32_t mosaic_headroom_ = 0;
@@ -140,7 +141,7 @@ class TileSums {
   LargeVector<CountedElement> counted_;
   LargeVector<uint64_t> words_;
   std::span<const PlateElement> watched_;
-  std::vector<ElementSum> watched_flushed_;  // [watched][channel], since Begin()
+  std::vector<ElementSum> watched_flushed_;  // [watched][channel] flushed since Begin()
 };
 
 }  // namespace lf

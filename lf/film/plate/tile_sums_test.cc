@@ -9,8 +9,8 @@
 namespace lf {
 namespace {
 
-// Returns the indices of the words that hold the mosaic sums of a channel of an element of the tile
-// at (x, y): one word for red or blue, two for green.
+// Returns the indices of the words that hold the mosaic sums of a channel of the element (x, y) of
+// a tile: one word for red or blue, two for green.
 std::vector<size_t> WordsOf(const TileSums& sums, int x, int y, int channel) {
   const int odd = x % 2;
   const auto word = [&](int kind) {
