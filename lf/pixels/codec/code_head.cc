@@ -12,7 +12,7 @@ namespace {
 constexpr std::string_view kMagic = "LFIM";
 constexpr uint64_t kVersion = 1;
 
-// The sign is stored in the lowest bit.
+// Append and take a signed number, whose sign is stored in the lowest bit.
 void AppendSigned(int64_t number, std::string* code) {
   AppendNumber((static_cast<uint64_t>(number) << 1) ^ static_cast<uint64_t>(number >> 63), code);
 }

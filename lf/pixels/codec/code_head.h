@@ -26,7 +26,7 @@ struct CodeHead {
   // smaller.
   int tile_bits = kTileBits;
 
-  // Used by kDefault and kLossless.
+  // The profiles kDefault and kLossless use these fields.
   int coefficient_bytes = 2;  // 2 or 4
   int fraction_bits = 0;      // number of fraction bits in the coefficients of the finest level
   // Quantiser steps by component. Each component has one step for its approximation, then two for
@@ -34,9 +34,11 @@ struct CodeHead {
   // one direction, the second for the subband that is high in both.
   std::vector<int32_t> steps;
 
-  // Used by kThesis.
+  // The profile kThesis uses these fields.
   int quantizer = 256;
-  int64_t low = 0;  // coefficients of the quantiser's first and last value, in units of haar.h
+  // Coefficients that the quantiser's first and last value stand for, in units of 1 / 2^kHaarBits
+  // (haar.h).
+  int64_t low = 0;
   int64_t high = 0;
 
   int tile_size() const { return 1 << tile_bits; }

@@ -50,7 +50,7 @@ namespace {
 
 HWY_EXPORT(MergeHaarRows);
 
-// Equations 2.20 and 2.21, applied literally.
+// Equations 2.20 and 2.21 of the thesis (haar.h), applied literally to two neighbours.
 std::pair<int32_t, int32_t> Analyzed(int32_t x, int32_t y) { return {(x + y) / 2, (x - y) / 2}; }
 std::pair<int32_t, int32_t> Synthesized(int32_t a, int32_t d) { return {a + d, a - d}; }
 

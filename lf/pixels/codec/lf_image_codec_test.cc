@@ -133,7 +133,7 @@ TEST(LfImageCodec, LosslessIsExact) {
   }
 }
 
-// The example of doc/formats/lf_image.md.
+// Encodes the example of doc/formats/lf_image.md.
 TEST(LfImageCodec, TheExampleOfThePage) {
   Image<uint8_t> image(2, 2);
   image.at(0, 0) = 10;
@@ -221,8 +221,8 @@ TEST(LfImageCodec, TheThresholdBoundsTheError) {
     }
 }
 
-// Columns that alternate between two values have one detail: their difference. It is dropped below
-// two thirds of a step, and a detail that is just kept is decoded as a whole step.
+// Columns that alternate between two values have one detail: their difference. The difference
+// becomes 0 if it is below two thirds of a step; if it is just kept, it is decoded as a whole step.
 TEST(LfImageCodec, DetailsBelowTwoThirdsOfAStepAreDropped) {
   CodecSettings settings;
   settings.levels = 1;

@@ -110,7 +110,7 @@ Choice BestPacking(std::span<const uint32_t> numbers, int escapes_left) {
   return best;
 }
 
-// Chooses the packing by a sample of the numbers that is spread over all of them.
+// Chooses the packing by a sample: runs that are spread evenly over the numbers.
 Packing ChosenPacking(std::span<const uint32_t> numbers, int escapes_left) {
   constexpr size_t kRun = 256, kRuns = 32;
   const uint32_t largest = *std::max_element(numbers.begin(), numbers.end());

@@ -21,7 +21,7 @@ template <class U>
 struct PackedStream {
   Packing packing = Packing::kOne;  // not kZeros
   std::span<const uint8_t> bytes;   // followed by slack (wavelet53.h)
-  size_t count = 0;                 // how many numbers the stream has
+  size_t count = 0;                 // number of numbers in the stream
   std::span<const U> escapes;       // remainders that are added to the escapes, in order; with
                                     // slack
   bool has_signs = false;           // True if the lowest bit of each number is its sign, to be

@@ -18,8 +18,8 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// How many numbers are processed together: they stay in the first-level cache from one step to the
-// next.
+// Number of values that are processed together. They stay in the first-level cache from one step to
+// the next.
 constexpr size_t kBlock = 2048;
 constexpr size_t kRoom = kBlock + 4 * kSlack;  // StoreInterleaved4() may write beyond the block
 

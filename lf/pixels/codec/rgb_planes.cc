@@ -84,7 +84,7 @@ void MergeRowSimd(const std::array<const int32_t*, kRgbComponents>& components,
   HWY_DYNAMIC_DISPATCH(Merge16Of32)(components, scale, width, out);
 }
 
-// Adds modulo the range of T, as SIMD instructions do.
+// Add and subtract modulo the range of T, as SIMD instructions do.
 template <class T>
 T Sum(T a, T b) {
   using Unsigned = std::make_unsigned_t<T>;

@@ -17,8 +17,9 @@ namespace {
 using Line = std::vector<double>;
 using Plane = std::vector<Line>;  // [height][width]
 
-// a = (x + y) / 2, d = (x - y) / 2 of neighbours (thesis 2.5.1): averages first, then differences.
-// If the number of values is odd, the last value is its own average.
+// Returns the averages a = (x + y) / 2 of all pairs of neighbours x, y, then the differences
+// d = (x - y) / 2 (thesis 2.5.1). If the number of values is odd, the last value is its own
+// average.
 Line Transformed(const Line& line) {
   Line averages, differences;
   for (size_t i = 0; i + 1 < line.size(); i += 2) {
@@ -30,7 +31,7 @@ Line Transformed(const Line& line) {
   return averages;
 }
 
-// x = a + d, y = a - d (Eq. 2.20, 2.21).
+// Reverses Transformed(): x = a + d, y = a - d (Eq. 2.20, 2.21).
 Line Restored(const Line& line) {
   const size_t low = (line.size() + 1) / 2;
   Line values;

@@ -41,8 +41,8 @@ inline size_t BandSize(Band band, int width, int height) {
   return static_cast<size_t>(BandWidth(band, width)) * BandHeight(band, height);
 }
 
-// A subband as it is encoded. A value v stands for the coefficient v * step. If is_doubled is true,
-// the coefficient is half of this, with halves rounded up.
+// A subband as it is encoded. A value v stands for the coefficient v * step, or for half of v *
+// step, with halves rounded up, if is_doubled is true.
 template <class T>
 struct CodedBand {
   const T* values = nullptr;  // [BandHeight][BandWidth]

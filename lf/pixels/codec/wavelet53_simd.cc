@@ -112,9 +112,9 @@ HWY_INLINE void MergeRow(T* low, T* high, int width, const Store& store) {
     store(0, Load(low), Load(low));
     return;
   }
-  // If the last value of the row is at an odd position, this high[high_count] makes the next even
-  // value, beyond the end, equal to the last even one. Otherwise high[high_count] is the mirrored
-  // last high coefficient.
+  // If the width is even, this value of high[high_count] makes the even value beyond the end of the
+  // row equal to the last even value. If the width is odd, it is the last high coefficient,
+  // mirrored.
   high[-1] = high[0];
   high[high_count] = low_count > high_count ? high[high_count - 1] : high[high_count - 2];
   low[low_count] = low[low_count - 1];

@@ -132,7 +132,7 @@ void AppendQuantized(const std::vector<int32_t>& values, size_t count, int32_t s
   }
 }
 
-// Subtracts from each value the value above it, or, in the first row, the value before it.
+// Subtracts from each value the value above it, or, in the first row, the value to its left.
 void Predict(Size size, std::vector<int32_t>* values) {
   const auto width = static_cast<size_t>(size.width);
   for (size_t i = size.count(); i-- > width;) (*values)[i] -= (*values)[i - width];

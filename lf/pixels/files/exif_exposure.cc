@@ -40,7 +40,7 @@ ExposureFacts FactsOf(const TiffDirectory& exif) {
   return facts;
 }
 
-// Returns a source of the bytes [begin, end).
+// Returns a source of the bytes [begin, end) of `source`.
 ByteSource PartOf(const ByteSource& source, uint64_t begin, uint64_t end) {
   return [&source, begin, end](uint64_t offset, std::span<uint8_t> to) -> size_t {
     if (offset >= end - begin) return 0;
@@ -70,7 +70,8 @@ ExposureFacts FactsOfJpeg(const ByteSource& source) {
     std::optional<uint64_t> marker;
     while ((marker = BigEndian(source, offset++, 1)) == 0xff) continue;
     if (!marker || *marker == kStartOfScan) break;
-    if (*marker <= 0x01 || (*marker >= 0xd0 && *marker <= 0xd9)) continue;  // no content
+    // marker without content
+    if (*marker <= 0x01 || (*marker >= 0xd0 && *marker <= 0xd9)) continue;
     const auto length = BigEndian(source, offset, 2);
     if (!length) break;
     const uint64_t end = offset + std::max<uint64_t>(*length, 2);

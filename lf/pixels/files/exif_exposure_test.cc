@@ -122,7 +122,7 @@ TEST_F(ExposureOfFile, IsReadFromAFileWithPixels) {
   std::string png((std::istreambuf_iterator<char>(in)), {});
   const std::string exif = ExifOf(kAll);
   const std::string length = {0, 0, 0, static_cast<char>(exif.size())};
-  png.insert(33, length + "eXIf" + exif + "....");  // behind the header
+  png.insert(33, length + "eXIf" + exif + "....");  // behind the chunk of the header
   ExpectAll(ReadExposureFactsBytes(png, "a.png").value());
 }
 

@@ -154,7 +154,7 @@ class ExrDecoder : public PictureDecoder {
   const std::string name_;
   Stream stream_;
   std::optional<Imf::MultiPartInputFile> file_;
-  std::vector<std::string> names_;  // of the channels, in the order of the file
+  std::vector<std::string> names_;  // channel names, in the order of the file
   ImageFileInfo info_;
 };
 

@@ -24,8 +24,8 @@ namespace lf {
 
 // Pixels of a file, in the type it stores: integers of up to 8 bits as uint8_t, of up to 16 bits as
 // uint16_t (bit depths in between are scaled to the full range), half and float as float. Wider or
-// signed integers become floats of equal value (exact up to 2^24), and all channels do if one
-// becomes float; doubles are rounded to float.
+// signed integers become floats of equal value (exact up to 2^24), and doubles are rounded to
+// float. If one channel becomes float, all channels do.
 using StoredImage = std::variant<Image<uint8_t>, Image<uint16_t>, Image<float>>;
 
 // Properties of the pixels that a camera raw file states, in the terms of

@@ -58,7 +58,7 @@ Result<void> CheckHolds(const fs::path& path, ImageFormat format, PixelType type
 Result<void> Save(const fs::path& path, const Result<std::string>& bytes) {
   if (!bytes) return bytes.error();
   const FileBytes file = FileInMemory(*bytes, path.string());
-  // If memory runs out in its destructors, OpenEXR reports nothing and omits blocks.
+  // OpenEXR omits blocks without an error if memory runs out in one of its destructors.
   if (const Result<void> whole = CheckIsWhole(file.read, file.size_bytes, file.name); !whole)
     return OutputError(
         fmt::format("{}: cannot be written, because the encoder left out a part of the picture, "
@@ -103,7 +103,8 @@ PictureRows RowsOf(const fs::path& path, ImageView<const From> pixels, PixelType
   return picture;
 }
 
-// Clips and rounds a value in [0, 1]. NaN compares false and becomes 0.
+// Clips a value to [0, 1] and rounds it to an integer from 0 to the largest T. NaN compares false
+// and becomes 0.
 template <class T>
 T IntegerOf(float value) {
   constexpr double kMax = std::numeric_limits<T>::max();

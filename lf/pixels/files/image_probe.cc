@@ -45,11 +45,11 @@ constexpr uint64_t kPngPixels = 0x49444154, kPngEnd = 0x49454e44;  // "IDAT", "I
 // A chunk is length, type, content, checksum.
 struct PngChunk {
   uint64_t type = 0;
-  uint64_t end = 0;  // offset behind it
+  uint64_t end = 0;  // offset behind the chunk
   bool is_whole = false;
 };
 
-// Returns none if the file ends before the content of the chunk.
+// Returns the chunk that begins at `offset`; none if the file ends before its content.
 std::optional<PngChunk> PngChunkAt(const ByteSource& source, uint64_t offset) {
   const auto length = BigEndian(source, offset, 4), type = BigEndian(source, offset + 4, 4);
   if (!length || !type) return std::nullopt;
@@ -97,7 +97,8 @@ Result<void> CheckJpeg(const ByteSource& source, const std::string& name) {
     std::optional<uint64_t> marker;
     while ((marker = BigEndian(source, offset++, 1)) == 0xff) continue;
     if (!marker || *marker == 0xd9 || *marker == 0xda) break;
-    if (*marker <= 0x01 || (*marker >= 0xd0 && *marker <= 0xd8)) continue;  // no content
+    // marker without content
+    if (*marker <= 0x01 || (*marker >= 0xd0 && *marker <= 0xd8)) continue;
     const bool is_frame =
         *marker >= 0xc0 && *marker <= 0xcf && *marker != 0xc4 && *marker != 0xc8 && *marker != 0xcc;
     if (is_frame) {

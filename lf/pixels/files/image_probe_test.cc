@@ -62,12 +62,13 @@ TEST(ImageProbe, RefusesChunksOfAPngThatAreLongerThanTheFile) {
 }
 
 TEST(ImageProbe, RefusesMorePixelsThanTheFileCanHold) {
-  const std::string png =  // 6 MiB unpacked
+  const std::string png =  // its pixels have 6 MiB unpacked
       PngHeader("\0\0\4\0"s, "\0\0\4\0"s) + "\0\0\xff\xff"s + "IDAT";
   EXPECT_NE(MessageOf(Probe(png)).find("too short"), std::string::npos);
   EXPECT_NE(MessageOf(Probe(png + std::string(6000, 'x'))).find("too short"), std::string::npos);
   EXPECT_TRUE(Probe(png + std::string(6200, 'x')));
-  const std::string jpeg = "\xff\xd8\xff\xc0\0\x11\x08\4\0\4\0\x03"s;  // 16384 blocks
+  // 16384 blocks of 8 x 8 pixels
+  const std::string jpeg = "\xff\xd8\xff\xc0\0\x11\x08\4\0\4\0\x03"s;
   EXPECT_NE(MessageOf(Probe(jpeg + std::string(2000, 'x'))).find("too short"), std::string::npos);
   EXPECT_TRUE(Probe(jpeg + std::string(2048, 'x')));
 }

@@ -18,7 +18,7 @@ bool ContainsAny(std::string_view message, std::span<const std::string_view> par
   });
 }
 
-// True if a message names a tag that decides on the pixels. Without it, libtiff guesses.
+// True if a message names a tag that pixels depend on. libtiff guesses pixels without such a tag.
 bool NamesTagOfPixels(std::string_view message) {
   constexpr std::string_view kTags[] = {
       "\"ImageWidth\"",       "\"ImageLength\"",      "\"BitsPerSample\"",
@@ -33,7 +33,8 @@ bool NamesTagOfPixels(std::string_view message) {
   return ContainsAny(message, kTags);
 }
 
-// libtiff also says that it failed to allocate an array of no elements, which is damage.
+// True if a message says that memory ran out. A failure to allocate an array of no elements is
+// damage of the file, although libtiff reports it in the same words.
 bool IsOutOfMemory(std::string_view message) {
   if (message.find("(0 elements") != std::string_view::npos) return false;
   constexpr std::string_view kParts[] = {
@@ -56,7 +57,7 @@ bool IsHarmfulWarning(std::string_view module, std::string_view message) {
   constexpr std::string_view kParts[] = {
       "IO error",                  // a tag lies beyond the end of the file
       "Premature E",               // CCITT: the rest of a row or strip is white
-      "Line length mismatch",      // CCITT
+      "Line length mismatch",      // CCITT: a row has too few or too many pixels
       "Improper JPEG strip/tile",  // the JPEG stream has fewer pixels than the strip
       "fractional scanline"};
   if (ContainsAny(message, kParts)) return true;
@@ -121,7 +122,7 @@ int LibtiffHandle::OnError(TIFF*, void* handle, const char*, const char* format,
   char message[512];
   std::vsnprintf(message, sizeof message, format, values);
   if (!IsHarmlessError(message)) HandleOf(handle).Note(message);
-  return 1;  // the handlers of the process are not called
+  return 1;  // tells libtiff not to call the handlers of the process
 }
 
 int LibtiffHandle::OnWarning(TIFF*, void* handle, const char* module, const char* format,

@@ -29,7 +29,7 @@ class LibtiffHandle {
   LibtiffHandle(const LibtiffHandle&) = delete;
   LibtiffHandle& operator=(const LibtiffHandle&) = delete;
 
-  // This is null after Close().
+  // Returns null after Close().
   TIFF* tiff() const { return tiff_; }
   // Frees libtiff's memory. A file to write must have been completed by TIFFWriteDirectory().
   void Close();

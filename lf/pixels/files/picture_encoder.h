@@ -13,8 +13,8 @@
 namespace lf {
 
 // Number of rows that are made and encoded at a time. It is a multiple of the rows in a block of
-// EXR's compression (16), so that the bytes do not depend on it. Rows of 8192 pixels take about
-// 0.1 s.
+// EXR's compression (16), so that the bytes do not depend on it. To encode this number of rows of
+// 8192 pixels takes about 0.1 s.
 inline constexpr int kBlockRows = 32;
 
 // A picture whose rows are made while it is encoded.
@@ -41,7 +41,7 @@ Result<std::string> EncodePng(const PictureRows& picture);
 // each entry of the metadata: "lf.time_s: 0.25".
 Result<std::string> EncodeTiff(const PictureRows& picture);
 // JPEG has 1 or 3 channels of kUint8, quality 95 and full chroma resolution. Its comment holds the
-// lines that TIFF has.
+// same lines as the description of a TIFF file.
 Result<std::string> EncodeJpegRows(const PictureRows& picture);
 // EXR keeps the types of metadata. The channels must have the same size.
 Result<std::string> EncodeExr(const std::string& name, std::span<const ExrChannel> channels,

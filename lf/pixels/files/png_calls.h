@@ -50,8 +50,8 @@ class PngCalls {
 
   const char* message() const { return message_; }
 
-  // These functions are what png_create_read_struct_2() and png_create_write_struct_2() need. The
-  // pointers for errors and for memory must be the PngCalls.
+  // These functions are passed to png_create_read_struct_2() and png_create_write_struct_2(), with
+  // the address of the PngCalls as pointer for errors and for memory.
   [[noreturn]] static void OnError(png_structp png, png_const_charp message) {
     PngCalls& calls = *static_cast<PngCalls*>(png_get_error_ptr(png));
     std::snprintf(calls.message_, sizeof calls.message_, "%s", message);

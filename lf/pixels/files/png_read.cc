@@ -18,8 +18,8 @@
 namespace lf {
 namespace {
 
-// Largest chunk of text that is read, uncompressed. Exif data have at most 64 KB, and take up to
-// three times this size as hexadecimal text.
+// Largest size of a chunk of text that is read, after decompression. Exif data have at most 64 KB,
+// and take up to three times this size as hexadecimal text.
 constexpr png_alloc_size_t kMostTextBytes = png_alloc_size_t{1} << 20;
 
 // libpng keeps fewer chunks of text than this number. The others are ignored, because compressed
@@ -88,7 +88,7 @@ int OrientationOf(png_structp png, png_infop info) {
   return 1;
 }
 
-// Replaces the indices in the last `width` bytes of a row by colours of so many channels. Returns
+// Replaces the indices in the last `width` bytes of a row by colours of `channels` bytes. Returns
 // the first index that the palette lacks, or -1.
 int ReplaceIndices(const Palette& palette, int width, int channels, uint8_t* row) {
   // Index x lies behind the colours of the pixels before x, so it is read before it is overwritten.
@@ -125,7 +125,7 @@ class PngDecoder : public PictureDecoder {
   Result<void> ReplaceAllIndices(Image<uint8_t>* image) const;
 
   const FileBytes& file_;
-  uint64_t offset_ = 0;  // of the next byte that libpng reads
+  uint64_t offset_ = 0;  // position of the next byte that libpng reads
   PngCalls calls_;
   png_structp png_ = nullptr;
   png_infop png_info_ = nullptr;

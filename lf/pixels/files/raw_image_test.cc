@@ -64,7 +64,7 @@ TEST(RawImage, NothingButTheMosaicDecidesItsValues) {
     dng.Fractions(50728, 5, {{1, 4}, {1, 1}, {1, 3}});
     dng.Fractions(50721, 10,
                   {{2, 1}, {-1, 2}, {0, 1}, {-1, 3}, {1, 1}, {0, 1}, {0, 1}, {0, 1}, {1, 1}});
-    dng.Long(50719, {4, 2}).Long(50720, {30, 20});  // default crop: for developed pictures
+    dng.Long(50719, {4, 2}).Long(50720, {30, 20});  // default crop, for developed pictures only
     dng.Fractions(50730, 10, {{2, 1}});             // baseline exposure
     EXPECT_EQ(PixelsOf(Read(dng)), mosaic.pixels()) << orientation;
   }
@@ -309,7 +309,7 @@ TEST_F(RawFileTest, PixelsAreThoseOfLibRawsOwnProgram) {
     const auto expect = [&](TestDng dng) {
       if (has_margins) {
         dng.Long(50829, {3, 5, 50, 70});
-        dng.Long(50719, {4, 2}).Long(50720, {40, 30});  // default crop: for developed pictures
+        dng.Long(50719, {4, 2}).Long(50720, {40, 30});  // default crop, for developed pictures only
       }
       ExpectAsByLibRaw(dng.Short(50714, {64}), has_margins ? 5 : 0, has_margins ? 3 : 0);
     };

@@ -74,7 +74,7 @@ char* RawStream::gets(char* line, int size) {
   return length > 0 ? line : nullptr;
 }
 
-// LibRaw uses the formats "%d" and "%f" only.
+// Reads a number as fscanf() does, in the format "%d" or "%f"; LibRaw uses no others.
 int RawStream::scanf_one(const char* format, void* value) {
   constexpr size_t kMostDigits = 24;
   std::string text;

@@ -103,7 +103,7 @@ struct JpegReader::State {
     std::longjmp(jump, 1);
   }
 
-  // kInput if libjpeg reported an error during `calls`.
+  // Calls `calls`, which calls libjpeg. kInput if libjpeg reported an error.
   template <class Calls>
   Result<void> Run(const Calls& calls) {
     if (setjmp(jump) != 0)

@@ -17,7 +17,7 @@ namespace lf {
 // A classic TIFF file, little-endian, with one directory. Tags may be changed and removed.
 class TestDng {
  public:
-  // pattern: four letters, as in lf_bayer
+  // pattern: colours of the pixels (0, 0), (1, 0), (0, 1), (1, 1), such as "RGGB"
   TestDng(const Image<uint16_t>& mosaic, const std::string& pattern) : mosaic_(mosaic) {
     parts_.emplace_back();
     for (const uint16_t value : mosaic.pixels()) Append(value, 2, &parts_[0]);
@@ -37,7 +37,7 @@ class TestDng {
   }
   TestDng& Short(int tag, const std::vector<uint32_t>& values) { return Set(tag, 3, 2, values); }
   TestDng& Long(int tag, const std::vector<uint32_t>& values) { return Set(tag, 4, 4, values); }
-  // type: 5 unsigned, 10 signed
+  // type: 5 for unsigned, 10 for signed fractions
   TestDng& Fractions(int tag, int type, const std::vector<std::pair<int, int>>& values) {
     std::string bytes;
     for (const auto& [over, under] : values) {
@@ -130,7 +130,8 @@ class TestDng {
     return Set(tag, type, values.size(), bytes);
   }
 
-  // Sets the tags of the parts: rows of each part (rows_tag 0: no such tag), offsets and sizes.
+  // Sets the tags of the parts (strips or tiles): rows of each part (rows_tag 0: no such tag),
+  // offsets and sizes.
   TestDng& SetParts(int rows_tag, int offsets_tag, int sizes_tag) {
     std::vector<uint32_t> sizes;
     for (const std::string& part : parts_) sizes.push_back(static_cast<uint32_t>(part.size()));

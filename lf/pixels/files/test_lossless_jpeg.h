@@ -10,8 +10,9 @@
 
 namespace lf {
 
-// Returns the bytes for an image of an even width. Neighbouring columns are two components, as DNG
-// writers do for mosaics; each value is predicted from the value before it in its component.
+// Returns the bytes for an image of an even width. Even and odd columns are two components, as DNG
+// writers do for mosaics. Each value is predicted from the value to its left in its component, at
+// the beginning of a row from the value above.
 inline std::string LosslessJpeg(const Image<uint16_t>& image) {
   std::string code;
   const auto append = [&code](std::initializer_list<int> bytes) {

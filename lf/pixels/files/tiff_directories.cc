@@ -113,7 +113,7 @@ class TiffReader {
       first_ = Unsigned(std::span(head).subspan(4, 4), little_endian_);
   }
 
-  uint64_t first() const { return first_; }  // 0: none
+  uint64_t first() const { return first_; }  // offset of the first directory; 0: none
 
   // Returns none if the directory is beyond the end of the file or has no tag.
   std::optional<TiffDirectory> ReadAt(uint64_t offset) const {

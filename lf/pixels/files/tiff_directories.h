@@ -37,8 +37,8 @@ class TiffDirectory {
 // file (which no camera writes). `source` must outlive the directory.
 std::optional<TiffDirectory> FirstTiffDirectory(const ByteSource& source);
 
-// Returns the directory of Exif data that the first directory points to; none if there is none, or
-// in the cases of FirstTiffDirectory().
+// Returns the directory of Exif data that the first directory points to; none if it points to none,
+// or if one of the two directories cannot be read.
 std::optional<TiffDirectory> ExifDirectory(const ByteSource& source);
 
 }  // namespace lf

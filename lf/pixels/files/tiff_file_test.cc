@@ -36,8 +36,8 @@ void ExpectInputError(const std::string& bytes, const std::string& reason) {
   EXPECT_EQ(read.error().message.find('\n'), std::string::npos) << read.error().message;
 }
 
-// A file as other programs write it. The samples are stored in the order of the file: block by
-// block, each filled up to its full size.
+// Describes a file as other programs write it. BytesOf() writes it with samples in the order of the
+// file: block by block, each filled up to its full size.
 struct OtherFile {
   int width = 20, height = 18, samples = 3, bits = 8;
   int format = SAMPLEFORMAT_UINT, photometric = PHOTOMETRIC_RGB, compression = COMPRESSION_NONE;
@@ -79,7 +79,7 @@ std::string BytesOf(const OtherFile& picture, const std::vector<T>& values) {
   } else {
     TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, picture.rows_per_strip);
   }
-  // A directory before the pixels is what a truncated file still has.
+  // With the directory in front of the pixels, even a truncated file has it.
   if (picture.is_directory_first) TIFFCheckpointDirectory(tiff);
   std::vector<T> copy = values;
   auto* from = reinterpret_cast<std::byte*>(copy.data());

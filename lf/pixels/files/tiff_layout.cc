@@ -11,7 +11,8 @@
 namespace lf {
 namespace {
 
-// Returns the value of a tag of 16 bits, or libtiff's default. Returns `otherwise` if it has none.
+// Returns the value of a tag of 16 bits: libtiff's default if the file lacks the tag, `otherwise`
+// if the tag has no default.
 uint16_t Value(TIFF* tiff, uint32_t tag, uint16_t otherwise) {
   uint16_t value = otherwise;
   return TIFFGetFieldDefaulted(tiff, tag, &value) == 1 ? value : otherwise;
@@ -22,7 +23,8 @@ uint32_t WideValue(TIFF* tiff, uint32_t tag, uint32_t otherwise) {
   return TIFFGetFieldDefaulted(tiff, tag, &value) == 1 ? value : otherwise;
 }
 
-// The tag has no default. A picture without it is grey, or has colours.
+// Returns the photometric interpretation. Its tag has no default: a picture without it counts as
+// grey if it has one sample per pixel, otherwise as RGB.
 uint16_t PhotometricOf(TIFF* tiff, int samples) {
   uint16_t value = samples == 1 ? PHOTOMETRIC_MINISBLACK : PHOTOMETRIC_RGB;
   TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &value);
@@ -74,7 +76,7 @@ Result<TiffSamples> SamplesOf(TIFF* tiff, const std::string& name) {
   return samples;
 }
 
-// Reads the palette, whose values have 16 bits in the file.
+// Returns the palette in values of 8 bits. The file has values of 16 bits.
 Result<std::vector<uint8_t>> PaletteOf(TIFF* tiff, const TiffLayout& layout,
                                        const std::string& name) {
   uint16_t* colours[3] = {};
@@ -92,8 +94,8 @@ Result<std::vector<uint8_t>> PaletteOf(TIFF* tiff, const TiffLayout& layout,
   return palette;
 }
 
-// Returns the usual names, except that the tag about extra samples decides which channel is alpha.
-// Without this tag the fourth channel is alpha.
+// Returns the names R, G, B, A, channel4, ... (Y for a single channel), except that the tag about
+// extra samples decides which channel is A. Without this tag the fourth channel is A.
 std::vector<std::string> ChannelNames(TIFF* tiff, uint16_t photometric, const TiffLayout& layout) {
   const auto other = [](int channel) { return fmt::format("channel{}", channel); };
   const int count = layout.channels();
@@ -142,7 +144,7 @@ Result<void> SetBlocks(TIFF* tiff, const std::string& name, TiffLayout* layout) 
                                 layout->height));
 }
 
-// libtiff must use the same sizes, because it writes into our buffers.
+// Checks that libtiff uses the sizes of `layout` for blocks, because it writes into our buffers.
 Result<void> CheckSizesAgree(TIFF* tiff, const TiffLayout& layout, const std::string& name) {
   const uint64_t block_bytes =
       layout.is_tiled ? TIFFTileSize64(tiff) : TIFFVStripSize64(tiff, layout.block_height);

@@ -39,7 +39,7 @@ struct Block {
   uint32_t index = 0;
   int plane = 0;
   PixelRect rect;
-  size_t bytes = 0;  // decoded; the last strip may have fewer than the others
+  size_t bytes = 0;  // after decoding; the last strip may have fewer than the others
 };
 
 class TiffDecoder : public PictureDecoder {
@@ -82,7 +82,7 @@ class TiffDecoder : public PictureDecoder {
   std::unique_ptr<LibtiffHandle> handle_;
   TiffLayout layout_;
   ImageFileInfo info_;
-  std::vector<std::byte> decoded_;  // one block
+  std::vector<std::byte> decoded_;  // one decoded block
   std::vector<std::byte> packed_;   // one block as stored in the file
   ZlibBlock zlib_;
 };
@@ -204,8 +204,8 @@ Result<void> TiffDecoder::ReadBlock(const Block& block, std::byte* to) {
 }
 
 // libtiff accepts a deflate stream that does not end with the block, as most damaged streams do,
-// and does not verify its checksum then. So we inflate the stream, and libtiff does the rest (bit
-// order, byte order and predictor) on a stream that is not compressed.
+// and does not verify its checksum then. The stream is therefore inflated by ZlibBlock, and libtiff
+// does the rest (bit order, byte order and predictor) on a stream that is not compressed.
 Result<void> TiffDecoder::ReadDeflated(const Block& block, std::byte* to) {
   TIFF* const tiff = handle_->tiff();
   packed_.resize(TIFFGetStrileByteCount(tiff, block.index));
@@ -244,8 +244,9 @@ bool TiffDecoder::HasSamePixels(const std::byte* a, const std::byte* b, size_t b
   return true;
 }
 
-// libtiff does not report that a CCITT stream ends before the block, and leaves the rest as it is.
-// So the block is decoded twice, over different bytes.
+// libtiff does not report that a CCITT stream ends before the block, and leaves the remaining bytes
+// of the block as they are. The block is therefore decoded twice, over different bytes: bytes that
+// differ afterwards were not decoded.
 Result<void> TiffDecoder::ReadFax(const Block& block, std::byte* to) {
   packed_.assign(block.bytes, std::byte{0xff});
   LF_RETURN_IF_ERROR(handle_->Check(Decode(block, packed_.data())));

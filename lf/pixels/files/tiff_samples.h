@@ -32,10 +32,10 @@ bool IsStoredAs(const TiffSamples& samples) {
   return samples.kind == kind && samples.bits == 8 * static_cast<int>(sizeof(T));
 }
 
-// Converts `count` samples. Samples of less than 8, 16, 32 or 64 bits are packed, the most
-// significant bit first; the others have the byte order of this machine. Sample i becomes
+// Converts `count` samples. Samples of 8, 16, 32 or 64 bits have the byte order of this machine.
+// Samples of other sizes are packed, the most significant bit first. Sample i becomes
 // to[i * to_step]. T must have StoredBitsOf(samples) bits.
-// - Integers of up to 8 and 16 bits are scaled to the full range of T, rounded down.
+// - Unsigned integers of up to 16 bits are scaled to the full range of T, rounded down.
 // - Other integers keep their value. Doubles are rounded to float.
 template <class T>
 void ConvertSamples(const TiffSamples& samples, const std::byte* from, size_t count, T* to,

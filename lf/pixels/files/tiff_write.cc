@@ -70,7 +70,8 @@ Result<void> WriteStrips(const PictureRows& picture, const LibtiffHandle& handle
 
 Result<std::string> EncodeTiff(const PictureRows& picture) {
   LF_CHECK(picture.width > 0 && picture.height > 0 && picture.channels > 0);
-  // Offsets in other TIFF files have 32 bits. The compressed size is not known before.
+  // Larger pictures are written as BigTIFF, because offsets in classic TIFF files have 32 bits. The
+  // uncompressed size decides, because the compressed size is not known yet.
   constexpr double kLargestClassic_bytes = 4000.0 * 1024 * 1024;
   const double bytes_of_pixels = static_cast<double>(picture.width) * picture.height *
                                  picture.channels * static_cast<double>(BytesOf(picture.type));

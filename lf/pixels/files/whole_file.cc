@@ -37,8 +37,8 @@ std::optional<std::string> Name(const ByteSource& source, uint64_t* offset) {
   return std::string(bytes.begin(), end);
 }
 
-// Returns the number of rows in a block, by the number of the compression in the file (OpenEXR,
-// "File Layout").
+// Returns the number of rows in a block, for the number that stands for the compression in the file
+// (OpenEXR, "File Layout").
 std::optional<int64_t> RowsOfBlock(uint8_t compression) {
   constexpr int64_t kRows[] = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
   if (compression >= std::size(kRows)) return std::nullopt;
@@ -46,13 +46,13 @@ std::optional<int64_t> RowsOfBlock(uint8_t compression) {
 }
 
 struct ExrHeader {
-  uint64_t end = 0;  // the table of offsets follows
+  uint64_t end = 0;  // offset behind the header, where the table of offsets begins
   int64_t row_count = 0;
   int64_t rows_of_block = 0;
 };
 
-// Returns none if the header is damaged, or of a kind that is not written here: tiles, several
-// parts, or deep samples.
+// Reads the header. Returns none if it is damaged, or of a kind that is not written here: tiles,
+// several parts, or deep samples.
 std::optional<ExrHeader> ReadHeader(const ByteSource& source) {
   constexpr uint32_t kLongNames = 0x400, kVersion = 2;
   const auto version = LittleEndian<uint32_t>(source, 4);

@@ -53,7 +53,7 @@ struct Encoder {
   Encoder(const Encoder&) = delete;
   Encoder& operator=(const Encoder&) = delete;
 
-  // `calls` may create no object with a destructor, because longjmp() would not destroy it.
+  // Calls `calls`, which may create no object with a destructor, because longjmp() would skip it.
   template <class Calls>
   bool Run(const Calls& calls) {
     if (setjmp(errors.jump) != 0) return false;

@@ -14,7 +14,7 @@ constexpr size_t kHeaderBytes = 2, kChecksumBytes = 4;
 // A stored block (RFC 1951, 3.2.4) begins with these bytes, and has at most 65535 bytes of content.
 constexpr size_t kBlockHeaderBytes = 5, kMostContent = 65535;
 
-// Inflates into one piece of memory after another.
+// Inflates a stream into one piece of memory after another.
 class Inflater {
  public:
   explicit Inflater(std::span<const std::byte> from) : from_(from) {
@@ -24,7 +24,7 @@ class Inflater {
   Inflater(const Inflater&) = delete;
   Inflater& operator=(const Inflater&) = delete;
 
-  // Fills `to`, unless the stream ends before. Returns the number of bytes.
+  // Fills `to`, unless the stream ends before. Returns the number of bytes written.
   size_t Next(std::span<uint8_t> to) {
     stream_.next_out = to.data();
     stream_.avail_out = static_cast<uInt>(to.size());
@@ -89,7 +89,7 @@ const char* ZlibBlock::Inflate(std::span<const std::byte> stream, size_t size) {
   }
   PutBigEndian(inflater.checksum(), to);
 
-  // The bytes behind `size` are inflated for the sake of the checksum.
+  // Bytes beyond the first `size` are inflated only because the checksum covers them.
   const size_t most_excess = size + (size_t{1} << 20);
   std::array<uint8_t, 4096> excess;
   for (size_t count = 0; !inflater.is_at_end();) {

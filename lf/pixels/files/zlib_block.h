@@ -8,12 +8,12 @@
 
 namespace lf {
 
-// Reuses its memory from stream to stream.
+// Inflates one stream after another, in the same memory.
 class ZlibBlock {
  public:
   // Inflates the whole stream and verifies its checksum. The first `size` bytes become stored();
-  // more bytes are allowed, because some programs fill up the last strip of a picture. Returns
-  // null, or what is wrong. Throws std::bad_alloc.
+  // more bytes are allowed, because some programs fill up the last strip of a picture. Returns null
+  // if the stream is valid, otherwise what is wrong with it. Throws std::bad_alloc.
   const char* Inflate(std::span<const std::byte> stream, size_t size);
 
   // The inflated bytes as a zlib stream without compression.
