@@ -73,14 +73,15 @@ RowGains GainsOf(const std::array<double, 3>& white_balance, int c) {
   constexpr int kGreen = 1;
   const int d = 2 - c;
   // DemosaicPairs() computes 4 L at C and 10 L at G. The factors are gain / 4 and gain / 10, in
-  // units of 1/16.
+  // units of 1/16, times the ratio of the white balance.
   return {.g_at_c = 2 * BalanceRatio(white_balance, c, kGreen),  // gain 1/2
           .d_at_c = 3 * BalanceRatio(white_balance, c, d),       // gain 3/4
           .c_at_g = BalanceRatio(white_balance, kGreen, c),      // gain 5/8
           .d_at_g = BalanceRatio(white_balance, kGreen, d)};
 }
 
-// rows  as RowWindow::MoveTo() returns them
+// Computes the RGB pixels of a row.
+//   rows  as RowWindow::MoveTo() returns them
 void DemosaicRow(const std::array<const uint16_t*, 5>& rows, bool begins_with_g, bool c_is_red,
                  const RowGains& gains, int width, uint16_t* rgb) {
   constexpr int kLanes = LfPixels::kRgbLanes;

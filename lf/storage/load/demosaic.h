@@ -25,8 +25,8 @@
 
 namespace lf {
 
-// Returns the mosaic pixels from which the RGB pixels `rect` are computed: 2 more on each side,
-// within the image.
+// Returns the mosaic pixels from which the RGB pixels `rect` are computed: `rect` and 2 pixels more
+// on each side, clipped to the image.
 PixelRect MosaicRectOf(const PixelRect& rect, int image_width_px, int image_height_px);
 
 // Computes the RGB pixels `rect` of an LF image of at least 2 x 2 pixels. A pixel is masked if one

@@ -15,7 +15,8 @@ namespace lf {
 // multiples of 1/256.
 inline constexpr int kWeightBits = 4;
 inline constexpr int kRatioBits = 8;
-// Largest ratio: 8. With it no sum reaches 2^31: (4096 + 12 * 2048) * 65535 < 2^31.
+// Largest ratio: 8. With it no sum reaches 2^31, because the weights of a sum are at most 4096
+// (mean) and 12 * 2048 (Laplacian): (4096 + 12 * 2048) * 65535 < 2^31.
 inline constexpr int32_t kMaxRatio = 8 << kRatioBits;
 
 // Returns w[recorded] / w[missing] in units of 1/256, at most kMaxRatio, for the white balance w.

@@ -1,6 +1,6 @@
 // A plain loop that compilers vectorise. It is compiled for every instruction set, and the program
-// chooses one of these versions at run time (Highway). The version for the minimum that x86-64 has
-// takes more than twice as long.
+// chooses one of these versions at run time (Highway). The version for the baseline of x86-64 takes
+// more than twice as long.
 #include "lf/storage/load/demosaic_row.h"
 
 #include <algorithm>

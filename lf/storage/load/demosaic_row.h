@@ -5,7 +5,7 @@
 
 namespace lf {
 
-// Factors of the Laplacians in a row. They multiply integer Laplacians, in units of 1/4096. A row
+// Factors of the Laplacians in a row, in units of 1/4096. They multiply integer Laplacians. A row
 // of a mosaic holds G and either R or B, which is called C here; D is the colour that the row
 // lacks.
 struct RowGains {

@@ -230,7 +230,7 @@ TEST(Demosaic, AMaskedPixelMasksWhatIsMadeFromIt) {
   for (int y = 0; y < 9; ++y)
     for (int x = 0; x < 9; ++x)
       EXPECT_EQ(rgb.IsMasked(x, y), std::abs(x - 4) + std::abs(y - 3) <= 2) << x << ", " << y;
-  // The masked pixel is in a corner of the loaded part.
+  // The masked pixel is in a corner of the loaded part, too far away to mask a pixel of the result.
   LfPixels part;
   Demosaic(PartOf(mosaic, {4, 3, 9, 9}), 9, 9, kBalanced, {6, 5, 9, 9}, &part);
   EXPECT_FALSE(part.any_masked);

@@ -33,8 +33,8 @@ Result<void> ReadFitting(const fs::path& path, bool is_mosaic, const Intrinsics&
   return {};
 }
 
-// Refuses a raw file in a light field whose encoding is not that of raw files: its mosaic would be
-// shown as a grey picture, or its linear light be taken for sRGB.
+// Refuses a raw file in a light field whose encoding is not that of raw files. Otherwise the mosaic
+// of the raw file would be shown as a grey picture, or its linear light be taken for sRGB.
 Result<void> CheckRaw(const RawFacts& raw, const RadianceEncoding& encoding, const fs::path& path) {
   if (raw.is_monochrome) {
     if (encoding.bayer == BayerPattern::kNone && encoding.transfer != Transfer::kSrgb) return {};
@@ -103,7 +103,7 @@ void ForEachSeenBrighter(const LightField& light_field, LfImageId id, const Pixe
   ImagePart part;
   const Result<ChannelUse> use = ReadStoredPixels(light_field, brighter, around, &part);
   if (!use) return;
-  // The darker LF image sends the rays in a square around each clipped pixel.
+  // Marks the pixels whose rays the darker LF image sends: a square around each clipped pixel.
   Image<uint8_t> is_left(rect.width(), rect.height(), 1);
   ForEachClipped(part, use->colours, encoding, around, [&](int x, int y) {
     const PixelRect square =

@@ -26,7 +26,8 @@ namespace lf {
 Result<ChannelUse> ReadStoredPixels(const LightField& light_field, LfImageId id,
                                     const PixelRect& wanted, ImagePart* part);
 
-// Reads the image's mask file in the same way. Returns false if the image has no mask file.
+// Reads at least the pixels `wanted` of the image's mask file, as ReadStoredPixels() reads the
+// picture. Returns false if the image has no mask file.
 Result<bool> ReadMaskFile(const LightField& light_field, LfImageId id, const PixelRect& wanted,
                           ImagePart* part);
 
@@ -81,9 +82,9 @@ void ForEachClipped(const ImagePart& part, int colours, const RadianceEncoding& 
 // image does not clip send rays from both LF images.
 inline int ReachOfDarker(BayerPattern bayer) { return bayer == BayerPattern::kNone ? 1 : 4; }
 
-// Calls mask(x, y) for the pixels of `rect` that the next brighter LF image of the pose shows: it
-// clips neither the pixel nor one within ReachOfDarker() of it. Reads the brighter LF image; masks
-// nothing if it cannot be read.
+// Calls mask(x, y) for the pixels of `rect` that the next brighter LF image of the pose shows,
+// which means that it clips no pixel within ReachOfDarker() of them. Reads the brighter LF image;
+// masks nothing if it cannot be read.
 void ForEachSeenBrighter(const LightField& light_field, LfImageId id, const PixelRect& rect,
                          const std::function<void(int x, int y)>& mask);
 

@@ -27,8 +27,8 @@ class LfImageStore {
   // something, such as memory. The caller decides whether to continue without the image.
   virtual Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const = 0;
 
-  // Returns true if the file exists, even if it is broken. The answer may change, for example if a
-  // disk is unmounted during the run.
+  // Returns true if the file of the LF image, or its encoded image in a packed store, exists, even
+  // if it is broken. The answer may change, for example if a disk is unmounted during the run.
   virtual bool IsThere(LfImageId /*id*/) const { return true; }
 
   // Returns true if pixels of LF images were left out on purpose when the store was made. Keeps()

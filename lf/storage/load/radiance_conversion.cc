@@ -33,7 +33,7 @@ uint64_t Lanes(uint16_t r, uint16_t g, uint16_t b) {
   return uint64_t{r} | uint64_t{g} << 16 | uint64_t{b} << 32 | kOneRay;
 }
 
-// v_of(channel, value) returns the radiance of a stored value.
+// Converts each stored value to its radiance, which v_of(channel, value) returns.
 template <class T, class ValueOf>
 void ConvertByValue(const Image<T>& stored, const PixelRect& stored_rect, int colours,
                     const ValueOf& v_of, LfPixels* pixels) {
@@ -108,7 +108,8 @@ class RowFalloff {
   std::vector<double> falloff_;
 };
 
-// light_of(value) returns the radiance of a stored value before gain and falloff. It is never NaN.
+// Converts each stored value with gain and falloff. light_of(value) returns the radiance before
+// both, which is never NaN.
 template <class T, class LightOf>
 void ConvertWithFalloff(const Image<T>& stored, const PixelRect& stored_rect, int colours,
                         const LightOf& light_of, const RadianceEncoding& encoding,

@@ -24,7 +24,8 @@ class RadianceTables {
   // Makes only the tables for files with `bits` bits per value; the other tables stay empty.
   RadianceTables(const RadianceEncoding& encoding, const ChannelGains& gains, int bits);
 
-  // Return null if the levels do not fit. If all gains are equal, the channels share a table.
+  // Return null if the levels do not fit the number of bits. If all gains are equal, the channels
+  // share a table.
   const uint16_t* of_8bit(int channel) const { return TableOf(of_8bit_, channel); }
   const uint16_t* of_16bit(int channel) const { return TableOf(of_16bit_, channel); }
   const LaneTable& lanes() const { return lanes_; }

@@ -114,7 +114,7 @@ TEST(ConvertRadiance, AFalloffOfOneHalfDoublesTheLight) {
   World world = MakeWorld();
   world.encoding.transfer = Transfer::kLinear;
   world.encoding.pedestal = 0;
-  world.k.cx_px = 0.5 - 12;  // r is 1 at the centre of the upper left pixel
+  world.k.cx_px = 0.5 - 12;  // the falloff's radius is 1 at the centre of the upper left pixel
   world.k.cy_px = 0.5;
   world.k.width_px = 24;
   world.k.height_px = 0;

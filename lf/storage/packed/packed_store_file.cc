@@ -68,7 +68,7 @@ Result<void> ReadImages(OpenedStore* store, PackedStoreFacts* facts) {
   return {};
 }
 
-// Opens a shard for reading.
+// Opens a shard for reading. kInput if it is not shard `number` of the store with the id `store`.
 Result<Database> OpenShardOf(const fs::path& path, const std::string& store, int number) {
   LF_ASSIGN_OR_RETURN(Database database, OpenShardDatabase(ShardPath(path, number)));
   LF_ASSIGN_OR_RETURN(const Settings settings, Settings::Read(database, kShardFormat.name));

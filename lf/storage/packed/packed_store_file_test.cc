@@ -172,7 +172,8 @@ TEST_F(PackedStoreFileTest, ImagesAreFoundByNameInAnyOrder) {
 TEST_F(PackedStoreFileTest, ManyNamesThatItLacksHideNoneThatItHas) {
   Write();
   std::vector<std::string> names;
-  for (int i = 0; i < 100; ++i) names.push_back(std::to_string(i));  // sorted first
+  // In ascending order, these names come before all names of the store.
+  for (int i = 0; i < 100; ++i) names.push_back(std::to_string(i));
   names.insert(names.end(), field_.image_names.begin(), field_.image_names.end());
   for (int i = 0; i < 100; ++i) names.push_back("last " + std::to_string(i));
   const std::vector<PackedCode> codes = FindCodes(path_, names).value();

@@ -160,8 +160,8 @@ struct PackedStoreWriter::State {
   std::optional<FileLock> lock;
   uint64_t shard_bytes = 0;
   std::string store;
-  std::string replaced;                // id of the store that has the final name
-  std::vector<uint64_t> source_bytes;  // for the LF images that earlier runs added
+  std::string replaced;                // id of the older store that has the final name; empty: none
+  std::vector<uint64_t> source_bytes;  // of the LF images that earlier runs added; 0 for others
 
   std::mutex mutex;  // guards everything below
   std::vector<bool> has;
@@ -169,7 +169,7 @@ struct PackedStoreWriter::State {
   std::optional<Statement> insert_code;
   int shard_count = 0;
   uint64_t bytes_in_shard = 0;
-  std::optional<Database> shard;  // the last shard
+  std::optional<Database> shard;  // the last shard, to which images are added
   std::optional<Statement> insert_blob;
   size_t batch_size = 0;
   std::chrono::steady_clock::time_point batch_begin;
@@ -222,7 +222,8 @@ Result<void> PackedStoreWriter::State::Read(const Settings& settings) {
       });
 }
 
-// Renames shards back, if the writer was killed while it gave them their final names.
+// Renames shards that already have their final names back to the names of unfinished shards. Their
+// writer was killed while it finished the store.
 Result<void> PackedStoreWriter::State::TakeShardsBack() const {
   std::error_code error;
   for (int n = 1; n <= shard_count; ++n) {
@@ -365,7 +366,8 @@ Result<PackedStoreWriter> PackedStoreWriter::Open(const fs::path& path,
   } else {
     LF_ASSIGN_OR_RETURN(state->lock, Lock(path));
   }
-  if (!IsUnfinished(path)) RemoveUnfinishedFiles(path);  // only shards may be left
+  // If the file of an unfinished store is missing, its shards may be left.
+  if (!IsUnfinished(path)) RemoveUnfinishedFiles(path);
   state->shard_bytes = plan.shard_bytes;
   state->replaced = StoreIdOf(path);
   state->has.resize(light_field.size());

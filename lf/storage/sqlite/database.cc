@@ -32,7 +32,7 @@ std::string HashText(std::string_view bytes) {
   return text;
 }
 
-// Returns the path as a URI for SQLite.
+// Returns the URI by which SQLite opens the file as immutable.
 std::string UriOf(const fs::path& path) {
   std::string uri = "file:";
   for (const char c : fs::absolute(path).string()) {

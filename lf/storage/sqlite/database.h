@@ -21,7 +21,7 @@ namespace lf {
 
 struct DatabaseFormat {
   const char* name;         // name of this kind of file in messages: "package"
-  uint32_t application_id;  // four letters
+  uint32_t application_id;  // four letters, the first in the highest byte
   int version;              // version that this program writes; it cannot read older ones
   int page_bytes = 65536;   // a power of 2; should be small for small files
 };
@@ -52,8 +52,8 @@ class Statement {
   void Reset();
 
   bool IsNull(int column) const;
-  // Return values of the current row. kInput if the column has another type, or a blob's checksum
-  // is wrong.
+  // These functions return values of the current row. kInput if the column has another type, or a
+  // blob's checksum is wrong.
   Result<int64_t> Integer(int column) const;
   Result<int64_t> Integer(int column, int64_t low, int64_t high) const;
   Result<double> Real(int column) const;  // always finite

@@ -26,8 +26,8 @@ Result<void> WriteIntrinsics(const std::vector<Intrinsics>& intrinsics, Database
 //   settings  the settings of the file, for messages
 Result<std::vector<Intrinsics>> ReadIntrinsics(const Settings& settings, Database* database);
 
-// Binds the columns of an LF camera, beginning at `parameter`: intrinsics, gain, x, y, z (for
-// people) and pose.
+// Binds the columns of an LF camera, beginning at `parameter`: intrinsics, gain, x, y, z (the
+// position, which only people read) and pose.
 void BindCamera(const LightField& light_field, LfImageId id, int parameter, Statement* statement);
 // Reads the columns intrinsics, gain, pose, beginning at `column`.
 //   name              name of the LF image, for messages; an empty name is damage
