@@ -44,7 +44,7 @@ Image<uint8_t> Reduced(const Image<uint8_t>& picture, int width, int height) {
   const std::vector<Cover> columns = Covers(picture.width(), width);
   const std::vector<Cover> rows = Covers(picture.height(), height);
   Image<uint8_t> reduced(width, height, 3);
-  // weighted mean of the picture's rows
+  // Weighted mean of rows of the picture.
   std::vector<float> row(3 * static_cast<size_t>(picture.width()));
   for (int y = 0; y < height; ++y) {
     std::fill(row.begin(), row.end(), 0.0f);

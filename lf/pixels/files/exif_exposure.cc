@@ -70,7 +70,7 @@ ExposureFacts FactsOfJpeg(const ByteSource& source) {
     std::optional<uint64_t> marker;
     while ((marker = BigEndian(source, offset++, 1)) == 0xff) continue;
     if (!marker || *marker == kStartOfScan) break;
-    // marker without content
+    // These markers have no content.
     if (*marker <= 0x01 || (*marker >= 0xd0 && *marker <= 0xd9)) continue;
     const auto length = BigEndian(source, offset, 2);
     if (!length) break;

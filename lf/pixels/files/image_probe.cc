@@ -97,7 +97,7 @@ Result<void> CheckJpeg(const ByteSource& source, const std::string& name) {
     std::optional<uint64_t> marker;
     while ((marker = BigEndian(source, offset++, 1)) == 0xff) continue;
     if (!marker || *marker == 0xd9 || *marker == 0xda) break;
-    // marker without content
+    // These markers have no content.
     if (*marker <= 0x01 || (*marker >= 0xd0 && *marker <= 0xd8)) continue;
     const bool is_frame =
         *marker >= 0xc0 && *marker <= 0xcf && *marker != 0xc4 && *marker != 0xc8 && *marker != 0xcc;

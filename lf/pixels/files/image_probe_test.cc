@@ -67,7 +67,7 @@ TEST(ImageProbe, RefusesMorePixelsThanTheFileCanHold) {
   EXPECT_NE(MessageOf(Probe(png)).find("too short"), std::string::npos);
   EXPECT_NE(MessageOf(Probe(png + std::string(6000, 'x'))).find("too short"), std::string::npos);
   EXPECT_TRUE(Probe(png + std::string(6200, 'x')));
-  // 16384 blocks of 8 x 8 pixels
+  // The picture has 16384 blocks of 8 x 8 pixels.
   const std::string jpeg = "\xff\xd8\xff\xc0\0\x11\x08\4\0\4\0\x03"s;
   EXPECT_NE(MessageOf(Probe(jpeg + std::string(2000, 'x'))).find("too short"), std::string::npos);
   EXPECT_TRUE(Probe(jpeg + std::string(2048, 'x')));
