@@ -135,8 +135,8 @@ float ChannelFill::At(int x, int y, Scratch& scratch) const {
   const int most = RadiusAt(x, y);
   const int square = SmallestSquare(x, y, most);
   if (square > most && InSquare(x, y, most).elements == 0) return 0;
-  // A square of half side k lies within the disk of radius k sqrt(2), which therefore contains
-  // enough neighbours, too.
+  // A square of half side k lies within the disk of radius k sqrt(2). This disk therefore contains
+  // enough neighbours if the square does.
   FindNeighbours(x, y, std::min(2 * int64_t{square} * square, int64_t{most} * most), scratch);
   const int64_t radius2 = SmallestDisk(scratch);
   double sum = 0, weights = 0;
