@@ -23,8 +23,8 @@ Spread SpreadOf(std::vector<double> values) {
   return {*least, *middle, *largest};
 }
 
-// Returns the angle between the rays of two pixels, as the sum of their angles to the ray of the
-// pixels' midpoint, because a fish-eye may see more than half a turn. Pixels near the border have
+// Returns the angle between the rays of two pixels: the sum of their angles to the ray of the
+// pixels' midpoint, because a fish-eye may see more than 180 degrees. Pixels near the border have
 // no ray if the distortion model cannot be inverted there; the angle is then measured only up to
 // the last position that has a ray.
 double AngleBetween(const Intrinsics& k, const Vec2& a_px, const Vec2& b_px) {
@@ -57,7 +57,7 @@ std::vector<CameraGroup> GroupCameras(const LightField& light_field) {
   for (const LfCamera& camera : light_field.cameras) ++image_counts[camera.intrinsics_index];
   struct Members {
     size_t image_count = 0;
-    std::vector<std::pair<size_t, size_t>> intrinsics;  // index, image count
+    std::vector<std::pair<size_t, size_t>> intrinsics;  // index, number of LF images
   };
   std::map<std::tuple<DistortionModel, int, int>, Members> members;
   for (size_t i = 0; i < image_counts.size(); ++i) {
@@ -146,7 +146,7 @@ CaptureReport ReportCapture(const LightField& light_field, const CaptureReportOp
 
   const std::vector<uint32_t> firsts = FirstOfPose(light_field);
   report.brackets = FindBrackets(light_field, firsts, options.lights);
-  // Only the first LF image of a bracketed pose counts as a camera.
+  // The LF images of a bracketed pose count as one camera, which the first of them stands for.
   std::vector<Vec3> positions;
   std::vector<LfImageId> ids;
   Eigen::AlignedBox3d box;

@@ -29,7 +29,7 @@ struct CameraGroup {
   size_t image_count = 0;
   size_t intrinsics_count = 0;  // number of different intrinsics
   Spread fx_px, fy_px, cx_px, cy_px;
-  Spread horizontal_fov_rad, vertical_fov_rad;  // through the middle of the image
+  Spread horizontal_fov_rad, vertical_fov_rad;  // along the middle row, the middle column
 };
 
 enum class DistanceSource {
@@ -47,8 +47,8 @@ struct Density {
   double distance_w = 0;
   double spacing_rad = 0;    // angle of the spacing b, seen from the distance z
   double disparity_px = 0;   // F b / z
-  double near_ghost_px = 0;  // distance of copies at z' = 0.75 z: a third of the disparity
-  double far_ghost_px = 0;   // distance of copies at z' = 1.25 z: a fifth of the disparity
+  double near_ghost_px = 0;  // distance between copies of a point at z' = 0.75 z
+  double far_ghost_px = 0;   // distance between copies of a point at z' = 1.25 z
 };
 
 struct CaptureWarning {
@@ -67,30 +67,29 @@ struct CaptureReport {
   // Distance from a camera to its nearest neighbour. None for fewer than two cameras. LF images of
   // one pose with several exposures count as one camera.
   std::optional<Spread> spacing_w;
-  std::optional<Vec3> meeting_point_w;  // AxesMeetingPoint()
+  std::optional<Vec3> meeting_point_w;  // AxesMeetingPoint() (capture_geometry.h)
   std::optional<DepthRange> depth_range;
   double unit_m = 1;
   std::optional<AlphaMeaning> alpha;             // meaning of the images' alpha, if known
-  std::array<double, 3> background = {0, 0, 0};  // behind the images, if alpha is no mask
-  bool keeps_opacity = false;                    // nothing is behind them: frames have opacity
-  std::optional<Density> density;                // set if a distance is known
-  std::optional<FoundBrackets> brackets;         // poses with several exposures
+  std::array<double, 3> background = {0, 0, 0};  // radiance behind the images, if alpha is no mask
+  bool keeps_opacity = false;             // true: nothing is behind the images; frames have opacity
+  std::optional<Density> density;         // set if a distance is known
+  std::optional<FoundBrackets> brackets;  // poses with several exposures
   std::vector<CaptureWarning> warnings;
 };
 
 struct CaptureReportOptions {
   std::optional<double> distance_w;  // distance to the scene; overrides other sources
-  std::vector<double> lights = {};   // LightOf() of each file, for FindBrackets(); empty: unknown
+  std::vector<double> lights = {};   // LightOf() (exif_gains.h) of each LF image; empty: unknown
 };
 
-// Kinds of warnings:
+// Reports about a light field, which must have at least one LF image. The kinds of warnings are:
 //   facing-away         cameras that look away from the common point or direction of most cameras
 //   diverging-axes      most cameras look away from the point where their axes meet
 //   upside-down         cameras whose up axis is more than 120 degrees away from the common up axis
 //   repeated-positions  cameras at the position of another camera, unless they are brackets
 //   brackets            poses with several exposures that are not merged yet
 //   sparse              ghosts at 0.75 z that are more than 1 % of the image width apart
-// The light field must have an LF image.
 CaptureReport ReportCapture(const LightField& light_field, const CaptureReportOptions& options,
                             ThreadPool& pool);
 

@@ -110,8 +110,8 @@ TEST(CaptureReport, TheFieldOfViewEndsWhereTheLensDoes) {
 TEST(CaptureReport, AFishEyeSeesMoreThanItsPinhole) {
   LightField field = Grid();
   field.intrinsics[0] = {400, 400, 800, 800, 0, 1600, 1600, {DistortionModel::kFisheye, {}}};
-  EXPECT_NEAR(ReportOf(field).groups[0].horizontal_fov_rad.median, 4, 1e-9);  // 2 px / F, larger
-                                                                              // than pi
+  // The equidistant fish-eye sees width / F = 1600 / 400 radians, more than pi.
+  EXPECT_NEAR(ReportOf(field).groups[0].horizontal_fov_rad.median, 4, 1e-9);
 }
 
 TEST(CaptureReport, DensityIsTheDisparityOfNeighboursAtTheScene) {
@@ -135,8 +135,8 @@ TEST(CaptureReport, DensityIsTheDisparityOfNeighboursAtTheScene) {
   // Points at 0.75 z appear 100 / 7.5 - 100 / 10 pixels apart if the focus is at z.
   EXPECT_NEAR(report.density->near_ghost_px, 100 / 7.5 - 10, 1e-9);
   EXPECT_NEAR(report.density->far_ghost_px, 10 - 100 / 12.5, 1e-9);
-  EXPECT_EQ(Kinds(report), Words{});                                      // 3.3 of 800 pixels
-  EXPECT_EQ(Kinds(ReportOf(field, {.distance_w = 4})), Words{"sparse"});  // 8.3 pixels
+  EXPECT_EQ(Kinds(report), Words{});                                      // 3.3 px of 800 px
+  EXPECT_EQ(Kinds(ReportOf(field, {.distance_w = 4})), Words{"sparse"});  // 8.3 px of 800 px
   // The warning says that a spacing of 0.096 would suffice at the distance 4.
   const std::string message = ReportOf(field, {.distance_w = 4}).warnings[0].message;
   EXPECT_NE(message.find("at most 0.096 apart"), std::string::npos) << message;
@@ -199,7 +199,7 @@ TEST(CaptureReport, CamerasOnTheirSideAroundARingHaveNoUpsideDown) {
 TEST(CaptureReport, RepeatedPositionsAreNamed) {
   LightField field = Grid();
   Add(field.cameras[5].cam_from_world, &field);
-  TurnOver(&field.cameras[5].cam_from_world);  // changes the rounding of its position
+  TurnOver(&field.cameras[5].cam_from_world);  // changes only the rounding of its position
   TurnOver(&field.cameras[5].cam_from_world);
   const CaptureReport report = ReportOf(field);
   ASSERT_EQ(Kinds(report), Words{"repeated-positions"});
@@ -247,7 +247,7 @@ TEST(CaptureReport, BracketsAreNoRepeatedPositions) {
     field.cameras[i].gain = static_cast<float>(1 / options.lights[i]);
   field.encoding.masks_clipped = true;
   EXPECT_EQ(Kinds(ReportOf(field)), Words{});
-  Add(field.cameras[7].cam_from_world, &field);  // an exposure that the pose already has
+  Add(field.cameras[7].cam_from_world, &field);  // a repeated exposure of this pose
   field.cameras.back().gain = field.cameras[7].gain;
   EXPECT_EQ(Kinds(ReportOf(field)), Words{});
 }

@@ -14,9 +14,9 @@ namespace {
 
 LfImageId IdOf(size_t index) { return LfImageId{static_cast<uint32_t>(index)}; }
 
-// Returns true if the cameras surround `point` or face it: the distance from a camera's axis to the
-// point is, in the median, less than a fifth of the camera's distance to the point. Otherwise the
-// point tells nothing about the cameras.
+// Returns true if the cameras look towards `point` or away from it: for at least half of them, the
+// distance from the optical axis to the point is less than a fifth of the distance from the camera
+// to the point. Otherwise the point says nothing about where a camera should look.
 bool AxesConverge(const std::vector<Ray>& axes, const Vec3& point) {
   std::vector<double> ratios;
   for (const Ray& axis : axes) {
@@ -39,8 +39,8 @@ std::vector<CaptureWarning> WarnOfDirections(const LightField& light_field) {
   }
   const std::optional<Vec3> point = PointNearestToAxes(light_field);
   const bool converges = point && AxesConverge(axes, *point);
-  // Cameras without a common point may have a common direction. It is significant if the mean
-  // direction is longer than 0.5.
+  // Cameras without a common point may have a common direction. It is significant if the mean of
+  // the unit vectors of their directions is longer than 0.5.
   if (!converges && !(sum.norm() > 0.5 * static_cast<double>(axes.size()))) return {};
 
   std::vector<LfImageId> away;
@@ -105,7 +105,7 @@ std::vector<CaptureWarning> WarnOfRepeats(const LightField& light_field,
   const auto rounding_w = [&](size_t i) {
     return kRounding * light_field.cameras[ids[i].value].cam_from_world.translation.norm();
   };
-  std::vector<double> apart_w;  // distances of cameras that share no position
+  std::vector<double> apart_w;  // nearest-neighbour distances of cameras that share no position
   for (size_t i = 0; i < nearest_w.size(); ++i)
     if (nearest_w[i] > rounding_w(i)) apart_w.push_back(nearest_w[i]);
   double typical_w = 0;  // median of apart_w, which one distant camera does not change

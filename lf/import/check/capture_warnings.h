@@ -1,4 +1,5 @@
-// Finds faults of a capture in its poses. Internal to this folder.
+// Finds faults of a capture in the poses of its cameras. capture_report.h describes the kinds of
+// warnings. The functions return no warning if the fault is not there. Internal to this folder.
 #pragma once
 
 #include <span>
@@ -27,7 +28,9 @@ std::vector<CaptureWarning> WarnOfRepeats(const LightField& light_field,
 // differ, or if clipped pixels are not masked.
 std::vector<CaptureWarning> WarnOfBrackets(const FoundBrackets& brackets, bool masks_clipped);
 
-// Returns the warning sparse, for images `width_px` wide and cameras `spacing_w` apart.
+// Returns the warning sparse if the ghosts are more than 1 % of the image width apart.
+//   width_px   width of an LF image
+//   spacing_w  distance between neighbouring cameras
 std::vector<CaptureWarning> WarnOfSparseness(const Density& density, double width_px,
                                              double spacing_w);
 

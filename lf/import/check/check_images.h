@@ -15,8 +15,9 @@
 namespace lf {
 
 enum class ImageCheck {
-  // Reads the headers of files and compares sizes; a truncated file goes unnoticed. For a packed
-  // store, reads the table of encoded images; a damaged one goes unnoticed.
+  // For image files, reads the headers and compares the image sizes with the calibration; a
+  // truncated file goes unnoticed. For a packed store, reads the table of encoded images; a damaged
+  // encoded image goes unnoticed.
   kHeaders,
   kPixels,  // decodes every file or encoded image completely
 };

@@ -54,8 +54,8 @@ class PatternSet {
     return matches;
   }
 
-  // Returns the first pattern that matched no name. If a pattern was given twice, a match of either
-  // counts for both.
+  // Returns the first pattern that matched no name; null if there is none. If a pattern was given
+  // twice, a match of either counts for both.
   const std::string* FirstUnused() const {
     for (size_t i = 0; i < used_.size(); ++i)
       if (!used_[i] && !used_[exact_.at(patterns_[i])]) return &patterns_[i];

@@ -25,7 +25,7 @@ LightField FieldOf(const Names& names) {
 
 const Names kNames = {"left/01.png", "left/02.png", "right/01.png", "right/[x].png"};
 
-// Returns the names that remain.
+// Returns those of kNames that remain when `patterns` are excluded.
 Names Left(const Names& patterns) {
   LightField light_field = FieldOf(kNames);
   const Result<size_t> removed = ExcludeImages(patterns, &light_field);

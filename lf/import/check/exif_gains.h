@@ -27,7 +27,7 @@ std::vector<StatedExposure> ReadStatedExposures(const LightField& light_field,
 // f_number^2. NaN if time or sensitivity is not stated. A missing f-number counts as 1.
 double LightOf(const ExposureFacts& facts);
 
-// The result of GainFromExif().
+// Facts about the gains that GainFromExif() set.
 struct ExifGains {
   size_t image_count = 0;
   float least_gain = 1, most_gain = 1;

@@ -18,15 +18,15 @@ struct FoundBrackets {
   // Exposures of the pose with most exposures, ascending, in stops (factors of two) relative to the
   // middle one (for an even number of exposures, to the darker of the two in the middle).
   std::vector<double> stops;
-  bool are_gains = false;       // exposures come from lf_gain; false: from the files
+  bool are_gains = false;       // true: exposures come from lf_gain in the calibration
   std::vector<bool> of_images;  // [LF images]: true for the images of these poses
 };
 
 // Finds the poses with several exposures; nullopt if there are none. Exposures of one pose that
 // differ by less than kOneExposure (light_field/model/brackets.h) count as one.
-//   firsts  FirstOfPose(light_field)
-//   lights  LightOf() of each file (exif_gains.h), used if lf_gain shows no difference. NaN:
-//           unknown; empty: all are unknown
+//   firsts  FirstOfPose(light_field) (light_field/model/brackets.h)
+//   lights  LightOf() (exif_gains.h) of each LF image's file, used if the gains of the calibration
+//           (lf_gain) show no pose with several exposures. NaN: unknown; empty: all are unknown
 std::optional<FoundBrackets> FindBrackets(const LightField& light_field,
                                           std::span<const uint32_t> firsts,
                                           std::span<const double> lights);

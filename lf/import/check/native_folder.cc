@@ -21,7 +21,7 @@ Result<fs::path> Canonical(const fs::path& folder) {
   return canonical;
 }
 
-// Returns true if the paths share more than the root.
+// Returns true if two absolute paths begin with the same folder below the root.
 bool AreNear(const fs::path& a, const fs::path& b) {
   auto part_a = a.begin(), part_b = b.begin();
   if (part_a == a.end() || part_b == b.end() || ++part_a == a.end() || ++part_b == b.end())

@@ -9,16 +9,16 @@
 
 namespace lf {
 
-// Renames images and masks relative to `folder`, which must exist and becomes LightField::folder.
-// Names that were absolute stay absolute if they share only the root with the folder. Symbolic
-// links in the paths of the folders are resolved.
-// kInput: this folder or the light field's folder does not exist.
+// Makes the names of images and masks relative to `folder`, which must exist and becomes
+// LightField::folder. No file is moved. An absolute name stays absolute if it shares only the root
+// with the folder. Symbolic links in the paths of both folders are resolved.
+// kInput: `folder` or the previous LightField::folder does not exist.
 Result<void> MoveToFolder(const std::filesystem::path& folder, LightField* light_field);
 
 // Checks that folder/transforms.json may be written for the light field that was read from
-// `source`. kUsage if the file exists and the light field was read from it, or if it was not
-// written by WriteNativeFolder() or was changed since. If `force` is true, it may always be
-// written.
+// `source`. kUsage if that file exists, and either the light field was read from it, or
+// WriteNativeFolder() did not write it, or somebody changed it afterwards. If `force` is true, the
+// file may always be written.
 Result<void> CheckMayWrite(const std::filesystem::path& source, const std::filesystem::path& folder,
                            bool force);
 

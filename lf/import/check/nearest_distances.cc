@@ -12,8 +12,9 @@ namespace {
 constexpr size_t kLeafSize = 8;
 constexpr size_t kPointsPerTask = 1024;
 
-// A kd-tree without nodes. The middle entry of each range of `order_` is the median along the
-// widest axis of the range; points before it have smaller or equal coordinates along that axis.
+// A kd-tree, stored as an order of the points. The middle entry of each range of `order_` is the
+// median along the widest axis of the range; points before it have smaller or equal coordinates
+// along that axis.
 class KdTree {
  public:
   explicit KdTree(std::span<const Vec3> points)

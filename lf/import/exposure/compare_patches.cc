@@ -14,12 +14,12 @@ constexpr int kHalf = 6;
 constexpr int kSide = 2 * kHalf + 1;
 constexpr int kPadded = kPatchWindowSide;  // side of the window: the patch and its neighbours
 static_assert(kPadded == kSide + 2);
-constexpr double kLeastShare = 2. / 3;  // least share of the pixels that must be used
-constexpr double kDarkest = 0.01;  // radiance; darker light is as small as noise and quantisation
+constexpr double kLeastShare = 2. / 3;  // least share of a patch's pixels that must be used
+constexpr double kDarkest = 0.01;       // radiance; a channel is not compared if its mean is lower
 // The three parts of the standard deviation of one pixel's light: relative to the light; absolute,
 // in radiance; and relative to the step to the neighbour that differs most.
 constexpr double kNoise = 0.005, kDarkNoise = 0.001, kOfStep = 0.15;
-constexpr double kLeastDeviation = 5e-4;  // least deviation of a ratio
+constexpr double kLeastDeviation = 5e-4;  // lower bound of a log ratio's standard deviation
 
 PatchWindow WindowOf(const ExposureView& view, const PatchGrid& grid) {
   PatchWindow window;
@@ -74,9 +74,10 @@ void Gather(const PatchWindow& window_a, const PatchWindow& window_b, const Patc
     }
 }
 
-// Sets the weights of the pixels. The light of image b is multiplied by `gain`, and then both
-// images have equal influence. The absolute noise, kDarkNoise, is the geometric mean over both
-// images, because the gain also multiplies the noise of b.
+// Sets the weights of the pixels. `gain` is the factor that makes image b as bright as image a;
+// after it, both have equal influence. Because it also multiplies the noise of b, the geometric
+// mean of both images' noise is used as the absolute noise: kDarkNoise sqrt(gain).
+//   scale  radiance of one step of ExposureView::light
 void Weigh(double gain, double scale, Pixels* pixels) {
   const auto g = static_cast<float>(gain);
   for (size_t i = 0; i < pixels->count; ++i) {
@@ -90,7 +91,7 @@ void Weigh(double gain, double scale, Pixels* pixels) {
   }
 }
 
-// Weighted sums of the light of images a and b.
+// Weighted sums of the light in image a and in image b.
 struct Ratio {
   double a = 0, b = 0;
 };
@@ -116,7 +117,7 @@ double Deviation(const Pixels& pixels, size_t c, const Ratio& sums) {
   return std::sqrt(squares / (sums.a * sums.a) + kLeastDeviation * kLeastDeviation);
 }
 
-// Computes the weighted mean and variance of r^2 over the pixels.
+// Computes the weighted mean and variance of r^2 (camera/vignetting.h) over the pixels.
 void TakeRadii(const Intrinsics& k, const std::array<Vec2, kSide * kSide>& at, const Pixels& pixels,
                float* mean, float* variance) {
   double weights = 0, sum = 0, squares = 0;

@@ -1,6 +1,6 @@
-// Compares the light of a patch in two LF images. Pixels at the edges of objects get little weight,
-// because their light depends on where the pixel grid lies and differs much more than smooth light
-// does.
+// Compares the light of a patch in two LF images. Pixels at the edges of objects get little weight:
+// their light depends on where the pixel grid lies, and therefore differs between the images much
+// more than the light of smooth areas.
 #pragma once
 
 #include <array>

@@ -19,7 +19,8 @@ Intrinsics SmallCamera() {
   return k;
 }
 
-// Returns a view with this light. Negative light means that the pixel is not recorded.
+// Returns a view with this light in R, half of it in G, and a third in B. Negative light means that
+// the pixel is not recorded.
 ExposureView Draw(const std::function<double(int x, int y)>& light) {
   ExposureView view;
   view.grey = std::make_shared<const ReducedImage>();
@@ -87,7 +88,7 @@ TEST(ComparedPatch, TheRadiiAreThoseOfThePlaces) {
   const auto sample = Compare(a, a, 5);
   ASSERT_TRUE(sample);
   const double square = 2. * kSize * kSize / 4;  // square of half the diagonal
-  const double own = 2 * 14 + 2 * 0.25;  // variances of 13 whole numbers, squares of the centre
+  const double own = 2 * 14 + 2 * 0.25;          // 14: variance of 13 consecutive numbers
   EXPECT_NEAR(sample->a_r_squared, own / square, 1e-6);
   EXPECT_NEAR(sample->b_r_squared, (2 * 14 + 0.25 + 5.5 * 5.5) / square, 1e-6);
   EXPECT_GT(sample->b_r_variance, sample->a_r_variance);
@@ -98,7 +99,7 @@ TEST(ComparedPatch, DarkAndUnrecordedPatchesTellNothing) {
   EXPECT_FALSE(Compare(lit, Draw([](int, int) { return 0.005; })));
   EXPECT_FALSE(Compare(lit, Draw([](int x, int) { return x % 3 == 0 ? -1 : 0.4; })));
   EXPECT_FALSE(Compare(lit, lit, 18));  // beyond the image
-  // This light is too dark only in blue, because Draw() makes blue a third of `light`.
+  // This light is too dark only in blue, of which Draw() draws a third of `light`.
   const auto sample = Compare(lit, Draw([](int, int) { return 0.025; }));
   ASSERT_TRUE(sample);
   EXPECT_FALSE(std::isnan(sample->log_ratio[0]));

@@ -11,7 +11,7 @@
 namespace lf {
 namespace {
 
-// Number of whole LF images in memory at the same time.
+// Largest number of LF images that are completely in memory at the same time.
 constexpr size_t kMostAtOnce = 16;
 // Values above this share of the largest light count as clipped, because demosaicking and JPEG do
 // not keep the largest value exactly.
@@ -19,8 +19,8 @@ constexpr double kClippedFrom = 0.97;
 
 int DivisorOf(int width_px, int most_px) { return std::max(1, (width_px + most_px - 1) / most_px); }
 
-// Returns the smallest value v that counts as clipped in the image. Integer files hold radiance up
-// to 1.
+// Returns the smallest stored 16-bit value that counts as clipped in the image. An integer file
+// clips at radiance 1, even if the light field can hold more.
 double ClippedFrom(const RadianceEncoding& encoding, const std::string& name) {
   const double of_file = std::min(encoding.max_radiance, DefaultMaxRadiance({&name, 1}));
   return encoding.pedestal + kClippedFrom * of_file * encoding.Scale();
@@ -56,7 +56,7 @@ Image<uint16_t> LightOf(const LfPixels& pixels, int divisor, double pedestal, do
 std::array<float, 3> ExposureView::LightsAt(const Vec2& place_px) const {
   const int divisor = grey->divisor;
   const double x = place_px.x() / divisor - 0.5, y = place_px.y() / divisor - 0.5;
-  // The light at a position exactly on the centres of the last column or row is known.
+  // Positions exactly at the centres of the last column or row are inside.
   if (!(x >= 0 && y >= 0 && x <= light.width() - 1 && y <= light.height() - 1)) return {};
   const int column = std::min(static_cast<int>(x), light.width() - 2);
   const int row = std::min(static_cast<int>(y), light.height() - 2);

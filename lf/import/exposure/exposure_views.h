@@ -21,8 +21,8 @@ namespace lf {
 struct ExposureView {
   std::shared_ptr<const ReducedImage> grey;  // null: the image could not be loaded
   // Light in R, G and B of the pixels of `grey`  [height][width][3]: 1 + kLightSteps * light /
-  // (largest light that the light field can hold); 0 if one of the LF pixels in the pixel is masked
-  // or clipped.
+  // (largest light that the light field can hold); 0 if one of the LF pixels that were averaged for
+  // the pixel is masked or clipped.
   Image<uint16_t> light;
 
   // Returns the light at a position in the LF image, interpolated between four pixels; 0 if one of
@@ -37,8 +37,8 @@ struct LoadViewsOptions {
   std::function<void(size_t done, size_t total)> progress;
 };
 
-// Returns the memory of a view that is at most `width_px` wide, for LF images with these
-// intrinsics.
+// Returns the number of bytes that a view occupies if it is at most `width_px` wide, for LF images
+// with these intrinsics.
 size_t ViewBytes(const Intrinsics& k, int width_px);
 
 // Returns the views of all LF images, each of which is loaded once. The view of an image that

@@ -12,24 +12,25 @@ namespace lf {
 namespace {
 
 constexpr int kRounds = 16;
-constexpr int kHuberRounds = 5;        // later rounds give outliers no weight at all
-constexpr double kHuber = 1.345;       // in standard deviations (95 % efficient on normal noise)
-constexpr double kTukey = 4.685;       // in standard deviations (95 % efficient on normal noise)
-constexpr double kLeastFactor = 0.2;   // lower bound of factor_
-constexpr double kUnit = 0.01;         // deviation of a sample whose weight is 1
-constexpr double kLeastShare = 0.05;   // lower bound of the light that a lens leaves, while fitting
-constexpr double kPriorDeviation = 1;  // prior standard deviation of falloff coefficients
-constexpr size_t kLeastPerImage = 12;  // least agreeing samples of an LF image, all channels
-constexpr double kAgrees = 0.1;        // a sample agrees if its robust weight is larger
-constexpr double kMostDeviation = 0.02;  // largest deviation of a gain that is used
+constexpr int kHuberRounds = 5;          // Huber's weights; later Tukey's, which are 0 for outliers
+constexpr double kHuber = 1.345;         // in standard deviations (95 % efficient on normal noise)
+constexpr double kTukey = 4.685;         // in standard deviations (95 % efficient on normal noise)
+constexpr double kLeastFactor = 0.2;     // lower bound of factor_
+constexpr double kUnit = 0.01;           // deviation of a sample whose weight is 1
+constexpr double kLeastShare = 0.05;     // lower bound of a falloff, while fitting
+constexpr double kPriorDeviation = 1;    // prior standard deviation of falloff coefficients
+constexpr size_t kLeastPerImage = 12;    // least number of agreeing samples of an LF image
+constexpr double kAgrees = 0.1;          // a sample agrees if its robust weight is larger
+constexpr double kMostDeviation = 0.02;  // largest deviation of a log gain that is used
 constexpr double kCommonShare = 0.25;    // share of a pair's spread that more samples do not reduce
-constexpr double kBelievedSamples = 8;   // weight of the spread of all pairs, in samples of a pair
+constexpr double kBelievedSamples = 8;  // number of places for which the spread of all pairs counts
 
 double BoundedFalloff(const Vignetting& falloff, double r_squared) {
   return std::max(kLeastShare, falloff.Falloff(r_squared));
 }
 
-// Returns the mean of ln F over values of r^2 with this mean and variance, to the second order.
+// Returns the mean of ln F over values of r^2 with this mean and variance, to the second order. F
+// is the falloff.
 double MeanLogShare(const Vignetting& falloff, double r_squared, double variance) {
   const double share = BoundedFalloff(falloff, r_squared);
   const auto& [v1, v2, v3] = falloff.v;

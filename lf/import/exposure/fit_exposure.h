@@ -36,9 +36,9 @@ struct ExposureFit {
   std::vector<uint32_t> components;
   uint32_t component_count = 0;
   size_t sample_count = 0;  // number of samples, over all channels, that agree with the result
-  double step = 0;          // mean |ln ratio| that remains in these samples
-  // Robust standard deviation of what the fit leaves of ln ratio in the samples of one pair of LF
-  // images; median over all pairs.
+  double step = 0;          // mean |ln(a / b) - model| over these samples
+  // Robust standard deviation of ln(a / b) - model over the samples of one pair of LF images;
+  // median over all pairs.
   double spread = 0;
   // Final robust weight of each sample, in [0, 1]: the weight of the channel that agrees best; 0 if
   // no channel agrees, or if the images are kAlone.

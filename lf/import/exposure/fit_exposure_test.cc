@@ -11,7 +11,7 @@
 namespace lf {
 namespace {
 
-constexpr Vignetting kTrueFalloff{{-0.3, 0.05, -0.15}};  // 60 % in the corner
+constexpr Vignetting kTrueFalloff{{-0.3, 0.05, -0.15}};  // leaves 60 % of the light in the corner
 
 // A strip of LF images with gains within +-20 %. Each image overlaps the next two.
 struct Strip {
@@ -81,7 +81,8 @@ TEST(FitExposure, AThirdOfSamplesMayBeOfSomethingElse) {
   for (uint32_t i = 0; i + 2 < 12; ++i)
     for (const uint32_t step : {1U, 2U}) strip.AddSamples(i, i + step, 150, 0.01);
   for (size_t i = 0; i < strip.samples.size(); i += 3)
-    for (float& ratio : strip.samples[i].log_ratio) ratio = 0;  // a watermark
+    for (float& ratio : strip.samples[i].log_ratio)
+      ratio = 0;  // a watermark is equally bright in both images
   const ExposureFit fit =
       FitExposure(strip.samples, strip.groups, {Vignetting()}, {.vignetting = true});
   EXPECT_LT(WorstGain(fit, strip), 0.005);
@@ -127,7 +128,7 @@ TEST(FitExposure, PlacesThatDifferFromEachOtherTieNoImage) {
     for (uint32_t i = 0; i + 2 < 12; ++i)
       for (const uint32_t step : {1U, 2U}) strip.AddSamples(i, i + step, 30, noise);
     const ExposureFit fit = FitExposure(strip.samples, strip.groups, {kTrueFalloff}, {});
-    EXPECT_NEAR(fit.spread, 0.44 * noise, 0.05 * noise);  // 1.48 x median |x| of triangular noise
+    EXPECT_NEAR(fit.spread, 0.44 * noise, 0.05 * noise);  // 1.48 x median |x| of triangular noise x
     EXPECT_EQ(fit.component_count, noise < 0.1 ? 1u : 0u);
     EXPECT_EQ(std::count(fit.components.begin(), fit.components.end(), kAlone),
               noise < 0.1 ? 0 : 12);

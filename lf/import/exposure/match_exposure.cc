@@ -20,9 +20,9 @@
 namespace lf {
 namespace {
 
-constexpr int kWidest_px = 240, kNarrowest_px = 80;  // widths of the small copies
+constexpr int kWidest_px = 240, kNarrowest_px = 80;  // largest and smallest width of a view
 constexpr size_t kLeastViews = 2;                    // least number of views in a ring
-constexpr double kLeastAgreement = 0.8;              // least correlation of a view that is compared
+constexpr double kLeastAgreement = 0.8;  // least correlation of a patch that is compared
 constexpr size_t kProbed = 6;        // number of LF images that are first searched at all depths
 constexpr size_t kProbedPlaces = 3;  // every third place of these images is searched
 constexpr size_t kLeastProbes = 50;  // least number of depths that must be found in these images
@@ -61,9 +61,9 @@ class Sampler {
   Sampler(const LightField& field, const std::vector<ExposureView>& views)
       : field_(field), views_(views), nearby_(field) {}
 
-  // Searches some places of some LF images at all depths. All LF images are then searched only from
-  // half of the nearest depth that was found, because a search of all depths takes several times as
-  // long.
+  // Searches some places of some LF images at all depths. All LF images are then searched only
+  // beyond half of the depth that the nearest 2 % of the places found have, because a search of all
+  // depths takes several times as long.
   void FindNearestDepth(ThreadPool& pool) {
     const size_t count = std::min(kProbed, field_.size());
     std::vector<std::vector<double>> depths(count);
@@ -142,8 +142,8 @@ class Sampler {
   double nearest_w_ = 0;  // nearest depth that is searched
 };
 
-// Returns the largest width of small copies that fit into the memory; 0 if not even the narrowest
-// fit.
+// Returns the largest width of views that fit into the memory together; 0 if not even the narrowest
+// ones fit.
 int WidthWithin(const LightField& field, size_t memory_bytes) {
   for (int width = kWidest_px; width >= kNarrowest_px; width -= 20) {
     size_t bytes = 0;
@@ -179,8 +179,8 @@ Result<std::vector<ExposureSample>> TakeSamples(const LightField& plain,
   return samples;
 }
 
-// Returns the mean |ln ratio| of the agreeing samples if gains and falloffs are those of the
-// calibration.
+// Returns the mean |ln(a / b) - model| of the agreeing samples, with the gains and falloffs of the
+// calibration in the model (FitExposure()).
 double StepBefore(const LightField& field, const std::vector<ExposureSample>& samples,
                   const ExposureFit& fit, const CameraGroups& groups) {
   std::vector<std::array<double, 3>> log_gains(field.size());

@@ -20,14 +20,15 @@ namespace lf {
 
 struct MatchExposureOptions {
   bool vignetting = false;  // true: falloffs are estimated; false: the light field's are kept
-  // Memory for small copies of all LF images. Smaller copies are used if they do not fit.
+  // Memory for small views of all LF images (exposure_views.h). Narrower views are used if the
+  // widest do not fit.
   size_t memory_bytes = size_t{2} << 30;
   const std::atomic<bool>* interrupted = nullptr;  // read between rounds of images; may be null
   std::function<void(size_t done, size_t total)> progress;
 };
 
 struct FoundFalloff {
-  double corner_min = 1, corner_max = 1;  // light in the farthest corner, over all cameras
+  double corner_min = 1, corner_max = 1;  // share of the light in the farthest corner
   double reach = 0;                       // radius r that a tenth of the samples exceeds
   size_t camera_count = 0;                // number of estimated falloffs
 };
@@ -40,10 +41,10 @@ struct MatchedExposure {
   // Mean relative difference of the light of the same place in two neighbouring LF images, which is
   // the strength of seams. `before` uses the exposure of the calibration, `after` the matched one.
   double step_before = 0, step_after = 0;
-  size_t sample_count = 0;  // number of compared colours that agree in two LF images
+  size_t sample_count = 0;  // number of samples, over all channels, that agree with the result
   size_t component_count = 0;
-  std::vector<LfImageId> left_alone;  // LF images with too little overlap, which keep their gains
-  std::vector<LfImageId> unreadable;  // LF images that cannot be read, and keep their gains
+  std::vector<LfImageId> left_alone;  // LF images whose gains cannot be fitted and are kept
+  std::vector<LfImageId> unreadable;  // LF images that cannot be read; their gains are kept
 };
 
 // Returns a copy of the light field that has no gains and falloffs and masks no clipped pixels.

@@ -15,10 +15,10 @@ namespace {
 
 constexpr int kWidth = 240, kHeight = 160;
 constexpr double kFocal_px = 220, kPitch_w = 0.05, kWall_w = 2;
-constexpr Vignetting kTrueFalloff{{-0.3, 0.05, -0.15}};  // 60 % in the corner
+constexpr Vignetting kTrueFalloff{{-0.3, 0.05, -0.15}};  // leaves 60 % of the light in the corner
 
-// A grid of unevenly exposed cameras in front of a textured wall, with the falloff of their lens,
-// noise and a watermark.
+// A grid of unevenly exposed cameras in front of a textured wall, with the falloff of their lens
+// and noise.
 class UnevenStore : public LfImageStore {
  public:
   explicit UnevenStore(int side = 5) {

@@ -17,7 +17,7 @@ constexpr int kViewsPerRing = 6;
 constexpr size_t kLeastViews = 2;  // least number of views in a ring
 constexpr double kInnerRing = 2;   // radius of the innermost ring, in spacings
 constexpr double kRingFactor = 2;  // radius of a ring relative to the one before
-constexpr size_t kNearest = 6;     // LF images that are compared in addition to those of rings
+constexpr size_t kNearest = 6;     // nearest LF images, compared besides those of the rings
 
 }  // namespace
 
@@ -58,8 +58,9 @@ void NearbyCameras::Split(size_t begin, size_t end) {
   Split(middle + 1, end);
 }
 
-// Visits the cameras of a range. Of the two halves of each split, the one on the point's side comes
-// first. Skips halves that are farther from the point than `limit`, which a visit may lower.
+// Visits the cameras of a range of order_. Each range is split into two halves; the half on the
+// point's side is visited first. Skips halves that are farther from the point than `limit`, which a
+// visit may lower.
 template <typename Visit>
 void NearbyCameras::Search(size_t begin, size_t end, const Vec3& point_world, const double& limit,
                            const Visit& visit) const {

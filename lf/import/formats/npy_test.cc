@@ -8,7 +8,7 @@
 namespace lf {
 namespace {
 
-// Returns a file of format 1 as numpy.save writes it, but without padding.
+// Returns a file of the given format version as numpy.save writes it, but without padding.
 std::string Npy(const std::string& header, const std::string& values, char version = 1) {
   std::string bytes = "\x93NUMPY";
   bytes += version;

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 #define EXPECT_HAS(message, part) EXPECT_NE((message).find(part), std::string::npos) << (message)
 
-// A model that COLMAP itself made (by make.py in the folder of models): one camera of each camera
+// A model that COLMAP itself made (with tests/colmap_models/make.py): one camera of each camera
 // model, with two images each.
 const fs::path kTenCameras = fs::path(LF_COLMAP_MODELS) / "ten_cameras";
 
@@ -104,7 +104,7 @@ TEST_F(ReadColmapTest, EveryModelProjectsAsColmapDoes) {
   EXPECT_EQ(compared_count, 20u * 12u);
 }
 
-// A pose as COLMAP writes it: quaternion w x y z, translation.
+// A pose as COLMAP writes it: a quaternion w x y z and a translation.
 struct ColmapPose {
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   Vec3 translation = Vec3::Zero();
@@ -119,9 +119,10 @@ struct ColmapPose {
 };
 
 // A model of COLMAP 3.12 or later. Rig 7 has the cameras 1 and 4 and an IMU (sensor type 1) with an
-// unknown pose, and took two frames. In the files, frame 5 comes first although its images have the
-// larger ids. The functions return the content of a .bin file if `is_binary` is true, otherwise of
-// a .txt file, with the layout of COLMAP's reconstruction_io_*.cc.
+// unknown pose. It took two frames: images of all its cameras at one moment. In the files, frame 5
+// comes first although its images have the larger ids. The functions return the content of a .bin
+// file if `is_binary` is true, otherwise of a .txt file, with the layout of COLMAP's
+// reconstruction_io_*.cc.
 class RigModel {
  public:
   RigModel() {
@@ -292,9 +293,9 @@ TEST_F(ReadColmapTest, ImagesAreLookedForAndThePlacesAreListed) {
                                 folder_ / "images", folder_ / "sparse/0", folder_ / "sparse"})
     EXPECT_HAS(error, tried.string());
   EXPECT_HAS(error, "(--images)");
-  Write(folder_ / "sub/a b.png");  // in the project folder itself
+  Write(folder_ / "sub/a b.png");  // the project folder itself is searched
   EXPECT_EQ(Open(folder_)->folder, folder_);
-  Write(folder_ / "sparse/0/images/sub/a b.png");  // nearer to the model
+  Write(folder_ / "sparse/0/images/sub/a b.png");  // this folder is nearer to the model
   EXPECT_EQ(Open(folder_)->folder, folder_ / "sparse/0/images");
 }
 

@@ -32,8 +32,8 @@ constexpr const char* kCalibrationName = "transforms.json";
 constexpr const char* kAosName = "poses.json";
 constexpr const char* kImagesName = "images";
 
-// Returns a hint that names calibrations in a folder without transforms.json that are called
-// differently, such as Blender's transforms_train.json.
+// For a folder without transforms.json, returns a hint that names the calibrations in it that are
+// called differently, such as Blender's transforms_train.json; "" if there is none.
 std::string OtherCalibrations(const fs::path& folder) {
   std::vector<std::string> names;
   std::error_code error;
@@ -88,7 +88,8 @@ Result<LightField> OpenAos(const fs::path& path, const OpenOptions& options) {
   return ReadAos(path, {.fov_deg = options.fov_deg, .images_folder = options.images_folder});
 }
 
-// A packed store contains its calibration and states everything about its pixels.
+// Opens a packed store. Most options are refused, because a store contains its calibration and
+// states everything about its pixels.
 Result<LightField> OpenPackedStore(const fs::path& path, const OpenOptions& options) {
   LF_RETURN_IF_ERROR(CheckNoStanfordOptions(path, options));
   LF_RETURN_IF_ERROR(CheckNoFov(path, options));
@@ -123,7 +124,8 @@ std::optional<Result<LightField>> OpenFile(const fs::path& path, const OpenOptio
   return read(path);
 }
 
-// Returns the file in a folder, other than transforms.json, that describes its light field.
+// Returns the file in a folder, other than transforms.json, that describes its light field; nullopt
+// if there is none.
 Result<std::optional<fs::path>> OtherCalibrationIn(const fs::path& folder) {
   std::error_code error;
   const std::vector<fs::path> middlebury = MiddleburyFiles(folder);
@@ -170,7 +172,8 @@ Result<void> CompleteEncoding(const OpenOptions& options, const fs::path& path,
                               LightField* light_field) {
   RadianceEncoding& encoding = light_field->encoding;
   const bool is_raw = IsRawName(light_field->image_names[0]);
-  // If the calibration changed the pattern or the transfer, it stated the encoding completely.
+  // If pattern or transfer differ from their defaults, the calibration stated the encoding
+  // completely.
   if (is_raw && encoding.bayer == BayerPattern::kNone && encoding.transfer == Transfer::kSrgb)
     LF_RETURN_IF_ERROR(CompleteEncodingOfRaw(light_field));
   if (options.bayer) {
@@ -191,7 +194,8 @@ Result<void> CompleteEncoding(const OpenOptions& options, const fs::path& path,
 Result<void> FindImages(const OpenOptions& options, const fs::path& path, LightField* light_field) {
   const std::string name = light_field->image_names[0];
   LF_ASSIGN_OR_RETURN(const size_t found_count, FindImageFiles(options.images_folder, light_field));
-  // A COLMAP model may be used for planning before its images are there.
+  // Without --images, missing files are no error: a COLMAP model may be used for planning before
+  // its images are there.
   if (found_count == 0 && options.images_folder && light_field->folder != *options.images_folder)
     return InputError(
         fmt::format("--images {}: contains no image, in any folder below it, with the name of an "
@@ -265,7 +269,7 @@ bool HoldsLightField(const fs::path& folder) {
          HoldsStanfordNames(folder / kImagesName) || !PackedStoresIn(folder).empty();
 }
 
-// Returns a hint for a folder that holds photographs but no calibration.
+// Returns a hint for a folder that holds photographs but no calibration; "" for other folders.
 std::string PhotographsIn(const fs::path& path) {
   constexpr size_t kMostEntries = 4096;
   for (const fs::path& folder : {path, path / kImagesName}) {
@@ -289,7 +293,7 @@ std::string PhotographsIn(const fs::path& path) {
   return "";
 }
 
-// Returns a hint if a subfolder holds a light field.
+// Returns a hint that names up to five subfolders that hold a light field; "" if there are none.
 std::string LightFieldsBelow(const fs::path& folder) {
   constexpr size_t kMostNames = 5;
   std::vector<std::string> names;

@@ -63,9 +63,9 @@ bool HoldsOwnAndItsSource(const std::filesystem::path& folder);
 // OpenOptions::images_folder; not every file is checked for existence. If the headers of up to 64
 // files show that all images are smaller than calibrated, intrinsics are scaled. If neither options
 // nor calibration state the meaning of alpha, it is derived from the pixels of three images
-// (light_field/model/alpha_evidence.h) and logged. The pattern, levels and colours of camera raw
-// files that the calibration does not state are read from the first file; a warning names those
-// that it does not state either.
+// (light_field/model/alpha_evidence.h) and logged. For camera raw files, pattern, levels and
+// colours that the calibration does not state are read from the first file; a warning names what
+// this file does not state either.
 // kInput: there is no light field (the message lists what was searched for); an error of the
 // reader; images_folder has none of the images; camera raw files with an unknown Bayer pattern.
 // kUsage: an option that the calibration does not allow.

@@ -95,7 +95,8 @@ Result<LightField> PosesOf(const json& top, const fs::path& path) {
   return light_field;
 }
 
-// AOS converts its thermal .tiff images to .png without changing their names in the file.
+// Returns the name with the extension .png instead of .tif or .tiff, because AOS converts its
+// thermal images to .png without changing their names in the JSON file.
 std::string AsPng(const std::string& name) {
   const fs::path path(name);
   const bool is_tiff = path.extension() == ".tif" || path.extension() == ".tiff";

@@ -43,7 +43,7 @@ std::map<std::string, std::string, std::less<>> KeysOf(std::string_view text) {
   return keys;
 }
 
-// Returns the numbers of keys; errors name the file, the key and the value.
+// Reads numbers by their keys; errors name the file, the key and the value.
 class Parameters {
  public:
   Parameters(std::string_view text, const fs::path& path) : keys_(KeysOf(text)), path_(path) {}
@@ -80,6 +80,8 @@ class Parameters {
 
 // Returns the depth range by Z = F b / (F b / Z0 + d): points with a larger disparity d are nearer.
 // Returns nullopt if an end of the range is not stated, or is at infinity or beyond.
+//   focal_baseline  F b, for the focal length F and the distance b of neighbouring cameras
+//   plane_per_w     1 / Z0, for the focus distance Z0
 Result<std::optional<DepthRange>> DepthsOf(const Parameters& parameters, double focal_baseline,
                                            double plane_per_w) {
   constexpr double kMostDisparity_px = 1e6, kRounding_px = 0.05;

@@ -78,7 +78,7 @@ void WarnOfOthers(const fs::path& folder, const Listing& listing) {
              others.size() > kShown ? ", ..." : "");
 }
 
-// Returns the lfimport command that adds the missing values, with numbers to start from.
+// Returns the lfimport command that adds the missing values. Its numbers are only a start.
 std::string ImportCommand(const fs::path& folder, const StanfordOptions& options, bool needs_pitch,
                           int width_px) {
   const std::string word =
@@ -113,7 +113,7 @@ Result<void> CheckOptions(const StanfordOptions& options) {
   return {};
 }
 
-// Returns kInput unless the names and the options together state everything.
+// Returns kInput unless the names and the options together state all positions and focal lengths.
 Result<void> CheckComplete(const fs::path& folder, const std::vector<StanfordImage>& images,
                            const StanfordOptions& options, int width_px) {
   if (!options.pitch_w && !images[0].name.position)
