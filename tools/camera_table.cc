@@ -10,7 +10,8 @@
 namespace lf {
 namespace {
 
-// Returns a number for people: five digits, without rounding errors that look like numbers.
+// Returns a number for people, with five digits. Absolute values below 1e-12 are rounding errors
+// and become 0.
 std::string Brief(double value) {
   constexpr double kNothing = 1e-12;
   return fmt::format("{:.5g}", std::abs(value) < kNothing ? 0.0 : value);

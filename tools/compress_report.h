@@ -9,7 +9,8 @@
 
 namespace lf {
 
-// Returns the text beside the progress bar: "12.4 : 1".
+// Returns the text beside the progress bar: the compression ratio, such as "12.4 : 1"; "coding" as
+// long as it is unknown; "verifying" when all LF images are encoded.
 std::string ProgressDetail(const CompressProgress& now);
 
 // Returns ratio, quality and speed, skipped LF images, and the next step.

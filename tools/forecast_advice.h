@@ -12,14 +12,14 @@ namespace lf {
 // Largest distance, in elements, at which two copies of an edge still look like one edge.
 inline constexpr double kDoubleEdge_px = 2;
 
-// Lengths are in world units. All figures keep 2 % away from the limit, so that they may be
-// rounded.
+// Lengths are in world units. Distances, depths and frame sizes keep 2 % away from the limit, so
+// that they may be rounded.
 struct ForecastAdvice {
   // Focus distances for which no frame shows the scene with double edges; far_w may be infinite.
   // nullopt if there are none, or if the depths of the scene are unknown.
   std::optional<DepthRange> focus;
-  // For the frame with the most double edges: the depths along its axis without double edges, and
-  // the largest frame size without them. far_w may be infinite.
+  // For the frame whose double edges are farthest apart: the depths along its axis at which there
+  // are no double edges, and the largest frame size without them. far_w may be infinite.
   DepthRange depths;
   int width_px = 0, height_px = 0;
   // Diameter of the largest lens that is within the capture in every frame; 0 if there is none.

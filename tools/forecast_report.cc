@@ -95,7 +95,8 @@ void AddDensity(const PreprocessReport& report, const CameraPath& path, std::str
 
 namespace {
 
-// Returns where the depths of the scene come from, or how to state them.
+// Returns text that says that the depths of the scene were estimated, or how to state unknown
+// depths; "" if the user or the calibration stated them.
 std::string DepthsText(const ForecastFacts& facts) {
   if (facts.depths_from == "LF images") return " (depths estimated from LF images)";
   if (!facts.depths_from.empty()) return "";

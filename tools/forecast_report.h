@@ -28,7 +28,7 @@ struct ForecastFacts {
 std::vector<std::string> DensityWarnings(const PreprocessReport& report, const CameraPath& path,
                                          const ForecastFacts& facts);
 
-// Returns the files that packages need and that do not exist.
+// Returns the LF images that packages need and whose files do not exist or are empty.
 MissingImages MissingOf(const PreprocessReport& report);
 
 // Returns one line per fact, a table of packages, a table of some frames, and the warnings.

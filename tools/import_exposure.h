@@ -49,19 +49,20 @@ Result<MatchedExposure> MatchAndApply(const ExposureArguments& arguments,
                                       const std::atomic<bool>& interrupted, ThreadPool& pool,
                                       LightField* light_field, CaptureReport* report);
 
-// Returns the line `brackets`: "25 poses x 3 exposures, -2, 0 and +2 stops by lf_gain".
+// Returns the line `brackets` of the report: "25 poses x 3 exposures, -2, 0 and +2 stops by
+// lf_gain".
 std::string BracketsText(const FoundBrackets& brackets);
-// Returns the line `gains`.
+// Returns the line `gains` of the report.
 std::string ExifGainsText(const ExifGains& gains);
 
 nlohmann::ordered_json BracketsJson(const FoundBrackets& brackets);
 nlohmann::ordered_json ExifGainsJson(const ExifGains& gains);
 
-// Returns the line `exposure` and the lines below it: "81 of 81 images matched, ...".
+// Returns the line `exposure` of the report and the lines below it: "81 of 81 images matched, ...".
 std::string ExposureText(const MatchedExposure& exposure);
-// Returns the line `seams`.
+// Returns the line `seams` of the report.
 std::string SeamsText(const MatchedExposure& exposure);
-// Returns the line `falloff`.
+// Returns the line `falloff` of the report.
 std::string FalloffText(const FoundFalloff& falloff);
 
 nlohmann::ordered_json ExposureJson(const MatchedExposure& exposure);

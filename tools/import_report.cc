@@ -51,14 +51,15 @@ Spread Degrees(const Spread& rad) {
   return {DegreesFromRadians(rad.min), DegreesFromRadians(rad.median), DegreesFromRadians(rad.max)};
 }
 
-// Returns numbers for people: five digits, and one number if all are equal.
+// Return a number, a spread or a point for people, with five digits. A spread is one number if its
+// ends have the same digits.
 std::string Brief(double value) { return fmt::format("{:.5g}", value == 0 ? 0.0 : value); }
 std::string Brief(const Spread& spread) {
   const std::string min = Brief(spread.min), max = Brief(spread.max);
   return min == max ? max : fmt::format("{} ({} to {})", Brief(spread.median), min, max);
 }
 std::string Brief(Vec3 point) {
-  for (double& x : point)  // hides rounding errors that look like numbers
+  for (double& x : point)  // hides rounding errors
     if (std::abs(x) < 1e-9 * point.cwiseAbs().maxCoeff()) x = 0;
   return fmt::format("{}, {}, {}", Brief(point.x()), Brief(point.y()), Brief(point.z()));
 }

@@ -22,7 +22,7 @@ struct ImportReport {
   std::string written;                      // path of the transforms.json; "": not written
 };
 
-// Adds the warnings missing-images and broken-images.
+// Adds the warnings missing-images and broken-images if `faults` contains such LF images.
 void WarnOfFaults(const LightField& light_field, ImportReport* report);
 
 // Returns one line per fact, then the warnings.

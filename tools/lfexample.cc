@@ -31,8 +31,9 @@ a COLMAP model. A warning says when the depth is uncertain, and what to try. Ren
   lfrenderer LIGHTFIELD PATH.yaml -o DIR)",
 };
 
-// Returns the LF camera nearest to the middle whose LF image can be read and that is nearly level,
-// because levelling a picture crops it. kOutput: the machine lacks memory or open files.
+// Returns the LF camera nearest to the middle of the capture whose LF image can be read and that is
+// nearly level, because levelling a picture crops it. kOutput: the machine lacks memory or open
+// files.
 lf::Result<lf::LfImageId> FindMiddleCamera(const lf::LightField& light_field,
                                            const lf::LfImageStore& store) {
   lf::MachineFailure failure;
@@ -82,8 +83,9 @@ lf::Result<lf::LfImageId> FindCamera(const lf::LightField& light_field,
                   text, light_field.image_names[0]));
 }
 
-// Warns where the focus is, why the focus is uncertain, and how to choose another focus.
-//   words  the options of the light field, to show the whole command
+// Warns that the focus is uncertain: states where it is, why it is uncertain, and how to choose
+// another focus.
+//   words  the options of the light field, which the shown command repeats
 void WarnOfDoubt(const lf::ExamplePath& example, const std::string& light_field,
                  const std::vector<std::string>& words, const std::string& output,
                  const std::string& move, const std::string& camera) {

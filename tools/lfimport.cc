@@ -119,7 +119,7 @@ void AddOptions(CLI::App& app, Arguments& a) {
   AddNamedImages(app, a);
 }
 
-// Parses P or PX,PY.
+// Parses the value of --pitch: P or PX,PY.
 lf::Result<lf::Vec2> ParsePitch(const std::string& text) {
   lf::Vec2 pitch;
   int end_of_one = -1, end_of_two = -1;

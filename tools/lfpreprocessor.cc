@@ -178,7 +178,7 @@ lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::Comm
 }
 
 // Returns the source of the scene's depths, as ForecastFacts::depths_from. LF images are read only
-// if there is no other source.
+// if there is no other source; options->depths is then set.
 std::string KnowDepths(const lf::LightField& light_field, const lf::CameraPath& path,
                        lf::ThreadPool& pool, lf::PreprocessOptions* options) {
   if (options->depths) return "--depths";

@@ -132,7 +132,7 @@ void WarnOfLenses(const RenderReport& report) {
       report, kMuchUncovered, [](const auto& weighed) { return weighed.coverage.uncovered_share; },
       [&](size_t count, const FrameReport& worst) {
         const LensCoverage& coverage = worst.weighed->coverage;
-        double fitting_w = coverage.fitting_diameter_w;  // the smallest of all frames
+        double fitting_w = coverage.fitting_diameter_w;  // becomes the smallest of all frames
         for (const FrameReport& frame : report.frames)
           if (frame.weighed)
             fitting_w = std::min(fitting_w, frame.weighed->coverage.fitting_diameter_w);

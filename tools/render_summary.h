@@ -18,11 +18,13 @@ void SummariseRender(const RenderReport& report, const std::string& look_at);
 // Adds to the error of an interruption the command that resumes the render.
 Error WithResumeCommand(Error error, int argc, char** argv);
 
-// kBelowRequired, with the frames' numbers, if frames have fewer samples than were required.
+// Returns kBelowRequired if, in any frame, fewer than 99 % of the elements that LF images see have
+// the required number of samples. The message names the first ten such frames.
 Result<void> CheckRequired(const RenderReport& report, std::optional<uint32_t> samples);
 
-// kBelowRequired, with the frames' numbers, if frames have more noise than was required, or no
-// noise that could be measured.
+// Returns kBelowRequired if, in any frame, more than 10 % of the elements that LF images see have
+// more noise than required, or if the noise could not be measured. The message names the first ten
+// such frames.
 Result<void> CheckRequiredNoise(const RenderReport& report, std::optional<double> noise);
 
 }  // namespace lf

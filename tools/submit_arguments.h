@@ -35,7 +35,7 @@ struct SubmitArguments {
   // Returns true if arguments of lfrenderer are given.
   bool HasRendererArguments() const;
 
-  // Reads all packages and checks the arguments of lfrenderer.
+  // Returns a new job. Reads all packages and checks the arguments of lfrenderer.
   Result<ClusterJob> MakeJob(const CommonOptions& common) const;
   // Applies the given engine, processes, memory and limits to a job that is resumed.
   Result<void> Change(ClusterJob* job, const CommonOptions& common) const;

@@ -10,7 +10,8 @@
 
 namespace lf {
 
-// A number of LF images, or a share of the requested ones.
+// The largest number of LF images that may be missing, or their largest share of the requested
+// ones.
 class MissingLimit {
  public:
   // Allows no missing LF image.
@@ -51,8 +52,8 @@ struct MissingImages {
   std::string advice;  // a remedy, other than accepting the loss
 };
 
-// Ends a program; to be called when all of its results are written. Succeeds if nothing is missing,
-// or, with a warning, if the limit accepts what is missing. Otherwise kBelowRequired.
+// Returns the outcome of a program that has written all of its results: success if nothing is
+// missing, or, with a warning, if the limit accepts what is missing. Otherwise kBelowRequired.
 Result<void> EndWithMissing(const MissingImages& missing, const MissingLimit& limit);
 // As above, for a caller that has itself compared the numbers with the limit, for example
 // separately for each package.

@@ -8,7 +8,7 @@
 
 namespace lf {
 
-// The units are powers of 1024. kUsage names the option.
+// Returns bytes. The units are powers of 1024. kUsage: the message names the option.
 Result<size_t> ParseByteSize(const std::string& text, const std::string& option);
 
 }  // namespace lf

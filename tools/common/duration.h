@@ -7,7 +7,7 @@
 
 namespace lf {
 
-// Returns seconds, which are also the unit of a bare number. kUsage names the option.
+// Returns seconds, which are also the unit of a bare number. kUsage: the message names the option.
 Result<double> ParseDuration(const std::string& text, const std::string& option);
 
 }  // namespace lf

@@ -7,13 +7,13 @@
 
 namespace lf {
 
-// --frames RANGE
+// Adds --frames RANGE.
 void AddFrameRange(OptionGroup& output, std::string& frames);
 
-// --format exr|exr-float|png|png16
+// Adds --format exr|exr-float|png|png16.
 void AddFrameFormat(OptionGroup& output, std::string& format);
 
-// --video FILE and --no-contact-sheet
+// Adds --video FILE and --no-contact-sheet.
 void AddFilmFiles(OptionGroup& output, std::string& video, bool& no_contact_sheet);
 
 }  // namespace lf

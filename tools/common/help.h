@@ -44,8 +44,8 @@ class OptionGroup {
   // The app must outlive the group. Options of a group with an empty name are hidden.
   OptionGroup(CLI::App& app, std::string name);
 
-  // Adds an option, such as "-o,--output DIR", or a positional argument, such as "LIGHTFIELD".
-  // Refuses "nan" for a Value that is a floating-point number, or that holds some.
+  // Adds an option, such as "-o,--output DIR", or a positional argument, such as "LIGHTFIELD". If
+  // `value` is a floating-point number or contains such numbers, "nan" is refused.
   template <typename Value>
   CLI::Option* Add(const std::string& names_and_placeholder, Value& value,
                    const std::string& text) {
@@ -54,7 +54,7 @@ class OptionGroup {
     return Present(option, end == std::string::npos ? "" : names_and_placeholder.substr(end + 1));
   }
 
-  // Adds an option whose value is one of some words, which are its placeholder.
+  // Adds an option whose value must be one of `words`. The help shows the words as its placeholder.
   template <typename Value>
   CLI::Option* AddChoice(const std::string& names, Value& value,
                          const std::vector<std::string>& words, const std::string& text) {

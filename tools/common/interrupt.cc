@@ -15,7 +15,7 @@ static_assert(std::atomic<int64_t>::is_always_lock_free);
 RenderSignals render_signals;
 std::atomic<int64_t> first_interrupt_ns = 0;
 
-// Wrappers such as `timeout` send one interrupt twice: to the program and to its group.
+// Wrappers such as `timeout` send one interrupt twice: to the program and to its process group.
 constexpr int64_t kOneInterrupt_ns = 500'000'000;
 
 int64_t NowNanoseconds() {

@@ -7,9 +7,9 @@
 
 namespace lf {
 
-// From now on the first SIGINT, SIGTERM or SIGHUP sets the flag; under nohup, SIGHUP is ignored. A
-// SIGINT more than half a second later ends the program at once. A second SIGTERM does not end it,
-// because batch systems repeat SIGTERM.
+// From now on the first SIGINT, SIGTERM or SIGHUP sets the returned flag; under nohup, SIGHUP is
+// ignored. A SIGINT more than half a second later ends the program at once. A second SIGTERM does
+// not end it, because batch systems repeat SIGTERM.
 const std::atomic<bool>& CatchInterrupts();
 
 // As CatchInterrupts(), for a render: after one of these signals the render writes a checkpoint and

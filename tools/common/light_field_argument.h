@@ -22,9 +22,9 @@ struct LightFieldArgument {
   // kUsage: a value that cannot be parsed.
   Result<OpenOptions> Options() const;
   Result<LightField> Open() const;
-  // kUsage if an option is given that packages would ignore: they contain their calibration and the
-  // meaning of alpha. If --lightfield (`path`) is given, the other options apply to the light field
-  // that it names.
+  // kUsage if an option is given that packages would ignore, because they contain their calibration
+  // and the meaning of alpha. With --lightfield (`path`), only --image-alpha and --background are
+  // refused; the other options apply to the light field that it names.
   Result<void> CheckWithPackages() const;
   // Returns the options as they were given, for the command line of another program.
   std::vector<std::string> Words() const;

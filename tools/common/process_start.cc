@@ -57,7 +57,8 @@ void StartProcess() {
   }
 }
 
-// The runtime of a sanitizer is not ready before its own constructor.
+// With a sanitizer, only Program::Run() calls StartProcess(), because the sanitizer's runtime is
+// not ready earlier.
 #if defined(__ELF__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 namespace {
 [[gnu::section(".preinit_array"), gnu::used]] void (*start_process_early)() = StartProcess;

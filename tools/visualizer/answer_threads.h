@@ -1,4 +1,4 @@
-// Threads that make answers, so that a slow answer does not delay others.
+// Threads that answer requests of the page, so that a slow answer does not delay others.
 #pragma once
 
 #include <condition_variable>

@@ -18,7 +18,8 @@ namespace {
 constexpr int kJpegQuality = 88;
 constexpr const char* kBytes = "application/octet-stream";
 
-// The parts of "path/0123/use/7.bin" between slashes, the last without its ending.
+// The parts of a name such as "path/0123/use/7.bin" between the slashes; the last part has no
+// ending.
 struct Name {
   std::vector<std::string> parts;
   std::string ending;  // ".bin"

@@ -17,9 +17,9 @@ struct PageAnswer {
   std::string body;
 };
 
-// {"error": ...}
+// Returns a refusal with the body {"error": message}.
 PageAnswer Refusal(int status, const std::string& message);
-PageAnswer Refusal(const Error& error);  // 422: input, 507: disk and memory
+PageAnswer Refusal(const Error& error);  // status 507 for kOutput, otherwise 422
 
 // Functions of the page that need a server.
 struct PageAbilities {

@@ -12,8 +12,8 @@ namespace lf {
 
 int SocketOf(MHD_Connection* connection);
 
-// Throws std::bad_alloc instead of skipping a header, because that header might be the one for
-// which the request must be refused.
+// Returns the head of the current request. Throws std::bad_alloc if there is no memory for a
+// header, because this header might be the one for which the request must be refused.
 RequestHead HeadOf(MHD_Connection* connection, const char* path, const char* method);
 
 // Writes a refusal to the socket, because libmicrohttpd accepts no answer while a body is read. The

@@ -27,7 +27,7 @@ namespace {
 constexpr unsigned kMode = MHD_USE_EPOLL_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME;
 constexpr size_t kHeaderBytes = 32 << 10;
 constexpr size_t kThreads = 8, kMostStreams = 16;
-constexpr int kMostRequests = 96;  // whose headers were read; browsers open six per address
+constexpr int kMostRequests = 96;  // number of requests whose headers were read
 constexpr size_t kMostWaiting = 128;
 // Must exceed kMostRequests + kMostWaiting: at this limit libmicrohttpd accepts no more
 // connections, and a new client would not even get a refusal.

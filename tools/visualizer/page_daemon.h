@@ -15,9 +15,9 @@
 
 namespace lf {
 
-// Limits what a hostile client can use: 32 kB for the headers of a request, 128 connections
-// without a complete request for 5 s each, 18 MiB for the bodies of all requests together. Only
-// requests with the token get past their headers (page_request.h).
+// Limits what a hostile client can use: 32 kB for the headers of a request; 128 connections that
+// wait for complete headers, for 5 s each; 18 MiB for the bodies of all requests together. Requests
+// without the token are refused as soon as their headers are complete (page_request.h).
 class PageDaemon {
  public:
   // Makes an answer. Called by several threads at the same time. May throw.
@@ -32,9 +32,11 @@ class PageDaemon {
   // Takes over the listening `socket` and closes it at the end. kOutput: the machine has no thread
   // or memory left.
   Result<void> Start(int socket);
-  // Closes connections that have sent no complete request for too long. To be called now and then.
+  // Closes connections whose next request has had incomplete headers for too long. To be called now
+  // and then.
   void HangUpLate();
-  // Returns when all current answers are sent. The event board must be closed before.
+  // Returns when the threads that make answers have ended and all connections are closed. The event
+  // board must be closed before.
   void Stop();
 
  private:

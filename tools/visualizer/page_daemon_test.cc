@@ -20,7 +20,7 @@ namespace {
 
 const std::string kToken = "0123456789abcdef0123456789abcdef";
 
-// A daemon with the answerer of the test.
+// A running daemon with the answerer and the event board of a test.
 class Daemon {
  public:
   explicit Daemon(PageDaemon::Answerer answerer) {
@@ -45,7 +45,7 @@ class Daemon {
   std::unique_ptr<PageDaemon> daemon_;
 };
 
-// A connection with a request on it.
+// A connection on which one request has been sent.
 class Request {
  public:
   Request(const Daemon& daemon, const std::string& method, const std::string& name,
@@ -169,7 +169,7 @@ TEST(PageDaemon, AStreamTellsNewsUntilTheBoardIsClosed) {
   other.Whole();
 }
 
-// HTTP/1.0 has no chunks in the body.
+// A response of HTTP/1.0 cannot be sent in chunks.
 TEST(PageDaemon, LongNewsArriveWhole) {
   Daemon daemon(Echo);
   Request stream(daemon, "GET", "events", "HTTP/1.0");

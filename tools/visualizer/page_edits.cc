@@ -35,7 +35,7 @@ std::optional<FrameId> FrameOf(const Json& json, const CameraPath& path) {
   return FrameId{static_cast<uint32_t>(number)};
 }
 
-// Adds the line and column in the parser's message: "path.yaml:12:5: ...".
+// Answers with the parser's message, "path.yaml:12:5: ...", and with the line and column in it.
 PageAnswer RefusedPath(const Error& error, const std::string& file) {
   Json json = {{"error", error.message}};
   if (error.message.starts_with(file + ":")) {

@@ -12,7 +12,7 @@ struct PageFile {
   std::string_view bytes;
 };
 
-// Empty in a build without Node.js and npm.
+// Returns all files of the page; none in a build without Node.js and npm.
 std::span<const PageFile> PageFiles();
 // Returns nullptr if there is no such file.
 const PageFile* FindPageFile(std::string_view name);

@@ -36,8 +36,8 @@ bool IsOurHost(std::string_view host, int port) {
   return host == fmt::format("127.0.0.1:{}", port) || host == fmt::format("localhost:{}", port);
 }
 
-// Browsers state in Origin or Sec-Fetch-Site which page a request comes from. Other programs send
-// neither of these headers.
+// Returns false if a browser sent the request for another page, which Origin or Sec-Fetch-Site then
+// states. Programs other than browsers send neither of these headers.
 bool ComesFromOurPage(const RequestHead& head, int port) {
   constexpr std::string_view kScheme = "http://";
   for (const std::string_view origin : ValuesOf(head, "Origin"))

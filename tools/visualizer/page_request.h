@@ -29,9 +29,9 @@ struct PageDoor {
 };
 
 // Returns the refusal of a request, or nullopt if it may be answered. Checks in this order:
-//   403  Host is not 127.0.0.1 or localhost with our port (so that no other site's name can be
-//        pointed here); the path lacks the token; the path holds "..", "\" or "%", which no name of
-//        ours does; Origin or Sec-Fetch-Site name another site
+//   403  Host is not 127.0.0.1 or localhost with our port (otherwise the DNS name of another site
+//        could point to this server); the path lacks the token; the path holds "..", "\" or "%",
+//        which no name of ours does; Origin or Sec-Fetch-Site name another site
 //   405  the method is not GET, HEAD or POST
 //   415  Content-Encoding is not "identity": compressed bodies are never accepted
 //   400  GET or HEAD with a body, or lengths that contradict each other

@@ -1,7 +1,8 @@
 // Serves the page and its data at http://127.0.0.1:PORT/TOKEN/.
 //
 // Requests are answered only with the token, 128 random bits in the address; only on this machine;
-// and only for the hosts 127.0.0.1 or localhost, so that no other site's name can be pointed here.
+// and only for the hosts 127.0.0.1 or localhost, so that the DNS name of another site cannot be
+// used to read the page.
 #pragma once
 
 #include <atomic>

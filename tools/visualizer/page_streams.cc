@@ -63,7 +63,7 @@ ssize_t PageStreams::ReadNews(Stream& stream, char* text, size_t most_bytes) {
   if (events_.is_closed()) return MHD_CONTENT_READER_END_OF_STREAM;
   if (stream.text.empty()) {
     stream.text = events_.WaitForNews(&stream.seen, std::chrono::milliseconds(0));
-    // This text detects a page that has gone, because the text cannot be sent to it.
+    // If the page has gone, sending this text fails, and libmicrohttpd ends the stream.
     if (stream.text.empty() && stream.is_woken) stream.text = ": still here\n\n";
     stream.is_woken = false;
   }

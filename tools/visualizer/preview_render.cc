@@ -94,7 +94,8 @@ void PreviewRender::Render(const Wish& wish) {
     Say(wish, "failed", end.error().message);
 }
 
-// Returns a text about LF images that the picture lacks; empty if it lacks none.
+// Renders the frame and shows pictures of it. Returns a text about LF images that the last picture
+// lacks; "" if it lacks none.
 Result<std::string> PreviewRender::RenderFrame(const Wish& wish) {
   const PageArguments& arguments = scene_.arguments();
   Package film = PackageOfAll(scene_.light_field(), *wish.path, arguments.seed);

@@ -27,8 +27,9 @@ namespace lf {
 class PreviewRender {
  public:
   // Posts "preview" to the scene's board: {"frame": 7, "state": "rendering", "message": "",
-  // "changed": "3"}. States are rendering, finished, stopped, and failed with a message. "changed"
-  // differs for every picture, and is "" before the first picture.
+  // "changed": "3"}. States are rendering, finished, stopped and failed. The message of a failed
+  // render is its error, and of a finished one the LF images that it lacks. "changed" differs for
+  // every picture, and is "" before the first picture.
   explicit PreviewRender(PageScene& scene);
   ~PreviewRender();  // stops the render
   PreviewRender(const PreviewRender&) = delete;

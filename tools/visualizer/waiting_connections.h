@@ -1,5 +1,5 @@
-// Connections that have not sent a complete request yet. They are limited so that incomplete
-// requests cannot keep others out.
+// Connections on which the headers of the next request are incomplete. They are limited so that
+// they cannot keep other connections out.
 #pragma once
 
 #include <chrono>
@@ -16,14 +16,14 @@ namespace lf {
 class WaitingConnections {
  public:
   // If there are more than `most_count`, the connection that has waited longest is closed, so that
-  // a new connection with a complete request always gets an answer.
+  // a new connection always gets an answer to a complete request.
   WaitingConnections(size_t most_count, std::chrono::milliseconds patience)
       : most_count_(most_count), patience_(patience) {}
 
   // Closes the connection if there is no memory to store it.
   void Add(int socket);
-  // Called when the connection's request is complete, or the connection has ended. Does nothing if
-  // it is not waiting.
+  // Called when the headers of the connection's request are complete, or when the connection has
+  // ended. Does nothing if the connection is not waiting.
   void Remove(int socket);
   // Closes all connections that have waited longer than `patience`.
   void HangUpLate();
