@@ -72,7 +72,7 @@ export class State {
   private news: PathNews | null = null;
   private fileHasFault = false;
   private bytesThatSavingLoses = false;
-  private selectedId: number | null = null; // `selected` may still lack its facts
+  private selectedId: number | null = null; // the chosen LF camera; `selected` follows when its facts arrive
   private filmAsked = "";
   private filmIsStale = false;
 

@@ -11,10 +11,10 @@ export interface PathHead {
   height: number;
 }
 
-// An event: the path's file has changed.
+// The data of the event that the path's file has changed.
 export interface PathNews {
   id: string;
-  fault: string; // why the file is no valid path; empty if it is
+  fault: string; // why the file is no valid path; "" if it is one
 }
 
 export interface SceneFacts {

@@ -17,7 +17,7 @@ async function refusal(response: Response): Promise<SourceError> {
     const json = JSON.parse(text) as { error?: unknown };
     if (typeof json.error === "string") return new SourceError(json.error, response.status);
   } catch {
-    // The answer is not JSON, so it is not from lfvisualizer: the error below has its status.
+    // The answer is not JSON, so it is not from lfvisualizer. The error below then states only the HTTP status.
   }
   return new SourceError(`${response.status} ${response.statusText}`, response.status);
 }

@@ -5,7 +5,7 @@ import { add, dot } from "./frame_camera";
 import type { Vec3 } from "./scene";
 
 export interface TiltedFocus {
-  distance: number; // from the lens, along the optical axis
+  distance: number; // from the lens along the optical axis, world units
   horizontal_deg: number;
   vertical_deg: number;
 }

@@ -102,7 +102,7 @@ export class ImagePanel {
       const overlap = await getJson<OverlapFacts>(`path/${path.id}/overlap/${frame}/${selected.id}.json`);
       if (number === this.asked) this.drawShapes(overlap, selected.width, selected.height);
     } catch {
-      // Shows no message, because the request of the frame's data fails with the same error and shows that.
+      // Shows no message, because the request of the frame's data fails for the same reason and shows the message.
       if (number === this.asked) this.drawing.replaceChildren();
     }
   }

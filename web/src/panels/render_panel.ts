@@ -298,7 +298,8 @@ export class RenderPanel {
   }
 }
 
-// Returns true if the same position in the pictures of both cameras has the same view. Focus and aperture may differ.
+// Returns true if both cameras have the same position, direction and field of view, so that a position in a picture
+// means the same ray for both. Focus and aperture may differ.
 function seeAlike(a: FrameCamera, b: FrameCamera): boolean {
   const view = ({ centre, forward, up, fx, fy, cx, cy, width, height }: FrameCamera) => [
     ...centre,

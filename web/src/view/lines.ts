@@ -1,4 +1,4 @@
-// Lines and faces whose points are often replaced, in the same memory.
+// Lines and faces whose points change often. New points are written into the memory of the old ones.
 
 import * as THREE from "three";
 

@@ -1,5 +1,6 @@
 // Draws the render camera of a frame: the lens with its blades, the viewing frustum up to the focus plane, the focus
-// plane, the widened frustum, and the nearest and farthest depth of the scene.
+// plane, the widened frustum, and the nearest and farthest depth of the scene. The widened frustum consists of rays
+// from the rim of the lens through the corners of the focus plane.
 
 import * as THREE from "three";
 
@@ -8,8 +9,8 @@ import type { DensityFacts, Vec3 } from "../data/scene";
 import { closed, Faces, Lines } from "./lines";
 
 const GRID = 6; // number of cells along the width of the focus plane
-const BEHIND = 0.35; // length of the widened frustum behind the lens, about, in focus distances
-const BEYOND = 1.5; // length in front of the lens, about, in focus distances
+const BEHIND = 0.35; // length of the widened frustum's rays behind the lens, about, in focus distances
+const BEYOND = 1.5; // length of these rays in front of the lens, about, in focus distances
 
 export class RenderCameraModel {
   readonly object = new THREE.Group();
