@@ -12,7 +12,7 @@ import threading
 import time
 
 MIB = 1 << 20
-CPU_LIMIT_S = 60  # limit that ends every run; a run on good files takes less than a tenth of a second
+CPU_LIMIT_S = 60  # CPU time after which a run is killed; a run on good files takes less than a tenth of a second
 ADDRESS_LIMIT = 8 << 30
 FILE_LIMIT = 1024 * MIB
 WAIT_S = 240

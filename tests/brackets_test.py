@@ -85,7 +85,7 @@ def relative_error(frame, true, where):
 
 
 def far_from_lights(true):
-    """Selects elements without a highlight within three elements, where cubic filters overshoot."""
+    """Selects elements that are more than three elements away from highlights, around which cubic filters overshoot."""
     return cv2.dilate(true.max(-1), np.ones((7, 7)))[..., None] < 0.2
 
 

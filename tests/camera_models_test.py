@@ -17,7 +17,7 @@ COUNT = 10_000
 
 
 def directions(widest_rad):
-    """Returns COUNT directions spread evenly over the disk of that half angle."""
+    """Returns COUNT directions spread evenly over the disk whose half angle is `widest_rad`."""
     index = np.arange(COUNT)
     theta = widest_rad * np.sqrt((index + 0.5) / COUNT)
     phi = index * np.pi * (3 - np.sqrt(5))

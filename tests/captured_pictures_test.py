@@ -21,7 +21,7 @@ from first_picture_case import FirstPictureCase, detail, expose, grey, write_she
 DATA = None
 TILES = 12  # number of tiles of a picture along each axis
 SUFFIXES = (".jpg", ".jpeg", ".png", ".PNG")
-SHOP = range(9, 18)  # rows and columns in the middle of 27
+SHOP = range(9, 18)  # the rows, and the columns, in the middle of 27
 
 
 def shrunk(file, out, divisor):
@@ -61,7 +61,7 @@ def cards(folder):
 
 
 def temple(folder):
-    """Copies a calibration of rows of text, into the folder above the images."""
+    """Copies the images, and their calibration templeR_par.txt into the folder above them."""
     source = DATA / "middlebury-templeRing" / "templeRing"
     for file in source.glob("*.png"):
         shutil.copyfile(file, folder / "images" / file.name)
@@ -69,7 +69,7 @@ def temple(folder):
 
 
 def beer(folder):
-    """Copies a COLMAP model of a video that was taken with a phone."""
+    """Copies the images of a video that was taken with a phone, and their COLMAP model."""
     source = DATA / "beer-colmap"
     for file in (source / "images").glob("*.jpg"):
         shutil.copyfile(file, folder / "images" / file.name)
@@ -102,7 +102,7 @@ def uneven_and_dark_corners(capture):
 
 
 def smaller(capture):
-    """Writes half-size images to images_2 and removes images."""
+    """Writes half-size images to the folder images_2 and removes the folder images."""
     (capture / "images_2").mkdir()
     for file in images_of(capture):
         shrunk(file, capture / "images_2" / file.name, 2)
@@ -166,7 +166,7 @@ class CapturedPicturesTest(FirstPictureCase):
         return focus, share
 
     def all_pictures(self, write, changes, focus, sharp, is_sure=True, keeps_points=True, is_matched=True):
-        """Every variant must be focused at the same distance as the capture, and be as sharp.
+        """Every changed capture must be focused at the distance of the unchanged one, and be nearly as sharp.
 
         focus         distances between which the subject lies
         sharp         least share of the capture's textured tiles that are sharp

@@ -144,7 +144,7 @@ class PlantedFaults(unittest.TestCase):
 
     def test_tables_fit_their_records_and_the_defaults_of_today(self):
         self.plant_table("fine")
-        self.plant_table("more", defaults=self.DEFAULTS[:1])  # options that were added later
+        self.plant_table("more", defaults=self.DEFAULTS[:1])  # the record was made before some options existed
         self.expect("check_house.py", "tables", faults=[])
         self.plant_table("old", defaults=["lfrenderer --mode rebin", *self.DEFAULTS[1:]])
         self.plant_table("edited")
@@ -280,7 +280,7 @@ tests = '{tests}'
     def test_mutants_are_in_step_with_the_code(self):
         self.plant("lf/core/a.cc", "i < n; j < m; j < m\n")
         self.plant("lf/core/a_test.cc", "TEST(Suite, There) {}\n")
-        self.expect("check_house.py", "mutants", faults=[])  # no list
+        self.expect("check_house.py", "mutants", faults=[])  # there is no list
         self.plant_mutants({})
         self.expect("check_house.py", "mutants", faults=[])
         self.plant_mutants({"name": "gone", "old": "i < m"}, {"name": "twice", "old": "j < m"},

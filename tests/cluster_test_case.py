@@ -87,8 +87,8 @@ class ClusterTestCase(ProgramTestCase):
         return stat.rpartition(")")[2].split()[0] == "T"
 
     def unlucky_renderer(self, script: str) -> pathlib.Path:
-        """Returns a program that stands in for lfrenderer. The script is bash: $start counts from 1, $package is a name
-        or "finish", and run calls the real program."""
+        """Returns a program that stands in for lfrenderer. The script is bash: $package is the name of a package or
+        "finish", $start counts the starts for it from 1, and run executes the real program."""
         counter = self.folder / "starts"
         counter.mkdir(exist_ok=True)
         program = self.folder / "lfrenderer"

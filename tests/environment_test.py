@@ -177,7 +177,7 @@ class Environments:
             for value in values:
                 self.try_call(part, call, lack_of(value))
 
-    # The parts
+    # The parts: one method for each name in PARTS.
 
     def memory(self):
         self.sweep("memory", MEMORY_MIB, ALL_MEMORY_MIB, lambda mib: Lack(

@@ -47,8 +47,8 @@ QUICK_WAYS = {"open": ["24"], "read": ["5", "short"], "write": ["28+", "short", 
 FEWER_WAYS = {"open": ["24"], "write": ["28+", "kill"], "fsync": ["kill"], "rename": ["28"], "unlink": ["5"],
               "thread": ["11+"]}
 LIKE_OTHERS = ("shards", "rebin", "hybrid")
-FEWER_POINTS = 2  # points for lfsubmit, for each kind of call
-GROUPS_OF_MALLOC = 6  # sizes form no pattern: this many points for all of them
+FEWER_POINTS = 2  # number of system calls of each kind that fail in lfsubmit
+GROUPS_OF_MALLOC = 6  # factor of --points for malloc, whose calls form only one group per function
 HANGS_S = 120
 
 

@@ -15,7 +15,7 @@ def store_digest(path):
     digest_of_rows = hashlib.sha256()
     for (table,) in sorted(database.execute("select name from sqlite_master where type = 'table'")):
         for row in database.execute(f"select * from {table} order by 1"):
-            # Sizes of image files are for people, and unknown if stat() fails.
+            # Sizes of image files are not compared: they only inform people, and are unknown if stat() failed.
             if table == "codes":
                 row = row[:-1]
             elif table == "lf_images" and path.suffix == ".lfp":

@@ -19,7 +19,7 @@ def detail(pixels):
 
 def expose(file, gain, falloff=0, out=None):
     """Rewrites an image as a camera with another exposure would record it, through a lens that loses `falloff` of the
-    light towards the corners. Paper white stays below the largest value."""
+    light towards the corners. White stays below the largest value that the file can hold."""
     image = Image.open(file).convert("RGB")
     x, y = np.meshgrid(*((np.arange(n) + 0.5 - n / 2 for n in image.size)))
     corner = 4 * (x * x + y * y) / (image.width ** 2 + image.height ** 2)

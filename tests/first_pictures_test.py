@@ -64,7 +64,7 @@ class FirstPicturesTest(FirstPictureCase):
         return write_field(self.folder / "capture", write, scene or CARD_AND_WALL)
 
     def shows_the_card(self, name, capture, lf_image=None, **call):
-        """The middle of the picture must show what the LF image shows at which the path starts."""
+        """The middle of the picture must show the same as the middle of the LF image at which the path starts."""
         picture, focus, start = self.first_picture(name, capture, **call)
         self.assertAlmostEqual(focus, FOCUS, delta=0.02 * FOCUS)
         self.expect_sharp(picture, lf_image or Image.open(capture / start))

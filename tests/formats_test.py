@@ -33,7 +33,7 @@ def picture(frames):
 
 
 def target_position(frame):
-    """Returns (x, y) of the brightest spot in elements: the centroid of its upper half."""
+    """Returns (x, y) of the brightest spot in elements: the centroid of what is brighter than half of its maximum."""
     grey = frame.sum(axis=2)
     y, x = np.unravel_index(grey.argmax(), grey.shape)
     window = grey[max(0, y - 4):y + 5, max(0, x - 4):x + 5]
@@ -205,8 +205,8 @@ class FormatsTest(unittest.TestCase):
                    reads_itself=False)
 
     def test_every_lens_gives_the_picture_of_the_pinhole(self):
-        """Films the scene through other lenses. The tolerance is larger, because pixels behind these lenses are at
-        other positions."""
+        """Renders light fields whose LF cameras have other lenses. The tolerance is larger, because the pixels of
+        these cameras are at other positions."""
         path, expected = self.native_frame(self.jittered)
         for native in (self.brown, self.rational, self.fisheye, self.fov):
             out = self.folder / f"{native.name}-as-pinhole"

@@ -89,7 +89,7 @@ LONG_TEXT, ZEROS = "../" * 300_000, with_checksum(bytes(10_000_000))
 
 
 def values(column_value):
-    """Yields (name, value) for values that replace a value."""
+    """Yields (name, value) for the values that are tried in place of a value in a column."""
     yield "null", None
     for number in (-1, 0, 1, 65535, 2**31, 2**62, -2**63):
         yield str(number), number
@@ -235,7 +235,7 @@ class HostileDatabasesTest(unittest.TestCase):
                     file.write_bytes(data)
                 changes.append((f"damage {seed}", change))
             for page_bytes in (512, 4096, 65536):
-                def change(file, page_bytes=page_bytes):  # each child of the first page is that page itself
+                def change(file, page_bytes=page_bytes):  # each number that may name a child page names its own page
                     data = bytearray(file.read_bytes())
                     for place in range(100, len(data) - 4, 4):
                         if data[place:place + 3] == b"\0\0\0" and 0 < data[place + 3] < 64:

@@ -16,7 +16,7 @@ from bounded_runs import BoundedRuns
 from small_field import write_field, write_path
 
 PREPROCESSOR = SUBMIT = None
-MEMORY_MIB = 544  # an answer may take 256 and is copied once
+MEMORY_MIB = 544  # an answer of a program may take 256 MiB, and is copied once
 GOOD = {"sbatch": "echo 17", "squeue": "true", "scancel": "true"}
 # Answers of sbatch that cannot be the number of a job.
 BAD_NUMBERS = {

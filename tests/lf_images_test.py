@@ -89,7 +89,8 @@ class LfImagesTest(unittest.TestCase):
                   "lf_black_level": 0}
         told = self.frame(self.field("told", write))
         balanced = self.frame(self.field("stated", self.mosaic_as_png, **stated))
-        # Camera = XYZ balanced to D65 white, converted to linear sRGB by the standard's matrix.
+        # The files state that camera colours are XYZ. Balanced to D65 white, the matrix of the sRGB standard converts
+        # these colours to linear sRGB.
         white = np.array([0.9505, 1, 1.089])
         matrix = np.array([[3.2406, -1.5372, -0.4986], [-0.9689, 1.8758, 0.0415],
                            [0.0557, -0.2040, 1.0570]]) * white

@@ -192,7 +192,7 @@ class ImportTest(unittest.TestCase):
         self.assertFalse(strict.exists())
 
     def change(self, change):
-        """Returns the kinds of warnings after change(frames) of a light field that looks at one point."""
+        """Returns the kinds of warnings about a light field whose cameras look at one point, after change(frames)."""
         field = write_field(self.folder / "field")
         text = json.loads(field.read_text())
         for frame in text["frames"]:
@@ -229,7 +229,7 @@ class ImportTest(unittest.TestCase):
         warnings = self.change(turn([-1, 1, -1], 7))
         self.assertEqual(self.kinds, ["facing-away"])
         self.assertEqual(warnings[0]["names"], ["image_07.png"])
-        warnings = self.change(turn([1, -1, -1]))  # OpenCV's axes
+        warnings = self.change(turn([1, -1, -1]))  # as if the file had OpenCV's axes
         self.assertEqual(self.kinds, ["diverging-axes"])
         self.assertIn("negate the 2nd and 3rd column", warnings[0]["message"])
 
@@ -324,7 +324,8 @@ class ImportTest(unittest.TestCase):
                              "--plane-distance", 100)
         self.assertEqual((report["images"], report["missing"], report["broken"]), (81, 0, 0))
         np.testing.assert_allclose(report["axes_meet_at_w"], [0, 0, 100], atol=1e-6)
-        # Shift and add by s pixels per index focuses on the plane 1/Z = 1/Z0 + s/F.
+        # If the images are shifted by s pixels per row and column and then added, the plane 1/Z = 1/Z0 + s/F is in
+        # focus.
         shift = -1.5  # focuses on the standing cards; whole pixels, because rows and columns are even
         path = self.folder / "path.yaml"
         path.write_text(f"""format: lfpath 1
@@ -351,7 +352,7 @@ lens:
             row, column = int(file.stem[4:6]) - 8, int(file.stem[7:9]) - 8
             srgb = np.asarray(Image.open(file)).astype(float) / 255
             light = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
-            dy, dx = int(shift * row), int(shift * column)  # out(x) = image(x - s c)
+            dy, dx = int(shift * row), int(shift * column)  # out(x) = image(x - s c), for row or column c
             source = light[max(0, -dy):768 - max(0, dy), max(0, -dx):768 - max(0, dx)]
             rows, columns = slice(max(0, dy), 768 + min(0, dy)), slice(max(0, dx), 768 + min(0, dx))
             total[rows, columns] += source

@@ -34,7 +34,7 @@ class PackagesTest(ProgramTestCase):
         return write_field(self.folder / "field", **keys), write_path(self.folder, frames=frames)
 
     def packages(self, field, path, *options, name="packages"):
-        """Returns the report and the files."""
+        """Makes packages. Returns the report and the package files."""
         out = self.folder / name
         report = json.loads(self.succeeds(PREPROCESSOR, field, path, "-o", out, "--json", *options))
         files = sorted(out.glob("*.lfp"))

@@ -42,7 +42,7 @@ class ResumeTest(unittest.TestCase):
     def setUpClass(cls):
         cls.temporary = tempfile.TemporaryDirectory()
         cls.folder = pathlib.Path(cls.temporary.name)
-        # 169 LF images, of which a frame uses about 110: rules are tested after 64 and 128 of them.
+        # 169 LF images, of which a frame uses about 110: stop rules are tested after 64 and 128 of them.
         small_field.SIDE = 13
         cls.field = small_field.write_field(cls.folder / "field")
         cls.path = small_field.write_path(cls.folder, frames=FRAMES, aperture=0.12)
@@ -76,7 +76,7 @@ class ResumeTest(unittest.TestCase):
         return digests(self.folder / name)
 
     def finish_each(self, *calls):
-        """Runs two at a time, because a small render is mostly one thread."""
+        """Runs two renders at a time, because a small render mostly uses one thread."""
         with concurrent.futures.ThreadPoolExecutor(2) as threads:
             return list(threads.map(lambda call: self.finish(*call), calls))
 
@@ -391,7 +391,7 @@ class ResumeTest(unittest.TestCase):
             self.assertEqual(alone, {name: expected[name] for name in alone})
 
     def test_require_ends_with_code_6_and_names_frames(self):
-        # Rules count rays; with lens weights there are no ray counts.
+        # The rule counts samples, which lens weights do not allow, so that the render to be resumed has none.
         self.finish("require", "--frames", "1-2", "--lens-weights", "none")
         # Frames whose samples were not measured are rendered again.
         last = self.fails(6, ["samples>=1000", "3 of 3 frames", "frame 2 (0.0 %)"], "require",

@@ -201,7 +201,7 @@ class RendererTest(unittest.TestCase):
         without = dict(description, frames=[f for i, f in enumerate(description["frames"]) if i != 12])
         absent = field.with_name("without.json")
         absent.write_text(json.dumps(without))
-        # Lens weights stay as planned, although an image is broken.
+        # Without lens weights, because weights are planned as if the broken image could be read.
         alike = ["--lens-weights", "none"]
         expected, _ = self.render(absent, path, "absent", *alike)
         broken = self.folder / "field" / "image_12.png"

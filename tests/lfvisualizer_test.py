@@ -26,7 +26,7 @@ class VisualizerTest(ProgramTestCase):
         self.path = small_field.write_path(self.folder)
 
     def lines(self, *options):
-        """Returns the words of the output lines, by their first word."""
+        """Returns the numbers in each line of the output, by the first word of the line."""
         words = {"lf_camera": [], "render_camera": [], "collected": []}
         for line in self.succeeds(VISUALIZER, self.field, self.path, "--text",
                                   *options).splitlines():

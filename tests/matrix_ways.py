@@ -22,7 +22,7 @@ LEAST_PSNR_DB = 38
 # Noise rules may stop at another LF image, and the choice of rebinned rays depends on the pixels.
 LEAST_PSNR_OF_DRAWN_DB = 30
 DUMP_OFTEN = ["--dump-every", "0.001s"]
-RUNS = {  # options of rules, which decide the content of the frames
+RUNS = {  # options with which a run changes the content of the frames
     "once": [], "killed": [], "interrupted": [], "small": [], "finish": [],
     "samples": ["--stop-when", "samples>=1"],
     "noise": ["--stop-when", "noise<=0.02"],
@@ -50,7 +50,7 @@ class Rendered(NamedTuple):
     facts: dict = {}     # what reports say of each frame
     skipped: list = []   # names of LF images
     early: dict = {}     # by frame that was finished early: place of the first LF image that it lacks
-    early_pixels: dict = {}  # pixels_of() these frames
+    early_pixels: dict = {}  # pixels_of() each of these frames
     seconds: float = 0
 
 
@@ -75,7 +75,7 @@ class Matrix(World):
         if not from_packages:
             inputs = [self.input_of(cell), self.path_of(cell.field)]
         else:
-            if order:  # lfpreprocessor gets both, and packages store them
+            if order:  # lfpreprocessor gets the order and the limit of LF images, which packages store
                 options = MODES[cell.mode]
             source = "folder" if self.is_moved(cell) else cell.input
             inputs = self.packages(cell.field, source, cell.mode, order)
@@ -95,7 +95,7 @@ class Matrix(World):
                 Step(merge, [*merge, "--resume"])]
 
     def is_moved(self, cell):
-        """Returns True if packages of the folder read another input."""
+        """Returns True if the packages were made from the folder, but read another input."""
         return cell.cut == "moved packages" or (
             cell.cut == "lfsubmit" and is_of_packages(cell.input))
 

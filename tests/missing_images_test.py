@@ -159,7 +159,7 @@ class MissingImagesTest(ProgramTestCase):
     def test_packages_are_written_without_files_that_are_missing(self):
         report, files = self.packages()
         self.assertEqual(len(files), 3)
-        # The file of image_12 exists.
+        # The file of image_12 is broken, but it is not empty, so lfpreprocessor does not count it.
         self.assertEqual((report["lf_images_missing"], report["lf_images_needed"]), (2, 25))
         self.assertEqual([package["lf_images_missing"] for package in report["packages"]], [2] * 3)
         self.check_accepted(

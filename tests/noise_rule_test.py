@@ -112,7 +112,7 @@ class NoiseRuleTest(ProgramTestCase):
             process = subprocess.Popen(
                 self.arguments(tag + "-cut", *rule, "--resume", "--dump-every", "0.001s", "--threads",
                                "1"), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-            # Waits until the checkpoint of the next batch.
+            # Waits until the checkpoint of the next batch is written.
             partial, end = self.folder / (tag + "-cut") / "partial", time.monotonic() + 20
             before = self.checkpoints(partial)
             while process.poll() is None and time.monotonic() < end:

@@ -62,7 +62,7 @@ class OddNames:
         """Yields each program after its call. OSError: the call failed, or its files are wrong."""
         calls, here, image_name = self.calls, self.folder / name, name if is_text else "image"
         here.mkdir(parents=True)
-        # Absolute names, and relative ones with a leading dash.
+        # All names are absolute but those of lfexample, which begin with "./".
         field, path, store = here / name, here / f"{name}.yaml", here / f"{name}.lfs"
         self.call("lfsynth", *map(str, calls.synth(field)[1:-1]))
         self.same("lfsynth", digest(field / "transforms.json") == digest(calls.field / "transforms.json"))
@@ -98,7 +98,7 @@ class OddNames:
         yield "lfsubmit"
 
     def dash_steps(self):
-        """Relative names with a leading dash, after = and after --."""
+        """Yields each program after a call whose relative names begin with a dash, behind "=" and behind "--"."""
         here = self.folder / "dashes in front"
         here.mkdir()
         shutil.copytree(self.calls.field, here / "-field")

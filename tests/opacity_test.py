@@ -27,7 +27,7 @@ FRAMES = 2
 LEAST_PSNR_DB = 38
 NOTHING = ["--background", "none"]
 
-# The charts in the middle of an arc of LF cameras, from the left and from the right.
+# The frames show the charts in the middle of an arc of LF cameras, from the left and from the right.
 PATH_YAML = """format: lfpath 1
 fps: 25
 frames: 2

@@ -110,7 +110,8 @@ void ExpectSilhouette(const Aperture& aperture, double focus_w, double depth_w) 
   frame.aperture = aperture;
   const SensorPlate plate = CollectFrame(field, testing::PointStore(field, point), frame);
   const Vec2 centre = *Project(frame.pinhole, point);
-  // A ray through lens position l meets the focus plane at l (1 - g / z) beside the point's image.
+  // A ray through lens position l meets the focus plane at l (1 - g / z) beside the point's image,
+  // with the focus distance g and the depth z of the point.
   const double elements_per_w = (1 - focus_w / depth_w) * rig.intrinsics.fx_px / focus_w;
   const double margin_w = 1.6 / std::abs(elements_per_w);
   const Aperture outer{aperture.radius_w + 2 * margin_w, aperture.blades, aperture.rotation_rad};

@@ -40,7 +40,7 @@ MEANS_SOMETHING = {"0", "-1", "[]"}
 
 
 def option_lines(text):
-    """Returns the lines of options, which two spaces and a dash begin."""
+    """Returns the lines of options, which begin with two spaces and a dash."""
     return [line for line in text.splitlines() if re.match(r"  -", line)]
 
 
@@ -64,7 +64,7 @@ class ProgramOptionsTest(ProgramTestCase):
         programs = {path.name for path in BIN.iterdir() if path.name.startswith("lf")}
         self.assertEqual(programs, set(OFFERED))
 
-    # Every start of a program loads them all. A library for all image formats once brought 250.
+    # Every start of a program loads all of its shared libraries. A library for all image formats once brought 250.
     def test_few_libraries_are_loaded(self):
         for name in OFFERED:
             with self.subTest(program=name):

@@ -1,7 +1,7 @@
 // Projects directions through a camera, for camera_models_test.py.
 //
 // stdin   fx fy cx cy  MODEL  p1 .. p12, then X Y Z of each direction
-// stdout  x y of its pixel, and X Y Z of the direction that this pixel's ray has; or "none"
+// stdout  for each direction, x y of its pixel and X Y Z of the ray of this pixel; or "none"
 // MODEL   none, radial-tangential, fisheye, fov, division, unified, thin-prism or
 //         radial-tangential-thin-prism
 #include <cstdio>

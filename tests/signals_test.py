@@ -23,7 +23,7 @@ SIGNALS = (signal.SIGKILL, signal.SIGTERM, signal.SIGKILL, signal.SIGINT)
 
 class SignalsTest(WritersCase):
     def seconds(self, program):
-        """Returns the time of the call when it runs alone."""
+        """Returns the seconds that the program's call takes when it runs alone."""
         out = self.folder / f"{program}-timed"
         out.mkdir()
         begin = time.monotonic()

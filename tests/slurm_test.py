@@ -81,7 +81,7 @@ class SlurmTest(ClusterTestCase):
         self.assertGreater((self.folder / "film.mp4").stat().st_size, 1000)
         self.assertTrue((self.film / "contact_sheet.png").exists())
 
-    # This happens at a time limit: the batch script passes the signal on, and its task is requeued.
+    # The signal is the one of a time limit: the batch script passes it on, and its task is requeued.
     def test_what_is_told_to_end_is_requeued(self):
         process = self.start(*self.OPTIONS, "--wait", "--lfrenderer", self.held_renderer([0]),
                              *self.ARGUMENTS)

@@ -18,7 +18,10 @@ ATTEMPTS = 2
 
 class WritersTest(WritersCase):
     def race(self, program, *more, may_refuse=()):
-        """may_refuse: words of exit code 2 for the program that begins after the other has ended"""
+        """Starts the ways "a" and "b" one shortly after the other; the files must be those of one of them.
+
+        may_refuse  words that a program with exit code 2 may print, because the other program has ended before it began
+        """
         expected = {way: self.expect(program, way) for way in "ab"}
         self.assertNotEqual(expected["a"], expected["b"])
         for attempt in range(ATTEMPTS):

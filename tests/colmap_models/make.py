@@ -3,10 +3,9 @@
 
 usage: make.py        needs COLMAP 3.8 (Debian 12: apt-get install --no-install-recommends colmap)
 
-ten_cameras: one camera of each model that COLMAP 3.8 and we have in common, two images each, all of
-which see the same twelve points. The 2D points are projected here, by the formulas of the models;
-This program fails unless COLMAP finds that their reprojection error is 0. COLMAP writes both the binary files and the
-text files, which it exports from them.
+ten_cameras: one camera of each model that COLMAP 3.8 and we have in common, two images each, all of which see the same
+twelve points. This program projects the points by the formulas of the models, and fails unless COLMAP finds that the
+reprojection error is 0. COLMAP writes the binary files and exports the text files from them.
 """
 import pathlib
 import re
