@@ -87,7 +87,7 @@ step() {
   return "$code"
 }
 
-# Prints the compiled sources, each with its time.
+# Prints the object files, each with the time of its last change.
 objects() {
   find "$root$checkout/build/release" -path '*/lf_precompiled*' -prune -o -name '*.o' -printf '%P %T@\n' | sort
 }

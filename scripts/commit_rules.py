@@ -7,7 +7,8 @@ import subprocess
 LAST_UNCHECKED = "159f65395b40"
 SUBJECT_LIMIT, LINES_WITHOUT_BODY = 72, 50
 SUBJECT = re.compile(r"^[\w./*{}-]+(?:, [\w./*{}-]+)*: (?P<verb>[A-Z][a-z]*)\b")
-# A verb in the past or in the progressive form, but not "Feed" or "Bring".
+# Matches a verb in the past or in the progressive form, but not "Feed". IMPERATIVE lists the imperatives that it
+# matches.
 NOT_IMPERATIVE = re.compile(r"[A-Za-z]{2}(?:[^e]ed|ing)$")
 IMPERATIVE = {"Embed", "Bring"}
 

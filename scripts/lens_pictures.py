@@ -4,8 +4,8 @@ beside LFRENDERER).
 
 usage: lens_pictures.py LFRENDERER FOLDER
 
-FOLDER  receives lens_cells.png     LF cameras of an uneven capture, and what each stands for
-                 lens_weights.jpg   lights: the truth; the capture without weights; with them
+FOLDER  receives lens_cells.png     LF cameras of an uneven capture, each with its part of the lens
+                 lens_weights.jpg   lights: the truth; the capture without and with lens weights
                  mosaic_ghosts.jpg  lights: the truth; mosaics by the estimator nearest; by default
 """
 import json

@@ -68,7 +68,7 @@ def cells_of(options):
 
 
 def begun(options, result):
-    """Returns the outcomes of a file that is resumed."""
+    """Returns the outcomes in the file that a call with --resume continues; an empty list for other calls."""
     if not options.resume or not options.output or not options.output.exists():
         return []
     old = json.loads(options.output.read_text())

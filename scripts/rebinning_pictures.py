@@ -38,7 +38,8 @@ class Capture:
         subprocess.run([program, *map(str, arguments), "-q"], check=True)
 
     def path(self, distances, focus, behind=0):
-        """Returns a path with a lens of `distances` spacings, half a spacing beside the middle, or behind it."""
+        """Returns a path whose lens is `distances` spacings wide, half a spacing beside the middle of the capture and
+        `behind` it."""
         poses = np.array([f["transform_matrix"] for f in self.field["frames"]])
         right, up, back = poses[len(poses) // 2, :3, :3].T
         position = poses[:, :3, 3].mean(axis=0) + 0.5 * SPACING * right + behind * back
