@@ -94,7 +94,7 @@ class Content:
         return 10 * math.log10(65535 ** 2 / error) if error > 0 else math.inf
 
     def code(self, *options, and_by_defaults=False):
-        """Returns one row: the report of lfcompressor, and the quality of frames."""
+        """Returns one row (the report of lfcompressor and the quality of the frames), and the frames."""
         store = self.folder / "field.lfs"
         report = json.loads(run(self.build / "bin/lfcompressor", self.field, "-o", store, "--overwrite", "--json",
                                 "--progress", "none", *options))

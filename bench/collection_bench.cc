@@ -106,9 +106,10 @@ class Arena {
  private:
   void CheckPeers(const Picture& ours) const {
     const int count = case_.spec.peer_image_count;
-    // Float positions put a few rays into the next element; the ray model's iteration, arcs and
-    // 32-bit ideal positions differ by 10^-4 px.
-    // Interpolated elements have other counts, but the picture is smooth, so that the means agree.
+    // The limits allow for float positions, which put a few rays into the next element, and for
+    // differences of 10^-4 px between the ray model's iteration, arcs and 32-bit ideal positions.
+    // With the mosaic filter, elements have other counts, but the picture is smooth, so that the
+    // means agree.
     const bool is_mosaic = case_.spec.filter == PixelFilter::kMosaic;
     const double count_limit = is_mosaic ? 1e9 : 0.002, mean_limit = is_mosaic ? 300 : 60;
     CheckSame("thesis", MakeThesisLoop(case_), count, ours, count_limit, mean_limit);

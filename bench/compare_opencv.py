@@ -15,8 +15,8 @@ LIGHTFIELD  8-bit sRGB images of parallel cameras in one plane; measured with th
 lfrenderer renders in three ways: by plain interpolation, which is what OpenCV's program does; as the thesis does; and
 by the defaults. The programs take turns. Figures are medians over the rounds, and ratios are computed from these
 medians. Rates are LF images per second of wall time. The time of lfrenderer includes everything: selection, developing
-and the EXR files of all frames; OpenCV's program writes one picture. Before anything is timed their first frames are
-compared.
+and the EXR files of all frames; OpenCV's program writes one picture. After the rounds, the first frames of
+lfrenderer are compared with those of OpenCV's program.
 """
 import argparse
 import json

@@ -40,7 +40,8 @@ class OurKernel : public Contender {
 //   is_weighed  every 8 x 8 elements weigh the rays of each LF image differently
 std::unique_ptr<OurKernel> MakeOurKernel(const KernelCase& kernel_case, bool is_weighed = false);
 
-// Evaluates the ray model for every pixel (or element), in double precision.
+// Makes the contender that evaluates the ray model for every pixel (or element), in double
+// precision.
 std::unique_ptr<Contender> MakeReference(const KernelCase& kernel_case);
 
 // Make the loop that the thesis describes (4.3.1), with Eigen. The second function makes the loop
@@ -48,7 +49,7 @@ std::unique_ptr<Contender> MakeReference(const KernelCase& kernel_case);
 std::unique_ptr<Contender> MakeThesisLoop(const KernelCase& kernel_case);
 std::unique_ptr<Contender> MakeThesisLoopNative(const KernelCase& kernel_case);
 
-// Demosaics, and calls warpPerspective and accumulate.
+// Makes the contender that demosaics, and calls warpPerspective and accumulate of OpenCV.
 std::unique_ptr<Contender> MakeOpenCv(const KernelCase& kernel_case);
 
 }  // namespace lf::bench

@@ -47,7 +47,7 @@ std::vector<PinholeCamera> MakeCameras(const CaseSpec& spec, double focal_length
   return cameras;
 }
 
-// Returns an unbounded picture, in coordinates of elements of a 1920-wide plate.
+// Returns the value of a picture without borders at a position in elements of a 1920-wide plate.
 double Pattern(double x, double y, int channel) {
   const auto wave = [](double t) {
     t -= std::floor(t);

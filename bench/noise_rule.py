@@ -103,7 +103,8 @@ class Measured:
 
 
 def percentile_of_normals(deviations, share):
-    """Returns the x that is exceeded in amount by 1 - `share` of normal numbers with these standard deviations."""
+    """Returns the x that a share `share` of normal numbers with these standard deviations does not exceed in absolute
+    value."""
     low, high = 0.0, 10 * deviations.max()
     erf = np.vectorize(math.erf)
     for _ in range(40):

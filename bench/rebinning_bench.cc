@@ -97,7 +97,7 @@ void InsertDenseHash(benchmark::State& state) {
 constexpr int kWidth = 1920, kHeight = 1080;
 constexpr int kStrip = 36;  // rows that the k-d tree computes; all rows would take a minute
 
-// Rays spread over lens and plate, and a kernel that finds about 16 of them.
+// Rays spread over lens and plate, and a kernel that finds about 16 of them for each lens point.
 struct FrameCase {
   std::vector<FrameRay> rays;
   QueryKernel kernel;

@@ -160,7 +160,8 @@ def measure(arguments, folder):
 
 
 def per_image_us(rows, row):
-    """Returns the CPU microseconds per LF image beyond the smallest light field; None for the smallest."""
+    """Returns the additional CPU microseconds per additional LF image, compared with the smallest light field; None
+    for it."""
     same = [other for other in rows if other["what"] == row["what"]]
     least = min(same, key=lambda other: other["count"])
     if least is row:

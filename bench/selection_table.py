@@ -26,7 +26,7 @@ def measure(build):
         rows.setdefault((int(cameras), int(frames), int(thousandths)), {})[KINDS[kind]] = run["s/frame"]
         if kind == "Select":
             rows[int(cameras), int(frames), int(thousandths)]["share"] = run["share"]
-    # All LF cameras are tested only for few frames, because the time of a frame does not depend on their number.
+    # All LF cameras are tested only for few frames, because each further frame takes the same time.
     asked = {key: row for key, row in rows.items() if "share" not in row}
     for (cameras, frames, aperture), row in asked.items():
         least = min(key for key in rows if (key[0], key[2]) == (cameras, aperture) and "share" in rows[key])

@@ -59,7 +59,7 @@ def synthesize(wavelet, low, high):
 
 
 def bands_of(wavelet, plane):
-    """Returns LL, HL, LH, HH."""
+    """Returns the subbands LL, LH, HL, HH; the first letter is of the horizontal direction."""
     low, high = (half.T for half in analyze(wavelet, plane.T))
     return [*analyze(wavelet, low), *analyze(wavelet, high)][::1]
 
@@ -70,7 +70,8 @@ def plane_of(wavelet, low_low, low_high, high_low, high_high):
 
 
 def norm(wavelet, path):
-    """Returns the norm of the synthesis of one coefficient, high or low, from the deepest level on."""
+    """Returns the norm of the signal that one coefficient becomes. path: for each level, from the deepest on, True
+    for high."""
     x = np.zeros(16)
     x[8] = 1
     for high in path:
@@ -79,7 +80,7 @@ def norm(wavelet, path):
 
 
 def squeezed(codes):
-    """Returns the bytes of a stream with the shortest packing."""
+    """Returns the number of bytes of a stream with the shortest packing."""
     numbers = (codes << 1) ^ (codes >> 31)
     best = None
     for per_byte, escape in ((1, 255), (2, 15), (4, 3)):
@@ -122,7 +123,7 @@ class Scheme:
         return mosaic
 
     def code(self, mosaic, step):
-        """Returns the bytes and the decoded mosaic."""
+        """Returns the number of bytes and the decoded mosaic."""
         size, decoded = 0, []
         for plane, weight in zip(*self.split(mosaic - 128.0)):
             levels, low = [], plane
@@ -148,7 +149,7 @@ class Scheme:
 
 
 def thesis(mosaic, threshold, levels):
-    """Returns the bytes compressed by xz, and the decoded mosaic."""
+    """Returns the number of bytes after compression by xz, and the decoded mosaic."""
     coefficients = []
     for i in range(4):
         low, details = mosaic[i // 2::2, i % 2::2].astype(float), []
