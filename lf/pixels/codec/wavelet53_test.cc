@@ -135,7 +135,9 @@ TEST(Wavelet53, RampsAreLowAlone) {
   EXPECT_EQ(analyzed.bands[kLowLow][3], 60);
 }
 
-// Norms as in the tables of JPEG 2000 (T.800, E.1.1 and others): sqrt(1.5), sqrt(23 / 32), ...
+// The synthesis filters are (1/2, 1, 1/2) and (-1/8, -1/4, 3/4, -1/4, -1/8), so that the first two
+// norms are sqrt(1.5) and sqrt(23 / 32). The others are those of two levels, filtered one after the
+// other.
 TEST(Wavelet53, NormsAreKnown) {
   EXPECT_NEAR(SynthesisNorm({false}), 1.2247, 1e-4);
   EXPECT_NEAR(SynthesisNorm({true}), 0.8478, 1e-4);

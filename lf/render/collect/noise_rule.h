@@ -5,8 +5,7 @@
 // NoiseMoments measures and that are reachable (ReachableElements). Each element contributes the
 // standard error of its noisiest channel. The unit is linear radiance before white balance and
 // colour matrix; 1 is the light field's white (1.0 in an EXR frame). Linear radiance is used,
-// because in it a noise means the same for dark and bright elements, and falls as 1 / sqrt(n) with
-// the number n of LF images.
+// because noise in it falls as 1 / sqrt(n) with the number n of LF images, whatever the brightness.
 #pragma once
 
 #include <cstdint>
