@@ -95,8 +95,9 @@ void AddRender(CLI::App& app, Arguments& a) {
                     "none, with --mode collect: packages lack the LF cameras beside the lens, and "
                     "can only be rendered with --lens-weights none.");
   picture.AddChoice("--estimator", a.estimator, {"auto", "nearest", "bilinear"},
-                    "Estimator of the later render, for the forecast\n"
-                    "Means the same as --estimator of lfrenderer.");
+                    "Estimator of the later render\n"
+                    "Means the same as --estimator of lfrenderer. The forecast and the pixels that "
+                    "lfcompressor --needed-pixels keeps depend on it.");
 }
 
 void AddQuality(CLI::App& app, Arguments& a) {

@@ -62,8 +62,9 @@ void AddOutput(CLI::App& app, Arguments& a) {
                    "png16: 16-bit, linear");
   output.AddFlag("--calibration-only", a.calibration_only, "Write transforms.json without images");
   output.Add("--truth PATH.yaml", a.truth,
-             "Also write the ground truth of this camera path\n"
-             "The frames in DIR/truth are what a real thin lens films of the scene itself.");
+             "Also write the frames that a real lens films\n"
+             "The frames in DIR/truth are the ground truth of this camera path: what a real thin "
+             "lens films of the scene itself.");
   output.AddFlag(
       "--overwrite", a.overwrite,
       "Replace a light field not written by lfsynth in DIR\n"

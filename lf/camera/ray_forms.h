@@ -39,13 +39,16 @@ RayForms MakeRayForms(const PinholeCamera& lf_camera, const RenderCamera& render
 RayForms MakeRayForms(const Mat3& direction, const Vec3& centre_world,
                       const RenderCamera& render_camera);
 
-// Half-planes of LF pixels: a ray can be accepted only if `form p <= 0` for all of them. They are
-// the projected lens and focus regions of thesis Fig. 4.5, written as the edges that bound them;
-// therefore nothing has to be projected through the plane of the LF camera. Rays with n.d > 0 and
-// rays with n.d < 0 have different half-planes: plane_sign, +1 or -1, is the sign of n.d.
+// A half-plane of LF pixels p is given by a form: a ray can be accepted only if `form p <= 0` for
+// all of its half-planes. Together they bound the part of the LF image that sees the lens and the
+// filmed region (thesis Fig. 4.5). The thesis projects lens and region into the LF image, which
+// fails for points beside the LF camera, in the plane through its centre and normal to its axis;
+// half-planes need no projection. Rays with n.d > 0 and rays with n.d < 0 have different
+// half-planes: plane_sign, +1 or -1, is the sign of n.d.
 
-// Returns the half-planes plane_sign n.d >= 0, `forward p` >= 0 and plane_sign `front p` >= 0, and
-// those of the four edges of the plate. Each edge is moved outwards by margin_px elements.
+// Returns the half-planes of the conditions plane_sign n.d >= 0, `forward p` >= 0 and
+// plane_sign `front p` >= 0 (the form of a condition a >= 0 is -a), and those of the four edges of
+// the plate. Each edge is moved outwards by margin_px elements.
 inline constexpr size_t kPlateHalfPlanes = 7;
 std::array<PixelForm, kPlateHalfPlanes> PlateHalfPlanes(const RayForms& forms,
                                                         const RenderCamera& render_camera,

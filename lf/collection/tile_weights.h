@@ -36,7 +36,8 @@ class TileWeights {
   uint32_t least_ = 0;
   uint32_t most_ = 0;
   std::vector<uint8_t> bytes_;
-  // The weights of one row of blocks, and the feather at the corners above and below them.
+  // One row of blocks, which are 8 x 8 elements of equal weight (kWeightBlock): the weight of each
+  // block, and the feather at the upper (above_) and the lower (below_) corners of the blocks.
   std::vector<uint8_t> of_blocks_;
   std::vector<uint16_t> above_;
   std::vector<uint16_t> below_;

@@ -57,9 +57,9 @@ class ImageOverlap {
   //   cells  must outlive this object
   ImageOverlap(const PinholeCamera& lf_camera, std::span<const IdealCell> cells, PixelReach reach);
 
-  // Returns true if no ray of the LF image points forward (doc/ray.md, 2), or if a line in the lens
-  // plane separates all rays from the lens. Rect() is then empty. Rect() may also be empty if this
-  // returns false.
+  // A quick test. If it returns true, Rect() is empty: no ray of the LF image points forward
+  // (doc/ray.md, 2), or a line in the lens plane separates all rays from the lens. It tries only
+  // one such line, so that Rect() may also be empty if it returns false.
   bool PlainlyMisses(const RenderCamera& render_camera) const;
 
   PixelRect Rect(const RenderCamera& render_camera) const {

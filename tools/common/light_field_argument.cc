@@ -78,7 +78,8 @@ void LightFieldArgument::AddOptionsTo(CLI::App& app) {
   input
       .Add("--background COLOUR", background,
            "Light behind transparent LF images\n"
-           "Used if alpha is opacity (--image-alpha straight or premultiplied).\n"
+           "Used if alpha is opacity (--image-alpha straight or premultiplied). As recorded: what "
+           "the calibration states, or the colour of the transparent pixels.\n"
            "COLOUR: black, white, or R,G,B in linear light, where 1 is display white\n"
            "none: frames have an alpha channel, and their colours are those before black")
       ->check(NotEmpty())

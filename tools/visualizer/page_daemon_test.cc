@@ -169,7 +169,8 @@ TEST(PageDaemon, AStreamTellsNewsUntilTheBoardIsClosed) {
   other.Whole();
 }
 
-// A response of HTTP/1.0 cannot be sent in chunks.
+// A response of HTTP/1.0 is not sent in chunks, so that no head of a chunk interrupts the long news
+// in the received text.
 TEST(PageDaemon, LongNewsArriveWhole) {
   Daemon daemon(Echo);
   Request stream(daemon, "GET", "events", "HTTP/1.0");

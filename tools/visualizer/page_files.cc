@@ -3,7 +3,8 @@
 #include <array>
 
 #ifdef LF_PAGE_FOLDER
-// Embeds a file as a section of the program: compilers need seconds for a megabyte of numbers.
+// Embeds a file in the section .rodata of the program. A C++ array would do the same, but compilers
+// need seconds for an array of a million bytes.
 #define LF_EMBED(symbol, file)                                                                     \
   asm(".section .rodata\n.global " #symbol "_begin\n" #symbol "_begin:\n.incbin \"" LF_PAGE_FOLDER \
       "/" file "\"\n.global " #symbol "_end\n" #symbol                                             \

@@ -1,5 +1,6 @@
-// The state of a task of a job, in a small file that is written by the process that runs the task;
-// and the progress of the task, read from the log of lfrenderer.
+// The state of a task of a job, in a small file: the lfsubmit process that runs the task writes it,
+// and `lfsubmit --resume` resets it. Also reads the progress of the task from the log of
+// lfrenderer.
 #pragma once
 
 #include <cstdint>

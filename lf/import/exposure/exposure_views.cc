@@ -19,8 +19,9 @@ constexpr double kClippedFrom = 0.97;
 
 int DivisorOf(int width_px, int most_px) { return std::max(1, (width_px + most_px - 1) / most_px); }
 
-// Returns the smallest stored 16-bit value that counts as clipped in the image. An integer file
-// clips at radiance 1, even if the light field can hold more.
+// Returns the smallest 16-bit radiance (light_field/model/radiance.h) that counts as clipped in the
+// LF image: kClippedFrom of the largest radiance that its file can hold. This is at most 1 in an
+// integer file, even if the light field can hold more.
 double ClippedFrom(const RadianceEncoding& encoding, const std::string& name) {
   const double of_file = std::min(encoding.max_radiance, DefaultMaxRadiance({&name, 1}));
   return encoding.pedestal + kClippedFrom * of_file * encoding.Scale();

@@ -62,8 +62,8 @@ Result<void> CheckNoStanfordOptions(const fs::path& path, const OpenOptions& opt
   const std::string_view option = StanfordOptionOf(options);
   if (option.empty()) return {};
   return UsageError(
-      fmt::format("{} is only for folders of images whose names lack this value, but {} contains "
-                  "its own: leave the option out",
+      fmt::format("{} is only for folders of images with Stanford names, which lack a part of the "
+                  "calibration, but {} is a complete calibration: leave the option out",
                   option, path.string()));
 }
 

@@ -48,27 +48,28 @@ struct OpenOptions {
 bool HoldsOwnAndItsSource(const std::filesystem::path& folder);
 
 // Opens a calibration file, or the first of these that it finds in a folder:
-// - transforms.json, or a .json file without M3x4 matrices:
+// - transforms.json, or any .json file without M3x4 matrices:
 //   light_field/transforms_json/transforms_json.h
 // - a COLMAP model, in the folder or in its sparse/0: light_field/colmap/read_colmap.h
-// - NAME_par.txt, only one in the folder: import/formats/read_middlebury.h
+// - NAME_par.txt: import/formats/read_middlebury.h
 // - poses_bounds.npy, or any .npy file: import/formats/read_llff.h
 // - parameters.cfg, or any .cfg file: import/formats/read_hci.h
 // - poses.json, or any .json file with M3x4 matrices: import/formats/read_aos.h
 // - images with Stanford names, in the folder or its images/: import/formats/read_stanford.h
-// - STORE.lfs, only one in the folder: storage/packed/packed_store_file.h
-// Files with other names than those before "or" are opened only if `path` names the file itself.
+// - STORE.lfs: storage/packed/packed_store_file.h
+// A file that a line names after "or any" is opened only if `path` is the file itself. Two
+// NAME_par.txt or two STORE.lfs in a folder are an error.
 //
 // If image files are not where the calibration says, they are searched by name in its folder or in
 // OpenOptions::images_folder; not every file is checked for existence. If the headers of up to 64
-// files show that all images are smaller than calibrated, intrinsics are scaled. If neither options
-// nor calibration state the meaning of alpha, it is derived from the pixels of three images
-// (light_field/model/alpha_evidence.h) and logged. For camera raw files, pattern, levels and
-// colours that the calibration does not state are read from the first file; a warning names what
-// this file does not state either.
-// kInput: there is no light field (the message lists what was searched for); an error of the
-// reader; images_folder has none of the images; camera raw files with an unknown Bayer pattern.
-// kUsage: an option that the calibration does not allow.
+// files show that all images are smaller than calibrated by the same whole factor, intrinsics are
+// scaled (light_field/model/find_images.h). If neither options nor calibration state the meaning of
+// alpha, it is derived from the pixels of up to three images (light_field/model/alpha_evidence.h)
+// and logged. For camera raw files, pattern, levels and colours that the calibration does not state
+// are read from the first file; a warning names what this file does not state either. kInput: there
+// is no light field (the message lists what was searched for); an error of the reader;
+// images_folder has none of the images; camera raw files with an unknown Bayer pattern. kUsage: an
+// option that the calibration does not allow.
 Result<LightField> OpenLightField(const std::filesystem::path& path,
                                   const OpenOptions& options = {});
 

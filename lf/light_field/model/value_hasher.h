@@ -12,7 +12,8 @@
 
 namespace lf {
 
-// Hashes values one after the other as bytes, with all bits of a number.
+// Hashes a sequence of values. Numbers are hashed as doubles without rounding, so that any
+// difference between two numbers changes the hash, except that -0 equals +0.
 class ValueHasher {
  public:
   void Add(double value) {

@@ -88,7 +88,9 @@ Result<Contents> TakeContents(std::string_view code) {
   contents.sections.resize(count);
   for (size_t i = 0; i < count; ++i)
     if (!TakeBytes(&code, sizes[i], &contents.sections[i]))
-      return InputError("is a damaged encoded LF image: it is shorter than its table of contents");
+      return InputError(
+          "is a damaged encoded LF image: it is shorter than its table of "
+          "contents states (truncated?)");
   if (!code.empty())
     return InputError("is a damaged encoded LF image: there are bytes behind its end");
   return contents;

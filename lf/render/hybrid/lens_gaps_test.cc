@@ -110,8 +110,8 @@ TEST(LensGaps, GapsAreDifferentAllOverThePlate) {
   EXPECT_LT(share, 0.95);
 }
 
-// A lens with a radius of three camera distances contains about 28 LF cameras. An LF camera that
-// sees only a part of the plate is counted.
+// A lens with a radius of three camera distances contains 32 LF cameras. All of them see the plate,
+// and all are counted.
 TEST(LensGaps, KnowsWhatIsCollectedAndWhen) {
   const LightField field = Grid();
   const LensGaps gaps = GapsOf(field, Frame(0.03));
