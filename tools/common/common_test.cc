@@ -127,10 +127,11 @@ TEST(Program, WholeNumbersAreDecimalAndFit) {
 class HelpTest : public testing::Test {
  protected:
   HelpTest() {
-    app_.formatter(std::make_shared<HelpFormatter>(HelpTexts{.summary = "Films.",
-                                                             .usage = "  film PATH [OPTIONS]",
-                                                             .examples = "  film a   # a comment",
-                                                             .details = "DIR receives frames."}));
+    app_.formatter(std::make_shared<HelpFormatter>(
+        HelpTexts{.summary = "Films.",
+                  .usage = "  film PATH [OPTIONS]",
+                  .examples = "  film a   # a comment",
+                  .details = "DIR receives\nframes.\n\nA list:\n  a  1\n  b  2"}));
     app_.set_help_flag("-h,--help", "Show help")->group(kHelpGroup);
     app_.option_defaults()->always_capture_default();
     OptionGroup running(app_, kRunningGroup), output(app_, kOutputGroup), rare(app_, "Rare");
@@ -181,7 +182,8 @@ TEST_F(HelpTest, HelpAllAddsDetailsFactsAndRareOptions) {
         "  --threads N       Threads (all)\n      Default: 0 (all); values: 0 to 512\n",
         "\nRare:\n  --slab-position X Y Z  Place of the slab\n      Default: empty\n",
         "  --format exr|png  File format (exr)\n      Default: exr\n",
-        "\nHelp:\n  -h, --help        Show help\n\nDIR receives frames.\n\nExit codes: 0 success,"})
+        "\nHelp:\n  -h, --help        Show help\n\nDIR receives frames.\n\nA list:\n  a  1\n  b  "
+        "2\n\nExit codes: 0 success,"})
     EXPECT_NE(help.find(part), std::string::npos) << part << "\nis not in\n" << help;
 }
 

@@ -36,6 +36,22 @@ CLI::Validator NotNan() {
       "");
 }
 
+// Returns the text with the lines of each paragraph joined. Empty lines and lines that begin with
+// two spaces stay as they are.
+std::string WithJoinedLines(std::string_view text) {
+  const auto stays = [](const std::string& line) { return line.empty() || line.starts_with("  "); };
+  std::string joined;
+  std::istringstream lines{std::string(text)};
+  bool is_in_paragraph = false;
+  for (std::string line; std::getline(lines, line);) {
+    const bool goes_on = is_in_paragraph && !stays(line);
+    if (!joined.empty()) joined += goes_on ? ' ' : '\n';
+    joined += line;
+    is_in_paragraph = !stays(line);
+  }
+  return joined;
+}
+
 // Returns the text with each line indented and wrapped at kWidth columns.
 std::string Wrapped(std::string_view text, size_t indent) {
   std::string wrapped;
@@ -206,7 +222,7 @@ std::string HelpFormatter::make_help(const CLI::App* app, std::string /*name*/,
     }
   }
   if (!is_all) return help + "\n" + HintAtTheRest(*app);
-  if (*texts_.details != '\0') help += "\n" + Wrapped(texts_.details, 0);
+  if (*texts_.details != '\0') help += "\n" + Wrapped(WithJoinedLines(texts_.details), 0);
   return help + "\n" + Wrapped(kExitCodes, 0);
 }
 

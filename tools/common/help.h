@@ -30,7 +30,7 @@ inline constexpr const char* kMeasuringGroup = "Measuring";
 inline constexpr const char* kHelpGroup = "Help";
 
 // The texts of one program. Lines that begin with two spaces, such as commands, are printed as they
-// are; other lines are wrapped.
+// are; other lines are wrapped, in `details` after the lines of a paragraph are joined.
 struct HelpTexts {
   const char* summary = "";   // one sentence: what the program does
   const char* usage = "";     // one line for each way to call the program

@@ -81,7 +81,7 @@ void LightFieldArgument::AddOptionsTo(CLI::App& app) {
            "Used if alpha is opacity (--image-alpha straight or premultiplied). As recorded: what "
            "the calibration states, or the colour of the transparent pixels.\n"
            "COLOUR: black, white, or R,G,B in linear light, where 1 is display white\n"
-           "none: frames have an alpha channel, and their colours are those before black")
+           "none: frames have an alpha channel, and their colours are those in front of black")
       ->check(NotEmpty())
       ->default_str("as recorded, else black");
   AddUnusualOptions(app, *this);
