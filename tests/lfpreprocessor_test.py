@@ -18,7 +18,7 @@ import unittest
 import numpy as np
 from PIL import Image
 
-from program_test_case import ProgramTestCase
+from program_test_case import ProgramTestCase, wait_until
 from small_field import (HEIGHT, SIDE, WALL_DEPTH, WIDTH, wall, write_field,
                          write_path)
 
@@ -173,18 +173,19 @@ class PackagesTest(ProgramTestCase):
     def test_a_killed_package_goes_on_and_leaves_others_alone(self):
         field, path = self.film(frames=40)
         _, files = self.packages(field, path, "--packages", "2")
-        out = self.folder / "out"
-        options = ["-o", out, "-q", "--no-contact-sheet", "--back-end", "reference",
-                   "--dump-every", "0.05s"]
-        run = subprocess.Popen([RENDERER, files[1], *map(str, options)])
-        partial = out / "partial" / "package-0001"
-        for _ in range(400):
-            if list(partial.glob("frame_*")) or run.poll() is not None:
+        # A killed render leaves nothing of unfinished frames if it was killed between two frames.
+        for attempt in range(30):
+            out = self.folder / f"out{attempt}"
+            options = ["-o", out, "-q", "--no-contact-sheet", "--back-end", "reference",
+                       "--dump-every", "0.05s"]
+            run = subprocess.Popen([RENDERER, files[1], *map(str, options)])
+            partial = out / "partial" / "package-0001"
+            wait_until(lambda: any(partial.glob("frame_*")), run)
+            run.send_signal(signal.SIGKILL)
+            run.wait()
+            left = sorted(p.name for p in partial.glob("frame_*"))
+            if left:
                 break
-            time.sleep(0.02)
-        run.send_signal(signal.SIGKILL)
-        run.wait()
-        left = sorted(p.name for p in partial.glob("frame_*"))
         self.assertTrue(left)
         self.succeeds(RENDERER, files[0], *options)
         self.assertEqual(sorted(p.name for p in partial.glob("frame_*")), left)
@@ -308,10 +309,7 @@ class PackagesTest(ProgramTestCase):
             out = self.folder / f"interrupted{attempt}"
             run = subprocess.Popen([PREPROCESSOR, field, path, "-o", out, "-q", "--packages", "3"],
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            for _ in range(1000):
-                if out.exists() or run.poll() is not None:
-                    break
-                time.sleep(0.002)
+            wait_until(out.exists, run)
             time.sleep(0.02 * attempt)
             run.send_signal(signal.SIGINT)
             codes.add(run.wait(60))

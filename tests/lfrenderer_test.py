@@ -12,12 +12,12 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 
 import numpy as np
 from PIL import Image
 
+from program_test_case import wait_until
 from small_field import HEIGHT, WIDTH, write_field, write_path
 
 RENDERER = None
@@ -235,10 +235,7 @@ class RendererTest(unittest.TestCase):
         process = subprocess.Popen([RENDERER, field, path, "-o", self.folder / "out", "--back-end",
                                     "reference"], stderr=subprocess.PIPE, text=True)
         # The folder is created after the signal handlers are installed.
-        for _ in range(6000):
-            if (self.folder / "out").exists():
-                break
-            time.sleep(0.01)
+        wait_until((self.folder / "out").exists, process)
         process.send_signal(signal.SIGINT)
         _, words = process.communicate(timeout=240)
         self.assertEqual(process.returncode, 5, words)

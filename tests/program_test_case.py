@@ -2,7 +2,15 @@
 import pathlib
 import subprocess
 import tempfile
+import time
 import unittest
+
+
+def wait_until(holds, process):
+    """Waits until holds() returns true or the process has ended. No time limit but that of the whole test ends the
+    wait, because a machine may be slow."""
+    while not holds() and process.poll() is None:
+        time.sleep(0.002)
 
 
 class ProgramTestCase(unittest.TestCase):

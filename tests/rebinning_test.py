@@ -19,7 +19,7 @@ import cv2
 import numpy as np
 
 import small_field
-from program_test_case import ProgramTestCase
+from program_test_case import ProgramTestCase, wait_until
 
 RENDERER = PREPROCESSOR = None
 
@@ -99,12 +99,12 @@ class RebinningTest(ProgramTestCase):
             self.assertFalse((self.folder / ("cut-" + mode) / "partial").exists())
 
     def interrupted(self, out, delay_s, *options):
-        """Returns pictures of the unfinished frames of a render that was interrupted."""
+        """Returns pictures of the unfinished frames of a render that was interrupted `delay_s` after it wrote the
+        first of them."""
         process = subprocess.Popen(list(map(str, self.command(out, *options))),
                                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
         partial = self.folder / out / "partial"
-        while process.poll() is None and not (partial / "lock").exists():
-            time.sleep(0.002)
+        wait_until(lambda: any(partial.glob("frame_*.exr")), process)
         time.sleep(delay_s)
         process.send_signal(signal.SIGTERM)
         process.communicate()
@@ -144,10 +144,7 @@ class RebinningTest(ProgramTestCase):
             list(map(str, self.command("out", "--mode", "rebin", "--dump-every", "0.001s"))),
             stderr=subprocess.PIPE)
         partial = self.folder / "out" / "partial"
-        for _ in range(1000):
-            if list(partial.glob("rays_*.rays")):
-                break
-            time.sleep(0.005)
+        wait_until(lambda: any(partial.glob("rays_*.rays")), process)
         process.kill()
         process.communicate()
         if not list(partial.glob("rays_*.rays")):
