@@ -7,7 +7,7 @@
 namespace lf {
 namespace {
 
-Intrinsics Camera(const Vignetting& vignetting) {
+Intrinsics IntrinsicsWith(const Vignetting& vignetting) {
   Intrinsics k;
   k.fx_px = k.fy_px = 500;
   k.cx_px = 400;
@@ -19,10 +19,10 @@ Intrinsics Camera(const Vignetting& vignetting) {
 }
 
 TEST(Vignetting, ACornerOfACentralCameraHasRadiusOne) {
-  EXPECT_EQ(RadiusSquared(Camera({}), 0, 0), 1);
-  EXPECT_EQ(RadiusSquared(Camera({}), 800, 600), 1);
-  EXPECT_EQ(RadiusSquared(Camera({}), 400, 300), 0);
-  EXPECT_DOUBLE_EQ(RadiusSquared(Camera({}), 800, 300), 0.64);
+  EXPECT_EQ(RadiusSquared(IntrinsicsWith({}), 0, 0), 1);
+  EXPECT_EQ(RadiusSquared(IntrinsicsWith({}), 800, 600), 1);
+  EXPECT_EQ(RadiusSquared(IntrinsicsWith({}), 400, 300), 0);
+  EXPECT_DOUBLE_EQ(RadiusSquared(IntrinsicsWith({}), 800, 300), 0.64);
 }
 
 TEST(Vignetting, TheFalloffIsThePolynomialOfEvenPowers) {
@@ -37,7 +37,7 @@ TEST(Vignetting, TheRangeHoldsEveryPixelAndIsReached) {
        {Vignetting{{-0.3, 0.05, -0.15}}, Vignetting{{-1.5, 2.2, -0.9}}, Vignetting{{-1, 0.8, 0}},
         Vignetting{{0.4, 0, 0}}, Vignetting{}})
     for (const double cx : {400., 100., -300.}) {
-      Intrinsics k = Camera(falloff);
+      Intrinsics k = IntrinsicsWith(falloff);
       k.cx_px = cx;
       const FalloffRange range = FalloffRangeOf(k);
       double least = 10, most = 0;
@@ -55,10 +55,10 @@ TEST(Vignetting, TheRangeHoldsEveryPixelAndIsReached) {
 }
 
 TEST(Vignetting, ALensThatLosesAllLightIsNone) {
-  EXPECT_TRUE(IsFalloff(Camera({{-0.9, 0, 0}})));
-  EXPECT_FALSE(IsFalloff(Camera({{-1, 0, 0}})));
-  EXPECT_FALSE(IsFalloff(Camera({{-4, 4, 0}})));  // F is 0 at r = 0.7, but 1 in the corners
-  EXPECT_FALSE(IsFalloff(Camera({{100, 0, 0}})));
+  EXPECT_TRUE(IsFalloff(IntrinsicsWith({{-0.9, 0, 0}})));
+  EXPECT_FALSE(IsFalloff(IntrinsicsWith({{-1, 0, 0}})));
+  EXPECT_FALSE(IsFalloff(IntrinsicsWith({{-4, 4, 0}})));  // F is 0 at r = 0.7, but 1 in the corners
+  EXPECT_FALSE(IsFalloff(IntrinsicsWith({{100, 0, 0}})));
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ using testing::DifferingCount;
 using testing::PlateFor;
 using testing::TotalCount;
 
-LfPixels RandomPixels(BayerPattern bayer, uint64_t seed) {
+LfPixels WholeImageNoise(BayerPattern bayer, uint64_t seed) {
   return testing::NoisePixels(kWholeImage, bayer, seed);
 }
 
@@ -81,7 +81,7 @@ TEST(PlanOnPatches, TheFastBackEndAgreesWithTheIteratingReference) {
   for (uint64_t seed = 0; seed < 140; ++seed) {
     const testing::CameraPair pair = testing::RandomDistortedPair(seed);
     const auto bayer = static_cast<BayerPattern>(seed % 5);
-    const LfPixels pixels = RandomPixels(bayer, seed);
+    const LfPixels pixels = WholeImageNoise(bayer, seed);
     const IdealPixels ideal(pair.lf_camera.intrinsics);
     SensorPlate expected = PlateFor(pair), fast = PlateFor(pair);
     const uint64_t accepted =
@@ -101,7 +101,7 @@ TEST(PlanOnPatches, TheFastBackEndAgreesWithTheIteratingReference) {
 TEST(PlanOnPatches, AnyCutGivesTheSameBits) {
   for (uint64_t seed = 0; seed < 70; ++seed) {
     const testing::CameraPair pair = testing::RandomDistortedPair(seed);
-    const LfPixels pixels = RandomPixels(BayerPattern::kGrbg, seed);
+    const LfPixels pixels = WholeImageNoise(BayerPattern::kGrbg, seed);
     const IdealPixels ideal(pair.lf_camera.intrinsics);
     SensorPlate whole = PlateFor(pair), tiles = PlateFor(pair), parts = PlateFor(pair);
     const uint64_t accepted = Scatter(pair, pixels, kWholeImage, ideal, 120, &whole);

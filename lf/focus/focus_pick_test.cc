@@ -14,18 +14,18 @@ constexpr int kSide = 9;
 constexpr double kSpacing_w = 0.02, kNear_w = 1.2, kFar_w = 2;
 
 // Returns a sum of waves without a period, in [0.2, 0.8].
-double Texture(double x, double y) {
+double Waves(double x, double y) {
   return 0.5 + 0.1 * (std::sin(31 * x + 17 * y) + std::sin(53 * y - 29 * x * x) +
                       std::sin(71 * x + 5 * y * y));
 }
 
 // Returns the light along a ray to a near wall, which covers only x < 0, or to the far wall behind
 // it. The right end of the far wall (x > 0.6) is white.
-double Light(const Ray& ray) {
+double LightOfWalls(const Ray& ray) {
   const Vec3 near = ray.At((kNear_w - ray.origin.z()) / ray.direction.z());
-  if (near.x() < 0) return Texture(near.x(), near.y());
+  if (near.x() < 0) return Waves(near.x(), near.y());
   const Vec3 far = ray.At((kFar_w - ray.origin.z()) / ray.direction.z());
-  return far.x() > 0.6 ? 0.9 : Texture(far.x() + 3, far.y());
+  return far.x() > 0.6 ? 0.9 : Waves(far.x() + 3, far.y());
 }
 
 // Draws the walls into the requested rectangle. The images have different gains.
@@ -42,7 +42,7 @@ class WallStore : public LfImageStore {
         const auto ray = RayOfLfPixel(camera, rect.x_begin + x + 0.5, rect.y_begin + y + 0.5);
         for (int c = 0; c < 3; ++c)
           pixels->radiance.at(x, y, c) =
-              static_cast<uint16_t>(ray ? 65535 * gain * Light(*ray) : 0);
+              static_cast<uint16_t>(ray ? 65535 * gain * LightOfWalls(*ray) : 0);
         pixels->radiance.at(x, y, LfPixels::kRayLane) = 1;
       }
     return {};
@@ -54,7 +54,7 @@ class WallStore : public LfImageStore {
   const LightField& field_;
 };
 
-LightField Wall(const Distortion& distortion = {}) {
+LightField FieldBeforeWalls(const Distortion& distortion = {}) {
   LightField field;
   field.intrinsics = {{300, 300, 160, 120, 0, 320, 240, distortion}};
   for (int i = 0; i < kSide * kSide; ++i) {
@@ -108,7 +108,7 @@ Result<FocusPick> PickInFrame(const LightField& field, double x_px, double y_px)
 }
 
 TEST(FocusPick, FindsBothWalls) {
-  const LightField field = Wall();
+  const LightField field = FieldBeforeWalls();
   for (const double y : {60.0, 130.0, 190.0}) {
     const auto far = PickInFrame(field, 200, y);
     ASSERT_TRUE(far) << far.error().message;
@@ -124,7 +124,7 @@ TEST(FocusPick, FindsBothWalls) {
 // Close to the edge of the near wall, half of the LF cameras see the near wall instead of the
 // point.
 TEST(FocusPick, AgreesWithThoseThatSeeThePoint) {
-  const auto far = PickInFrame(Wall(), 176, 120);
+  const auto far = PickInFrame(FieldBeforeWalls(), 176, 120);
   ASSERT_TRUE(far) << far.error().message;
   EXPECT_NEAR(far->point_world.z(), kFar_w, 0.03 * kFar_w);
 }
@@ -132,7 +132,7 @@ TEST(FocusPick, AgreesWithThoseThatSeeThePoint) {
 TEST(FocusPick, StartsFromPixelsOfLfImages) {
   for (const Distortion& distortion :
        {Distortion(), Distortion{DistortionModel::kRadialTangential, {-0.12, 0.03}}}) {
-    const LightField field = Wall(distortion);
+    const LightField field = FieldBeforeWalls(distortion);
     ThreadPool pool(1);
     const LfImageId id{33};
     const auto ray = RayOfLfPixel(field.Camera(id), 60, 70);
@@ -145,15 +145,15 @@ TEST(FocusPick, StartsFromPixelsOfLfImages) {
 }
 
 TEST(FocusPick, SaysWhyThereIsNone) {
-  const auto white = PickInFrame(Wall(), 290, 120);
+  const auto white = PickInFrame(FieldBeforeWalls(), 290, 120);
   ASSERT_FALSE(white);
   EXPECT_NE(white.error().message.find("texture"), std::string::npos) << white.error().message;
 
-  LightField few = Wall();
+  LightField few = FieldBeforeWalls();
   few.cameras.resize(3);
   EXPECT_FALSE(PickInFrame(few, 200, 120));
 
-  const LightField field = Wall();
+  const LightField field = FieldBeforeWalls();
   WallStore store(field);
   store.is_broken = true;
   ThreadPool pool(1);
@@ -172,7 +172,7 @@ TEST(FocusPick, TiltedPlanesHoldThePoint) {
 
 TEST(FocusPick, APatternThatRepeatsIsNotCertain) {
   ThreadPool pool(2);
-  const LightField field = Wall();
+  const LightField field = FieldBeforeWalls();
   const auto pick =
       FindFocus(field, LatticeStore(field), Frame(), RayOfPixel(Frame().pinhole, 160, 120), pool);
   if (!pick) return;

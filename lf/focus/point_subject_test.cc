@@ -40,10 +40,10 @@ double Blurred(RandomSequence* random, double depth_w) {
   return depth_w * (1 + random->Uniform(-0.01, 0.01));
 }
 
-Depth Wall(double depth_w) {
+Depth DepthOfWall(double depth_w) {
   return [=](RandomSequence* random, double, double) { return Blurred(random, depth_w); };
 }
-Depth CardBefore(double card_w, double wall_w, double half = 0.5) {
+Depth DepthOfCard(double card_w, double wall_w, double half = 0.5) {
   return [=](RandomSequence* random, double x, double y) {
     return Blurred(random, std::abs(x) < half && std::abs(y) < half ? card_w : wall_w);
   };
@@ -63,40 +63,40 @@ Depth Behind(Depth depth) {
   return [=](RandomSequence* random, double x, double y) { return -depth(random, x, y); };
 }
 
-struct Case {
+struct PointCase {
   std::string name;
   std::vector<Vec3> points;
   double depth_w = 0;      // 0: no depth can be found
   bool may_doubt = false;  // "not sure" is also right
 };
 
-std::vector<Case> Cases() {
+std::vector<PointCase> PointCases() {
   return {
-      {"wall", Draw(600, Wall(5)), 5},
-      {"wall, few points", Draw(40, Wall(5)), 5},
-      {"wall, many points", Draw(2048, Wall(0.02)), 0.02},
-      {"wall, far", Draw(300, Wall(4000)), 4000},
-      {"wall, a third outliers", Draw(300, WithOutliers(Wall(2), 0.33)), 2},
-      {"wall, two thirds outliers", Draw(300, WithOutliers(Wall(2), 0.67)), 2, true},
-      {"card before a wall", Draw(600, CardBefore(2, 6)), 2, true},
-      {"card before a near wall", Draw(600, CardBefore(2, 2.6, 0.7)), 2},
-      {"small card before a wall", Draw(600, CardBefore(2, 6, 0.3)), 6, true},
-      {"card with outliers", Draw(400, WithOutliers(CardBefore(3, 9, 0.7), 0.2)), 3},
-      {"large card", Draw(600, CardBefore(1, 8, 0.8)), 1},
-      {"card, few points", Draw(150, CardBefore(2, 6, 0.7)), 2},
+      {"wall", Draw(600, DepthOfWall(5)), 5},
+      {"wall, few points", Draw(40, DepthOfWall(5)), 5},
+      {"wall, many points", Draw(2048, DepthOfWall(0.02)), 0.02},
+      {"wall, far", Draw(300, DepthOfWall(4000)), 4000},
+      {"wall, a third outliers", Draw(300, WithOutliers(DepthOfWall(2), 0.33)), 2},
+      {"wall, two thirds outliers", Draw(300, WithOutliers(DepthOfWall(2), 0.67)), 2, true},
+      {"card before a wall", Draw(600, DepthOfCard(2, 6)), 2, true},
+      {"card before a near wall", Draw(600, DepthOfCard(2, 2.6, 0.7)), 2},
+      {"small card before a wall", Draw(600, DepthOfCard(2, 6, 0.3)), 6, true},
+      {"card with outliers", Draw(400, WithOutliers(DepthOfCard(3, 9, 0.7), 0.2)), 3},
+      {"large card", Draw(600, DepthOfCard(1, 8, 0.8)), 1},
+      {"card, few points", Draw(150, DepthOfCard(2, 6, 0.7)), 2},
       {"wall, points behind the camera",
        [] {
-         std::vector<Vec3> points = Draw(200, Wall(4));
-         for (const Vec3& point : Draw(400, Behind(Wall(3)))) points.push_back(point);
+         std::vector<Vec3> points = Draw(200, DepthOfWall(4));
+         for (const Vec3& point : Draw(400, Behind(DepthOfWall(3)))) points.push_back(point);
          return points;
        }(),
        4},
       {"hopeless: no points", {}},
-      {"hopeless: too few points", Draw(15, Wall(5))},
-      {"hopeless: all behind the camera", Draw(300, Behind(Wall(5)))},
+      {"hopeless: too few points", Draw(15, DepthOfWall(5))},
+      {"hopeless: all behind the camera", Draw(300, Behind(DepthOfWall(5)))},
       {"hopeless: anywhere", Draw(600, AnywhereBetween(1, 20))},
       {"hopeless: anywhere, few", Draw(60, AnywhereBetween(1, 20))},
-      {"hopeless: outliers alone", Draw(600, WithOutliers(Wall(5), 1))},
+      {"hopeless: outliers alone", Draw(600, WithOutliers(DepthOfWall(5), 1))},
       {"hopeless: two walls in stripes",
        Draw(600, [](RandomSequence* random, double x,
                     double) { return Blurred(random, std::fmod(x + 1, 0.2) < 0.1 ? 2 : 5); })},
@@ -104,8 +104,8 @@ std::vector<Case> Cases() {
 }
 
 TEST(FindPointSubject, IsRightOrNotSureOnTwentyCaptures) {
-  ASSERT_EQ(Cases().size(), 20u);
-  for (const Case& one : Cases()) {
+  ASSERT_EQ(PointCases().size(), 20u);
+  for (const PointCase& one : PointCases()) {
     SCOPED_TRACE(one.name);
     const Subject subject = FindPointSubject(Camera(), one.points);
     if (one.depth_w == 0) {
@@ -120,7 +120,7 @@ TEST(FindPointSubject, IsRightOrNotSureOnTwentyCaptures) {
 }
 
 TEST(FindPointSubject, OffersTheWallBehindTheCard) {
-  const Subject subject = FindPointSubject(Camera(), Draw(600, CardBefore(2, 6, 0.7)));
+  const Subject subject = FindPointSubject(Camera(), Draw(600, DepthOfCard(2, 6, 0.7)));
   ASSERT_GE(subject.depths.size(), 2u);
   EXPECT_NEAR(subject.depths[1].distance_w, 6, 0.1);
   EXPECT_NEAR(subject.near_w, 2, 0.05);
@@ -136,16 +136,16 @@ TEST(FindPointSubject, PointsOutsideTheImageDoNotCount) {
 }
 
 TEST(PointsContradict, OnlyWherePointsAreManyAndNoneIsNear) {
-  const std::vector<Vec3> wall = Draw(200, Wall(5)), few = Draw(20, Wall(5));
+  const std::vector<Vec3> wall = Draw(200, DepthOfWall(5)), few = Draw(20, DepthOfWall(5));
   EXPECT_FALSE(PointsContradict(Camera(), wall, 5.2));
   EXPECT_TRUE(PointsContradict(Camera(), wall, 2));
   EXPECT_TRUE(PointsContradict(Camera(), wall, 8));
   EXPECT_FALSE(PointsContradict(Camera(), few, 2));
   EXPECT_FALSE(PointsContradict(Camera(), {}, 2));
-  EXPECT_FALSE(PointsContradict(Camera(), Draw(400, Behind(Wall(5))), 2));
+  EXPECT_FALSE(PointsContradict(Camera(), Draw(400, Behind(DepthOfWall(5))), 2));
   // Few of the points belong to the subject, most belong to the wall behind it.
-  EXPECT_FALSE(PointsContradict(Camera(), Draw(2000, CardBefore(2, 6, 0.2)), 2));
-  EXPECT_TRUE(PointsContradict(Camera(), Draw(2000, CardBefore(2, 6, 0.2)), 3.5));
+  EXPECT_FALSE(PointsContradict(Camera(), Draw(2000, DepthOfCard(2, 6, 0.2)), 2));
+  EXPECT_TRUE(PointsContradict(Camera(), Draw(2000, DepthOfCard(2, 6, 0.2)), 3.5));
 }
 
 }  // namespace

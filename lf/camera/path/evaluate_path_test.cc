@@ -4,16 +4,13 @@
 
 #include <cmath>
 
+#include "lf/camera/path/test_near.h"
 #include "lf/camera/path/test_path.h"
 
 namespace lf {
 namespace {
 
 using testing::AssertionResult;
-
-void ExpectNear(const Vec3& a, const Vec3& b, double tolerance = 1e-12) {
-  EXPECT_NEAR((a - b).norm(), 0, tolerance) << a.transpose() << " and " << b.transpose();
-}
 
 TEST(Path, FrameOneIsTimeZero) {
   const auto path = TestPath{}.Parse();

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "lf/camera/path/test_near.h"
+
 namespace lf {
 namespace {
 
@@ -10,8 +12,6 @@ constexpr double kQuarter = kPi / 2;
 Vec3 Turned(double yaw, double pitch, double roll, const Vec3& axis_camera) {
   return WorldFromCam(yaw, pitch, roll) * axis_camera;
 }
-
-void ExpectNear(const Vec3& a, const Vec3& b) { EXPECT_NEAR((a - b).norm(), 0, 1e-12); }
 
 const Vec3 kRight = Vec3::UnitX();
 const Vec3 kDown = Vec3::UnitY();

@@ -7,7 +7,7 @@
 namespace lf {
 namespace {
 
-ClusterJob SomeJob() {
+ClusterJob SlurmJob() {
   ClusterJob job;
   job.output_folder = "/films/a film";
   job.submitter = "/bin/lfsubmit";
@@ -22,17 +22,17 @@ ClusterJob SomeJob() {
 }
 
 TEST(SlurmScripts, SayWhatTheJobAsksFor) {
-  const std::string script = PackagesScript(SomeJob());
+  const std::string script = PackagesScript(SlurmJob());
   for (const char* line :
        {"--cpus-per-task=8\n", "#SBATCH --mem=4352M\n", "#SBATCH --time=1:30:00\n",
         "#SBATCH --partition=long\n", "#SBATCH --requeue\n", "#SBATCH --signal=B:TERM@120\n",
         "--run-package \"$SLURM_ARRAY_TASK_ID\" '/films/a film' &", "sbatch --array=0-2 "})
     EXPECT_NE(script.find(line), std::string::npos) << line << "\n" << script;
-  EXPECT_NE(FinishingScript(SomeJob()).find("--run-finish '/films/a film'\n"), std::string::npos);
+  EXPECT_NE(FinishingScript(SlurmJob()).find("--run-finish '/films/a film'\n"), std::string::npos);
 }
 
 TEST(SlurmScripts, AreBash) {
-  for (const std::string& script : {PackagesScript(SomeJob()), FinishingScript(SomeJob())}) {
+  for (const std::string& script : {PackagesScript(SlurmJob()), FinishingScript(SlurmJob())}) {
     const Result<CommandAnswer> answer = RunCommand({"bash", "-n", "-c", script}, 10);
     ASSERT_TRUE(answer.has_value()) << answer.error().message;
     EXPECT_EQ(answer->exit_code, 0) << answer->complaints;
@@ -48,7 +48,7 @@ TEST(SlurmQueue, TellsTheTasksOfTheJob) {
   const std::vector<QueuedTask> tasks = ParseQueue(
       "12|0|RUNNING|n3|None\n15|2|PENDING||Resources\n16|N/A|PENDING||Dependency\n"
       "99|1|RUNNING|n1|None\n12|77|RUNNING|n1|None\nrubbish\n\n",
-      SomeJob());
+      SlurmJob());
   ASSERT_EQ(tasks.size(), 3u);
   EXPECT_EQ(tasks[0].number, 0u);
   EXPECT_EQ(tasks[0].node, "n3");

@@ -5,7 +5,7 @@
 namespace lf {
 namespace {
 
-LightField Field(size_t count) {
+LightField FieldOfSize(size_t count) {
   LightField field;
   field.intrinsics.push_back({100, 100, 50, 50, 0, 100, 100});
   field.folder = "capture";
@@ -33,7 +33,7 @@ std::vector<float> Gains(const LightField& field) {
 }
 
 void ExpectError(const std::vector<StatedExposure>& stated, const std::vector<std::string>& words) {
-  LightField field = Field(stated.size());
+  LightField field = FieldOfSize(stated.size());
   const Result<ExifGains> gains = GainFromExif(stated, &field);
   ASSERT_FALSE(gains);
   for (const std::string& word : words)
@@ -42,7 +42,7 @@ void ExpectError(const std::vector<StatedExposure>& stated, const std::vector<st
 }
 
 TEST(ExifGains, MakeAllAsBrightAsTheMedianOne) {
-  LightField field = Field(5);
+  LightField field = FieldOfSize(5);
   const ExifGains found =
       GainFromExif(
           Stated(
@@ -57,13 +57,13 @@ TEST(ExifGains, MakeAllAsBrightAsTheMedianOne) {
 }
 
 TEST(ExifGains, OfTwoInTheMiddleTheDarkerIsTheReference) {
-  LightField field = Field(2);
+  LightField field = FieldOfSize(2);
   GainFromExif(Stated({{0.04, 4, 100}, {0.01, 4, 100}}), &field).value();
   EXPECT_EQ(Gains(field), (std::vector<float>{0.25F, 1}));
 }
 
 TEST(ExifGains, ALensThatTellsNoFNumberIsTakenToKeepIt) {
-  LightField field = Field(2);
+  LightField field = FieldOfSize(2);
   const ExifGains found = GainFromExif(Stated({{0.04, {}, 100}, {0.01, {}, 100}}), &field).value();
   EXPECT_FALSE(found.has_f_numbers);
   EXPECT_EQ(Gains(field), (std::vector<float>{0.25F, 1}));

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kWidth = 240, kHeight = 160;
 constexpr double kFocal_px = 220, kPitch_w = 0.05, kWall_w = 2;
-constexpr Vignetting kTrueFalloff{{-0.3, 0.05, -0.15}};  // leaves 60 % of the light in the corner
+constexpr Vignetting kLensFalloff{{-0.3, 0.05, -0.15}};  // leaves 60 % of the light in the corner
 
 // A grid of unevenly exposed cameras in front of a textured wall, with the falloff of their lens
 // and noise.
@@ -76,13 +76,13 @@ class UnevenStore : public LfImageStore {
 
   LightField field;
   std::vector<std::array<double, 3>> exposures;
-  Vignetting falloff = kTrueFalloff;
+  Vignetting falloff = kLensFalloff;
   bool has_watermark = false, has_windows = false, is_blank = false;
   LfImageId broken{1000000};
 };
 
 // Returns the largest relative error of a gain, up to a factor that all gains have in common.
-double WorstGain(const MatchedExposure& matched, const UnevenStore& store) {
+double WorstMatchedGain(const MatchedExposure& matched, const UnevenStore& store) {
   double worst = 0;
   for (size_t c = 0; c < 3; ++c) {
     double sum = 0;
@@ -95,11 +95,11 @@ double WorstGain(const MatchedExposure& matched, const UnevenStore& store) {
   return worst;
 }
 
-double WorstFalloff(const MatchedExposure& matched) {
+double WorstMatchedFalloff(const MatchedExposure& matched) {
   double worst = 0;
   for (int i = 0; i <= 20; ++i)
     worst = std::max(
-        worst, std::abs(matched.falloffs[0].Falloff(i / 20.) / kTrueFalloff.Falloff(i / 20.) - 1));
+        worst, std::abs(matched.falloffs[0].Falloff(i / 20.) / kLensFalloff.Falloff(i / 20.) - 1));
   return worst;
 }
 
@@ -115,8 +115,8 @@ TEST(MatchExposure, GainsAndFalloffAreRestoredToHalfAPercent) {
   store.has_watermark = true;
   const Result<MatchedExposure> matched = Match(store);
   ASSERT_TRUE(matched) << matched.error().message;
-  EXPECT_LT(WorstGain(*matched, store), 0.005);
-  EXPECT_LT(WorstFalloff(*matched), 0.005);
+  EXPECT_LT(WorstMatchedGain(*matched, store), 0.005);
+  EXPECT_LT(WorstMatchedFalloff(*matched), 0.005);
   ASSERT_TRUE(matched->falloff);
   EXPECT_NEAR(matched->falloff->corner_min, 0.6, 0.003);
   EXPECT_GT(matched->step_before, 0.1);
@@ -130,18 +130,18 @@ TEST(MatchExposure, ClippedLightTellsNothing) {
   store.has_windows = true;
   const Result<MatchedExposure> matched = Match(store);
   ASSERT_TRUE(matched) << matched.error().message;
-  EXPECT_LT(WorstGain(*matched, store), 0.005);
-  EXPECT_LT(WorstFalloff(*matched), 0.01);
+  EXPECT_LT(WorstMatchedGain(*matched, store), 0.005);
+  EXPECT_LT(WorstMatchedFalloff(*matched), 0.01);
 }
 
 TEST(MatchExposure, AFalloffThatIsStatedIsKept) {
   UnevenStore store(4);
-  store.field.intrinsics[0].vignetting = kTrueFalloff;
+  store.field.intrinsics[0].vignetting = kLensFalloff;
   const Result<MatchedExposure> matched = Match(store, false);
   ASSERT_TRUE(matched) << matched.error().message;
-  EXPECT_EQ(matched->falloffs[0], kTrueFalloff);
+  EXPECT_EQ(matched->falloffs[0], kLensFalloff);
   EXPECT_FALSE(matched->falloff);
-  EXPECT_LT(WorstGain(*matched, store), 0.005);
+  EXPECT_LT(WorstMatchedGain(*matched, store), 0.005);
 }
 
 TEST(MatchExposure, AnEvenCaptureStaysAsItIs) {
@@ -194,10 +194,10 @@ TEST(ApplyExposure, RecordedLightIsNotClippedByIt) {
   UnevenStore store;
   MatchedExposure matched;
   matched.gains.assign(store.field.size(), ChannelGains(1, 1.2f, 0.9f));
-  matched.falloffs = {kTrueFalloff};
+  matched.falloffs = {kLensFalloff};
   ApplyExposure(matched, &store.field);
   EXPECT_EQ(store.field.cameras[2].gain[1], 1.2f);
-  EXPECT_EQ(store.field.intrinsics[0].vignetting, kTrueFalloff);
+  EXPECT_EQ(store.field.intrinsics[0].vignetting, kLensFalloff);
   EXPECT_GE(store.field.encoding.max_radiance, 1.2 / 0.6 - 1e-6);
   EXPECT_LE(store.field.encoding.max_radiance, 1.2 / 0.6 + 0.011);
   store.field.image_names[0] = "drawn.exr";
