@@ -26,14 +26,14 @@ std::string Bytes(std::initializer_list<T> values) {
   return bytes;
 }
 
-std::string ErrorOf(const std::string& bytes) {
+std::string NpyErrorOf(const std::string& bytes) {
   const Result<NpyArray> array = ParseNpy(bytes);
   EXPECT_FALSE(array);
   return array ? "" : array.error().message;
 }
 
-void ExpectError(const std::string& bytes, const std::string& part) {
-  const std::string message = ErrorOf(bytes);
+void ExpectNpyError(const std::string& bytes, const std::string& part) {
+  const std::string message = NpyErrorOf(bytes);
   EXPECT_NE(message.find(part), std::string::npos) << part << "\nnot in: " << message;
 }
 
@@ -66,12 +66,12 @@ TEST(Npy, OtherTypesAndOrdersAreErrorsThatNameThem) {
   const auto header = [](const std::string& descr, const std::string& order) {
     return "{'descr': " + descr + ", 'fortran_order': " + order + ", 'shape': (2,)}";
   };
-  ExpectError(Npy(header("'>f8'", "False"), kValues), "type '>f8': expected '<f8' or '<f4'");
-  ExpectError(Npy(header("'|O'", "False"), kValues), "type '|O'");
-  ExpectError(Npy(header("[('x', '<f8')]", "False"), kValues), "has the .npy header");
-  ExpectError(Npy(header("'<f8'", "True"), kValues), "Fortran order");
-  ExpectError(Npy(header("'<f8'", "1"), kValues), "has the .npy header");
-  ExpectError(Npy(kTwo, kValues, 3), "format 3");
+  ExpectNpyError(Npy(header("'>f8'", "False"), kValues), "type '>f8': expected '<f8' or '<f4'");
+  ExpectNpyError(Npy(header("'|O'", "False"), kValues), "type '|O'");
+  ExpectNpyError(Npy(header("[('x', '<f8')]", "False"), kValues), "has the .npy header");
+  ExpectNpyError(Npy(header("'<f8'", "True"), kValues), "Fortran order");
+  ExpectNpyError(Npy(header("'<f8'", "1"), kValues), "has the .npy header");
+  ExpectNpyError(Npy(kTwo, kValues, 3), "format 3");
 }
 
 TEST(Npy, BrokenFilesAreErrors) {
@@ -79,20 +79,20 @@ TEST(Npy, BrokenFilesAreErrors) {
   EXPECT_TRUE(ParseNpy(good));
   for (size_t size = 0; size < good.size(); ++size)
     EXPECT_FALSE(ParseNpy(good.substr(0, size))) << size;
-  ExpectError("", "is no .npy file");
-  ExpectError("PK\x03\x04 an .npz file", "is no .npy file");
-  ExpectError(good.substr(0, 9), "truncated");
-  ExpectError(good.substr(0, 30), "truncated");
-  ExpectError(good.substr(0, good.size() - 1), "holds 15 bytes of numbers: expected 16");
-  ExpectError(good + "x", "holds 17 bytes of numbers: expected 16");
-  ExpectError(Npy("", kValues), "has the .npy header \"\"");
-  ExpectError(Npy("{'shape': (2,)}", kValues), "has the .npy header");
-  ExpectError(Npy(kTwo + "x", kValues), "has the .npy header");
-  ExpectError(Npy("{'descr': '<f8', 'descr': '<f8'}", kValues), "has the .npy header");
-  ExpectError(Npy(std::string("{'descr\0\n': 1}", 14), kValues), "{'descr");
+  ExpectNpyError("", "is no .npy file");
+  ExpectNpyError("PK\x03\x04 an .npz file", "is no .npy file");
+  ExpectNpyError(good.substr(0, 9), "truncated");
+  ExpectNpyError(good.substr(0, 30), "truncated");
+  ExpectNpyError(good.substr(0, good.size() - 1), "holds 15 bytes of numbers: expected 16");
+  ExpectNpyError(good + "x", "holds 17 bytes of numbers: expected 16");
+  ExpectNpyError(Npy("", kValues), "has the .npy header \"\"");
+  ExpectNpyError(Npy("{'shape': (2,)}", kValues), "has the .npy header");
+  ExpectNpyError(Npy(kTwo + "x", kValues), "has the .npy header");
+  ExpectNpyError(Npy("{'descr': '<f8', 'descr': '<f8'}", kValues), "has the .npy header");
+  ExpectNpyError(Npy(std::string("{'descr\0\n': 1}", 14), kValues), "{'descr");
   std::string long_header = Npy(kTwo, kValues, 2);
   long_header[11] = '\x7f';
-  ExpectError(long_header, "expected at most 65535");
+  ExpectNpyError(long_header, "expected at most 65535");
 }
 
 TEST(Npy, ShapesBeyondTheFileAreErrors) {
@@ -100,14 +100,14 @@ TEST(Npy, ShapesBeyondTheFileAreErrors) {
     return Npy("{'descr': '<f8', 'fortran_order': False, 'shape': " + size + "}", kValues);
   };
   EXPECT_TRUE(ParseNpy(shape("(2, 1, 1, 1)")));
-  ExpectError(shape("(0,)"), "has the shape (0)");
-  ExpectError(shape("(3, 0)"), "has the shape (3, 0)");
-  ExpectError(shape("(4294967295, 4294967295)"), "1 to 2^32 numbers");
-  ExpectError(shape("(99999999999999999999,)"), "has the .npy header");
-  ExpectError(shape("(-2,)"), "has the .npy header");
-  ExpectError(shape("(2, 1, 1, 1, 1)"), "has the .npy header");
-  ExpectError(shape("(2"), "has the .npy header");
-  ExpectError(shape("()"), "holds 16 bytes of numbers: expected 8");
+  ExpectNpyError(shape("(0,)"), "has the shape (0)");
+  ExpectNpyError(shape("(3, 0)"), "has the shape (3, 0)");
+  ExpectNpyError(shape("(4294967295, 4294967295)"), "1 to 2^32 numbers");
+  ExpectNpyError(shape("(99999999999999999999,)"), "has the .npy header");
+  ExpectNpyError(shape("(-2,)"), "has the .npy header");
+  ExpectNpyError(shape("(2, 1, 1, 1, 1)"), "has the .npy header");
+  ExpectNpyError(shape("(2"), "has the .npy header");
+  ExpectNpyError(shape("()"), "holds 16 bytes of numbers: expected 8");
 }
 
 }  // namespace

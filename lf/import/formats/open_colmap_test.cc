@@ -16,8 +16,6 @@ namespace lf {
 namespace {
 namespace fs = std::filesystem;
 
-#define EXPECT_HAS(message, part) EXPECT_NE((message).find(part), std::string::npos) << (message)
-
 // A model that COLMAP itself made (with tests/colmap_models/make.py): one camera of each camera
 // model, with two images each.
 const fs::path kTenCameras = fs::path(LF_COLMAP_MODELS) / "ten_cameras";

@@ -14,13 +14,13 @@ namespace lf {
 namespace {
 namespace fs = std::filesystem;
 
-LightField Parsed(const std::string& text) {
+LightField ParsedAos(const std::string& text) {
   Result<LightField> light_field = ParseAosPoses(text, "data/poses.json");
   EXPECT_TRUE(light_field) << light_field.error().message << "\n" << text;
   return light_field ? *std::move(light_field) : LightField{};
 }
 
-void ExpectError(const std::string& text, const std::vector<std::string>& parts) {
+void ExpectAosError(const std::string& text, const std::vector<std::string>& parts) {
   const Result<LightField> light_field = ParseAosPoses(text, "data/poses.json");
   ASSERT_FALSE(light_field) << text;
   const std::string& message = light_field.error().message;
@@ -33,11 +33,11 @@ std::string Entry(const std::string& name, const std::string& matrix) {
   return R"({"imagefile": ")" + name + R"(", "M3x4": )" + matrix + "}";
 }
 
-constexpr const char* kUnturned = "[[1,0,0,1], [0,1,0,2], [0,0,1,3]]";
+constexpr const char* kUnturnedMatrix = "[[1,0,0,1], [0,1,0,2], [0,0,1,3]]";
 
 TEST(Aos, MatricesAreCamFromWorldWithNumbersOrStrings) {
-  const LightField light_field = Parsed(
-      R"({"site": "x", "images": [)" + Entry("a.png", kUnturned) + "," +
+  const LightField light_field = ParsedAos(
+      R"({"site": "x", "images": [)" + Entry("a.png", kUnturnedMatrix) + "," +
       Entry("b.tiff", R"([["0", "-1", "0.0", "1e1"], [1,0,0,-2.5], ["0","0",1,"3"]])") + "]}");
   ASSERT_EQ(light_field.size(), 2u);
   EXPECT_EQ(light_field.image_names, (std::vector<std::string>{"a.png", "b.tiff"}));
@@ -49,11 +49,11 @@ TEST(Aos, MatricesAreCamFromWorldWithNumbersOrStrings) {
 // above the ground.
 TEST(Aos, RotationsOfNineDigitsAreRotationsAgain) {
   const LightField light_field =
-      Parsed(R"({"images": [)" +
-             Entry("a.tiff", R"([["0.559273303", "-0.826043189", "0.0697564408", "4.15129662"],
+      ParsedAos(R"({"images": [)" +
+                Entry("a.tiff", R"([["0.559273303", "-0.826043189", "0.0697564408", "4.15129662"],
                           ["0.812924504", "0.530011594", "-0.241332605", "-14.9073343"],
                           ["0.162379429", "0.19167763", "0.967932045", "55.9572182"]])") +
-             "]}");
+                "]}");
   const RigidTransform& pose = light_field.cameras[0].cam_from_world;
   EXPECT_LT((pose.rotation * pose.rotation.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff(),
             1e-15);
@@ -62,22 +62,23 @@ TEST(Aos, RotationsOfNineDigitsAreRotationsAgain) {
 }
 
 TEST(Aos, WhatIsOfAnotherFormIsAnError) {
-  ExpectError("{\"images\": [", {"is not JSON"});
-  ExpectError("[]", {"a list \"images\""});
-  ExpectError("{}", {"a list \"images\""});
-  ExpectError(R"({"images": []})", {"a list \"images\""});
-  ExpectError(R"({"images": 7})", {"a list \"images\""});
-  ExpectError(R"({"images": [7]})", {"images[0]: expected an object"});
-  ExpectError(R"({"images": [{}]})", {"images[0]: \"imagefile\" is missing"});
-  ExpectError(R"({"images": [{"imagefile": 3}]})", {"images[0]: \"imagefile\" is missing"});
-  ExpectError(R"({"images": [{"imagefile": "a\u0000"}]})", {"NUL"});
-  ExpectError(std::string(100'000, '['), {"is not JSON"});
+  ExpectAosError("{\"images\": [", {"is not JSON"});
+  ExpectAosError("[]", {"a list \"images\""});
+  ExpectAosError("{}", {"a list \"images\""});
+  ExpectAosError(R"({"images": []})", {"a list \"images\""});
+  ExpectAosError(R"({"images": 7})", {"a list \"images\""});
+  ExpectAosError(R"({"images": [7]})", {"images[0]: expected an object"});
+  ExpectAosError(R"({"images": [{}]})", {"images[0]: \"imagefile\" is missing"});
+  ExpectAosError(R"({"images": [{"imagefile": 3}]})", {"images[0]: \"imagefile\" is missing"});
+  ExpectAosError(R"({"images": [{"imagefile": "a\u0000"}]})", {"NUL"});
+  ExpectAosError(std::string(100'000, '['), {"is not JSON"});
 }
 
 TEST(Aos, BrokenMatricesAreErrorsThatNameTheImage) {
   const auto expect = [](const std::string& matrix, const std::string& part) {
-    ExpectError(R"({"images": [)" + Entry("a.png", kUnturned) + "," + Entry("b.png", matrix) + "]}",
-                {"images[1] (b.png): \"M3x4\"", part});
+    ExpectAosError(
+        R"({"images": [)" + Entry("a.png", kUnturnedMatrix) + "," + Entry("b.png", matrix) + "]}",
+        {"images[1] (b.png): \"M3x4\"", part});
   };
   expect("null", "3 lists of 4 numbers");
   expect("[[1,0,0,1],[0,1,0,2]]", "3 lists of 4 numbers");
@@ -100,8 +101,8 @@ class AosFolderTest : public FolderTest {
     Write("a.tiff");
   }
   void Write(const std::string& name) const {
-    ASSERT_TRUE(WriteFileAtomically(path_, R"({"images": [)" + Entry(name, kUnturned) + "," +
-                                               Entry("b.tiff", kUnturned) + "]}"));
+    ASSERT_TRUE(WriteFileAtomically(path_, R"({"images": [)" + Entry(name, kUnturnedMatrix) + "," +
+                                               Entry("b.tiff", kUnturnedMatrix) + "]}"));
   }
   static void WriteImageFile(const fs::path& path, int width, int height) {
     fs::create_directories(path.parent_path());

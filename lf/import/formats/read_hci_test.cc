@@ -33,7 +33,7 @@ disp_min = -1.6
 disp_max = 2.4
 )";
 
-LightField Parsed(const std::string& text) {
+LightField ParsedHci(const std::string& text) {
   Result<LightField> light_field = ParseHci(text, "f/parameters.cfg");
   EXPECT_TRUE(light_field) << light_field.error().message;
   return light_field ? *std::move(light_field) : LightField{};
@@ -46,7 +46,7 @@ std::string Changed(const std::string& key, const std::string& with) {
   return text.replace(begin, end - begin, with);
 }
 
-void ExpectError(const std::string& text, const std::vector<std::string>& parts) {
+void ExpectHciError(const std::string& text, const std::vector<std::string>& parts) {
   const Result<LightField> light_field = ParseHci(text, "f/parameters.cfg");
   ASSERT_FALSE(light_field) << text;
   const std::string& message = light_field.error().message;
@@ -56,7 +56,7 @@ void ExpectError(const std::string& text, const std::vector<std::string>& parts)
 }
 
 TEST(ReadHci, IsAGridRowByRowFromTheUpperLeft) {
-  const LightField field = Parsed(kText);
+  const LightField field = ParsedHci(kText);
   ASSERT_EQ(field.size(), 63u);
   EXPECT_EQ(field.image_names[0], "input_Cam000.png");
   EXPECT_EQ(field.image_names[62], "input_Cam062.png");
@@ -67,7 +67,7 @@ TEST(ReadHci, IsAGridRowByRowFromTheUpperLeft) {
 }
 
 TEST(ReadHci, ThePlaneOfFocusStandsStillInAllImages) {
-  const LightField field = Parsed(kText);
+  const LightField field = ParsedHci(kText);
   const Intrinsics middle = field.Camera({31}).intrinsics;
   EXPECT_NEAR(middle.fx_px, 100.0 / 35 * 512, 1e-9);
   EXPECT_EQ(middle.cx_px, 256);
@@ -83,31 +83,32 @@ TEST(ReadHci, ThePlaneOfFocusStandsStillInAllImages) {
 }
 
 TEST(ReadHci, DisparitiesTellTheDepthRange) {
-  const LightField field = Parsed(kText);
+  const LightField field = ParsedHci(kText);
   ASSERT_TRUE(field.depth_range);
   const double fb = 100.0 / 35 * 512 * 0.09;
   EXPECT_NEAR(field.depth_range->near_w, fb / (fb / 10 + 2.45), 1e-9);
   EXPECT_NEAR(field.depth_range->far_w, fb / (fb / 10 - 1.65), 1e-9);
-  EXPECT_FALSE(Parsed(Changed("disp_max", "")).depth_range);
-  EXPECT_FALSE(Parsed(Changed("disp_min", "disp_min = -14")).depth_range) << "beyond infinity";
+  EXPECT_FALSE(ParsedHci(Changed("disp_max", "")).depth_range);
+  EXPECT_FALSE(ParsedHci(Changed("disp_min", "disp_min = -14")).depth_range) << "beyond infinity";
 }
 
 TEST(ReadHci, AFocusAtInfinityLeavesThePrincipalPointsInTheMiddle) {
-  const LightField field = Parsed(Changed("focus_distance_m", "focus_distance_m=0"));
+  const LightField field = ParsedHci(Changed("focus_distance_m", "focus_distance_m=0"));
   EXPECT_EQ(field.intrinsics.size(), 1u);
   EXPECT_EQ(field.intrinsics[0].cx_px, 256);
 }
 
 TEST(ReadHci, ErrorsNameKeyAndValue) {
-  ExpectError("", {"focal_length_mm is missing", "4D Light Field Benchmark"});
-  ExpectError(Changed("num_cams_x", "num_cams_x = nine"), {"num_cams_x is \"nine\"", "1 to"});
-  ExpectError(Changed("num_cams_y", "num_cams_y = 2.5"), {"num_cams_y is \"2.5\""});
-  ExpectError(Changed("num_cams_y", "num_cams_y = 9e9"), {"num_cams_y", "1 to"});
-  ExpectError(Changed("baseline_mm", "baseline_mm = -3"), {"baseline_mm is \"-3\""});
-  ExpectError(Changed("focal_length_mm", "focal_length_mm = nan"), {"focal_length_mm is \"nan\""});
-  ExpectError(Changed("disp_min", "disp_min = x"), {"disp_min is \"x\""});
-  ExpectError(Changed("sensor_size_mm", "sensor_size_mm = 0.001") + "\nfocal_length_mm = 1e5",
-              {"the focal length comes to"});
+  ExpectHciError("", {"focal_length_mm is missing", "4D Light Field Benchmark"});
+  ExpectHciError(Changed("num_cams_x", "num_cams_x = nine"), {"num_cams_x is \"nine\"", "1 to"});
+  ExpectHciError(Changed("num_cams_y", "num_cams_y = 2.5"), {"num_cams_y is \"2.5\""});
+  ExpectHciError(Changed("num_cams_y", "num_cams_y = 9e9"), {"num_cams_y", "1 to"});
+  ExpectHciError(Changed("baseline_mm", "baseline_mm = -3"), {"baseline_mm is \"-3\""});
+  ExpectHciError(Changed("focal_length_mm", "focal_length_mm = nan"),
+                 {"focal_length_mm is \"nan\""});
+  ExpectHciError(Changed("disp_min", "disp_min = x"), {"disp_min is \"x\""});
+  ExpectHciError(Changed("sensor_size_mm", "sensor_size_mm = 0.001") + "\nfocal_length_mm = 1e5",
+                 {"the focal length comes to"});
 }
 
 class OpenHciTest : public FolderTest {};

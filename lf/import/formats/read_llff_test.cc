@@ -25,7 +25,7 @@ constexpr RowNumbers kUnturned = {0,   1, 0,  1, 480,  //
                                   0,   0, -1, 3, 500,  //
                                   0.5, 20};
 
-std::string Npy(const std::vector<RowNumbers>& rows) {
+std::string NpyOfRows(const std::vector<RowNumbers>& rows) {
   const std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': (" +
                              std::to_string(rows.size()) + ", 17), }\n";
   std::string bytes = std::string("\x93NUMPY\x01\0", 8) + static_cast<char>(header.size()) + '\0';
@@ -35,7 +35,7 @@ std::string Npy(const std::vector<RowNumbers>& rows) {
   return bytes + values;
 }
 
-Result<std::array<int, 2>> Size640(const fs::path& image) {
+Result<std::array<int, 2>> SizeOfImage0(const fs::path& image) {
   EXPECT_EQ(image, "data/images/0.png");
   return std::array{640, 480};
 }
@@ -43,10 +43,10 @@ Result<std::array<int, 2>> Size640(const fs::path& image) {
 Result<LightField> Parse(const std::vector<RowNumbers>& rows) {
   std::vector<std::string> names;
   for (size_t i = 0; i < rows.size(); ++i) names.push_back(std::to_string(i) + ".png");
-  return ParseLlff(Npy(rows), "data/poses_bounds.npy", names, Size640);
+  return ParseLlff(NpyOfRows(rows), "data/poses_bounds.npy", names, SizeOfImage0);
 }
 
-void ExpectError(const Result<LightField>& light_field, const std::vector<std::string>& parts) {
+void ExpectLlffError(const Result<LightField>& light_field, const std::vector<std::string>& parts) {
   ASSERT_FALSE(light_field);
   const std::string& message = light_field.error().message;
   EXPECT_EQ(message.find("data/poses_bounds.npy: "), 0u) << message;
@@ -87,13 +87,15 @@ TEST(Llff, ColumnsAreTheAxesDownRightBackwards) {
 
 TEST(Llff, CountsMustAgreeWithTheImages) {
   const std::vector<std::string> names = {"0.png", "1.png", "2.png"};
-  ExpectError(ParseLlff(Npy({kUnturned, kUnturned}), "data/poses_bounds.npy", names, Size640),
-              {"holds 2 poses", "data/images holds 3 image files"});
-  std::string wide = Npy({kUnturned});
+  ExpectLlffError(
+      ParseLlff(NpyOfRows({kUnturned, kUnturned}), "data/poses_bounds.npy", names, SizeOfImage0),
+      {"holds 2 poses", "data/images holds 3 image files"});
+  std::string wide = NpyOfRows({kUnturned});
   wide.replace(wide.find("(1, 17)"), 7, "(17, 1)");
-  ExpectError(ParseLlff(wide, "data/poses_bounds.npy", names, Size640),
-              {"the shape (17, 1): expected (N, 17)"});
-  ExpectError(ParseLlff("x", "data/poses_bounds.npy", names, Size640), {"is no .npy file"});
+  ExpectLlffError(ParseLlff(wide, "data/poses_bounds.npy", names, SizeOfImage0),
+                  {"the shape (17, 1): expected (N, 17)"});
+  ExpectLlffError(ParseLlff("x", "data/poses_bounds.npy", names, SizeOfImage0),
+                  {"is no .npy file"});
 }
 
 TEST(Llff, ImagesOfAnotherSizeAreAnErrorThatNamesBoth) {
@@ -101,8 +103,8 @@ TEST(Llff, ImagesOfAnotherSizeAreAnErrorThatNamesBoth) {
     return std::array{80, 60};
   };
   const std::vector<std::string> names = {"0.png"};
-  ExpectError(ParseLlff(Npy({kUnturned}), "data/poses_bounds.npy", names, eighth),
-              {"640 x 480", "data/images/0.png has 80 x 60", "columns 4, 9 and 14"});
+  ExpectLlffError(ParseLlff(NpyOfRows({kUnturned}), "data/poses_bounds.npy", names, eighth),
+                  {"640 x 480", "data/images/0.png has 80 x 60", "columns 4, 9 and 14"});
 }
 
 TEST(Llff, BrokenRowsAreErrorsThatNameTheRow) {
@@ -111,7 +113,7 @@ TEST(Llff, BrokenRowsAreErrorsThatNameTheRow) {
     row[index] = value;
     std::vector<std::string> all = parts;
     all.push_back("row 1 (1.png): ");
-    ExpectError(Parse({kUnturned, row}), all);
+    ExpectLlffError(Parse({kUnturned, row}), all);
   };
   expect(0, std::numeric_limits<double>::quiet_NaN(), {"not finite"});
   expect(3, 1e13, {"beyond 1e+12"});
@@ -132,7 +134,7 @@ TEST_F(LlffFolderTest, TakesTheSortedImagesBeside) {
   const fs::path path = folder_ / "poses_bounds.npy";
   RowNumbers second = kUnturned;
   second[3] = 7;
-  ASSERT_TRUE(WriteFileAtomically(path, Npy({kUnturned, second})));
+  ASSERT_TRUE(WriteFileAtomically(path, NpyOfRows({kUnturned, second})));
   const Result<LightField> without = ReadLlff(path);
   ASSERT_FALSE(without);
   EXPECT_NE(without.error().message.find("images: cannot be listed"), std::string::npos);

@@ -18,13 +18,13 @@ Result<std::array<int, 2>> Size640(const fs::path& image) {
   return std::array{640, 480};
 }
 
-LightField Parsed(const std::string& text) {
+LightField ParsedMiddlebury(const std::string& text) {
   Result<LightField> light_field = ParseMiddlebury(text, "data/x_par.txt", Size640);
   EXPECT_TRUE(light_field) << light_field.error().message << "\n" << text;
   return light_field ? *std::move(light_field) : LightField{};
 }
 
-void ExpectError(const std::string& text, const std::vector<std::string>& parts) {
+void ExpectMiddleburyError(const std::string& text, const std::vector<std::string>& parts) {
   const Result<LightField> light_field = ParseMiddlebury(text, "data/x_par.txt", Size640);
   ASSERT_FALSE(light_field) << text;
   const std::string& message = light_field.error().message;
@@ -39,7 +39,7 @@ const std::string kLine = "a.png" + kK + kR + " 1 2 3\n";
 
 TEST(Middlebury, ReadsKAndPose) {
   const LightField light_field =
-      Parsed("2\n" + kLine + "\n  b/c.png" + kK + " 0 -1 0 1 0 0 0 0 1\t0 0 -5e-1\r\n\n");
+      ParsedMiddlebury("2\n" + kLine + "\n  b/c.png" + kK + " 0 -1 0 1 0 0 0 0 1\t0 0 -5e-1\r\n\n");
   ASSERT_EQ(light_field.size(), 2u);
   EXPECT_EQ(light_field.image_names, (std::vector<std::string>{"a.png", "b/c.png"}));
   EXPECT_EQ(light_field.folder, "data");
@@ -53,36 +53,37 @@ TEST(Middlebury, ReadsKAndPose) {
 
 TEST(Middlebury, AnyFactorOfKIsDividedOut) {
   const Intrinsics k =
-      Parsed("1\na.png -1000 0 0 0 -1000 0 0 0 -2" + kR + " 0 0 0\n").intrinsics[0];
+      ParsedMiddlebury("1\na.png -1000 0 0 0 -1000 0 0 0 -2" + kR + " 0 0 0\n").intrinsics[0];
   EXPECT_EQ(k, (Intrinsics{500, 500, 0.5, 0.5, 0, 640, 480}));
 }
 
 TEST(Middlebury, ARotationOfSixDigitsIsOneAgain) {
-  const LightField light_field = Parsed("1\na.png" + kK +
-                                        " 0.936293 -0.275096 0.218351 0.289629 0.956425 -0.036957 "
-                                        "-0.198669 0.097843 0.975170 0 0 0\n");
+  const LightField light_field =
+      ParsedMiddlebury("1\na.png" + kK +
+                       " 0.936293 -0.275096 0.218351 0.289629 0.956425 -0.036957 "
+                       "-0.198669 0.097843 0.975170 0 0 0\n");
   const Mat3& rotation = light_field.cameras[0].cam_from_world.rotation;
   EXPECT_LT((rotation * rotation.transpose() - Mat3::Identity()).cwiseAbs().maxCoeff(), 1e-15);
   EXPECT_NEAR(rotation(0, 1), -0.275096, 1e-6);
 }
 
 TEST(Middlebury, CountsThatDisagreeAreErrors) {
-  ExpectError("", {"the file is empty", "number of images"});
-  ExpectError(" \n\n", {"the file is empty"});
-  ExpectError(kLine, {"line 1: \"a.png 500", "number of images alone"});
-  ExpectError("2 3\n" + kLine, {"line 1: \"2 3\""});
-  ExpectError("1.5\n" + kLine, {"\"1.5\""});
-  ExpectError("0\n", {"the number of images is 0"});
-  ExpectError("99999999999\n" + kLine, {"expected 1 to 16777216"});
-  ExpectError("2\n" + kLine, {"holds 1 lines of images, but the first line says 2"});
-  ExpectError("1\n" + kLine + kLine, {"line 3: more lines than the 1"});
+  ExpectMiddleburyError("", {"the file is empty", "number of images"});
+  ExpectMiddleburyError(" \n\n", {"the file is empty"});
+  ExpectMiddleburyError(kLine, {"line 1: \"a.png 500", "number of images alone"});
+  ExpectMiddleburyError("2 3\n" + kLine, {"line 1: \"2 3\""});
+  ExpectMiddleburyError("1.5\n" + kLine, {"\"1.5\""});
+  ExpectMiddleburyError("0\n", {"the number of images is 0"});
+  ExpectMiddleburyError("99999999999\n" + kLine, {"expected 1 to 16777216"});
+  ExpectMiddleburyError("2\n" + kLine, {"holds 1 lines of images, but the first line says 2"});
+  ExpectMiddleburyError("1\n" + kLine + kLine, {"line 3: more lines than the 1"});
 }
 
 TEST(Middlebury, BrokenLinesAreErrorsThatNameTheLine) {
   const auto expect = [](const std::string& line, const std::vector<std::string>& parts) {
     std::vector<std::string> all = parts;
     all.push_back("line 3: ");
-    ExpectError("2\n" + kLine + line + "\n", all);
+    ExpectMiddleburyError("2\n" + kLine + line + "\n", all);
   };
   expect("b.png 1 2 3", {"4 of 21 numbers is missing", "NAME k11 k12"});
   expect("b.png" + kK + kR + " 1 2 3 4", {"\"4\" behind the last number"});

@@ -13,11 +13,9 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-std::string ErrorOfImages(const std::vector<TestImage>& images) {
+std::string ErrorOfImagesBin(const std::vector<TestImage>& images) {
   return ErrorOf(ParseColmap(true, CamerasBin({TestCamera()}), ImagesBin(images)));
 }
-
-#define EXPECT_HAS(message, part) EXPECT_NE((message).find(part), std::string::npos) << (message)
 
 TEST(ColmapBinary, ImagesComeSortedByName) {
   const Result<LightField> light_field = ParseColmap(
@@ -72,21 +70,23 @@ TEST(ColmapBinary, NoPointsIsNoRange) {
 }
 
 TEST(ColmapBinary, BrokenImagesAreNamed) {
-  EXPECT_HAS(ErrorOfImages({}), "m/images.bin: holds no images");
-  EXPECT_HAS(ErrorOfImages({{.id = 5, .camera_id = 2}}),
+  EXPECT_HAS(ErrorOfImagesBin({}), "m/images.bin: holds no images");
+  EXPECT_HAS(ErrorOfImagesBin({{.id = 5, .camera_id = 2}}),
              "m/images.bin: image 5 was taken by "
              "camera 2, which is not among the 1");
-  EXPECT_HAS(ErrorOfImages({{.quaternion = {0, 0, 0, 0}}}), "image 1 has the quaternion 0 0 0 0");
-  EXPECT_HAS(ErrorOfImages({{.quaternion = {1.002, 0, 0, 0}}}), "expected a rotation, of norm 1");
-  EXPECT_HAS(ErrorOfImages({{.quaternion = {1, kNan, 0, 0}}}), "has the quaternion 1 nan 0 0");
-  EXPECT_HAS(ErrorOfImages({{.translation = {1, kNan, 0}}}), "has the translation 1 nan 0");
-  EXPECT_HAS(ErrorOfImages({{.translation = {1, 0, -1e13}}}),
+  EXPECT_HAS(ErrorOfImagesBin({{.quaternion = {0, 0, 0, 0}}}),
+             "image 1 has the quaternion 0 0 0 0");
+  EXPECT_HAS(ErrorOfImagesBin({{.quaternion = {1.002, 0, 0, 0}}}),
+             "expected a rotation, of norm 1");
+  EXPECT_HAS(ErrorOfImagesBin({{.quaternion = {1, kNan, 0, 0}}}), "has the quaternion 1 nan 0 0");
+  EXPECT_HAS(ErrorOfImagesBin({{.translation = {1, kNan, 0}}}), "has the translation 1 nan 0");
+  EXPECT_HAS(ErrorOfImagesBin({{.translation = {1, 0, -1e13}}}),
              "has the translation 1 0 -10000000000000");
-  EXPECT_HAS(ErrorOfImages({{.name = ""}}), "has no name");
-  EXPECT_HAS(ErrorOfImages({{.name = "a\nb"}}), "control characters");
-  EXPECT_HAS(ErrorOfImages({{.name = std::string(5000, 'x')}}), "more than 4096 bytes");
-  EXPECT_HAS(ErrorOfImages({{.id = 1}, {.id = 1, .name = "b"}}), "image 1 is there twice");
-  EXPECT_HAS(ErrorOfImages({{.id = 8}, {.id = 3}}), "images 3 and 8 are both named a.png");
+  EXPECT_HAS(ErrorOfImagesBin({{.name = ""}}), "has no name");
+  EXPECT_HAS(ErrorOfImagesBin({{.name = "a\nb"}}), "control characters");
+  EXPECT_HAS(ErrorOfImagesBin({{.name = std::string(5000, 'x')}}), "more than 4096 bytes");
+  EXPECT_HAS(ErrorOfImagesBin({{.id = 1}, {.id = 1, .name = "b"}}), "image 1 is there twice");
+  EXPECT_HAS(ErrorOfImagesBin({{.id = 8}, {.id = 3}}), "images 3 and 8 are both named a.png");
 }
 
 TEST(ColmapBinary, BrokenCamerasAreNamed) {

@@ -17,7 +17,7 @@ Result<Intrinsics> Read(std::string_view name, const std::vector<double>& parame
   return IntrinsicsOfColmap(*model, width, height, parameters);
 }
 
-std::string ErrorOf(const Result<Intrinsics>& result) {
+std::string IntrinsicsErrorOf(const Result<Intrinsics>& result) {
   return result ? "no error" : result.error().message;
 }
 
@@ -82,7 +82,7 @@ TEST(ColmapCameras, WhatBendsNothingIsAPinhole) {
   EXPECT_EQ(*Read("FOV", {500, 500, 320, 240, 5e-324}), pinhole);
   EXPECT_EQ(*Read("DIVISION", {500, 500, 320, 240, 0}), pinhole);
   EXPECT_EQ(*Read("EUCM", {500, 500, 320, 240, 0, 1}), pinhole);
-  EXPECT_NE(ErrorOf(Read("EUCM", {500, 500, 320, 240, 1.2, 1})).find("has alpha 1.2"),
+  EXPECT_NE(IntrinsicsErrorOf(Read("EUCM", {500, 500, 320, 240, 1.2, 1})).find("has alpha 1.2"),
             std::string::npos);
   // A fish-eye lens without coefficients still bends rays: rd = theta.
   EXPECT_TRUE(Read("OPENCV_FISHEYE", {500, 500, 320, 240, 0, 0, 0, 0})->has_distortion());
@@ -90,7 +90,7 @@ TEST(ColmapCameras, WhatBendsNothingIsAPinhole) {
 
 TEST(ColmapCameras, TheSignOfOmegaDoesNotMatter) {
   EXPECT_EQ(*Read("FOV", {500, 500, 320, 240, -0.9}), *Read("FOV", {500, 500, 320, 240, 0.9}));
-  EXPECT_NE(ErrorOf(Read("FOV", {500, 500, 320, 240, 3.2})).find("has omega 3.2"),
+  EXPECT_NE(IntrinsicsErrorOf(Read("FOV", {500, 500, 320, 240, 3.2})).find("has omega 3.2"),
             std::string::npos);
 }
 
@@ -116,20 +116,25 @@ TEST(ColmapCameras, APanoramaIsNoLfImage) {
 }
 
 TEST(ColmapCameras, NumbersOutOfRangeAreErrors) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
   const std::vector<double> good = {500, 500, 320, 240};
-  EXPECT_NE(ErrorOf(Read("PINHOLE", good, 0, 480)).find("0 x 480 pixels"), std::string::npos);
-  EXPECT_NE(ErrorOf(Read("PINHOLE", good, 640, 65537)).find("640 x 65537"), std::string::npos);
-  EXPECT_NE(ErrorOf(Read("PINHOLE", good, 65536, 65536)).find("2^30"), std::string::npos);
-  EXPECT_NE(ErrorOf(Read("PINHOLE", {500, kNan, 320, 240})).find("500 nan 320 240"),
+  EXPECT_NE(IntrinsicsErrorOf(Read("PINHOLE", good, 0, 480)).find("0 x 480 pixels"),
             std::string::npos);
-  EXPECT_NE(ErrorOf(Read("PINHOLE", {500, -1, 320, 240})).find("focal length of -1 px"),
+  EXPECT_NE(IntrinsicsErrorOf(Read("PINHOLE", good, 640, 65537)).find("640 x 65537"),
             std::string::npos);
-  EXPECT_NE(ErrorOf(Read("PINHOLE", {500, 500, 320, 1e8})).find("principal point at 100000000 px"),
+  EXPECT_NE(IntrinsicsErrorOf(Read("PINHOLE", good, 65536, 65536)).find("2^30"), std::string::npos);
+  EXPECT_NE(
+      IntrinsicsErrorOf(Read("PINHOLE", {500, kNotANumber, 320, 240})).find("500 nan 320 240"),
+      std::string::npos);
+  EXPECT_NE(IntrinsicsErrorOf(Read("PINHOLE", {500, -1, 320, 240})).find("focal length of -1 px"),
             std::string::npos);
-  EXPECT_NE(ErrorOf(Read("SIMPLE_RADIAL", {500, 320, 240, -2e6})).find("parameter -2000000"),
+  EXPECT_NE(IntrinsicsErrorOf(Read("PINHOLE", {500, 500, 320, 1e8}))
+                .find("principal point at 100000000 px"),
             std::string::npos);
-  EXPECT_NE(ErrorOf(Read("SIMPLE_RADIAL", {500, 320, 240, 1 / 0.0})).find("inf"),
+  EXPECT_NE(
+      IntrinsicsErrorOf(Read("SIMPLE_RADIAL", {500, 320, 240, -2e6})).find("parameter -2000000"),
+      std::string::npos);
+  EXPECT_NE(IntrinsicsErrorOf(Read("SIMPLE_RADIAL", {500, 320, 240, 1 / 0.0})).find("inf"),
             std::string::npos);
 }
 

@@ -10,8 +10,6 @@
 namespace lf {
 namespace {
 
-#define EXPECT_HAS(message, part) EXPECT_NE((message).find(part), std::string::npos) << (message)
-
 constexpr const char* kCameras = "# a comment\n1 PINHOLE 8 6 10 11 4 3\n";
 constexpr const char* kImages = "1 1 0 0 0 0 0 0 1 a.png\n\n";
 

@@ -124,4 +124,7 @@ inline std::string ErrorOf(const Result<LightField>& light_field) {
   return light_field ? "no error" : light_field.error().message;
 }
 
+// Expects that the message contains the part.
+#define EXPECT_HAS(message, part) EXPECT_NE((message).find(part), std::string::npos) << (message)
+
 }  // namespace lf

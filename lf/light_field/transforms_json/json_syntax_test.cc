@@ -8,22 +8,22 @@
 namespace lf {
 namespace {
 
-std::string ErrorOf(std::string_view text) {
+std::string SyntaxErrorOf(std::string_view text) {
   ByteStream stream(text, "a.json");
   return JsonSyntaxError(&stream).message;
 }
 
 TEST(JsonSyntax, ErrorsNameLineColumnAndWhatIsWrong) {
   EXPECT_EQ(
-      ErrorOf("{\n \"a\": [1,\n  2 3]}"),
+      SyntaxErrorOf("{\n \"a\": [1,\n  2 3]}"),
       "a.json: is not JSON: parse error at line 3, column 5: syntax error while parsing array "
       "- unexpected number literal; expected ']'");
-  EXPECT_EQ(ErrorOf("{\"a\": 1e999}").find("a.json: is not JSON: number overflow"), 0u);
+  EXPECT_EQ(SyntaxErrorOf("{\"a\": 1e999}").find("a.json: is not JSON: number overflow"), 0u);
 }
 
 TEST(JsonSyntax, UsualMistakesAreNamed) {
   const auto advice = [](std::string_view text) {
-    const std::string message = ErrorOf(text);
+    const std::string message = SyntaxErrorOf(text);
     return message.substr(std::min(message.size(), message.rfind("; ")));
   };
   EXPECT_EQ(advice("{\"frames\": [1, 2,]}"), "; is there a comma too many before it?");
@@ -35,11 +35,11 @@ TEST(JsonSyntax, UsualMistakesAreNamed) {
 }
 
 TEST(JsonSyntax, NestingTakesNoMemory) {
-  EXPECT_NE(ErrorOf(std::string(1'000'000, '[')).find("column 1000001"), std::string::npos);
+  EXPECT_NE(SyntaxErrorOf(std::string(1'000'000, '[')).find("column 1000001"), std::string::npos);
 }
 
 TEST(JsonSyntax, AFileThatIsJsonNowHasChanged) {
-  EXPECT_EQ(ErrorOf("{}"), "a.json: changed while it was read");
+  EXPECT_EQ(SyntaxErrorOf("{}"), "a.json: changed while it was read");
 }
 
 }  // namespace

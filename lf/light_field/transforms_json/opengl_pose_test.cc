@@ -22,7 +22,7 @@ Mat3 Rotation(uint64_t seed) {
   return q.normalized().toRotationMatrix();
 }
 
-std::string ErrorOf(const Mat34& pose) {
+std::string PoseErrorOf(const Mat34& pose) {
   const auto result = CamFromWorldOfOpenGl(pose);
   return result ? "" : result.error().message;
 }
@@ -83,18 +83,18 @@ TEST(OpenGlPose, WhatIsNoRotationIsRefusedWithItsReason) {
   const Mat3 identity = Mat3::Identity();
   Mat3 mirrored = identity;
   mirrored(0, 0) = -1;
-  EXPECT_NE(ErrorOf(Pose(mirrored, Vec3::Zero())).find("mirrored"), std::string::npos);
+  EXPECT_NE(PoseErrorOf(Pose(mirrored, Vec3::Zero())).find("mirrored"), std::string::npos);
   Mat3 sheared = identity;
   sheared(0, 1) = 0.01;
-  EXPECT_NE(ErrorOf(Pose(sheared, Vec3::Zero())).find("sheared"), std::string::npos);
+  EXPECT_NE(PoseErrorOf(Pose(sheared, Vec3::Zero())).find("sheared"), std::string::npos);
   const Mat3 uneven = Vec3(1, 1, 1.01).asDiagonal();
-  EXPECT_NE(ErrorOf(Pose(uneven, Vec3::Zero())).find("unevenly"), std::string::npos);
+  EXPECT_NE(PoseErrorOf(Pose(uneven, Vec3::Zero())).find("unevenly"), std::string::npos);
   const Mat3 flat = Vec3(1, 1, 0).asDiagonal();
-  EXPECT_NE(ErrorOf(Pose(flat, Vec3::Zero())).find("determinant"), std::string::npos);
-  EXPECT_NE(ErrorOf(Pose(Mat3::Zero(), Vec3::Zero())).find("determinant"), std::string::npos);
-  EXPECT_NE(ErrorOf(Pose(identity, Vec3(0, 1e13, 0))).find("beyond"), std::string::npos);
+  EXPECT_NE(PoseErrorOf(Pose(flat, Vec3::Zero())).find("determinant"), std::string::npos);
+  EXPECT_NE(PoseErrorOf(Pose(Mat3::Zero(), Vec3::Zero())).find("determinant"), std::string::npos);
+  EXPECT_NE(PoseErrorOf(Pose(identity, Vec3(0, 1e13, 0))).find("beyond"), std::string::npos);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_NE(ErrorOf(Pose(identity, Vec3(0, nan, 0))).find("beyond"), std::string::npos);
+  EXPECT_NE(PoseErrorOf(Pose(identity, Vec3(0, nan, 0))).find("beyond"), std::string::npos);
 }
 
 }  // namespace
