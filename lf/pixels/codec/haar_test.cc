@@ -10,7 +10,7 @@ namespace {
 
 using BandValues = std::array<std::vector<int32_t>, kBands>;
 
-BandValues Analyzed(const std::vector<int32_t>& values, int width, int height) {
+BandValues HaarBands(const std::vector<int32_t>& values, int width, int height) {
   BandValues bands;
   std::array<int32_t*, kBands> pointers{};
   for (int b = 0; b < kBands; ++b) {
@@ -25,7 +25,7 @@ BandValues Analyzed(const std::vector<int32_t>& values, int width, int height) {
 // and -3.
 TEST(Haar, IsThatOfTheThesis) {
   constexpr int32_t kOne = 1 << kHaarBits;
-  const BandValues bands = Analyzed({10 * kOne, 12 * kOne, 14 * kOne, 20 * kOne}, 2, 2);
+  const BandValues bands = HaarBands({10 * kOne, 12 * kOne, 14 * kOne, 20 * kOne}, 2, 2);
   EXPECT_EQ(bands[kLowLow], std::vector<int32_t>{14 * kOne});
   EXPECT_EQ(bands[kHighLow], std::vector<int32_t>{-2 * kOne});
   EXPECT_EQ(bands[kLowHigh], std::vector<int32_t>{-3 * kOne});
@@ -34,7 +34,7 @@ TEST(Haar, IsThatOfTheThesis) {
 
 TEST(Haar, TheLastOfAnOddNumberIsItsOwnAverage) {
   constexpr int32_t kOne = 1 << kHaarBits;
-  const BandValues bands = Analyzed({1 * kOne, 3 * kOne, 7 * kOne}, 3, 1);
+  const BandValues bands = HaarBands({1 * kOne, 3 * kOne, 7 * kOne}, 3, 1);
   EXPECT_EQ(bands[kLowLow], (std::vector<int32_t>{2 * kOne, 7 * kOne}));
   EXPECT_EQ(bands[kHighLow], std::vector<int32_t>{-1 * kOne});
   EXPECT_TRUE(bands[kLowHigh].empty());
@@ -51,7 +51,7 @@ TEST(Haar, FiveLevelsOfSixteenBitsComeBackByBothTransforms) {
     std::vector<std::pair<int, int>> sizes;
     std::vector<int32_t> low = plane;
     for (int level = 0, w = width, h = height; level < 5; ++level) {
-      levels.push_back(Analyzed(low, w, h));
+      levels.push_back(HaarBands(low, w, h));
       sizes.emplace_back(w, h);
       low = levels.back()[kLowLow];
       w = LowCount(w);

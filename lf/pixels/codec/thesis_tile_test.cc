@@ -160,7 +160,7 @@ Image<Pixel> ByTheThesis(const Image<Pixel>& image, PixelLayout layout,
 
 // Returns waves with noise, so that details lie on both sides of every threshold.
 template <class Pixel>
-Image<Pixel> Picture(std::mt19937& random, int width, int height, int channels) {
+Image<Pixel> NoisyWaves(std::mt19937& random, int width, int height, int channels) {
   Image<Pixel> image(width, height, channels);
   const double most = std::numeric_limits<Pixel>::max();
   const double fx = 0.02 + (random() % 100) / 300.0, fy = 0.02 + (random() % 100) / 300.0;
@@ -180,7 +180,7 @@ template <class Pixel>
 void ExpectTheThesis(std::mt19937& random, int width, int height, PixelLayout layout,
                      const CodecSettings& settings) {
   const Image<Pixel> image =
-      Picture<Pixel>(random, width, height, layout == PixelLayout::kRgb ? 3 : 1);
+      NoisyWaves<Pixel>(random, width, height, layout == PixelLayout::kRgb ? 3 : 1);
   DecodedPart part;
   ASSERT_TRUE(DecodeImage(EncodeImage(image, layout, settings), &part));
   ASSERT_EQ(std::get<Image<Pixel>>(part.pixels).pixels(),

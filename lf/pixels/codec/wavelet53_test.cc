@@ -33,19 +33,19 @@ Analyzed AnalyzedBy(Transform transform, const std::vector<int32_t>& values, int
 }
 
 template <class T>
-std::vector<T> Plane(std::mt19937& random, size_t size, int64_t low, int64_t high) {
+std::vector<T> RandomPlane(std::mt19937& random, size_t size, int64_t low, int64_t high) {
   std::uniform_int_distribution<int64_t> value(low, high);
   std::vector<T> plane = Array<T>(size);
   for (T& v : plane) v = static_cast<T>(value(random));
   return plane;
 }
 
-struct Size {
+struct PlaneSize {
   int width, height;
 };
 
-std::vector<Size> Sizes(std::mt19937& random) {
-  std::vector<Size> sizes = {{1, 1}, {1, 2}, {2, 1}, {1, 7}, {7, 1}, {2, 2}, {3, 3}, {64, 64}};
+std::vector<PlaneSize> Sizes(std::mt19937& random) {
+  std::vector<PlaneSize> sizes = {{1, 1}, {1, 2}, {2, 1}, {1, 7}, {7, 1}, {2, 2}, {3, 3}, {64, 64}};
   std::uniform_int_distribution<int> size(1, 150);
   for (int i = 0; i < 120; ++i) sizes.push_back({size(random), size(random)});
   return sizes;
@@ -56,7 +56,7 @@ TEST(Wavelet53, TheSynthesisGivesBackWhatWasAnalyzed) {
   for (const auto& [width, height] : Sizes(random)) {
     const size_t size = static_cast<size_t>(width) * height;
     // Values beyond half of the range make sums overflow, but are restored exactly.
-    const std::vector<int32_t> plane = Plane<int32_t>(random, size, INT32_MIN, INT32_MAX);
+    const std::vector<int32_t> plane = RandomPlane<int32_t>(random, size, INT32_MIN, INT32_MAX);
     const Analyzed analyzed = AnalyzedBy(Transform::kSimd, plane, width, height);
     CodedBands<int32_t> bands{width, height, {}};
     std::array<std::vector<int32_t>, kBands> padded;
@@ -76,7 +76,7 @@ TEST(Wavelet53, AnalysisIsThatOfTheReference) {
   std::mt19937 random(2);
   for (const auto& [width, height] : Sizes(random)) {
     const std::vector<int32_t> plane =
-        Plane<int32_t>(random, static_cast<size_t>(width) * height, -70000, 70000);
+        RandomPlane<int32_t>(random, static_cast<size_t>(width) * height, -70000, 70000);
     const Analyzed a = AnalyzedBy(Transform::kReference, plane, width, height);
     const Analyzed b = AnalyzedBy(Transform::kSimd, plane, width, height);
     for (int band = 0; band < kBands; ++band)
@@ -90,7 +90,8 @@ void CompareSyntheses(std::mt19937& random, int64_t limit, int bits) {
     CodedBands<T> bands{width, height, {}};
     std::array<std::vector<T>, kBands> values;
     for (int b = 0; b < kBands; ++b) {
-      values[b] = Plane<T>(random, BandSize(static_cast<Band>(b), width, height), -limit, limit);
+      values[b] =
+          RandomPlane<T>(random, BandSize(static_cast<Band>(b), width, height), -limit, limit);
       bands.bands[b] = {values[b].data(), static_cast<T>(1 + random() % 9), random() % 2 == 0};
     }
     const size_t size = static_cast<size_t>(width) * height;

@@ -19,16 +19,16 @@ namespace lf {
 namespace {
 using namespace std::string_literals;
 
-FileBytes FileOf(const std::string& bytes) { return FileInMemory(bytes, "a.png"); }
+FileBytes PngFile(const std::string& bytes) { return FileInMemory(bytes, "a.png"); }
 
 Result<ImageFileInfo> InfoOf(const std::string& bytes) {
-  const FileBytes file = FileOf(bytes);
+  const FileBytes file = PngFile(bytes);
   LF_ASSIGN_OR_RETURN(const auto decoder, OpenPng(file));
   return decoder->info();
 }
 
-Result<StoredImage> Decode(const std::string& bytes) {
-  const FileBytes file = FileOf(bytes);
+Result<StoredImage> DecodedPng(const std::string& bytes) {
+  const FileBytes file = PngFile(bytes);
   if (const auto format = ProbeImage(file.read, file.name); !format) return format.error();
   LF_ASSIGN_OR_RETURN(const auto decoder, OpenPng(file));
   Result<StoredImage> image = StoredImage();
@@ -37,13 +37,13 @@ Result<StoredImage> Decode(const std::string& bytes) {
 }
 
 LargeVector<uint8_t> DecodedBytes(const std::string& bytes) {
-  const auto image = Decode(bytes);
+  const auto image = DecodedPng(bytes);
   EXPECT_TRUE(image) << image.error().message;
   return image ? std::get<Image<uint8_t>>(*image).pixels() : LargeVector<uint8_t>();
 }
 
 void ExpectDamaged(const std::string& bytes, const std::string& reason) {
-  const auto image = Decode(bytes);
+  const auto image = DecodedPng(bytes);
   ASSERT_FALSE(image) << reason;
   EXPECT_EQ(image.error().kind, ErrorKind::kInput);
   EXPECT_EQ(image.error().message.find("a.png: "), 0u) << image.error().message;
@@ -52,7 +52,7 @@ void ExpectDamaged(const std::string& bytes, const std::string& reason) {
 }
 
 template <class T>
-PictureRows RowsOf(const Image<T>& image) {
+PictureRows PngRows(const Image<T>& image) {
   const auto pack = [&image](int y, std::byte* to) {
     std::memcpy(to, image.row(y), image.size_bytes() / static_cast<size_t>(image.height()));
   };
@@ -131,12 +131,12 @@ std::string Interlaced(const Image<T>& image, int colour_type) {
 }
 
 template <class T>
-void ExpectRoundTrip(int width, int height) {
+void ExpectPngRoundTrip(int width, int height) {
   for (int channels = 1; channels <= 4; ++channels) {
     const auto image = NoiseImage<T>(width, height, channels);
-    const auto file = EncodePng(RowsOf(image));
+    const auto file = EncodePng(PngRows(image));
     ASSERT_TRUE(file) << file.error().message;
-    const auto read = Decode(*file);
+    const auto read = DecodedPng(*file);
     ASSERT_TRUE(read) << read.error().message;
     ASSERT_TRUE(std::holds_alternative<Image<T>>(*read));
     EXPECT_EQ(std::get<Image<T>>(*read).channels(), channels);
@@ -146,8 +146,8 @@ void ExpectRoundTrip(int width, int height) {
 
 TEST(PngFile, IntegersComeBackBitForBit) {
   for (const auto& [width, height] : {std::pair(1, 1), std::pair(13, 70), std::pair(200, 3)}) {
-    ExpectRoundTrip<uint8_t>(width, height);
-    ExpectRoundTrip<uint16_t>(width, height);
+    ExpectPngRoundTrip<uint8_t>(width, height);
+    ExpectPngRoundTrip<uint16_t>(width, height);
   }
 }
 
@@ -156,7 +156,7 @@ TEST(PngFile, InterlacedFilesAreRead) {
     const auto bytes = NoiseImage<uint8_t>(width, height, 4);
     EXPECT_EQ(DecodedBytes(Interlaced(bytes, PNG_COLOR_TYPE_RGB_ALPHA)), bytes.pixels());
     const auto words = NoiseImage<uint16_t>(width, height, 3);
-    const auto read = Decode(Interlaced(words, PNG_COLOR_TYPE_RGB));
+    const auto read = DecodedPng(Interlaced(words, PNG_COLOR_TYPE_RGB));
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_EQ(std::get<Image<uint16_t>>(*read).pixels(), words.pixels());
   }
@@ -192,7 +192,7 @@ TEST(PngFile, TheTransparentColourBecomesAlpha) {
   EXPECT_EQ(DecodedBytes(Png{3, 1, 8, 0, "\0\5\6\7"s, Chunk("tRNS", "\0\6"s)}.Bytes()),
             (LargeVector<uint8_t>{5, 255, 6, 0, 7, 255}));
   const Png rgb{1, 1, 16, 2, "\0\1\2\3\4\5\6"s, Chunk("tRNS", "\1\2\3\4\5\6")};
-  EXPECT_EQ(std::get<Image<uint16_t>>(Decode(rgb.Bytes()).value()).pixels(),
+  EXPECT_EQ(std::get<Image<uint16_t>>(DecodedPng(rgb.Bytes()).value()).pixels(),
             (LargeVector<uint16_t>{0x102, 0x304, 0x506, 0}));
 }
 
@@ -205,7 +205,7 @@ TEST(PngFile, AlphaAndGammaDoNotTouchTheColours) {
 TEST(PngFile, TheHeaderTellsChannelsAndBits) {
   const char* const kNames[] = {"Y", "YA", "RGB", "RGBA"};
   for (int channels = 1; channels <= 4; ++channels) {
-    const auto info = InfoOf(EncodePng(RowsOf(NoiseImage<uint16_t>(5, 3, channels))).value());
+    const auto info = InfoOf(EncodePng(PngRows(NoiseImage<uint16_t>(5, 3, channels))).value());
     ASSERT_TRUE(info);
     EXPECT_EQ(std::tuple(info->width, info->height, info->channels, info->bits, info->is_float),
               std::tuple(5, 3, channels, 16, false));
@@ -236,9 +236,9 @@ TEST(PngFile, ExifDataTellTheOrientation) {
 TEST(PngFile, AFileCutAnywhereIsAnError) {
   const auto words = NoiseImage<uint16_t>(16, 12, 3);
   const Png palette{2, 1, 8, 3, "\0\0\1"s, kPalette + Chunk("tRNS", "\x9")};
-  for (const std::string& whole :
-       {EncodePng(RowsOf(words)).value(), Interlaced(words, PNG_COLOR_TYPE_RGB), palette.Bytes()}) {
-    ASSERT_TRUE(Decode(whole));
+  for (const std::string& whole : {EncodePng(PngRows(words)).value(),
+                                   Interlaced(words, PNG_COLOR_TYPE_RGB), palette.Bytes()}) {
+    ASSERT_TRUE(DecodedPng(whole));
     for (size_t size = 0; size < whole.size(); ++size) ExpectDamaged(whole.substr(0, size), "");
   }
 }
@@ -247,7 +247,7 @@ TEST(PngFile, ADamagedByteAnywhereIsAnError) {
   const auto words = NoiseImage<uint16_t>(8, 6, 3);
   const Png palette{2, 1, 8, 3, "\0\0\1"s, kPalette + Chunk("tRNS", "\x9")};
   for (const std::string& whole :
-       {EncodePng(RowsOf(words)).value(), Interlaced(words, PNG_COLOR_TYPE_RGB), palette.Bytes()})
+       {EncodePng(PngRows(words)).value(), Interlaced(words, PNG_COLOR_TYPE_RGB), palette.Bytes()})
     for (size_t i = 0; i < whole.size(); ++i)
       for (const char bits : {'\x01', '\x20', '\x80', '\xff'}) {
         std::string damaged = whole;
@@ -300,8 +300,8 @@ TEST(PngFile, TooLargeSizesAreRefusedInTheHeader) {
 }
 
 TEST(PngFile, TheHeaderIsReadWithoutThePixels) {
-  const std::string bytes = EncodePng(RowsOf(NoiseImage<uint8_t>(300, 300, 3))).value();
-  FileBytes file = FileOf(bytes);
+  const std::string bytes = EncodePng(PngRows(NoiseImage<uint8_t>(300, 300, 3))).value();
+  FileBytes file = PngFile(bytes);
   uint64_t end = 0;
   file.read = [&, read = file.read](uint64_t offset, std::span<uint8_t> to) {
     end = std::max(end, offset + to.size());
@@ -312,8 +312,8 @@ TEST(PngFile, TheHeaderIsReadWithoutThePixels) {
 }
 
 TEST(PngFile, ExceptionsOfTheSourcePassThrough) {
-  const std::string bytes = EncodePng(RowsOf(NoiseImage<uint8_t>(30, 30, 3))).value();
-  FileBytes file = FileOf(bytes);
+  const std::string bytes = EncodePng(PngRows(NoiseImage<uint8_t>(30, 30, 3))).value();
+  FileBytes file = PngFile(bytes);
   bool fails = false;
   file.read = [&, read = file.read](uint64_t offset, std::span<uint8_t> to) {
     if (fails) throw std::bad_alloc();
@@ -328,7 +328,7 @@ TEST(PngFile, ExceptionsOfTheSourcePassThrough) {
 
 TEST(PngFile, ExceptionsOfThePictureAndInterruptionsEndTheEncoding) {
   const auto image = NoiseImage<uint8_t>(30, 100, 3);
-  PictureRows picture = RowsOf(image);
+  PictureRows picture = PngRows(image);
   int asked = 0;
   picture.is_interrupted = [&] { return ++asked == 3; };
   const auto file = EncodePng(picture);
@@ -342,7 +342,7 @@ TEST(PngFile, ExceptionsOfThePictureAndInterruptionsEndTheEncoding) {
 
 TEST(PngFile, MetadataAreTexts) {
   const auto image = NoiseImage<uint8_t>(2, 2, 3);
-  PictureRows picture = RowsOf(image);
+  PictureRows picture = PngRows(image);
   picture.metadata = {{"lf.frame", 12}, {"lf.time_s", 0.25}, {std::string(100, 'k'), "long"}};
   const std::string file = EncodePng(picture).value();
   for (const std::string& chunk :
@@ -360,7 +360,7 @@ TEST(PngFile, MetadataAreTexts) {
 
 TEST(PngFile, OnlySrgbPicturesSayThatTheyAreSrgb) {
   const auto image = NoiseImage<uint8_t>(2, 2, 3);
-  PictureRows picture = RowsOf(image);
+  PictureRows picture = PngRows(image);
   for (const bool is_srgb : {false, true}) {
     picture.is_srgb = is_srgb;
     const std::string file = EncodePng(picture).value();
@@ -372,16 +372,16 @@ TEST(PngFile, OnlySrgbPicturesSayThatTheyAreSrgb) {
 
 TEST(PngFile, ManyThreadsReadAndWriteTheSame) {
   const auto image = NoiseImage<uint16_t>(40, 30, 3);
-  const std::string expected = EncodePng(RowsOf(image)).value();
+  const std::string expected = EncodePng(PngRows(image)).value();
   int failures[4] = {};
   std::vector<std::thread> threads;
   for (int& failure : failures)
     threads.emplace_back([&] {
       for (int i = 0; i < 20; ++i) {
-        const auto read = Decode(expected);
+        const auto read = DecodedPng(expected);
         if (!read || std::get<Image<uint16_t>>(*read).pixels() != image.pixels()) ++failure;
-        if (Decode(expected.substr(0, 100))) ++failure;
-        if (EncodePng(RowsOf(image)).value() != expected) ++failure;
+        if (DecodedPng(expected.substr(0, 100))) ++failure;
+        if (EncodePng(PngRows(image)).value() != expected) ++failure;
       }
     });
   for (std::thread& thread : threads) thread.join();

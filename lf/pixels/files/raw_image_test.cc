@@ -25,7 +25,7 @@ ImageWithInfo Read(const TestDng& dng) {
               : ImageWithInfo{Image<uint16_t>(), {0, 0, 0, 0, false, {}, 1, RawFacts{}}};
 }
 
-LargeVector<uint16_t> PixelsOf(const ImageWithInfo& read) {
+LargeVector<uint16_t> RawPixelsOf(const ImageWithInfo& read) {
   return std::get<Image<uint16_t>>(read.image).pixels();
 }
 
@@ -50,7 +50,7 @@ TEST(RawImage, StoredValuesComeBitForBitInAllPatternsAndSizes) {
          {std::pair(40, 30), {41, 30}, {40, 31}, {41, 31}, {22, 22}}) {
       const Image<uint16_t> mosaic = Mosaic(width, height);
       const ImageWithInfo read = Read(TestDng(mosaic, pattern).Long(50714, {512}));
-      EXPECT_EQ(PixelsOf(read), mosaic.pixels()) << pattern << " " << width << " x " << height;
+      EXPECT_EQ(RawPixelsOf(read), mosaic.pixels()) << pattern << " " << width << " x " << height;
       EXPECT_EQ(std::tuple(read.info.width, read.info.height, read.info.channels, read.info.bits),
                 std::tuple(width, height, 1, 16));
     }
@@ -66,7 +66,7 @@ TEST(RawImage, NothingButTheMosaicDecidesItsValues) {
                   {{2, 1}, {-1, 2}, {0, 1}, {-1, 3}, {1, 1}, {0, 1}, {0, 1}, {0, 1}, {1, 1}});
     dng.Long(50719, {4, 2}).Long(50720, {30, 20});  // default crop, for developed pictures only
     dng.Fractions(50730, 10, {{2, 1}});             // baseline exposure
-    EXPECT_EQ(PixelsOf(Read(dng)), mosaic.pixels()) << orientation;
+    EXPECT_EQ(RawPixelsOf(Read(dng)), mosaic.pixels()) << orientation;
   }
 }
 
@@ -76,15 +76,16 @@ TEST(RawImage, PackedAndCompressedValuesComeBitForBit) {
     for (const int bits : {10, 12, 14}) {
       Image<uint16_t> mosaic = noise;
       for (uint16_t& value : mosaic.pixels()) value >>= 16 - bits;
-      EXPECT_EQ(PixelsOf(Read(TestDng(mosaic, "GRBG").Packed(bits))), mosaic.pixels())
+      EXPECT_EQ(RawPixelsOf(Read(TestDng(mosaic, "GRBG").Packed(bits))), mosaic.pixels())
           << width << " x " << height << ", " << bits << " bits";
     }
     for (const int tile : {16, 32})
-      EXPECT_EQ(PixelsOf(Read(TestDng(noise, "GBRG").Tiled(tile, tile / 2, true))), noise.pixels())
+      EXPECT_EQ(RawPixelsOf(Read(TestDng(noise, "GBRG").Tiled(tile, tile / 2, true))),
+                noise.pixels())
           << width << " x " << height << ", tiles of " << tile;
   }
   const Image<uint16_t> noise = Mosaic(40, 30);
-  EXPECT_EQ(PixelsOf(Read(TestDng(noise, "GBRG").Tiled(40, 30, true))), noise.pixels());
+  EXPECT_EQ(RawPixelsOf(Read(TestDng(noise, "GBRG").Tiled(40, 30, true))), noise.pixels());
 }
 
 TEST(RawImage, ALinearizationTableIsApplied) {
@@ -94,14 +95,14 @@ TEST(RawImage, ALinearizationTableIsApplied) {
   for (uint32_t i = 0; i < 256; ++i) squares.push_back(i * i);
   const ImageWithInfo read = Read(TestDng(mosaic, "RGGB").Short(50712, squares));
   for (uint16_t& value : mosaic.pixels()) value = static_cast<uint16_t>(value * value);
-  EXPECT_EQ(PixelsOf(read), mosaic.pixels());
+  EXPECT_EQ(RawPixelsOf(read), mosaic.pixels());
 }
 
 TEST(RawImage, AMonochromeSensorGivesGrey) {
   const Image<uint16_t> mosaic = Mosaic();
   TestDng dng(mosaic, "RGGB");
   const ImageWithInfo read = Read(dng.Short(262, {34892}).Without(33421).Without(33422));
-  EXPECT_EQ(PixelsOf(read), mosaic.pixels());
+  EXPECT_EQ(RawPixelsOf(read), mosaic.pixels());
   EXPECT_TRUE(read.info.raw.value().is_monochrome);
   EXPECT_EQ(read.info.raw->bayer, BayerPattern::kNone);
   EXPECT_FALSE(Read(TestDng(mosaic, "RGGB")).info.raw.value().is_monochrome);

@@ -25,7 +25,7 @@ struct JpegKind {
 };
 
 // Encodes noise on a gradient: neighbours differ, so that a wrong pixel is detected.
-std::string EncodeJpeg(int width, int height, const JpegKind& kind) {
+std::string JpegOfKind(int width, int height, const JpegKind& kind) {
   std::vector<uint8_t> row(static_cast<size_t>(width) * kind.channels);
   jpeg_compress_struct compress;
   jpeg_error_mgr errors;
@@ -84,7 +84,7 @@ TEST(ReadJpeg, APartIsBitForBitThatOfTheWhole) {
   uint64_t draw = 0;
   for (const JpegKind& kind : kKinds)
     for (const auto& [width, height] : {std::pair(333, 251), std::pair(512, 384)}) {
-      const std::string file = EncodeJpeg(width, height, kind);
+      const std::string file = JpegOfKind(width, height, kind);
       Image<uint8_t> whole, part;
       const PixelRect all = {0, 0, width, height};
       ASSERT_EQ(*ReadPart(file, all, &whole), all);
@@ -119,7 +119,7 @@ TEST(ReadJpeg, APartIsBitForBitThatOfTheWhole) {
 
 TEST(ReadJpeg, DamageIsFoundWhateverIsWanted) {
   for (const JpegKind& kind : kKinds) {
-    const std::string file = EncodeJpeg(400, 300, kind);
+    const std::string file = JpegOfKind(400, 300, kind);
     Image<uint8_t> image;
     for (const double share : {0.3, 0.7, 0.95}) {
       const std::string truncated =
@@ -136,7 +136,7 @@ TEST(ReadJpeg, DamageIsFoundWhateverIsWanted) {
 }
 
 TEST(ReadJpeg, CmykIsRefused) {
-  const std::string file = EncodeJpeg(16, 16, {4, 1, 1, false, 0});
+  const std::string file = JpegOfKind(16, 16, {4, 1, 1, false, 0});
   const ByteSource source = SourceOf(file);
   const auto reader = JpegReader::Open(source, "a.jpg");
   ASSERT_FALSE(reader);
@@ -145,7 +145,7 @@ TEST(ReadJpeg, CmykIsRefused) {
 }
 
 TEST(ReadJpeg, StuffingBetweenSegmentsIsHarmless) {
-  std::string file = EncodeJpeg(16, 16, {});
+  std::string file = JpegOfKind(16, 16, {});
   Image<uint8_t> expected, image;
   ASSERT_TRUE(ReadPart(file, {0, 0, 16, 16}, &expected));
   file.insert(2, std::string(5, '\0'));
@@ -156,7 +156,7 @@ TEST(ReadJpeg, StuffingBetweenSegmentsIsHarmless) {
 
 // Each scan makes the decoder process the whole picture once more.
 TEST(ReadJpeg, CountlessScansAreRefused) {
-  const std::string file = EncodeJpeg(16, 16, {3, 1, 1, false, 0, true});
+  const std::string file = JpegOfKind(16, 16, {3, 1, 1, false, 0, true});
   const size_t scan = file.rfind("\xff\xda"), end = file.size() - 2;
   std::string bomb = file.substr(0, end);
   for (int i = 0; i < JpegReader::kMaxScans; ++i) bomb += file.substr(scan, end - scan);
@@ -169,7 +169,7 @@ TEST(ReadJpeg, CountlessScansAreRefused) {
 }
 
 TEST(ReadJpeg, TheOrientationIsThatOfExif) {
-  const std::string file = EncodeJpeg(24, 16, {});
+  const std::string file = JpegOfKind(24, 16, {});
   // One tag: orientation (0x112), one short of value 6; big-endian and little-endian.
   const std::string big("Exif\0\0MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0",
                         32);

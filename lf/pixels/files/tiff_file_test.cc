@@ -17,10 +17,10 @@
 namespace lf {
 namespace {
 
-FileBytes FileOf(const std::string& bytes) { return FileInMemory(bytes, "a.tif"); }
+FileBytes TiffFile(const std::string& bytes) { return FileInMemory(bytes, "a.tif"); }
 
-Result<ImageWithInfo> Decode(const std::string& bytes) {
-  const FileBytes file = FileOf(bytes);
+Result<ImageWithInfo> DecodedTiff(const std::string& bytes) {
+  const FileBytes file = TiffFile(bytes);
   LF_ASSIGN_OR_RETURN(const std::unique_ptr<PictureDecoder> decoder, OpenTiff(file));
   ImageWithInfo result{{}, decoder->info()};
   LF_RETURN_IF_ERROR(decoder->Read(&result.image));
@@ -28,7 +28,7 @@ Result<ImageWithInfo> Decode(const std::string& bytes) {
 }
 
 void ExpectInputError(const std::string& bytes, const std::string& reason) {
-  const auto read = Decode(bytes);
+  const auto read = DecodedTiff(bytes);
   ASSERT_FALSE(read) << reason;
   EXPECT_EQ(read.error().kind, ErrorKind::kInput);
   EXPECT_TRUE(read.error().message.starts_with("a.tif: ")) << read.error().message;
@@ -117,7 +117,7 @@ LargeVector<T> LargeVectorOf(const std::vector<T>& values) {
 }
 
 template <class T>
-PictureRows RowsOf(const Image<T>& image, PixelType type) {
+PictureRows TiffRows(const Image<T>& image, PixelType type) {
   PictureRows rows{"a.tif", image.width(), image.height(), image.channels(), type, false, {}, {},
                    {}};
   rows.pack_row = [&image](int y, std::byte* to) {
@@ -127,25 +127,26 @@ PictureRows RowsOf(const Image<T>& image, PixelType type) {
 }
 
 template <class T>
-void ExpectRoundTrip(int channels, PixelType type) {
+void ExpectTiffRoundTrip(int channels, PixelType type) {
   const auto image = NoiseImage<T>(21, 70, channels);
-  const std::string bytes = EncodeTiff(RowsOf(image, type)).value();
-  EXPECT_EQ(
-      std::memcmp(PixelsOf<T>(Decode(bytes)).data(), image.pixels().data(), image.size_bytes()), 0);
-  EXPECT_EQ(bytes, EncodeTiff(RowsOf(image, type)).value());
+  const std::string bytes = EncodeTiff(TiffRows(image, type)).value();
+  EXPECT_EQ(std::memcmp(PixelsOf<T>(DecodedTiff(bytes)).data(), image.pixels().data(),
+                        image.size_bytes()),
+            0);
+  EXPECT_EQ(bytes, EncodeTiff(TiffRows(image, type)).value());
 }
 
 TEST(TiffFileTest, WrittenPicturesAreReadAgain) {
   for (int channels = 1; channels <= 6; ++channels) {
-    ExpectRoundTrip<uint8_t>(channels, PixelType::kUint8);
-    ExpectRoundTrip<uint16_t>(channels, PixelType::kUint16);
-    ExpectRoundTrip<float>(channels, PixelType::kFloat);
+    ExpectTiffRoundTrip<uint8_t>(channels, PixelType::kUint8);
+    ExpectTiffRoundTrip<uint16_t>(channels, PixelType::kUint16);
+    ExpectTiffRoundTrip<float>(channels, PixelType::kFloat);
   }
 }
 
 TEST(TiffFileTest, MetadataBecomesTheDescription) {
   const Image<uint8_t> image(4, 4, 3);
-  PictureRows rows = RowsOf(image, PixelType::kUint8);
+  PictureRows rows = TiffRows(image, PixelType::kUint8);
   EXPECT_EQ(EncodeTiff(rows)->find("lf."), std::string::npos);
   rows.metadata = {{"lf.frame", 12}, {"lf.time_s", 0.25}};
   EXPECT_NE(EncodeTiff(rows)->find("lf.frame: 12\nlf.time_s: 0.25\n"), std::string::npos);
@@ -153,7 +154,7 @@ TEST(TiffFileTest, MetadataBecomesTheDescription) {
 
 TEST(TiffFileTest, WritingCanBeInterrupted) {
   const Image<uint8_t> image(4, 100, 3);
-  PictureRows rows = RowsOf(image, PixelType::kUint8);
+  PictureRows rows = TiffRows(image, PixelType::kUint8);
   int calls = 0;
   rows.is_interrupted = [&calls] { return ++calls == 3; };
   EXPECT_EQ(EncodeTiff(rows).error().kind, ErrorKind::kInterrupted);
@@ -170,7 +171,7 @@ TEST(TiffFileTest, EveryKindOfFileIsRead) {
       file.bits = 16;
       file.mode = mode;
       file.compression = compression;
-      EXPECT_EQ(PixelsOf<uint16_t>(Decode(BytesOf(file, values))), LargeVectorOf(values))
+      EXPECT_EQ(PixelsOf<uint16_t>(DecodedTiff(BytesOf(file, values))), LargeVectorOf(values))
           << mode << compression;
     }
 }
@@ -191,7 +192,7 @@ TEST(TiffFileTest, TilesAndPlanesAreReadInOrder) {
     const int tile = i / 256 % 4;
     values[i] = value(tile % 2 * 16 + i % 16, tile / 2 * 16 + i % 256 / 16, i / 1024);
   }
-  const auto read = Decode(BytesOf(file, values));
+  const auto read = DecodedTiff(BytesOf(file, values));
   ASSERT_TRUE(read) << read.error().message;
   const auto& image = std::get<Image<uint8_t>>(read->image);
   for (int y = 0; y < 20; ++y)
@@ -207,17 +208,17 @@ TEST(TiffFileTest, FewBitsAreScaledToTheFullRange) {
   file.samples = 1;
   file.photometric = PHOTOMETRIC_MINISBLACK;
   file.bits = 2;
-  EXPECT_EQ(PixelsOf<uint8_t>(Decode(BytesOf<uint8_t>(file, {0x1b}))),
+  EXPECT_EQ(PixelsOf<uint8_t>(DecodedTiff(BytesOf<uint8_t>(file, {0x1b}))),
             (LargeVector<uint8_t>{0, 85, 170, 255}));
   file.photometric = PHOTOMETRIC_MINISWHITE;
-  EXPECT_EQ(PixelsOf<uint8_t>(Decode(BytesOf<uint8_t>(file, {0x1b}))),
+  EXPECT_EQ(PixelsOf<uint8_t>(DecodedTiff(BytesOf<uint8_t>(file, {0x1b}))),
             (LargeVector<uint8_t>{255, 170, 85, 0}));
   file.photometric = PHOTOMETRIC_MINISBLACK;
   file.bits = 12;
-  EXPECT_EQ(PixelsOf<uint16_t>(Decode(BytesOf<uint8_t>(file, {0, 0, 1, 0x80, 0x0f, 0xff}))),
+  EXPECT_EQ(PixelsOf<uint16_t>(DecodedTiff(BytesOf<uint8_t>(file, {0, 0, 1, 0x80, 0x0f, 0xff}))),
             (LargeVector<uint16_t>{0, 16, 2048 * 65535 / 4095, 65535}));
   file.photometric = PHOTOMETRIC_MINISWHITE;
-  EXPECT_EQ(PixelsOf<uint16_t>(Decode(BytesOf<uint8_t>(file, {0, 0, 1, 0x80, 0x0f, 0xff}))),
+  EXPECT_EQ(PixelsOf<uint16_t>(DecodedTiff(BytesOf<uint8_t>(file, {0, 0, 1, 0x80, 0x0f, 0xff}))),
             (LargeVector<uint16_t>{65535, 65519, 65535 - 2048 * 65535 / 4095, 0}));
 }
 
@@ -228,7 +229,7 @@ TEST(TiffFileTest, PalettesBecomeColours) {
   file.samples = 1;
   file.photometric = PHOTOMETRIC_PALETTE;
   file.bits = 4;
-  EXPECT_EQ(PixelsOf<uint8_t>(Decode(BytesOf<uint8_t>(file, {0x2f}))),
+  EXPECT_EQ(PixelsOf<uint8_t>(DecodedTiff(BytesOf<uint8_t>(file, {0x2f}))),
             (LargeVector<uint8_t>{2, 2, 2, 15, 15, 15}));
 }
 
@@ -242,7 +243,7 @@ void ExpectFloats(int format, const std::vector<T>& values) {
   file.format = format;
   for (const char* mode : {"wl", "wb"}) {
     file.mode = mode;
-    const auto read = PixelsOf<float>(Decode(BytesOf(file, values)));
+    const auto read = PixelsOf<float>(DecodedTiff(BytesOf(file, values)));
     ASSERT_EQ(read.size(), values.size());
     for (size_t i = 0; i < values.size(); ++i) EXPECT_EQ(read[i], static_cast<float>(values[i]));
   }
@@ -273,32 +274,32 @@ TEST(TiffFileTest, HalvesBecomeFloats) {
 }
 
 TEST(TiffFileTest, ExtraSamplesDecideWhichChannelIsAlpha) {
-  using Names = std::vector<std::string>;
+  using ChannelNames = std::vector<std::string>;
   const auto names = [](int samples, std::vector<uint16_t> extras) {
     OtherFile file;
     file.samples = samples;
     file.extras = std::move(extras);
     if (samples < 3) file.photometric = PHOTOMETRIC_MINISBLACK;
-    const auto read = Decode(BytesOf(file, Noise<uint8_t>(20, 18, samples)));
+    const auto read = DecodedTiff(BytesOf(file, Noise<uint8_t>(20, 18, samples)));
     EXPECT_EQ(PixelsOf<uint8_t>(read), NoiseImage<uint8_t>(20, 18, samples).pixels());
     return read->info.channel_names;
   };
-  EXPECT_EQ(names(1, {}), (Names{"Y"}));
-  EXPECT_EQ(names(2, {EXTRASAMPLE_UNASSALPHA}), (Names{"Y", "A"}));
-  EXPECT_EQ(names(2, {EXTRASAMPLE_UNSPECIFIED}), (Names{"R", "G"}));
-  EXPECT_EQ(names(3, {}), (Names{"R", "G", "B"}));
-  EXPECT_EQ(names(4, {}), (Names{"R", "G", "B", "A"}));
-  EXPECT_EQ(names(4, {EXTRASAMPLE_ASSOCALPHA}), (Names{"R", "G", "B", "A"}));
-  EXPECT_EQ(names(4, {EXTRASAMPLE_UNSPECIFIED}), (Names{"R", "G", "B", "channel3"}));
+  EXPECT_EQ(names(1, {}), (ChannelNames{"Y"}));
+  EXPECT_EQ(names(2, {EXTRASAMPLE_UNASSALPHA}), (ChannelNames{"Y", "A"}));
+  EXPECT_EQ(names(2, {EXTRASAMPLE_UNSPECIFIED}), (ChannelNames{"R", "G"}));
+  EXPECT_EQ(names(3, {}), (ChannelNames{"R", "G", "B"}));
+  EXPECT_EQ(names(4, {}), (ChannelNames{"R", "G", "B", "A"}));
+  EXPECT_EQ(names(4, {EXTRASAMPLE_ASSOCALPHA}), (ChannelNames{"R", "G", "B", "A"}));
+  EXPECT_EQ(names(4, {EXTRASAMPLE_UNSPECIFIED}), (ChannelNames{"R", "G", "B", "channel3"}));
   EXPECT_EQ(names(5, {EXTRASAMPLE_UNSPECIFIED, EXTRASAMPLE_UNASSALPHA}),
-            (Names{"R", "G", "B", "channel3", "A"}));
+            (ChannelNames{"R", "G", "B", "channel3", "A"}));
 }
 
 TEST(TiffFileTest, TheOrientationTurnsNothing) {
   OtherFile file;
   const auto values = Noise<uint8_t>(20, 18, 3);
   file.orientation = ORIENTATION_RIGHTTOP;
-  const auto read = Decode(BytesOf(file, values));
+  const auto read = DecodedTiff(BytesOf(file, values));
   EXPECT_EQ(PixelsOf<uint8_t>(read), LargeVectorOf(values));
   EXPECT_EQ(read->info.orientation, 6);
 }
@@ -310,7 +311,7 @@ TEST(TiffFileTest, JpegInTiffBecomesRgb) {
   file.photometric = PHOTOMETRIC_YCBCR;
   std::vector<uint8_t> values;
   for (int i = 0; i < 256; ++i) values.insert(values.end(), {200, 100, 50});
-  const auto pixels = PixelsOf<uint8_t>(Decode(BytesOf(file, values)));
+  const auto pixels = PixelsOf<uint8_t>(DecodedTiff(BytesOf(file, values)));
   ASSERT_EQ(pixels.size(), values.size());
   for (size_t i = 0; i < values.size(); ++i) EXPECT_NEAR(pixels[i], values[i], 4);
 }
@@ -347,7 +348,7 @@ std::vector<std::string> FilesToDamage() {
   fax.compression = COMPRESSION_CCITTFAX4;
   files.push_back(BytesOf(fax, Noise<uint8_t>(20, 18, 1)));
   const auto image = NoiseImage<float>(9, 40, 3);
-  PictureRows rows = RowsOf(image, PixelType::kFloat);
+  PictureRows rows = TiffRows(image, PixelType::kFloat);
   rows.metadata = {{"lf.frame", 12}};
   files.push_back(EncodeTiff(rows).value());
   return files;
@@ -355,7 +356,7 @@ std::vector<std::string> FilesToDamage() {
 
 TEST(TiffFileTest, AFileCutAnywhereIsAnError) {
   for (const std::string& whole : FilesToDamage()) {
-    ASSERT_TRUE(Decode(whole)) << Decode(whole).error().message;
+    ASSERT_TRUE(DecodedTiff(whole)) << DecodedTiff(whole).error().message;
     for (size_t size = 0; size < whole.size(); ++size) ExpectInputError(whole.substr(0, size), "");
   }
 }
@@ -367,7 +368,7 @@ TEST(TiffFileTest, DamageIsNoCrash) {
       for (uint64_t k = 0; k <= i % 3; ++k)
         damaged[RandomBits(3, i, 2 * k) % damaged.size()] ^=
             static_cast<char>(1 << RandomBits(3, i, 2 * k + 1) % 8);
-      const auto read = Decode(damaged);
+      const auto read = DecodedTiff(damaged);
       if (read) continue;
       EXPECT_EQ(read.error().message.find('\n'), std::string::npos);
     }
@@ -376,12 +377,12 @@ TEST(TiffFileTest, DamageIsNoCrash) {
 // Some bits of a deflate stream fill up a byte and mean nothing.
 TEST(TiffFileTest, DamageWithinDeflateIsAnErrorIfItMatters) {
   const auto image = NoiseImage<uint8_t>(20, 40, 3);
-  const std::string whole = EncodeTiff(RowsOf(image, PixelType::kUint8)).value();
+  const std::string whole = EncodeTiff(TiffRows(image, PixelType::kUint8)).value();
   constexpr size_t kFirstStrip = 8, kStripBytes = 1900;
   for (size_t i = kFirstStrip + 2; i < kStripBytes; ++i) {
     std::string damaged = whole;
     damaged[i] ^= 0x10;
-    const auto read = Decode(damaged);
+    const auto read = DecodedTiff(damaged);
     if (!read) continue;
     EXPECT_EQ(PixelsOf<uint8_t>(read), image.pixels()) << i;
   }
@@ -394,7 +395,7 @@ TEST(TiffFileTest, MissingRowsOfAFaxAreAnError) {
   file.photometric = PHOTOMETRIC_MINISWHITE;
   file.compression = COMPRESSION_CCITTFAX4;
   std::string bytes = BytesOf(file, Noise<uint8_t>(3, 18, 1));
-  EXPECT_TRUE(Decode(bytes));
+  EXPECT_TRUE(DecodedTiff(bytes));
   // The entry of the height: tag 257, 16-bit integer, one value.
   const size_t height = bytes.find(std::string("\x01\x01\x03\0\x01\0\0\0\x12", 9));
   ASSERT_NE(height, std::string::npos);
@@ -427,15 +428,15 @@ TEST(TiffFileTest, ASourceMayThrow) {
 
 TEST(TiffFileTest, ManyThreadsReadTheSame) {
   const auto image = NoiseImage<uint16_t>(40, 30, 3);
-  const std::string bytes = EncodeTiff(RowsOf(image, PixelType::kUint16)).value();
+  const std::string bytes = EncodeTiff(TiffRows(image, PixelType::kUint16)).value();
   int failures[4] = {};
   std::vector<std::thread> threads;
   for (int& failure : failures)
     threads.emplace_back([&] {
       for (int i = 0; i < 20; ++i) {
-        const auto read = Decode(bytes);
+        const auto read = DecodedTiff(bytes);
         if (!read || std::get<Image<uint16_t>>(read->image).pixels() != image.pixels()) ++failure;
-        if (Decode(bytes.substr(0, bytes.size() / 2))) ++failure;
+        if (DecodedTiff(bytes.substr(0, bytes.size() / 2))) ++failure;
       }
     });
   for (std::thread& thread : threads) thread.join();

@@ -36,7 +36,7 @@ void ExpectIsReadAgain(const Result<std::string>& bytes, const Image<uint8_t>& i
   EXPECT_LT(sum / static_cast<double>(image.pixels().size()), 3);
 }
 
-PictureRows RowsOf(const Image<uint8_t>& image) {
+PictureRows JpegRows(const Image<uint8_t>& image) {
   PictureRows rows;
   rows.name = "a.jpg";
   rows.width = image.width();
@@ -68,7 +68,7 @@ TEST(WriteJpeg, RowsAreReadAgain) {
   for (const int channels : {1, 3})
     for (const int height : {1, 32, 33, 70}) {
       const Image<uint8_t> image = Gradient(45, height, channels);
-      ExpectIsReadAgain(EncodeJpegRows(RowsOf(image)), image);
+      ExpectIsReadAgain(EncodeJpegRows(JpegRows(image)), image);
     }
 }
 
@@ -76,12 +76,12 @@ TEST(WriteJpeg, RowsKeepFullChroma) {
   const Image<uint8_t> image = Gradient(45, 20, 3);
   // A frame header states 8 bits, height, width, and id, sampling and table of each component.
   const std::string frame("\xff\xc0\0\x11\x08\0\x14\0\x2d\x03\x01\x11\0\x02\x11\1\x03\x11\1", 19);
-  EXPECT_NE(EncodeJpegRows(RowsOf(image))->find(frame), std::string::npos);
+  EXPECT_NE(EncodeJpegRows(JpegRows(image))->find(frame), std::string::npos);
 }
 
 TEST(WriteJpeg, MetadataAreComments) {
   const Image<uint8_t> image = Gradient(45, 20, 3);
-  PictureRows picture = RowsOf(image);
+  PictureRows picture = JpegRows(image);
   EXPECT_EQ(EncodeJpegRows(picture)->find("\xff\xfe"), std::string::npos);
   picture.metadata = {{"lf.frame", 12}, {"lf.time_s", 0.25}};
   const std::string lines = "lf.frame: 12\nlf.time_s: 0.25\n";
@@ -95,7 +95,7 @@ TEST(WriteJpeg, MetadataAreComments) {
 
 TEST(WriteJpeg, InterruptionsEndTheEncoding) {
   const Image<uint8_t> image = Gradient(45, 100, 3);
-  PictureRows picture = RowsOf(image);
+  PictureRows picture = JpegRows(image);
   int asked = 0;
   picture.is_interrupted = [&] { return ++asked == 3; };
   const auto file = EncodeJpegRows(picture);
@@ -110,7 +110,7 @@ TEST(WriteJpeg, SaysWhatCannotBeEncoded) {
   ASSERT_FALSE(bytes);
   EXPECT_EQ(bytes.error().kind, ErrorKind::kOutput);
   EXPECT_NE(bytes.error().message.find("65500"), std::string::npos) << bytes.error().message;
-  const auto rows = EncodeJpegRows(RowsOf(wide));
+  const auto rows = EncodeJpegRows(JpegRows(wide));
   ASSERT_FALSE(rows);
   EXPECT_EQ(rows.error().kind, ErrorKind::kOutput);
   EXPECT_NE(rows.error().message.find("a.jpg: cannot be encoded: "), std::string::npos);
