@@ -20,14 +20,14 @@ LfPixels Noise(const PixelRect& rect, BayerPattern bayer, uint64_t seed) {
   return pixels;
 }
 
-Image<uint16_t> MapOf(const LfPixels& pixels, const std::vector<uint16_t>& table,
-                      const ProbabilityOptions& options) {
+Image<uint16_t> ProbabilitiesOf(const LfPixels& pixels, const std::vector<uint16_t>& table,
+                                const ProbabilityOptions& options) {
   Image<uint16_t> p;
   ProbabilityMap(pixels, pixels.rect, table, options, &p);
   return p;
 }
 
-void ExpectSame(const Image<uint16_t>& a, const Image<uint16_t>& b) {
+void ExpectSamePixels(const Image<uint16_t>& a, const Image<uint16_t>& b) {
   ASSERT_EQ(a.width(), b.width());
   ASSERT_EQ(a.height(), b.height());
   EXPECT_EQ(a.pixels(), b.pixels());
@@ -47,7 +47,7 @@ TEST(ProbabilityMap, FastIsTheReference) {
           const ProbabilityOptions options{sigma, 0.3, 0.02, 0.1, second};
           Image<uint16_t> judge;
           ProbabilityMapReference(pixels, rect, table, options, &judge);
-          ExpectSame(MapOf(pixels, table, options), judge);
+          ExpectSamePixels(ProbabilitiesOf(pixels, table, options), judge);
           // The fast map equals the reference also for two parts: one in the lower middle, and the
           // leftmost column.
           const int x = rect.width() / 3, y = rect.height() / 2;
@@ -57,7 +57,7 @@ TEST(ProbabilityMap, FastIsTheReference) {
             Image<uint16_t> p;
             ProbabilityMap(pixels, part, table, options, &p);
             ProbabilityMapReference(pixels, part, table, options, &judge);
-            ExpectSame(p, judge);
+            ExpectSamePixels(p, judge);
           }
         }
 }
@@ -70,7 +70,7 @@ TEST(ProbabilityMap, AnEdgeIsLikelyAndFlatIsXi) {
   for (int y = 0; y < 20; ++y)
     for (int x = 0; x < 40; ++x)
       for (int c = 0; c < 3; ++c) pixels.radiance.at(x, y, c) = x < 20 ? 10000 : 40000;
-  const Image<uint16_t> p = MapOf(pixels, table, {1, 4, 0, 0.25, 0});
+  const Image<uint16_t> p = ProbabilitiesOf(pixels, table, {1, 4, 0, 0.25, 0});
   EXPECT_EQ(p.at(3, 10), std::lround(0.25 * 65535));
   // Beside an edge of height h, the Laplacian of the step smoothed with sigma = 1 is h times the
   // difference of the Gaussian at 0 and at 1 pixel.
@@ -80,7 +80,7 @@ TEST(ProbabilityMap, AnEdgeIsLikelyAndFlatIsXi) {
   EXPECT_NEAR(p.at(20, 10) / 65535.0, expected, 0.01);
   EXPECT_EQ(p.at(19, 10), p.at(20, 10));
   // A pixel where |LoG| is below beta is never kept.
-  EXPECT_EQ(MapOf(pixels, table, {1, 4, 0.01, 0.25, 0}).at(3, 10), 0);
+  EXPECT_EQ(ProbabilitiesOf(pixels, table, {1, 4, 0.01, 0.25, 0}).at(3, 10), 0);
 }
 
 // Thesis Eq. 2.15 to 2.17 and 4.4 in real numbers: a Gaussian in two dimensions, the Laplacian of
@@ -134,7 +134,7 @@ TEST(ProbabilityMap, IsTheThesissEquationsInRealNumbers) {
   for (const double sigma : {0.6, 1.0, 2.0}) {
     const RealProbabilities real(grey, sigma);
     const ProbabilityOptions options{sigma, sigma > 1 ? 20.0 : 2.0, 0.02, 0.1, 0};
-    const Image<uint16_t> p = MapOf(pixels, table, options);
+    const Image<uint16_t> p = ProbabilitiesOf(pixels, table, options);
     int likely = 0, unlikely = 0, out = 0;
     for (int y = 0; y < 40; ++y)
       for (int x = 0; x < 48; ++x) {
@@ -166,8 +166,8 @@ TEST(ProbabilityMap, APartIsThePartOfTheWhole) {
         for (int c = 0; c < part.radiance.channels(); ++c)
           part.radiance.at(x, y, c) = whole.radiance.at(x + rect.x_begin, y + rect.y_begin, c);
     const ProbabilityOptions options{1, 0.3, 0, 0.05, 0};
-    const Image<uint16_t> of_whole = MapOf(whole, table, options);
-    const Image<uint16_t> of_part = MapOf(part, table, options);
+    const Image<uint16_t> of_whole = ProbabilitiesOf(whole, table, options);
+    const Image<uint16_t> of_part = ProbabilitiesOf(part, table, options);
     const int around = PixelsAround(options, bayer != BayerPattern::kNone);
     EXPECT_LT(around, 10);
     for (int y = around; y < rect.height() - around; ++y)

@@ -10,6 +10,7 @@
 #include "lf/core/file.h"
 #include "lf/core/hash.h"
 #include "lf/rebinning/ray_map_format.h"
+#include "lf/rebinning/test_ray_map.h"
 
 namespace lf {
 namespace {
@@ -53,20 +54,6 @@ class RayMapFile : public ::testing::Test {
 
   fs::path folder_;
 };
-
-std::vector<BinnedRay> RandomRays(size_t count, uint64_t cells, uint64_t seed) {
-  std::vector<BinnedRay> rays(count);
-  for (size_t i = 0; i < count; ++i) {
-    rays[i].cell = 1 + RandomBits(seed, 0, i) % cells;
-    for (size_t c = 0; c < 3; ++c)
-      rays[i].rgb[c] = static_cast<uint16_t>(RandomBits(seed, 1 + c, i));
-  }
-  return rays;
-}
-
-void AddAll(const std::vector<BinnedRay>& rays, RayMap* map) {
-  for (const BinnedRay& ray : rays) map->Add(RayMap::ShardOf(ray.cell), std::span(&ray, 1));
-}
 
 RayMap MapOf(const std::vector<BinnedRay>& rays) {
   RayMap map(kManyCells);

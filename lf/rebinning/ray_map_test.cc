@@ -6,23 +6,10 @@
 #include <map>
 #include <set>
 
+#include "lf/rebinning/test_ray_map.h"
+
 namespace lf {
 namespace {
-
-std::vector<BinnedRay> RandomRays(size_t count, uint64_t cells, uint64_t seed) {
-  std::vector<BinnedRay> rays(count);
-  for (size_t i = 0; i < count; ++i) {
-    rays[i].cell = 1 + RandomBits(seed, 0, i) % cells;
-    for (int c = 0; c < 3; ++c) rays[i].rgb[c] = static_cast<uint16_t>(RandomBits(seed, 1 + c, i));
-  }
-  return rays;
-}
-
-void AddAll(const std::vector<BinnedRay>& rays, RayMap* map) {
-  std::vector<std::vector<BinnedRay>> by_shard(RayMap::kShards);
-  for (const BinnedRay& ray : rays) by_shard[RayMap::ShardOf(ray.cell)].push_back(ray);
-  for (size_t shard = 0; shard < RayMap::kShards; ++shard) map->Add(shard, by_shard[shard]);
-}
 
 std::map<CellKey, BinnedCell> CellsOf(const RayMap& map) {
   ThreadPool pool(2);

@@ -28,7 +28,7 @@ PinholeCamera TestCamera(const Distortion& distortion = {}) {
   return camera;
 }
 
-LfPixels Noise(const PixelRect& rect, BayerPattern bayer) {
+LfPixels NoiseAt(const PixelRect& rect, BayerPattern bayer) {
   LfPixels pixels(rect, bayer);
   for (int y = 0; y < rect.height(); ++y)
     for (int x = 0; x < rect.width(); ++x)
@@ -64,7 +64,7 @@ RebinOptions Every() {
 size_t Misplaced(const PinholeCamera& camera, const IdealPixels* ideal) {
   const Slab slab = TestSlab();
   const PixelRect rect{0, 0, 80, 60};
-  const LfPixels pixels = Noise(rect, BayerPattern::kNone);
+  const LfPixels pixels = NoiseAt(rect, BayerPattern::kNone);
   BinnedRays rays;
   RebinImage(slab, camera, {3}, pixels, rect, StoredValueTable({}), ideal, Every(), nullptr,
              RayMap(10), &rays);
@@ -101,7 +101,7 @@ TEST(RebinImage, AlsoThroughALensThatBendsThem) {
 
 TEST(RebinImage, KeepsAsManyAsItsProbabilitiesSay) {
   const PixelRect rect{0, 0, 80, 60};
-  const LfPixels pixels = Noise(rect, BayerPattern::kNone);
+  const LfPixels pixels = NoiseAt(rect, BayerPattern::kNone);
   const std::vector<uint16_t> table = StoredValueTable({});
   RebinOptions options;
   options.probability = {1, 0.5, 0, 0.1, 0};
@@ -167,9 +167,9 @@ TEST(RebinImage, APartKeepsWhatTheWholeKeepsThere) {
     const PixelRect read{rect.x_begin - around, rect.y_begin - around, rect.x_end + around,
                          rect.y_end + around};
     BinnedRays of_whole, of_part;
-    RebinImage(TestSlab(), TestCamera(), {5}, Noise({0, 0, 80, 60}, bayer), rect, table, nullptr,
+    RebinImage(TestSlab(), TestCamera(), {5}, NoiseAt({0, 0, 80, 60}, bayer), rect, table, nullptr,
                options, nullptr, RayMap(10), &of_whole);
-    RebinImage(TestSlab(), TestCamera(), {5}, Noise(read, bayer), rect, table, nullptr, options,
+    RebinImage(TestSlab(), TestCamera(), {5}, NoiseAt(read, bayer), rect, table, nullptr, options,
                nullptr, RayMap(10), &of_part);
     for (size_t shard = 0; shard < RayMap::kShards; ++shard) {
       ASSERT_EQ(of_whole.kept[shard].size(), of_part.kept[shard].size());
@@ -259,7 +259,7 @@ TEST(RebinImage, OthersMakeNoCells) {
     RayMap map(100000);
     std::vector<BinnedRays> rays(4);
     for (uint32_t i = 0; i < 4; ++i)
-      RebinImage(slab, TestCamera(), {i}, Noise(rect, BayerPattern::kNone), rect, table, nullptr,
+      RebinImage(slab, TestCamera(), {i}, NoiseAt(rect, BayerPattern::kNone), rect, table, nullptr,
                  options, nullptr, map, &rays[i]);
     if (reversed) std::reverse(rays.begin(), rays.end());
     InsertRays(rays, pool, &map);

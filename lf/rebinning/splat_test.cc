@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kLensRadius = 0.004;
 
-std::vector<FrameRay> RandomRays(size_t count, int width, int height, uint64_t seed) {
+std::vector<FrameRay> RandomFrameRays(size_t count, int width, int height, uint64_t seed) {
   RandomSequence random(seed);
   std::vector<FrameRay> rays(count);
   for (FrameRay& ray : rays) {
@@ -42,7 +42,7 @@ QuerySum BruteForce(std::span<const FrameRay> rays, const Vec2& lens_point, cons
 }
 
 TEST(RayQuery, IsBruteForce) {
-  const std::vector<FrameRay> rays = RandomRays(20000, 60, 40, 1);
+  const std::vector<FrameRay> rays = RandomFrameRays(20000, 60, 40, 1);
   const QueryKernel kernel{0.0008, 0.9};
   const RayQuery query(rays, kernel);
   RandomSequence random(2);
@@ -61,7 +61,7 @@ TEST(RayQuery, IsBruteForce) {
 }
 
 TEST(RayQuery, TheNearestAreThoseOfBruteForce) {
-  const std::vector<FrameRay> rays = RandomRays(500, 30, 30, 3);
+  const std::vector<FrameRay> rays = RandomFrameRays(500, 30, 30, 3);
   const QueryKernel kernel{0.001, 1.5};
   const RayQuery query(rays, kernel);
   const Vec2 lens_point(0.001, -0.002), position(11.2, 14.9);
@@ -89,7 +89,7 @@ TEST(RayQuery, TheNearestAreThoseOfBruteForce) {
 }
 
 // Expects equal frames, except for elements with a ray on the rim of the reach.
-void ExpectSame(const SplatFrame& fast, const SplatFrame& judge) {
+void ExpectSameFrame(const SplatFrame& fast, const SplatFrame& judge) {
   double sum2 = 0;
   size_t count = 0, differing = 0;
   for (int y = 0; y < fast.share.height(); ++y)
@@ -110,7 +110,7 @@ void ExpectSame(const SplatFrame& fast, const SplatFrame& judge) {
 
 TEST(Splat, IsWhatQueriesGive) {
   constexpr int kWidth = 150, kHeight = 71;
-  const std::vector<FrameRay> rays = RandomRays(60000, kWidth, kHeight, 4);
+  const std::vector<FrameRay> rays = RandomFrameRays(60000, kWidth, kHeight, 4);
   ThreadPool pool(2);
   for (const int k : {1, 2, 3})
     for (const int blades : {0, 5})
@@ -120,7 +120,7 @@ TEST(Splat, IsWhatQueriesGive) {
         const QueryKernel kernel{0.0005, 0.8};
         const SplatFrame fast = Splat(rays, kWidth, kHeight, points, kernel, pool);
         const SplatFrame judge = SplatReference(rays, kWidth, kHeight, points, kernel, pool);
-        ExpectSame(fast, judge);
+        ExpectSameFrame(fast, judge);
       }
 }
 
@@ -128,7 +128,7 @@ TEST(Splat, IsWhatQueriesGive) {
 // left to the right edge, and are 0 for some points.
 TEST(Splat, PointsMayReachFartherAndBeAskedForInPart) {
   constexpr int kWidth = 140, kHeight = 67;
-  const std::vector<FrameRay> rays = RandomRays(40000, kWidth, kHeight, 6);
+  const std::vector<FrameRay> rays = RandomFrameRays(40000, kWidth, kHeight, 6);
   ThreadPool pool(2);
   for (const int k : {1, 2}) {
     LensPointSets points = MakeLensPoints({kLensRadius, 0, 0}, 11, k, 9);
@@ -145,7 +145,7 @@ TEST(Splat, PointsMayReachFartherAndBeAskedForInPart) {
             i % 5 == 4 || (i % 5 == 3 && node % 2 == 0) ? 0 : static_cast<float>(node % 2));
     const QueryKernel kernel{0.0005, 0.8};
     const SplatFrame fast = Splat(rays, kWidth, kHeight, points, kernel, pool, &shares);
-    ExpectSame(fast, SplatReference(rays, kWidth, kHeight, points, kernel, pool, &shares));
+    ExpectSameFrame(fast, SplatReference(rays, kWidth, kHeight, points, kernel, pool, &shares));
     EXPECT_LT(fast.share.at(0, 30), 0.02);
     EXPECT_GT(fast.share.at(kWidth - 1, 30), 0.7);
     EXPECT_LT(fast.share.at(kWidth - 1, 30), 0.9);
@@ -153,7 +153,7 @@ TEST(Splat, PointsMayReachFartherAndBeAskedForInPart) {
 }
 
 TEST(Splat, IsTheSameForAnyNumberOfThreads) {
-  const std::vector<FrameRay> rays = RandomRays(30000, 200, 90, 5);
+  const std::vector<FrameRay> rays = RandomFrameRays(30000, 200, 90, 5);
   const LensPointSets points = MakeLensPoints({kLensRadius, 6, 0}, 9, 2, 1);
   ThreadPool one(1), three(3);
   const SplatFrame a = Splat(rays, 200, 90, points, {0.0006, 0.7}, one);

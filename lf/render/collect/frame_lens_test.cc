@@ -14,9 +14,9 @@ namespace lf {
 namespace {
 
 // Returns one plate per lens, with all LF images collected with the weights of the lens.
-std::vector<SensorPlate> Collected(const LightField& field, const std::vector<FrameLens>& lenses,
-                                   Estimator estimator, CollectBackEnd back_end, int threads,
-                                   uint64_t seed) {
+std::vector<SensorPlate> CollectedPlates(const LightField& field,
+                                         const std::vector<FrameLens>& lenses, Estimator estimator,
+                                         CollectBackEnd back_end, int threads, uint64_t seed) {
   ThreadPool pool(threads);
   const testing::NoiseStore store;
   std::vector<RenderCamera> cameras;
@@ -66,9 +66,11 @@ TEST(FrameLens, PlatesAreThoseOfTheReferenceForAnyThreadsAndOrder) {
         lenses.emplace_back(ImageIndex(field), frame, kind, select, pool);
       for (const RenderCamera& frame : testing::NoiseFrames())
         of_another_order.emplace_back(ImageIndex(field, 5), frame, kind, select, pool);
-      const auto plates = Collected(field, lenses, estimator, CollectBackEnd::kFast, 1, 0);
-      EXPECT_EQ(Collected(field, of_another_order, estimator, CollectBackEnd::kFast, 3, 5), plates);
-      const auto expected = Collected(field, lenses, estimator, CollectBackEnd::kReference, 1, 0);
+      const auto plates = CollectedPlates(field, lenses, estimator, CollectBackEnd::kFast, 1, 0);
+      EXPECT_EQ(CollectedPlates(field, of_another_order, estimator, CollectBackEnd::kFast, 3, 5),
+                plates);
+      const auto expected =
+          CollectedPlates(field, lenses, estimator, CollectBackEnd::kReference, 1, 0);
       uint64_t total = 0, differing = 0;
       for (size_t f = 0; f < plates.size(); ++f)
         for (int y = 0; y < plates[f].height(); ++y)
@@ -118,7 +120,7 @@ TEST(FrameLens, SelectionLeavesOutNoRayWithAWeight) {
     for (const SelectedImage& image : SelectImages(ImageIndex(field), {&camera, 1}, {}, pool))
       selected_pixels += lenses[0].WeightsOf(image.id).are_none() ? 0 : image.ray_count;
     const auto plates =
-        Collected(field, lenses, Estimator::kNearest, CollectBackEnd::kReference, 1, 0);
+        CollectedPlates(field, lenses, Estimator::kNearest, CollectBackEnd::kReference, 1, 0);
     EXPECT_EQ(plates[0], expected) << seed;
     for (int y = 0; y < 60; ++y)
       for (int x = 0; x < 80; ++x) total += expected.At(x, y, 1).count;

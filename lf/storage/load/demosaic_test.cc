@@ -100,17 +100,17 @@ TEST(Demosaic, EqualsTheReferenceOnEveryInstructionSet) {
 }
 
 TEST(Demosaic, TheCutIntoRectanglesDoesNotMatter) {
-  constexpr int kWidth = 23, kHeight = 14;
+  constexpr int kMosaicWidth = 23, kMosaicHeight = 14;
   const Balance white_balance = {2.3, 1, 1.4};
   for (const BayerPattern bayer : kPatterns) {
-    LfPixels mosaic = NoiseMosaic(kWidth, kHeight, bayer, 1);
+    LfPixels mosaic = NoiseMosaic(kMosaicWidth, kMosaicHeight, bayer, 1);
     mosaic.Mask(9, 6);
     const LfPixels whole = RgbOf(mosaic, white_balance);
     for (uint64_t seed = 0; seed < 50; ++seed) {
-      const PixelRect rect = RandomRect(kWidth, kHeight, seed);
+      const PixelRect rect = RandomRect(kMosaicWidth, kMosaicHeight, seed);
       LfPixels rgb;
-      Demosaic(PartOf(mosaic, MosaicRectOf(rect, kWidth, kHeight)), kWidth, kHeight, white_balance,
-               rect, &rgb);
+      Demosaic(PartOf(mosaic, MosaicRectOf(rect, kMosaicWidth, kMosaicHeight)), kMosaicWidth,
+               kMosaicHeight, white_balance, rect, &rgb);
       for (int y = rect.y_begin; y < rect.y_end; ++y)
         for (int x = rect.x_begin; x < rect.x_end; ++x)
           for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane)

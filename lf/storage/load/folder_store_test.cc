@@ -112,13 +112,13 @@ TEST_F(FolderStoreTest, ARectangleIsCutToTheImage) {
 // The file is a JPEG that is decoded in part, with an orientation tag that exchanges width and
 // height.
 TEST_F(FolderStoreTest, ARectangleOfATurnedImageIsThePartOfTheTurnedWhole) {
-  constexpr PixelRect kStored = {0, 0, 45, 37};
+  constexpr PixelRect kStoredWhole = {0, 0, 45, 37};
   const std::string jpeg = EncodeJpeg(NoiseImage<uint8_t>(45, 37, 3).view(), 90).value();
   ASSERT_TRUE(WriteFileAtomically(folder_ / "stored.jpg", jpeg));
   LightField as_stored = OneImage("stored.jpg"), upright = OneImage("turned.jpg");
   as_stored.intrinsics = {{10, 10, 22, 18, 0, 45, 37}};
   upright.intrinsics = {{10, 10, 18, 22, 0, 37, 45}};
-  const LfPixels stored = Loaded(as_stored, kStored);
+  const LfPixels stored = Loaded(as_stored, kStoredWhole);
   for (char orientation = 5; orientation <= 8; ++orientation) {
     // Exif with one tag: orientation (0x112), one short.
     std::string exif("Exif\0\0MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\0\0\0\0\0\0\0", 32);

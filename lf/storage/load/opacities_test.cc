@@ -12,15 +12,15 @@
 namespace lf {
 namespace {
 
-constexpr int kWidth = 16, kHeight = 16;
-constexpr PixelRect kWhole = {0, 0, kWidth, kHeight};
+constexpr int kSide = 16;
+constexpr PixelRect kSquare = {0, 0, kSide, kSide};
 
 class OpacitiesTest : public FolderTest {
  protected:
   void SetUp() override {
     FolderTest::SetUp();
     field_.cameras.resize(1);
-    field_.intrinsics = {{10, 10, 8, 8, 0, kWidth, kHeight}};
+    field_.intrinsics = {{10, 10, 8, 8, 0, kSide, kSide}};
     field_.image_names = {"a.png"};
     field_.folder = folder_;
     field_.encoding.transfer = Transfer::kLinear;
@@ -29,14 +29,14 @@ class OpacitiesTest : public FolderTest {
   // Writes an image in which each of 256 alphas occurs once, with random colours.
   template <class T>
   Image<T> WriteEveryAlpha(int channels) {
-    Image<T> image = NoiseImage<T>(kWidth, kHeight, channels);
+    Image<T> image = NoiseImage<T>(kSide, kSide, channels);
     for (int i = 0; i < 256; ++i)
       image.at(i % 16, i / 16, channels - 1) =
           static_cast<T>(i * (std::numeric_limits<T>::max() / 255));
     EXPECT_TRUE(WriteImage(folder_ / "a.png", image.view()));
     return image;
   }
-  LfPixels Loaded(const PixelRect& rect = kWhole) const {
+  LfPixels Loaded(const PixelRect& rect = kSquare) const {
     LfPixels pixels;
     const Result<void> loaded = FolderStore(field_).Load({0}, rect, &pixels);
     EXPECT_TRUE(loaded) << loaded.error().message;
@@ -54,8 +54,8 @@ void ExpectComposed(const LightField& field, const Image<T>& stored, const LfPix
   const int colours = stored.channels() - 1;
   const std::vector<uint16_t> table =
       RadianceTable(encoding, sizeof(T) == 1 ? 8 : 16, field.cameras[0].gain[0]);
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x) {
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
       const double a = stored.at(x, y, colours) / most;
       for (int c = 0; c < 3; ++c) {
         const double v = table[stored.at(x, y, colours == 3 ? c : 0)];
@@ -103,9 +103,9 @@ TEST_F(OpacitiesTest, GreyHasAlphaToo) {
 }
 
 TEST_F(OpacitiesTest, OpaqueImagesHaveTheBitsOfImagesWithoutAlpha) {
-  Image<uint16_t> with = NoiseImage<uint16_t>(kWidth, kHeight, 4), without(kWidth, kHeight, 3);
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x) {
+  Image<uint16_t> with = NoiseImage<uint16_t>(kSide, kSide, 4), without(kSide, kSide, 3);
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
       with.at(x, y, 3) = 65535;
       for (int c = 0; c < 3; ++c) without.at(x, y, c) = with.at(x, y, c);
     }
@@ -117,7 +117,7 @@ TEST_F(OpacitiesTest, OpaqueImagesHaveTheBitsOfImagesWithoutAlpha) {
 
 TEST_F(OpacitiesTest, MaskFilesMaskWhatIsComposed) {
   WriteEveryAlpha<uint8_t>(4);
-  Image<uint8_t> mask(kWidth, kHeight, 1, 255);
+  Image<uint8_t> mask(kSide, kSide, 1, 255);
   mask.at(3, 4) = 0;
   ASSERT_TRUE(WriteImage(folder_ / "mask.png", mask.view()));
   field_.mask_names = {"mask.png"};
@@ -132,13 +132,13 @@ TEST_F(OpacitiesTest, WhereNothingIsBehindOpacityIsKeptAndLightIsAsOverBlack) {
   EXPECT_TRUE(over_black.opacity.empty());
   field_.encoding.background = {0, 0, 0};
   field_.encoding.keeps_opacity = true;
-  Image<uint8_t> mask(kWidth, kHeight, 1, 255);
+  Image<uint8_t> mask(kSide, kSide, 1, 255);
   mask.at(3, 4) = 0;
   ASSERT_TRUE(WriteImage(folder_ / "mask.png", mask.view()));
   LfPixels pixels = Loaded();
   EXPECT_EQ(pixels.radiance.pixels(), over_black.radiance.pixels());
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x)
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x)
       for (int lane = 0; lane < 3; ++lane)
         ASSERT_NEAR(pixels.opacity.at(x, y, lane),
                     LfPixels::kTransparent + std::min(stored.at(x, y, 3) * 257, 65534) /
@@ -160,14 +160,14 @@ TEST_F(OpacitiesTest, WhereNothingIsBehindOpacityIsKeptAndLightIsAsOverBlack) {
 TEST_F(OpacitiesTest, ImagesWithoutAlphaAreOpaqueButForTheirMasks) {
   field_.encoding.background = {0, 0, 0};
   field_.encoding.keeps_opacity = true;
-  ASSERT_TRUE(WriteImage(folder_ / "a.png", NoiseImage<uint8_t>(kWidth, kHeight, 3).view()));
-  Image<uint8_t> mask(kWidth, kHeight, 1, 255);
+  ASSERT_TRUE(WriteImage(folder_ / "a.png", NoiseImage<uint8_t>(kSide, kSide, 3).view()));
+  Image<uint8_t> mask(kSide, kSide, 1, 255);
   mask.at(3, 4) = 0;
   ASSERT_TRUE(WriteImage(folder_ / "mask.png", mask.view()));
   field_.mask_names = {"mask.png"};
   const LfPixels pixels = Loaded();
-  for (int y = 0; y < kHeight; ++y)
-    for (int x = 0; x < kWidth; ++x)
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x)
       ASSERT_EQ(pixels.opacity.at(x, y), x == 3 && y == 4 ? 0 : LfPixels::kOpaque);
 }
 
@@ -175,7 +175,7 @@ TEST_F(OpacitiesTest, FloatsOutsideOfTheirRangeAreClippedAndNanIsTransparent) {
   field_.image_names = {"a.exr"};
   field_.encoding.background = {1, 1, 1};
   field_.encoding.max_radiance = 2;
-  Image<float> image(kWidth, kHeight, 4);
+  Image<float> image(kSide, kSide, 4);
   image.at(0, 0, 3) = 7;
   image.at(1, 0, 3) = -7;
   image.at(2, 0, 3) = std::numeric_limits<float>::quiet_NaN();

@@ -21,15 +21,15 @@
 namespace lf {
 namespace {
 
-constexpr int kWidth = 40, kHeight = 30;
+constexpr int kPackedWidth = 40, kPackedHeight = 30;
 constexpr uint32_t kCount = 6;
-constexpr PixelRect kWhole = {0, 0, kWidth, kHeight};
+constexpr PixelRect kPackedWhole = {0, 0, kPackedWidth, kPackedHeight};
 
 class PackedStoreTest : public FolderTest {
  protected:
   void SetUp() override {
     FolderTest::SetUp();
-    field_.intrinsics = {{30, 30, 20, 15, 0, kWidth, kHeight}};
+    field_.intrinsics = {{30, 30, 20, 15, 0, kPackedWidth, kPackedHeight}};
     field_.folder = folder_;
     path_ = folder_ / "store.lfs";
   }
@@ -43,7 +43,7 @@ class PackedStoreTest : public FolderTest {
   template <class T>
   void AddImages(int channels, const std::string& extension = ".png") {
     for (uint32_t i = 0; i < kCount; ++i) {
-      Image<T> image = NoiseImage<T>(kWidth, kHeight, channels);
+      Image<T> image = NoiseImage<T>(kPackedWidth, kPackedHeight, channels);
       for (T& value : image.pixels()) value = static_cast<T>(value * (i + 1));
       const std::string name = "image" + std::to_string(i) + extension;
       ASSERT_TRUE(WriteImage(folder_ / name, image.view()));
@@ -53,12 +53,12 @@ class PackedStoreTest : public FolderTest {
   void MaskRow7OfImage2() {
     field_.mask_names.resize(field_.size());
     field_.mask_names[2] = "mask.png";
-    Image<uint8_t> mask(kWidth, kHeight, 1, 255);
-    for (int x = 0; x < kWidth; ++x) mask.at(x, 7) = 0;
+    Image<uint8_t> mask(kPackedWidth, kPackedHeight, 1, 255);
+    for (int x = 0; x < kPackedWidth; ++x) mask.at(x, 7) = 0;
     ASSERT_TRUE(WriteImage(folder_ / "mask.png", mask.view()));
   }
   // Packs the pixels `rect` of all images without loss.
-  void Pack(const PixelRect& rect = kWhole, uint64_t shard_bytes = 0) {
+  void Pack(const PixelRect& rect = kPackedWhole, uint64_t shard_bytes = 0) {
     PackedStorePlan plan;
     plan.whole = IdentityOf(field_);
     plan.shard_bytes = shard_bytes;
@@ -84,7 +84,7 @@ class PackedStoreTest : public FolderTest {
     return pixels;
   }
   static std::string ErrorOf(const LfImageStore& store, LfImageId id,
-                             const PixelRect& rect = kWhole) {
+                             const PixelRect& rect = kPackedWhole) {
     LfPixels pixels;
     const Result<void> loaded = store.Load(id, rect, &pixels);
     EXPECT_FALSE(loaded);
@@ -100,8 +100,10 @@ class PackedStoreTest : public FolderTest {
     EXPECT_EQ(a.mosaic_mask.pixels(), b.mosaic_mask.pixels());
   }
   void ExpectTheBitsOfTheFolder(Mosaics mosaics = Mosaics::kAsRecorded,
-                                const std::vector<PixelRect>& rects = {
-                                    kWhole, {3, 5, 17, 11}, {-4, 20, 99, 99}, {50, 50, 60, 60}}) {
+                                const std::vector<PixelRect>& rects = {kPackedWhole,
+                                                                       {3, 5, 17, 11},
+                                                                       {-4, 20, 99, 99},
+                                                                       {50, 50, 60, 60}}) {
     const FolderStore files(field_, mosaics);
     const auto store = Opened(mosaics);
     for (uint32_t i = 0; i < field_.size(); ++i)
@@ -134,7 +136,8 @@ TEST_F(PackedStoreTest, BracketsBecomeMasks) {
   EXPECT_EQ(ApplyBrackets(&field_), field_.size() - 1);
   Pack();
   EXPECT_TRUE(packed_.encoding.masks_clipped);
-  for (uint32_t i = 0; i < 3; ++i) EXPECT_TRUE(Loaded(*Opened(), {i}, kWhole).any_masked) << i;
+  for (uint32_t i = 0; i < 3; ++i)
+    EXPECT_TRUE(Loaded(*Opened(), {i}, kPackedWhole).any_masked) << i;
   ExpectTheBitsOfTheFolder();
 }
 
@@ -145,7 +148,7 @@ TEST_F(PackedStoreTest, BracketsOfMosaicsBecomeMasks) {
   field_.cameras[1].gain = 4;
   ApplyBrackets(&field_);
   Pack();
-  EXPECT_TRUE(Loaded(*Opened(), {0}, kWhole).any_masked);
+  EXPECT_TRUE(Loaded(*Opened(), {0}, kPackedWhole).any_masked);
   ExpectTheBitsOfTheFolder();
   ExpectTheBitsOfTheFolder(Mosaics::kToRgb);
 }
@@ -156,7 +159,7 @@ TEST_F(PackedStoreTest, AlphaAndMaskFilesBecomeMasks) {
   Pack();
   EXPECT_TRUE(packed_.mask_names.empty());
   ExpectTheBitsOfTheFolder();
-  EXPECT_TRUE(Loaded(*Opened(), {2}, kWhole).IsMasked(4, 7));
+  EXPECT_TRUE(Loaded(*Opened(), {2}, kPackedWhole).IsMasked(4, 7));
 }
 
 TEST_F(PackedStoreTest, MasksOfAPartLieWhereThePartDoes) {
@@ -185,7 +188,7 @@ TEST_F(PackedStoreTest, AlphaThatIsLightHasTheBitsOfTheFolder) {
     EXPECT_EQ(packed_.encoding.alpha, alpha);
     EXPECT_EQ(packed_.encoding.background, field_.encoding.background);
     ExpectTheBitsOfTheFolder();
-    EXPECT_TRUE(Loaded(*Opened(), {2}, kWhole).IsMasked(4, 7));
+    EXPECT_TRUE(Loaded(*Opened(), {2}, kPackedWhole).IsMasked(4, 7));
     // The background is applied when images are loaded, not when they are encoded.
     field_.encoding.background = packed_.encoding.background = {0, 0, 0};
     ExpectTheBitsOfTheFolder();
@@ -207,10 +210,10 @@ TEST_F(PackedStoreTest, OpacitiesHaveTheBitsOfTheFolderAlsoOfImagesWithoutAlpha)
     ExpectTheBitsOfTheFolder();
     const FolderStore folder(field_);
     for (const uint32_t i : {0u, 2u}) {
-      const LfPixels packed = Loaded(*Opened(), {i}, kWhole);
+      const LfPixels packed = Loaded(*Opened(), {i}, kPackedWhole);
       EXPECT_EQ(packed.IsMasked(4, 7), i == 2);
       EXPECT_FALSE(packed.opacity.empty());
-      EXPECT_EQ(packed.opacity.pixels(), Loaded(folder, {i}, kWhole).opacity.pixels());
+      EXPECT_EQ(packed.opacity.pixels(), Loaded(folder, {i}, kPackedWhole).opacity.pixels());
     }
     field_.mask_names.clear();
     field_.image_names.clear();
@@ -240,7 +243,7 @@ TEST_F(PackedStoreTest, MosaicsHaveTheBitsOfTheFolderAsRecordedAndAsRgb) {
   AddImages<uint16_t>(1);
   field_.mask_names.resize(field_.size());
   field_.mask_names[1] = "mask.png";
-  Image<uint8_t> mask(kWidth, kHeight, 1, 255);
+  Image<uint8_t> mask(kPackedWidth, kPackedHeight, 1, 255);
   mask.at(9, 9) = 0;
   ASSERT_TRUE(WriteImage(folder_ / "mask.png", mask.view()));
   Pack();
@@ -272,7 +275,7 @@ TEST_F(PackedStoreTest, APartServesWhatItWasRecordedFor) {
 TEST_F(PackedStoreTest, HalfFloatsHaveTheBitsOfTheFolder) {
   field_.encoding.max_radiance = 16;
   for (uint32_t i = 0; i < 3; ++i) {
-    Image<float> image(kWidth, kHeight, 4);
+    Image<float> image(kPackedWidth, kPackedHeight, 4);
     for (size_t k = 0; k < image.pixels().size(); ++k)
       image.pixels()[k] = static_cast<float>(RandomUnit(1, i, k) * 20 - 1);
     image.at(3, 3, 0) = std::numeric_limits<float>::quiet_NaN();
@@ -286,13 +289,13 @@ TEST_F(PackedStoreTest, HalfFloatsHaveTheBitsOfTheFolder) {
 }
 
 TEST_F(PackedStoreTest, FloatsAreRoundedToHalf) {
-  Image<float> image(kWidth, kHeight, 3, 0.1f);
+  Image<float> image(kPackedWidth, kPackedHeight, 3, 0.1f);
   ASSERT_TRUE(WriteImage(folder_ / "a.exr", image.view(), {"R", "G", "B"}, PixelType::kFloat));
   AddImage("a.exr");
   is_rounded_ = true;
   Pack();
-  const LfPixels exact = Loaded(FolderStore(field_), {0}, kWhole);
-  const LfPixels packed = Loaded(*Opened(), {0}, kWhole);
+  const LfPixels exact = Loaded(FolderStore(field_), {0}, kPackedWhole);
+  const LfPixels packed = Loaded(*Opened(), {0}, kPackedWhole);
   EXPECT_NEAR(packed.radiance.at(0, 0, 0), exact.radiance.at(0, 0, 0), 6554.0 / 2048);
 }
 
@@ -305,8 +308,8 @@ TEST_F(PackedStoreTest, LightFieldsOfOtherOrderFindTheirImages) {
   part.cameras = {field_.cameras[5], field_.cameras[0], field_.cameras[2]};
   const auto store = OpenStore(part, Mosaics::kAsRecorded).value();
   const FolderStore files(field_);
-  ExpectSame(Loaded(*store, {0}, kWhole), Loaded(files, {5}, kWhole));
-  ExpectSame(Loaded(*store, {2}, kWhole), Loaded(files, {2}, kWhole));
+  ExpectSame(Loaded(*store, {0}, kPackedWhole), Loaded(files, {5}, kPackedWhole));
+  ExpectSame(Loaded(*store, {2}, kPackedWhole), Loaded(files, {2}, kPackedWhole));
   EXPECT_TRUE(store->IsThere({2}));
   EXPECT_FALSE(store->IsThere({1}));
   EXPECT_GT(store->StoredBytes({2}), 0u);
@@ -330,28 +333,28 @@ TEST_F(PackedStoreTest, ADamagedCodeIsAnErrorOfItsImageAlone) {
   const auto store = Opened();
   EXPECT_NE(ErrorOf(*store, {3}).find("store.lfs/image3.png: "), std::string::npos);
   EXPECT_NE(ErrorOf(*store, {3}).find("checksum"), std::string::npos);
-  ExpectSame(Loaded(*store, {4}, kWhole), Loaded(FolderStore(field_), {4}, kWhole));
+  ExpectSame(Loaded(*store, {4}, kPackedWhole), Loaded(FolderStore(field_), {4}, kPackedWhole));
 }
 
 TEST_F(PackedStoreTest, CodesOfSomethingElseAreErrors) {
   AddImages<uint8_t>(3);
   const auto code_of = [&](const CodecPixels& pixels, PixelLayout layout) {
     CodedImage coded;
-    coded.rect = kWhole;
+    coded.rect = kPackedWhole;
     coded.code = EncodeImage(pixels, layout, {.profile = CodecProfile::kLossless});
     return coded;
   };
-  const Image<uint8_t> rgb = NoiseImage<uint8_t>(kWidth, kHeight, 3);
+  const Image<uint8_t> rgb = NoiseImage<uint8_t>(kPackedWidth, kPackedHeight, 3);
   std::vector<CodedImage> codes(6);
-  codes[0] = code_of(NoiseImage<uint8_t>(kWidth, kHeight + 1, 3), PixelLayout::kRgb);
-  codes[1] = code_of(NoiseImage<uint16_t>(kWidth, kHeight, 3), PixelLayout::kRgb);
-  codes[2] = code_of(NoiseImage<uint8_t>(kWidth, kHeight, 1), PixelLayout::kMosaic);
+  codes[0] = code_of(NoiseImage<uint8_t>(kPackedWidth, kPackedHeight + 1, 3), PixelLayout::kRgb);
+  codes[1] = code_of(NoiseImage<uint16_t>(kPackedWidth, kPackedHeight, 3), PixelLayout::kRgb);
+  codes[2] = code_of(NoiseImage<uint8_t>(kPackedWidth, kPackedHeight, 1), PixelLayout::kMosaic);
   codes[3] = code_of(rgb, PixelLayout::kRgb);
   codes[3].code = "no code";
   codes[4] = code_of(rgb, PixelLayout::kRgb);
   codes[4].mask = codes[4].code;
   codes[5] = code_of(rgb, PixelLayout::kRgb);
-  codes[5].rect = {0, 1, kWidth, kHeight + 1};
+  codes[5].rect = {0, 1, kPackedWidth, kPackedHeight + 1};
   PackedStorePlan plan;
   {
     PackedStoreWriter writer = PackedStoreWriter::Create(path_, field_, plan).value();
@@ -385,11 +388,11 @@ TEST_F(PackedStoreTest, LevelsBeyondTheBitsAreAnError) {
 
 TEST_F(PackedStoreTest, ManyReadAtOnce) {
   AddImages<uint8_t>(4);
-  Pack(kWhole, 9000);
+  Pack(kPackedWhole, 9000);
   const auto store = Opened();
   const FolderStore files(field_);
   std::vector<LfPixels> expected;
-  for (uint32_t i = 0; i < kCount; ++i) expected.push_back(Loaded(files, {i}, kWhole));
+  for (uint32_t i = 0; i < kCount; ++i) expected.push_back(Loaded(files, {i}, kPackedWhole));
   std::atomic<int> faults = 0;
   std::vector<std::thread> threads;
   for (uint32_t t = 0; t < 8; ++t)
@@ -397,7 +400,7 @@ TEST_F(PackedStoreTest, ManyReadAtOnce) {
       LfPixels pixels;
       for (uint32_t round = 0; round < 60; ++round) {
         const uint32_t i = (round * (t + 1) + t) % kCount;
-        if (!store->Load({i}, kWhole, &pixels) ||
+        if (!store->Load({i}, kPackedWhole, &pixels) ||
             pixels.radiance.pixels() != expected[i].radiance.pixels())
           ++faults;
       }

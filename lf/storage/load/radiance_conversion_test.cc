@@ -9,7 +9,7 @@
 namespace lf {
 namespace {
 
-constexpr int kWidth = 12, kHeight = 8;
+constexpr int kWorldWidth = 12, kWorldHeight = 8;
 const PixelRect kPart{1, 2, 9, 7};  // pixels of the LF image that are converted
 const PixelRect kStored{0, 1, 12, 8};
 
@@ -25,8 +25,8 @@ World MakeWorld() {
   world.encoding.pedestal = 1024;
   world.k.cx_px = 5;
   world.k.cy_px = 4.5;
-  world.k.width_px = kWidth;
-  world.k.height_px = kHeight;
+  world.k.width_px = kWorldWidth;
+  world.k.height_px = kWorldHeight;
   return world;
 }
 

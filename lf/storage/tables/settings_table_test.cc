@@ -8,18 +8,18 @@
 namespace lf {
 namespace {
 
-constexpr DatabaseFormat kFormat = {"test file", 0x4C465454, 1};
+constexpr DatabaseFormat kSettingsFormat = {"test file", 0x4C465454, 1};
 
 TEST(Settings, AreReadAsWhatTheyShouldBe) {
   const std::filesystem::path path =
       std::filesystem::temp_directory_path() / ("lf_settings_test." + std::to_string(::getpid()));
   {
-    Database database = Database::Create(path, kFormat).value();
+    Database database = Database::Create(path, kSettingsFormat).value();
     ASSERT_TRUE(database.Execute(kSettingsTable));
     ASSERT_TRUE(WriteSettings({{"three", "1 2.5 -3"}, {"big", "18446744073709551615"}, {"w", "b"}},
                               &database));
   }
-  Database database = Database::Open(path, kFormat, {kSettingsTable}).value();
+  Database database = Database::Open(path, kSettingsFormat, {kSettingsTable}).value();
   const Settings settings = Settings::Read(database, "test file").value();
   EXPECT_EQ(settings.Text("three"), "1 2.5 -3");
   EXPECT_EQ(settings.Text("none"), "");
