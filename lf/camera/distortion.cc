@@ -9,7 +9,7 @@
 namespace lf {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 struct ValueAndSlope {
   double value = 0;
@@ -263,7 +263,7 @@ bool IsDistortion(const Distortion& distortion) {
 }
 
 DistortionMap::DistortionMap(const Distortion& distortion)
-    : distortion_(distortion), limit_(kInfinity), distorted_limit_(kInfinity) {
+    : distortion_(distortion), limit_(kNoLimit), distorted_limit_(kNoLimit) {
   LF_CHECK(IsDistortion(distortion));
   const DistortionParameters& p = distortion.parameters;
   switch (distortion.model) {
@@ -287,13 +287,13 @@ DistortionMap::DistortionMap(const Distortion& distortion)
       return;
     case DistortionModel::kDivision:
       // At this rd, r(rd) has its maximum (k > 0) or a pole (k < 0).
-      distorted_limit_ = p[0] == 0 ? kInfinity : 1 / std::sqrt(std::abs(p[0]));
+      distorted_limit_ = p[0] == 0 ? kNoLimit : 1 / std::sqrt(std::abs(p[0]));
       if (p[0] > 0) limit_ = 0.5 * distorted_limit_;
       return;
     case DistortionModel::kUnified: {
       // The limit of rd for r to infinity.
       const double far = p[0] * std::sqrt(p[1]);
-      distorted_limit_ = far > 0 ? 1 / far : kInfinity;
+      distorted_limit_ = far > 0 ? 1 / far : kNoLimit;
       return;
     }
     case DistortionModel::kThinPrism: {

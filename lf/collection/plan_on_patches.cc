@@ -27,16 +27,15 @@ RayShare AtMostZero(const Hull& hull, const PixelForm& form) {
   return range.high < -range.rounding ? RayShare::kAll : RayShare::kSome;
 }
 
-constexpr int kControls = IdealPatch::kControls;
-
 // Splits the curve with the control points c at the parameter t, and writes the control points of
 // both parts (De Casteljau's construction).
-void SplitBezier(const Vec3 (&c)[kControls], double t, Vec3 (&left)[kControls],
-                 Vec3 (&right)[kControls]) {
+void SplitBezier(const Vec3 (&c)[IdealPatch::kControls], double t,
+                 Vec3 (&left)[IdealPatch::kControls], Vec3 (&right)[IdealPatch::kControls]) {
   std::copy(std::begin(c), std::end(c), std::begin(right));
-  for (int k = 0; k < kControls; ++k) {
+  for (int k = 0; k < IdealPatch::kControls; ++k) {
     left[k] = right[0];
-    for (int i = 0; i < kControls - 1 - k; ++i) right[i] += t * (right[i + 1] - right[i]);
+    for (int i = 0; i < IdealPatch::kControls - 1 - k; ++i)
+      right[i] += t * (right[i + 1] - right[i]);
   }
 }
 
@@ -198,12 +197,13 @@ class PatchPlanner {
     const double t = static_cast<double>(middle - rect.y_begin) / rect.height();
     upper->rect = {rect.x_begin, rect.y_begin, rect.x_end, middle};
     lower->rect = {rect.x_begin, middle, rect.x_end, rect.y_end};
-    for (int i = 0; i < kControls; ++i) {
-      Vec3 column[kControls], first[kControls], second[kControls];
-      for (int j = 0; j < kControls; ++j) column[j] = patch.control[j][i];
+    for (int i = 0; i < IdealPatch::kControls; ++i) {
+      Vec3 column[IdealPatch::kControls], first[IdealPatch::kControls],
+          second[IdealPatch::kControls];
+      for (int j = 0; j < IdealPatch::kControls; ++j) column[j] = patch.control[j][i];
       SplitBezier(column, t, first, second);
-      for (int j = 0; j < kControls; ++j) upper->control[j][i] = first[j];
-      for (int j = 0; j < kControls; ++j) lower->control[j][i] = second[j];
+      for (int j = 0; j < IdealPatch::kControls; ++j) upper->control[j][i] = first[j];
+      for (int j = 0; j < IdealPatch::kControls; ++j) lower->control[j][i] = second[j];
     }
   }
 

@@ -19,6 +19,10 @@ inline constexpr double DegreesFromRadians(double radians) { return radians * (1
 using Vec2 = Eigen::Vector2d;
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
+
+// Returns twice the area of the triangle (0, a, b), positive if it is counter-clockwise.
+inline double Cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
 // A linear form on homogeneous pixel positions: form * (x, y, 1)^T.
 using PixelForm = Eigen::RowVector3d;
 inline double Value(const PixelForm& form, double x_px, double y_px) {

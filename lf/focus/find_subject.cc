@@ -15,7 +15,6 @@
 namespace lf {
 namespace {
 
-constexpr size_t kLeastViews = 2;
 constexpr size_t kMostAtOnce = 4;  // largest number of whole LF images in memory
 
 // Loads the views. Removes views that cannot be loaded, and rings with too few views. kOutput: the
@@ -37,7 +36,7 @@ Result<void> LoadRings(const LightField& field, const LfImageStore& store, Threa
   LF_RETURN_IF_ERROR(failure.Check());
   for (std::vector<View>& ring : *rings)
     std::erase_if(ring, [](const View& view) { return view.image == nullptr; });
-  std::erase_if(*rings, [](const std::vector<View>& ring) { return ring.size() < kLeastViews; });
+  std::erase_if(*rings, [](const std::vector<View>& ring) { return ring.size() < kLeastViewsOfRing; });
   return {};
 }
 

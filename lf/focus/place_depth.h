@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -29,7 +30,8 @@ struct View {
   std::shared_ptr<const ReducedImage> image = nullptr;
 };
 
-using Rings = std::vector<std::vector<View>>;  // the innermost ring first
+using Rings = std::vector<std::vector<View>>;   // the innermost ring first
+inline constexpr size_t kLeastViewsOfRing = 2;  // rings of fewer views are not used
 
 // Returns LF cameras around `camera` in up to five rings; each ring is four times as wide as the
 // one before. A ring contains the LF cameras nearest to six evenly spread positions. Images are not

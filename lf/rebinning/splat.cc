@@ -200,9 +200,9 @@ class TileSplatter {
     cell_of_.resize(of_tile.size());
     sorted_.resize(of_tile.size());
     // The rays of a tile are scattered in memory, so they are prefetched.
-    constexpr size_t kAhead = 16;
+    constexpr size_t kRaysAhead = 16;
     for (size_t i = 0; i < of_tile.size(); ++i) {
-      if (i + kAhead < of_tile.size()) __builtin_prefetch(&rays[of_tile[i + kAhead]]);
+      if (i + kRaysAhead < of_tile.size()) __builtin_prefetch(&rays[of_tile[i + kRaysAhead]]);
       const FrameRay& ray = rays[of_tile[i]];
       cell_of_[i] =
           static_cast<uint32_t>(lens_.CellAt(lens_.Column(ray.lens_x_w), lens_.Row(ray.lens_y_w)));

@@ -9,7 +9,7 @@
 namespace lf {
 namespace {
 
-constexpr int kPictureSide_px = 1280;
+constexpr int kWatchedSide_px = 1280;
 
 }  // namespace
 
@@ -30,7 +30,7 @@ PageAnswer AnswerOfRender(const std::filesystem::path& folder, std::string_view 
   if (name == "frames.json") return {200, "application/json", RenderJson(folder)};
   for (const WatchedFrame& frame : LookAtRender(folder)) {
     if (name != fmt::format("{}.bin", frame.frame.value)) continue;
-    const auto picture = ReadGrowingPicture(frame.picture, kPictureSide_px);
+    const auto picture = ReadGrowingPicture(frame.picture, kWatchedSide_px);
     if (!picture) return Refusal(picture.error());
     return {200, "application/octet-stream", PictureBytes(*picture)};
   }

@@ -14,15 +14,15 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr size_t kLimitBytes = size_t{16} << 20;
-constexpr const char* kFormat = "lffinish 1";
+constexpr size_t kFinishLimit_bytes = size_t{16} << 20;
+constexpr const char* kFinishFormat = "lffinish 1";
 
 Result<std::vector<FrameId>> ReadAll(const fs::path& path, size_t last_frame) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return std::vector<FrameId>();
-  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path, kLimitBytes));
+  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path, kFinishLimit_bytes));
   std::string fault, frames;
-  const Json json = ParseRecord(text, kFormat, &fault);
+  const Json json = ParseRecord(text, kFinishFormat, &fault);
   RecordFields(json, &fault).Get("frames", &frames);
   if (fault.empty()) {
     const auto parsed = ParseFrameRange(frames, last_frame);
@@ -90,7 +90,7 @@ Result<size_t> AskToFinish(const ClusterJob& job, const std::string& frames_text
   std::vector<FrameId> all;
   std::set_union(before.begin(), before.end(), frames.begin(), frames.end(),
                  std::back_inserter(all));
-  const Json json = {{"format", kFormat}, {"frames", FrameRangeText(all)}};
+  const Json json = {{"format", kFinishFormat}, {"frames", FrameRangeText(all)}};
   LF_RETURN_IF_ERROR(WriteFileAtomically(job.FinishFramesFile(), RecordText(json)));
   return unfinished_count;
 }

@@ -18,8 +18,8 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr size_t kLimitBytes = size_t{64} << 20;
-constexpr const char* kFormat = "lfjob 1";
+constexpr size_t kJobLimit_bytes = size_t{64} << 20;
+constexpr const char* kJobFormat = "lfjob 1";
 constexpr size_t kMostFrames = 10'000'000;
 
 // Returns true if the text contains control characters, such as line breaks, which would start a
@@ -124,7 +124,7 @@ std::string FrameRangeText(const std::vector<FrameId>& frames) {
 std::string ToJson(const ClusterJob& job) {
   Json packages = Json::array();
   for (const JobPackage& package : job.packages) packages.push_back(PackageToJson(package));
-  const Json json = {{"format", kFormat},
+  const Json json = {{"format", kJobFormat},
                      {"output_folder", job.output_folder.string()},
                      {"working_folder", job.working_folder.string()},
                      {"lfrenderer", job.renderer.string()},
@@ -149,7 +149,7 @@ std::string ToJson(const ClusterJob& job) {
 Result<ClusterJob> ParseJob(std::string_view text, const std::string& name) {
   std::string fault, engine, video, output, working, renderer, submitter;
   ClusterJob job;
-  const Json json = ParseRecord(text, kFormat, &fault);
+  const Json json = ParseRecord(text, kJobFormat, &fault);
   if (fault.empty()) {
     RecordFields fields(json, &fault);
     fields.Get("output_folder", &output);
@@ -215,7 +215,7 @@ Result<ClusterJob> ReadJob(const fs::path& output_folder) {
         "{}: no job was submitted into this folder (there is no cluster/job.json): expected the "
         "DIR of lfsubmit PACKAGES... -o DIR",
         output_folder.string()));
-  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(file, kLimitBytes));
+  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(file, kJobLimit_bytes));
   LF_ASSIGN_OR_RETURN(ClusterJob job, ParseJob(text, file.string()));
   // The stored path is not used, because the folder may have been moved, or be mounted elsewhere on
   // this machine.

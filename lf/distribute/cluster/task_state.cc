@@ -13,8 +13,8 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr size_t kLimitBytes = size_t{1} << 20;
-constexpr const char* kFormat = "lftask 1";
+constexpr size_t kTaskLimit_bytes = size_t{1} << 20;
+constexpr const char* kTaskFormat = "lftask 1";
 
 // Reads the entry `name` of the object "counts", [done, total]. Changes nothing if there is none.
 void GetCount(const Json& line, const char* name, uint64_t* done, uint64_t* total) {
@@ -68,23 +68,18 @@ const char* NameOf(TaskPhase phase) {
 }
 
 std::string ToJson(const TaskState& state) {
-  const Json json = {{"format", kFormat},
-                     {"phase", NameOf(state.phase)},
-                     {"node", state.node},
-                     {"process", state.process},
-                     {"starts", state.start_count},
-                     {"crashes", state.crash_count},
-                     {"exit_code", state.exit_code},
-                     {"message", state.message},
-                     {"begin_s", state.begin_s},
-                     {"end_s", state.end_s}};
+  const Json json = {{"format", kTaskFormat},        {"phase", NameOf(state.phase)},
+                     {"node", state.node},           {"process", state.process},
+                     {"starts", state.start_count},  {"crashes", state.crash_count},
+                     {"exit_code", state.exit_code}, {"message", state.message},
+                     {"begin_s", state.begin_s},     {"end_s", state.end_s}};
   return RecordText(json);
 }
 
 Result<TaskState> ParseTaskState(std::string_view text, const std::string& name) {
   std::string fault, phase;
   TaskState state;
-  const Json json = ParseRecord(text, kFormat, &fault);
+  const Json json = ParseRecord(text, kTaskFormat, &fault);
   if (fault.empty()) {
     RecordFields fields(json, &fault);
     fields.Get("phase", &phase);
@@ -112,7 +107,7 @@ Result<TaskState> ParseTaskState(std::string_view text, const std::string& name)
 Result<TaskState> ReadTaskState(const fs::path& path) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return TaskState{};
-  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path, kLimitBytes));
+  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path, kTaskLimit_bytes));
   return ParseTaskState(text, path.string());
 }
 

@@ -12,7 +12,7 @@
 namespace lf {
 namespace {
 
-constexpr size_t kMaxFileSize_bytes = 64 << 20;
+constexpr size_t kMaxListSize_bytes = 64 << 20;
 
 void AddEntries(std::string_view text, std::string_view separators,
                 std::vector<std::string>* entries) {
@@ -78,7 +78,7 @@ Result<std::vector<std::string>> ReadPatterns(std::span<const std::string> optio
       AddEntries(option, ",", &patterns);
       continue;
     }
-    LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(option.substr(1), kMaxFileSize_bytes));
+    LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(option.substr(1), kMaxListSize_bytes));
     AddEntries(text, "\r\n", &patterns);
   }
   return patterns;

@@ -14,7 +14,7 @@
 namespace lf {
 namespace {
 
-constexpr size_t kMaxFileSize_bytes = 64 << 10;
+constexpr size_t kMaxSimilaritySize_bytes = 64 << 10;
 constexpr double kLargest_w = 1e12;
 constexpr double kTolerance = 1e-3;
 
@@ -82,7 +82,7 @@ Result<Similarity> ReadSimilarity(const std::string& text_or_file) {
   std::error_code error;
   if (numbers && !std::filesystem::exists(text_or_file, error))
     return InputError(ParseSimilarity(text_or_file).error().message);
-  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(text_or_file, kMaxFileSize_bytes));
+  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(text_or_file, kMaxSimilaritySize_bytes));
   Result<Similarity> similarity = ParseSimilarity(text);
   if (!similarity) return InputError(text_or_file + ": " + similarity.error().message);
   return similarity;

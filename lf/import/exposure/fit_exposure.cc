@@ -17,7 +17,7 @@ constexpr double kHuber = 1.345;         // in standard deviations (95 % efficie
 constexpr double kTukey = 4.685;         // in standard deviations (95 % efficient on normal noise)
 constexpr double kLeastFactor = 0.2;     // lower bound of factor_
 constexpr double kUnit = 0.01;           // deviation of a sample whose weight is 1
-constexpr double kLeastShare = 0.05;     // lower bound of a falloff, while fitting
+constexpr double kLeastFalloff = 0.05;   // lower bound of a falloff, while fitting
 constexpr double kPriorDeviation = 1;    // prior standard deviation of falloff coefficients
 constexpr size_t kLeastPerImage = 12;    // least number of agreeing samples of an LF image
 constexpr double kAgrees = 0.1;          // a sample agrees if its robust weight is larger
@@ -26,7 +26,7 @@ constexpr double kCommonShare = 0.25;    // share of a pair's spread that more s
 constexpr double kBelievedSamples = 8;  // number of places for which the spread of all pairs counts
 
 double BoundedFalloff(const Vignetting& falloff, double r_squared) {
-  return std::max(kLeastShare, falloff.Falloff(r_squared));
+  return std::max(kLeastFalloff, falloff.Falloff(r_squared));
 }
 
 // Returns the mean of ln F over values of r^2 with this mean and variance, to the second order. F

@@ -21,7 +21,6 @@ namespace lf {
 namespace {
 
 constexpr int kWidest_px = 240, kNarrowest_px = 80;  // largest and smallest width of a view
-constexpr size_t kLeastViews = 2;                    // least number of views in a ring
 constexpr double kLeastAgreement = 0.8;  // least correlation of a patch that is compared
 constexpr size_t kProbed = 6;        // number of LF images that are first searched at all depths
 constexpr size_t kProbedPlaces = 3;  // every third place of these images is searched
@@ -117,7 +116,8 @@ class Sampler {
   }
   Rings LoadedRings(Rings rings) const {
     for (std::vector<View>& ring : rings) ring = Loaded(std::move(ring));
-    std::erase_if(rings, [](const std::vector<View>& ring) { return ring.size() < kLeastViews; });
+    std::erase_if(rings,
+                  [](const std::vector<View>& ring) { return ring.size() < kLeastViewsOfRing; });
     return rings;
   }
 

@@ -14,7 +14,6 @@ namespace {
 constexpr double kLeastCosine = 0.8;  // least cosine of the angle between optical axes
 constexpr size_t kMostRings = 9;
 constexpr int kViewsPerRing = 6;
-constexpr size_t kLeastViews = 2;  // least number of views in a ring
 constexpr double kInnerRing = 2;   // radius of the innermost ring, in spacings
 constexpr double kRingFactor = 2;  // radius of a ring relative to the one before
 constexpr size_t kNearest = 6;     // nearest LF images, compared besides those of the rings
@@ -135,7 +134,7 @@ Rings NearbyCameras::DepthRings(LfImageId camera) const {
        ++ring, radius_w *= kRingFactor) {
     std::vector<View> views =
         Ring(camera, radius_w, 0.5 * static_cast<double>(ring % 2), ring > 0 ? 0.5 : 0);
-    if (ring == 0 || views.size() >= kLeastViews) rings.push_back(std::move(views));
+    if (ring == 0 || views.size() >= kLeastViewsOfRing) rings.push_back(std::move(views));
   }
   return rings;
 }

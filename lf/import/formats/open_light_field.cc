@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lf/core/log.h"
+#include "lf/import/formats/import_limits.h"
 #include "lf/import/formats/read_aos.h"
 #include "lf/import/formats/read_hci.h"
 #include "lf/import/formats/read_llff.h"
@@ -30,7 +31,6 @@ namespace {
 
 constexpr const char* kCalibrationName = "transforms.json";
 constexpr const char* kAosName = "poses.json";
-constexpr const char* kImagesName = "images";
 
 // For a folder without transforms.json, returns a hint that names the calibrations in it that are
 // called differently, such as Blender's transforms_train.json; "" if there is none.

@@ -12,6 +12,7 @@
 
 #include "lf/core/file.h"
 #include "lf/core/log.h"
+#include "lf/import/formats/import_limits.h"
 #include "lf/light_field/model/image_files.h"
 #include "lf/light_field/model/parse_number.h"
 #include "lf/light_field/model/rotation.h"
@@ -26,8 +27,7 @@ using nlohmann::json;
 
 constexpr size_t kMaxFileSize = size_t{64} << 20;  // some hundred thousand images
 constexpr int kMaxDepth = 8;  // nesting below this depth is not read, so that it takes no memory
-constexpr double kRotationTolerance = 1e-3;
-constexpr double kLargest_w = 1e12;
+constexpr double kAosRotationTolerance = 1e-3;
 constexpr const char* kMatrixKey = "M3x4";
 
 std::optional<double> NumberOf(const json& value) {
@@ -69,7 +69,7 @@ Result<RigidTransform> PoseOf(const json& entry) {
         "\"{}\" is missing or of another form: expected 3 lists of 4 numbers", kMatrixKey));
   if (!(matrix->col(3).cwiseAbs().maxCoeff() <= kLargest_w))
     return InputError(fmt::format("\"{}\" holds a number beyond {:g}", kMatrixKey, kLargest_w));
-  const Result<Mat3> rotation = NearestRotation(matrix->leftCols<3>(), kRotationTolerance);
+  const Result<Mat3> rotation = NearestRotation(matrix->leftCols<3>(), kAosRotationTolerance);
   if (!rotation) return InputError(fmt::format("\"{}\" {}", kMatrixKey, rotation.error().message));
   return RigidTransform{*rotation, matrix->col(3)};
 }

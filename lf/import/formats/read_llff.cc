@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "lf/core/file.h"
+#include "lf/import/formats/import_limits.h"
 #include "lf/import/formats/npy.h"
 #include "lf/light_field/model/distinct_intrinsics.h"
 #include "lf/light_field/model/rotation.h"
@@ -15,11 +16,8 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kImagesName = "images";
-constexpr size_t kMaxImageCount = size_t{1} << 24;
 constexpr size_t kRowSize = 17;
-constexpr double kRotationTolerance = 1e-3;  // some files are saved as 32-bit floats
-constexpr double kLargest_w = 1e12;
+constexpr double kLlffRotationTolerance = 1e-3;  // some files are saved as 32-bit floats
 
 // One row of the array.
 class Row {
@@ -36,7 +34,7 @@ class Row {
     axes.row(0) = matrix_.col(1);
     axes.row(1) = matrix_.col(0);
     axes.row(2) = -matrix_.col(2);
-    const Result<Mat3> rotation = NearestRotation(axes, kRotationTolerance);
+    const Result<Mat3> rotation = NearestRotation(axes, kLlffRotationTolerance);
     if (!rotation)
       return InputError("the pose " + rotation.error().message + " [down, right, backwards]");
     return RigidTransform{*rotation, Vec3::Zero() - *rotation * Centre()};

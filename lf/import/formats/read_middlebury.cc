@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "lf/core/file.h"
+#include "lf/import/formats/import_limits.h"
 #include "lf/light_field/model/distinct_intrinsics.h"
 #include "lf/light_field/model/find_images.h"
 #include "lf/light_field/model/parse_number.h"
@@ -19,11 +20,9 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr size_t kMaxImageCount = size_t{1} << 24;
 constexpr size_t kNumberCount = 21;  // K, R and t in a line
-constexpr double kRotationTolerance = 1e-4;
-constexpr double kLargest_w = 1e12;
-constexpr const char* kForm =
+constexpr double kMiddleburyRotationTolerance = 1e-4;
+constexpr const char* kLineForm =
     "NAME k11 k12 k13 k21 k22 k23 k31 k32 k33 r11 r12 r13 r21 r22 r23 r31 r32 r33 t1 t2 t3";
 
 // Removes the first word from `text` and returns it. Returns "" if no word is left.
@@ -36,7 +35,7 @@ std::string_view NextWord(std::string_view* text) {
 }
 
 // Returns a word in the form in which messages show it: at most 80 characters.
-std::string Shown(std::string_view word) {
+std::string ShownWord(std::string_view word) {
   constexpr size_t kLongest = 80;
   return word.size() <= kLongest ? std::string(word)
                                  : std::string(word.substr(0, kLongest)) + "...";
@@ -85,15 +84,15 @@ Result<Line> ParseLine(std::string_view text, const Lines& lines) {
     const std::string_view word = NextWord(&text);
     const std::optional<double> number = ParseNumber(word);
     if (!number)
-      return lines.Fault(fmt::format("{} of {} numbers is {}: expected {}", i + 1, kNumberCount,
-                                     word.empty() ? "missing" : fmt::format("\"{}\"", Shown(word)),
-                                     kForm));
+      return lines.Fault(fmt::format(
+          "{} of {} numbers is {}: expected {}", i + 1, kNumberCount,
+          word.empty() ? "missing" : fmt::format("\"{}\"", ShownWord(word)), kLineForm));
     numbers[i] = *number;
   }
   const std::string_view surplus = NextWord(&text);
   if (!surplus.empty())
     return lines.Fault(
-        fmt::format("\"{}\" behind the last number: expected {}", Shown(surplus), kForm));
+        fmt::format("\"{}\" behind the last number: expected {}", ShownWord(surplus), kLineForm));
   line.k = Eigen::Map<const Rows>(numbers.data());
   line.r = Eigen::Map<const Rows>(numbers.data() + 9);
   line.t = Eigen::Map<const Vec3>(numbers.data() + 18);
@@ -132,7 +131,7 @@ Result<size_t> ParseCount(std::optional<std::string_view> line, const Lines& lin
   const std::string_view word = NextWord(&rest);
   const std::optional<double> count = ParseNumber(word);
   if (!count || !NextWord(&rest).empty() || *count != std::floor(*count))
-    return lines.Fault(fmt::format("\"{}\": {}", Shown(*line), kExpected));
+    return lines.Fault(fmt::format("\"{}\": {}", ShownWord(*line), kExpected));
   if (!(*count >= 1 && *count <= kMaxImageCount))
     return lines.Fault(
         fmt::format("the number of images is {}: expected 1 to {}", *count, kMaxImageCount));
@@ -166,11 +165,11 @@ Result<LightField> ParseMiddlebury(std::string_view text, const fs::path& path,
       return lines.Fault(fmt::format("more lines than the {} that the first line counts", count));
     LF_ASSIGN_OR_RETURN(Line line, ParseLine(*text_line, lines));
     const auto fault = [&](const std::string& message) {
-      return lines.Fault(fmt::format("{}: {}", Shown(line.name), message));
+      return lines.Fault(fmt::format("{}: {}", ShownWord(line.name), message));
     };
     Result<Intrinsics> intrinsics = IntrinsicsOf(line.k);
     if (!intrinsics) return fault(intrinsics.error().message);
-    const Result<Mat3> rotation = NearestRotation(line.r, kRotationTolerance);
+    const Result<Mat3> rotation = NearestRotation(line.r, kMiddleburyRotationTolerance);
     if (!rotation) return fault("R " + rotation.error().message);
     if (!(line.t.cwiseAbs().maxCoeff() <= kLargest_w))
       return fault(fmt::format("t holds a number beyond {:g}", kLargest_w));

@@ -13,6 +13,7 @@
 
 #include "lf/core/log.h"
 #include "lf/core/shell_word.h"
+#include "lf/import/formats/import_limits.h"
 #include "lf/import/formats/stanford_name.h"
 #include "lf/light_field/model/distinct_intrinsics.h"
 #include "lf/pixels/files/image_file.h"
@@ -21,8 +22,7 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kForm = "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext";
-constexpr double kLargest_w = 1e12;           // as in transforms.json
+constexpr const char* kNameForm = "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext";
 constexpr double kLargestPrincipal_px = 1e7;  // as in transforms.json
 
 struct StanfordImage {
@@ -73,7 +73,7 @@ void WarnOfOthers(const fs::path& folder, const Listing& listing) {
   const auto& others = listing.others;
   if (others.empty()) return;
   LogWarning("{}: {} of {} files are left out, because their names are not of the form {}: {}{}",
-             folder.string(), others.size(), others.size() + listing.images.size(), kForm,
+             folder.string(), others.size(), others.size() + listing.images.size(), kNameForm,
              fmt::join(others.begin(), others.begin() + std::min(kShown, others.size()), ", "),
              others.size() > kShown ? ", ..." : "");
 }
@@ -90,7 +90,7 @@ std::string ImportCommand(const fs::path& folder, const StanfordOptions& options
 
 Result<void> CheckPlaces(const fs::path& folder, const std::vector<StanfordImage>& images) {
   if (images.empty())
-    return InputError(fmt::format("{}: holds no image named {}", folder.string(), kForm));
+    return InputError(fmt::format("{}: holds no image named {}", folder.string(), kNameForm));
   for (size_t i = 0; i + 1 < images.size(); ++i)
     if (images[i].name.row == images[i + 1].name.row &&
         images[i].name.column == images[i + 1].name.column)
@@ -131,7 +131,7 @@ Result<void> CheckComplete(const fs::path& folder, const std::vector<StanfordIma
     return InputError(
         fmt::format("{}: the name {} contains focal length and sensor width, {} does not: rename "
                     "all files to the form {}",
-                    folder.string(), with->file_name, without->file_name, kForm));
+                    folder.string(), with->file_name, without->file_name, kNameForm));
   return InputError(
       fmt::format("{}: the names lack the focal length: {} has no _FOCALMM_SENSORMM at its end; "
                   "give it in pixels (--focal-px), or state it once, and --plane-distance if the "

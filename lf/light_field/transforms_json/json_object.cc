@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kMaxDepth = 1000;  // largest depth of rewritten text; simdjson accepts 1024
+constexpr int kMaxRewrittenDepth = 1000;  // largest depth of rewritten text; simdjson accepts 1024
 
 // Returns true if the text has escapes from \ud800 to \udfff. simdjson accepts some of them that do
 // not form a pair.
@@ -29,7 +29,9 @@ bool HasSurrogates(std::string_view text) {
 // Returns text of the same JSON value in a form that simdjson accepts, or "" if `text` is not JSON.
 std::string WrittenAnew(const std::string& text) {
   try {
-    const auto keep = [](int depth, json::parse_event_t, json&) { return depth <= kMaxDepth; };
+    const auto keep = [](int depth, json::parse_event_t, json&) {
+      return depth <= kMaxRewrittenDepth;
+    };
     return json::parse(text, keep).dump();
   } catch (const json::exception&) {
     return "";

@@ -69,7 +69,7 @@ class JsonText {
 // Writes camera_model and its parameters. Parameters that only `top` has are written as 0, because
 // a reader would otherwise take them from `top`.
 void AddDistortion(const Distortion& distortion, const Distortion& top, const char* separator,
-                   JsonText* json) {
+                   JsonText* out) {
   const auto parameters = [](const Distortion& d, const CameraModelName& model) {
     std::vector<std::pair<std::string_view, double>> list;
     for (size_t i = 0; i < model.parameter_count; ++i)
@@ -82,145 +82,145 @@ void AddDistortion(const Distortion& distortion, const Distortion& top, const ch
     if (std::none_of(list.begin(), list.end(),
                      [&](const auto& parameter) { return parameter.first == of_top.first; }))
       list.emplace_back(of_top.first, 0);
-  json->Add("\"camera_model\": \"{}\",{}", model.name, separator);
+  out->Add("\"camera_model\": \"{}\",{}", model.name, separator);
   for (const auto& [key, value] : list) {
-    json->Add("\"{}\": ", key);
-    json->AddNumber(value);
-    json->Add(",{}", separator);
+    out->Add("\"{}\": ", key);
+    out->AddNumber(value);
+    out->Add(",{}", separator);
   }
 }
 
 // Writes the intrinsics. `top` are the intrinsics at the top level. lf_skew and lf_vignetting are
 // left out if they are 0 in `k` and in `top`.
 void AddIntrinsics(const Intrinsics& k, const Intrinsics& top, const char* separator,
-                   JsonText* json) {
-  AddDistortion(k.distortion, top.distortion, separator, json);
+                   JsonText* out) {
+  AddDistortion(k.distortion, top.distortion, separator, out);
   if (k.skew_px != 0 || top.skew_px != 0) {
-    json->Add("\"lf_skew\": ");
-    json->AddNumber(k.skew_px);
-    json->Add(",{}", separator);
+    out->Add("\"lf_skew\": ");
+    out->AddNumber(k.skew_px);
+    out->Add(",{}", separator);
   }
   const std::pair<const char*, double> numbers[] = {
       {"fl_x", k.fx_px}, {"fl_y", k.fy_px}, {"cx", k.cx_px}, {"cy", k.cy_px}};
   for (const auto& [key, value] : numbers) {
-    json->Add("\"{}\": ", key);
-    json->AddNumber(value);
-    json->Add(",{}", separator);
+    out->Add("\"{}\": ", key);
+    out->AddNumber(value);
+    out->Add(",{}", separator);
   }
   if (!k.vignetting.is_none() || !top.vignetting.is_none()) {
-    json->Add("\"lf_vignetting\": ");
-    json->AddNumbers(k.vignetting.v);
-    json->Add(",{}", separator);
+    out->Add("\"lf_vignetting\": ");
+    out->AddNumbers(k.vignetting.v);
+    out->Add(",{}", separator);
   }
-  json->Add("\"w\": {},{}\"h\": {}", k.width_px, separator, k.height_px);
+  out->Add("\"w\": {},{}\"h\": {}", k.width_px, separator, k.height_px);
 }
 
-void AddEncoding(const RadianceEncoding& encoding, JsonText* json) {
-  const auto add_number = [json](const char* key, double value) {
-    json->Add("\"{}\": ", key);
-    json->AddNumber(value);
-    json->Add(",\n");
+void AddEncoding(const RadianceEncoding& encoding, JsonText* out) {
+  const auto add_number = [out](const char* key, double value) {
+    out->Add("\"{}\": ", key);
+    out->AddNumber(value);
+    out->Add(",\n");
   };
   if (encoding.bayer != BayerPattern::kNone)
-    json->Add("\"lf_bayer\": \"{}\",\n", NameOf(encoding.bayer));
+    out->Add("\"lf_bayer\": \"{}\",\n", NameOf(encoding.bayer));
   if (encoding.transfer == Transfer::kResponse) {
-    json->Add("\"lf_response\": ");
-    json->AddNumbers(encoding.response);
-    json->Add(",\n");
+    out->Add("\"lf_response\": ");
+    out->AddNumbers(encoding.response);
+    out->Add(",\n");
   } else {
-    json->Add("\"lf_transfer\": \"{}\",\n",
-              encoding.transfer == Transfer::kSrgb ? "sRGB" : "linear");
+    out->Add("\"lf_transfer\": \"{}\",\n",
+             encoding.transfer == Transfer::kSrgb ? "sRGB" : "linear");
   }
   add_number("lf_black_level", encoding.black_level);
   if (encoding.white_level) add_number("lf_white_level", *encoding.white_level);
   add_number("lf_max_radiance", encoding.max_radiance);
   add_number("lf_pedestal", encoding.pedestal);
-  if (encoding.alpha) json->Add("\"lf_alpha\": \"{}\",\n", NameOf(*encoding.alpha));
-  if (encoding.masks_clipped) json->Add("\"lf_clipped\": \"mask\",\n");
+  if (encoding.alpha) out->Add("\"lf_alpha\": \"{}\",\n", NameOf(*encoding.alpha));
+  if (encoding.masks_clipped) out->Add("\"lf_clipped\": \"mask\",\n");
   if (encoding.background && encoding.keeps_opacity) {
-    json->Add("\"lf_background\": \"{}\",\n", kNoBackground);
+    out->Add("\"lf_background\": \"{}\",\n", kNoBackground);
   } else if (encoding.background) {
-    json->Add("\"lf_background\": ");
-    json->AddNumbers(*encoding.background);
-    json->Add(",\n");
+    out->Add("\"lf_background\": ");
+    out->AddNumbers(*encoding.background);
+    out->Add(",\n");
   }
-  json->Add("\"lf_white_balance\": ");
-  json->AddNumbers(encoding.white_balance);
-  json->Add(",\n\"lf_camera_to_srgb\": ");
+  out->Add("\"lf_white_balance\": ");
+  out->AddNumbers(encoding.white_balance);
+  out->Add(",\n\"lf_camera_to_srgb\": ");
   const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rows = encoding.linear_srgb_from_camera;
-  json->AddMatrix({rows.data(), 9}, 3);
-  json->Add(",\n");
+  out->AddMatrix({rows.data(), 9}, 3);
+  out->Add(",\n");
 }
 
-void AddPose(const RigidTransform& cam_from_world, JsonText* json) {
+void AddPose(const RigidTransform& cam_from_world, JsonText* out) {
   Eigen::Matrix<double, 4, 4, Eigen::RowMajor> rows = Eigen::Matrix4d::Identity();
   const Mat34 pose = OpenGlOfCamFromWorld(cam_from_world);
   rows.topRows<3>() = pose;
-  json->Add("\"transform_matrix\": ");
-  json->AddMatrix({rows.data(), 16}, 4);
+  out->Add("\"transform_matrix\": ");
+  out->AddMatrix({rows.data(), 16}, 4);
   // The conversion to a centre and back changes the last bit of most translations.
   const Result<RigidTransform> read_back = CamFromWorldOfOpenGl(pose);
   if (read_back && read_back->translation == cam_from_world.translation) return;
-  json->Add(", \"lf_translation\": ");
-  json->AddNumbers({cam_from_world.translation.data(), 3});
+  out->Add(", \"lf_translation\": ");
+  out->AddNumbers({cam_from_world.translation.data(), 3});
 }
 
 // Writes one number if all channels have the same gain, as in most light fields, and nothing if it
 // is 1.
-void AddGains(const LfCamera& camera, JsonText* json) {
+void AddGains(const LfCamera& camera, JsonText* out) {
   const std::array<double, 3> gains = {camera.gain[0], camera.gain[1], camera.gain[2]};
   if (!camera.gain.are_equal()) {
-    json->Add(", \"lf_gain\": ");
-    json->AddNumbers(gains);
+    out->Add(", \"lf_gain\": ");
+    out->AddNumbers(gains);
   } else if (gains[0] != 1) {
-    json->Add(", \"lf_gain\": {}", gains[0]);
+    out->Add(", \"lf_gain\": {}", gains[0]);
   }
 }
 
-Result<void> AddFrame(const LightField& light_field, size_t index, JsonText* json) {
+Result<void> AddFrame(const LightField& light_field, size_t index, JsonText* out) {
   const std::string& name = light_field.image_names[index];
   if (!fs::path(name).has_extension())
     return OutputError(fmt::format(
         "the image name \"{}\" has no extension: it would be read back as \"{}.png\"", name, name));
   const LfCamera& camera = light_field.cameras[index];
-  json->Add("{{\"file_path\": ");
-  LF_RETURN_IF_ERROR(json->AddString(name));
-  json->Add(", ");
-  AddPose(camera.cam_from_world, json);
+  out->Add("{{\"file_path\": ");
+  LF_RETURN_IF_ERROR(out->AddString(name));
+  out->Add(", ");
+  AddPose(camera.cam_from_world, out);
   const uint32_t top_index = light_field.cameras[0].intrinsics_index;
   if (camera.intrinsics_index != top_index) {
-    json->Add(", ");
+    out->Add(", ");
     AddIntrinsics(light_field.intrinsics[camera.intrinsics_index],
-                  light_field.intrinsics[top_index], " ", json);
+                  light_field.intrinsics[top_index], " ", out);
   }
-  AddGains(camera, json);
+  AddGains(camera, out);
   if (!light_field.mask_names.empty() && !light_field.mask_names[index].empty()) {
-    json->Add(", \"lf_mask\": ");
-    LF_RETURN_IF_ERROR(json->AddString(light_field.mask_names[index]));
+    out->Add(", \"lf_mask\": ");
+    LF_RETURN_IF_ERROR(out->AddString(light_field.mask_names[index]));
   }
-  json->Add("}}");
+  out->Add("}}");
   return {};
 }
 
 Result<std::string> TransformsJsonText(const LightField& light_field) {
-  JsonText json;
-  json.Add("{{\n");
+  JsonText out;
+  out.Add("{{\n");
   const Intrinsics& top = light_field.intrinsics[light_field.cameras[0].intrinsics_index];
-  AddIntrinsics(top, top, "\n", &json);
-  json.Add(",\n");
-  AddEncoding(light_field.encoding, &json);
+  AddIntrinsics(top, top, "\n", &out);
+  out.Add(",\n");
+  AddEncoding(light_field.encoding, &out);
   if (light_field.depth_range) {
-    json.Add("\"lf_depth_range\": ");
-    json.AddNumbers(std::array{light_field.depth_range->near_w, light_field.depth_range->far_w});
-    json.Add(",\n");
+    out.Add("\"lf_depth_range\": ");
+    out.AddNumbers(std::array{light_field.depth_range->near_w, light_field.depth_range->far_w});
+    out.Add(",\n");
   }
-  json.Add("\"lf_unit_m\": {},\n\"frames\": [\n", light_field.unit_m);
+  out.Add("\"lf_unit_m\": {},\n\"frames\": [\n", light_field.unit_m);
   for (size_t i = 0; i < light_field.size(); ++i) {
-    LF_RETURN_IF_ERROR(AddFrame(light_field, i, &json));
-    json.Add("{}", i + 1 < light_field.size() ? ",\n" : "\n");
+    LF_RETURN_IF_ERROR(AddFrame(light_field, i, &out));
+    out.Add("{}", i + 1 < light_field.size() ? ",\n" : "\n");
   }
-  json.Add("]\n}}\n");
-  return json.text();
+  out.Add("]\n}}\n");
+  return out.text();
 }
 
 // Returns the 64-bit FNV-1a hash. It shows whether a file was edited after it was written.

@@ -167,12 +167,12 @@ bool IsPacking(Packing packing, size_t bytes_of_number) {
 
 // Memory that a thread reuses. A stream and each level of its escapes have an object of their own.
 template <class U>
-struct Scratch {
+struct PackingScratch {
   std::vector<uint8_t> bytes;
   std::vector<U> escapes;
 
-  static Scratch& OfThread(int escapes_left) {
-    static thread_local std::array<Scratch, kMostEscapes + 1> scratch;
+  static PackingScratch& OfThread(int escapes_left) {
+    static thread_local std::array<PackingScratch, kMostEscapes + 1> scratch;
     return scratch[escapes_left];
   }
 };
@@ -188,7 +188,7 @@ template <class U>
     return true;
   }
   if (!IsPacking(packing, sizeof(U))) return false;
-  auto& [bytes, escapes] = Scratch<U>::OfThread(escapes_left);
+  auto& [bytes, escapes] = PackingScratch<U>::OfThread(escapes_left);
   const size_t size = IsPlanes(packing) ? count * PlaneCount(packing)
                                         : (count + PerByte(packing) - 1) / PerByte(packing);
   bytes.resize(size + kSlack);

@@ -153,13 +153,13 @@ void Unpredict(Size size, T* values) {
 
 // Memory that a thread reuses.
 template <class T>
-struct Scratch {
+struct WaveletScratch {
   std::array<std::vector<T>, 4> components;
   std::array<std::vector<T>, 2> low;  // used in turn
   std::vector<T> details;
 
-  static Scratch& OfThread() {
-    static thread_local Scratch scratch;
+  static WaveletScratch& OfThread() {
+    static thread_local WaveletScratch scratch;
     return scratch;
   }
   static T* Room(std::vector<T>* memory, size_t count) {
@@ -181,14 +181,14 @@ class TileReader {
   [[nodiscard]] bool Read(int component, Size size, CodedBands<T>* finest) {
     const int levels = head_.info.levels;
     const Size smallest = LowSize(size, levels);
-    T* low = Scratch<T>::Room(&scratch_.low[0], smallest.count());
+    T* low = WaveletScratch<T>::Room(&scratch_.low[0], smallest.count());
     if (!TakeCoefficients(transform_, &sections_[0], smallest.count(), low)) return false;
     Unpredict(smallest, low);
     T low_step = Step(component, 0, false);
     for (int resolution = 1; resolution <= levels; ++resolution) {
       const int level = levels + 1 - resolution;
       const Size here = LowSize(size, level - 1);
-      T* const details = Scratch<T>::Room(&scratch_.details, DetailCount(here));
+      T* const details = WaveletScratch<T>::Room(&scratch_.details, DetailCount(here));
       if (!TakeCoefficients(transform_, &sections_[resolution], DetailCount(here), details))
         return false;
       *finest = {here.width, here.height, {}};
@@ -202,7 +202,7 @@ class TileReader {
         next += BandSize(band, here.width, here.height);
       }
       if (level == 1) break;
-      low = Scratch<T>::Room(&scratch_.low[resolution % 2], here.count());
+      low = WaveletScratch<T>::Room(&scratch_.low[resolution % 2], here.count());
       Synthesize(transform_, *finest, low);
       low_step = 1;
     }
@@ -217,13 +217,13 @@ class TileReader {
   const Transform transform_;
   const CodeHead& head_;
   const std::span<std::string_view> sections_;
-  Scratch<T>& scratch_ = Scratch<T>::OfThread();
+  WaveletScratch<T>& scratch_ = WaveletScratch<T>::OfThread();
 };
 
 template <class T, class Pixel>
 bool DecodeAs(Transform transform, const CodeHead& head, std::span<std::string_view> sections,
               ImageView<Pixel> pixels) {
-  Scratch<T>& scratch = Scratch<T>::OfThread();
+  WaveletScratch<T>& scratch = WaveletScratch<T>::OfThread();
   TileReader<T> reader(transform, head, sections);
   const PixelScale scale{head.fraction_bits, 1 << (head.info.bits - 1)};
   CodedBands<T> bands;
@@ -235,7 +235,7 @@ bool DecodeAs(Transform transform, const CodeHead& head, std::span<std::string_v
   CodedBands<T> mosaic{pixels.width, pixels.height, {}};
   for (int c = 0; c < head.components(); ++c) {
     const Size size = ComponentSize(head, c, pixels.width, pixels.height);
-    T* const component = Scratch<T>::Room(&scratch.components[c], size.count());
+    T* const component = WaveletScratch<T>::Room(&scratch.components[c], size.count());
     mosaic.bands[c] = {component, 1, IsDoubled(head, 1)};
     if (size.count() == 0) continue;
     if (!reader.Read(c, size, &bands)) return false;

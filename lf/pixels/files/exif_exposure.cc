@@ -1,13 +1,13 @@
 #include "lf/pixels/files/exif_exposure.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
 
+#include "lf/pixels/files/big_endian.h"
 #include "lf/pixels/files/tiff_directories.h"
 
 namespace lf {
@@ -46,14 +46,6 @@ ByteSource PartOf(const ByteSource& source, uint64_t begin, uint64_t end) {
     if (offset >= end - begin) return 0;
     return source(begin + offset, to.first(std::min<uint64_t>(to.size(), end - begin - offset)));
   };
-}
-
-std::optional<uint64_t> BigEndian(const ByteSource& source, uint64_t offset, size_t count) {
-  std::array<uint8_t, 8> bytes;
-  if (source(offset, std::span(bytes).first(count)) != count) return std::nullopt;
-  uint64_t value = 0;
-  for (size_t i = 0; i < count; ++i) value = value << 8 | bytes[i];
-  return value;
 }
 
 ExposureFacts FactsOfTiff(const ByteSource& source) {

@@ -24,9 +24,9 @@ namespace lf {
 namespace {
 
 // Lets OpenEXR read a file by ByteSource.
-class Stream : public Imf::IStream {
+class InputStream : public Imf::IStream {
  public:
-  explicit Stream(const FileBytes& file) : IStream(file.name.c_str()), file_(file) {}
+  explicit InputStream(const FileBytes& file) : IStream(file.name.c_str()), file_(file) {}
 
   // Reads `count` bytes. Returns false if the file ends behind them.
   bool read(char to[], int count) override {
@@ -152,7 +152,7 @@ class ExrDecoder : public PictureDecoder {
 
  private:
   const std::string name_;
-  Stream stream_;
+  InputStream stream_;
   std::optional<Imf::MultiPartInputFile> file_;
   std::vector<std::string> names_;  // channel names, in the order of the file
   ImageFileInfo info_;

@@ -25,9 +25,10 @@ namespace {
 constexpr int kZipLevel = 2;
 
 // Receives the bytes that OpenEXR writes.
-class Stream : public Imf::OStream {
+class OutputStream : public Imf::OStream {
  public:
-  Stream(const std::string& name, std::string* bytes) : OStream(name.c_str()), bytes_(*bytes) {}
+  OutputStream(const std::string& name, std::string* bytes)
+      : OStream(name.c_str()), bytes_(*bytes) {}
 
   void write(const char from[], int count) override {
     const auto size = static_cast<size_t>(count);
@@ -119,7 +120,7 @@ Result<std::string> EncodeExr(const std::string& name, std::span<const ExrChanne
   std::string bytes;
   try {
     constexpr int kNoThreads = 0;
-    Stream stream(name, &bytes);
+    OutputStream stream(name, &bytes);
     Imf::OutputFile file(stream, HeaderOf(width, height, channels, metadata), kNoThreads);
     RowsOfChannels rows(channels);
     for (int begin = 0; begin < height; begin += kBlockRows) {

@@ -9,20 +9,11 @@
 #include <optional>
 #include <string_view>
 
+#include "lf/pixels/files/big_endian.h"
 #include "lf/pixels/files/tiff_directories.h"
 
 namespace lf {
 namespace {
-
-// Returns `count` bytes at `offset` as a number, the most significant first; none if they lie
-// beyond the end.
-std::optional<uint64_t> BigEndian(const ByteSource& source, uint64_t offset, size_t count) {
-  std::array<uint8_t, 8> bytes;
-  if (source(offset, std::span(bytes).first(count)) != count) return std::nullopt;
-  uint64_t value = 0;
-  for (size_t i = 0; i < count; ++i) value = value << 8 | bytes[i];
-  return value;
-}
 
 bool StartsWith(std::span<const uint8_t> bytes, std::string_view magic) {
   return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;

@@ -7,8 +7,6 @@
 namespace lf {
 namespace {
 
-double Cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 // Returns the area of the intersection of the triangle (origin, a, b) with the disk; negative if
 // the triangle is clockwise.
 double TriangleAreaInDisk(const Vec2& a, const Vec2& b, double radius) {

@@ -8,8 +8,6 @@
 namespace lf {
 namespace {
 
-double Cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 // Returns the corners of the convex hull counter-clockwise, without points on its edges. If all
 // points are equal or on a line, returns one or two points. (Andrew's monotone chains.)
 std::vector<Vec2> ConvexHull(std::span<const Vec2> points) {

@@ -1,0 +1,13 @@
+// What the readers of all formats expect alike.
+#pragma once
+
+#include <cstddef>
+
+namespace lf {
+
+inline constexpr const char* kImagesName =
+    "images";  // folder of the images, beside the calibration
+inline constexpr size_t kMaxImageCount = size_t{1} << 24;
+inline constexpr double kLargest_w = 1e12;  // largest coordinate, as in transforms.json
+
+}  // namespace lf
