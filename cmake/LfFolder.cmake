@@ -36,17 +36,26 @@ if(LF_FUZZ)
   target_link_options(lf_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
+# The presets compile the sources of a folder together, twelve at a time, which takes half the time: names in anonymous
+# namespaces must differ within a folder. The dev preset alone compiles one source at a time.
+if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  # A source may give a class of its header members of its own types.
+  target_compile_options(lf_options INTERFACE -Wno-subobject-linkage)
+endif()
+
 include(LfPrecompiled)
 
 # The umbrella users link.
 add_library(lfrendertools INTERFACE)
 add_library(lfrendertools::lfrendertools ALIAS lfrendertools)
 
-# lf_folder(path SOURCES ... [INTERNAL ...] DEPENDS ... [LIBS ...] [PUBLIC_LIBS ...] [TESTS ...]
+# lf_folder(path SOURCES ... [ALONE ...] [INTERNAL ...] DEPENDS ... [LIBS ...] [PUBLIC_LIBS ...] [TESTS ...]
 #           [TEST_LIBS ...] [FUZZ ...] [BENCH ...])
 #
 # The folder lf/<path> as a static library: lf_camera for camera, lf_camera_path for camera/path.
 #   SOURCES      the .cc files
+#   ALONE        .cc files among SOURCES that are not compiled together with others: kernels, which include themselves
+#                once for each instruction set, and files that share names with others on purpose
 #   INTERNAL     headers that are not installed; headers whose names begin with test_ or testing_ never are
 #   DEPENDS      the folders it may include, as paths (doc/layout.md; checked by scripts/check_includes.py)
 #   LIBS         third-party targets its .cc files need;  PUBLIC_LIBS: its headers too
@@ -56,7 +65,7 @@ add_library(lfrendertools::lfrendertools ALIAS lfrendertools)
 #                fuzz/corpus/<x>/ as a test
 #   BENCH        x_bench.cc files, built with LF_BENCH
 function(lf_folder path)
-  cmake_parse_arguments(F "" "" "SOURCES;INTERNAL;DEPENDS;LIBS;PUBLIC_LIBS;TESTS;TEST_LIBS;FUZZ;BENCH"
+  cmake_parse_arguments(F "" "" "SOURCES;ALONE;INTERNAL;DEPENDS;LIBS;PUBLIC_LIBS;TESTS;TEST_LIBS;FUZZ;BENCH"
                         ${ARGN})
   if(F_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "lf_folder(${path}): unknown words: ${F_UNPARSED_ARGUMENTS}")
@@ -74,6 +83,9 @@ function(lf_folder path)
     target_link_libraries(${target} PUBLIC lf_options Eigen3::Eigen ${F_DEPENDS} ${F_PUBLIC_LIBS}
                                     PRIVATE ${F_LIBS})
     lf_precompile(${target})
+    if(F_ALONE)
+      set_source_files_properties(${F_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    endif()
   else()
     add_library(${target} INTERFACE)
     target_link_libraries(${target} INTERFACE lf_options Eigen3::Eigen ${F_DEPENDS})
