@@ -36,7 +36,8 @@ Result<void> LoadRings(const LightField& field, const LfImageStore& store, Threa
   LF_RETURN_IF_ERROR(failure.Check());
   for (std::vector<View>& ring : *rings)
     std::erase_if(ring, [](const View& view) { return view.image == nullptr; });
-  std::erase_if(*rings, [](const std::vector<View>& ring) { return ring.size() < kLeastViewsOfRing; });
+  std::erase_if(*rings,
+                [](const std::vector<View>& ring) { return ring.size() < kLeastViewsOfRing; });
   return {};
 }
 

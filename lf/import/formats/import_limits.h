@@ -1,4 +1,4 @@
-// What the readers of all formats expect alike.
+// Names and limits that the readers of all formats share. Internal to this folder.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Reads numbers of JPEG and PNG files.
+// Reads the numbers of JPEG and PNG files. Internal to this folder.
 #pragma once
 
 #include <array>
