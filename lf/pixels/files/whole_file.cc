@@ -57,7 +57,6 @@ std::optional<ExrHeader> ReadHeader(const ByteSource& source) {
   constexpr uint32_t kLongNames = 0x400, kVersion = 2;
   const auto version = LittleEndian<uint32_t>(source, 4);
   if (!version || (*version & ~kLongNames) != kVersion) return std::nullopt;
-  ExrHeader header;
   std::optional<int64_t> rows, of_block;
   uint64_t offset = 8;
   while (true) {
