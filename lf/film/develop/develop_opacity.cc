@@ -14,7 +14,7 @@ Image<float> DevelopOpacity(const SensorPlate& plate, const DevelopOptions& opti
                             const std::function<bool()>& is_interrupted, ThreadPool& pool) {
   LF_CHECK(plate.has_opacity() && options.opaque > options.transparent);
   // Number of fills between two calls of is_interrupted(). A fill takes up to 0.1 ms.
-  constexpr int kFilledPerQuestion = 64;
+  constexpr int kFillsPerQuestion = 64;
   constexpr uint64_t kMostCount = std::numeric_limits<uint32_t>::max();
   const int width = plate.width(), height = plate.height();
   const uint32_t rays_needed = std::max(options.smooth_below, 1u);
@@ -43,7 +43,7 @@ Image<float> DevelopOpacity(const SensorPlate& plate, const DevelopOptions& opti
       if (is_interrupted()) return;
       for (int x = 0; x < width; ++x) {
         if (count.at(x, y) >= rays_needed) continue;
-        if (++filled % kFilledPerQuestion == 0 && is_interrupted()) return;
+        if (++filled % kFillsPerQuestion == 0 && is_interrupted()) return;
         opacity.at(x, y) = fill.At(x, y, scratch);
       }
     });

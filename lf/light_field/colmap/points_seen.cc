@@ -17,8 +17,8 @@ ColmapPointsSeen::ColmapPointsSeen(uint32_t image_id, const PinholeCamera& camer
       forward_world_(camera.ForwardWorld()) {}
 
 void ColmapPointsSeen::Sample::Add(uint64_t point_id, const Vec3& point_world) {
-  constexpr uint64_t kSeed = 1;
-  const uint64_t hash = RandomBits(kSeed, point_id, 0);
+  constexpr uint64_t kHashSeed = 1;
+  const uint64_t hash = RandomBits(kHashSeed, point_id, 0);
   if (hash > hash_limit) return;
   points.emplace_back(hash, point_world);
   while (points.size() > kMostPointsSeen && hash_limit > 0) {

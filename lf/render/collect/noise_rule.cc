@@ -12,12 +12,12 @@
 namespace lf {
 namespace {
 
-constexpr std::string_view kStart = "noise";
+constexpr std::string_view kNoiseStart = "noise";
 constexpr double kMostNoise = 1000;
 
 }  // namespace
 
-bool IsNoiseRule(const std::string& text) { return text.starts_with(kStart); }
+bool IsNoiseRule(const std::string& text) { return text.starts_with(kNoiseStart); }
 
 Result<double> ParseNoiseRule(const std::string& text, const std::string& option) {
   constexpr std::string_view kWords = "noise<=";

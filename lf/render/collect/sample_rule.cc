@@ -62,13 +62,13 @@ size_t MayLack(size_t count) {
 }  // namespace
 
 Result<uint32_t> ParseSampleRule(const std::string& text, const std::string& option) {
-  constexpr std::string_view kStart = "samples>=";
+  constexpr std::string_view kSamplesStart = "samples>=";
   uint32_t samples = 0;
   const char* const end = text.data() + text.size();
-  if (!text.starts_with(kStart))
+  if (!text.starts_with(kSamplesStart))
     return UsageError(
         fmt::format("{} '{}': expected a rule such as samples>=8 or noise<=0.002", option, text));
-  const auto [rest, error] = std::from_chars(text.data() + kStart.size(), end, samples);
+  const auto [rest, error] = std::from_chars(text.data() + kSamplesStart.size(), end, samples);
   if (error != std::errc{} || rest != end || samples < 1 || samples > SensorPlate::kMaxCount)
     return UsageError(fmt::format("{} '{}': expected samples>=N with N from 1 to {}", option, text,
                                   SensorPlate::kMaxCount));
