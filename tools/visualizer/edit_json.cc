@@ -4,9 +4,10 @@
 #include <utility>
 
 namespace lf {
-namespace {
 
 using Json = nlohmann::ordered_json;
+
+namespace {
 
 // The parser calls one of these functions for each token. A function that returns false ends the
 // parse.

@@ -55,7 +55,7 @@ TEST(Report, ReadsBackWhatItWrote) {
   frame.empty_element_count = {1, 2, 3};
   frame.median_count = {7, 8, 9};
   frame.samples = FrameSamples{8, {0.25, 3}};
-  frame.weighed = {12.5, 0.25, 0.75};
+  frame.weighed = {12.5, 0.25, {0.75}};
   frame.noise = FrameNoise{0.002, 0.0019, 72, 70};
   frame.camera = {{"frame", "7"}};
   report.frames = {frame, {FrameId{9}, {}, {}, {}, {}, 0, {}, {}}};

@@ -203,11 +203,12 @@ TEST(Demosaic, WhiteBalanceMayComeAfterwards) {
 // inner pixels are away from the border.
 TEST(Demosaic, BordersAreMirroredAboutTheOutermostPixels) {
   for (const BayerPattern bayer : kPatterns)
-    for (const auto& [width, height] : {std::pair(2, 2), std::pair(3, 2), std::pair(8, 5)}) {
+    for (const auto& size : {std::pair(2, 2), std::pair(3, 2), std::pair(8, 5)}) {
+      const int width = size.first, height = size.second;
       const LfPixels small = NoiseMosaic(width, height, bayer, 2);
-      const auto inside = [](int position, int size) {
-        const int period = 2 * (size - 1), phase = (position + 2 * period) % period;
-        return phase < size ? phase : period - phase;
+      const auto inside = [](int position, int side) {
+        const int period = 2 * (side - 1), phase = (position + 2 * period) % period;
+        return phase < side ? phase : period - phase;
       };
       const LfPixels large =
           MosaicOf(width + 4, height + 4, bayer, [&](int x, int y, int /*channel*/) {
