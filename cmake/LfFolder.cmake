@@ -39,7 +39,7 @@ endif()
 # The presets compile the sources of a folder together, twelve at a time, which takes half the time: names in anonymous
 # namespaces must differ within a folder. The dev preset alone compiles one source at a time.
 if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-  # A source may give a class of its header members of its own types.
+  # GCC would warn where a class of a header has members whose types only its source knows (an anonymous namespace).
   target_compile_options(lf_options INTERFACE -Wno-subobject-linkage)
 endif()
 
