@@ -1,4 +1,5 @@
 """Photographs cards of known light and opacity with planar light fields and with exact lenses."""
+import functools
 import json
 import math
 
@@ -78,13 +79,23 @@ def lens_picture(opening, **scene):
     return tuple(np.mean([picture[k] for picture in pictures], axis=0) for k in (0, 1))
 
 
+@functools.lru_cache(maxsize=2)
+def photographs(scene):
+    """Returns [(x, y, light, opacity)] of a planar light field; `scene` holds the items of a dictionary. Two scenes are
+    kept, because drawing one takes seconds."""
+    places = [((index % SIDE - SIDE // 2) * PITCH, (index // SIDE - SIDE // 2) * PITCH) for index in range(SIDE * SIDE)]
+    pictures = [(x, y, *photograph(x, y, **dict(scene))) for x, y in places]
+    for _, _, light, opacity in pictures:
+        light.flags.writeable = opacity.flags.writeable = False
+    return pictures
+
+
 def write_field(folder, write, scene=None, **keys):
     """Writes a planar light field. write(file without suffix, light, opacity) writes its LF images."""
     folder.mkdir()
     frames = []
-    for index in range(SIDE * SIDE):
-        x, y = ((n - SIDE // 2) * PITCH for n in (index % SIDE, index // SIDE))
-        write(folder / f"{index:03d}", *photograph(x, y, **(scene or {})))
+    for index, (x, y, light, opacity) in enumerate(photographs(tuple((scene or {}).items()))):
+        write(folder / f"{index:03d}", light, opacity)
         name = next(folder.glob(f"{index:03d}.*")).name
         frames.append({"file_path": name, "transform_matrix": [
             [1, 0, 0, x], [0, 1, 0, y], [0, 0, 1, 0], [0, 0, 0, 1]]})

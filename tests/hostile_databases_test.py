@@ -82,7 +82,7 @@ def schemas(tables):
         yield f"{table} sorts by a collation that is not there", (
             "pragma writable_schema = on; update sqlite_master set sql = replace(replace(sql, ' integer', "
             f"' integer collate nobody'), ' text', ' text collate nobody') where name = '{table}';")
-    yield "thousands of tables", "".join(f"create table t{i} (a);" for i in range(3000))
+    yield "thousands of tables", "begin;" + "".join(f"create table t{i} (a);" for i in range(3000)) + "commit;"
 
 
 LONG_TEXT, ZEROS = "../" * 300_000, with_checksum(bytes(10_000_000))
@@ -169,6 +169,7 @@ class HostileDatabasesTest(unittest.TestCase):
     def script(text):
         def change(file):
             database = sqlite3.connect(file)
+            database.execute("pragma synchronous = off")
             database.executescript(text)
             database.close()
         return change
@@ -177,6 +178,7 @@ class HostileDatabasesTest(unittest.TestCase):
     def value(table, column, new):
         def change(file):
             database = sqlite3.connect(file)
+            database.execute("pragma synchronous = off")
             key = key_of(database, table)
             database.execute(f"update {table} set {column} = ? where {key} = "
                              f"(select min({key}) from {table})", (new,))

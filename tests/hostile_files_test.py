@@ -4,6 +4,7 @@ loops of links. Programs must keep to the limits of memory and time and report o
 
 usage: hostile_files_test.py LFRENDERER LFIMPORT LFEXAMPLE LFPREPROCESSOR
 """
+import functools
 import json
 import os
 import pathlib
@@ -36,6 +37,7 @@ def png(width, height, chunks=b"", data=b"", depth=8, colour=2):
             + chunks + chunk(b"IDAT", zlib.compress(data)) + chunk(b"IEND", b""))
 
 
+@functools.cache
 def zeros_compressed(count):
     """Returns `count` zeros compressed by zlib, without allocating them."""
     compressor = zlib.compressobj(9)

@@ -36,7 +36,7 @@ def png16(file, light, opacity):
 def covered_lens(diameter):
     """Returns points of the part of a lens that the capture covers; the centre of the lens is beside the centre of the
     capture."""
-    grid = np.linspace(-COVERED, COVERED, 29)
+    grid = np.linspace(-COVERED, COVERED, 16)
     grid = (grid[1:] + grid[:-1]) / 2
     return [(x - 0.001, y - 0.002) for x in grid for y in grid
             if np.hypot(x - 0.001, y - 0.002) <= diameter / 2]
