@@ -20,7 +20,8 @@ namespace {
 
 constexpr size_t kJobLimit_bytes = size_t{64} << 20;
 constexpr const char* kJobFormat = "lfjob 1";
-constexpr size_t kMostFrames = 10'000'000;
+constexpr size_t kMostFrames = 1'000'000;        // of a package
+constexpr size_t kMostFramesOfJob = 10'000'000;  // of all packages together
 
 // Returns true if the text contains control characters, such as line breaks, which would start a
 // new line in a batch script.
@@ -72,10 +73,12 @@ JobPackage PackageFromJson(const Json& json, std::string* fault) {
   package.file = file;
   if (!fault->empty()) return package;
   const auto parsed = ParseFrameRange(frames, kMostFrames);
-  if (parsed)
-    package.frames = *parsed;
-  else
+  if (!parsed)
     *fault = "\"frames\": " + parsed.error().message;
+  else if (FrameRangeText(*parsed) != frames)
+    *fault = "\"frames\": expected ascending numbers and ranges without repeats";
+  else
+    package.frames = *parsed;
   // The name is checked because it becomes a part of file names.
   if (package.name.empty() || package.name.find('/') != std::string::npos ||
       package.name.front() == '.' || HasControls(package.name))
@@ -169,8 +172,14 @@ Result<ClusterJob> ParseJob(std::string_view text, const std::string& name) {
     fields.Get("sbatch_options", &job.sbatch_options);
     fields.Get("slurm_arrays", &job.slurm_array_ids);
     fields.Get("slurm_finishing", &job.slurm_finishing_id);
-    for (const Json* item : fields.List("packages"))
+    size_t frame_count = 0;
+    for (const Json* item : fields.List("packages")) {
       job.packages.push_back(PackageFromJson(*item, &fault));
+      frame_count += job.packages.back().frames.size();
+      if (fault.empty() && frame_count > kMostFramesOfJob)
+        fault = fmt::format("\"packages\": expected at most {} frames together", kMostFramesOfJob);
+      if (!fault.empty()) break;
+    }
     const auto known = ClusterEngineOf(engine);
     if (known) job.engine = *known;
     if (fault.empty() && !known)

@@ -49,6 +49,26 @@ TEST(ClusterJob, IsRefusedWhereItsNamesWouldLeaveTheFolder) {
   EXPECT_FALSE(ParseJob(ToJson(job), "job").has_value());
 }
 
+// A small file must not take much time or memory to read.
+TEST(ClusterJob, IsRefusedWhereItNamesTooManyFrames) {
+  const auto fault = [](const char* frames, size_t package_count) {
+    ClusterJob job = SomeJob();
+    job.packages = {job.packages[1]};
+    std::string text = ToJson(job);
+    text.replace(text.find("3,5"), 3, frames);
+    const size_t begin = text.find('{', text.find("\"packages\""));
+    const std::string package = text.substr(begin, text.find('}', begin) + 1 - begin);
+    for (size_t i = 1; i < package_count; ++i) text.insert(begin, package + ",");
+    const Result<ClusterJob> parsed = ParseJob(text, "job");
+    return parsed ? "" : parsed.error().message;
+  };
+  EXPECT_EQ(fault("1-1000000", 10), "");
+  EXPECT_NE(fault("1-1000000", 11).find("at most 10000000 frames"), std::string::npos);
+  EXPECT_NE(fault("1-1000001", 1).find("frames 1-1000000"), std::string::npos);
+  EXPECT_NE(fault("1-9,9", 1).find("without repeats"), std::string::npos);
+  EXPECT_NE(fault("3-1", 1).find("at most the last"), std::string::npos);
+}
+
 // These fields become parts of batch scripts and of commands of Slurm.
 TEST(ClusterJob, IsRefusedWhereItWouldSlipInCommandsOrOptions) {
   for (const char* option : {"--partition=long\nrm -rf ~", "long", ""}) {

@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
-#include <set>
 
 namespace lf {
 namespace {
+
+// Limits the time and memory that a list with many repeats takes.
+constexpr size_t kMostNamed = 10'000'000;
 
 // Reads a whole number at the beginning of `text` and removes it from there. Returns false if there
 // is none.
@@ -28,7 +31,7 @@ bool TakeCharacter(std::string_view* text, char character) {
 
 Result<std::vector<FrameId>> ParseFrameRange(std::string_view text, size_t frame_count,
                                              const char* option) {
-  std::set<uint32_t> numbers;
+  std::vector<FrameId> frames;
   std::string_view rest = text;
   do {
     uint32_t first = 0, last = 0, step = 1;
@@ -48,10 +51,14 @@ Result<std::vector<FrameId>> ParseFrameRange(std::string_view text, size_t frame
           fmt::format("{} \'{}\': expected a step of at least 1 after x", option, text));
     if (first < 1 || last > frame_count)
       return UsageError(fmt::format("{} \'{}\': expected frames 1-{}", option, text, frame_count));
-    for (uint64_t n = first; n <= last; n += step) numbers.insert(static_cast<uint32_t>(n));
+    if ((last - first) / step >= kMostNamed - frames.size())
+      return UsageError(fmt::format("{}: the list names more than {} frames, counting repeats",
+                                    option, kMostNamed));
+    for (uint64_t n = first; n <= last; n += step)
+      frames.push_back(FrameId{static_cast<uint32_t>(n)});
   } while (TakeCharacter(&rest, ','));
-  std::vector<FrameId> frames;
-  for (const uint32_t number : numbers) frames.push_back(FrameId{number});
+  std::sort(frames.begin(), frames.end());
+  frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
   return frames;
 }
 

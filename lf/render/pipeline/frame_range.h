@@ -10,8 +10,9 @@
 
 namespace lf {
 
-// Returns the frames in ascending order, each once. kUsage: the text does not have this form, or a
-// frame is not in 1 .. frame_count. The message names `option`.
+// Returns the frames in ascending order, each once. kUsage: the text does not have this form, a
+// frame is not in 1 .. frame_count, or more than 10 million frames are named, counting repeats. The
+// message names `option`.
 Result<std::vector<FrameId>> ParseFrameRange(std::string_view text, size_t frame_count,
                                              const char* option = "--frames");
 

@@ -28,6 +28,9 @@ TEST(FrameRange, RefusesWhatItDoesNotUnderstand) {
     ASSERT_FALSE(frames) << text;
     EXPECT_EQ(frames.error().kind, ErrorKind::kUsage);
   }
+  std::string repeated;
+  for (int i = 0; i < 10; ++i) repeated += "1-1000000,";
+  EXPECT_FALSE(ParseFrameRange(repeated + "1", 1'000'000));
   const auto says = [](const char* text) { return ParseFrameRange(text, 4).error().message; };
   EXPECT_NE(says("4-1").find("1-4"), std::string::npos);
   EXPECT_NE(says("1-4x0").find("at least 1"), std::string::npos);
