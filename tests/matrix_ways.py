@@ -19,7 +19,8 @@ from matrix_world import (BROKEN, FRAMES, MISSING, MODES, MOST_IMAGES, Differenc
 
 SHARDS = 2
 LEAST_PSNR_DB = 38
-# Noise rules may stop at another LF image, and the choice of rebinned rays depends on the pixels.
+# The least PSNR where decoded pixels decide which rays are used, so that a packed store may have others than the image
+# files: noise rules may stop at another LF image, and rebinning may keep other rays.
 LEAST_PSNR_OF_DRAWN_DB = 30
 DUMP_OFTEN = ["--dump-every", "0.001s"]
 RUNS = {  # options with which a run changes the content of the frames

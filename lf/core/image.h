@@ -81,7 +81,7 @@ class Image {
 };
 
 // Colour filter of a mosaic sensor. A name lists the channels of the upper left 2 x 2 pixels, row
-// by row. kNone: there is no filter, and a pixel has three channels.
+// by row. kNone: there is no filter, and every pixel has all channels.
 enum class BayerPattern : uint8_t { kNone, kRggb, kBggr, kGrbg, kGbrg };
 
 // Returns the channel (0 R, 1 G, 2 B) that a mosaic records at pixel (x, y). Must not be called for

@@ -16,7 +16,7 @@ namespace lf {
 // is the mean of the unmasked pixels of a square. A pixel is grey if all pixels of its square are
 // masked.
 //   store  must be opened with Mosaics::kToRgb
-// kInput: errors of store.Load().
+// Errors: those of LoadWithoutThrowing().
 Result<Image<uint8_t>> LfPicture(const LightField& light_field, const LfImageStore& store,
                                  LfImageId id, int max_side_px);
 

@@ -178,10 +178,10 @@ Result<Intrinsics> IntrinsicsOf(const StanfordName& name, const ImageFileInfo& i
   k.cx_px = info.width / 2.0 + shift_px.x();
   k.cy_px = info.height / 2.0 + shift_px.y();
   if (!(shift_px.cwiseAbs().maxCoeff() <= kLargestPrincipal_px / 2))
-    return InputError(
-        fmt::format("the computed principal point is ({}, {}) px: expected within +-1e7; is the "
-                    "plane distance {} in the units of the positions?",
-                    k.cx_px, k.cy_px, *options.plane_distance_w));
+    return InputError(fmt::format(
+        "the computed principal point is ({}, {}) px from the middle of the image: "
+        "expected within +-{}; is the plane distance {} in the units of the positions?",
+        shift_px.x(), shift_px.y(), kLargestPrincipal_px / 2, *options.plane_distance_w));
   return k;
 }
 

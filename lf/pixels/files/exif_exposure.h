@@ -7,8 +7,8 @@
 namespace lf {
 
 // Returns the exposure that the Exif data of a file of this format state; nothing for camera raw
-// files and EXR files. ExposureTime, FNumber and the sensitivity take precedence over the
-// equivalent APEX values.
+// files and EXR files. ExposureTime and FNumber take precedence over the equivalent APEX
+// values. Other Exif tags replace a sensitivity that is missing, or at the limit of its 16 bits.
 ExposureFacts ExposureOfExif(const ByteSource& source, ImageFormat format);
 
 }  // namespace lf
