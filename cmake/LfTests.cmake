@@ -108,13 +108,16 @@ function(lf_program_test name)
     string(REGEX REPLACE "^tests\\.(.*)" "\\1_test.py" P_SCRIPT ${name})
   endif()
   set(timeout 900)
+  set(cost 10)  # what costs most begins first, so that no processor waits for a last long test
   if(P_SLOW)
     set(timeout 3600)
+    set(cost 100)
     list(APPEND P_LABELS slow)
   endif()
   cmake_path(ABSOLUTE_PATH P_SCRIPT BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} NORMALIZE)
   lf_test(${name} COMMAND ${Python3_EXECUTABLE} ${P_SCRIPT} ${words} LABELS program ${P_LABELS}
           TIMEOUT ${timeout} NEEDS ${needs})
+  set_tests_properties(${name} PROPERTIES COST ${cost})
 endfunction()
 
 # lf_house_test(house.name script [argument...]): a script in scripts/ or tests/ that looks at files.

@@ -2,7 +2,8 @@
 import pathlib
 import re
 
-KEYWORDS = {"SOURCES", "INTERNAL", "DEPENDS", "LIBS", "PUBLIC_LIBS", "TESTS", "TEST_LIBS", "FUZZ", "BENCH"}
+KEYWORDS = {"WORDS", "SOURCES", "ALONE", "INTERNAL", "DEPENDS", "LIBS", "PUBLIC_LIBS", "TESTS", "TEST_LIBS", "FUZZ",
+            "BENCH"}
 
 
 def read_call(cmake: str) -> dict:
