@@ -58,7 +58,7 @@ add_library(lfrendertools::lfrendertools ALIAS lfrendertools)
 #           [TEST_LIBS ...] [FUZZ ...] [BENCH ...])
 #
 # The folder lf/<path> as a static library: lf_camera for camera, lf_camera_path for camera/path.
-#   WORDS        the sources read and write words a few times per film (lf_precompile)
+#   WORDS        the sources read and write texts, and do nothing for each pixel or ray (lf_precompile)
 #   SOURCES      the .cc files
 #   ALONE        .cc files among SOURCES that are not compiled together with others: kernels, which include themselves
 #                once for each instruction set, and files that share names with others on purpose

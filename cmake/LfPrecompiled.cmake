@@ -32,8 +32,8 @@ endif()
 
 # lf_precompile(target [test|words]): the target takes the precompiled headers.
 #   test   with gtest
-#   words  for sources that read and write words a few times per film: a release build optimises them less, which saves
-#          a third of their compile time
+#   words  for sources that read and write texts, and do nothing for each pixel or ray: a release build compiles them with
+#          -O1, which saves a third of their compile time
 function(lf_precompile target)
   set(of lf_precompiled)
   if("test" IN_LIST ARGN)

@@ -13,7 +13,7 @@ if ((${#files[@]} == 0)); then
   mapfile -t files < <(sed -n "s|^ *\"file\": \"$PWD/\(.*\)\"|\1|p" build/dev/compile_commands.json |
     grep -E '^(lf|tools)/' | grep -vE '_(test|fuzz|bench)\.cc$' | sort -u)
 fi
-# build/dev is configured for GCC, whose options clang need not know.
+# clang-tidy ignores options that it does not know, because build/dev is configured for GCC.
 printf '%s\n' "${files[@]}" |
   xargs -P "$(nproc)" -n 1 clang-tidy-14 -p build/dev --quiet --warnings-as-errors='*' \
     --extra-arg=-Wno-unknown-warning-option --extra-arg=-Wno-unused-command-line-argument

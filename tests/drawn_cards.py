@@ -81,8 +81,11 @@ def lens_picture(opening, **scene):
 
 @functools.lru_cache(maxsize=2)
 def photographs(scene):
-    """Returns [(x, y, light, opacity)] of a planar light field; `scene` holds the items of a dictionary. Two scenes are
-    kept, because drawing one takes seconds."""
+    """Returns [(x, y, light, opacity)] of the LF cameras of a planar light field. The last two scenes are kept, because
+    drawing one takes seconds.
+
+    scene  the keyword arguments of photograph(), as a tuple of (name, value)
+    """
     places = [((index % SIDE - SIDE // 2) * PITCH, (index // SIDE - SIDE // 2) * PITCH) for index in range(SIDE * SIDE)]
     pictures = [(x, y, *photograph(x, y, **dict(scene))) for x, y in places]
     for _, _, light, opacity in pictures:

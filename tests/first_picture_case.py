@@ -27,7 +27,7 @@ def expose(file, gain, falloff=0, out=None):
     gains = (gain / 1.25 * (1 - falloff * corner)).astype(np.float32)
     light = np.clip(light_of[np.asarray(image)] * gains[..., None], 0, 1)
     stored = (255 * cv2.pow(light, 1 / 2.2)).round().astype(np.uint8)
-    Image.fromarray(stored).save(out or file, quality=92, compress_level=1)  # the fastest PNG
+    Image.fromarray(stored).save(out or file, quality=92, compress_level=1)  # compress_level is for PNG files
 
 
 class FirstPictureCase(ProgramTestCase):
