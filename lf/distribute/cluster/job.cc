@@ -72,9 +72,9 @@ JobPackage PackageFromJson(const Json& json, std::string* fault) {
   fields.Get("rays", &package.ray_count);
   package.file = file;
   if (!fault->empty()) return package;
-  const auto parsed = ParseFrameRange(frames, kMostFrames);
+  const auto parsed = ParseFrameRange(frames, kMostFrames, "\"frames\"");
   if (!parsed)
-    *fault = "\"frames\": " + parsed.error().message;
+    *fault = parsed.error().message;
   else if (FrameRangeText(*parsed) != frames)
     *fault = "\"frames\": expected ascending numbers and ranges without repeats";
   else
