@@ -129,7 +129,7 @@ HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<int32_t>> MixSixteen(D d, const ColumnWe
     return hn::Add(hn::LowerHalf(d128, sum), hn::UpperHalf(d128, sum));
   } else {
     hn::Vec<D> next_low, next_high;
-    MixColumns<kShift>(d16, down, first + 2 * LfPixels::kRgbLanes, row_values, &next_low,
+    MixColumns<kShift>(d16, down, first + ptrdiff_t{2} * LfPixels::kRgbLanes, row_values, &next_low,
                        &next_high);
     const auto sum =
         hn::Add(hn::Mul(low, hn::LoadU(d, right)), hn::Mul(high, hn::LoadU(d, right + 8)));

@@ -24,7 +24,7 @@ uint16_t Bilinear(const Pixel& pixel, uint32_t right, uint32_t down) {
   const uint32_t above = pixel(0, 0) * (kOne - right) + pixel(1, 0) * right;
   const uint32_t below = pixel(0, 1) * (kOne - right) + pixel(1, 1) * right;
   const uint64_t sum = uint64_t{above} * (kOne - down) + uint64_t{below} * down;
-  return static_cast<uint16_t>((sum + kOne * kOne / 2) / (kOne * kOne));
+  return static_cast<uint16_t>((sum + uint64_t{kOne} * kOne / 2) / (uint64_t{kOne} * kOne));
 }
 
 // Like Bilinear(), with the shares of mosaic_filter.h. Returns the value of the ray and its count.

@@ -27,7 +27,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace lf {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
 // True if `rect` holds the sixteen pixels around each of the rays [begin, begin + count) of the
 // segment. May be false even if `rect` holds them, if a ray is near the border.
@@ -101,7 +100,7 @@ class RayAdder {
         Upper(i) - outer * (row_values_ + LfPixels::kRgbLanes) + LfPixels::kRayLane;
     int unmasked = 0;
     for (int tap = 0; tap < taps * taps; ++tap)
-      unmasked += ray[tap / taps * row_values_ + tap % taps * LfPixels::kRgbLanes];
+      unmasked += ray[tap / taps * row_values_ + ptrdiff_t{tap % taps} * LfPixels::kRgbLanes];
     return unmasked == taps * taps;
   }
 

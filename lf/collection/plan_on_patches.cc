@@ -110,7 +110,7 @@ class PatchPlanner {
       FitColumns(patch, middle, x_end);
       return;
     }
-    columns_.push_back({x_begin, x_end, std::move(elements)});
+    columns_.push_back({x_begin, x_end, elements});
   }
 
   // Appends the segments of the scanlines of `part`, which is `patch` or some rows of it, with the

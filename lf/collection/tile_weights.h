@@ -14,7 +14,7 @@ class TileWeights {
  public:
   // Number of bytes before the weights, and behind them, which vectors may read although they
   // belong to no element.
-  static constexpr int kMargin = 64;
+  static constexpr size_t kMargin = 64;
 
   // Sets least() and most() for a tile. Unless weights.are_same(), also writes the weights to
   // data().
