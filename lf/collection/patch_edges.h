@@ -48,7 +48,8 @@ class PatchEdges {
   struct Grid {
     Grid(const PixelForm& form, const Hull& hull);
     Values Along(const BezierWeights& row) const;
-    std::array<double, size_t{IdealPatch::kControls} * IdealPatch::kControls> values;  // [row][column]
+    std::array<double, size_t{IdealPatch::kControls} * IdealPatch::kControls>
+        values;  // [row][column]
   };
 
   struct Form {

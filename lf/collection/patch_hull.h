@@ -19,7 +19,8 @@ struct Hull {
   }
   explicit Hull(const IdealArc& arc) : Hull(std::span(arc.control)) {}
   explicit Hull(const IdealPatch& patch)
-      : Hull(std::span(&patch.control[0][0], size_t{IdealPatch::kControls} * IdealPatch::kControls)) {}
+      : Hull(std::span(&patch.control[0][0],
+                       size_t{IdealPatch::kControls} * IdealPatch::kControls)) {}
 };
 
 // The smallest and the largest value that a form can have on a hull. The computed sign of a value

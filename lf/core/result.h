@@ -94,9 +94,9 @@ class [[nodiscard]] Result<void> {
 };
 
 // Returns from the calling function with the error of the Result `expression`, if it has an error.
-#define LF_RETURN_IF_ERROR(expression)                                       \
-  do {                                                                       \
-    if (auto lf_result = (expression); !lf_result) return lf_result.error(); \
+#define LF_RETURN_IF_ERROR(expression)                                         \
+  do {                                                                         \
+    if (auto&& lf_result = (expression); !lf_result) return lf_result.error(); \
   } while (false)
 
 // Initializes a variable with the value of a Result. If the Result has an error, returns from the

@@ -139,7 +139,8 @@ std::optional<double> ReadPatch(const View& view, const SearchRay& search, doubl
                                 Patch* patch) {
   double sum = 0, squares = 0;
   for (int i = 0; i < kPatchSize; ++i) {
-    const Vec3 point = search.At(depth_w, i % kPatchSide - kHalfPatch, kHalfPatch - i / kPatchSide);
+    const int column = i % kPatchSide, row = i / kPatchSide;
+    const Vec3 point = search.At(depth_w, column - kHalfPatch, kHalfPatch - row);
     const std::optional<Vec2> place = view.rays.RecordedAt(point - view.rays.centre_world());
     if (!place) return std::nullopt;
     const std::optional<float> value = ValueAt(view.pixels, *place);

@@ -76,7 +76,7 @@ bool Sample(const ReducedImage& image, const PatchGrid& grid, Patch* patch) {
       const float* upper = light.row(row + j) + column;
       const float* lower = light.row(row + j + 1) + column;
       for (int i = 0; i < kPatchSide; ++i)
-        (*patch)[static_cast<size_t>(j * kPatchSide + i)] =
+        (*patch)[static_cast<size_t>(j) * kPatchSide + static_cast<size_t>(i)] =
             (1 - v) * ((1 - u) * upper[i] + u * upper[i + 1]) +
             v * ((1 - u) * lower[i] + u * lower[i + 1]);
     }
@@ -90,7 +90,7 @@ bool Sample(const ReducedImage& image, const PatchGrid& grid, Patch* patch) {
       const auto u = static_cast<float>(x - column), v = static_cast<float>(y - row);
       const float* upper = light.row(row) + column;
       const float* lower = light.row(row + 1) + column;
-      (*patch)[static_cast<size_t>(j * kPatchSide + i)] =
+      (*patch)[static_cast<size_t>(j) * kPatchSide + static_cast<size_t>(i)] =
           (1 - v) * ((1 - u) * upper[0] + u * upper[1]) + v * ((1 - u) * lower[0] + u * lower[1]);
     }
   return true;

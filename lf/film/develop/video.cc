@@ -28,16 +28,17 @@ std::string FrameRate(double fps) {
   return fmt::format("{:.9g}", fps);
 }
 
+constexpr const char* kConversion =
+    "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int+full_chroma_inp,"
+    "format=yuv420p";
+
 std::vector<std::string> EncoderArguments(const fs::path& file, int width, int height, double fps) {
   return {"ffmpeg", "-hide_banner", "-nostats", "-loglevel", "error", "-y",  //
           "-f", "rawvideo", "-pixel_format", "rgb24", "-video_size",
           fmt::format("{}x{}", width, height), "-framerate", FrameRate(fps), "-i", "pipe:0",
-          // The conversion and the tags must name the same matrix, or players shift the colours.
-          "-vf",
-          "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int+"
-          "full_chroma_inp,format=yuv420p",
-          "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709",
-          "-color_range", "tv",                                  //
+          // These tags must name the matrix of kConversion, or players shift the colours.
+          "-vf", kConversion, "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc",
+          "bt709", "-color_range", "tv",                         //
           "-c:v", "libx264", "-preset", "medium", "-crf", "16",  //
           "-movflags", "+faststart", "-f", "mp4", "file:" + file.string()};
 }
@@ -62,7 +63,7 @@ Result<void> CheckVideoTool() {
                           "rawvideo", "-pixel_format", "rgb24", "-video_size", "16x16", "-i",
                           "pipe:0", "-c:v", "libx264", "-f", "null", "-"});
   if (!ffmpeg) return advice(ffmpeg.error());
-  const std::vector<uint8_t> picture(16 * 16 * 3);
+  const std::vector<uint8_t> picture(size_t{16} * 16 * 3);
   if (const auto written = (*ffmpeg)->Write(picture, kPatience_s); !written)
     return advice(written.error());
   if (const auto end = (*ffmpeg)->Finish(kPatience_s); !end) return advice(end.error());

@@ -93,7 +93,8 @@ void TileSums::MakeCountedRoom(uint32_t rays) {
 void TileSums::MakeMosaicRoom(uint32_t rays) {
   LF_CHECK(rays <= mosaic_limit_ && target_ == Target::kColours);
   FlushMosaic();
-  const size_t count = static_cast<size_t>(stride()) * rect().height() * kMosaicRows + 2 * kMargin;
+  const size_t count =
+      static_cast<size_t>(stride()) * rect().height() * kMosaicRows + size_t{2} * kMargin;
   if (words_.size() < count) words_.resize(count);
   mosaic_headroom_ = mosaic_limit_;
   has_mosaic_ = true;
@@ -172,7 +173,7 @@ void TileSums::FlushMosaic() {
     const uint64_t *const b_g = row(kBlueFirst), *const g_b = row(kGreenFirst + kBlueFirst);
     uint64_t* word = tile_->row(y);
     const ptrdiff_t ahead = tile_->row(std::min(y + 1, rect().y_end - 1)) - word;
-    for (int x = 0; x + 1 < width; x += 2, word += 2 * SensorPlate::kChannels) {
+    for (int x = 0; x + 1 < width; x += 2, word += ptrdiff_t{2} * SensorPlate::kChannels) {
       Prefetch(word + ahead);
       word[0] += r_g[x];
       word[1] += g_r[x] + g_b[x];

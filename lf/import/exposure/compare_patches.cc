@@ -25,7 +25,7 @@ PatchWindow WindowOf(const ExposureView& view, const PatchGrid& grid) {
   PatchWindow window;
   for (int y = 0; y < kPadded; ++y)
     for (int x = 0; x < kPadded; ++x)
-      window[static_cast<size_t>(y * kPadded + x)] = view.LightsAt(
+      window[static_cast<size_t>(y) * kPadded + static_cast<size_t>(x)] = view.LightsAt(
           grid.centre + (x - kHalf - 1) * grid.step_x + (y - kHalf - 1) * grid.step_y);
   return window;
 }
@@ -45,11 +45,14 @@ float StepAt(const PatchWindow& window, size_t pixel) {
   return step;
 }
 
+template <class T>
+using PatchPixels = std::array<T, size_t{kSide} * kSide>;
+
 // The pixels of a patch that both LF images recorded. Every array has one entry for each of them.
 struct Pixels {
-  std::array<std::array<float, kSide * kSide>, 3> a, b;  // light, by channel
-  std::array<float, kSide * kSide> a_sum, b_sum, a_step, b_step, weight, level;
-  std::array<Vec2, kSide * kSide> a_at, b_at;
+  std::array<PatchPixels<float>, 3> a, b;  // light, by channel
+  PatchPixels<float> a_sum, b_sum, a_step, b_step, weight, level;
+  PatchPixels<Vec2> a_at, b_at;
   size_t count = 0;
 };
 
@@ -57,7 +60,7 @@ void Gather(const PatchWindow& window_a, const PatchWindow& window_b, const Patc
             const PatchGrid& grid_b, Pixels* pixels) {
   for (int y = 0; y < kSide; ++y)
     for (int x = 0; x < kSide; ++x) {
-      const auto pixel = static_cast<size_t>((y + 1) * kPadded + x + 1);
+      const size_t pixel = static_cast<size_t>(y + 1) * kPadded + static_cast<size_t>(x + 1);
       const float step_a = StepAt(window_a, pixel), step_b = StepAt(window_b, pixel);
       if (std::isnan(step_a) || std::isnan(step_b)) continue;
       const size_t i = pixels->count++;
@@ -95,8 +98,7 @@ void Weigh(double gain, double scale, Pixels* pixels) {
 struct Ratio {
   double a = 0, b = 0;
 };
-Ratio Sums(const Pixels& pixels, const std::array<float, kSide * kSide>& a,
-           const std::array<float, kSide * kSide>& b) {
+Ratio Sums(const Pixels& pixels, const PatchPixels<float>& a, const PatchPixels<float>& b) {
   Ratio sums;
   for (size_t i = 0; i < pixels.count; ++i) {
     const double weight = pixels.weight[i] / pixels.level[i];
@@ -118,8 +120,8 @@ double Deviation(const Pixels& pixels, size_t c, const Ratio& sums) {
 }
 
 // Computes the weighted mean and variance of r^2 (camera/vignetting.h) over the pixels.
-void TakeRadii(const Intrinsics& k, const std::array<Vec2, kSide * kSide>& at, const Pixels& pixels,
-               float* mean, float* variance) {
+void TakeRadii(const Intrinsics& k, const PatchPixels<Vec2>& at, const Pixels& pixels, float* mean,
+               float* variance) {
   double weights = 0, sum = 0, squares = 0;
   for (size_t i = 0; i < pixels.count; ++i) {
     const double r_squared = RadiusSquared(k, at[i].x(), at[i].y());

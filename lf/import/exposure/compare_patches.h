@@ -16,7 +16,7 @@ namespace lf {
 // Light in R, G and B of a patch of 13 x 13 pixels and of the pixels around it; 0 if the light of a
 // pixel was not recorded.
 inline constexpr int kPatchWindowSide = 15;
-using PatchWindow = std::array<std::array<float, 3>, kPatchWindowSide * kPatchWindowSide>;
+using PatchWindow = std::array<std::array<float, 3>, size_t{kPatchWindowSide} * kPatchWindowSide>;
 
 // One of the two LF images that are compared.
 struct ComparedImage {

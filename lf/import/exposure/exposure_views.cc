@@ -63,8 +63,8 @@ std::array<float, 3> ExposureView::LightsAt(const Vec2& place_px) const {
   const int row = std::min(static_cast<int>(y), light.height() - 2);
   if (column < 0 || row < 0) return {};
   const auto u = static_cast<float>(x - column), v = static_cast<float>(y - row);
-  const uint16_t* upper = light.row(row) + 3 * column;
-  const uint16_t* lower = light.row(row + 1) + 3 * column;
+  const uint16_t* upper = light.row(row) + ptrdiff_t{3} * column;
+  const uint16_t* lower = light.row(row + 1) + ptrdiff_t{3} * column;
   std::array<float, 3> lights;
   for (size_t c = 0; c < 3; ++c) {
     if (upper[c] == 0 || upper[c + 3] == 0 || lower[c] == 0 || lower[c + 3] == 0) return {};

@@ -92,7 +92,8 @@ class Tiles {
     const int column = std::clamp(x / side_, 0, columns_ - 1);
     const int row = std::clamp(y / side_, 0, rows_ - 1);
     const std::optional<Scene::Sector>& sector =
-        sectors_[static_cast<size_t>(row * columns_ + column)];
+        sectors_[static_cast<size_t>(row) * static_cast<size_t>(columns_) +
+                 static_cast<size_t>(column)];
     return sector ? &*sector : nullptr;
   }
 
