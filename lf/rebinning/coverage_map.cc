@@ -38,8 +38,8 @@ std::vector<Vec2> PlacesAround(const FrameQueries& frame, const std::vector<bool
     }
   std::vector<Vec2> places;
   if (centres.empty()) return places;
-  for (double y = low.y(); y <= high.y(); y += step_w)
-    for (double x = low.x(); x <= high.x(); x += step_w)
+  for (double y = low.y(); y <= high.y(); y += step_w)    // NOLINT: the places need not be exact
+    for (double x = low.x(); x <= high.x(); x += step_w)  // NOLINT
       for (size_t i = 0; i < centres.size(); ++i)
         if ((Vec2(x, y) - centres[i]).squaredNorm() <= reaches[i] * reaches[i]) {
           places.emplace_back(x, y);

@@ -142,8 +142,9 @@ Image<float> SpreadOverPlate(const Image<float>& effective_counts, const Intrins
   const auto places = [step = EffectiveStep(plate)](int size, int count) {
     std::vector<Place> of_elements;
     for (int i = 0; i < size; ++i) {
+      const int first = step / 2;
       const float at =
-          (static_cast<float>(i) - static_cast<float>(step / 2)) / static_cast<float>(step);
+          (static_cast<float>(i) - static_cast<float>(first)) / static_cast<float>(step);
       const int node = std::clamp(static_cast<int>(std::floor(at)), 0, count - 1);
       of_elements.push_back({node, std::min(node + 1, count - 1),
                              std::clamp(at - static_cast<float>(node), 0.0F, 1.0F)});

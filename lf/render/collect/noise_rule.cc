@@ -37,10 +37,11 @@ Result<double> ParseNoiseRule(const std::string& text, const std::string& option
 std::string TextOfNoiseRule(double noise) { return fmt::format("noise<={}", noise); }
 
 uint32_t NoiseDecisionAfter(uint32_t place) {
-  constexpr uint32_t kFirst = 16, kPerDoubling = 8;
+  constexpr uint32_t kFirst = 16;
+  constexpr int kPerDoublingBits = 3;  // eight decisions from a power of two to the next
   if (place < kFirst) return kFirst;
-  const uint32_t step = std::bit_floor(place) / kPerDoubling;
-  const uint64_t next = (uint64_t{place} / step + 1) * step;
+  const int step_bits = std::bit_width(place) - 1 - kPerDoublingBits;
+  const uint64_t next = ((uint64_t{place} >> step_bits) + 1) << step_bits;
   return static_cast<uint32_t>(std::min<uint64_t>(next, UINT32_MAX));
 }
 
