@@ -71,7 +71,7 @@ class Surroundings {
     int64_t sum = 0;
     for (int dy = -2; dy <= 2; ++dy)
       for (int dx = -2; dx <= 2; ++dx) {
-        const int weight = filter[static_cast<size_t>(dy + 2)][static_cast<size_t>(dx + 2)];
+        const int weight = filter[static_cast<size_t>(dy) + 2][static_cast<size_t>(dx) + 2];
         // A pixel of weight 0 need not be in `mosaic`.
         if (weight != 0) sum += weight * int64_t{mosaic_.radiance.at(Column(dx), Row(dy))};
       }
