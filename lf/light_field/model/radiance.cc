@@ -17,6 +17,9 @@ constexpr const char* kBayerNames[] = {"", "RGGB", "BGGR", "GRBG", "GBRG"};
 // The names are in the order of AlphaMeaning.
 constexpr const char* kAlphaNames[] = {"mask", "straight", "premultiplied"};
 
+// The names are in the order of PixelFootprint.
+constexpr const char* kFootprintNames[] = {"areas", "points"};
+
 double LargestStorable(int bits) { return bits == 8 ? 255 : 65535; }
 
 double WhiteLevel(const RadianceEncoding& encoding, int bits) {
@@ -50,6 +53,11 @@ void MakeRoomForUndershoot(RadianceEncoding* encoding) {
   encoding->pedestal = std::max(encoding->pedestal, kUndershootPedestal);
 }
 
+void MakeRoomBesideEdges(std::span<const std::string> image_names, RadianceEncoding* encoding) {
+  encoding->pedestal = std::max(encoding->pedestal, kRoomPedestal);
+  if (DefaultMaxRadiance(image_names) == 1) encoding->max_radiance *= 2;
+}
+
 const char* NameOf(BayerPattern bayer) { return kBayerNames[static_cast<int>(bayer)]; }
 
 std::optional<BayerPattern> BayerPatternOf(const std::string& name) {
@@ -62,6 +70,14 @@ const char* NameOf(AlphaMeaning alpha) { return kAlphaNames[static_cast<int>(alp
 std::optional<AlphaMeaning> AlphaMeaningOf(const std::string& name) {
   return ValueNamed(name,
                     {AlphaMeaning::kMask, AlphaMeaning::kStraight, AlphaMeaning::kPremultiplied});
+}
+
+const char* NameOf(PixelFootprint footprint) {
+  return kFootprintNames[static_cast<int>(footprint)];
+}
+
+std::optional<PixelFootprint> PixelFootprintOf(const std::string& name) {
+  return ValueNamed(name, {PixelFootprint::kArea, PixelFootprint::kPoint});
 }
 
 std::string TextOfAlpha(AlphaMeaning alpha, const std::array<double, 3>& background,

@@ -34,6 +34,12 @@ enum class AlphaMeaning : uint8_t {
   kPremultiplied,  // as kStraight, but the radiance of the colours is already multiplied by alpha
 };
 
+// The light that an LF pixel shows.
+enum class PixelFootprint : uint8_t {
+  kArea,   // the mean light of its area, as a sensor's pixel does
+  kPoint,  // the light of the point at its centre, as renders without anti-aliasing do
+};
+
 // How the pixels of a light field are stored (keys lf_*, doc/formats/transforms_json.md).
 // Float files hold radiance itself: transfer and levels do not apply to them.
 struct RadianceEncoding {
@@ -52,6 +58,7 @@ struct RadianceEncoding {
   // True: LF images of one pose with different exposures form one picture. Each pixel is taken from
   // the brightest LF image in which it is not clipped (light_field/model/brackets.h).
   bool masks_clipped = false;
+  std::optional<PixelFootprint> footprint;  // unset: not known (storage/load/measure_footprint.h)
   std::array<double, 3> white_balance = {1, 1, 1};  // applied on developing
   Mat3 linear_srgb_from_camera = Mat3::Identity();  // linear sRGB = M * white balanced camera RGB
 
@@ -73,6 +80,12 @@ inline constexpr double kMostPedestal = 32767;
 inline constexpr double kUndershootPedestal = 4096;
 void MakeRoomForUndershoot(RadianceEncoding* encoding);
 
+// Makes more room, also above white, because prefilters undershoot and overshoot more than bicubic
+// interpolation. Raises the pedestal to kRoomPedestal, a quarter of the range. Doubles
+// max_radiance, unless LF images are float files, whose max_radiance is far above white anyway.
+inline constexpr double kRoomPedestal = 16384;
+void MakeRoomBesideEdges(std::span<const std::string> image_names, RadianceEncoding* encoding);
+
 // Converts a pattern to and from the words of lf_bayer, "RGGB" ...; kNone is written "". Returns
 // nullopt for words that are no pattern.
 const char* NameOf(BayerPattern bayer);
@@ -82,6 +95,11 @@ std::optional<BayerPattern> BayerPatternOf(const std::string& name);
 // for other words.
 const char* NameOf(AlphaMeaning alpha);
 std::optional<AlphaMeaning> AlphaMeaningOf(const std::string& name);
+
+// Converts to and from the words of lf_pixels, "areas" and "points". Returns nullopt for other
+// words.
+const char* NameOf(PixelFootprint footprint);
+std::optional<PixelFootprint> PixelFootprintOf(const std::string& name);
 
 // The word that a user writes instead of a background to set RadianceEncoding::keeps_opacity.
 inline constexpr const char* kNoBackground = "none";

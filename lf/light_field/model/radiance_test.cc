@@ -170,5 +170,25 @@ TEST(RadianceTable, RoomForUndershootIsNeverLess) {
   EXPECT_EQ(encoding.pedestal, 9000);
 }
 
+TEST(RadianceTable, HasRoomBelowBlackAndAboveWhite) {
+  const std::vector<std::string> integers = {"a.png"}, floats = {"a.exr"};
+  RadianceEncoding encoding;
+  MakeRoomBesideEdges(integers, &encoding);
+  EXPECT_EQ(QuantizeRadiance(encoding, 0, 1), kRoomPedestal);
+  EXPECT_EQ(QuantizeRadiance(encoding, 2, 1), 65535);
+  EXPECT_GT(QuantizeRadiance(encoding, -0.66, 1), 0);
+  encoding.pedestal = 20000;
+  encoding.max_radiance = 16;
+  MakeRoomBesideEdges(floats, &encoding);
+  EXPECT_EQ(encoding.pedestal, 20000);
+  EXPECT_EQ(encoding.max_radiance, 16);
+}
+
+TEST(PixelFootprint, NamesAreThoseOfTheKey) {
+  for (const auto footprint : {PixelFootprint::kArea, PixelFootprint::kPoint})
+    EXPECT_EQ(PixelFootprintOf(NameOf(footprint)), footprint);
+  EXPECT_FALSE(PixelFootprintOf("dots"));
+}
+
 }  // namespace
 }  // namespace lf

@@ -115,6 +115,13 @@ Result<void> ReadClipped(const JsonFields& top, RadianceEncoding* encoding) {
   return {};
 }
 
+Result<void> ReadFootprint(const JsonFields& top, RadianceEncoding* encoding) {
+  LF_ASSIGN_OR_RETURN(const std::optional<std::string> name, top.Text("lf_pixels"));
+  if (name) encoding->footprint = PixelFootprintOf(*name);
+  if (name && !encoding->footprint) return top.Wrong("lf_pixels", "\"areas\" or \"points\"");
+  return {};
+}
+
 // Returns an encoding that has the values of the first camera raw file if keys are missing;
 // otherwise the default encoding.
 Result<RadianceEncoding> DefaultEncoding(const JsonFields& top, const LightField& light_field,
@@ -141,6 +148,7 @@ Result<RadianceEncoding> ReadEncoding(const JsonFields& top, const LightField& l
   LF_RETURN_IF_ERROR(ReadColour(top, &encoding));
   LF_RETURN_IF_ERROR(ReadAlpha(top, &encoding));
   LF_RETURN_IF_ERROR(ReadClipped(top, &encoding));
+  LF_RETURN_IF_ERROR(ReadFootprint(top, &encoding));
   LF_ASSIGN_OR_RETURN(const std::optional<double> max_radiance,
                       top.Number("lf_max_radiance", kMaxRadiance));
   LF_ASSIGN_OR_RETURN(const std::optional<double> pedestal, top.Number("lf_pedestal", kPedestal));

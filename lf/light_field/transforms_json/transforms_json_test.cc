@@ -336,6 +336,15 @@ TEST(TransformsJson, ReadsHowStoredNumbersBecomeLight) {
   EXPECT_EQ(light_field.mask_names, std::vector<std::string>{"masks/a.png"});
 }
 
+TEST(TransformsJson, PixelsShowAreasOrPoints) {
+  const auto footprint = [](const std::string& key) {
+    return Parsed(OneFrame(kIntrinsics + key)).encoding.footprint;
+  };
+  EXPECT_FALSE(footprint(""));
+  EXPECT_EQ(footprint(R"("lf_pixels": "areas", )"), PixelFootprint::kArea);
+  EXPECT_EQ(footprint(R"("lf_pixels": "points", )"), PixelFootprint::kPoint);
+}
+
 TEST(TransformsJson, NothingMayBeBehindAlpha) {
   const RadianceEncoding none =
       Parsed(OneFrame(kIntrinsics + R"("lf_alpha": "straight", "lf_background": "none", )"))
@@ -427,6 +436,7 @@ TEST(TransformsJson, WrongLfValuesAreErrors) {
   expect(R"("lf_pedestal": 10.5, )", "whole number");
   expect(R"("lf_pedestal": 65535, )", "lf_pedestal");
   expect(R"("lf_alpha": "associated", )", "\"mask\", \"straight\" or \"premultiplied\"");
+  expect(R"("lf_pixels": "dots", )", "\"areas\" or \"points\"");
   expect(R"("lf_background": [1, 1], )", "a list of 3 numbers");
   expect(R"("lf_background": [1, -1, 1], )", "radiances from 0");
   expect(R"("lf_background": [1, 1, 1], "lf_alpha": "mask", )", "nothing behind it");

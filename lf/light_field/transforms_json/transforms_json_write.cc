@@ -136,6 +136,7 @@ void AddEncoding(const RadianceEncoding& encoding, JsonText* out) {
   add_number("lf_max_radiance", encoding.max_radiance);
   add_number("lf_pedestal", encoding.pedestal);
   if (encoding.alpha) out->Add("\"lf_alpha\": \"{}\",\n", NameOf(*encoding.alpha));
+  if (encoding.footprint) out->Add("\"lf_pixels\": \"{}\",\n", NameOf(*encoding.footprint));
   if (encoding.masks_clipped) out->Add("\"lf_clipped\": \"mask\",\n");
   if (encoding.background && encoding.keeps_opacity) {
     out->Add("\"lf_background\": \"{}\",\n", kNoBackground);

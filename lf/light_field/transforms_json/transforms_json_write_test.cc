@@ -54,6 +54,7 @@ LightField RandomLightField(size_t count) {
   light_field.encoding.max_radiance = 1.1;
   light_field.encoding.pedestal = 1024;
   light_field.encoding.alpha = AlphaMeaning::kStraight;
+  light_field.encoding.footprint = PixelFootprint::kPoint;
   light_field.encoding.background = {0.1, 1.0 / 3, 1};
   light_field.encoding.white_balance = {2.0 / 3, 1, 1.7};
   light_field.encoding.linear_srgb_from_camera << 1.6, -0.5, -0.1, -0.2, 1.5, -0.3, 0.0, -0.5, 1.5;
@@ -88,6 +89,7 @@ TEST_F(WriteTransformsJsonTest, ReadsBackBitForBit) {
   EXPECT_EQ(a.white_level, b.white_level);
   EXPECT_EQ(a.max_radiance, b.max_radiance);
   EXPECT_EQ(a.alpha, b.alpha);
+  EXPECT_EQ(a.footprint, b.footprint);
   EXPECT_EQ(a.background, b.background);
   EXPECT_EQ(a.pedestal, b.pedestal);
   EXPECT_EQ(a.white_balance, b.white_balance);

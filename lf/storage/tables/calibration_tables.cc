@@ -89,6 +89,7 @@ SettingList SettingsOfPixels(const LightField& light_field) {
           {"pedestal", fmt::format("{}", encoding.pedestal)},
           {"alpha", encoding.alpha ? NameOf(*encoding.alpha) : ""},
           {"clipped", encoding.masks_clipped ? "mask" : ""},
+          {"footprint", encoding.footprint ? NameOf(*encoding.footprint) : ""},
           {"background", !encoding.background ? ""
                          : encoding.keeps_opacity
                              ? kNoBackground
@@ -125,6 +126,10 @@ Result<void> ReadPixelSettings(const Settings& settings, LightField* light_field
   encoding.masks_clipped = settings.Text("clipped") == "mask";
   if (!encoding.masks_clipped && !settings.Text("clipped").empty())
     return settings.Wrong("clipped", "mask");
+  // Older files do not have the footprint.
+  encoding.footprint = PixelFootprintOf(settings.Text("footprint"));
+  if (!encoding.footprint && !settings.Text("footprint").empty())
+    return settings.Wrong("footprint", "areas or points");
   LF_ASSIGN_OR_RETURN(const std::vector<double> balance, settings.Numbers("white_balance", 3, 3));
   std::copy(balance.begin(), balance.end(), encoding.white_balance.begin());
   LF_ASSIGN_OR_RETURN(const std::vector<double> matrix, settings.Numbers("camera_to_srgb", 9, 9));

@@ -75,6 +75,23 @@ TEST_F(CalibrationTablesTest, APedestalLeavesHalfOfTheRangeToLight) {
   }
 }
 
+TEST_F(CalibrationTablesTest, KeepsWhatPixelsShow) {
+  LightField light_field;
+  light_field.encoding.footprint = PixelFootprint::kPoint;
+  ASSERT_TRUE(WriteSettings(SettingsOfPixels(light_field), &*database_));
+  const auto footprint = [&]() -> Result<std::optional<PixelFootprint>> {
+    LightField read;
+    LF_RETURN_IF_ERROR(ReadPixelSettings(Settings::Read(*database_, "test file").value(), &read));
+    return read.encoding.footprint;
+  };
+  EXPECT_EQ(footprint().value(), PixelFootprint::kPoint);
+  ASSERT_TRUE(database_->Execute("update settings set value = 'dots' where key = 'footprint'"));
+  EXPECT_FALSE(footprint());
+  // Older files do not have it.
+  ASSERT_TRUE(database_->Execute("delete from settings where key = 'footprint'"));
+  EXPECT_EQ(footprint().value(), std::nullopt);
+}
+
 TEST_F(CalibrationTablesTest, ALensOfAnOlderFileHasEightParameters) {
   Insert("thin_prism", "1 2 3 4 5 6 7 8");
   const Distortion expected = {DistortionModel::kThinPrism, {1, 2, 3, 4, 5, 6, 7, 8}};

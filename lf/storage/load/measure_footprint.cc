@@ -1,0 +1,79 @@
+#include "lf/storage/load/measure_footprint.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+namespace lf {
+namespace {
+
+constexpr double kLeastStep = 0.08;  // of an edge, in radiance
+constexpr double kFlat = 0.1;        // largest step beside an edge, relative to that of the edge
+constexpr int kLeastEdges = 200;
+constexpr double kMostOfPoints = 0.3;  // share of pixels within edges
+constexpr int kMostSide_px = 2048;     // of the part of an LF image that is looked at
+
+struct Edges {
+  int count = 0;
+  int with_value_between = 0;
+};
+
+// Counts the edge at the middle one of five pixels in a row or column, if there is an edge.
+void CountEdge(const std::array<double, 5>& value, double least_step, Edges* edges) {
+  const double step = value[3] - value[1];
+  const double flat = kFlat * std::abs(step);
+  if (std::abs(step) < least_step || std::abs(value[1] - value[0]) > flat ||
+      std::abs(value[4] - value[3]) > flat)
+    return;
+  constexpr double kEnd = 0.15;
+  const double between = (value[2] - value[1]) / step;
+  if (between < -kEnd || between > 1 + kEnd) return;  // a line, not an edge
+  ++edges->count;
+  if (between > kEnd && between < 1 - kEnd) ++edges->with_value_between;
+}
+
+void CountEdges(const LfPixels& pixels, double least_step, Edges* edges) {
+  constexpr int kLane = 1;  // green
+  const int width = pixels.rect.width(), height = pixels.rect.height();
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (const bool is_column : {false, true}) {
+        const int dx = is_column ? 0 : 1, dy = is_column ? 1 : 0;
+        if (x < 2 * dx || x + 2 * dx >= width || y < 2 * dy || y + 2 * dy >= height) continue;
+        std::array<double, 5> value;
+        bool any_masked = false;
+        for (int k = -2; k <= 2; ++k) {
+          value[static_cast<size_t>(k + 2)] = pixels.radiance.at(x + k * dx, y + k * dy, kLane);
+          any_masked |= pixels.any_masked && pixels.IsMasked(x + k * dx, y + k * dy);
+        }
+        if (!any_masked) CountEdge(value, least_step, edges);
+      }
+}
+
+}  // namespace
+
+PixelFootprint MeasureFootprint(const LightField& light_field, const LfImageStore& store) {
+  constexpr size_t kImages = 3;
+  Edges edges;
+  LfPixels pixels;
+  for (size_t i = 0; i < kImages; ++i) {
+    const LfImageId id{static_cast<uint32_t>((2 * i + 1) * light_field.size() / (2 * kImages))};
+    if (i > 0 && light_field.size() <= i) break;
+    const Intrinsics& k = light_field.Camera(id).intrinsics;
+    const int width = std::min(k.width_px, kMostSide_px),
+              height = std::min(k.height_px, kMostSide_px);
+    const int x = (k.width_px - width) / 2, y = (k.height_px - height) / 2;
+    Result<LfPixels> loaded =
+        LoadWithoutThrowing(store, id, {x, y, x + width, y + height},
+                            light_field.image_names[id.value], std::move(pixels));
+    pixels = loaded ? *std::move(loaded) : LfPixels();
+    if (pixels.radiance.channels() == LfPixels::kRgbLanes)
+      CountEdges(pixels, kLeastStep * light_field.encoding.Scale(), &edges);
+  }
+  const bool shows_points =
+      edges.count >= kLeastEdges && edges.with_value_between < kMostOfPoints * edges.count;
+  return shows_points ? PixelFootprint::kPoint : PixelFootprint::kArea;
+}
+
+}  // namespace lf
