@@ -6,6 +6,8 @@
 #include <functional>
 #include <utility>
 
+#include "lf/core/geometry.h"
+
 namespace lf {
 
 // Largest weight of a ray. Weights are integers, in proportion to the part of the lens that the
@@ -58,9 +60,17 @@ class RayWeights {
   // Writes the feather, at most kWholeFeather, at the positions (x + kWeightBlock i, y) of the
   // plate, i in [0, count), which are corners of blocks. Any thread may call it.
   using FeatherFunction = std::function<void(int x, int y, int count, uint16_t* feather)>;
-  //   feather_of_row  empty if the image has no feather
-  RayWeights(const WeightBlocks& blocks, RowFunction of_row, FeatherFunction feather_of_row = {})
-      : blocks_(blocks), of_row_(std::move(of_row)), feather_of_row_(std::move(feather_of_row)) {}
+  // Returns true only if the feather is whole at all positions (x, y) with x_begin <= x <= x_end
+  // and y_begin <= y <= y_end. May be false although it is. Any thread may call it.
+  using WholeFunction = std::function<bool(const PixelRect& rect)>;
+  //   feather_of_row    empty if the image has no feather
+  //   feather_is_whole  empty: always false
+  RayWeights(const WeightBlocks& blocks, RowFunction of_row, FeatherFunction feather_of_row = {},
+             WholeFunction feather_is_whole = {})
+      : blocks_(blocks),
+        of_row_(std::move(of_row)),
+        feather_of_row_(std::move(feather_of_row)),
+        feather_is_whole_(std::move(feather_is_whole)) {}
 
   bool are_same() const { return of_row_ == nullptr; }
   uint32_t same() const { return same_; }
@@ -86,6 +96,15 @@ class RayWeights {
   void OfRow(int x, int y, int count, uint8_t* weights) const {
     of_row_(blocks_.EndX(x), blocks_.EndY(y), count, weights);
   }
+  // Returns true only if no ray of these elements loses weight by the feather. May be false
+  // although none does.
+  bool FeatherIsWhole(const PixelRect& elements) const {
+    if (!has_feather()) return true;
+    if (!feather_is_whole_) return false;
+    return feather_is_whole_({blocks_.EndX(elements.x_begin) - kWeightBlock,
+                              blocks_.EndY(elements.y_begin) - kWeightBlock,
+                              blocks_.EndX(elements.x_end - 1), blocks_.EndY(elements.y_end - 1)});
+  }
   // Writes the feather of `count` corners, as FeatherFunction does. has_feather() must be true.
   void FeatherOfRow(int x, int y, int count, uint16_t* feather) const {
     feather_of_row_(x, y, count, feather);
@@ -96,6 +115,7 @@ class RayWeights {
   WeightBlocks blocks_;
   RowFunction of_row_;
   FeatherFunction feather_of_row_;
+  WholeFunction feather_is_whole_;
 };
 
 }  // namespace lf

@@ -6,6 +6,29 @@
 #include "lf/core/check.h"
 
 namespace lf {
+namespace {
+
+// Writes the weights of the row j of a block, like FeatheredWeight(). Floats hold these integers
+// exactly, and compilers vectorise the loop.
+void FillFeathered(uint32_t weight, const uint16_t* above, const uint16_t* below, int j,
+                   uint8_t (&weights)[kWeightBlock]) {
+  constexpr int kOne = 2 * kWeightBlock;
+  const int down = 2 * j + 1;
+  const int left = above[0] * (kOne - down) + below[0] * down;
+  const int right = above[1] * (kOne - down) + below[1] * down;
+  constexpr float kWhole = kWholeFeather * kOne * kOne;
+  const auto full = static_cast<float>(weight);
+  const auto first = static_cast<float>(kOne * left + (right - left));
+  const auto step = static_cast<float>(2 * (right - left));
+  const float least = std::min(full, 1.0F);
+  for (int i = 0; i < kWeightBlock; ++i) {
+    const float feather = first + step * static_cast<float>(i);
+    const float feathered = (full * feather + kWhole / 2) * (1 / kWhole);
+    weights[i] = static_cast<uint8_t>(static_cast<int>(std::max(feathered, least)));
+  }
+}
+
+}  // namespace
 
 void TileWeights::Fill(const RayWeights& weights, const PixelRect& tile, int pitch) {
   LF_CHECK(pitch >= tile.width());
@@ -28,19 +51,18 @@ void TileWeights::Fill(const RayWeights& weights, const PixelRect& tile, int pit
   // below_ is not filled yet. FillBlocks() knows this because below_y_ differs from the upper y of
   // the first row of blocks.
   below_y_ = blocks.EndY(tile.y_begin);
+  is_feathered_ = !weights.FeatherIsWhole(tile);
   uint8_t* row = bytes_.data() + kMargin;
   for (int y = tile.y_begin; y < tile.y_end;) {
-    const bool rows_differ = FillBlocks(weights, tile, y);
+    const bool any_feathered = FillBlocks(weights, tile, y);
     uint8_t* const first = row;
-    FillRow(weights, tile, y, first);
-    const int end = std::min(tile.y_end, blocks.EndY(y));
-    row += row_bytes;
-    for (++y; y < end; ++y, row += row_bytes) {
-      if (rows_differ)
-        FillRow(weights, tile, y, row);
-      else
-        std::memcpy(row, first, static_cast<size_t>(tile.width()));
-    }
+    FillRow(blocks, tile, first);
+    const int begin = y, end = std::min(tile.y_end, blocks.EndY(y));
+    for (row += row_bytes, ++y; y < end; ++y, row += row_bytes)
+      std::memcpy(row, first, static_cast<size_t>(tile.width()));
+    if (any_feathered)
+      for (int of_block = begin; of_block < end; ++of_block)
+        Feather(blocks, tile, of_block, first + static_cast<size_t>(of_block - begin) * row_bytes);
   }
 }
 
@@ -52,7 +74,7 @@ bool TileWeights::FillBlocks(const RayWeights& weights, const PixelRect& tile, i
   const auto [least, most] = std::minmax_element(of_blocks_.begin(), of_blocks_.end());
   least_ = std::min<uint32_t>(least_, *least);
   most_ = std::max<uint32_t>(most_, *most);
-  if (!weights.has_feather()) return false;
+  if (!is_feathered_) return false;
   const WeightBlocks& blocks = weights.blocks();
   const int begin_x = blocks.EndX(tile.x_begin) - kWeightBlock;
   const int begin_y = blocks.EndY(y) - kWeightBlock;
@@ -69,22 +91,34 @@ bool TileWeights::FillBlocks(const RayWeights& weights, const PixelRect& tile, i
   return is_feathered;
 }
 
-void TileWeights::FillRow(const RayWeights& weights, const PixelRect& tile, int y,
-                          uint8_t* row) const {
-  const WeightBlocks& blocks = weights.blocks();
-  const int j = y - (blocks.EndY(y) - kWeightBlock);
+// Writes a row of weights without feather.
+void TileWeights::FillRow(const WeightBlocks& blocks, const PixelRect& tile, uint8_t* row) const {
   int x = tile.x_begin;
+  for (const uint8_t weight : of_blocks_) {
+    const int end = std::min(tile.x_end, blocks.EndX(x));
+    if (end - x == kWeightBlock)  // a constant size needs one store and no call
+      std::memset(row + (x - tile.x_begin), weight, kWeightBlock);
+    else
+      std::memset(row + (x - tile.x_begin), weight, static_cast<size_t>(end - x));
+    x = end;
+  }
+}
+
+// Writes the weights of row y in the blocks whose feather is not whole.
+void TileWeights::Feather(const WeightBlocks& blocks, const PixelRect& tile, int y,
+                          uint8_t* row) const {
+  const int j = y - (blocks.EndY(y) - kWeightBlock);
   for (size_t k = 0; k < of_blocks_.size(); ++k) {
-    const int block_end = blocks.EndX(x), end = std::min(tile.x_end, block_end);
     const uint32_t weight = of_blocks_[k];
-    const uint32_t corners = above_[k] & above_[k + 1] & below_[k] & below_[k + 1];
-    if (!weights.has_feather() || weight == 0 || corners == kWholeFeather) {
-      std::memset(row + (x - tile.x_begin), static_cast<int>(weight), static_cast<size_t>(end - x));
-      x = end;
-    }
-    for (; x < end; ++x)
-      row[x - tile.x_begin] = static_cast<uint8_t>(
-          FeatheredWeight(weight, &above_[k], &below_[k], x - (block_end - kWeightBlock), j));
+    if (weight == 0 || (above_[k] & above_[k + 1] & below_[k] & below_[k + 1]) == kWholeFeather)
+      continue;
+    uint8_t of_block[kWeightBlock];
+    FillFeathered(weight, &above_[k], &below_[k], j, of_block);
+    const int block_end = blocks.EndX(tile.x_begin) + static_cast<int>(k) * kWeightBlock;
+    const int begin = std::max(tile.x_begin, block_end - kWeightBlock);
+    const int end = std::min(tile.x_end, block_end);
+    std::copy_n(of_block + (begin - (block_end - kWeightBlock)), end - begin,
+                row + (begin - tile.x_begin));
   }
 }
 

@@ -31,7 +31,8 @@ class TileWeights {
 
  private:
   bool FillBlocks(const RayWeights& weights, const PixelRect& tile, int y);
-  void FillRow(const RayWeights& weights, const PixelRect& tile, int y, uint8_t* row) const;
+  void FillRow(const WeightBlocks& blocks, const PixelRect& tile, uint8_t* row) const;
+  void Feather(const WeightBlocks& blocks, const PixelRect& tile, int y, uint8_t* row) const;
 
   uint32_t least_ = 0;
   uint32_t most_ = 0;
@@ -41,7 +42,8 @@ class TileWeights {
   std::vector<uint8_t> of_blocks_;
   std::vector<uint16_t> above_;
   std::vector<uint16_t> below_;
-  int below_y_ = 0;  // y of the corners that below_ holds
+  int below_y_ = 0;            // y of the corners that below_ holds
+  bool is_feathered_ = false;  // false: above_ and below_ are not used
 };
 
 }  // namespace lf

@@ -59,10 +59,12 @@ RayWeights FrameLens::WeightsOf(LfImageId id) const {
     of_row = [same](int, int, int count, uint8_t* weights) { std::fill_n(weights, count, same); };
   }
   auto feather = std::make_shared<const ImageFeather>(light_field_.Camera(id), camera_);
-  return RayWeights(weights_->BlocksOf(camera), std::move(of_row),
-                    [feather](int x, int y, int count, uint16_t* of_corners) {
-                      feather->OfRow(x, y, count, of_corners);
-                    });
+  return RayWeights(
+      weights_->BlocksOf(camera), std::move(of_row),
+      [feather](int x, int y, int count, uint16_t* of_corners) {
+        feather->OfRow(x, y, count, of_corners);
+      },
+      [feather](const PixelRect& rect) { return feather->IsWhole(rect); });
 }
 
 bool FrameLens::Takes(LfImageId id) const {

@@ -43,6 +43,31 @@ double Literally(const testing::CameraPair& pair, double x, double y) {
   return FeatherAt(pair.lf_camera.intrinsics, recorded->x(), recorded->y());
 }
 
+TEST(ImageFeather, IsWholeInRectanglesThatItCallsWhole) {
+  size_t whole = 0, feathered = 0;
+  for (uint64_t seed = 0; seed < 300; ++seed) {
+    const testing::CameraPair pair =
+        seed % 10 == 0 ? testing::RandomDistortedPair(seed) : testing::RandomCameraPair(seed);
+    const ImageFeather feather(pair.lf_camera, pair.render_camera);
+    const Intrinsics& plate = pair.render_camera.pinhole.intrinsics;
+    for (int y = 0; y + 16 <= plate.height_px; y += 16)
+      for (int x = 0; x + 24 <= plate.width_px; x += 24) {
+        const bool is_whole = feather.IsWhole({x, y, x + 24, y + 16});
+        bool all_are = true;
+        for (int row = y; row <= y + 16; row += 8) {
+          uint16_t corners[4];
+          feather.OfRow(x, row, 4, corners);
+          for (const uint16_t corner : corners) all_are &= corner == kWholeFeather;
+        }
+        EXPECT_TRUE(all_are || !is_whole) << seed;
+        whole += is_whole;
+        feathered += !all_are;
+      }
+  }
+  EXPECT_GT(whole, 300u);
+  EXPECT_GT(feathered, 300u);
+}
+
 TEST(ImageFeather, FollowsTheRaysOfAnyPairOfCameras) {
   size_t whole = 0, part = 0, none = 0;
   for (uint64_t seed = 0; seed < 200; ++seed) {
