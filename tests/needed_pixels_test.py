@@ -126,6 +126,7 @@ class NeededPixelsTest(ProgramTestCase):
 
     def test_pixels_that_a_store_lacks_are_told_before_anything_is_rendered(self):
         path = self.path(frames=6)
+        path.write_text(path.read_text().replace("deg: 45", "deg: 15"))
         packages = self.packages(path, "--lens-weights", "none")
         store = self.store(packages)
         self.fails(2, ["--mode hybrid", "lacks the LF cameras beside the lens", "make the package again"],
@@ -133,14 +134,16 @@ class NeededPixelsTest(ProgramTestCase):
                    "hybrid", "-o", self.folder / "none")
         packages = self.packages(path, name="with-neighbours")
         store = self.store(packages, "neighbours")
-        self.fails(3, ["frame 1 needs pixels of", "not in this packed store", "--mode",
+        self.fails(3, ["needs pixels of", "not in this packed store", "--mode",
                        "--needed-pixels"],
                    RENDERER, *packages, "--lightfield", store, "--mode", "rebin", "-o",
                    self.folder / "none")
         self.assertFalse(list((self.folder / "none").glob("frame_*")))
         # lfpreprocessor writes no package if the packed store lacks pixels that the package needs.
-        self.fails(3, ["frame 1 needs pixels of", "not in this packed store"],
-                   PREPROCESSOR, store, path, "--mode", "rebin", "-o", self.folder / "made")
+        wide = self.folder / "wide.yaml"
+        wide.write_text(path.read_text().replace("deg: 15", "deg: 45"))
+        self.fails(3, ["needs pixels of", "not in this packed store"],
+                   PREPROCESSOR, store, wide, "-o", self.folder / "made")
         self.assertFalse(list((self.folder / "made").glob("*.lfp")))
 
     def test_a_lens_without_rays_is_planned_for_the_mode_that_fills_it(self):

@@ -63,7 +63,7 @@ bool RaysArriveAround(const Intrinsics& k, const DistortionMap& map, double x_px
 //   weights  weight w multiplies the value and the count that a ray adds
 uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
                          const RenderCamera& render_camera, SensorPlate* plate,
-                         const RayWeights& weights = {}, PixelFilter filter = PixelFilter::kAuto);
+                         const RayWeights& weights = {}, const PixelReading& reading = {});
 
 struct GatherPlan {
   GatherSampling sampling;
@@ -78,7 +78,7 @@ struct GatherPlan {
 // Finds the accepted elements of each row of the plate.
 //   memory  a plan that is no longer needed; its memory is reused
 GatherPlan PlanGather(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
-                      GatherPlan memory = {}, PixelFilter filter = PixelFilter::kAuto);
+                      GatherPlan memory = {}, const PixelReading& reading = {});
 
 // Adds the rays of the elements in the tile of `sums` to `sums`. The caller flushes `sums` to the
 // plate. Returns the number of rays.

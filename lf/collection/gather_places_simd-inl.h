@@ -59,14 +59,15 @@ struct Coordinate {
 template <int kDegree>
 class CoordinateFinder {
  public:
+  //   first_px  position of the first knot in the first pixel: 0.5 if knots are at pixel centres
   HWY_ATTR HWY_INLINE CoordinateFinder(const float (&polynomial)[Segment::kTerms], int32_t base,
-                                       int begin, int end)
+                                       int begin, int end, float first_px)
       : base_((base - begin) * kOne - std::bit_cast<int32_t>(kWhole)), last_(end - begin - 1) {
-    // The value of polynomial_ is in 1/256 px, from the centre of pixel `base`, plus 1/2 so that
+    // The value of polynomial_ is in 1/256 px, from the knot of pixel `base`, plus 1/2 so that
     // Floor() rounds half up. Multiplying by 256 is exact.
     for (int power = 0; power < Segment::kTerms; ++power)
       polynomial_[power] = polynomial[power] * kOne;
-    polynomial_[0] += 0.5F - 0.5F * kOne;
+    polynomial_[0] += 0.5F - first_px * kOne;
   }
 
   HWY_ATTR HWY_INLINE Coordinate Find(hn::Vec<LaneF> t) const {
@@ -88,15 +89,16 @@ class CoordinateFinder {
 
 template <int kDegree>
 HWY_ATTR void FindPlaces(const Segment& s, int begin, int count, const PixelRect& rect,
-                         PixelFilter filter, Places* places) {
+                         const GatherSampling& sampling, Places* places) {
   const LaneF df;
   const LaneI di;
   const hn::RebindToUnsigned<LaneI> du;
-  const CoordinateFinder<kDegree> x_finder(s.x_poly, s.base_x, rect.x_begin, rect.x_end);
-  const CoordinateFinder<kDegree> y_finder(s.y_poly, s.base_y, rect.y_begin, rect.y_end);
+  const float first_px = sampling.prefilter.is_even ? 1.0F : 0.5F;
+  const CoordinateFinder<kDegree> x_finder(s.x_poly, s.base_x, rect.x_begin, rect.x_end, first_px);
+  const CoordinateFinder<kDegree> y_finder(s.y_poly, s.base_y, rect.y_begin, rect.y_end, first_px);
   const auto width = hn::Set(di, rect.width());
   // kNearest rounds a weight to kOne or 0: it adds half of kOne and keeps only the bit of kOne.
-  const bool is_nearest = filter == PixelFilter::kNearest;
+  const bool is_nearest = sampling.filter == PixelFilter::kNearest;
   const auto half = hn::Set(di, is_nearest ? kOne / 2 : 0);
   const auto kept_bits = hn::Set(di, is_nearest ? kOne : -1);
   const auto weight_of = [&](hn::Vec<LaneI> weight)
@@ -110,7 +112,7 @@ HWY_ATTR void FindPlaces(const Segment& s, int begin, int count, const PixelRect
     hn::Store(hn::BitCast(du, hn::Or(left_weight, hn::ShiftLeft<16>(right_weight))), du,
               places->left_right + i);
     hn::Store(hn::BitCast(du, weight_of(y.weight)), du, places->lower + i);
-    if (filter == PixelFilter::kMosaic) {
+    if (sampling.filter == PixelFilter::kMosaic) {
       const auto odd = [](hn::Vec<LaneI> pixel, int first) HWY_ATTR {
         return hn::And(hn::Xor(pixel, hn::Set(LaneI(), first)), hn::Set(LaneI(), 1));
       };

@@ -205,8 +205,8 @@ class GatherPlanner {
 }  // namespace
 
 GatherPlan PlanGather(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
-                      GatherPlan memory, PixelFilter filter) {
-  const GatherSampling sampling = SamplingOf(lf_camera, render_camera, filter);
+                      GatherPlan memory, const PixelReading& reading) {
+  const GatherSampling sampling = SamplingOf(lf_camera, render_camera, reading);
   return GatherPlanner(lf_camera, WithFinerPlate(render_camera, sampling.samples), sampling,
                        std::move(memory))
       .Run();

@@ -88,12 +88,18 @@ std::optional<RgbRay> InterpolatePixels(const LfPixels& pixels, int width_px, in
   LF_DCHECK(pixels.bayer == BayerPattern::kNone);
   const double left = std::floor(x_px - 0.5), top = std::floor(y_px - 0.5);
   if (!(left >= 0 && left + 1 < width_px && top >= 0 && top + 1 < height_px)) return std::nullopt;
-  // The position in 1/256 px, counted from the centre of the upper left pixel of the image.
+  // The position in 1/256 px, counted from the upper left knot of the image. Positions beyond the
+  // outermost knots are moved to these.
   constexpr int64_t kOne = 256;
-  const auto x = static_cast<int64_t>(std::floor((x_px - 0.5) * kOne + 0.5));
-  const auto y = static_cast<int64_t>(std::floor((y_px - 0.5) * kOne + 0.5));
-  const int image_column = std::min(static_cast<int>(x / kOne), width_px - 2);
-  const int image_row = std::min(static_cast<int>(y / kOne), height_px - 2);
+  const int less = sampling.prefilter.is_even ? 1 : 0;
+  const auto from_knot = [&](double position_px, int size_px) {
+    const double knot_px = less == 1 ? 1 : 0.5;
+    const auto position = static_cast<int64_t>(std::floor((position_px - knot_px) * kOne + 0.5));
+    return std::clamp<int64_t>(position, 0, kOne * (size_px - 1 - less));
+  };
+  const int64_t x = from_knot(x_px, width_px), y = from_knot(y_px, height_px);
+  const int image_column = std::min(static_cast<int>(x / kOne), width_px - 2 - less);
+  const int image_row = std::min(static_cast<int>(y / kOne), height_px - 2 - less);
   auto right = static_cast<uint32_t>(x - kOne * image_column);
   auto down = static_cast<uint32_t>(y - kOne * image_row);
   if (sampling.filter == PixelFilter::kNearest) {
@@ -141,11 +147,15 @@ bool RaysArriveAround(const Intrinsics& k, const DistortionMap& map, double x_px
   return true;
 }
 
-uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
+uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& recorded,
                          const RenderCamera& render_camera, SensorPlate* plate,
-                         const RayWeights& weights, PixelFilter filter) {
+                         const RayWeights& weights, const PixelReading& reading) {
   const Intrinsics& k = lf_camera.intrinsics;
-  const GatherSampling sampling = SamplingOf(lf_camera, render_camera, filter);
+  const GatherSampling sampling = SamplingOf(lf_camera, render_camera, reading);
+  LfPixels filtered;
+  if (!sampling.prefilter.changes_nothing())
+    FilterPixelsReference(sampling.prefilter, recorded, &filtered);
+  const LfPixels& pixels = sampling.prefilter.changes_nothing() ? recorded : filtered;
   const int samples = sampling.samples;
   const GatherModel model(lf_camera, WithFinerPlate(render_camera, samples));
   // Returns the ray of element (x, y).

@@ -2,8 +2,11 @@
 // added"): with which filter, and at how many positions.
 #pragma once
 
+#include <optional>
+
 #include "lf/camera/pinhole.h"
 #include "lf/camera/render_camera.h"
+#include "lf/collection/prefilter/prefilter.h"
 
 namespace lf {
 
@@ -17,27 +20,32 @@ namespace lf {
 //   kMosaic    is for RGB pixels made from a mosaic. It uses sixteen pixels, or four where kAuto
 //              does. A recorded colour counts more than an interpolated one (mosaic_filter.h), and
 //              the ray adds a count from 1 to kRecordedShare to each colour
+//   kPrefiltered  interpolates linearly between four values of an LF image that was filtered before
+//              (prefilter.h), so that an element of any size needs only one sample
 //   kAuto      is kBicubic, or kBilinear if an element has kBilinearFrom x kBilinearFrom samples or
 //              more, because the mean of the samples hides the difference
-enum class PixelFilter { kAuto, kNearest, kBilinear, kBicubic, kMosaic };
+enum class PixelFilter { kAuto, kNearest, kBilinear, kBicubic, kMosaic, kPrefiltered };
 
-// Returns "auto", "nearest", "bilinear", "bicubic" or "mosaic".
+// Returns "auto", "nearest", "bilinear", "bicubic", "mosaic" or "prefiltered".
 const char* NameOf(PixelFilter filter);
+
+// A filter, and what it needs to know of LF pixels.
+struct PixelReading {
+  PixelFilter filter = PixelFilter::kAuto;
+  std::optional<PixelFootprint> footprint = std::nullopt;  // used by prefilters; unset: kArea
+
+  PixelReading() = default;
+  PixelReading(PixelFilter the_filter)
+      : filter(the_filter) {}  // NOLINT: a filter alone says enough
+};
 
 inline constexpr int kBilinearFrom = 3;
 
-// If LF pixels are finer than elements by at most this factor, an element samples one position.
-inline constexpr double kFinerAtMost = 1.25;
-inline constexpr int kMostSamples = 16;  // largest number of samples along an edge of an element
-
-// Returns the magnification, the number of elements per LF pixel along an edge: the square root of
-// the area, in elements, that an LF pixel covers on the plate. It is computed at nine points of the
-// plate. The result is the smallest value at the points that the LF image shows, or the smallest of
-// all if it shows none of them. Returns 1 if there is no value at any of them.
-double Magnification(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
+// Largest number of samples along an edge of an element.
+inline constexpr int kMostSamples = static_cast<int>(kWidestElement_px);
 
 // True if some pixels of the image have no ray because they lie beyond the fold of the lens
-// distortion. Such an image is never interpolated between sixteen pixels.
+// distortion. Such an image is neither prefiltered nor interpolated between sixteen pixels.
 bool MayLackRays(const Intrinsics& k);
 
 // How the elements of one frame sample one LF image.
@@ -48,9 +56,11 @@ struct GatherSampling {
   // up, at most kMostSamples; 1 if that number is at most kFinerAtMost. The element's ray is the
   // mean of samples^2 evenly spaced rays, or of as many of these as exist.
   int samples = 1;
+  // By which the LF image must be filtered before it is sampled.
+  Prefilter prefilter = {};
 };
 GatherSampling SamplingOf(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
-                          PixelFilter filter);
+                          const PixelReading& reading);
 
 // Returns the render camera with a plate that has `samples` times as many rows and columns of
 // elements for the same picture.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "lf/camera/magnification.h"
 #include "lf/camera/testing_scenes.h"
 #include "lf/collection/cubic_weights.h"
 #include "lf/collection/gather.h"
@@ -51,29 +52,45 @@ TEST(GatherSampling, TakesAsManySamplesAsLfPixelsAreSmaller) {
   EXPECT_EQ(of(2).filter, PixelFilter::kBicubic);
   EXPECT_EQ(of(0.5).filter, PixelFilter::kBicubic);
   EXPECT_EQ(of(0.3).filter, PixelFilter::kBilinear);
-  EXPECT_EQ(of(0.3, PixelFilter::kBicubic).filter, PixelFilter::kBicubic);
+  EXPECT_TRUE(of(0.3, PixelFilter::kBicubic).is_cubic);
+  EXPECT_TRUE(of(0.5, PixelFilter::kMosaic).is_cubic);
+  EXPECT_FALSE(of(0.3, PixelFilter::kMosaic).is_cubic);
   EXPECT_EQ(of(2, PixelFilter::kNearest).filter, PixelFilter::kNearest);
+}
+
+TEST(GatherSampling, APrefilterReplacesSamples) {
+  for (const double magnification : {3.0, 1.0, 0.5, 0.2}) {
+    const testing::CameraPair pair = PairOf(magnification);
+    const GatherSampling sampling =
+        SamplingOf(pair.lf_camera, pair.render_camera, PixelFilter::kPrefiltered);
+    EXPECT_EQ(sampling.filter, PixelFilter::kPrefiltered);
+    EXPECT_EQ(sampling.samples, 1);
+    EXPECT_EQ(sampling.prefilter, PrefilterFor(1 / magnification, PixelFootprint::kArea));
+  }
 }
 
 // Noise of LF pixels that are much finer than elements averages out. If an element had one sample,
 // all of the noise would be left.
 TEST(GatherSampling, FinePixelsAverage) {
-  const testing::CameraPair pair = PairOf(0.25);
-  const LfPixels pixels = testing::NoisePixels(testing::WholeImage(pair), BayerPattern::kNone, 1);
-  SensorPlate plate = testing::PlateFor(pair);
-  ASSERT_GT(GatherReference(pair.lf_camera, pixels, pair.render_camera, &plate), 1000u);
-  double squares = 0, count = 0;
-  for (int y = 0; y < plate.height(); ++y)
-    for (int x = 0; x < plate.width(); ++x) {
-      const ElementSum element = plate.At(x, y, 1);
-      if (element.count == 0) continue;
-      ASSERT_EQ(element.count, 1u);
-      squares += std::pow(static_cast<double>(element.sum) - 32767.5, 2);
-      ++count;
-    }
-  // Uniform noise has a standard deviation of 65536 / sqrt(12). The mean of 4 x 4 samples has a
-  // quarter of that, or less.
-  EXPECT_LT(std::sqrt(squares / count), 65536 / std::sqrt(12.0) / 4 * 1.05);
+  for (const PixelFilter filter : {PixelFilter::kAuto, PixelFilter::kPrefiltered}) {
+    const testing::CameraPair pair = PairOf(0.25);
+    const LfPixels pixels = testing::NoisePixels(testing::WholeImage(pair), BayerPattern::kNone, 1);
+    SensorPlate plate = testing::PlateFor(pair);
+    ASSERT_GT(GatherReference(pair.lf_camera, pixels, pair.render_camera, &plate, 1, filter),
+              1000u);
+    double squares = 0, count = 0;
+    for (int y = 0; y < plate.height(); ++y)
+      for (int x = 0; x < plate.width(); ++x) {
+        const ElementSum element = plate.At(x, y, 1);
+        if (element.count == 0) continue;
+        ASSERT_EQ(element.count, 1u);
+        squares += std::pow(static_cast<double>(element.sum) - 32767.5, 2);
+        ++count;
+      }
+    // Uniform noise has a standard deviation of 65536 / sqrt(12). The mean of 4 x 4 samples has a
+    // quarter of that, or less.
+    EXPECT_LT(std::sqrt(squares / count), 65536 / std::sqrt(12.0) / 4 * 1.15);
+  }
 }
 
 TEST(CubicWeights, SumToOneAndReproduceParabolas) {
@@ -96,7 +113,8 @@ TEST(CubicWeights, SumToOneAndReproduceParabolas) {
 
 TEST(PixelFilter, ConstantPicturesStayWhatTheyAre) {
   for (const double magnification : {2.0, 0.3})
-    for (const PixelFilter filter : {PixelFilter::kBicubic, PixelFilter::kMosaic})
+    for (const PixelFilter filter :
+         {PixelFilter::kBicubic, PixelFilter::kMosaic, PixelFilter::kPrefiltered})
       for (const uint16_t value : {0, 1, 777, 32768, 65535}) {
         const testing::CameraPair pair = PairOf(magnification);
         LfPixels pixels(testing::WholeImage(pair), BayerPattern::kNone);
@@ -106,6 +124,7 @@ TEST(PixelFilter, ConstantPicturesStayWhatTheyAre) {
             for (int c = 0; c < 3; ++c) pixels.radiance.at(x, y, c) = value;
         SensorPlate plate = testing::PlateFor(pair);
         const GatherPlan plan = PlanGather(pair.lf_camera, pair.render_camera, {}, filter);
+        pixels = testing::PixelsFor(plan, pixels);
         const auto gather = [&](size_t /*tile*/, TileSums* sums) {
           return GatherTile(plan, pixels, sums);
         };

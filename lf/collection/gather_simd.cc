@@ -147,14 +147,14 @@ class RayAdder {
 // Adds the rays of elements [begin, begin + count) of the segment; `weights` and `sums` begin at
 // the first of these elements. Returns the number of rays.
 template <Reading kReading, bool kMayBeMasked, class Weights>
-HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, PixelFilter filter,
+HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, const GatherSampling& sampling,
                              const LfPixels& pixels, const Weights& weights,
                              ElementOf<kReading>* sums) {
   constexpr bool kIsCubic = IsCubic(kReading);
   constexpr int kLineElements = 8;  // pixels of an LF image in a cache line
   Places places;
   const auto find_places = s.is_cubic() ? FindPlaces<3> : FindPlaces<5>;
-  find_places(s, begin, count, pixels.rect, filter, &places);
+  find_places(s, begin, count, pixels.rect, sampling, &places);
   const RayAdder<kReading, Weights> adder(places, pixels, weights, sums);
   if (kMayBeMasked || (kIsCubic && !IsInner(s, begin, count, pixels.rect))) {
     uint32_t rays = 0;
@@ -199,7 +199,7 @@ HWY_ATTR uint64_t GatherRays(const GatherPlan& plan, const LfPixels& pixels, con
       const int end = std::min(s.x_begin + s.count, tile.x_end);
       if (begin >= end) continue;
       const ptrdiff_t element = row + (begin - tile.x_begin);
-      rays += gather(s, begin - s.x_begin, end - begin, plan.sampling.filter, pixels,
+      rays += gather(s, begin - s.x_begin, end - begin, plan.sampling, pixels,
                      weights.From(element), elements + element);
     }
   }
@@ -233,7 +233,7 @@ HWY_ATTR uint64_t GatherMeans(const GatherPlan& plan, const LfPixels& pixels,
         const int end = std::min(s.x_begin + s.count, fine_end);
         if (begin >= end) continue;
         any = true;
-        gather(s, begin - s.x_begin, end - begin, plan.sampling.filter, pixels, WeightOne(),
+        gather(s, begin - s.x_begin, end - begin, plan.sampling, pixels, WeightOne(),
                fine.data() + (begin - fine_begin));
       }
       if (!any) continue;

@@ -112,7 +112,11 @@ TEST(RayWeights, RaysAddAndCountSoManyTimes) {
     const TileGrid grid = testing::GridOf(empty, 40, 23);
     const ScatterPlan scatter =
         PlanScatter(pair.lf_camera, pair.render_camera, pixels.rect, grid, &ideal);
-    const GatherPlan gather = PlanGather(pair.lf_camera, pair.render_camera);
+    const GatherPlan gather =
+        PlanGather(pair.lf_camera, pair.render_camera, {},
+                   seed % 10 == 0 ? PixelFilter::kPrefiltered : PixelFilter::kAuto);
+    const LfPixels filtered =
+        bayer == BayerPattern::kNone ? testing::PixelsFor(gather, pixels) : LfPixels();
     for (const bool is_gather : {false, true}) {
       if (is_gather && bayer != BayerPattern::kNone) continue;
       // With the smaller limit of TileSums (odd seeds), pieces of scanlines may be added pixel by
@@ -121,7 +125,7 @@ TEST(RayWeights, RaysAddAndCountSoManyTimes) {
         return testing::InTiles(
             plate, grid,
             [&](size_t tile, TileSums* sums) {
-              return is_gather ? GatherTile(gather, pixels, sums, weights)
+              return is_gather ? GatherTile(gather, filtered, sums, weights)
                                : ScatterTile(scatter, tile, pixels, sums, weights);
             },
             seed % 2 == 0 ? TileSums::kMaxRays : kMaxWeight);

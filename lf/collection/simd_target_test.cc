@@ -37,8 +37,9 @@ std::vector<SensorPlate> Collect(const testing::CameraPair& pair, uint64_t seed)
   plates.push_back(std::move(plate));
   if (bayer != BayerPattern::kNone) return plates;
   const GatherPlan gather =
-      PlanGather(pair.lf_camera, pair.render_camera, {}, static_cast<PixelFilter>(seed / 5 % 5));
+      PlanGather(pair.lf_camera, pair.render_camera, {}, static_cast<PixelFilter>(seed / 5 % 6));
   plates.push_back(PlateFor(pair));
+  pixels = testing::PixelsFor(gather, pixels);
   testing::InTiles(&plates.back(), grid, [&](size_t /*tile*/, TileSums* sums) {
     return GatherTile(gather, pixels, sums, weights);
   });

@@ -8,6 +8,7 @@
 
 #include "lf/camera/ray_weight.h"
 #include "lf/camera/testing_scenes.h"
+#include "lf/collection/gather.h"
 #include "lf/core/random.h"
 #include "lf/film/plate/sensor_plate.h"
 #include "lf/film/plate/tile_sums.h"
@@ -42,6 +43,14 @@ RayWeights WeightsByBlock(const WeightBlocks& blocks, const OfBlock& of_block) {
     for (int i = 0; i < count; ++i)
       weights[i] = static_cast<uint8_t>(of_block(end_x + i * kWeightBlock, end_y));
   });
+}
+
+// Returns the pixels as GatherTile() wants them for this plan.
+inline LfPixels PixelsFor(const GatherPlan& plan, const LfPixels& pixels) {
+  if (plan.sampling.prefilter.changes_nothing()) return pixels;
+  LfPixels filtered;
+  FilterPixels(plan.sampling.prefilter, pixels, &filtered);
+  return filtered;
 }
 
 inline TileGrid GridOf(const SensorPlate& plate, int tile_width, int tile_height) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "lf/camera/magnification.h"
 #include "lf/camera/ray_forms.h"
 #include "lf/core/check.h"
 
@@ -12,11 +13,18 @@ namespace {
 
 constexpr double kLensMargin = 1e-6;
 constexpr double kPlateMarginPx = 1e-6;
-constexpr double kPixelMarginPx = 1e-6;  // rounding error of a vertex
-constexpr int kNeighboursPx = 2;         // number of pixels on each side of a ray
-constexpr double kZeroMargin = 1e-12;    // rounding error of a form, relative to its terms
+constexpr double kPixelMarginPx = 1e-6;    // rounding error of a vertex
+constexpr int kNeighboursPx = 2;           // number of pixels on each side of a ray
+constexpr double kBesideElement_px = 3.1;  // pixels beside an element that a prefilter reads
+constexpr double kZeroMargin = 1e-12;      // rounding error of a form, relative to its terms
 
-int NeighboursOf(PixelReach reach) { return reach == PixelReach::kNeighbours ? kNeighboursPx : 0; }
+// Returns how many pixels on each side of a ray are read for the ray.
+int NeighboursOf(PixelReach reach, const PinholeCamera& lf_camera, const RenderCamera& camera) {
+  if (reach == PixelReach::kOwn) return 0;
+  if (reach == PixelReach::kNeighbours) return kNeighboursPx;
+  const double width_px = std::clamp(ElementWidth_px(lf_camera, camera), 1., kWidestElement_px);
+  return static_cast<int>(std::ceil(width_px / 2 + kBesideElement_px));
+}
 
 // Returns the largest difference, within the LF image, between a form and its value in the middle
 // of the image.
@@ -80,11 +88,10 @@ class Clipped {
     count_ = kept_count;
   }
 
-  // Returns the bounds of the pixels whose centres are in the polygon's bounding box; with
-  // kNeighbours, the bounds of the pixels that a ray through any point of the box needs.
-  PixelRect Pixels(const Intrinsics& image, PixelReach reach) const {
+  // Returns the bounds of the pixels whose centres are in the polygon's bounding box, and of
+  // `beyond` more on each side.
+  PixelRect Pixels(const Intrinsics& image, int beyond) const {
     if (empty()) return {};
-    const int beyond = NeighboursOf(reach);
     Vec2 low = vertices_[0], high = vertices_[0];
     for (size_t i = 1; i < count_; ++i) {
       low = low.cwiseMin(vertices_[i]);
@@ -135,7 +142,7 @@ bool LensHolds(const RayForms& forms, double inner_w, const Intrinsics& image) {
 }
 
 PixelRect ClippedRect(const Intrinsics& image, std::span<const PixelForm> plate,
-                      const RayForms& forms, const FrameOutline& frame, PixelReach reach) {
+                      const RayForms& forms, const FrameOutline& frame, int beyond) {
   Clipped region(image);
   for (const PixelForm& form : plate) {
     region.Clip(form);
@@ -143,13 +150,13 @@ PixelRect ClippedRect(const Intrinsics& image, std::span<const PixelForm> plate,
   }
   // Skips clipping by the edges of the lens (16 for a disk) if the lens contains all rays of the LF
   // image, as it does for most LF cameras in a wide lens.
-  if (LensHolds(forms, frame.lens_inner_w, image)) return region.Pixels(image, reach);
+  if (LensHolds(forms, frame.lens_inner_w, image)) return region.Pixels(image, beyond);
   const double margin_w = kLensMargin * frame.camera.aperture.radius_w;
   for (const ApertureEdge& edge : frame.lens_edges) {
     region.Clip(LensHalfPlane(forms, edge, margin_w));
     if (region.empty()) return {};
   }
-  return region.Pixels(image, reach);
+  return region.Pixels(image, beyond);
 }
 
 // Returns true if the half-plane form <= 0 contains no point of the cell's box.
@@ -256,6 +263,7 @@ PixelRect ImageOverlap::Rect(const FrameOutline& frame) const {
   const Intrinsics& image = lf_camera_.intrinsics;
   const bool distorted = image.has_distortion();
   const RayForms forms = MakeRayForms(direction_world_, centre_world_, frame.camera);
+  const int beyond = NeighboursOf(reach_, lf_camera_, frame.camera);
   std::vector<PixelForm> lens;
   if (distorted) lens = LensHalfPlanes(forms, frame.camera, kLensMargin);
   PixelRect rect;
@@ -264,14 +272,14 @@ PixelRect ImageOverlap::Rect(const FrameOutline& frame) const {
     const std::array<PixelForm, kPlateHalfPlanes> plate =
         PlateHalfPlanes(forms, frame.camera, plane_sign, kPlateMarginPx);
     rect = Bounds(rect, distorted ? BoundsOfCells(cells_, plate, lens)
-                                  : ClippedRect(image, plate, forms, frame, reach_));
+                                  : ClippedRect(image, plate, forms, frame, beyond));
   }
-  // The rectangle of a cell contains all pixels of the cell. With kNeighbours, the neighbours
-  // beyond the rectangle must be added.
-  if (!distorted || reach_ == PixelReach::kOwn || rect.empty()) return rect;
-  return Intersection({0, 0, image.width_px, image.height_px},
-                      {rect.x_begin - kNeighboursPx, rect.y_begin - kNeighboursPx,
-                       rect.x_end + kNeighboursPx, rect.y_end + kNeighboursPx});
+  // The rectangle of a cell contains all pixels of the cell. The neighbours beyond the rectangle
+  // must be added.
+  if (!distorted || rect.empty()) return rect;
+  return Intersection(
+      {0, 0, image.width_px, image.height_px},
+      {rect.x_begin - beyond, rect.y_begin - beyond, rect.x_end + beyond, rect.y_end + beyond});
 }
 
 }  // namespace lf

@@ -17,6 +17,8 @@ namespace lf {
 enum class PixelReach {
   kOwn,         // one pixel: rays pass through pixel centres only
   kNeighbours,  // 4 or 16 pixels around the ray, which may pass through any point
+  kElement,     // the pixels that a prefilter reads (collection/prefilter/prefilter.h): in a square
+                // around the ray that is about six pixels wider than an element
 };
 
 // Returns the smallest pixel rectangle that contains the overlap, as the LF camera sees it, of the

@@ -16,6 +16,7 @@
 #include "lf/render/hybrid/render_memory.h"
 #include "lf/render/needs/film_order.h"
 #include "lf/render/needs/frame_needs.h"
+#include "lf/storage/load/measure_footprint.h"
 #include "lf/storage/load/open_store.h"
 
 namespace lf {
@@ -82,7 +83,9 @@ class Preprocessor {
         options_(options),
         pool_(pool),
         progress_(progress) {
-    needs_.select.reach = ReachOf(options.reading.estimator);
+    // Packages can be rendered with any filter.
+    needs_.select.reach =
+        options.reading.estimator == Estimator::kBilinear ? PixelReach::kElement : PixelReach::kOwn;
     needs_.select.max_angle_rad = options.max_angle_rad;
     needs_.select.interrupted = options.interrupted;
     needs_.lens_weights = options.lens_weights;
@@ -128,6 +131,8 @@ class Preprocessor {
   void Keep(FrameId frame, FrameNeeds needs);
 
   const LightField& light_field_;
+  // Stored in packages, so that all machines that render them use the same prefilters.
+  std::optional<PixelFootprint> footprint_;
   const CameraPath& path_;
   const PreprocessOptions& options_;
   ThreadPool& pool_;
@@ -179,6 +184,9 @@ Result<void> Preprocessor::Begin() {
                                                   : Mosaics::kAsRecorded));
   report_.light_field_image_count = light_field_.size();
   whole_ = IdentityOf(light_field_);
+  footprint_ = light_field_.encoding.footprint;
+  if (options_.reading.estimator == Estimator::kBilinear && !footprint_)
+    footprint_ = MeasureFootprint(light_field_, *store_);
   return {};
 }
 
@@ -287,10 +295,10 @@ Result<void> Preprocessor::Measure() {
 
 Result<MemoryPlan> Preprocessor::MemoryOf(const LightField& light_field, size_t frame_count) const {
   const Intrinsics& plate = path_.Camera(frames_.front()).pinhole.intrinsics;
-  LF_ASSIGN_OR_RETURN(RenderMemory memory,
-                      PlanRenderMemory(options_.memory_bytes, options_.mode, 0, light_field,
-                                       options_.reading.estimator, plate.width_px, plate.height_px,
-                                       frame_count, pool_.thread_count()));
+  LF_ASSIGN_OR_RETURN(
+      RenderMemory memory,
+      PlanRenderMemory(options_.memory_bytes, options_.mode, 0, light_field, options_.reading,
+                       plate.width_px, plate.height_px, frame_count, pool_.thread_count()));
   memory.plan.total_bytes += memory.rebin_bytes;
   return memory.plan;
 }
@@ -377,6 +385,7 @@ Package Preprocessor::PackageOf(const Section& section, const Gathering& gatheri
   LightField& part = package.light_field;
   part.folder = light_field_.folder;
   part.encoding = light_field_.encoding;
+  part.encoding.footprint = footprint_;
   part.unit_m = light_field_.unit_m;
   part.depth_range = light_field_.depth_range;
   package.places.end = places_.end;

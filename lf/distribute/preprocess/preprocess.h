@@ -40,7 +40,7 @@ struct PreprocessOptions {
   // Options of the renders that follow. Packages can be rendered with any estimator and any lens
   // weights. Exception: packages for LensWeights::kNone can only be rendered without lens weights,
   // because they lack the neighbours, which the lens weights of the other LF cameras depend on.
-  RayReading reading = {.estimator = Estimator::kBilinear};
+  RayReading reading = Estimator::kBilinear;
   LensWeights lens_weights = LensWeights::kAuto;
   // Mode of the renders that follow. It decides what frames need, and therefore the forecast, and
   // which pixels lfcompressor --needed-pixels keeps. If whole LF images are kept, packages can be

@@ -128,7 +128,7 @@ TEST_F(PreprocessTest, PackagesHaveWhatTheirFramesNeed) {
       const PreprocessReport report = Run();
       ASSERT_EQ(report.packages.size(), 3u);
       NeedsOptions needs;
-      needs.select.reach = PixelReach::kNeighbours;
+      needs.select.reach = PixelReach::kElement;
       needs.select.max_angle_rad = options_.max_angle_rad;
       needs.lens_weights = weights;
       needs.max_image_count = most;
@@ -159,7 +159,7 @@ TEST_F(PreprocessTest, PackagesHaveWhatTheModeNeeds) {
     options_.lens_weights = LensWeights::kNone;
     options_.overwrite = true;
     NeedsOptions needs;
-    needs.select.reach = PixelReach::kNeighbours;
+    needs.select.reach = PixelReach::kElement;
     needs.lens_weights = LensWeights::kNone;
     needs.mode = mode;
     for (const PackageForecast& forecast : Run().packages) {

@@ -6,6 +6,7 @@
 
 #include "lf/collection/gather.h"
 #include "lf/collection/scatter.h"
+#include "lf/render/collect/filtered_images.h"
 
 namespace lf {
 namespace {
@@ -40,8 +41,9 @@ const char* NameOf(Estimator estimator) {
   return estimator == Estimator::kBilinear ? "bilinear" : "nearest";
 }
 
-PixelReach ReachOf(Estimator estimator) {
-  return estimator == Estimator::kBilinear ? PixelReach::kNeighbours : PixelReach::kOwn;
+PixelReach ReachOf(const RayReading& reading) {
+  if (reading.estimator == Estimator::kNearest) return PixelReach::kOwn;
+  return reading.Prefilters() ? PixelReach::kElement : PixelReach::kNeighbours;
 }
 
 size_t PlanBytes(Estimator estimator, bool has_distortion, int image_width, int image_height,
@@ -69,15 +71,19 @@ BatchCollector::BatchCollector(const LightField& light_field,
       back_end_(back_end),
       plan_bytes_(plan_bytes),
       whole_images_(whole_images),
-      pool_(pool) {
+      pool_(pool),
+      filtered_(std::make_unique<FilteredImages>()) {
   for (const CollectedFrame& frame : frames_)
     tiles_.push_back(
         CutIntoTiles(frame.plate, TileSums::GridOf(frame.plate->width(), frame.plate->height())));
 }
 
+BatchCollector::~BatchCollector() = default;
+
 void BatchCollector::Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>& frames,
                          const OtherItems& other_items, const std::atomic<bool>* interrupted) {
   UndoDistortion(batch);
+  filtered_->Clear();
   const auto is_interrupted = [&] { return interrupted != nullptr && *interrupted; };
   if (back_end_ == CollectBackEnd::kReference || batch.empty()) {
     pool_.ForEach(other_items.count, other_items.run);
@@ -96,13 +102,35 @@ void BatchCollector::Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>
         PlanBytes(reading_.estimator, light_field_.Camera(image.id).intrinsics.has_distortion(),
                   image.pixels.rect.width(), image.pixels.rect.height(), frames_[0].plate->width(),
                   frames_[0].plate->height());
-  const size_t chunk = std::max<size_t>(1, plan_bytes_ / frame_bytes);
-  for (size_t begin = 0; begin < takers.size(); begin += chunk) {
+  const size_t most = std::max<size_t>(1, plan_bytes_ / frame_bytes);
+  for (size_t begin = 0, count = 0; begin < takers.size(); begin += count) {
     if (is_interrupted()) return;
-    const size_t count = std::min(takers.size() - begin, chunk);
+    count = CountTogether(batch, takers.subspan(begin, std::min(takers.size() - begin, most)));
     AddToFrames(batch, takers.subspan(begin, count), begin == 0 ? other_items : OtherItems{},
                 interrupted);
   }
+}
+
+// Returns how many of the frames, from the first one on, are planned together: all; or, if LF
+// images are filtered, those that read the same filtered LF images, so that memory holds only one
+// of each.
+size_t BatchCollector::CountTogether(const std::vector<BatchImage>& batch,
+                                     std::span<const BatchFrame> frames) const {
+  if (!reading_.Prefilters()) return frames.size();
+  for (const BatchImage& image : batch) {
+    std::optional<Prefilter> filter;
+    const auto differs = [&](const BatchFrame& frame) {
+      const RenderCamera& camera = frames_[frame.frame].camera;
+      if (image.overlap->PlainlyMisses(camera)) return false;
+      const Prefilter needed =
+          SamplingOf(light_field_.Camera(image.id), camera, reading_).prefilter;
+      if (!filter) filter = needed;
+      return needed != *filter;
+    };
+    const auto other = std::find_if(frames.begin(), frames.end(), differs);
+    frames = frames.first(static_cast<size_t>(other - frames.begin()));
+  }
+  return frames.size();
 }
 
 PixelRect BatchCollector::RectOf(const BatchImage& image, const RenderCamera& frame) const {
@@ -117,7 +145,7 @@ PixelRect BatchCollector::RectOf(LfImageId id, std::span<const size_t> frames) c
   if (whole_images_) return {0, 0, camera.intrinsics.width_px, camera.intrinsics.height_px};
   std::vector<IdealCell> cells;
   if (camera.intrinsics.has_distortion()) cells = MakeIdealCells(camera.intrinsics);
-  const ImageOverlap overlap(camera, cells, ReachOf(reading_.estimator));
+  const ImageOverlap overlap(camera, cells, ReachOf(reading_));
   PixelRect rect;
   for (const size_t frame : frames)
     if (takes(frame)) rect = Bounds(rect, overlap.Rect(frames_[frame].camera));
@@ -142,7 +170,7 @@ void BatchCollector::UndoDistortion(std::vector<BatchImage>& batch) {
               : std::vector<IdealCell>());
     image.cells = shared;
     image.ideal_pixels = ideal_pixels_.Of(index);
-    image.overlap.emplace(light_field_.Camera(image.id), *image.cells, ReachOf(reading_.estimator));
+    image.overlap.emplace(light_field_.Camera(image.id), *image.cells, ReachOf(reading_));
   }
 }
 
@@ -183,13 +211,14 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
     if (contribution.rect.empty()) return;
     const Intrinsics& plate = frame.pinhole.intrinsics;
     if (reading_.estimator == Estimator::kBilinear)
-      contribution.gather =
-          PlanGather(camera, frame, std::move(contribution.gather), reading_.filter);
+      contribution.gather = PlanGather(camera, frame, std::move(contribution.gather), reading_);
     else
       contribution.scatter = PlanScatter(camera, frame, contribution.rect,
                                          TileSums::GridOf(plate.width_px, plate.height_px),
                                          image.ideal_pixels.get(), std::move(contribution.scatter));
   });
+
+  FilterImages(batch, frames.size());
 
   struct Task {
     size_t taker;
@@ -209,7 +238,7 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
     for (size_t k = 0; k < batch.size(); ++k) {
       Contribution& contribution = contributions_[task.taker * batch.size() + k];
       if (contribution.rect.empty()) continue;
-      const uint64_t accepted = AddToTile(contribution, task.tile, batch[k].pixels, &sums);
+      const uint64_t accepted = AddToTile(contribution, task.tile, *contribution.pixels, &sums);
       contribution.accepted_count += accepted;
       if (accepted > 0)
         tally.TakeImage([&](size_t element, int c) { return sums.Added(element, c); });
@@ -220,7 +249,7 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
     for (size_t k = 0; k < batch.size(); ++k)
       if (Contribution& contribution = contributions_[task.taker * batch.size() + k];
           !contribution.rect.empty())
-        AddToTile(contribution, task.tile, batch[k].opacity, &sums);
+        AddToTile(contribution, task.tile, *contribution.opacity, &sums);
     sums.Flush();
   };
   // The other items are long and therefore come first: if the last items are short, threads wait
@@ -244,6 +273,32 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
       Count(contribution.rect, contribution.accepted_count > 0, &frames[f].rays);
     }
   }
+}
+
+// Filters the LF images of the batch for the planned contributions to `frame_count` frames, and
+// sets the pixels of these.
+void BatchCollector::FilterImages(const std::vector<BatchImage>& batch, size_t frame_count) {
+  std::vector<std::vector<Prefilter>> filters(batch.size());
+  const auto for_each_planned = [&](const auto& body) {
+    for (size_t f = 0; f < frame_count; ++f)
+      for (size_t k = 0; k < batch.size(); ++k)
+        if (Contribution& contribution = contributions_[f * batch.size() + k];
+            !contribution.rect.empty())
+          body(k, contribution);
+  };
+  const auto filter_of = [&](const Contribution& contribution) {
+    return reading_.estimator == Estimator::kBilinear ? contribution.gather.sampling.prefilter
+                                                      : Prefilter();
+  };
+  for_each_planned([&](size_t k, const Contribution& contribution) {
+    filters[k].push_back(filter_of(contribution));
+  });
+  filtered_->Filter(batch, std::move(filters),
+                    [&](size_t count, const auto& body) { ForEachTimed(count, body); });
+  for_each_planned([&](size_t k, Contribution& contribution) {
+    contribution.pixels = &filtered_->Pixels(batch, k, filter_of(contribution));
+    contribution.opacity = &filtered_->Opacity(batch, k, filter_of(contribution));
+  });
 }
 
 // Adds the rays of one LF image that land in a tile. Returns their number.
@@ -271,7 +326,7 @@ void BatchCollector::AddByReference(const std::vector<BatchImage>& batch, BatchF
     const PinholeCamera lf_camera = light_field_.Camera(image.id);
     const uint64_t accepted =
         reading_.estimator == Estimator::kBilinear
-            ? GatherReference(lf_camera, image.pixels, camera, &plate, weights, reading_.filter)
+            ? GatherReference(lf_camera, image.pixels, camera, &plate, weights, reading_)
             : ScatterReference(lf_camera, image.pixels, camera, rect, &plate, weights);
     if (plate.has_opacity()) AddOpacityByReference(image, rect, camera, weights, &plate);
     tally.TakeImage(total_of);
@@ -290,7 +345,7 @@ void BatchCollector::AddOpacityByReference(const BatchImage& image, const PixelR
   SensorPlate opacity(plate->width(), plate->height());
   const PinholeCamera lf_camera = light_field_.Camera(image.id);
   if (reading_.estimator == Estimator::kBilinear)
-    GatherReference(lf_camera, image.opacity, camera, &opacity, weights, reading_.filter);
+    GatherReference(lf_camera, image.opacity, camera, &opacity, weights, reading_);
   else
     ScatterReference(lf_camera, image.opacity, camera, rect, &opacity, weights);
   for (int y = 0; y < plate->height(); ++y)

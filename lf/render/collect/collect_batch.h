@@ -38,14 +38,22 @@ enum class Estimator { kNearest, kBilinear };
 const char* NameOf(Estimator estimator);
 
 // Says how rays are made from the pixels of LF images.
-struct RayReading {
+struct RayReading : PixelReading {  // the filter is only used by kBilinear
   Estimator estimator = Estimator::kNearest;
-  PixelFilter filter = PixelFilter::kAuto;  // only used by kBilinear
+
+  RayReading() = default;
+  RayReading(Estimator the_estimator) : estimator(the_estimator) {}  // NOLINT: it says enough
+
+  // Returns true if LF images are filtered before they are read.
+  bool Prefilters() const {
+    return estimator == Estimator::kBilinear && filter == PixelFilter::kPrefiltered;
+  }
 };
 
-// Returns which pixels the estimator reads for one ray: the pixel of the ray itself, or also its
-// neighbours. Selection (SelectOptions::reach) includes all of them.
-PixelReach ReachOf(Estimator estimator);
+// Returns which pixels the estimator reads for one ray: the pixel of the ray itself, its
+// neighbours, or all pixels in an element around it. Selection (SelectOptions::reach) includes all
+// of them.
+PixelReach ReachOf(const RayReading& reading);
 
 // kReference applies the ray model literally to every pixel, on one thread. It is about 50 times
 // slower than kFast; tests compare kFast with it.
@@ -92,6 +100,8 @@ struct OtherItems {
 size_t PlanBytes(Estimator estimator, bool has_distortion, int image_width, int image_height,
                  int plate_width, int plate_height);
 
+class FilteredImages;
+
 class BatchCollector {
  public:
   // frames        must outlive the object; their `places` are not used, because BatchFrame has its
@@ -103,6 +113,7 @@ class BatchCollector {
   BatchCollector(const LightField& light_field, std::span<const CollectedFrame> frames,
                  const RayReading& reading, CollectBackEnd back_end, size_t plan_bytes,
                  bool whole_images, ThreadPool& pool);
+  ~BatchCollector();
 
   // Adds the LF images to the plates of `frames` and runs the other items. May change the order of
   // `frames`. Once *interrupted is true, no further frame is begun, and the frames that are begun
@@ -124,6 +135,9 @@ class BatchCollector {
     ScatterPlan scatter;  // used by kNearest; kBilinear uses `gather`
     GatherPlan gather;
     RayWeights weights;
+    // The filtered LF image that `gather` reads, which filtered_ or the batch owns.
+    const LfPixels* pixels = nullptr;
+    const LfPixels* opacity = nullptr;
     std::atomic<uint64_t> accepted_count = 0;
   };
   PixelRect RectOf(const BatchImage& image, const RenderCamera& frame) const;
@@ -134,6 +148,9 @@ class BatchCollector {
   void UndoDistortion(std::vector<BatchImage>& batch);
   std::span<BatchFrame> FramesThatMayTake(const std::vector<BatchImage>& batch,
                                           std::span<BatchFrame> frames);
+  size_t CountTogether(const std::vector<BatchImage>& batch,
+                       std::span<const BatchFrame> frames) const;
+  void FilterImages(const std::vector<BatchImage>& batch, size_t frame_count);
   void AddToFrames(const std::vector<BatchImage>& batch, std::span<BatchFrame> frames,
                    const OtherItems& other_items, const std::atomic<bool>* interrupted);
   uint64_t AddToTile(const Contribution& contribution, size_t tile, const LfPixels& pixels,
@@ -156,6 +173,7 @@ class BatchCollector {
       contributions_;  // [frame][LF image] of a batch; the next batch reuses their memory
   // Ideal pixels of the LF cameras of the last batch, by the index of their intrinsics.
   SharedIdealPixels ideal_pixels_;
+  std::unique_ptr<FilteredImages> filtered_;
   std::atomic<int64_t> cpu_ns_ = 0;
 };
 

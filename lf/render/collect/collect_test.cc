@@ -52,7 +52,7 @@ std::vector<SensorPlate> CollectDistorted(int threads, const CollectOptions& opt
   const std::vector<RenderCamera> frames = NoiseFrames();
   ThreadPool pool(threads);
   const std::vector<SelectedImage> images =
-      SelectImages(ImageIndex(field), frames, {.reach = ReachOf(options.reading.estimator)}, pool);
+      SelectImages(ImageIndex(field), frames, {.reach = ReachOf(options.reading)}, pool);
   std::vector<SensorPlate> plates;
   for (size_t i = 0; i < frames.size(); ++i) plates.emplace_back(80, 60);
   const auto statistics =
@@ -131,6 +131,49 @@ TEST(Collect, TheSameBitsForAnyThreadsBatchesAndOrder) {
         const Outcome other = CollectAll(store, threads, options, seed);
         EXPECT_EQ(other.plates, expected.plates) << threads << ", " << batch << ", " << seed;
       }
+}
+
+// Elements of 1 to 6 LF pixels need different prefilters of the same LF images. A rectangle that is
+// too small for a prefilter, or a filtered image that is used for the wrong frame, changes bits.
+TEST(Collect, PrefiltersServeFramesOfAnyScale) {
+  const LightField field = DistortedField();
+  std::vector<RenderCamera> frames;
+  for (int i = 0; i < 9; ++i) {
+    frames.push_back(NoiseFrames()[static_cast<size_t>(i) % 3]);
+    Intrinsics& k = frames.back().pinhole.intrinsics;
+    k.fx_px /= 1 + 0.35 * i;
+    k.fy_px /= 1 + 0.35 * i;
+  }
+  CollectOptions options;
+  options.reading.estimator = Estimator::kBilinear;
+  options.reading.filter = PixelFilter::kPrefiltered;
+  const auto collect = [&](int threads) {
+    ThreadPool pool(threads);
+    const SelectOptions select{.reach = ReachOf(options.reading),
+                               .whole_images = options.whole_images};
+    const std::vector<SelectedImage> images = SelectImages(ImageIndex(field), frames, select, pool);
+    std::vector<SensorPlate> plates;
+    for (size_t f = 0; f < frames.size(); ++f) plates.emplace_back(80, 60);
+    const auto statistics =
+        Collect(field, NoiseStore(), FramesOf(frames, plates), images, options, pool, nullptr);
+    EXPECT_TRUE(statistics);
+    EXPECT_GT(statistics->frames.back().accepted_count, 5000u);
+    return plates;
+  };
+  const std::vector<SensorPlate> expected = collect(1);
+  options.batch_image_count = 3;
+  options.plan_bytes = 1;
+  EXPECT_EQ(collect(2), expected);
+  options.whole_images = true;
+  EXPECT_EQ(collect(3), expected);
+  options.back_end = CollectBackEnd::kReference;
+  const std::vector<SensorPlate> reference = collect(1);
+  for (size_t f = 0; f < frames.size(); ++f)
+    for (int y = 0; y < 60; ++y)
+      for (int x = 0; x < 80; ++x)
+        EXPECT_NEAR(static_cast<double>(reference[f].At(x, y, 1).count),
+                    static_cast<double>(expected[f].At(x, y, 1).count), 1)
+            << f;
 }
 
 // Loads every LF image with its red channel as opacity.

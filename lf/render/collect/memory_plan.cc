@@ -75,10 +75,10 @@ ImageNeed NeedOf(const LightField& light_field, Estimator estimator, int plate_w
 }  // namespace
 
 Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field,
-                              Estimator estimator, int plate_width, int plate_height,
+                              const RayReading& reading, int plate_width, int plate_height,
                               size_t frame_count, int thread_count, size_t bytes_per_frame) {
   const size_t element_count = static_cast<size_t>(plate_width) * plate_height;
-  const ImageNeed need = NeedOf(light_field, estimator, plate_width, plate_height);
+  const ImageNeed need = NeedOf(light_field, reading.estimator, plate_width, plate_height);
   MemoryPlan plan;
   const bool has_opacity = light_field.encoding.HasOpacity();
   const size_t channels = SensorPlate::kChannels + (has_opacity ? 1 : 0);
@@ -91,8 +91,9 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
       kProgramBytes + light_field.size() * (sizeof(LfCamera) + 128) +
       element_count * (develop_bytes + sheet_pictures * kSheetBytesPerElement) +
       static_cast<size_t>(thread_count) * (need.decode_bytes + kTileBytes);
-  // Memory for one LF image of each of the two batches, and for one plan.
-  const size_t pair_bytes = 2 * need.kept_bytes + need.plan_bytes;
+  // Memory for one LF image of each of the two batches, filtered in one of them, and for one plan.
+  const size_t copies = reading.Prefilters() ? 3 : 2;
+  const size_t pair_bytes = copies * need.kept_bytes + need.plan_bytes;
   const size_t frame_bytes = plan.plate_bytes + bytes_per_frame;
   const size_t least = set_aside + frame_bytes + pair_bytes;
   if (memory_bytes < least)
@@ -108,7 +109,7 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
   // If several frames are planned together, threads wait less often for the last task of a frame.
   plan.plan_bytes =
       std::max(plan.batch_image_count * need.plan_bytes, std::min(kMostPlanBytes, free_bytes / 16));
-  const size_t images_bytes = plan.batch_image_count * 2 * need.kept_bytes + plan.plan_bytes;
+  const size_t images_bytes = plan.batch_image_count * copies * need.kept_bytes + plan.plan_bytes;
   plan.frames_finished_at_once =
       std::min<size_t>(static_cast<size_t>(thread_count),
                        1 + (images_bytes - plan.plan_bytes) / (element_count * develop_bytes));

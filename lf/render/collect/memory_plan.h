@@ -29,10 +29,10 @@ struct MemoryPlan {
 // at most the largest of these numbers of LF images, because larger batches gain nothing: 16; two
 // for each thread; as many as have the pixels of eight plates together (at most 64). kOutput if the
 // memory does not suffice for one plate and two LF images; the message names the least memory that
-// suffices.
+// suffices. Prefilters need a filtered LF image for each one of a batch.
 //   bytes_per_frame  further memory for each frame, such as its moments (noise_moments.h)
 Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field,
-                              Estimator estimator, int plate_width, int plate_height,
+                              const RayReading& reading, int plate_width, int plate_height,
                               size_t frame_count, int thread_count, size_t bytes_per_frame = 0);
 
 }  // namespace lf

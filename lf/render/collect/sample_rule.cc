@@ -26,8 +26,9 @@ struct Viewer {
 
 // Returns about the distance, in pixels, that the samples of an element reach to each side of its
 // position in the LF image.
-double BorderOf(const PinholeCamera& lf_camera, const RenderCamera& camera, PixelFilter filter) {
-  return 0.5 + 0.5 * (SamplingOf(lf_camera, camera, filter).samples - 1);
+double BorderOf(const PinholeCamera& lf_camera, const RenderCamera& camera,
+                const PixelReading& reading) {
+  return 0.5 + 0.5 * (SamplingOf(lf_camera, camera, reading).samples - 1);
 }
 
 // Returns true if the LF image has a ray that passes through point_world and the lens (doc/ray.md,
@@ -77,7 +78,7 @@ Result<uint32_t> ParseSampleRule(const std::string& text, const std::string& opt
 
 ReachableElements::ReachableElements(const ImageIndex& index, const RenderCamera& camera,
                                      const PlaceRange& places, const SelectOptions& select,
-                                     PixelFilter filter, ThreadPool& pool,
+                                     const PixelReading& reading, ThreadPool& pool,
                                      const std::function<RayWeights(LfImageId)>& weights) {
   const std::vector<RenderCamera> frames = {camera};
   const std::vector<PlaceRange> ranges = {places};
@@ -92,10 +93,9 @@ ReachableElements::ReachableElements(const ImageIndex& index, const RenderCamera
     const PinholeCamera lf_camera = light_field.Camera(image.id);
     const auto map = maps.try_emplace(light_field.cameras[image.id.value].intrinsics_index,
                                       lf_camera.intrinsics.distortion);
-    viewers.push_back(
-        {RayThrough(lf_camera, camera.pinhole.ForwardWorld(), map.first->second),
-         select.reach == PixelReach::kNeighbours ? BorderOf(lf_camera, camera, filter) : 0,
-         std::move(counts)});
+    viewers.push_back({RayThrough(lf_camera, camera.pinhole.ForwardWorld(), map.first->second),
+                       select.reach != PixelReach::kOwn ? BorderOf(lf_camera, camera, reading) : 0,
+                       std::move(counts)});
   }
   const int width = camera.pinhole.intrinsics.width_px;
   const int height = camera.pinhole.intrinsics.height_px;

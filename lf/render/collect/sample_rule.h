@@ -38,7 +38,7 @@ class ReachableElements {
   // weights  returns the weights of an LF image in the frame; empty: all rays through the lens have
   //          weight 1. Rays of weight 0 make no element reachable.
   ReachableElements(const ImageIndex& index, const RenderCamera& camera, const PlaceRange& places,
-                    const SelectOptions& select, PixelFilter filter, ThreadPool& pool,
+                    const SelectOptions& select, const PixelReading& reading, ThreadPool& pool,
                     const std::function<RayWeights(LfImageId)>& weights = {});
 
   bool Holds(int x, int y) const {

@@ -26,7 +26,7 @@ struct RenderMemory {
 // kOutput: the memory does not suffice for max_cells (or for RebinnedRays::kLeastCells), for one
 // frame, or, with kRebin and plates, for all frames. The message names the memory that is needed.
 Result<RenderMemory> PlanRenderMemory(size_t memory_bytes, RenderMode mode, size_t max_cells,
-                                      const LightField& light_field, Estimator estimator,
+                                      const LightField& light_field, const RayReading& reading,
                                       int plate_width, int plate_height, size_t frame_count,
                                       int thread_count, size_t measured_bytes = 0);
 

@@ -20,6 +20,9 @@ Result<ImagePlaces> PlacesOfFilm(ImageOrder order, uint64_t seed, const LightFie
   const ImageIndex index(light_field, std::move(shuffled));
   NeedsOptions unlimited = needs;
   unlimited.max_image_count.reset();
+  // The order must not depend on the filter, because packages can be rendered with any filter.
+  if (unlimited.select.reach == PixelReach::kElement)
+    unlimited.select.reach = PixelReach::kNeighbours;
   std::vector<std::vector<ImageRays>> taken;
   for (const RenderCamera& frame : path.cameras) {
     taken.emplace_back();

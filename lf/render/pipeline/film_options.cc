@@ -15,7 +15,7 @@ FilmOptions Resolved(FilmOptions options, const Package& package) {
 
 NeedsOptions NeedsOfFilm(const Package& package, const FilmOptions& film, const WorkOptions& work) {
   NeedsOptions needs;
-  needs.select.reach = ReachOf(film.reading.estimator);
+  needs.select.reach = ReachOf(film.reading);
   needs.select.max_angle_rad = package.choices.max_angle_rad;
   needs.select.interrupted = work.stop;
   needs.lens_weights = film.lens_weights;

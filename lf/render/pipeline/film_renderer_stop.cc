@@ -14,9 +14,8 @@ const ReachableElements& FilmRenderer::ReachableOf(size_t f) {
     ImageWeights weights;
     if (film_.lens_weights != LensWeights::kNone)
       weights = [&frame](LfImageId id) { return frame.lens->WeightsOf(id); };
-    frame.reachable =
-        std::make_unique<ReachableElements>(setup_.index(), frame.camera, frame.places, select_,
-                                            film_.reading.filter, setup_.pool(), weights);
+    frame.reachable = std::make_unique<ReachableElements>(
+        setup_.index(), frame.camera, frame.places, select_, film_.reading, setup_.pool(), weights);
   }
   return *frame.reachable;
 }

@@ -10,13 +10,18 @@
 #include "lf/render/hybrid/render_memory.h"
 #include "lf/render/needs/film_order.h"
 #include "lf/render/pipeline/check_film_options.h"
+#include "lf/storage/load/measure_footprint.h"
 #include "lf/storage/load/open_store.h"
 
 namespace lf {
 namespace {
 
-Package WithRoomForUndershoot(Package package, Estimator estimator) {
-  if (estimator == Estimator::kBilinear) MakeRoomForUndershoot(&package.light_field.encoding);
+Package WithRoomBesideEdges(Package package, const RayReading& reading) {
+  LightField& light_field = package.light_field;
+  if (reading.Prefilters())
+    MakeRoomBesideEdges(light_field.image_names, &light_field.encoding);
+  else if (reading.estimator == Estimator::kBilinear)
+    MakeRoomForUndershoot(&light_field.encoding);
   return package;
 }
 
@@ -24,7 +29,7 @@ Package WithRoomForUndershoot(Package package, Estimator estimator) {
 
 FilmSetup::FilmSetup(Package package, const FilmOptions& film, const WorkOptions& work,
                      std::vector<FrameId> frames, ThreadPool& pool)
-    : package_(WithRoomForUndershoot(std::move(package), film.reading.estimator)),
+    : package_(WithRoomBesideEdges(std::move(package), film.reading)),
       film_(film),
       work_(work),
       frames_(frames.empty() ? package_.FrameIds() : std::move(frames)),
@@ -43,6 +48,7 @@ Result<std::unique_ptr<FilmSetup>> FilmSetup::Make(Package package, const FilmOp
                                                           ? Mosaics::kToRgb
                                                           : Mosaics::kAsRecorded));
   LF_RETURN_IF_ERROR(setup->CheckStore());
+  setup->FindFootprint();
   LF_RETURN_IF_ERROR(setup->PlanMemory());
   return setup;
 }
@@ -64,12 +70,19 @@ Result<void> FilmSetup::CheckStore() const {
   return {};
 }
 
+// Decides what LF pixels show, if the filter has to know it.
+void FilmSetup::FindFootprint() {
+  if (!film_.reading.Prefilters() || film_.reading.footprint) return;
+  const std::optional<PixelFootprint>& stated = light_field().encoding.footprint;
+  film_.reading.footprint = stated ? *stated : MeasureFootprint(light_field(), *store_);
+}
+
 Result<void> FilmSetup::PlanMemory() {
   const Intrinsics& plate = path().Camera(frames_.front()).pinhole.intrinsics;
   LF_ASSIGN_OR_RETURN(
       const RenderMemory memory,
       PlanRenderMemory(work_.memory_bytes, film_.mode, film_.rebin.max_cells, light_field(),
-                       film_.reading.estimator, plate.width_px, plate.height_px, frames_.size(),
+                       film_.reading, plate.width_px, plate.height_px, frames_.size(),
                        pool_.thread_count(), film_.MeasuresNoise() ? NoiseMoments::kMostBytes : 0));
   plan_ = memory.plan;
   max_cells_ = memory.max_cells;

@@ -24,8 +24,9 @@ namespace lf {
 class FilmSetup {
  public:
   // Resolves the options, opens the LF images and plans the memory. With kBilinear, also makes room
-  // in the radiance encoding for values below black (MakeRoomForUndershoot()). The pool must
-  // outlive the object.
+  // in the radiance encoding for values below black, and finds out what LF pixels show
+  // (MeasureFootprint()) if the filter needs it and neither the options nor the light field say it.
+  // The pool must outlive the object.
   //   frames  some frames of the package, ascending; empty: all of its frames
   // kUsage: the options are not compatible with each other or with the package.
   // kInput: the packed store lacks pixels that a frame needs (CheckKept() of
@@ -62,10 +63,11 @@ class FilmSetup {
   FilmSetup(Package package, const FilmOptions& film, const WorkOptions& work,
             std::vector<FrameId> frames, ThreadPool& pool);
   Result<void> CheckStore() const;
+  void FindFootprint();
   Result<void> PlanMemory();
 
   const Package package_;
-  const FilmOptions film_;
+  FilmOptions film_;
   const WorkOptions work_;
   const std::vector<FrameId> frames_;
   ThreadPool& pool_;

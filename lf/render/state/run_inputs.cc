@@ -85,6 +85,7 @@ RunInputs InputsOfRays(const LightFieldIdentity& light_field, const RadianceEnco
       {"estimator", NameOf(choices.reading.estimator)},
       {"filter",
        choices.reading.estimator == Estimator::kBilinear ? NameOf(choices.reading.filter) : "none"},
+      {"lf_pixels", choices.reading.footprint ? NameOf(*choices.reading.footprint) : "any"},
       {"lens_weights", NameOf(choices.lens_weights)},
       {"lens_weights.law", choices.lens_weights == LensWeights::kNone
                                ? "none"

@@ -1,0 +1,198 @@
+// Compiled for every instruction set from one source (Highway). All arithmetic is of integers, so
+// that results are bit-identical. A vector holds one to four pixels of four lanes.
+#include "lf/collection/prefilter/prefilter_rows.h"
+
+#include <cstddef>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE \
+  "lf/collection/prefilter/prefilter_rows.cc"  // NOLINT: as Highway wants it
+#include <hwy/foreach_target.h>
+// Must come after foreach_target.h.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace lf {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr ptrdiff_t kLanes = LfPixels::kRgbLanes;
+constexpr int kRowShift = Prefilter::kBits - kPrefilterFraction;
+constexpr int kColumnShift = Prefilter::kBits + kPrefilterFraction;
+
+#if HWY_TARGET == HWY_SCALAR
+
+// Returns the value of a knot in `lane`, times Prefilter::kOne; 0 if it is masked. at(k, lane) is
+// the value of the pixel at k, with `one` in lane kRayLane, or 0 in all lanes if it is missing.
+template <class At>
+int64_t Filtered(const Prefilter& filter, const At& at, int64_t one, int lane) {
+  const int beside = filter.is_even ? 1 : 0;
+  if (at(0, LfPixels::kRayLane) == 0 || at(beside, LfPixels::kRayLane) == 0) return 0;
+  const auto sum_of = [&](int of_lane) {
+    int64_t sum = filter.is_even ? 0 : filter.weights[0] * at(0, of_lane);
+    for (int k = filter.is_even ? 0 : 1; k < filter.count; ++k)
+      sum += filter.weights[static_cast<size_t>(k)] * (at(-k, of_lane) + at(beside + k, of_lane));
+    return sum;
+  };
+  const int64_t missing = Prefilter::kOne - sum_of(LfPixels::kRayLane) / one;
+  const int64_t middle = filter.is_even ? (at(0, lane) + at(1, lane) + 1) >> 1 : at(0, lane);
+  return sum_of(lane) + missing * middle;
+}
+
+void FilterAlongRow(const Prefilter& filter, const uint16_t* row, bool /*any_masked*/, int count,
+                    int32_t* out) {
+  for (int x = 0; x < count; ++x)
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const auto at = [&](int k, int of_lane) -> int64_t {
+        return row[(x + k) * kLanes + of_lane];
+      };
+      out[x * kLanes + lane] = static_cast<int32_t>(
+          (Filtered(filter, at, 1, lane) + (1 << (kRowShift - 1))) >> kRowShift);
+    }
+}
+
+void FilterAlongColumns(const Prefilter& filter, const int32_t* const* rows, bool /*any_missing*/,
+                        int count, uint16_t* out) {
+  for (ptrdiff_t i = 0; i < count * kLanes; ++i) {
+    const ptrdiff_t first = i / kLanes * kLanes;
+    const auto at = [&](int k, int of_lane) -> int64_t { return rows[k][first + of_lane]; };
+    const int64_t sum = Filtered(filter, at, 1 << kPrefilterFraction, static_cast<int>(i - first));
+    const int64_t value = (sum + (1 << (kColumnShift - 1))) >> kColumnShift;
+    out[i] = static_cast<uint16_t>(value < 0 ? 0 : value > 65535 ? 65535 : value);
+  }
+}
+
+#else
+
+// The form of a filter as a type, so that compilers unroll the loops.
+//   kCount  Prefilter::count, or 0 for any count
+template <bool kEven, int kCount>
+struct FormOf {
+  static constexpr bool kIsEven = kEven;
+  static int CountOf(const Prefilter& filter) { return kCount > 0 ? kCount : filter.count; }
+};
+
+// Calls body(form) with the form of the filter. Elements of one to four LF pixels have filters of
+// three or four different weights.
+template <class Body>
+HWY_ATTR HWY_INLINE void WithForm(const Prefilter& filter, const Body& body) {
+  if (filter.is_even) {
+    if (filter.count == 3) return body(FormOf<true, 3>());
+    if (filter.count == 4) return body(FormOf<true, 4>());
+    return body(FormOf<true, 0>());
+  }
+  if (filter.count == 3) return body(FormOf<false, 3>());
+  if (filter.count == 4) return body(FormOf<false, 4>());
+  return body(FormOf<false, 0>());
+}
+
+// Returns the values of knots, times Prefilter::kOne; 0 if they are masked. at(k) are the pixels at
+// k.
+//   kFraction    lane kRayLane of a pixel that exists is 2^kFraction; the other pixels are 0
+//   kAnyMissing  false: all pixels exist
+template <class Form, int kFraction, bool kAnyMissing, class D, class At>
+HWY_ATTR HWY_INLINE hn::Vec<D> Filtered(D d, const Prefilter& filter, const At& at) {
+  const auto weight = [&](int k)
+                          HWY_ATTR { return hn::Set(d, filter.weights[static_cast<size_t>(k)]); };
+  const auto first = at(0);
+  auto middle = first, sum = hn::Mul(first, weight(0));
+  if constexpr (Form::kIsEven) {
+    const auto pair = hn::Add(first, at(1));
+    middle = hn::ShiftRight<1>(hn::Add(pair, hn::Set(d, 1)));
+    sum = hn::Mul(pair, weight(0));
+  }
+  for (int k = 1; k < Form::CountOf(filter); ++k)
+    sum = hn::Add(sum, hn::Mul(hn::Add(at(-k), at(k + (Form::kIsEven ? 1 : 0))), weight(k)));
+  if constexpr (!kAnyMissing) return sum;
+  const auto there = hn::ShiftRight<kFraction>(hn::Broadcast<LfPixels::kRayLane>(sum));
+  const auto missing = hn::Sub(hn::Set(d, Prefilter::kOne), there);
+  auto exists = hn::Broadcast<LfPixels::kRayLane>(first);
+  if constexpr (Form::kIsEven) exists = hn::Min(exists, hn::Broadcast<LfPixels::kRayLane>(at(1)));
+  return hn::IfThenElseZero(hn::Gt(exists, hn::Zero(d)), hn::Add(sum, hn::Mul(missing, middle)));
+}
+
+// Calls body(d, i) for values [i, i + Lanes(d)) of the pixels [begin, end) of a row, until all are
+// done.
+template <class Body>
+HWY_ATTR HWY_INLINE void ForEachVector(int begin, int end, const Body& body) {
+  const hn::CappedTag<int32_t, 16> d;
+  const hn::Full128<int32_t> d_pixel;
+  const auto lanes = static_cast<ptrdiff_t>(hn::Lanes(d));
+  const ptrdiff_t last = end * kLanes;
+  ptrdiff_t i = begin * kLanes;
+  for (; i + lanes <= last; i += lanes) body(d, i);
+  for (; i < last; i += kLanes) body(d_pixel, i);
+}
+
+// Filters the pixels [begin, end) of a row.
+template <class Form, bool kAnyMissing>
+HWY_ATTR HWY_INLINE void FilterInRow(const Prefilter& filter, const uint16_t* HWY_RESTRICT row,
+                                     int begin, int end, int32_t* HWY_RESTRICT out) {
+  ForEachVector(begin, end, [&](auto d, ptrdiff_t i) HWY_ATTR {
+    const hn::Rebind<uint16_t, decltype(d)> d16;
+    const auto at = [&](int k)
+                        HWY_ATTR { return hn::PromoteTo(d, hn::LoadU(d16, row + i + k * kLanes)); };
+    const auto sum = Filtered<Form, 0, kAnyMissing>(d, filter, at);
+    const auto half = hn::Set(d, 1 << (kRowShift - 1));
+    hn::StoreU(hn::ShiftRight<kRowShift>(hn::Add(sum, half)), d, out + i);
+  });
+}
+
+template <class Form, bool kAnyMissing>
+HWY_ATTR HWY_INLINE void FilterInColumns(const Prefilter& filter, const int32_t* const* rows,
+                                         int count, uint16_t* HWY_RESTRICT out) {
+  ForEachVector(0, count, [&](auto d, ptrdiff_t i) HWY_ATTR {
+    const hn::Rebind<uint16_t, decltype(d)> d16;
+    const auto at = [&](int k) HWY_ATTR { return hn::LoadU(d, rows[k] + i); };
+    const auto sum = Filtered<Form, kPrefilterFraction, kAnyMissing>(d, filter, at);
+    const auto half = hn::Set(d, 1 << (kColumnShift - 1));
+    hn::StoreU(hn::DemoteTo(d16, hn::ShiftRight<kColumnShift>(hn::Add(sum, half))), d16, out + i);
+  });
+}
+
+HWY_ATTR void FilterAlongRow(const Prefilter& original, const uint16_t* row, bool any_masked,
+                             int count, int32_t* out) {
+  const Prefilter filter = original;  // a copy: it cannot change while `out` is written
+  WithForm(filter, [&](auto form) HWY_ATTR {
+    using Form = decltype(form);
+    const int border = filter.count;  // knots that may lack pixels
+    if (any_masked || count <= 2 * border)
+      return FilterInRow<Form, true>(filter, row, 0, count, out);
+    FilterInRow<Form, true>(filter, row, 0, border, out);
+    FilterInRow<Form, false>(filter, row, border, count - border, out);
+    FilterInRow<Form, true>(filter, row, count - border, count, out);
+  });
+}
+
+HWY_ATTR void FilterAlongColumns(const Prefilter& original, const int32_t* const* rows,
+                                 bool any_missing, int count, uint16_t* out) {
+  const Prefilter filter = original;
+  WithForm(filter, [&](auto form) HWY_ATTR {
+    using Form = decltype(form);
+    if (any_missing) return FilterInColumns<Form, true>(filter, rows, count, out);
+    FilterInColumns<Form, false>(filter, rows, count, out);
+  });
+}
+
+#endif
+
+}  // namespace HWY_NAMESPACE
+}  // namespace lf
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace lf {
+HWY_EXPORT(FilterAlongRow);
+HWY_EXPORT(FilterAlongColumns);
+
+void FilterAlongRow(const Prefilter& filter, const uint16_t* row, bool any_masked, int count,
+                    int32_t* out) {
+  HWY_DYNAMIC_DISPATCH(FilterAlongRow)(filter, row, any_masked, count, out);
+}
+void FilterAlongColumns(const Prefilter& filter, const int32_t* const* rows, bool any_missing,
+                        int count, uint16_t* out) {
+  HWY_DYNAMIC_DISPATCH(FilterAlongColumns)(filter, rows, any_missing, count, out);
+}
+
+}  // namespace lf
+#endif

@@ -1,0 +1,35 @@
+// The two loops of FilterPixels(). Internal to this folder.
+#pragma once
+
+#include <cstdint>
+
+#include "lf/collection/prefilter/prefilter.h"
+
+namespace lf {
+
+// Bits that values keep after the binary point between the two loops.
+inline constexpr int kPrefilterFraction = 2;
+
+// Filters a row of pixels along the row. A value of the result is 2^kPrefilterFraction times the
+// filtered value; lane kRayLane is 2^kPrefilterFraction, or 0 if the pixel is masked.
+//   row         its pixels, with filter.count masked pixels before and behind them
+//   any_masked  true if one of the other pixels is masked
+//   count       number of knots
+void FilterAlongRow(const Prefilter& filter, const uint16_t* row, bool any_masked, int count,
+                    int32_t* out);
+
+// Filters a row of knots along the columns.
+//   rows         rows[k] is the result of FilterAlongRow() for the row of pixels k below the knots;
+//                zeros stand for rows that do not exist
+//   any_missing  true if a row does not exist or a pixel is masked
+void FilterAlongColumns(const Prefilter& filter, const int32_t* const* rows, bool any_missing,
+                        int count, uint16_t* out);
+
+// Returns the knots of the pixels in `rect`.
+inline PixelRect KnotsOf(const Prefilter& filter, const PixelRect& rect) {
+  const int less = filter.is_even ? 1 : 0;
+  if (rect.width() <= less || rect.height() <= less) return {};
+  return {rect.x_begin, rect.y_begin, rect.x_end - less, rect.y_end - less};
+}
+
+}  // namespace lf

@@ -1,0 +1,49 @@
+// The LF images of a batch, filtered for the frames that read them. Internal to this folder.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <list>
+#include <vector>
+
+#include "lf/collection/prefilter/prefilter.h"
+#include "lf/light_field/model/lf_pixels.h"
+#include "lf/render/collect/collect_batch.h"
+
+namespace lf {
+
+// Filters each LF image once for all frames that need the same prefilter.
+class FilteredImages {
+ public:
+  // Runs body(i) for i in [0, count), by several threads.
+  using ForEach = std::function<void(size_t count, const std::function<void(size_t)>& body)>;
+
+  // Forgets all LF images, because others follow, but keeps the memory.
+  void Clear();
+
+  // Filters each LF image of the batch with each of its filters, unless that was done since the
+  // last Clear(). Forgets the results of other filters, so that the memory stays small if every
+  // frame needs another filter.
+  //   filters  the prefilters of each LF image; may contain equal ones
+  void Filter(const std::vector<BatchImage>& batch, std::vector<std::vector<Prefilter>> filters,
+              const ForEach& for_each);
+
+  // Returns the pixels, or the opacity, of image `k` of the batch, filtered by one of its filters.
+  const LfPixels& Pixels(const std::vector<BatchImage>& batch, size_t k,
+                         const Prefilter& filter) const;
+  const LfPixels& Opacity(const std::vector<BatchImage>& batch, size_t k,
+                          const Prefilter& filter) const;
+
+ private:
+  struct Filtered {
+    Prefilter filter;
+    LfPixels pixels;
+    LfPixels opacity;
+  };
+  const Filtered& Of(size_t k, const Prefilter& filter) const;
+
+  std::vector<std::list<Filtered>> filtered_;  // of each LF image of the batch
+  std::list<Filtered> spare_;                  // whose memory is used again
+};
+
+}  // namespace lf
