@@ -46,6 +46,7 @@ TABLES = {
     "codec": ("codec", "bench/codec_table.py {build} --data {data} --pictures doc/images",
               "--only synth --views 3 --size 64x48 --frames 1-2"),
     "quality": ("quality", "scripts/quality.py {build}/bin/lfrenderer {data}/groundtruth", ""),
+    "quality-areas": ("quality", "scripts/quality.py --areas {build}/bin/lfrenderer {data}/groundtruth", ""),
     "rebinning_quality": ("rebinning", "scripts/rebinning_quality.py {build}/bin/lfrenderer {data}/groundtruth",
                           "--only band_d3"),
     "lens_weights-captures": ("lens-integral",

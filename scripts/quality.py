@@ -1,25 +1,30 @@
 #!/usr/bin/python3
-"""Renders the ground truth cases, compares them with true thin-lens pictures and prints the table
+"""Renders the ground truth cases, compares them with true thin-lens pictures and prints the tables
 of doc/quality.md.
 
-usage: quality.py LFRENDERER GROUNDTRUTH [--name NAME] [--write doc/quality.md] [--check] [--keep DIR]
+usage: quality.py LFRENDERER GROUNDTRUTH [--areas] [--name NAME] [--write doc/quality.md] [--check] [--keep DIR]
        quality.py --again JSON [--write doc/quality.md]
 
 GROUNDTRUTH  folder with cases.json, gt/, data/, compare.py and exr2pfm.py
 --check      exit 1 if a case falls more than 0.3 dB below a column of GROUNDTRUTH/README.md: scatter for the estimator
-             nearest, gather for bilinear, the better of both for the default
+             nearest, gather for bilinear, the better of both for the others
+--areas      the other table: pixels that show areas. LF images and true pictures are reduced to half their size, by
+             means of 2 x 2 pixels in linear light
 --keep DIR   leave paths, frames and difference pictures there
 Exit 77 if GROUNDTRUTH is absent: the test then counts as skipped, not as passed.
 """
 import argparse
 import json
 import math
+import os
 import pathlib
 import re
 import subprocess
 import sys
 import tempfile
 
+os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"
+import cv2
 import numpy as np
 from PIL import Image
 
@@ -29,6 +34,10 @@ import record as results
 ALLOWED_LOSS_DB = 0.3
 THESIS = "--mode collect --estimator nearest --lens-weights none"
 BILINEAR = "--mode collect --estimator bilinear --filter bilinear --lens-weights none"
+PREFILTERED = "--mode collect --estimator bilinear --filter prefiltered --lens-weights auto"
+# Columns of the table of pixels that show areas; lens weights are auto in all of them.
+OF_AREAS = {"nearest": "--estimator nearest", "bilinear": "--filter bilinear", "default": "",
+            "prefiltered": "--filter prefiltered"}
 
 
 def camera_axes(case):
@@ -112,7 +121,78 @@ def reference_columns(truth_folder):
     return columns
 
 
-COLUMNS = ("nearest", "scatter", "bilinear", "gather", "default", "bayer_nearest", "bayer_default")
+def halved(pixels):
+    """Returns the means of 2 x 2 pixels."""
+    return (pixels[0::2, 0::2] + pixels[1::2, 0::2] + pixels[0::2, 1::2] + pixels[1::2, 1::2]) / 4
+
+
+def linear(srgb):
+    return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+
+
+def of_areas(calibration, folder):
+    """Writes the light field at half its size, with pixels that show the means of areas."""
+    folder.mkdir(parents=True)
+    field = json.loads(calibration.read_text())
+    field["lf_transfer"] = "linear"
+    for key in ("w", "h", "fl_x", "fl_y", "cx", "cy"):
+        field[key] = field[key] // 2 if key in "wh" else field[key] / 2
+    for frame in field["frames"]:
+        stored = cv2.imread(str(calibration.parent / frame["file_path"]))
+        name = pathlib.Path(frame["file_path"]).stem + ".png"
+        light = halved(linear(stored / 255))
+        cv2.imwrite(str(folder / name), np.round(65535 * light).astype(np.uint16))
+        frame["file_path"] = name
+    (folder / "transforms.json").write_text(json.dumps(field))
+    return folder / "transforms.json"
+
+
+def read_pfm(path):
+    """Returns the pixels [height][width][3] of a PFM file, from the top."""
+    _, size, _, values = path.read_bytes().split(b"\n", 3)
+    width, height = map(int, size.split())
+    return np.frombuffer(values, "<f4").reshape(height, width, 3)[::-1]
+
+
+def true_picture_of_areas(truth, case):
+    """Returns the true picture of a case at half its size. That of half resolution is made of the one of full
+    resolution, whose first and last row are left out, because their number would be odd."""
+    if not case["name"].endswith("_half"):
+        return halved(read_pfm(truth / case["linear"]))
+    return halved(halved(read_pfm(truth / case["linear"].replace("_half", ""))[1:-1]))
+
+
+def measure_areas(renderer, truth, folder):
+    """Returns one row per case: {column: dB}, and the number of contributing LF images."""
+    fields, rows = {}, []
+    for case in json.loads((truth / "cases.json").read_text())["cases"]:
+        if not case["aperture_diameter_m"]:
+            continue
+        calibration = truth / case["light_field"]
+        if calibration not in fields:
+            fields[calibration] = of_areas(calibration, folder / ("areas_" + calibration.parent.name))
+        picture = true_picture_of_areas(truth, case)
+        work = folder / case["name"]
+        work.mkdir(parents=True, exist_ok=True)
+        path = work / "path.yaml"
+        path.write_text(path_yaml(case | {"h": picture.shape[0], "w": picture.shape[1]}))
+        row = {"case": case["name"]}
+        for column, options in OF_AREAS.items():
+            frame, row["lf_images"] = render(renderer, fields[calibration], path, work / column, options)
+            rendered = cv2.imread(str(frame), cv2.IMREAD_UNCHANGED)[..., 2::-1]
+            row[column] = -10 * math.log10(np.mean((rendered - picture) ** 2))
+        rows.append(row)
+        print(row, file=sys.stderr, flush=True)
+    return rows
+
+
+def table_of_areas(rows):
+    lines = ["| case | LF images | nearest | bilinear | default | prefiltered |", "| --- " * 6 + "|"]
+    return lines + [f"| {row['case']} | {row['lf_images']} | " +
+                    " | ".join(f"{row[column]:.2f}" for column in OF_AREAS) + " |" for row in rows]
+
+
+COLUMNS = ("nearest", "scatter", "bilinear", "gather", "default", "prefiltered", "bayer_nearest", "bayer_default")
 
 
 def measure(renderer, truth, folder):
@@ -131,6 +211,7 @@ def measure(renderer, truth, folder):
         row = {"case": name, "scatter": references[name][0], "gather": references[name][1]}
         for column, light_field, options in (
                 ("nearest", calibration, THESIS), ("bilinear", calibration, BILINEAR), ("default", calibration, ""),
+                ("prefiltered", calibration, PREFILTERED),
                 ("bayer_nearest", bayer[calibration], THESIS), ("bayer_default", bayer[calibration], "")):
             frame, images = render(renderer, light_field, path, work / column, options)
             row[column] = psnr(truth, case, frame)
@@ -141,8 +222,8 @@ def measure(renderer, truth, folder):
 
 
 def table(rows):
-    lines = ["| case | LF images | nearest | reference | bilinear | reference | default | Bayer, nearest | "
-             "Bayer, default |", "| --- " * 9 + "|"]
+    lines = ["| case | LF images | nearest | reference | bilinear | reference | default | prefiltered | "
+             "Bayer, nearest | Bayer, default |", "| --- " * 10 + "|"]
     return lines + [f"| {row['case']} | {row['lf_images']} | " +
                     " | ".join(f"{row[column]:.2f}" for column in COLUMNS) +
                     " |" for row in rows]
@@ -152,7 +233,8 @@ def faults_of(rows):
     """Yields the cases that are too far below the reference."""
     for row in rows:
         for column, least in (("nearest", row["scatter"]), ("bilinear", row["gather"]),
-                              ("default", max(row["scatter"], row["gather"]))):
+                              ("default", max(row["scatter"], row["gather"])),
+                              ("prefiltered", max(row["scatter"], row["gather"]))):
             if row[column] < least - ALLOWED_LOSS_DB:
                 yield f"{row['case']}, {column}: {row[column]:.2f} dB, below {least:.2f} - {ALLOWED_LOSS_DB}"
 
@@ -162,6 +244,7 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("renderer", type=pathlib.Path, nargs="?")
     parser.add_argument("groundtruth", type=pathlib.Path, nargs="?")
+    parser.add_argument("--areas", action="store_true")
     parser.add_argument("--check", action="store_true")
     parser.add_argument("--keep", type=pathlib.Path)
     results.add_options(parser)
@@ -174,11 +257,16 @@ def main():
             return 77
         record = results.context()
         with tempfile.TemporaryDirectory() as temporary:
-            record["rows"] = measure(arguments.renderer, arguments.groundtruth,
-                                     arguments.keep or pathlib.Path(temporary))
+            folder = arguments.keep or pathlib.Path(temporary)
+            record["rows"] = (measure_areas if arguments.areas else measure)(
+                arguments.renderer, arguments.groundtruth, folder)
     else:
         parser.error("LFRENDERER GROUNDTRUTH or --again is needed")
     rows = record["rows"]
+    if arguments.areas:
+        results.publish(arguments, "scripts/quality.py areas", record,
+                        "\n".join([results.sentence(record), ""] + table_of_areas(rows)) + "\n")
+        return 0
     results.publish(arguments, "scripts/quality.py", record,
                     "\n".join([results.sentence(record), ""] + table(rows)) + "\n")
     faults = list(faults_of(rows))
