@@ -15,21 +15,19 @@ bool IsRotation(const Mat3& r) {
 
 std::array<double, kPoseNumbers> NumbersOfPose(const RigidTransform& pose) {
   std::array<double, kPoseNumbers> numbers;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column)
-      numbers[static_cast<size_t>(3 * row + column)] = pose.rotation(row, column);
-    numbers[static_cast<size_t>(9 + row)] = pose.translation[row];
-  }
+  size_t i = 0;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) numbers[i++] = pose.rotation(row, column);
+  for (int row = 0; row < 3; ++row) numbers[i++] = pose.translation[row];
   return numbers;
 }
 
 RigidTransform PoseOfNumbers(std::span<const double, kPoseNumbers> numbers) {
   RigidTransform pose;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column)
-      pose.rotation(row, column) = numbers[static_cast<size_t>(3 * row + column)];
-    pose.translation[row] = numbers[static_cast<size_t>(9 + row)];
-  }
+  size_t i = 0;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) pose.rotation(row, column) = numbers[i++];
+  for (int row = 0; row < 3; ++row) pose.translation[row] = numbers[i++];
   return pose;
 }
 
