@@ -48,7 +48,7 @@ Result<std::unique_ptr<FilmSetup>> FilmSetup::Make(Package package, const FilmOp
                                                           ? Mosaics::kToRgb
                                                           : Mosaics::kAsRecorded));
   LF_RETURN_IF_ERROR(setup->CheckStore());
-  setup->FindFootprint();
+  LF_RETURN_IF_ERROR(setup->FindFootprint());
   LF_RETURN_IF_ERROR(setup->PlanMemory());
   return setup;
 }
@@ -71,10 +71,12 @@ Result<void> FilmSetup::CheckStore() const {
 }
 
 // Decides what LF pixels show, if the filter has to know it.
-void FilmSetup::FindFootprint() {
-  if (!film_.reading.Prefilters() || film_.reading.footprint) return;
-  const std::optional<PixelFootprint>& stated = light_field().encoding.footprint;
-  film_.reading.footprint = stated ? *stated : MeasureFootprint(light_field(), *store_);
+Result<void> FilmSetup::FindFootprint() {
+  if (!film_.reading.Prefilters() || film_.reading.footprint) return {};
+  film_.reading.footprint = light_field().encoding.footprint;
+  if (film_.reading.footprint) return {};
+  LF_ASSIGN_OR_RETURN(film_.reading.footprint, MeasureFootprint(light_field(), *store_));
+  return {};
 }
 
 Result<void> FilmSetup::PlanMemory() {

@@ -32,7 +32,7 @@ class FilmSetup {
   // kInput: the packed store lacks pixels that a frame needs (CheckKept() of
   // render/needs/frame_needs.h).
   // kOutput: one frame needs more memory than memory_bytes; the message names the least memory that
-  // suffices.
+  // suffices. Or MeasureFootprint() could not read an LF image because the machine lacks something.
   static Result<std::unique_ptr<FilmSetup>> Make(Package package, const FilmOptions& film,
                                                  const WorkOptions& work,
                                                  std::vector<FrameId> frames, ThreadPool& pool);
@@ -63,7 +63,7 @@ class FilmSetup {
   FilmSetup(Package package, const FilmOptions& film, const WorkOptions& work,
             std::vector<FrameId> frames, ThreadPool& pool);
   Result<void> CheckStore() const;
-  void FindFootprint();
+  Result<void> FindFootprint();
   Result<void> PlanMemory();
 
   const Package package_;

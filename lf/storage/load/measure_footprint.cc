@@ -53,7 +53,7 @@ void CountEdges(const LfPixels& pixels, double least_step, Edges* edges) {
 
 }  // namespace
 
-PixelFootprint MeasureFootprint(const LightField& light_field, const LfImageStore& store) {
+Result<PixelFootprint> MeasureFootprint(const LightField& light_field, const LfImageStore& store) {
   constexpr size_t kImages = 3;
   Edges edges;
   LfPixels pixels;
@@ -67,6 +67,7 @@ PixelFootprint MeasureFootprint(const LightField& light_field, const LfImageStor
     Result<LfPixels> loaded =
         LoadWithoutThrowing(store, id, {x, y, x + width, y + height},
                             light_field.image_names[id.value], std::move(pixels));
+    if (!loaded && loaded.error().kind != ErrorKind::kInput) return loaded.error();
     pixels = loaded ? *std::move(loaded) : LfPixels();
     if (pixels.radiance.channels() == LfPixels::kRgbLanes)
       CountEdges(pixels, kLeastStep * light_field.encoding.Scale(), &edges);

@@ -27,6 +27,7 @@ class DiskStore : public LfImageStore {
 
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override {
     if (id.value == broken) return InputError("broken");
+    if (id.value == unreadable) return OutputError("too many open files");
     const bool is_mosaic = shows_ == Pixels::kMosaic;
     *pixels = LfPixels(rect, is_mosaic ? BayerPattern::kRggb : BayerPattern::kNone);
     if (is_mosaic) return {};
@@ -46,7 +47,7 @@ class DiskStore : public LfImageStore {
     return {};
   }
 
-  uint32_t broken = UINT32_MAX;
+  uint32_t broken = UINT32_MAX, unreadable = UINT32_MAX;
 
  private:
   const Pixels shows_;
@@ -55,23 +56,33 @@ class DiskStore : public LfImageStore {
 TEST(MeasureFootprint, SeesHowEdgesAreRecorded) {
   using Pixels = DiskStore::Pixels;
   const LightField field = FieldOf(9);
-  EXPECT_EQ(MeasureFootprint(field, DiskStore(Pixels::kAreas)), PixelFootprint::kArea);
-  EXPECT_EQ(MeasureFootprint(field, DiskStore(Pixels::kPoints)), PixelFootprint::kPoint);
+  EXPECT_EQ(MeasureFootprint(field, DiskStore(Pixels::kAreas)).value(), PixelFootprint::kArea);
+  EXPECT_EQ(MeasureFootprint(field, DiskStore(Pixels::kPoints)).value(), PixelFootprint::kPoint);
 }
 
 TEST(MeasureFootprint, WithoutEdgesPixelsShowAreas) {
   using Pixels = DiskStore::Pixels;
-  EXPECT_EQ(MeasureFootprint(FieldOf(9), DiskStore(Pixels::kFlat)), PixelFootprint::kArea);
-  EXPECT_EQ(MeasureFootprint(FieldOf(9), DiskStore(Pixels::kMosaic)), PixelFootprint::kArea);
+  EXPECT_EQ(MeasureFootprint(FieldOf(9), DiskStore(Pixels::kFlat)).value(), PixelFootprint::kArea);
+  EXPECT_EQ(MeasureFootprint(FieldOf(9), DiskStore(Pixels::kMosaic)).value(),
+            PixelFootprint::kArea);
 }
 
 TEST(MeasureFootprint, NeedsNotAllLfImages) {
   using Pixels = DiskStore::Pixels;
   DiskStore store(Pixels::kPoints);
   store.broken = 4;
-  EXPECT_EQ(MeasureFootprint(FieldOf(9), store), PixelFootprint::kPoint);
-  EXPECT_EQ(MeasureFootprint(FieldOf(1), store), PixelFootprint::kPoint);
-  EXPECT_EQ(MeasureFootprint(FieldOf(2), store), PixelFootprint::kPoint);
+  EXPECT_EQ(MeasureFootprint(FieldOf(9), store).value(), PixelFootprint::kPoint);
+  EXPECT_EQ(MeasureFootprint(FieldOf(1), store).value(), PixelFootprint::kPoint);
+  EXPECT_EQ(MeasureFootprint(FieldOf(2), store).value(), PixelFootprint::kPoint);
+}
+
+// A machine that lacks something for a moment must not decide how frames look.
+TEST(MeasureFootprint, DoesNotGuessIfTheMachineFails) {
+  DiskStore store(DiskStore::Pixels::kPoints);
+  store.unreadable = 4;
+  const auto measured = MeasureFootprint(FieldOf(9), store);
+  ASSERT_FALSE(measured);
+  EXPECT_EQ(measured.error().kind, ErrorKind::kOutput);
 }
 
 }  // namespace
