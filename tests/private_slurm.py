@@ -83,24 +83,26 @@ def free_ports(count):
     return ports
 
 
-def children_of(process):
-    """Returns the children of all threads of a process, and their children, the youngest first."""
-    found = []
+def send(process, number):
+    try:
+        os.kill(process, number)
+    except ProcessLookupError:
+        pass
+
+
+def stop_tree(process):
+    """Stops a process, then its children and theirs. Returns all of them, each before its children. A process is
+    stopped before its children are listed, because it could start another one."""
+    send(process, signal.SIGSTOP)
+    found = [process]
     for children in pathlib.Path("/proc", str(process), "task").glob("*/children"):
         try:
             words = children.read_text().split()
         except OSError:
             continue  # it has ended
         for child in words:
-            found += children_of(child) + [int(child)]
+            found += stop_tree(int(child))
     return found
-
-
-def kill(process):
-    try:
-        os.kill(process, signal.SIGKILL)
-    except ProcessLookupError:
-        pass
 
 
 class PrivateSlurm:
@@ -178,15 +180,19 @@ class PrivateSlurm:
         return found
 
     def kill_node(self, number):
-        """Kills the node and all its processes at once, like a power cut."""
-        for step in self._step_daemons(number):
-            running = children_of(step)
-            kill(step)
-            for process in running:
-                kill(process)
+        """Kills the node and all its processes at once, like a power cut.
+
+        All are stopped before one is killed. A process that sees its child die would otherwise start it again, and the
+        new child, which nobody kills, would render a package on a node that is gone. The youngest are killed first,
+        because the system continues a stopped process whose parent dies.
+        """
         daemon = self.daemons.pop(f"n{number}", None)
+        found = stop_tree(daemon.pid) if daemon is not None else []
+        for step in self._step_daemons(number):
+            found += stop_tree(step)
+        for process in reversed(found):
+            send(process, signal.SIGKILL)
         if daemon is not None:
-            daemon.kill()
             daemon.wait()
 
     def stop(self):
