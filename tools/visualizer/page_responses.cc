@@ -39,7 +39,7 @@ Response ResponseOf(PageAnswer& answer, ByteBudget& budget) {
     budget.Return(body->text.size());
     return nullptr;
   }
-  body.release();  // Free() deletes it
+  [[maybe_unused]] HeldBody* const kept = body.release();  // Free() deletes it
   AddHeaders(response.get(), answer.type.c_str());
   if (answer.status == MHD_HTTP_METHOD_NOT_ALLOWED)
     MHD_add_response_header(response.get(), "Allow", "GET, HEAD, POST");

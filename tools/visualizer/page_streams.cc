@@ -25,7 +25,7 @@ bool PageStreams::Open(MHD_Connection* connection, Response* response) {
     Free(stream.release());
     return false;
   }
-  stream.release();  // Free() deletes it
+  [[maybe_unused]] Stream* const kept = stream.release();  // Free() deletes it
   AddHeaders(response->get(), "text/event-stream");
   return true;
 }
