@@ -42,21 +42,23 @@ Result<void> FilmRenderer::Begin(const EarlierRun* earlier) {
       frame.is_early = earlier->EndsEarly(frame.id);
     }
   LF_RETURN_IF_ERROR(FindLenses());
-  std::vector<PlaceRange> places(frames_.size());
-  if (film_.max_image_count)
-    places = PlacesOfFirst(*film_.max_image_count, setup_.index(), Cameras(), SelectCollected(),
-                           setup_.pool());
-  if (film_.Rebins()) LF_RETURN_IF_ERROR(PrepareRebinning(places, earlier));
-  if (film_.HasPlates()) LF_RETURN_IF_ERROR(PreparePlates(earlier, &places));
-  if (rebinned_ && film_.HasStopRule()) ForgetRaysAhead(places);
-  SelectForFrames(places);
+  if (film_.max_image_count) {
+    const std::vector<PlaceRange> places =
+        PlacesOfFirst(*film_.max_image_count, setup_.index(), Cameras(), SelectCollected(),
+                      setup_.pool());
+    for (size_t f = 0; f < frames_.size(); ++f) frames_[f].places = places[f];
+  }
+  if (film_.Rebins()) LF_RETURN_IF_ERROR(PrepareRebinning(earlier));
+  if (film_.HasPlates()) LF_RETURN_IF_ERROR(PreparePlates(earlier));
+  if (rebinned_ && film_.HasStopRule()) ForgetRaysAhead();
+  SelectForFrames();
   if (setup_.work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
 
   CollectOptions collect = OptionsOfCollector();
-  if (film_.HasStopRule()) LF_RETURN_IF_ERROR(PrepareStops(places, &collect));
-  collector_ =
-      std::make_unique<FrameCollector>(setup_.light_field(), setup_.store(),
-                                       FramesOfCollector(places), images_, collect, setup_.pool());
+  if (film_.HasStopRule()) LF_RETURN_IF_ERROR(PrepareStops(&collect));
+  collector_ = std::make_unique<FrameCollector>(setup_.light_field(), setup_.store(),
+                                                FramesOfCollector(), images_, collect,
+                                                setup_.pool());
   if (film_.HasPlates())
     for (size_t f = 0; f < frames_.size(); ++f)
       if (frames_[f].is_released) collector_->Stop(f);
@@ -70,14 +72,13 @@ Result<void> FilmRenderer::FindLenses() {
     if (setup_.work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
     frame.lens.emplace(setup_.index(), setup_.path().Camera(frame.id), film_.lens_weights, select_,
                        setup_.pool(), setup_.package().CameraDistance(frame.id));
-    frame.camera = frame.lens->camera();
   }
   return {};
 }
 
 std::vector<RenderCamera> FilmRenderer::Cameras() const {
   std::vector<RenderCamera> cameras;
-  for (const Frame& frame : frames_) cameras.push_back(frame.camera);
+  for (const Frame& frame : frames_) cameras.push_back(frame.lens->camera());
   return cameras;
 }
 
@@ -108,12 +109,11 @@ CollectOptions FilmRenderer::OptionsOfCollector() const {
   return collect;
 }
 
-std::vector<CollectedFrame> FilmRenderer::FramesOfCollector(std::span<const PlaceRange> places) {
+std::vector<CollectedFrame> FilmRenderer::FramesOfCollector() {
   std::vector<CollectedFrame> collected;
   if (!film_.HasPlates()) return collected;
-  for (size_t f = 0; f < frames_.size(); ++f) {
-    Frame& frame = frames_[f];
-    collected.push_back({frame.camera, &frame.plate, places[f]});
+  for (Frame& frame : frames_) {
+    collected.push_back({frame.lens->camera(), &frame.plate, frame.places});
     if (film_.lens_weights != LensWeights::kNone || setup_.package().choices.max_angle_rad)
       collected.back().weights = [&frame](LfImageId id) { return frame.lens->WeightsOf(id); };
     if (film_.MeasuresNoise()) collected.back().moments = &frame.moments;
@@ -121,29 +121,25 @@ std::vector<CollectedFrame> FilmRenderer::FramesOfCollector(std::span<const Plac
   return collected;
 }
 
-Result<void> FilmRenderer::PreparePlates(const EarlierRun* earlier,
-                                         std::vector<PlaceRange>* places) {
+Result<void> FilmRenderer::PreparePlates(const EarlierRun* earlier) {
   // All threads make plates at the same time, because a thread that clears a plate mostly waits for
   // the memory.
   setup_.pool().ForEach(frames_.size(), [this](size_t f) {
     Frame& frame = frames_[f];
-    const Intrinsics& plate = frame.camera.pinhole.intrinsics;
+    const Intrinsics& plate = frame.lens->camera().pinhole.intrinsics;
     if (!setup_.work().IsStopped() && !frame.is_released)
       frame.plate = SensorPlate::WithOpacity(plate.width_px, plate.height_px,
                                              setup_.light_field().encoding.HasOpacity());
   });
-  for (size_t f = 0; f < frames_.size(); ++f) {
+  for (Frame& frame : frames_) {
     if (setup_.work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
-    Frame& frame = frames_[f];
-    PlaceRange& taken = (*places)[f];
     if (frame.is_released) {
-      taken.begin = taken.end;
+      frame.places.begin = frame.places.end;
       continue;
     }
     LF_ASSIGN_OR_RETURN(const FrameProgress start, LoadPlate(&frame, earlier));
-    if (frame.is_early) taken.end = std::min(taken.end, start.places_done);
-    frame.places = {0, taken.end};
-    taken.begin = start.places_done;
+    if (frame.is_early) frame.places.end = std::min(frame.places.end, start.places_done);
+    frame.places.begin = start.places_done;
     frame.earlier_rays = start.rays;
   }
   return {};
@@ -190,21 +186,22 @@ Result<void> FilmRenderer::CheckReach(const LensGaps& gaps, FrameId frame) const
                   frame.value, reached_w, package.name, known_w));
 }
 
-Result<void> FilmRenderer::PrepareRebinning(std::span<const PlaceRange> places,
-                                            const EarlierRun* earlier) {
+Result<void> FilmRenderer::PrepareRebinning(const EarlierRun* earlier) {
   std::vector<LensGaps> gaps;
   std::vector<FrameId> ids;
-  for (size_t f = 0; f < frames_.size(); ++f) {
+  std::vector<PlaceRange> places;
+  for (const Frame& frame : frames_) {
     if (setup_.work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
-    const FrameId id = frames_[f].id;
+    const FrameId id = frame.id;
     CollectedWeights collected;
     if (film_.Collects())
-      collected = [this, f](LfImageId image) { return lens(f).WeightsOf(image); };
+      collected = [&frame](LfImageId image) { return frame.lens->WeightsOf(image); };
     gaps.emplace_back(setup_.index(), setup_.path().Camera(id), collected,
-                      film_.lens_weights == LensWeights::kNone, places[f], select_,
+                      film_.lens_weights == LensWeights::kNone, frame.places, select_,
                       film_.rebin.query, setup_.pool(), setup_.package().CameraDistance(id));
     LF_RETURN_IF_ERROR(CheckReach(gaps.back(), id));
     ids.push_back(id);
+    places.push_back(frame.places);
   }
   RebinPassOptions options = film_.rebin;
   options.max_cells = setup_.max_cells();
@@ -225,23 +222,25 @@ Result<void> FilmRenderer::PrepareRebinning(std::span<const PlaceRange> places,
 // Selects the LF images to load (images_). SelectedImage::rect bounds the pixels that are collected
 // into plates; it is empty for an LF image that is only rebinned. RebinnedRays names the pixels to
 // rebin only when an LF image is loaded (ImageConsumer::RectOf()).
-void FilmRenderer::SelectForFrames(std::span<const PlaceRange> places) {
+void FilmRenderer::SelectForFrames() {
   images_.clear();
   if (film_.HasPlates()) {
     SelectOptions select = SelectCollected();
     select.whole_images = setup_.work().whole_images;
+    std::vector<PlaceRange> places;
+    for (const Frame& frame : frames_) places.push_back(frame.places);
     images_ = SelectImages(setup_.index(), Cameras(), select, setup_.pool(), places);
   }
   if (film_.shard)
     std::erase_if(images_,
                   [this](const SelectedImage& image) { return !film_.shard->Holds(image.place); });
-  if (rebinned_) AddRebinnedImages(places);
+  if (rebinned_) AddRebinnedImages();
 }
 
-void FilmRenderer::AddRebinnedImages(std::span<const PlaceRange> places) {
+void FilmRenderer::AddRebinnedImages() {
   std::vector<PlaceRange> taken;
   for (const size_t f : rebinned_->asking_frames())
-    taken.push_back({rebinned_->places_done(), places[f].end});
+    taken.push_back({rebinned_->places_done(), frames_[f].places.end});
   const auto is_before = [](const SelectedImage& a, const SelectedImage& b) {
     return a.place < b.place;
   };
@@ -325,7 +324,7 @@ RenderedFrame FilmRenderer::Develop(size_t f, const Completion* completion, bool
                         is_interrupted);
   };
   if (film_.Collects()) return develop(frames_[f].plate);
-  const Intrinsics& plate = frames_[f].camera.pinhole.intrinsics;
+  const Intrinsics& plate = lens(f).camera().pinhole.intrinsics;
   // The plate is empty, because the whole picture is interpolated.
   return develop(SensorPlate(plate.width_px, plate.height_px));
 }

@@ -156,10 +156,11 @@ class FilmRenderer {
   struct Frame {
     FrameId id;
     std::optional<FrameLens> lens;  // set by Begin()
-    RenderCamera camera;            // lens->camera()
     SensorPlate plate{0, 0};
     NoiseMoments moments;          // moments of the plate; empty if noise is not measured
-    PlaceRange places;             // places of the LF images that the frame takes, in all runs
+    // Places of the LF images that this run still collects. If there is an earlier run, the plate has
+    // those before `begin`.
+    PlaceRange places;
     FrameRays earlier_rays;        // rays in the plate when this run began
     uint32_t decision_places = 0;  // stop_at_samples is applied at multiples of this number
     uint32_t next_decision = 0;    // next place at which the stop rule is applied
@@ -173,19 +174,19 @@ class FilmRenderer {
   Result<void> FindLenses();
   std::vector<RenderCamera> Cameras() const;
   SelectOptions SelectCollected() const;
-  Result<void> PrepareRebinning(std::span<const PlaceRange> places, const EarlierRun* earlier);
+  Result<void> PrepareRebinning(const EarlierRun* earlier);
   Result<void> CheckReach(const LensGaps& gaps, FrameId frame) const;
-  Result<void> PreparePlates(const EarlierRun* earlier, std::vector<PlaceRange>* places);
+  Result<void> PreparePlates(const EarlierRun* earlier);
   Result<FrameProgress> LoadPlate(Frame* frame, const EarlierRun* earlier) const;
-  void SelectForFrames(std::span<const PlaceRange> places);
-  void AddRebinnedImages(std::span<const PlaceRange> places);
+  void SelectForFrames();
+  void AddRebinnedImages();
   CollectOptions OptionsOfCollector() const;
-  std::vector<CollectedFrame> FramesOfCollector(std::span<const PlaceRange> places);
+  std::vector<CollectedFrame> FramesOfCollector();
   void EndEarlyFrames();
 
   const ReachableElements& ReachableOf(size_t f);
-  Result<void> PrepareStops(std::span<const PlaceRange> places, CollectOptions* collect);
-  void ForgetRaysAhead(std::span<const PlaceRange> places);
+  Result<void> PrepareStops(CollectOptions* collect);
+  void ForgetRaysAhead();
   uint32_t PlacesCovered(uint32_t places_done) const;
   double NoiseOf(size_t f);
   bool IsEnough(size_t f);

@@ -15,15 +15,15 @@ const ReachableElements& FilmRenderer::ReachableOf(size_t f) {
     if (film_.lens_weights != LensWeights::kNone)
       weights = [&frame](LfImageId id) { return frame.lens->WeightsOf(id); };
     frame.reachable = std::make_unique<ReachableElements>(
-        setup_.index(), frame.camera, frame.places, select_, film_.reading, setup_.pool(), weights);
+        setup_.index(), frame.lens->camera(), PlaceRange{0, frame.places.end}, select_,
+        film_.reading, setup_.pool(), weights);
   }
   return *frame.reachable;
 }
 
 // Makes batches end at the places where the stop rule of a frame is applied, in addition to the
 // places that rebinned rays need.
-Result<void> FilmRenderer::PrepareStops(std::span<const PlaceRange> places,
-                                        CollectOptions* collect) {
+Result<void> FilmRenderer::PrepareStops(CollectOptions* collect) {
   collect->cuts_for_noise = film_.stop_at_noise.has_value();
   for (size_t f = 0; f < frames_.size(); ++f) {
     Frame& frame = frames_[f];
@@ -38,7 +38,7 @@ Result<void> FilmRenderer::PrepareStops(std::span<const PlaceRange> places,
                                      ? frame.decision_places
                                      : std::min(collect->decision_places, frame.decision_places);
     }
-    frame.next_decision = DecisionFrom(f, std::max(places[f].begin, 1U));
+    frame.next_decision = DecisionFrom(f, std::max(frame.places.begin, 1U));
   }
   if (setup_.work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
   return {};
@@ -56,10 +56,10 @@ uint32_t FilmRenderer::DecisionFrom(size_t f, uint32_t place) const {
 // a saved state, the rebinned rays may lag behind the plates, which are written first; Step() then
 // catches up. If a plate was removed, the rebinned rays are ahead of its frame. This function then
 // drops them, so that they are made again from the first LF image.
-void FilmRenderer::ForgetRaysAhead(std::span<const PlaceRange> places) {
+void FilmRenderer::ForgetRaysAhead() {
   uint32_t least = UINT32_MAX;
-  for (size_t f = 0; f < frames_.size(); ++f)
-    if (!frames_[f].is_released) least = std::min(least, places[f].begin);
+  for (const Frame& frame : frames_)
+    if (!frame.is_released) least = std::min(least, frame.places.begin);
   for (size_t i = 0; i < rebinned_->section_count(); ++i) {
     if (rebinned_->places_done(i) <= least) continue;
     LogInfo(
