@@ -159,24 +159,26 @@ TEST(CameraTree, AsksFewOfAWall) {
 // SelectedImage::frame_count must count all frames that take the LF image.
 TEST(Select, FindsWhatEveryCameraAskedAloneSays) {
   const LightField field = RandomField(300, false);
-  const std::vector<RenderCamera> frames = RandomFrames(150);
+  std::vector<TakingFrame> frames;
+  for (const RenderCamera& camera : RandomFrames(150)) {
+    const auto f = static_cast<uint32_t>(frames.size());
+    frames.push_back({camera, {f % 7, f % 3 == 0 ? 200 : UINT32_MAX}});
+  }
   const ImageIndex index(field, 4);
-  std::vector<PlaceRange> places(frames.size());
-  for (uint32_t f = 0; f < places.size(); ++f) places[f] = {f % 7, f % 3 == 0 ? 200 : UINT32_MAX};
   ThreadPool pool(2);
   std::map<uint32_t, SelectedImage> expected;
   for (uint32_t i = 0; i < field.size(); ++i)
-    for (size_t f = 0; f < frames.size(); ++f) {
+    for (const TakingFrame& frame : frames) {
       const uint32_t place = index.PlaceOf({i});
-      const PixelRect rect = ContributingRect(field.Camera({i}), frames[f]);
-      if (rect.empty() || !places[f].Holds(place)) continue;
+      const PixelRect rect = ContributingRect(field.Camera({i}), frame.camera);
+      if (rect.empty() || !frame.places.Holds(place)) continue;
       SelectedImage& image = expected[place];
       image.id = {i};
       image.rect = Bounds(image.rect, rect);
       image.frame_count += 1;
       image.ray_count += static_cast<uint64_t>(rect.pixel_count());
     }
-  const std::vector<SelectedImage> found = SelectImages(index, frames, {}, pool, places);
+  const std::vector<SelectedImage> found = SelectImages(index, frames, {}, pool);
   ASSERT_EQ(found.size(), expected.size());
   auto wanted = expected.begin();
   for (const SelectedImage& image : found) {

@@ -5,7 +5,6 @@
 #include <optional>
 #include <utility>
 
-#include "lf/core/check.h"
 #include "lf/selection/overlap.h"
 #include "lf/selection/seen_region.h"
 
@@ -70,19 +69,15 @@ std::vector<Visit> VisitsOf(const CameraTree& tree, std::span<const SeenRegion> 
   return sorted;
 }
 
-// Selects the LF images of some frames. Its frame f has the index first_frame + f in the argument
-// of SelectImages().
+// Selects the LF images of some frames.
 class Selector {
  public:
-  Selector(const ImageIndex& index, std::span<const RenderCamera> frames, size_t first_frame,
-           const SelectOptions& options, std::span<const PlaceRange> places)
-      : index_(index),
-        first_frame_(first_frame),
-        options_(options),
-        places_(places.empty() ? places : places.subspan(first_frame, frames.size())) {
-    for (const RenderCamera& frame : frames) {
-      regions_.emplace_back(frame);
-      outlines_.emplace_back(frame);
+  Selector(const ImageIndex& index, std::span<const TakingFrame> frames,
+           const SelectOptions& options)
+      : index_(index), frames_(frames), options_(options) {
+    for (const TakingFrame& frame : frames) {
+      regions_.emplace_back(frame.camera);
+      outlines_.emplace_back(frame.camera);
     }
   }
 
@@ -108,10 +103,11 @@ class Selector {
       std::optional<ImageOverlap> overlap;
       for (const Visit& visit : visits) {
         const size_t f = visit.frame;
-        if (!places_.empty() && !places_[f].Holds(image.place)) continue;
+        const TakingFrame& frame = frames_[f];
+        if (!frame.places.Holds(image.place)) continue;
         if (visit.all_inside == 0 && regions_[f].Misses(camera.CentreWorld())) continue;
-        if (!IsWithinAngle(lf_camera, outlines_[f].camera, options_)) continue;
-        if (options_.takes && !options_.takes(first_frame_ + f, id)) continue;
+        if (!IsWithinAngle(lf_camera, frame.camera, options_)) continue;
+        if (frame.takes && !frame.takes(id)) continue;
         PixelRect rect = WholeImage(camera.intrinsics);
         if (!options_.whole_images) {
           if (!overlap) overlap.emplace(camera, cells->Of(light_field, id), options_.reach);
@@ -128,9 +124,8 @@ class Selector {
 
  private:
   const ImageIndex& index_;
-  const size_t first_frame_;
+  std::span<const TakingFrame> frames_;
   const SelectOptions& options_;
-  std::span<const PlaceRange> places_;
   std::vector<SeenRegion> regions_;
   std::vector<FrameOutline> outlines_;
 };
@@ -179,16 +174,13 @@ bool IsWithinAngle(const LfCamera& lf_camera, const RenderCamera& frame,
 }
 
 std::vector<SelectedImage> SelectImages(const ImageIndex& index,
-                                        std::span<const RenderCamera> frames,
-                                        const SelectOptions& options, ThreadPool& pool,
-                                        std::span<const PlaceRange> places) {
-  LF_CHECK(places.empty() || places.size() == frames.size());
+                                        std::span<const TakingFrame> frames,
+                                        const SelectOptions& options, ThreadPool& pool) {
   std::vector<SelectedImage> images;
   for (size_t first = 0; first < frames.size(); first += kFramesTogether) {
     if (IsInterrupted(options)) break;
-    const Selector selector(index,
-                            frames.subspan(first, std::min(kFramesTogether, frames.size() - first)),
-                            first, options, places);
+    const Selector selector(
+        index, frames.subspan(first, std::min(kFramesTogether, frames.size() - first)), options);
     const std::vector<Visit> visits = selector.Visits(pool);
     const std::vector<size_t> begin = LeavesOf(visits);
     const size_t leaf_count = begin.size() - 1;
@@ -208,37 +200,37 @@ std::vector<SelectedImage> SelectImages(const ImageIndex& index,
   return images;
 }
 
-std::vector<PlaceRange> PlacesOfFirst(size_t image_count, const ImageIndex& index,
-                                      std::span<const RenderCamera> frames,
-                                      const SelectOptions& options, ThreadPool& pool) {
+std::vector<SelectedImage> SelectImages(const ImageIndex& index,
+                                        std::span<const RenderCamera> frames,
+                                        const SelectOptions& options, ThreadPool& pool) {
+  std::vector<TakingFrame> taking;
+  for (const RenderCamera& frame : frames) taking.push_back({frame});
+  return SelectImages(index, taking, options, pool);
+}
+
+PlaceRange PlacesOfFirst(size_t image_count, const ImageIndex& index, const TakingFrame& frame,
+                         const SelectOptions& options) {
   const LightField& light_field = index.light_field();
-  std::vector<PlaceRange> ranges(frames.size());
-  // Each frame goes through the order independently of the others.
-  pool.ForEach(frames.size(), [&](size_t f) {
-    const SeenRegion region(frames[f]);
-    std::vector<std::pair<uint32_t, LfImageId>> places;
-    index.tree().ForEachLeaf(region, [&](size_t leaf, bool all_inside) {
-      for (const LfImageId id : index.tree().Leaf(leaf))
-        if (all_inside || !region.Misses(light_field.Camera(id).CentreWorld()))
-          places.emplace_back(index.PlaceOf(id), id);
-    });
-    std::sort(places.begin(), places.end());
-    CellsOfLast cells;
-    size_t found = 0;
-    for (const auto& [place, id] : places) {
-      if (IsInterrupted(options)) return;
-      if (!IsWithinAngle(light_field.cameras[id.value], frames[f], options)) continue;
-      if (options.takes && !options.takes(f, id)) continue;
-      const PixelRect rect = ContributingRect(light_field.Camera(id), frames[f],
-                                              cells.Of(light_field, id), options.reach);
-      found += rect.empty() ? 0 : 1;
-      if (found == image_count) {
-        ranges[f].end = place + 1;
-        return;
-      }
-    }
+  const SeenRegion region(frame.camera);
+  std::vector<std::pair<uint32_t, LfImageId>> places;
+  index.tree().ForEachLeaf(region, [&](size_t leaf, bool all_inside) {
+    for (const LfImageId id : index.tree().Leaf(leaf))
+      if (all_inside || !region.Misses(light_field.Camera(id).CentreWorld()))
+        places.emplace_back(index.PlaceOf(id), id);
   });
-  return ranges;
+  std::sort(places.begin(), places.end());
+  CellsOfLast cells;
+  size_t found = 0;
+  for (const auto& [place, id] : places) {
+    if (IsInterrupted(options)) break;
+    if (!IsWithinAngle(light_field.cameras[id.value], frame.camera, options)) continue;
+    if (frame.takes && !frame.takes(id)) continue;
+    const PixelRect rect = ContributingRect(light_field.Camera(id), frame.camera,
+                                            cells.Of(light_field, id), options.reach);
+    found += rect.empty() ? 0 : 1;
+    if (found == image_count) return {0, place + 1};
+  }
+  return {};
 }
 
 }  // namespace lf

@@ -18,13 +18,22 @@
 
 namespace lf {
 
-// A range [begin, end) of places in the order: a frame takes only the LF images in its range.
+// A range [begin, end) of places in the order.
 struct PlaceRange {
   uint32_t begin = 0;
   uint32_t end = UINT32_MAX;
 
   bool Holds(uint32_t place) const { return begin <= place && place < end; }
   friend bool operator==(const PlaceRange&, const PlaceRange&) = default;
+};
+
+// A frame for which LF images are selected.
+struct TakingFrame {
+  RenderCamera camera;
+  PlaceRange places = {};  // the frame takes only the LF images at these places
+  // Returns false if the frame does not take an LF image, because it has no lens weight there.
+  // Empty: no LF image is left out for this reason. Several threads call it at the same time.
+  std::function<bool(LfImageId id)> takes = {};
 };
 
 // One LF image that contributes to at least one frame. Its rectangle for each single frame is not
@@ -47,10 +56,6 @@ struct SelectOptions {
   // larger than this, even if it has rays for the frame. (The thesis leaves out LF cameras that
   // look at the render camera. Here the user chooses the angle.)
   std::optional<double> max_angle_rad = {};
-  // Returns false if an LF image is to be left out for a frame because it has no lens weight there.
-  // Empty: no LF image is left out for this reason. Several threads call it at the same time.
-  //   frame  index of the frame in the argument `frames` of SelectImages()
-  std::function<bool(size_t frame, LfImageId id)> takes = {};
   // If it is not null and becomes true, the remaining work is skipped and the result must not be
   // used.
   const std::atomic<bool>* interrupted = nullptr;
@@ -63,17 +68,18 @@ bool IsWithinAngle(const LfCamera& lf_camera, const RenderCamera& frame,
 // Returns the LF images that contribute to at least one frame, by ascending places (thesis: "a more
 // even result among all rendered frames, even before all have been processed"). The result does not
 // depend on the number of threads.
-//   places  one range for each frame; empty: every frame takes all places
+std::vector<SelectedImage> SelectImages(const ImageIndex& index,
+                                        std::span<const TakingFrame> frames,
+                                        const SelectOptions& options, ThreadPool& pool);
+// Selects the LF images of frames that take all of them.
 std::vector<SelectedImage> SelectImages(const ImageIndex& index,
                                         std::span<const RenderCamera> frames,
-                                        const SelectOptions& options, ThreadPool& pool,
-                                        std::span<const PlaceRange> places = {});
+                                        const SelectOptions& options, ThreadPool& pool);
 
-// Returns, for each frame, the range [0, end) of places that contains exactly its first
-// `image_count` contributing LF images. If a frame has fewer, its range is all places. An LF image
-// that options.takes leaves out is not counted.
-std::vector<PlaceRange> PlacesOfFirst(size_t image_count, const ImageIndex& index,
-                                      std::span<const RenderCamera> frames,
-                                      const SelectOptions& options, ThreadPool& pool);
+// Returns the range [0, end) of places that contains exactly the first `image_count` contributing
+// LF images that the frame takes. If they are fewer, the range is all places. frame.places is not
+// used.
+PlaceRange PlacesOfFirst(size_t image_count, const ImageIndex& index, const TakingFrame& frame,
+                         const SelectOptions& options);
 
 }  // namespace lf

@@ -116,7 +116,8 @@ TEST(Select, APartWithItsPlacesIsAsGoodAsTheWhole) {
     EXPECT_EQ(again[i].rect, images[i].rect);
     EXPECT_EQ(again[i].ray_count, images[i].ray_count);
   }
-  EXPECT_EQ(PlacesOfFirst(10, index, frames, {}, pool), PlacesOfFirst(10, whole, frames, {}, pool));
+  for (const RenderCamera& frame : frames)
+    EXPECT_EQ(PlacesOfFirst(10, index, {frame}, {}), PlacesOfFirst(10, whole, {frame}, {}));
 }
 
 TEST(Select, LfCamerasBeyondTheAngleAreLeftOut) {
@@ -133,8 +134,9 @@ TEST(Select, LfCamerasBeyondTheAngleAreLeftOut) {
   EXPECT_GT(all.size(), some.size());
   EXPECT_FALSE(some.empty());
   for (const SelectedImage& image : some) EXPECT_EQ(image.id.value % 2, 1U);
-  const auto first = PlacesOfFirst(5, ImageIndex(grid), frames, options, pool);
-  EXPECT_EQ(SelectImages(ImageIndex(grid), frames, options, pool, first).size(), 5u);
+  TakingFrame first = {frames[0]};
+  first.places = PlacesOfFirst(5, ImageIndex(grid), first, options);
+  EXPECT_EQ(SelectImages(ImageIndex(grid), {&first, 1}, options, pool).size(), 5u);
   options.max_angle_rad = RadiansFromDegrees(6);
   EXPECT_EQ(SelectImages(ImageIndex(grid), frames, options, pool).size(), all.size());
 }
@@ -142,22 +144,20 @@ TEST(Select, LfCamerasBeyondTheAngleAreLeftOut) {
 TEST(Select, EveryFrameTakesItsFirstImagesOnly) {
   ThreadPool pool(2);
   const LightField grid = Grid();
-  const std::vector<RenderCamera> frames = {Frame(0.05, 0), Frame(0.03, 0.08), Frame(0.0101, 0)};
-  const std::vector<PlaceRange> places = PlacesOfFirst(10, ImageIndex(grid), frames, {}, pool);
-  EXPECT_EQ(places[2], PlaceRange{});  // this frame has only five LF images
+  std::vector<TakingFrame> frames = {{Frame(0.05, 0)}, {Frame(0.03, 0.08)}, {Frame(0.0101, 0)}};
+  for (TakingFrame& frame : frames) frame.places = PlacesOfFirst(10, ImageIndex(grid), frame, {});
+  EXPECT_EQ(frames[2].places, PlaceRange{});  // this frame has only five LF images
   for (size_t f = 0; f < 2; ++f) {
-    const auto alone = std::span(frames).subspan(f, 1);
-    const auto all = SelectImages(ImageIndex(grid), alone, {}, pool);
-    const auto some =
-        SelectImages(ImageIndex(grid), alone, {}, pool, std::span(places).subspan(f, 1));
+    const auto all = SelectImages(ImageIndex(grid), {&frames[f].camera, 1}, {}, pool);
+    const auto some = SelectImages(ImageIndex(grid), {&frames[f], 1}, {}, pool);
     ASSERT_EQ(some.size(), 10u);
     for (size_t i = 0; i < some.size(); ++i) EXPECT_EQ(some[i].id, all[i].id);
     // Selecting from the end of the frame's range on returns the remaining LF images.
-    const std::vector<PlaceRange> rest = {{places[f].end}};
-    EXPECT_EQ(SelectImages(ImageIndex(grid), alone, {}, pool, rest).size(), all.size() - 10);
+    const TakingFrame rest = {frames[f].camera, {frames[f].places.end}};
+    EXPECT_EQ(SelectImages(ImageIndex(grid), {&rest, 1}, {}, pool).size(), all.size() - 10);
   }
   uint32_t taken = 0;
-  for (const SelectedImage& image : SelectImages(ImageIndex(grid), frames, {}, pool, places))
+  for (const SelectedImage& image : SelectImages(ImageIndex(grid), frames, {}, pool))
     taken += image.frame_count;
   EXPECT_EQ(taken, 25u);
 }

@@ -89,7 +89,7 @@ struct CollectTimes {
 class FrameCollector {
  public:
   // order   LF images that the frames take, by ascending places, each with the bounds of the pixels
-  //         that the frames need: the result of SelectImages(), where SelectOptions::takes must be
+  //         that the frames need: the result of SelectImages(), where TakingFrame::takes must be
   //         true exactly for the LF images to which CollectedFrame::weights gives a weight above 0
   // The plates and moments of the frames, and all arguments except `frames` and `options`, must
   // outlive the collector. Only Step() changes plates and moments.

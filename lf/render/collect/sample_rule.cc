@@ -80,9 +80,8 @@ ReachableElements::ReachableElements(const ImageIndex& index, const RenderCamera
                                      const PlaceRange& places, const SelectOptions& select,
                                      const PixelReading& reading, ThreadPool& pool,
                                      const std::function<RayWeights(LfImageId)>& weights) {
-  const std::vector<RenderCamera> frames = {camera};
-  const std::vector<PlaceRange> ranges = {places};
-  const std::vector<SelectedImage> images = SelectImages(index, frames, select, pool, ranges);
+  const TakingFrame frame = {camera, places};
+  const std::vector<SelectedImage> images = SelectImages(index, {&frame, 1}, select, pool);
   const LightField& light_field = index.light_field();
   image_count_ = images.size();
   std::map<uint32_t, DistortionMap> maps;

@@ -59,38 +59,35 @@ struct RebinnedRays::Section {
 };
 
 RebinnedRays::RebinnedRays(const ImageIndex& index, const FilmSlabs& slabs,
-                           std::span<const FrameId> frames, std::vector<LensGaps> gaps,
-                           std::span<const PlaceRange> places, bool collects,
+                           std::vector<RebinnedFrame> frames, bool collects,
                            const SelectOptions& select, const RebinPassOptions& options,
                            ThreadPool& pool)
     : light_field_(index.light_field()),
-      gaps_(std::move(gaps)),
+      frames_(std::move(frames)),
       select_(select),
       options_(options),
       pool_(pool),
       stored_values_(StoredValueTable(light_field_.encoding)) {
-  LF_CHECK(places.size() == gaps_.size() && frames.size() == gaps_.size());
-  for (size_t f = 0; f < gaps_.size(); ++f) {
-    const AskedPixels asked(gaps_[f], collects, options_.previews);
-    if (!asked.AsksForAny() || !slabs.SlabOf(frames[f])) continue;
-    asking_.push_back(f);
-    asked_.push_back(asked);
+  for (const RebinnedFrame& frame : frames_) {
+    const AskedPixels asked(frame.gaps, collects, options_.previews);
+    const std::optional<size_t> slab = slabs.SlabOf(frame.id);
+    if (asked.AsksForAny() && slab) asking_.push_back({&frame, *slab, asked});
   }
-  MakeSections(slabs, frames);
-  MakeMaps(index, places);
+  MakeSections(slabs);
+  MakeMaps(index);
   for (const auto& section : sections_) Begin(0, *section);
 }
 
 // Makes a section of each group of consecutive frames of asking_ with the same slab. The bounds of
 // a section contain only the rays of its frames in this pass, so that coverage maps are not coarser
 // than necessary.
-void RebinnedRays::MakeSections(const FilmSlabs& slabs, std::span<const FrameId> frames) {
+void RebinnedRays::MakeSections(const FilmSlabs& slabs) {
   for (size_t begin = 0; begin < asking_.size();) {
-    const size_t slab = *slabs.SlabOf(frames[asking_[begin]]);
+    const size_t slab = asking_[begin].slab;
     std::vector<FrameQueries> queries;
     size_t end = begin;
-    for (; end < asking_.size() && *slabs.SlabOf(frames[asking_[end]]) == slab; ++end)
-      queries.push_back(gaps_[asking_[end]].QueriesAt(LensGaps::kInTheEnd));
+    for (; end < asking_.size() && asking_[end].slab == slab; ++end)
+      queries.push_back(asking_[end].frame->gaps.QueriesAt(LensGaps::kInTheEnd));
     auto section = std::make_unique<Section>();
     section->plan = slabs.section(slab);
     section->plan.begin = begin;
@@ -108,11 +105,10 @@ RebinnedRays::~RebinnedRays() = default;
 // Estimates the number of rays that finished frames need: finds, for some LF images spread over the
 // order, the share of their pixels that in_the_end covers. Then decides which rays are kept, and
 // makes the maps.
-void RebinnedRays::MakeMaps(const ImageIndex& index, std::span<const PlaceRange> places) {
-  std::vector<PlaceRange> taken;
-  for (const size_t f : asking_) taken.push_back({0, places[f].end});
-  const std::vector<SelectedImage> images =
-      SelectImages(index, ReachedCameras(), select_, pool_, taken);
+void RebinnedRays::MakeMaps(const ImageIndex& index) {
+  std::vector<RenderCamera> reached;
+  for (const AskingFrame& asking : asking_) reached.push_back(asking.asked.camera());
+  const std::vector<SelectedImage> images = SelectImages(index, reached, select_, pool_);
   const size_t step = 1 + images.size() / kEstimatedFrom;
   const size_t asked = (images.size() + step - 1) / step;
   std::vector<double> totals;  // estimated rays of each section
@@ -143,7 +139,8 @@ void RebinnedRays::Begin(uint32_t phase, Section& section) {
   section.phase = phase;
   std::vector<FrameQueries> queries;
   for (size_t i = section.plan.begin; i < section.plan.end; ++i)
-    if (asked_[i].IsPreviewed(phase)) queries.push_back(gaps_[asking_[i]].QueriesAt(phase));
+    if (asking_[i].asked.IsPreviewed(phase))
+      queries.push_back(asking_[i].frame->gaps.QueriesAt(phase));
   if (queries.empty() && section.previews.is_empty()) return;
   CoverageOptions coarse = options_.coverage;
   coarse.cells_across = std::max(1, coarse.cells_across / 2);
@@ -181,7 +178,8 @@ PixelRect RebinnedRays::RectOf(LfImageId id, uint32_t place, size_t begin, size_
   const ImageOverlap overlap(camera, cells, select_.reach);
   PixelRect rect;
   for (size_t i = begin; i < end; ++i)
-    rect = Bounds(rect, asked_[i].RectOf(light_field_.cameras[id.value], overlap, place, select_));
+    rect = Bounds(rect,
+                  asking_[i].asked.RectOf(light_field_.cameras[id.value], overlap, place, select_));
   return rect;
 }
 
@@ -190,10 +188,17 @@ PixelRect RebinnedRays::RectOf(LfImageId id, uint32_t place) const {
                  light_field_.Camera(id).intrinsics);
 }
 
-std::vector<RenderCamera> RebinnedRays::ReachedCameras() const {
-  std::vector<RenderCamera> cameras;
-  for (const AskedPixels& asked : asked_) cameras.push_back(asked.camera());
-  return cameras;
+// Returns null if the frame needs no rays or has no slab.
+const RebinnedRays::AskingFrame* RebinnedRays::Asking(size_t frame) const {
+  const auto found = std::find_if(asking_.begin(), asking_.end(), [&](const AskingFrame& asking) {
+    return asking.frame == &frames_[frame];
+  });
+  return found == asking_.end() ? nullptr : &*found;
+}
+
+const RenderCamera* RebinnedRays::ReachedCamera(size_t frame) const {
+  const AskingFrame* const asking = Asking(frame);
+  return asking == nullptr ? nullptr : &asking->asked.camera();
 }
 
 void RebinnedRays::Take(std::span<const BatchImage> images, uint32_t place_end) {
@@ -326,16 +331,17 @@ SplatFrame RebinnedRays::SplatOfPoints(const Section& section, const FrameQuerie
 }
 
 Completion RebinnedRays::Complete(size_t frame, uint32_t place) {
-  const Intrinsics& plate = gaps_[frame].camera().pinhole.intrinsics;
+  const LensGaps& gaps = frames_[frame].gaps;
+  const Intrinsics& plate = gaps.camera().pinhole.intrinsics;
   Completion completion{Image<float>(plate.width_px, plate.height_px, 3),
                         Image<float>(plate.width_px, plate.height_px)};
-  const auto found = std::lower_bound(asking_.begin(), asking_.end(), frame);
-  if (found == asking_.end() || *found != frame || !gaps_[frame].AsksAt(place)) return completion;
-  const auto number = static_cast<size_t>(found - asking_.begin());
+  const AskingFrame* const asking = Asking(frame);
+  if (asking == nullptr || !gaps.AsksAt(place)) return completion;
+  const auto number = static_cast<size_t>(asking - asking_.data());
   const auto section = std::find_if(sections_.begin(), sections_.end(),
                                     [number](const auto& one) { return number < one->plan.end; });
   if (!(*section)->cells) (*section)->cells = (*section)->map->Cells(pool_);
-  const FrameQueries queries = gaps_[frame].QueriesAt(place);
+  const FrameQueries queries = gaps.QueriesAt(place);
   SplatFrame splat =
       options_.reparameterise ? SplatOf(**section, queries) : SplatOfPoints(**section, queries);
   completion.rgb = std::move(splat.rgb);

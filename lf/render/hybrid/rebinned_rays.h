@@ -59,28 +59,31 @@ struct RebinPassOptions {
   size_t max_cells = 0;  // largest number of cells in the maps of all sections together
 };
 
+// A frame that may be completed by rebinned rays, from the LF images at all places.
+struct RebinnedFrame {
+  FrameId id;
+  LensGaps gaps;
+};
+
 class RebinnedRays : public ImageConsumer {
  public:
   // The light field of `index`, and `pool`, must outlive the object.
   //   slabs     the slabs of the film
-  //   frames    the frames of the pass, ascending
-  //   gaps      one for each frame
-  //   places    one range for each frame: the LF images that the frame takes
+  //   frames    the frames of the pass, by ascending ids
   //   collects  true if the frames also collect rays
-  RebinnedRays(const ImageIndex& index, const FilmSlabs& slabs, std::span<const FrameId> frames,
-               std::vector<LensGaps> gaps, std::span<const PlaceRange> places, bool collects,
-               const SelectOptions& select, const RebinPassOptions& options, ThreadPool& pool);
+  RebinnedRays(const ImageIndex& index, const FilmSlabs& slabs, std::vector<RebinnedFrame> frames,
+               bool collects, const SelectOptions& select, const RebinPassOptions& options,
+               ThreadPool& pool);
   ~RebinnedRays() override;
 
   uint32_t places_done() const override;
   PixelRect RectOf(LfImageId id, uint32_t place) const override;
   void Take(std::span<const BatchImage> images, uint32_t place_end) override;
 
-  // Returns the cameras for which LF images are selected. Their lenses and plates contain all rays
-  // that the finished frames need. There is one for each frame that needs rebinned rays at any
-  // stage; asking_frames() returns the indices of these frames in the constructor's `frames`.
-  std::vector<RenderCamera> ReachedCameras() const;
-  const std::vector<size_t>& asking_frames() const { return asking_; }
+  // Returns the camera for which LF images are selected. Its lens and plate contain all rays that
+  // the finished frame needs. Null if the frame needs no rebinned rays at any stage.
+  //   frame  index in the constructor's `frames`
+  const RenderCamera* ReachedCamera(size_t frame) const;
 
   // Returns the interpolated part of a frame when exactly the LF images at places before `place`
   // are collected.
@@ -121,9 +124,16 @@ class RebinnedRays : public ImageConsumer {
 
  private:
   struct Section;
-  void MakeSections(const FilmSlabs& slabs, std::span<const FrameId> frames);
+  // A frame that needs rays and has a slab.
+  struct AskingFrame {
+    const RebinnedFrame* frame;
+    size_t slab;
+    AskedPixels asked;
+  };
+  const AskingFrame* Asking(size_t frame) const;
+  void MakeSections(const FilmSlabs& slabs);
   PixelRect RectOf(LfImageId id, uint32_t place, size_t begin, size_t end) const;
-  void MakeMaps(const ImageIndex& index, std::span<const PlaceRange> places);
+  void MakeMaps(const ImageIndex& index);
   void Begin(uint32_t phase, Section& section);
   SplatFrame SplatBy(std::span<const FrameRay> rays, const FrameQueries& queries,
                      const LensPointSets& points, const PointShares* shares) const;
@@ -132,13 +142,12 @@ class RebinnedRays : public ImageConsumer {
   void Rebin(std::span<const BatchImage> images, Section& section);
 
   const LightField& light_field_;
-  const std::vector<LensGaps> gaps_;
+  const std::vector<RebinnedFrame> frames_;
   const SelectOptions select_;
   const RebinPassOptions options_;
   ThreadPool& pool_;
   const std::vector<uint16_t> stored_values_;
-  std::vector<size_t> asking_;      // indices of the frames that need rays and have a slab
-  std::vector<AskedPixels> asked_;  // one for each frame of asking_
+  std::vector<AskingFrame> asking_;  // by ascending ids
   std::vector<std::unique_ptr<Section>> sections_;
   SharedIdealPixels ideal_pixels_;
   bool keeps_all_ = false;

@@ -28,21 +28,19 @@ struct Fixture {
   }
 
   std::unique_ptr<RebinnedRays> Make(ThreadPool& pool) const {
-    std::vector<LensGaps> gaps;
     CollectedWeights collected;
     if (collects) collected = [](LfImageId) { return RayWeights(1); };
-    for (const RenderCamera& frame : frames)
-      gaps.emplace_back(index, frame, collected, true, PlaceRange(), select, options.query, pool);
-    const std::vector<PlaceRange> places(frames.size());
     std::vector<FrameSampling> sampling;
-    std::vector<FrameId> ids;
+    std::vector<RebinnedFrame> rebinned;
     for (const RenderCamera& frame : frames) {
       sampling.push_back(SamplingOf(index, frame, select, pool));
-      ids.push_back(FrameId{static_cast<uint32_t>(sampling.size())});
+      rebinned.push_back(
+          {FrameId{static_cast<uint32_t>(sampling.size())},
+           LensGaps(index, frame, collected, true, {}, select, options.query, pool)});
     }
     const FilmSlabs slabs(frames, sampling, options.query, options.slab);
-    return std::make_unique<RebinnedRays>(index, slabs, ids, std::move(gaps), places, collects,
-                                          select, options, pool);
+    return std::make_unique<RebinnedRays>(index, slabs, std::move(rebinned), collects, select,
+                                          options, pool);
   }
 
   struct Outcome {
@@ -63,13 +61,13 @@ struct Fixture {
                                   frame.pinhole.intrinsics.height_px);
     std::unique_ptr<RebinnedRays> rays = Make(pool);
     for (int round = 0; round < 2; ++round) {
-      std::vector<RenderCamera> cameras = collects ? frames : std::vector<RenderCamera>();
-      std::vector<PlaceRange> taken = collects ? places : std::vector<PlaceRange>();
-      for (const RenderCamera& camera : rays->ReachedCameras()) {
-        cameras.push_back(camera);
-        taken.push_back({rays->places_done(), UINT32_MAX});
+      std::vector<TakingFrame> taking;
+      for (size_t f = 0; f < frames.size(); ++f) {
+        if (collects) taking.push_back({frames[f], places[f]});
+        if (const RenderCamera* const reached = rays->ReachedCamera(f))
+          taking.push_back({*reached, {rays->places_done()}});
       }
-      const auto order = SelectImages(index, cameras, select, pool, taken);
+      const auto order = SelectImages(index, taking, select, pool);
       CollectOptions collect;
       collect.reading.estimator = Estimator::kBilinear;
       collect.batch_image_count = batch;

@@ -48,14 +48,12 @@ class NeedsFinder {
 
  private:
   void AddCollected() {
-    const std::span<const RenderCamera> frames(&lens_.camera(), 1);
-    SelectOptions select = options_.select;
+    TakingFrame frame = {lens_.camera()};
     if (options_.lens_weights != LensWeights::kNone)
-      select.takes = [this](size_t /*frame*/, LfImageId id) { return lens_.Takes(id); };
-    std::vector<PlaceRange> places(1);
+      frame.takes = [this](LfImageId id) { return lens_.Takes(id); };
     if (options_.max_image_count)
-      places = PlacesOfFirst(*options_.max_image_count, index_, frames, select, pool_);
-    for (const SelectedImage& image : SelectImages(index_, frames, select, pool_, places))
+      frame.places = PlacesOfFirst(*options_.max_image_count, index_, frame, options_.select);
+    for (const SelectedImage& image : SelectImages(index_, {&frame, 1}, options_.select, pool_))
       needs_.images.push_back({image.id, image.rect, image.ray_count});
   }
 

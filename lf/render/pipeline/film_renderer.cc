@@ -42,12 +42,11 @@ Result<void> FilmRenderer::Begin(const EarlierRun* earlier) {
       frame.is_early = earlier->EndsEarly(frame.id);
     }
   LF_RETURN_IF_ERROR(FindLenses());
-  if (film_.max_image_count) {
-    const std::vector<PlaceRange> places =
-        PlacesOfFirst(*film_.max_image_count, setup_.index(), Cameras(), SelectCollected(),
-                      setup_.pool());
-    for (size_t f = 0; f < frames_.size(); ++f) frames_[f].places = places[f];
-  }
+  if (film_.max_image_count)
+    setup_.pool().ForEach(frames_.size(), [this](size_t f) {
+      frames_[f].places =
+          PlacesOfFirst(*film_.max_image_count, setup_.index(), Taking(frames_[f]), select_);
+    });
   if (film_.Rebins()) LF_RETURN_IF_ERROR(PrepareRebinning(earlier));
   if (film_.HasPlates()) LF_RETURN_IF_ERROR(PreparePlates(earlier));
   if (rebinned_ && film_.HasStopRule()) ForgetRaysAhead();
@@ -56,9 +55,8 @@ Result<void> FilmRenderer::Begin(const EarlierRun* earlier) {
 
   CollectOptions collect = OptionsOfCollector();
   if (film_.HasStopRule()) LF_RETURN_IF_ERROR(PrepareStops(&collect));
-  collector_ = std::make_unique<FrameCollector>(setup_.light_field(), setup_.store(),
-                                                FramesOfCollector(), images_, collect,
-                                                setup_.pool());
+  collector_ = std::make_unique<FrameCollector>(
+      setup_.light_field(), setup_.store(), FramesOfCollector(), images_, collect, setup_.pool());
   if (film_.HasPlates())
     for (size_t f = 0; f < frames_.size(); ++f)
       if (frames_[f].is_released) collector_->Stop(f);
@@ -76,18 +74,12 @@ Result<void> FilmRenderer::FindLenses() {
   return {};
 }
 
-std::vector<RenderCamera> FilmRenderer::Cameras() const {
-  std::vector<RenderCamera> cameras;
-  for (const Frame& frame : frames_) cameras.push_back(frame.lens->camera());
-  return cameras;
-}
-
-// Returns the options that select only the LF images whose rays have a weight in a frame.
-SelectOptions FilmRenderer::SelectCollected() const {
-  SelectOptions select = select_;
+// Returns the frame for the selection of the LF images whose rays have a weight in it.
+TakingFrame FilmRenderer::Taking(const Frame& frame) const {
+  TakingFrame taking = {frame.lens->camera(), frame.places};
   if (film_.lens_weights != LensWeights::kNone)
-    select.takes = [this](size_t f, LfImageId id) { return lens(f).Takes(id); };
-  return select;
+    taking.takes = [&frame](LfImageId id) { return frame.lens->Takes(id); };
+  return taking;
 }
 
 CollectOptions FilmRenderer::OptionsOfCollector() const {
@@ -187,28 +179,23 @@ Result<void> FilmRenderer::CheckReach(const LensGaps& gaps, FrameId frame) const
 }
 
 Result<void> FilmRenderer::PrepareRebinning(const EarlierRun* earlier) {
-  std::vector<LensGaps> gaps;
-  std::vector<FrameId> ids;
-  std::vector<PlaceRange> places;
+  std::vector<RebinnedFrame> rebinned;
   for (const Frame& frame : frames_) {
     if (setup_.work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
-    const FrameId id = frame.id;
     CollectedWeights collected;
     if (film_.Collects())
       collected = [&frame](LfImageId image) { return frame.lens->WeightsOf(image); };
-    gaps.emplace_back(setup_.index(), setup_.path().Camera(id), collected,
-                      film_.lens_weights == LensWeights::kNone, frame.places, select_,
-                      film_.rebin.query, setup_.pool(), setup_.package().CameraDistance(id));
-    LF_RETURN_IF_ERROR(CheckReach(gaps.back(), id));
-    ids.push_back(id);
-    places.push_back(frame.places);
+    LensGaps gaps(setup_.index(), setup_.path().Camera(frame.id), collected,
+                  film_.lens_weights == LensWeights::kNone, frame.places, select_,
+                  film_.rebin.query, setup_.pool(), setup_.package().CameraDistance(frame.id));
+    LF_RETURN_IF_ERROR(CheckReach(gaps, frame.id));
+    rebinned.push_back({frame.id, std::move(gaps)});
   }
   RebinPassOptions options = film_.rebin;
   options.max_cells = setup_.max_cells();
   options.is_reference = film_.back_end == CollectBackEnd::kReference;
-  rebinned_ =
-      std::make_unique<RebinnedRays>(setup_.index(), setup_.slabs(), ids, std::move(gaps), places,
-                                     film_.Collects(), select_, options, setup_.pool());
+  rebinned_ = std::make_unique<RebinnedRays>(setup_.index(), setup_.slabs(), std::move(rebinned),
+                                             film_.Collects(), select_, options, setup_.pool());
   for (const std::string& line : rebinned_->Describe()) LogInfo("{}", line);
   if (earlier == nullptr) return {};
   for (size_t i = 0; i < rebinned_->section_count(); ++i) {
@@ -225,11 +212,11 @@ Result<void> FilmRenderer::PrepareRebinning(const EarlierRun* earlier) {
 void FilmRenderer::SelectForFrames() {
   images_.clear();
   if (film_.HasPlates()) {
-    SelectOptions select = SelectCollected();
+    SelectOptions select = select_;
     select.whole_images = setup_.work().whole_images;
-    std::vector<PlaceRange> places;
-    for (const Frame& frame : frames_) places.push_back(frame.places);
-    images_ = SelectImages(setup_.index(), Cameras(), select, setup_.pool(), places);
+    std::vector<TakingFrame> taking;
+    for (const Frame& frame : frames_) taking.push_back(Taking(frame));
+    images_ = SelectImages(setup_.index(), taking, select, setup_.pool());
   }
   if (film_.shard)
     std::erase_if(images_,
@@ -238,15 +225,16 @@ void FilmRenderer::SelectForFrames() {
 }
 
 void FilmRenderer::AddRebinnedImages() {
-  std::vector<PlaceRange> taken;
-  for (const size_t f : rebinned_->asking_frames())
-    taken.push_back({rebinned_->places_done(), frames_[f].places.end});
+  std::vector<TakingFrame> taking;
+  for (size_t f = 0; f < frames_.size(); ++f)
+    if (const RenderCamera* const reached = rebinned_->ReachedCamera(f))
+      taking.push_back({*reached, {rebinned_->places_done(), frames_[f].places.end}});
   const auto is_before = [](const SelectedImage& a, const SelectedImage& b) {
     return a.place < b.place;
   };
   std::vector<SelectedImage> all;
   const std::vector<SelectedImage> asked =
-      SelectImages(setup_.index(), rebinned_->ReachedCameras(), select_, setup_.pool(), taken);
+      SelectImages(setup_.index(), taking, select_, setup_.pool());
   for (SelectedImage image : asked) {
     if (std::binary_search(images_.begin(), images_.end(), image, is_before)) continue;
     if (rebinned_->RectOf(image.id, image.place).empty()) continue;

@@ -157,9 +157,9 @@ class FilmRenderer {
     FrameId id;
     std::optional<FrameLens> lens;  // set by Begin()
     SensorPlate plate{0, 0};
-    NoiseMoments moments;          // moments of the plate; empty if noise is not measured
-    // Places of the LF images that this run still collects. If there is an earlier run, the plate has
-    // those before `begin`.
+    NoiseMoments moments;  // moments of the plate; empty if noise is not measured
+    // Places of the LF images that this run still collects. If there is an earlier run, the plate
+    // has those before `begin`.
     PlaceRange places;
     FrameRays earlier_rays;        // rays in the plate when this run began
     uint32_t decision_places = 0;  // stop_at_samples is applied at multiples of this number
@@ -172,8 +172,7 @@ class FilmRenderer {
   };
 
   Result<void> FindLenses();
-  std::vector<RenderCamera> Cameras() const;
-  SelectOptions SelectCollected() const;
+  TakingFrame Taking(const Frame& frame) const;
   Result<void> PrepareRebinning(const EarlierRun* earlier);
   Result<void> CheckReach(const LensGaps& gaps, FrameId frame) const;
   Result<void> PreparePlates(const EarlierRun* earlier);

@@ -14,9 +14,9 @@ const ReachableElements& FilmRenderer::ReachableOf(size_t f) {
     ImageWeights weights;
     if (film_.lens_weights != LensWeights::kNone)
       weights = [&frame](LfImageId id) { return frame.lens->WeightsOf(id); };
-    frame.reachable = std::make_unique<ReachableElements>(
-        setup_.index(), frame.lens->camera(), PlaceRange{0, frame.places.end}, select_,
-        film_.reading, setup_.pool(), weights);
+    frame.reachable = std::make_unique<ReachableElements>(setup_.index(), frame.lens->camera(),
+                                                          PlaceRange{0, frame.places.end}, select_,
+                                                          film_.reading, setup_.pool(), weights);
   }
   return *frame.reachable;
 }
