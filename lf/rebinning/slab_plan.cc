@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "lf/core/check.h"
-
 namespace lf {
 namespace {
 
@@ -31,9 +29,8 @@ void ForEachPlace(const FrameQueries& frame, const Visit& visit) {
 
 class SectionPlanner {
  public:
-  SectionPlanner(std::span<const FrameQueries> frames, std::span<const LfSampling> sampling,
-                 const SlabChoices& choices)
-      : frames_(frames), sampling_(sampling), choices_(choices) {}
+  SectionPlanner(std::span<const FrameQueries> frames, const SlabChoices& choices)
+      : frames_(frames), choices_(choices) {}
 
   void Plan(size_t begin, size_t end, std::vector<SlabSection>* sections) const {
     SlabSection section;
@@ -126,7 +123,7 @@ class SectionPlanner {
     const double distance = normal.dot(slab.uv.origin_world - slab.st.origin_world);
     double st = std::numeric_limits<double>::infinity(), lf_pixel = st, element = st;
     for (size_t f = section->begin; f < section->end; ++f) {
-      const LfSampling& sampling = sampling_[f];
+      const LfSampling& sampling = frames_[f].sampling;
       st = std::min(st, sampling.camera_distance_w);
       lf_pixel = std::min(
           lf_pixel,
@@ -153,7 +150,6 @@ class SectionPlanner {
   }
 
   std::span<const FrameQueries> frames_;
-  std::span<const LfSampling> sampling_;
   const SlabChoices& choices_;
 };
 
@@ -184,11 +180,9 @@ std::optional<SlabBounds> BoundsOf(const Slab& slab, std::span<const FrameQuerie
 }
 
 std::vector<SlabSection> PlanSlabs(std::span<const FrameQueries> frames,
-                                   std::span<const LfSampling> sampling,
                                    const SlabChoices& choices) {
-  LF_CHECK(frames.size() == sampling.size());
   std::vector<SlabSection> sections;
-  if (!frames.empty()) SectionPlanner(frames, sampling, choices).Plan(0, frames.size(), &sections);
+  if (!frames.empty()) SectionPlanner(frames, choices).Plan(0, frames.size(), &sections);
   return sections;
 }
 

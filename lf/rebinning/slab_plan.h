@@ -24,13 +24,6 @@
 
 namespace lf {
 
-// How densely the light field was recorded around one frame.
-struct LfSampling {
-  double camera_distance_w = 0;      // between neighbouring LF cameras
-  double pixel_rad = 0;              // angle that one LF pixel sees
-  Vec3 middle_world = Vec3::Zero();  // mean position of the LF cameras
-};
-
 // Each value that is set overrides the planner's choice.
 struct SlabChoices {
   std::optional<Vec3> position_world;    // position of the st plane
@@ -58,9 +51,7 @@ struct SlabSection {
 // planes, and cells are fine enough: keys have 16 bits for each number (slab.h), which limits the
 // number of cells. Otherwise halves the frames until this is true of each section, or the section
 // has one frame.
-//   sampling  one for each frame
 std::vector<SlabSection> PlanSlabs(std::span<const FrameQueries> frames,
-                                   std::span<const LfSampling> sampling,
                                    const SlabChoices& choices);
 
 // Returns the bounds on the slab of all rays that the frames query, their reach included; none if

@@ -25,15 +25,12 @@ std::vector<FrameQueries> Frames(int count, double turn_rad, double last_focus_w
     frame.camera.focus_distance_w = 2 + t * (last_focus_w - 2);
     frame.camera.focus_plane =
         FocusPlane(frame.camera.pinhole, frame.camera.focus_distance_w, {0.1 * t, 0});
+    frame.sampling = {0.008, 1.0 / 90, Vec3(0.05, 0, 0)};
     frame.points = MakeLensPoints(frame.camera.aperture, 9, 1, 0);
     frame.kernel = {0.004, 0.5};
     frames.push_back(frame);
   }
   return frames;
-}
-
-std::vector<LfSampling> Sampling(size_t count) {
-  return std::vector<LfSampling>(count, {0.008, 1.0 / 90, Vec3(0.05, 0, 0)});
 }
 
 // Returns a ray that the frame queries, or one within its reach.
@@ -52,7 +49,7 @@ Ray RandomRay(const FrameQueries& frame, RandomSequence& random) {
 
 TEST(SlabPlan, IsAmongTheFramesAndFacesAsTheyDo) {
   const auto frames = Frames(5, 0.2, 2);
-  const auto sections = PlanSlabs(frames, Sampling(5), {});
+  const auto sections = PlanSlabs(frames, {});
   ASSERT_EQ(sections.size(), 1u);
   const Slab& slab = sections[0].slab;
   EXPECT_EQ(sections[0].end, 5u);
@@ -67,7 +64,7 @@ TEST(SlabPlan, IsAmongTheFramesAndFacesAsTheyDo) {
 TEST(SlabPlan, HoldsAllRays) {
   for (const double turn : {0.0, 0.6}) {
     const auto frames = Frames(4, turn, 5);
-    for (const SlabSection& section : PlanSlabs(frames, Sampling(4), {})) {
+    for (const SlabSection& section : PlanSlabs(frames, {})) {
       RandomSequence random(3);
       for (size_t f = section.begin; f < section.end; ++f)
         for (int i = 0; i < 500; ++i) {
@@ -85,8 +82,8 @@ TEST(SlabPlan, HoldsAllRays) {
 TEST(SlabPlan, CellsAreFineWhereTheFocusIsPulledTo) {
   SlabChoices choices;
   choices.r_uv_w = 0.0005;
-  const auto still = PlanSlabs(Frames(3, 0, 2), Sampling(3), choices);
-  const auto pulled = PlanSlabs(Frames(3, 0, 20), Sampling(3), choices);
+  const auto still = PlanSlabs(Frames(3, 0, 2), choices);
+  const auto pulled = PlanSlabs(Frames(3, 0, 20), choices);
   ASSERT_EQ(pulled.size(), 1u);
   EXPECT_LT(pulled[0].slab.r_st_w, still[0].slab.r_st_w);
   const Slab& slab = pulled[0].slab;
@@ -98,7 +95,7 @@ TEST(SlabPlan, CellsAreFineWhereTheFocusIsPulledTo) {
 }
 
 TEST(SlabPlan, FramesThatTurnHaveSlabsOfTheirOwn) {
-  const auto sections = PlanSlabs(Frames(9, 3, 2), Sampling(9), {});
+  const auto sections = PlanSlabs(Frames(9, 3, 2), {});
   ASSERT_GT(sections.size(), 2u);
   size_t next = 0;
   const auto frames = Frames(9, 3, 2);
@@ -117,7 +114,7 @@ TEST(SlabPlan, ChoicesOverride) {
   choices.r_uv_w = 0.02;
   choices.uv_distance_w = 7;
   choices.forward_world = Vec3(0.1, 0, 1);
-  const auto sections = PlanSlabs(Frames(2, 0, 2), Sampling(2), choices);
+  const auto sections = PlanSlabs(Frames(2, 0, 2), choices);
   const Slab& slab = sections[0].slab;
   EXPECT_EQ(slab.r_st_w, 0.01);
   EXPECT_EQ(slab.r_uv_w, 0.02);
@@ -128,7 +125,7 @@ TEST(SlabPlan, ChoicesOverride) {
 TEST(CoverageMap, CoversWhatIsAskedForAndNotMuchMore) {
   ThreadPool pool(2);
   const auto frames = Frames(3, 0.3, 4);
-  const SlabSection section = PlanSlabs(frames, Sampling(3), {})[0];
+  const SlabSection section = PlanSlabs(frames, {})[0];
   for (const size_t bytes : {size_t{1} << 24, size_t{1} << 14}) {
     CoverageOptions options;
     options.most_bytes = bytes;
@@ -158,7 +155,7 @@ TEST(CoverageMap, LeavesOutWhatIsNotAskedFor) {
   FrameQueries& frame = frames[0];
   frame.points = MakeLensPoints(frame.camera.aperture, 64, 1, 0);
   frame.kernel.sigma_st_w = 0.001;
-  const SlabSection section = PlanSlabs(frames, Sampling(1), {})[0];
+  const SlabSection section = PlanSlabs(frames, {})[0];
   PointShares shares{NodeAxis(80, 9), NodeAxis(60, 9), 64, {}};
   const int columns = shares.columns.count();
   for (int node = 0; node < static_cast<int>(shares.node_count()); ++node)

@@ -102,9 +102,8 @@ FrameUse PageScene::UseOf(const PathDraft& draft, FrameId frame) {
     NeedsOptions options = arguments_.needs;
     options.max_image_count = package.choices.max_image_count;
     options.select.max_angle_rad = package.choices.max_angle_rad;
-    std::optional<FrameSampling> sampling;
-    if (!package.surroundings.empty()) sampling = SamplingOf(package.surroundings[frame.value - 1]);
-    FrameNeeds needs = NeedsOf(*package_indices_[i], camera, options, pool_, sampling);
+    FrameNeeds needs =
+        NeedsOf(*package_indices_[i], camera, options, pool_, SamplingOf(package, frame));
     for (CameraUse& one : use.of_cameras)
       if (one == CameraUse::kUsed) one = CameraUse::kLimit;
     for (FrameNeeds::Image& image : needs.images) {

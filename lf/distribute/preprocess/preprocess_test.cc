@@ -99,11 +99,8 @@ void PreprocessTest::ExpectPackageIsAsGoodAsTheWhole(const Package& package,
           ASSERT_EQ(lens.WeightsOf(image.id).At(x, y), again.WeightsOf(id).At(x, y));
     }
     // The package contains all that is needed to compute the same needs.
-    const std::optional<FrameSampling> sampling =
-        package.surroundings.empty()
-            ? std::nullopt
-            : std::optional(SamplingOf(package.surroundings[frame.id.value - 1]));
-    const FrameNeeds found = NeedsOf(part, package.path.Camera(frame.id), needs, pool_, sampling);
+    const FrameNeeds found =
+        NeedsOf(part, package.path.Camera(frame.id), needs, pool_, SamplingOf(package, frame.id));
     ASSERT_EQ(found.images.size(), wanted.images.size());
     for (size_t i = 0; i < found.images.size(); ++i) {
       EXPECT_EQ(package.images[found.images[i].id.value].id, wanted.images[i].id.value);

@@ -15,12 +15,16 @@
 
 namespace lf {
 
+struct SampledFrame {
+  RenderCamera camera;
+  FrameSampling sampling;  // SamplingOf() in the whole light field
+};
+
 class FilmSlabs {
  public:
-  //   frames    all frames of the film, frame 1 first
-  //   sampling  SamplingOf() of each frame in the whole light field
-  FilmSlabs(std::span<const RenderCamera> frames, std::span<const FrameSampling> sampling,
-            const QueryOptions& options, const SlabChoices& choices);
+  //   frames  all frames of the film, frame 1 first
+  FilmSlabs(std::span<const SampledFrame> frames, const QueryOptions& options,
+            const SlabChoices& choices);
 
   // Returns the index of the frame's slab; nullopt if there are no LF cameras around its lens.
   std::optional<size_t> SlabOf(FrameId frame) const { return slab_of_[frame.value - 1]; }

@@ -114,6 +114,7 @@ FrameQueries QueriesOf(const RenderCamera& frame, const FrameSampling& sampling,
   LF_CHECK(sampling.lf.camera_distance_w > 0);
   FrameQueries queries;
   queries.camera = frame;
+  queries.sampling = sampling.lf;
   const double area_w2 = Area(frame.aperture);
   const double sigma_w = options.sigma_st * sampling.lf.camera_distance_w;
   const double apart_w = kPointDistance_sigmas / 2 * sigma_w;

@@ -12,7 +12,6 @@
 #include "lf/core/ids.h"
 #include "lf/core/parallel.h"
 #include "lf/rebinning/frame_queries.h"
-#include "lf/rebinning/slab_plan.h"
 #include "lf/selection/image_index.h"
 #include "lf/selection/select.h"
 

@@ -30,15 +30,15 @@ struct Fixture {
   std::unique_ptr<RebinnedRays> Make(ThreadPool& pool) const {
     CollectedWeights collected;
     if (collects) collected = [](LfImageId) { return RayWeights(1); };
-    std::vector<FrameSampling> sampling;
+    std::vector<SampledFrame> sampled;
     std::vector<RebinnedFrame> rebinned;
     for (const RenderCamera& frame : frames) {
-      sampling.push_back(SamplingOf(index, frame, select, pool));
+      sampled.push_back({frame, SamplingOf(index, frame, select, pool)});
       rebinned.push_back(
-          {FrameId{static_cast<uint32_t>(sampling.size())},
+          {FrameId{static_cast<uint32_t>(sampled.size())},
            LensGaps(index, frame, collected, true, {}, select, options.query, pool)});
     }
-    const FilmSlabs slabs(frames, sampling, options.query, options.slab);
+    const FilmSlabs slabs(sampled, options.query, options.slab);
     return std::make_unique<RebinnedRays>(index, slabs, std::move(rebinned), collects, select,
                                           options, pool);
   }

@@ -3,14 +3,6 @@
 #include <utility>
 
 namespace lf {
-namespace {
-
-Result<void> CheckInterrupted(const SelectOptions& select) {
-  if (select.interrupted == nullptr || !*select.interrupted) return {};
-  return Error{ErrorKind::kInterrupted, "interrupted"};
-}
-
-}  // namespace
 
 Result<ImagePlaces> PlacesOfFilm(ImageOrder order, uint64_t seed, const LightField& light_field,
                                  const CameraPath& path, const NeedsOptions& needs,
@@ -28,19 +20,10 @@ Result<ImagePlaces> PlacesOfFilm(ImageOrder order, uint64_t seed, const LightFie
     taken.emplace_back();
     for (const FrameNeeds::Image& image : NeedsOf(index, frame, unlimited, pool).images)
       taken.back().push_back({image.id, image.ray_count});
-    LF_RETURN_IF_ERROR(CheckInterrupted(needs.select));
+    if (needs.select.interrupted != nullptr && *needs.select.interrupted)
+      return Error{ErrorKind::kInterrupted, "interrupted"};
   }
   return PlacesInOrder(order, light_field.size(), seed, taken);
-}
-
-Result<std::vector<FrameSampling>> SamplingOfFilm(const ImageIndex& index, const CameraPath& path,
-                                                  const SelectOptions& select, ThreadPool& pool) {
-  std::vector<FrameSampling> sampling;
-  for (const RenderCamera& frame : path.cameras) {
-    sampling.push_back(SamplingOf(index, frame, select, pool));
-    LF_RETURN_IF_ERROR(CheckInterrupted(select));
-  }
-  return sampling;
 }
 
 }  // namespace lf

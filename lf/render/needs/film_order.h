@@ -24,9 +24,4 @@ Result<ImagePlaces> PlacesOfFilm(ImageOrder order, uint64_t seed, const LightFie
                                  const CameraPath& path, const NeedsOptions& needs,
                                  ThreadPool& pool);
 
-// Returns, for each frame of the film, how densely LF cameras sample its lens (SamplingOf()); index
-// [frame - 1]. kInterrupted: *select.interrupted is true.
-Result<std::vector<FrameSampling>> SamplingOfFilm(const ImageIndex& index, const CameraPath& path,
-                                                  const SelectOptions& select, ThreadPool& pool);
-
 }  // namespace lf

@@ -176,9 +176,11 @@ FrameSurroundings SurroundingsOf(const FrameSampling& sampling) {
           sampling.hole_w};
 }
 
-FrameSampling SamplingOf(const FrameSurroundings& surroundings) {
-  return {{surroundings.camera_distance_w, surroundings.pixel_rad, surroundings.middle_world},
-          surroundings.hole_w};
+std::optional<FrameSampling> SamplingOf(const Package& package, FrameId frame) {
+  if (package.surroundings.empty()) return std::nullopt;
+  const FrameSurroundings& around = package.surroundings[frame.value - 1];
+  return FrameSampling{{around.camera_distance_w, around.pixel_rad, around.middle_world},
+                       around.hole_w};
 }
 
 FrameNeeds NeedsOf(const ImageIndex& index, const RenderCamera& frame, const NeedsOptions& options,

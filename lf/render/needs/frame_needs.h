@@ -62,9 +62,10 @@ struct FrameNeeds {
   uint64_t RayCount() const;
 };
 
-// Convert a sampling to the form that a package stores, and back.
+// Returns a sampling in the form that a package stores.
 FrameSurroundings SurroundingsOf(const FrameSampling& sampling);
-FrameSampling SamplingOf(const FrameSurroundings& surroundings);
+// Returns the sampling of a frame of the film that the package stores; nullopt if it stores none.
+std::optional<FrameSampling> SamplingOf(const Package& package, FrameId frame);
 
 // Returns what a frame needs.
 //   sampling  density of the LF cameras around the lens in the whole light field. Must be set if

@@ -164,18 +164,17 @@ Result<FrameProgress> FilmRenderer::LoadPlate(Frame* frame, const EarlierRun* ea
 // Checks that the frame needs no LF camera farther from its lens than the default options reach,
 // because the package contains no farther ones.
 Result<void> FilmRenderer::CheckReach(const LensGaps& gaps, FrameId frame) const {
-  const Package& package = setup_.package();
-  if (package.surroundings.empty() || !gaps.asks_in_the_end()) return {};
+  const std::optional<FrameSampling> sampling = SamplingOf(setup_.package(), frame);
+  if (!sampling || !gaps.asks_in_the_end()) return {};
   const RenderCamera& camera = setup_.path().Camera(frame);
   const double reached_w = gaps.ReachedCamera().aperture.radius_w - camera.aperture.radius_w;
-  const double known_w =
-      NeighbourReach_w(camera, SamplingOf(package.surroundings[frame.value - 1]));
+  const double known_w = NeighbourReach_w(camera, *sampling);
   if (reached_w <= known_w * (1 + 1e-9)) return {};
   return UsageError(
       fmt::format("--sigma-st, --lens-points: frame {} needs rays up to {:.3g} world units beside "
                   "its lens, but package {} contains LF cameras only up to {:.3g}: leave these "
                   "options out, or render from the light field instead of packages",
-                  frame.value, reached_w, package.name, known_w));
+                  frame.value, reached_w, setup_.package().name, known_w));
 }
 
 Result<void> FilmRenderer::PrepareRebinning(const EarlierRun* earlier) {

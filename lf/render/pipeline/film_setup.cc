@@ -8,7 +8,6 @@
 #include "lf/render/collect/noise_moments.h"
 #include "lf/render/hybrid/frame_sampling.h"
 #include "lf/render/hybrid/render_memory.h"
-#include "lf/render/needs/film_order.h"
 #include "lf/render/pipeline/check_film_options.h"
 #include "lf/storage/load/measure_footprint.h"
 #include "lf/storage/load/open_store.h"
@@ -59,11 +58,8 @@ Result<void> FilmSetup::CheckStore() const {
   if (!store_->IsPartial()) return {};
   const NeedsOptions needs = Needs();
   for (const FrameId frame : frames_) {
-    const std::optional<FrameSampling> sampling =
-        package_.surroundings.empty()
-            ? std::nullopt
-            : std::optional(SamplingOf(package_.surroundings[frame.value - 1]));
-    const FrameNeeds wanted = NeedsOf(index_, path().Camera(frame), needs, pool_, sampling);
+    const FrameNeeds wanted =
+        NeedsOf(index_, path().Camera(frame), needs, pool_, SamplingOf(package_, frame));
     if (work_.IsStopped()) return {};
     LF_RETURN_IF_ERROR(CheckKept(*store_, light_field(), frame, wanted));
   }
@@ -97,13 +93,15 @@ SelectOptions FilmSetup::Select() const { return Needs().select; }
 
 Result<void> FilmSetup::PlanSlabs() {
   if (!film_.Rebins() || slabs_) return {};
-  std::vector<FrameSampling> sampling;
-  for (const FrameSurroundings& around : package_.surroundings)
-    sampling.push_back(SamplingOf(around));
-  if (sampling.empty()) {
-    LF_ASSIGN_OR_RETURN(sampling, SamplingOfFilm(index_, path(), Select(), pool_));
+  const SelectOptions select = Select();
+  std::vector<SampledFrame> frames;
+  for (uint32_t n = 1; n <= path().frame_count(); ++n) {
+    const RenderCamera& camera = path().Camera(FrameId{n});
+    const std::optional<FrameSampling> known = SamplingOf(package_, FrameId{n});
+    frames.push_back({camera, known ? *known : SamplingOf(index_, camera, select, pool_)});
+    if (work_.IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
   }
-  slabs_.emplace(path().cameras, sampling, film_.rebin.query, film_.rebin.slab);
+  slabs_.emplace(frames, film_.rebin.query, film_.rebin.slab);
   return {};
 }
 
