@@ -52,18 +52,15 @@ class FrameCollector::State {
         pool_(pool),
         frames_(std::move(frames)),
         collector_(light_field, frames_, options.reading, options.back_end, options.plan_bytes,
-                   options.whole_images, pool),
-        progress_(frames_.size()),
-        is_stopped_(frames_.size(), false) {
-    for (size_t f = 0; f < frames_.size(); ++f) progress_[f].places_done = frames_[f].places.begin;
+                   options.whole_images, pool) {
+    for (CollectedFrame& frame : frames_) frame.progress.places_done = frame.places.begin;
     LF_CHECK(options.batch_image_count >= 1);
     images_done_ = announced_ = FirstWanted(0);
   }
 
   Result<bool> Step();
 
-  std::vector<FrameProgress>& progress() { return progress_; }
-  std::vector<bool>& is_stopped() { return is_stopped_; }
+  std::vector<CollectedFrame>& frames() { return frames_; }
   const std::vector<SkippedImage>& skipped() const { return skipped_; }
   const CollectTimes& times() const { return times_; }
   size_t images_done() const { return images_done_; }
@@ -74,8 +71,8 @@ class FrameCollector::State {
     return {ErrorKind::kInterrupted,
             fmt::format("interrupted after {} of {} LF images", images_done_, order_.size())};
   }
-  bool Takes(size_t frame) const {
-    return !is_stopped_[frame] && progress_[frame].places_done < frames_[frame].places.end;
+  static bool Takes(const CollectedFrame& frame) {
+    return !frame.is_stopped && frame.progress.places_done < frame.places.end;
   }
   // True if options_.consumer still needs LF images before this place.
   bool ConsumerWants(uint32_t place_end) const {
@@ -99,10 +96,8 @@ class FrameCollector::State {
   std::span<const SelectedImage> order_;
   const CollectOptions options_;
   ThreadPool& pool_;
-  const std::vector<CollectedFrame> frames_;
+  std::vector<CollectedFrame> frames_;
   BatchCollector collector_;
-  std::vector<FrameProgress> progress_;
-  std::vector<bool> is_stopped_;
   std::vector<SkippedImage> skipped_;
   CollectTimes times_;
   std::atomic<int64_t> load_cpu_ns_ = 0;
@@ -148,11 +143,9 @@ Result<bool> FrameCollector::State::Step() {
   for (const BatchFrame& taker : takers) {
     all_done = all_done && taker.is_done;
     if (!taker.is_done) continue;
-    FrameProgress& progress = progress_[taker.frame];
-    progress.places_done = std::min(batch_.place_end, frames_[taker.frame].places.end);
-    progress.rays.image_count += taker.rays.image_count;
-    progress.rays.tested_count += taker.rays.tested_count;
-    progress.rays.accepted_count += taker.rays.accepted_count;
+    CollectedFrame& frame = frames_[taker.frame];
+    frame.progress.places_done = std::min(batch_.place_end, frame.places.end);
+    frame.progress.rays += taker.rays;
   }
   times_.load_cpu_s = static_cast<double>(load_cpu_ns_) * 1e-9;
   times_.load_wall_s = static_cast<double>(load_wall_ns_) * 1e-9;
@@ -173,8 +166,8 @@ Result<bool> FrameCollector::State::Step() {
 // consumer still needs; order_.size() if there is none.
 size_t FrameCollector::State::FirstWanted(size_t from) const {
   uint32_t place = UINT32_MAX;
-  for (size_t f = 0; f < progress_.size(); ++f)
-    if (Takes(f)) place = std::min(place, progress_[f].places_done);
+  for (const CollectedFrame& frame : frames_)
+    if (Takes(frame)) place = std::min(place, frame.progress.places_done);
   if (ConsumerWants(PlaceEnd())) place = std::min(place, options_.consumer->places_done());
   if (place == UINT32_MAX) return order_.size();
   const auto first = std::lower_bound(
@@ -205,17 +198,20 @@ Batch FrameCollector::State::BatchFrom(size_t from) const {
   batch.place_end =
       batch.end < order_.size() ? std::min(decision, order_[batch.end].place) : PlaceEnd();
   for (const BatchFrame& taker : FramesOf(batch)) batch.frames.push_back(taker.frame);
-  if (batch.frames.size() == progress_.size()) batch.frames.clear();
+  if (batch.frames.size() == frames_.size()) batch.frames.clear();
   return batch;
 }
 
 // Returns the frames that still take LF images and have not reached the end of the batch.
 std::vector<BatchFrame> FrameCollector::State::FramesOf(const Batch& batch) const {
-  std::vector<BatchFrame> frames;
-  for (size_t f = 0; f < progress_.size(); ++f)
-    if (Takes(f) && progress_[f].places_done < batch.place_end)
-      frames.push_back({f, {progress_[f].places_done, frames_[f].places.end}, false, {}});
-  return frames;
+  std::vector<BatchFrame> takers;
+  for (size_t f = 0; f < frames_.size(); ++f) {
+    const CollectedFrame& frame = frames_[f];
+    const uint32_t done = frame.progress.places_done;
+    if (Takes(frame) && done < batch.place_end)
+      takers.push_back({f, {done, frame.places.end}, false, {}});
+  }
+  return takers;
 }
 
 void FrameCollector::State::AnnounceUpTo(size_t end) {
@@ -304,8 +300,8 @@ FrameCollector::FrameCollector(const LightField& light_field, const LfImageStore
 FrameCollector::~FrameCollector() = default;
 
 Result<bool> FrameCollector::Step() { return state_->Step(); }
-void FrameCollector::Stop(size_t frame) { state_->is_stopped()[frame] = true; }
-std::span<const FrameProgress> FrameCollector::frames() const { return state_->progress(); }
+void FrameCollector::Stop(size_t frame) { state_->frames()[frame].is_stopped = true; }
+std::span<const CollectedFrame> FrameCollector::frames() const { return state_->frames(); }
 std::span<const SkippedImage> FrameCollector::skipped() const { return state_->skipped(); }
 size_t FrameCollector::images_done() const { return state_->images_done(); }
 const CollectTimes& FrameCollector::times() const { return state_->times(); }
@@ -325,7 +321,8 @@ Result<CollectStatistics> Collect(const LightField& light_field, const LfImageSt
     if (progress) progress(done);
   }
   CollectStatistics statistics;
-  for (const FrameProgress& frame : collector.frames()) statistics.frames.push_back(frame.rays);
+  for (const CollectedFrame& frame : collector.frames())
+    statistics.frames.push_back(frame.progress.rays);
   statistics.skipped.assign(collector.skipped().begin(), collector.skipped().end());
   statistics.times = collector.times();
   return statistics;

@@ -60,13 +60,6 @@ struct CollectOptions {
   const std::atomic<bool>* interrupted = nullptr;  // may be null; true: Step() returns kInterrupted
 };
 
-// Progress of a frame. Its plate has the rays of exactly those LF images that the frame takes and
-// whose places are below places_done. Broken LF images count as done.
-struct FrameProgress {
-  uint32_t places_done = 0;
-  FrameRays rays;  // rays that this collector added
-};
-
 struct SkippedImage {
   std::string name;
   std::string reason;
@@ -114,8 +107,8 @@ class FrameCollector {
   // Stops a frame: it takes no more LF images.
   void Stop(size_t frame);
 
-  // Progress of each frame, in the order of the constructor's `frames`.
-  std::span<const FrameProgress> frames() const;
+  // The constructor's `frames`, with their progress.
+  std::span<const CollectedFrame> frames() const;
   // Broken LF images that this object skipped, by ascending places.
   std::span<const SkippedImage> skipped() const;
   // Number of LF images at the beginning of `order` that are done in all frames that take them.

@@ -59,12 +59,6 @@ PixelReach ReachOf(const RayReading& reading);
 // slower than kFast; tests compare kFast with it.
 enum class CollectBackEnd { kFast, kReference };
 
-struct FrameRays {
-  uint64_t image_count = 0;   // number of LF images with an accepted ray
-  uint64_t tested_count = 0;  // number of LF pixels in the rectangles that the frame needs
-  uint64_t accepted_count = 0;
-};
-
 struct BatchImage {
   LfImageId id;
   uint32_t place = 0;  // rank of the LF image in the order

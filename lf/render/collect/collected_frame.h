@@ -1,6 +1,7 @@
 // A frame into whose plate rays are collected.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
@@ -18,6 +19,26 @@ namespace lf {
 // image. Any thread may call it. An empty function means that every ray has weight 1.
 using ImageWeights = std::function<RayWeights(LfImageId id)>;
 
+struct FrameRays {
+  uint64_t image_count = 0;   // number of LF images with an accepted ray
+  uint64_t tested_count = 0;  // number of LF pixels in the rectangles that the frame needs
+  uint64_t accepted_count = 0;
+
+  FrameRays& operator+=(const FrameRays& more) {
+    image_count += more.image_count;
+    tested_count += more.tested_count;
+    accepted_count += more.accepted_count;
+    return *this;
+  }
+};
+
+// Progress of a frame. Its plate has the rays of exactly those LF images that the frame takes and
+// whose places are below places_done. Broken LF images count as done.
+struct FrameProgress {
+  uint32_t places_done = 0;
+  FrameRays rays;  // rays that this collector added
+};
+
 struct CollectedFrame {
   RenderCamera camera;
   SensorPlate* plate = nullptr;  // receives the rays; must not be null
@@ -28,6 +49,9 @@ struct CollectedFrame {
   // Moments of the plate, made for its width and height. They are updated with the plate, and
   // always include exactly the LF images whose rays the plate has. Null: no moments are kept.
   NoiseMoments* moments = nullptr;
+  // FrameCollector sets the members below.
+  FrameProgress progress = {};
+  bool is_stopped = false;  // true: the frame takes no more LF images
 };
 
 // Returns frames that take all LF images, with weight 1.

@@ -56,20 +56,20 @@ SensorPlate PlateOf(Job& job, size_t f, uint32_t end, FrameRays* rays) {
   return std::move(plates[0]);
 }
 
-void ExpectPlates(Job& job, std::span<const FrameProgress> progress) {
+void ExpectPlates(Job& job, std::span<const CollectedFrame> frames) {
   for (size_t f = 0; f < job.frames.size(); ++f) {
     FrameRays rays;
-    EXPECT_EQ(job.plates[f], PlateOf(job, f, progress[f].places_done, &rays)) << f;
+    EXPECT_EQ(job.plates[f], PlateOf(job, f, frames[f].progress.places_done, &rays)) << f;
   }
 }
 
-void ExpectRays(Job& job, std::span<const FrameProgress> progress) {
+void ExpectRays(Job& job, std::span<const CollectedFrame> frames) {
   for (size_t f = 0; f < job.frames.size(); ++f) {
     FrameRays rays;
-    PlateOf(job, f, progress[f].places_done, &rays);
-    EXPECT_EQ(progress[f].rays.image_count, rays.image_count);
-    EXPECT_EQ(progress[f].rays.tested_count, rays.tested_count);
-    EXPECT_EQ(progress[f].rays.accepted_count, rays.accepted_count);
+    PlateOf(job, f, frames[f].progress.places_done, &rays);
+    EXPECT_EQ(frames[f].progress.rays.image_count, rays.image_count);
+    EXPECT_EQ(frames[f].progress.rays.tested_count, rays.tested_count);
+    EXPECT_EQ(frames[f].progress.rays.accepted_count, rays.accepted_count);
   }
 }
 
@@ -81,9 +81,9 @@ TEST(FrameCollector, NoBatchGoesAcrossADecision) {
     std::vector<uint32_t> ends;
     size_t images_done = 0;
     while (*collector.Step()) {
-      ends.push_back(collector.frames()[0].places_done);
-      for (const FrameProgress& frame : collector.frames())
-        EXPECT_EQ(frame.places_done, ends.back());
+      ends.push_back(collector.frames()[0].progress.places_done);
+      for (const CollectedFrame& frame : collector.frames())
+        EXPECT_EQ(frame.progress.places_done, ends.back());
       EXPECT_LE(collector.images_done() - images_done, static_cast<size_t>(batch_image_count));
       images_done = collector.images_done();
       const size_t images_before =
@@ -132,9 +132,9 @@ TEST(FrameCollector, FramesThatEndApart) {
   for (size_t f = 0; f < 3; ++f) job.places[f].end = ends[f];
   FrameCollector collector = job.Collector();
   while (*collector.Step()) continue;
-  EXPECT_EQ(collector.frames()[0].places_done, 37u);
-  EXPECT_EQ(collector.frames()[1].places_done, kSide * kSide);
-  EXPECT_EQ(collector.frames()[2].places_done, 64u);
+  EXPECT_EQ(collector.frames()[0].progress.places_done, 37u);
+  EXPECT_EQ(collector.frames()[1].progress.places_done, kSide * kSide);
+  EXPECT_EQ(collector.frames()[2].progress.places_done, 64u);
   ExpectPlates(job, collector.frames());
   ExpectRays(job, collector.frames());
 }
@@ -208,8 +208,8 @@ TEST(FrameCollector, AStoppedFrameTakesNoMore) {
   EXPECT_TRUE(*collector.Step());
   collector.Stop(1);
   EXPECT_TRUE(*collector.Step());
-  EXPECT_EQ(collector.frames()[1].places_done, 64u);
-  EXPECT_EQ(collector.frames()[2].places_done, 128u);
+  EXPECT_EQ(collector.frames()[1].progress.places_done, 64u);
+  EXPECT_EQ(collector.frames()[2].progress.places_done, 128u);
   collector.Stop(0);
   collector.Stop(2);
   EXPECT_FALSE(*collector.Step());
@@ -245,13 +245,14 @@ TEST(FrameCollector, InterruptedAnywhereEveryFrameIsConsistent) {
       while (*collector.Step()) continue;
       ExpectRays(job, collector.frames());
     } else {
-      for (size_t f = 0; f < 3; ++f) job.places[f].begin = collector.frames()[f].places_done;
+      for (size_t f = 0; f < 3; ++f)
+        job.places[f].begin = collector.frames()[f].progress.places_done;
       FrameCollector another = job.Collector();
       while (*another.Step()) continue;
       for (size_t f = 0; f < 3; ++f)
-        EXPECT_EQ(
-            collector.frames()[f].rays.accepted_count + another.frames()[f].rays.accepted_count,
-            of_all.frames()[f].rays.accepted_count);
+        EXPECT_EQ(collector.frames()[f].progress.rays.accepted_count +
+                      another.frames()[f].progress.rays.accepted_count,
+                  of_all.frames()[f].progress.rays.accepted_count);
     }
     EXPECT_EQ(job.plates, whole.plates);
   }
@@ -289,7 +290,7 @@ TEST(FrameCollector, ALightFieldThatVanishesIsNotSkipped) {
   job.store.broken.clear();
   job.store.is_gone = false;
   ExpectPlates(job, collector.frames());
-  for (size_t f = 0; f < 3; ++f) job.places[f].begin = collector.frames()[f].places_done;
+  for (size_t f = 0; f < 3; ++f) job.places[f].begin = collector.frames()[f].progress.places_done;
   FrameCollector another = job.Collector();
   while (*another.Step()) continue;
   Job whole;

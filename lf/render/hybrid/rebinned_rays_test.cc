@@ -81,7 +81,8 @@ struct Fixture {
         if (!*collector.Step()) break;
       if (interrupted_after == SIZE_MAX) break;
       interrupted_after = SIZE_MAX;
-      for (size_t f = 0; f < count; ++f) places[f].begin = collector.frames()[f].places_done;
+      for (size_t f = 0; f < count; ++f)
+        places[f].begin = collector.frames()[f].progress.places_done;
       std::unique_ptr<RebinnedRays> again = Make(pool);
       for (size_t i = 0; i < rays->section_count(); ++i)
         again->Restore(i, RayMap(rays->map(i)), rays->places_done(i));

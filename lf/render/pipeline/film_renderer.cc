@@ -57,9 +57,6 @@ Result<void> FilmRenderer::Begin(const EarlierRun* earlier) {
   if (film_.HasStopRule()) LF_RETURN_IF_ERROR(PrepareStops(&collect));
   collector_ = std::make_unique<FrameCollector>(
       setup_.light_field(), setup_.store(), FramesOfCollector(), images_, collect, setup_.pool());
-  if (film_.HasPlates())
-    for (size_t f = 0; f < frames_.size(); ++f)
-      if (frames_[f].is_released) collector_->Stop(f);
   EndEarlyFrames();
   DecideStops();  // an earlier run may have ended exactly where the stop rule is applied
   return {};
@@ -268,12 +265,9 @@ Result<bool> FilmRenderer::Step() {
 
 FrameProgress FilmRenderer::Progress(size_t f) const {
   if (!film_.HasPlates()) return {rebinned_->places_done(), {}};
-  FrameProgress progress = collector_->frames()[f];
+  FrameProgress progress = collector_->frames()[f].progress;
   if (frames_[f].is_stopped) progress.places_done = frames_[f].next_decision;
-  const FrameRays& earlier = frames_[f].earlier_rays;
-  progress.rays.image_count += earlier.image_count;
-  progress.rays.tested_count += earlier.tested_count;
-  progress.rays.accepted_count += earlier.accepted_count;
+  progress.rays += frames_[f].earlier_rays;
   return progress;
 }
 

@@ -102,7 +102,7 @@ void FilmRenderer::DecideStops() {
     Frame& frame = frames_[f];
     // The rule is not applied to a frame that is finished early.
     if (frame.is_released || frame.is_early || frame.is_stopped) continue;
-    const uint32_t covered = PlacesCovered(collector_->frames()[f].places_done);
+    const uint32_t covered = PlacesCovered(collector_->frames()[f].progress.places_done);
     if (covered < frame.next_decision) continue;
     // After an interruption, rebinned rays must catch up to the place where the frame may stop.
     if (rebinned_ && PlacesCovered(rebinned_->places_done()) < frame.next_decision) continue;

@@ -278,11 +278,7 @@ class Merger {
     const FrameId frame = first.notes.frame;
     PlateNotes notes = first.notes;
     notes.rays = {};
-    for (const ShardPlate& plate : plates) {
-      notes.rays.image_count += plate.notes.rays.image_count;
-      notes.rays.tested_count += plate.notes.rays.tested_count;
-      notes.rays.accepted_count += plate.notes.rays.accepted_count;
-    }
+    for (const ShardPlate& plate : plates) notes.rays += plate.notes.rays;
     const bool is_kept = finished_.contains(frame);
     SensorPlate sum(0, 0);
     if (!is_kept)
