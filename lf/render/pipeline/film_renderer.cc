@@ -281,28 +281,22 @@ uint32_t FilmRenderer::PlaceOfEnd(size_t f) const {
 // (kInTheEnd), even if it takes only a part of the light field. A frame that was stopped or is
 // finished early is completed at its last place: it has more gaps, because the remaining LF images
 // do not cover them.
-std::vector<Completion> FilmRenderer::Complete(std::span<const size_t> frames) {
-  std::vector<Completion> completions;
-  if (!rebinned_) return completions;
-  for (const size_t f : frames) {
-    const uint32_t done = Progress(f).places_done;
-    const bool is_all =
-        !frames_[f].is_early && done >= std::min(frames_[f].places.end, setup_.index().place_end());
-    completions.push_back(rebinned_->Complete(f, is_all ? LensGaps::kInTheEnd : done));
-  }
-  return completions;
+std::optional<Completion> FilmRenderer::Complete(size_t f) {
+  if (!rebinned_) return std::nullopt;
+  const uint32_t done = Progress(f).places_done;
+  const bool is_all =
+      !frames_[f].is_early && done >= std::min(frames_[f].places.end, setup_.index().place_end());
+  return rebinned_->Complete(f, is_all ? LensGaps::kInTheEnd : done);
 }
 
-RenderedFrame FilmRenderer::Develop(size_t f) {
-  const std::vector<Completion> completion = Complete({&f, 1});
-  return Develop(f, completion.empty() ? nullptr : completion.data(), true, {});
-}
+RenderedFrame FilmRenderer::Develop(size_t f) { return Develop(f, Complete(f), true, {}); }
 
-RenderedFrame FilmRenderer::Develop(size_t f, const Completion* completion, bool with_effective,
+RenderedFrame FilmRenderer::Develop(size_t f, const std::optional<Completion>& completion,
+                                    bool with_effective,
                                     const std::function<bool()>& is_interrupted) const {
   const auto develop = [&](const SensorPlate& plate) {
-    return DevelopFrame(NotesOf(f), plate, completion, with_effective, setup_.pool(),
-                        is_interrupted);
+    return DevelopFrame(NotesOf(f), plate, completion ? &*completion : nullptr, with_effective,
+                        setup_.pool(), is_interrupted);
   };
   if (film_.Collects()) return develop(frames_[f].plate);
   const Intrinsics& plate = lens(f).camera().pinhole.intrinsics;

@@ -110,16 +110,15 @@ class FilmRenderer {
   // work is divided into batches.
   uint32_t PlaceOfEnd(size_t f) const;
 
-  // Interpolates frames from rebinned rays, one after the other. Returns an empty vector if the
-  // mode has no rebinned rays.
-  std::vector<Completion> Complete(std::span<const size_t> frames);
+  // Interpolates a frame from rebinned rays. Returns nullopt if the mode has none.
+  std::optional<Completion> Complete(size_t f);
   // Develops the rays that the frame has so far. The report lacks `samples` and `noise`, which
   // Measure() adds. Several threads may call the second form at the same time, for different
   // frames.
-  //   completion  result of Complete() for this frame; null if the mode has no rebinned rays
+  //   completion  result of Complete() for this frame
   // with_effective and is_interrupted are explained at DevelopFrame().
   RenderedFrame Develop(size_t f);
-  RenderedFrame Develop(size_t f, const Completion* completion, bool with_effective,
+  RenderedFrame Develop(size_t f, const std::optional<Completion>& completion, bool with_effective,
                         const std::function<bool()>& is_interrupted) const;
   // Measures samples and noise if the options require them, and adds them to the report. Several
   // threads may call it at the same time, for different frames. kInterrupted: WorkOptions::stop is

@@ -28,7 +28,6 @@ std::string DescriptionOf(std::span<const FrameId> frames) {
 RenderPass::RenderPass(const PassContext& context, std::span<const FrameId> frames,
                        std::span<const FrameId> early)
     : context_(context),
-      ids_(frames.begin(), frames.end()),
       early_(early.begin(), early.end()),
       rays_frames_(DescriptionOf(frames)),
       renderer_(context.setup, frames),
@@ -50,7 +49,7 @@ Result<FrameProgress> RenderPass::LoadPlate(FrameId frame, SensorPlate* plate,
 Result<std::optional<EarlierRun::Rays>> RenderPass::LoadRays(size_t section,
                                                              size_t max_cells) const {
   LF_ASSIGN_OR_RETURN(std::optional<RunState::Rays> rays,
-                      context_.state.LoadRays(ids_.front(), section, rays_frames_, max_cells,
+                      context_.state.LoadRays(renderer_.id(0), section, rays_frames_, max_cells,
                                               context_.setup.pool()));
   std::optional<EarlierRun::Rays> restored;
   if (rays) restored = EarlierRun::Rays{std::move(rays->map), rays->places_done};
@@ -97,13 +96,13 @@ Result<void> RenderPass::Collect() {
 
 // Finishes the early frames before collection, because they get no more rays than the state has.
 Result<void> RenderPass::FinishEarlyFrames() {
-  for (size_t f = 0; f < ids_.size(); ++f) {
-    if (renderer_.IsReleased(f) || !EndsEarly(ids_[f])) continue;
+  for (size_t f = 0; f < renderer_.frame_count(); ++f) {
+    if (renderer_.IsReleased(f) || !EndsEarly(renderer_.id(f))) continue;
     if (renderer_.EndsEarly(f))
       LF_RETURN_IF_ERROR(FinishFrames({&f, 1}));
     else
       LogWarning("--finish: frame {} has no rays yet, and is rendered from all of its LF images",
-                 ids_[f].value);
+                 renderer_.id(f).value);
   }
   return {};
 }
@@ -119,7 +118,7 @@ Result<void> RenderPass::FinishStoppedFrames() {
 Result<void> RenderPass::Finish() {
   LF_RETURN_IF_ERROR(context_.state.SaveTotals(Totals()));
   std::vector<size_t> left;
-  for (size_t f = 0; f < ids_.size(); ++f)
+  for (size_t f = 0; f < renderer_.frame_count(); ++f)
     if (!renderer_.IsReleased(f)) left.push_back(f);
   const size_t at_once = context_.setup.plan().frames_finished_at_once;
   for (size_t begin = 0; begin < left.size(); begin += at_once) {
@@ -143,17 +142,22 @@ Result<void> RenderPass::Finish() {
 // Writes several frames at the same time, because an encoder keeps only one thread busy. A frame
 // that was written is kept even if another frame fails.
 Result<void> RenderPass::FinishFrames(std::span<const size_t> frames) {
-  std::vector<std::optional<Result<FrameReport>>> written(frames.size());
-  const std::vector<Completion> completions = renderer_.Complete(frames);
-  context_.setup.pool().ForEach(frames.size(), [&](size_t i) {
-    written[i].emplace(WriteFiles(frames[i], completions.empty() ? nullptr : &completions[i]));
+  struct Finishing {
+    size_t f;
+    std::optional<Completion> completion;
+    Result<FrameReport> written;
+  };
+  std::vector<Finishing> finishing;
+  for (const size_t f : frames) finishing.push_back({f, renderer_.Complete(f), FrameReport()});
+  context_.setup.pool().ForEach(finishing.size(), [&](size_t i) {
+    finishing[i].written = WriteFiles(finishing[i].f, finishing[i].completion);
   });
-  for (size_t i = 0; i < frames.size(); ++i)
-    if (*written[i]) LF_RETURN_IF_ERROR(RecordFinished(frames[i], **written[i]));
-  for (const std::optional<Result<FrameReport>>& result : written)
-    if (!*result && result->error().kind != ErrorKind::kInterrupted) return result->error();
-  for (const std::optional<Result<FrameReport>>& result : written)
-    if (!*result) return Interrupt();
+  for (const auto& [f, completion, written] : finishing)
+    if (written) LF_RETURN_IF_ERROR(RecordFinished(f, *written));
+  for (const auto& [f, completion, written] : finishing)
+    if (!written && written.error().kind != ErrorKind::kInterrupted) return written.error();
+  for (const auto& [f, completion, written] : finishing)
+    if (!written) return Interrupt();
   return {};
 }
 
@@ -165,15 +169,16 @@ PlateNotes RenderPass::NotesOf(size_t f) const {
 
 // Writes the files of a frame. Several threads may call this at the same time, for different
 // frames.
-Result<FrameReport> RenderPass::WriteFiles(size_t f, const Completion* completion) {
-  const std::filesystem::path to = context_.state.FinishedPath(ids_[f]);
+Result<FrameReport> RenderPass::WriteFiles(size_t f, const std::optional<Completion>& completion) {
+  const FrameId id = renderer_.id(f);
+  const std::filesystem::path to = context_.state.FinishedPath(id);
   const bool is_shard = context_.setup.film().shard.has_value();
   if (context_.folder.keep_plates || is_shard) LF_RETURN_IF_ERROR(WriteFinishedPlate(f, to));
   if (is_shard) {
     FrameReport report;
-    report.frame = ids_[f];
+    report.frame = id;
     report.rays = renderer_.Progress(f).rays;
-    report.camera = InputsOfCamera(ids_[f], context_.setup.path().Camera(ids_[f]));
+    report.camera = InputsOfCamera(id, context_.setup.path().Camera(id));
     return report;
   }
   LF_ASSIGN_OR_RETURN(FrameReport report,
@@ -186,7 +191,7 @@ Result<void> RenderPass::WriteFinishedPlate(size_t f, std::filesystem::path path
   const FilmSetup& setup = context_.setup;
   FrameProgress progress = renderer_.Progress(f);
   progress.places_done = renderer_.PlaceOfEnd(f);  // places_done must not depend on the passes
-  PlateEntries text = context_.state.PlateText(ids_[f], progress, renderer_.moments(f));
+  PlateEntries text = context_.state.PlateText(renderer_.id(f), progress, renderer_.moments(f));
   PlateNotes notes = NotesOf(f);
   notes.skipped = SkippedOf(
       Totals().skipped, setup.index(),
@@ -197,7 +202,7 @@ Result<void> RenderPass::WriteFinishedPlate(size_t f, std::filesystem::path path
   return WritePlate(path.replace_extension(".plate"), text, renderer_.plate(f), setup.pool());
 }
 
-Result<FrameReport> RenderPass::WritePicture(size_t f, const Completion* completion,
+Result<FrameReport> RenderPass::WritePicture(size_t f, const std::optional<Completion>& completion,
                                              const std::filesystem::path& to,
                                              const std::function<bool()>& is_interrupted) const {
   const FrameFormat format = context_.folder.format;
@@ -208,7 +213,7 @@ Result<FrameReport> RenderPass::WritePicture(size_t f, const Completion* complet
 }
 
 Result<void> RenderPass::RecordFinished(size_t f, const FrameReport& report) {
-  const FrameId frame = ids_[f];
+  const FrameId frame = renderer_.id(f);
   if (!context_.setup.film().shard && report.rays.image_count == 0 &&
       report.interpolated_share.value_or(0) == 0) {
     // Only the first kTold black frames are logged; report.json states 0 LF images for all of them.

@@ -72,9 +72,9 @@ class RenderPass : private EarlierRun {
   Result<void> FinishStoppedFrames();
   Result<void> FinishFrames(std::span<const size_t> frames);
   PlateNotes NotesOf(size_t f) const;
-  Result<FrameReport> WriteFiles(size_t f, const Completion* completion);
+  Result<FrameReport> WriteFiles(size_t f, const std::optional<Completion>& completion);
   Result<void> WriteFinishedPlate(size_t f, std::filesystem::path path) const;
-  Result<FrameReport> WritePicture(size_t f, const Completion* completion,
+  Result<FrameReport> WritePicture(size_t f, const std::optional<Completion>& completion,
                                    const std::filesystem::path& to,
                                    const std::function<bool()>& is_interrupted) const;
   Result<void> RecordFinished(size_t f, const FrameReport& report);
@@ -88,11 +88,10 @@ class RenderPass : private EarlierRun {
   bool IsStopped() const { return context_.setup.work().IsStopped(); }
 
   const PassContext& context_;
-  const std::vector<FrameId> ids_;
   const std::vector<FrameId> early_;
   const std::string rays_frames_;  // text in the files of rebinned rays that identifies the frames
   FilmRenderer renderer_;
-  std::vector<Saved> saved_;                 // one for each frame
+  std::vector<Saved> saved_;                 // one for each frame of renderer_
   std::vector<uint32_t> saved_rays_places_;  // places_done of each section in the state on the disk
   size_t finished_count_ = 0;
 };

@@ -20,11 +20,11 @@ constexpr double kLastPictures_s = 2;
 // first, until picture_budget_s has passed.
 Result<void> RenderPass::Save(double picture_budget_s) {
   LF_RETURN_IF_ERROR(context_.state.SaveTotals(Totals()));
-  for (size_t f = 0; f < ids_.size(); ++f) {
+  for (size_t f = 0; f < saved_.size(); ++f) {
     const FrameProgress progress = renderer_.Progress(f);
     if (renderer_.IsReleased(f) || progress.places_done == saved_[f].places) continue;
     if (context_.setup.film().HasPlates())
-      LF_RETURN_IF_ERROR(context_.state.SavePlate(ids_[f], progress, renderer_.plate(f),
+      LF_RETURN_IF_ERROR(context_.state.SavePlate(renderer_.id(f), progress, renderer_.plate(f),
                                                   context_.setup.pool(), renderer_.moments(f)));
     saved_[f].places = progress.places_done;
   }
@@ -37,7 +37,7 @@ Result<void> RenderPass::SaveRays() {
   for (size_t i = 0; i < saved_rays_places_.size(); ++i) {
     const uint32_t places_done = rebinned->places_done(i);
     if (places_done == saved_rays_places_[i]) continue;
-    LF_RETURN_IF_ERROR(context_.state.SaveRays(ids_.front(), i, rays_frames_, rebinned->map(i),
+    LF_RETURN_IF_ERROR(context_.state.SaveRays(renderer_.id(0), i, rays_frames_, rebinned->map(i),
                                                places_done, context_.setup.pool()));
     saved_rays_places_[i] = places_done;
   }
@@ -46,7 +46,7 @@ Result<void> RenderPass::SaveRays() {
 
 Result<void> RenderPass::SavePictures(double picture_budget_s) {
   std::vector<size_t> oldest_first;
-  for (size_t f = 0; f < ids_.size(); ++f)
+  for (size_t f = 0; f < saved_.size(); ++f)
     if (!renderer_.IsReleased(f) && saved_[f].places > 0) oldest_first.push_back(f);
   std::stable_sort(oldest_first.begin(), oldest_first.end(), [this](size_t a, size_t b) {
     return saved_[a].picture_s < saved_[b].picture_s;
@@ -59,10 +59,8 @@ Result<void> RenderPass::SavePictures(double picture_budget_s) {
   if (IsStopped()) is_interrupted = [=] { return NowSeconds() - begin_s >= picture_budget_s; };
   for (const size_t f : oldest_first) {
     if (NowSeconds() - begin_s >= picture_budget_s) break;
-    const std::vector<Completion> completion = renderer_.Complete({&f, 1});
-    const Result<FrameReport> written =
-        WritePicture(f, completion.empty() ? nullptr : completion.data(),
-                     context_.state.PicturePath(ids_[f]), is_interrupted);
+    const Result<FrameReport> written = WritePicture(
+        f, renderer_.Complete(f), context_.state.PicturePath(renderer_.id(f)), is_interrupted);
     // Interrupt() saves the state after the signal, and then writes pictures again.
     if (!written && written.error().kind == ErrorKind::kInterrupted) return {};
     LF_RETURN_IF_ERROR(written);
