@@ -95,6 +95,12 @@ Result<ShardPlate> Look(const fs::path& path) {
   return plate;
 }
 
+struct MergedFrame {
+  std::vector<ShardPlate> plates;
+  std::optional<FrameReport> report;  // set once this merge or an earlier one has made the frame
+  bool is_kept = false;               // true: the frame of an earlier merge is kept
+};
+
 // Merges the plates of all frames.
 class Merger {
  public:
@@ -116,12 +122,12 @@ class Merger {
     for (const fs::path& file : files) {
       if (IsStopped()) return Interrupted();
       LF_ASSIGN_OR_RETURN(ShardPlate plate, Look(file));
-      frames_[plate.notes.frame].push_back(std::move(plate));
+      frames_[plate.notes.frame].plates.push_back(std::move(plate));
     }
     LF_RETURN_IF_ERROR(CheckFrames());
     WarnOfGaps();
     LogDebug("{} plates of {} frames, the first in {} shards", files.size(), frames_.size(),
-             frames_.begin()->second.front().shard.count);
+             First().shard.count);
     if (options_.video) {
       LF_RETURN_IF_ERROR(CheckVideoTool());
       LF_RETURN_IF_ERROR(CheckVideoTarget(*options_.video));
@@ -130,9 +136,9 @@ class Merger {
     LF_RETURN_IF_ERROR(Lock());
     LF_RETURN_IF_ERROR(FindFinished());
     now_.frame_total = frames_.size();
-    for (const auto& [frame, plates] : frames_) now_.plate_total += plates.size();
-    for (const auto& [frame, plates] : frames_)
-      if (const Result<void> written = WriteFrameOf(plates); !written) {
+    for (const auto& [id, frame] : frames_) now_.plate_total += frame.plates.size();
+    for (auto& [id, frame] : frames_)
+      if (const Result<void> written = WriteFrameOf(&frame); !written) {
         // A later run with --resume reads this report, and rewrites the frames that the report does
         // not name. An error of writing the report is ignored, because the disk may be full.
         (void)WriteReport(Report(), ReportPath());
@@ -142,6 +148,8 @@ class Merger {
   }
 
  private:
+  // The first plate of the first frame.
+  const ShardPlate& First() const { return frames_.begin()->second.plates.front(); }
   bool IsStopped() const { return options_.signals != nullptr && options_.signals->stop; }
   Error Interrupted() const {
     return {ErrorKind::kInterrupted,
@@ -155,7 +163,7 @@ class Merger {
 
   Result<void> CheckOutputs(const std::vector<fs::path>& files) const {
     std::vector<fs::path> outputs = {ReportPath(), options_.output_folder / kContactSheet};
-    for (const auto& [frame, plates] : frames_) outputs.push_back(PathOf(frame));
+    for (const auto& [id, frame] : frames_) outputs.push_back(PathOf(id));
     LF_RETURN_IF_ERROR(CheckReplacesNone(outputs, files));
     return CheckReplacesNone(outputs, options_.kept_files);
   }
@@ -174,8 +182,9 @@ class Merger {
 
   // Checks that each shard of each frame exists exactly once, and that all are of the same render.
   Result<void> CheckFrames() {
-    const ShardPlate& first = frames_.begin()->second.front();
-    for (auto& [frame, plates] : frames_) {
+    const ShardPlate& first = First();
+    for (auto& [id, frame] : frames_) {
+      std::vector<ShardPlate>& plates = frame.plates;
       std::sort(plates.begin(), plates.end(), [](const ShardPlate& a, const ShardPlate& b) {
         return a.shard.number < b.shard.number;
       });
@@ -189,21 +198,20 @@ class Merger {
       for (const ShardPlate& plate : plates) {
         if (plate.shard.count != one.shard.count)
           return InputError(fmt::format(
-              "frame {}: {} is shard {}, but {} is shard {}: give shards with the same K",
-              frame.value, one.path.string(), one.shard.Text(), plate.path.string(),
-              plate.shard.Text()));
+              "frame {}: {} is shard {}, but {} is shard {}: give shards with the same K", id.value,
+              one.path.string(), one.shard.Text(), plate.path.string(), plate.shard.Text()));
         if (!there.insert(plate.shard.number).second)
           return InputError(
               fmt::format("frame {}: {} is shard {}, and so is another file: give each shard once",
-                          frame.value, plate.path.string(), plate.shard.Text()));
+                          id.value, plate.path.string(), plate.shard.Text()));
         if (plate.width_px != one.width_px || plate.height_px != one.height_px)
           return InputError(fmt::format("frame {}: {} has {} x {} elements, {} has {} x {}",
-                                        frame.value, one.path.string(), one.width_px, one.height_px,
+                                        id.value, one.path.string(), one.width_px, one.height_px,
                                         plate.path.string(), plate.width_px, plate.height_px));
         if (const auto difference = FirstDifference(plate.inputs, one.inputs))
           return InputError(fmt::format(
               "frame {}: {}: give only shards that were rendered with the same inputs and options",
-              frame.value,
+              id.value,
               difference->Text(plate.path.string() + " was made with",
                                one.path.string() + " with")));
       }
@@ -213,7 +221,7 @@ class Merger {
       if (!missing.empty())
         return InputError(fmt::format(
             "frame {}: of {} shards, {} are given; missing: {}{} (is their render finished?)",
-            frame.value, one.shard.count, there.size(), fmt::join(missing, ", "),
+            id.value, one.shard.count, there.size(), fmt::join(missing, ", "),
             one.shard.count - there.size() > missing.size() ? ", ..." : ""));
     }
     return {};
@@ -241,25 +249,25 @@ class Merger {
     if (options_.resume && fs::exists(ReportPath())) {
       LF_ASSIGN_OR_RETURN(const RenderReport earlier, ReadReport(ReportPath()));
       film_before = earlier.inputs;
-      for (const FrameReport& frame : earlier.frames) reports_[frame.frame] = frame;
+      for (const FrameReport& report : earlier.frames)
+        if (const auto found = frames_.find(report.frame); found != frames_.end())
+          found->second.report = report;
     }
-    for (const auto& [frame, plates] : frames_) {
-      if (!fs::exists(PathOf(frame)) || options_.overwrite) continue;
+    for (auto& [id, frame] : frames_) {
+      if (!fs::exists(PathOf(id)) || options_.overwrite) continue;
       if (!options_.resume)
         return UsageError(
             fmt::format("{}: exists already: --resume keeps such frames, --overwrite replaces them",
-                        PathOf(frame).string()));
-      if (!reports_.contains(frame)) continue;
-      if (const auto difference = DifferenceFrom(film_before, plates.front().notes)) {
-        LogWarning("{}: {}; the frame is made again", PathOf(frame).string(),
+                        PathOf(id).string()));
+      if (!frame.report) continue;
+      if (const auto difference = DifferenceFrom(film_before, frame)) {
+        LogWarning("{}: {}; the frame is made again", PathOf(id).string(),
                    difference->Text("was made with", "these plates have"));
         continue;
       }
-      const Result<void> whole = CheckFileIsWhole(PathOf(frame));
-      if (whole)
-        finished_.insert(frame);
-      else
-        LogWarning("{}; the frame is made again", whole.error().message);
+      const Result<void> whole = CheckFileIsWhole(PathOf(id));
+      frame.is_kept = whole.has_value();
+      if (!whole) LogWarning("{}; the frame is made again", whole.error().message);
     }
     return {};
   }
@@ -267,25 +275,24 @@ class Merger {
   // Compares the film and the render camera in an earlier report with those of the plates. They may
   // differ after an interrupted --overwrite, which leaves frames of the film that it was replacing.
   std::optional<InputDifference> DifferenceFrom(const RunInputs& film_before,
-                                                const PlateNotes& notes) const {
+                                                const MergedFrame& frame) const {
     if (const auto difference = FirstDifference(film_before, FilmInputs())) return difference;
-    return FirstDifference(reports_.at(notes.frame).camera,
-                           InputsOfCamera(notes.frame, notes.camera));
+    const PlateNotes& notes = frame.plates.front().notes;
+    return FirstDifference(frame.report->camera, InputsOfCamera(notes.frame, notes.camera));
   }
 
-  Result<void> WriteFrameOf(const std::vector<ShardPlate>& plates) {
+  Result<void> WriteFrameOf(MergedFrame* frame) {
+    const std::vector<ShardPlate>& plates = frame->plates;
     const ShardPlate& first = plates.front();
-    const FrameId frame = first.notes.frame;
     PlateNotes notes = first.notes;
     notes.rays = {};
     for (const ShardPlate& plate : plates) notes.rays += plate.notes.rays;
-    const bool is_kept = finished_.contains(frame);
     SensorPlate sum(0, 0);
-    if (!is_kept)
+    if (!frame->is_kept)
       sum = SensorPlate::WithOpacity(first.width_px, first.height_px, first.has_opacity);
     for (const ShardPlate& plate : plates) {
       if (IsStopped()) return Interrupted();
-      if (!is_kept) {
+      if (!frame->is_kept) {
         LF_ASSIGN_OR_RETURN(PlateReader reader, PlateReader::Open(plate.path));
         if (reader.width() != first.width_px || reader.height() != first.height_px ||
             reader.has_opacity() != first.has_opacity)
@@ -296,18 +303,18 @@ class Merger {
       ++now_.plate_count;
       if (progress_) progress_(now_);
     }
-    if (!is_kept) {
+    if (!frame->is_kept) {
       const auto is_stopped = [this] { return IsStopped(); };
       const RenderedFrame made =
           DevelopFrame(notes, sum, nullptr, HasEffectiveCounts(options_.format), pool_, is_stopped);
       const Result<void> written =
-          WritePicture(notes, made.picture, PathOf(frame), options_.format, is_stopped);
+          WritePicture(notes, made.picture, PathOf(notes.frame), options_.format, is_stopped);
       if (!written && written.error().kind == ErrorKind::kInterrupted) return Interrupted();
       LF_RETURN_IF_ERROR(written);
-      reports_[frame] = made.report;
+      frame->report = made.report;
     }
-    LogDebug("frame {}: {} plates, {} rays of {} LF images{}", frame.value, plates.size(),
-             notes.rays.accepted_count, notes.rays.image_count, is_kept ? "; kept" : "");
+    LogDebug("frame {}: {} plates, {} rays of {} LF images{}", notes.frame.value, plates.size(),
+             notes.rays.accepted_count, notes.rays.image_count, frame->is_kept ? "; kept" : "");
     accepted_count_ += notes.rays.accepted_count;
     ++now_.frame_count;
     if (progress_) progress_(now_);
@@ -316,7 +323,7 @@ class Merger {
 
   // Returns the inputs that all frames have in common.
   RunInputs FilmInputs() const {
-    const ShardPlate& first = frames_.begin()->second.front();
+    const ShardPlate& first = First();
     RunInputs inputs;
     for (const auto& entry : first.inputs)
       if (!entry.first.starts_with("sheet.") && !entry.first.starts_with("frame"))
@@ -330,7 +337,7 @@ class Merger {
   }
 
   RenderReport Report() const {
-    const ShardPlate& first = frames_.begin()->second.front();
+    const ShardPlate& first = First();
     RenderReport report;
     report.version = first.notes.version;
     report.inputs = FilmInputs();
@@ -338,9 +345,8 @@ class Merger {
     report.width = first.width_px;
     report.height = first.height_px;
     report.thread_count = pool_.thread_count();
-    for (const auto& [frame, plates] : frames_)
-      if (const auto found = reports_.find(frame); found != reports_.end())
-        report.frames.push_back(found->second);
+    for (const auto& [id, frame] : frames_)
+      if (frame.report) report.frames.push_back(*frame.report);
     AddImages(&report);
     report.total_s = NowSeconds() - begin_s_;
     report.peak_memory_bytes = PeakMemoryBytes();
@@ -350,9 +356,9 @@ class Merger {
   // Sets selected_image_count to the number of LF images of the frame that takes most, and adds the
   // LF images that were skipped when the plates were rendered.
   void AddImages(RenderReport* report) const {
-    for (const auto& [frame, plates] : frames_) {
+    for (const auto& [id, frame] : frames_) {
       uint64_t count = 0;
-      for (const ShardPlate& plate : plates) {
+      for (const ShardPlate& plate : frame.plates) {
         count += plate.notes.rays.image_count + plate.notes.skipped_count;
         std::vector<SkippedImage> skipped;
         for (const std::string& name : plate.notes.skipped)
@@ -366,9 +372,9 @@ class Merger {
   }
 
   Result<RenderReport> End() {
-    const ShardPlate& first = frames_.begin()->second.front();
+    const ShardPlate& first = First();
     std::vector<FrameId> frames;
-    for (const auto& [frame, plates] : frames_) frames.push_back(frame);
+    for (const auto& [id, frame] : frames_) frames.push_back(id);
     const FilmFiles film = {
         options_.output_folder, options_.format,
         first.width_px,         first.height_px,
@@ -388,9 +394,7 @@ class Merger {
   const std::function<void(const MergeProgress&)>& progress_;
   const double begin_s_ = NowSeconds();
   std::optional<FileLock> lock_;
-  std::map<FrameId, std::vector<ShardPlate>> frames_;
-  std::map<FrameId, FrameReport> reports_;
-  std::set<FrameId> finished_;
+  std::map<FrameId, MergedFrame> frames_;
   MergeProgress now_;
   uint64_t accepted_count_ = 0;
 };
