@@ -216,10 +216,14 @@ std::vector<CaseSpec> AllCases() {
   gather("bilinear");
   gather("bicubic").filter = PixelFilter::kBicubic;
   gather("mosaic").filter = PixelFilter::kMosaic;
+  gather("prefiltered").filter = PixelFilter::kPrefiltered;
   gather("bilinear_0.5").magnification = 0.5;
+  CaseSpec& coarse = gather("prefiltered_0.5");
+  coarse.filter = PixelFilter::kPrefiltered;
+  coarse.magnification = 0.5;
   for (CaseSpec& spec : cases) {
-    for (const char* name :
-         {"disk", "separable", "distortion_phone", "rgb", "bilinear", "bicubic", "mosaic"})
+    for (const char* name : {"disk", "separable", "distortion_phone", "rgb", "bilinear", "bicubic",
+                             "mosaic", "prefiltered"})
       spec.every_target |= spec.name == name;
     spec.peer_image_count = std::min(spec.peer_image_count, spec.image_count);
   }

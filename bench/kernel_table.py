@@ -113,12 +113,13 @@ def goals(record):
         goal("720p to 8K within 15%", " ".join(f"{t:.2f}" for t in times), max(times) <= 1.15 * min(times))
     at_least("bilinear", "thesis", 15)
     at_least("bilinear", "opencv", 5)
+    at_least("prefiltered", "opencv", 5)
     if "bilinear" in record.get("agreement", {}):
         same = record["agreement"]["bilinear"]
         goal("bilinear >= 75 dB from the reference", f"{same['psnr_db']:.1f}", same["psnr_db"] >= 75)
         share = same["rays_in_other_elements"]
         goal("bilinear accepts the rays of the reference", f"{share:.1e} others", share == 0)
-    for case in ("bilinear", "bicubic", "mosaic"):
+    for case in ("bilinear", "bicubic", "mosaic", "prefiltered"):
         if "ours_weighed" in cases.get(case, {}):
             share = statistics.median(ratios(cases[case], "ours_weighed"))
             goal(f"{case}, weighed within 30% of unweighed", f"{share - 1:+.0%}", share <= 1.3)

@@ -33,7 +33,7 @@ import lens_weights
 from lens_weights import cv2, np
 from rebinning_quality import ground_truth_cases
 
-FULL = "--mode rebin --estimator bilinear --filter bicubic --lens-weights auto"
+FULL = "--mode rebin --estimator bilinear --filter prefiltered --lens-weights auto"
 EDGES = FULL + " --kept edges"
 WIDE = EDGES + " --r-st {pitch} --r-uv {pixel}"
 # name: options of lfrenderer. Placeholders of cell widths: {pitch} is the distance between neighbouring LF cameras,

@@ -52,6 +52,7 @@ class FastKernel final : public OurKernel {
         grid_(TileSums::GridOf(plate_.width(), plate_.height())),
         tiles_(CutIntoTiles(&plate_, grid_)) {
     for (size_t i = 0; is_weighed && i < weights_.size(); ++i) weights_[i] = SomeWeights(i);
+    if (case_.spec.filter == PixelFilter::kPrefiltered) FilterImages();
   }
 
   void Collect(int image_count) override {
@@ -64,7 +65,8 @@ class FastKernel final : public OurKernel {
         plan = PlanGather(case_.cameras[i], case_.frame, std::move(plan), case_.spec.filter);
       }
       CollectTiles(count, [&](size_t i, size_t /*tile*/) {
-        return GatherTile(gather_plans_[i], case_.images[i], &sums_, weights_[i]);
+        return GatherTile(gather_plans_[i], filtered_.empty() ? case_.images[i] : filtered_[i],
+                          &sums_, weights_[i]);
       });
       return;
     }
@@ -84,6 +86,14 @@ class FastKernel final : public OurKernel {
   uint64_t accepted_count() const override { return accepted_count_; }
 
  private:
+  // Films filter an LF image once for all frames that read it, so this is not part of Collect().
+  void FilterImages() {
+    filtered_.resize(case_.images.size());
+    for (size_t i = 0; i < filtered_.size(); ++i)
+      FilterPixels(SamplingOf(case_.cameras[i], case_.frame, case_.spec.filter).prefilter,
+                   case_.images[i], &filtered_[i]);
+  }
+
   template <class CollectImage>
   void CollectTiles(size_t image_count, const CollectImage& collect_image) {
     for (size_t tile = 0; tile < tiles_.size(); ++tile) {
@@ -95,6 +105,7 @@ class FastKernel final : public OurKernel {
 
   const KernelCase& case_;
   std::vector<RayWeights> weights_;  // one per LF image
+  std::vector<LfPixels> filtered_;   // the LF images, if they are prefiltered
   SensorPlate plate_;
   TileGrid grid_;
   std::vector<PlateTile> tiles_;

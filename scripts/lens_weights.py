@@ -40,7 +40,8 @@ SYNTHETIC_SPACING = 0.003
 TRUTH_SAMPLES = 256
 COLLECT = "--mode collect --estimator"
 # auto is the default and needs no options.
-WEIGHTS = {w: f"{COLLECT} bilinear --filter bicubic --lens-weights {w}" for w in ("none", "area", "hat")} | {"auto": ""}
+PREFILTERED = f"{COLLECT} bilinear --filter prefiltered --lens-weights"
+WEIGHTS = {w: f"{PREFILTERED} {w}" for w in ("none", "area", "hat")} | {"auto": ""}
 
 
 def linear_exr(path):
@@ -226,7 +227,7 @@ def table_of_lenses(renderer, scenes, only):
 
 def table_of_magnifications(renderer, scenes, only):
     estimators = {"nearest": "nearest", "bilinear": "bilinear --filter bilinear",
-                  "bicubic": "bilinear --filter bicubic"}
+                  "bicubic": "bilinear --filter bicubic", "prefiltered": "bilinear --filter prefiltered"}
     columns = {f"{e}, {w}": f"{COLLECT} {words} --lens-weights {w}" for e, words in estimators.items()
                for w in ("none", "area")} | {"auto": ""}
     table = Table("scene", "elements per LF pixel", *columns)

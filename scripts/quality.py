@@ -34,10 +34,10 @@ import record as results
 ALLOWED_LOSS_DB = 0.3
 THESIS = "--mode collect --estimator nearest --lens-weights none"
 BILINEAR = "--mode collect --estimator bilinear --filter bilinear --lens-weights none"
-PREFILTERED = "--mode collect --estimator bilinear --filter prefiltered --lens-weights auto"
+BICUBIC = "--mode collect --estimator bilinear --filter bicubic --lens-weights auto"
 # Columns of the table of pixels that show areas; lens weights are auto in all of them.
-OF_AREAS = {"nearest": "--estimator nearest", "bilinear": "--filter bilinear", "default": "",
-            "prefiltered": "--filter prefiltered"}
+OF_AREAS = {"nearest": "--estimator nearest", "bilinear": "--filter bilinear", "bicubic": "--filter bicubic",
+            "default": ""}
 
 
 def camera_axes(case):
@@ -187,12 +187,12 @@ def measure_areas(renderer, truth, folder):
 
 
 def table_of_areas(rows):
-    lines = ["| case | LF images | nearest | bilinear | default | prefiltered |", "| --- " * 6 + "|"]
+    lines = ["| case | LF images | nearest | bilinear | bicubic | default |", "| --- " * 6 + "|"]
     return lines + [f"| {row['case']} | {row['lf_images']} | " +
                     " | ".join(f"{row[column]:.2f}" for column in OF_AREAS) + " |" for row in rows]
 
 
-COLUMNS = ("nearest", "scatter", "bilinear", "gather", "default", "prefiltered", "bayer_nearest", "bayer_default")
+COLUMNS = ("nearest", "scatter", "bilinear", "gather", "bicubic", "default", "bayer_nearest", "bayer_default")
 
 
 def measure(renderer, truth, folder):
@@ -210,8 +210,8 @@ def measure(renderer, truth, folder):
             bayer[calibration] = mosaic(calibration, folder / ("bayer_" + calibration.parent.name))
         row = {"case": name, "scatter": references[name][0], "gather": references[name][1]}
         for column, light_field, options in (
-                ("nearest", calibration, THESIS), ("bilinear", calibration, BILINEAR), ("default", calibration, ""),
-                ("prefiltered", calibration, PREFILTERED),
+                ("nearest", calibration, THESIS), ("bilinear", calibration, BILINEAR),
+                ("bicubic", calibration, BICUBIC), ("default", calibration, ""),
                 ("bayer_nearest", bayer[calibration], THESIS), ("bayer_default", bayer[calibration], "")):
             frame, images = render(renderer, light_field, path, work / column, options)
             row[column] = psnr(truth, case, frame)
@@ -222,7 +222,7 @@ def measure(renderer, truth, folder):
 
 
 def table(rows):
-    lines = ["| case | LF images | nearest | reference | bilinear | reference | default | prefiltered | "
+    lines = ["| case | LF images | nearest | reference | bilinear | reference | bicubic | default | "
              "Bayer, nearest | Bayer, default |", "| --- " * 10 + "|"]
     return lines + [f"| {row['case']} | {row['lf_images']} | " +
                     " | ".join(f"{row[column]:.2f}" for column in COLUMNS) +
@@ -233,8 +233,8 @@ def faults_of(rows):
     """Yields the cases that are too far below the reference."""
     for row in rows:
         for column, least in (("nearest", row["scatter"]), ("bilinear", row["gather"]),
-                              ("default", max(row["scatter"], row["gather"])),
-                              ("prefiltered", max(row["scatter"], row["gather"]))):
+                              ("bicubic", max(row["scatter"], row["gather"])),
+                              ("default", max(row["scatter"], row["gather"]))):
             if row[column] < least - ALLOWED_LOSS_DB:
                 yield f"{row['case']}, {column}: {row[column]:.2f} dB, below {least:.2f} - {ALLOWED_LOSS_DB}"
 

@@ -24,10 +24,10 @@ from quality import results
 # "with lens weights" is the default; "hybrid" is the default with another mode.
 COLUMNS = {
     "collected, nearest": "--mode collect --estimator nearest --lens-weights none",
-    "collected": "--mode collect --estimator bilinear --filter bicubic --lens-weights none",
+    "collected": "--mode collect --estimator bilinear --filter prefiltered --lens-weights none",
     "with lens weights": "",
     "rebinned": "--mode rebin",
-    "hybrid, no weights": "--mode hybrid --estimator bilinear --filter bicubic --lens-weights none",
+    "hybrid, no weights": "--mode hybrid --estimator bilinear --filter prefiltered --lens-weights none",
     "hybrid": "--mode hybrid",
 }
 

@@ -24,7 +24,7 @@ import numpy as np
 from lens_pictures import picture, side_by_side
 
 SIZE, SPACING, COUNT, TRUTH_SAMPLES = (360, 240), 0.003, 289, 600
-DEFAULT = "--mode collect --estimator bilinear --filter bicubic --lens-weights auto"
+DEFAULT = "--mode collect --estimator bilinear --filter prefiltered --lens-weights auto"
 THESIS = "--mode collect --estimator nearest --lens-weights none"
 
 

@@ -33,7 +33,7 @@ for mode in collect rebin hybrid; do
   check lfrenderer field path.yaml -o "$mode" --mode "$mode"
 done
 check lfrenderer film.lfs path.yaml -o bilinear --estimator bilinear --format png16
-check lfrenderer field path.yaml -o prefiltered --filter prefiltered
+check lfrenderer field path.yaml -o bicubic --filter bicubic
 check lfpreprocessor field path.yaml -o packages --packages 2
 check lfsubmit packages/*.lfp -o submitted --jobs 1
 for shard in 1 2; do

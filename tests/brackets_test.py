@@ -112,8 +112,9 @@ class BracketsTest(ProgramTestCase):
         self.assertEqual(text["lf_max_radiance"], 4)
         np.testing.assert_allclose([f.get("lf_gain", 1) for f in text["frames"][:3]], [0.25, 1, 4],
                                    rtol=1e-6)
-        for options in ([], ["--estimator", "nearest"], ["--lens-weights", "none"],
-                        ["--mode", "rebin"], ["--mode", "hybrid"]):
+        bicubic = ["--filter", "bicubic"]  # the default for brackets, but not for the true LF images
+        for options in (bicubic, ["--estimator", "nearest"], [*bicubic, "--lens-weights", "none"],
+                        ["--mode", "rebin"], [*bicubic, "--mode", "hybrid"]):
             true, merged, one = (self.frame(field, path, options=options)
                                  for field in (capture.true, brackets, middle))
             regions = {"highlights": true > 1.2,
@@ -149,7 +150,8 @@ class BracketsTest(ProgramTestCase):
         path = self.folder / "path.yaml"
         self.succeeds(EXAMPLE, capture.true, "-o", path, "--move", "static")
         brackets = self.merged(capture.write("brackets", STOPS))
-        render = (RENDERER, brackets, path, "-o", self.folder / "frames", "--no-contact-sheet")
+        render = (RENDERER, brackets, path, "-o", self.folder / "frames", "--no-contact-sheet", "--filter",
+                  "bicubic")
         self.succeeds(*render, "--shard", "1/2")
         text = (brackets / "transforms.json").read_text()
         (brackets / "transforms.json").write_text(text.replace('"lf_clipped": "mask"',

@@ -139,7 +139,7 @@ class RendererTest(unittest.TestCase):
         self.fails(2, "--filter mosaic: rays count up to 8 times", field, path, "-o",
                    self.folder / "out", "--filter", "mosaic", *rule)
         _, report = self.render(field, path, "counted", *rule)
-        self.assertEqual(report["inputs"]["filter"], "auto")
+        self.assertEqual(report["inputs"]["filter"], "prefiltered")
 
     def test_auto_weights_say_what_they_are_and_warn(self):
         field = write_field(self.folder / "field")

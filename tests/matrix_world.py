@@ -25,7 +25,7 @@ MODES = {
     "bilinear none": ["--lens-weights", "none"],
     "bilinear area": ["--lens-weights", "area"],
     "bilinear hat": ["--lens-weights", "hat"],
-    "prefiltered": ["--filter", "prefiltered"],
+    "bicubic": ["--filter", "bicubic"],
     "rebin": ["--mode", "rebin", "--max-rays", MOST_RAYS],
     "hybrid": ["--mode", "hybrid", "--max-rays", MOST_RAYS],
     "hybrid none": ["--mode", "hybrid", "--lens-weights", "none", "--max-rays", MOST_RAYS],

@@ -37,7 +37,7 @@ WAYS = {
     "rebin": ["--mode", "rebin"],
 }
 NOISE = {"nearest": 0.075, "hat": 0.075}
-DEFAULT_NOISE = 0.055
+DEFAULT_NOISE = 0.065
 
 
 def digests(folder):

@@ -101,15 +101,16 @@ class OpacityTest(ProgramTestCase):
             self.assertGreater(psnr_db(over_black, true_light), LEAST_PSNR_DB)
             self.assertGreater(psnr_db(over_white, true_light + 1 - true_alpha), LEAST_PSNR_DB)
             self.assertGreater(psnr_db(alpha, true_alpha), LEAST_PSNR_DB)
-            # Composing the frame over a background gives the picture that is rendered over it.
-            np.testing.assert_allclose(light + (1 - alpha), over_white, atol=1e-4)
-            near = cv2.dilate((true_alpha > 0).astype(np.uint8), np.ones((5, 5)))
+            # Composing the frame over a background gives the picture that is rendered over it, except that alpha is
+            # clipped where filters overshoot.
+            np.testing.assert_allclose(light + (1 - alpha), over_white, atol=0.02)
+            near = cv2.dilate((true_alpha > 0).astype(np.uint8), np.ones((7, 7)))  # prefilters reach as far
             self.assertGreater(np.count_nonzero(near == 0), 50)
             self.assertEqual(np.count_nonzero(light[near == 0]), 0)
             self.assertEqual(np.count_nonzero(alpha[near == 0]), 0)
-            inside = cv2.erode((true_alpha == 1).astype(np.uint8), np.ones((3, 3))) == 1
+            inside = cv2.erode((true_alpha == 1).astype(np.uint8), np.ones((7, 7))) == 1
             self.assertGreater(np.count_nonzero(inside), 500)
-            np.testing.assert_array_equal(alpha[inside], 1)
+            np.testing.assert_allclose(alpha[inside], 1, atol=1e-3)
 
     def test_every_cut_of_the_work_gives_the_same_bits(self):
         self.expect_same_bits(self.render("alone", "--threads", "1", *NOTHING))

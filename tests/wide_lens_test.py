@@ -77,7 +77,7 @@ class WideLensTest(ProgramTestCase):
 
     def test_bokeh_are_even_to_their_rim(self):
         scene = {"scene": lamp, "depths": (3,)}
-        field = write_field(self.folder / "field", png16, scene, lf_transfer="linear")
+        field = write_field(self.folder / "field", png16, scene, lf_transfer="linear", lf_pixels="points")
         frame, _, _ = self.frame(field, 4 * COVERED)
         rows, columns = np.nonzero(frame[..., 1] > 0.5 * np.median(frame[frame > 0]))
         spot = frame[rows.min():rows.max() + 1, columns.min():columns.max() + 1, 1]

@@ -138,7 +138,8 @@ void AddOptions(CLI::App& app, Arguments& a) {
 }
 
 lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::CommonOptions& common,
-                                              const lf::CameraPath& path, lf::BayerPattern bayer) {
+                                              const lf::CameraPath& path,
+                                              const lf::RadianceEncoding& encoding) {
   lf::PreprocessOptions options;
   if (!a.plan) {
     if (a.output.empty()) return lf::UsageError("expected -o DIR, or --plan");
@@ -154,8 +155,7 @@ lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::Comm
   if (a.max_angle_deg > 0) options.max_angle_rad = lf::RadiansFromDegrees(a.max_angle_deg);
   options.reading.estimator =
       a.estimator == "nearest" ? lf::Estimator::kNearest : lf::Estimator::kBilinear;
-  if (options.reading.estimator == lf::Estimator::kBilinear && bayer != lf::BayerPattern::kNone)
-    options.reading.filter = lf::PixelFilter::kMosaic;  // the default of lfrenderer
+  options.reading.filter = lf::FilterOf(lf::PixelFilter::kAuto, encoding, false);
   options.lens_weights = *lf::LensWeightsOf(a.lens_weights);
   options.mode = *lf::RenderModeOf(a.mode);
   // As in lfrenderer, auto means none with --mode rebin, which collects no rays to weight.
@@ -201,7 +201,7 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   LF_ASSIGN_OR_RETURN(const lf::CameraPath path, lf::ReadPathYaml(a.path, light_field.unit_m));
   LF_ASSIGN_OR_RETURN(lf::PreprocessOptions options,
-                      MakeOptions(a, common, path, light_field.encoding.bayer));
+                      MakeOptions(a, common, path, light_field.encoding));
   options.interrupted = &interrupted;
   lf::ThreadPool pool(common.threads);
   const std::string depths_from = KnowDepths(light_field, path, pool, &options);

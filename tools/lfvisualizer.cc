@@ -121,7 +121,7 @@ void AddOptions(CLI::App& app, Arguments& a) {
 
 lf::NeedsOptions Needs(const Arguments& a) {
   lf::NeedsOptions needs;
-  if (a.page.estimator == "bilinear") needs.select.reach = lf::PixelReach::kNeighbours;
+  if (a.page.estimator == "bilinear") needs.select.reach = lf::PixelReach::kElement;
   if (a.page.max_angle_deg > 0)
     needs.select.max_angle_rad = lf::RadiansFromDegrees(a.page.max_angle_deg);
   needs.lens_weights = *lf::LensWeightsOf(a.page.lens_weights);

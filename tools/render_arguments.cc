@@ -82,12 +82,12 @@ void AddPicture(CLI::App& app, RenderArguments& a) {
                     {"auto", "nearest", "bilinear", "bicubic", "mosaic", "prefiltered"},
                     "Interpolation between LF pixels\n"
                     "Used by --estimator bilinear.\n"
-                    "auto: mosaic for mosaics, otherwise bicubic, or bilinear where an element is "
-                    "as large as nine LF pixels or more\n"
-                    "mosaic: bicubic or bilinear as auto, but colours that the sensor recorded "
-                    "count 8 times as much as interpolated colours\n"
+                    "auto: mosaic for mosaics, bicubic for brackets, otherwise prefiltered\n"
                     "prefiltered: each LF image is first filtered for the size of elements, then "
-                    "interpolated linearly; sharper than bicubic and faster");
+                    "interpolated linearly; sharper than bicubic and faster\n"
+                    "mosaic: bicubic, or bilinear where an element is as large as nine LF pixels "
+                    "or more; colours that the sensor recorded count 8 times as much as "
+                    "interpolated colours");
   picture.AddChoice("--lf-pixels", a.lf_pixels, {"auto", "areas", "points"},
                     "What LF pixels show, for --filter prefiltered\n"
                     "areas: the mean light of their area, as in photographs\n"

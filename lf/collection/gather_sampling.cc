@@ -14,11 +14,17 @@ const char* NameOf(PixelFilter filter) {
   return kNames[static_cast<int>(filter)];
 }
 
+PixelFilter FilterOf(PixelFilter filter, const RadianceEncoding& encoding, bool counts_rays) {
+  if (filter != PixelFilter::kAuto) return filter;
+  if (encoding.bayer != BayerPattern::kNone && !counts_rays) return PixelFilter::kMosaic;
+  return encoding.masks_clipped ? PixelFilter::kBicubic : PixelFilter::kPrefiltered;
+}
+
 GatherSampling SamplingOf(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
                           const PixelReading& reading) {
   const double width_px = ElementWidth_px(lf_camera, render_camera);
   GatherSampling sampling;
-  sampling.filter = reading.filter;
+  sampling.filter = FilterOf(reading.filter, RadianceEncoding(), false);
   // A prefilter would mix pixels that have no ray into those that have one.
   if (sampling.filter == PixelFilter::kPrefiltered) {
     if (MayLackRays(lf_camera.intrinsics)) {
@@ -33,11 +39,8 @@ GatherSampling SamplingOf(const PinholeCamera& lf_camera, const RenderCamera& re
   constexpr double kRounding = 1e-3;
   if (width_px > kFinerAtMost)
     sampling.samples = std::min(kMostSamples, static_cast<int>(std::ceil(width_px - kRounding)));
-  const bool prefers_cubic = sampling.samples < kBilinearFrom;
-  if (sampling.filter == PixelFilter::kAuto)
-    sampling.filter = prefers_cubic ? PixelFilter::kBicubic : PixelFilter::kBilinear;
   sampling.is_cubic = sampling.filter == PixelFilter::kBicubic ||
-                      (sampling.filter == PixelFilter::kMosaic && prefers_cubic);
+                      (sampling.filter == PixelFilter::kMosaic && sampling.samples < kBilinearFrom);
   if (sampling.is_cubic && MayLackRays(lf_camera.intrinsics)) {
     sampling.is_cubic = false;
     if (sampling.filter == PixelFilter::kBicubic) sampling.filter = PixelFilter::kBilinear;

@@ -17,17 +17,25 @@ namespace lf {
 //              of the sharpness that is lost because a camera averages over each pixel, and takes
 //              three times as long as kBilinear. If one of the outer twelve pixels is outside the
 //              image or masked, the ray is bilinear
-//   kMosaic    is for RGB pixels made from a mosaic. It uses sixteen pixels, or four where kAuto
-//              does. A recorded colour counts more than an interpolated one (mosaic_filter.h), and
-//              the ray adds a count from 1 to kRecordedShare to each colour
+//   kMosaic    is for RGB pixels made from a mosaic. It uses sixteen pixels; or four if an element
+//              has kBilinearFrom x kBilinearFrom samples or more, because their mean hides the
+//              difference. A recorded colour counts more than an interpolated one
+//              (mosaic_filter.h), and the ray adds a count from 1 to kRecordedShare to each colour
 //   kPrefiltered  interpolates linearly between four values of an LF image that was filtered before
 //              (prefilter.h), so that an element of any size needs only one sample
-//   kAuto      is kBicubic, or kBilinear if an element has kBilinearFrom x kBilinearFrom samples or
-//              more, because the mean of the samples hides the difference
+//   kAuto      is kPrefiltered, or what FilterOf() says of the whole light field
 enum class PixelFilter { kAuto, kNearest, kBilinear, kBicubic, kMosaic, kPrefiltered };
 
 // Returns "auto", "nearest", "bilinear", "bicubic", "mosaic" or "prefiltered".
 const char* NameOf(PixelFilter filter);
+
+// Returns the filter that `filter` stands for, which is never kAuto. kAuto is
+//   kMosaic      for mosaics, unless an option needs the number of rays of elements (counts_rays,
+//                FilmOptions::CountsRays()), which kMosaic does not tell
+//   kBicubic     for brackets, because each of their LF images has the pixels of only some regions,
+//                at whose borders a prefilter lacks pixels
+//   kPrefiltered otherwise
+PixelFilter FilterOf(PixelFilter filter, const RadianceEncoding& encoding, bool counts_rays);
 
 // A filter, and what it needs to know of LF pixels.
 struct PixelReading {

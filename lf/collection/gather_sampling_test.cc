@@ -39,7 +39,7 @@ TEST(GatherSampling, MagnificationIsElementsPerLfPixel) {
 }
 
 TEST(GatherSampling, TakesAsManySamplesAsLfPixelsAreSmaller) {
-  const auto of = [](double magnification, PixelFilter filter = PixelFilter::kAuto) {
+  const auto of = [](double magnification, PixelFilter filter = PixelFilter::kBicubic) {
     const testing::CameraPair pair = PairOf(magnification);
     return SamplingOf(pair.lf_camera, pair.render_camera, filter);
   };
@@ -49,13 +49,22 @@ TEST(GatherSampling, TakesAsManySamplesAsLfPixelsAreSmaller) {
   EXPECT_EQ(of(0.5).samples, 2);
   EXPECT_EQ(of(0.49).samples, 3);
   EXPECT_EQ(of(0.01).samples, kMostSamples);
-  EXPECT_EQ(of(2).filter, PixelFilter::kBicubic);
-  EXPECT_EQ(of(0.5).filter, PixelFilter::kBicubic);
-  EXPECT_EQ(of(0.3).filter, PixelFilter::kBilinear);
-  EXPECT_TRUE(of(0.3, PixelFilter::kBicubic).is_cubic);
+  EXPECT_EQ(of(0.3).filter, PixelFilter::kBicubic);
+  EXPECT_TRUE(of(0.3).is_cubic);
   EXPECT_TRUE(of(0.5, PixelFilter::kMosaic).is_cubic);
   EXPECT_FALSE(of(0.3, PixelFilter::kMosaic).is_cubic);
   EXPECT_EQ(of(2, PixelFilter::kNearest).filter, PixelFilter::kNearest);
+}
+
+TEST(GatherSampling, TheFilterAutoDependsOnTheLightFieldAndOnCounts) {
+  RadianceEncoding mosaic, brackets;
+  mosaic.bayer = BayerPattern::kRggb;
+  brackets.masks_clipped = true;
+  EXPECT_EQ(FilterOf(PixelFilter::kAuto, {}, false), PixelFilter::kPrefiltered);
+  EXPECT_EQ(FilterOf(PixelFilter::kAuto, mosaic, false), PixelFilter::kMosaic);
+  EXPECT_EQ(FilterOf(PixelFilter::kAuto, mosaic, true), PixelFilter::kPrefiltered);
+  EXPECT_EQ(FilterOf(PixelFilter::kAuto, brackets, true), PixelFilter::kBicubic);
+  EXPECT_EQ(FilterOf(PixelFilter::kBicubic, mosaic, false), PixelFilter::kBicubic);
 }
 
 TEST(GatherSampling, APrefilterReplacesSamples) {
@@ -72,7 +81,7 @@ TEST(GatherSampling, APrefilterReplacesSamples) {
 // Noise of LF pixels that are much finer than elements averages out. If an element had one sample,
 // all of the noise would be left.
 TEST(GatherSampling, FinePixelsAverage) {
-  for (const PixelFilter filter : {PixelFilter::kAuto, PixelFilter::kPrefiltered}) {
+  for (const PixelFilter filter : {PixelFilter::kBicubic, PixelFilter::kPrefiltered}) {
     const testing::CameraPair pair = PairOf(0.25);
     const LfPixels pixels = testing::NoisePixels(testing::WholeImage(pair), BayerPattern::kNone, 1);
     SensorPlate plate = testing::PlateFor(pair);

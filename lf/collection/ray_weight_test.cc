@@ -114,7 +114,7 @@ TEST(RayWeights, RaysAddAndCountSoManyTimes) {
         PlanScatter(pair.lf_camera, pair.render_camera, pixels.rect, grid, &ideal);
     const GatherPlan gather =
         PlanGather(pair.lf_camera, pair.render_camera, {},
-                   seed % 10 == 0 ? PixelFilter::kPrefiltered : PixelFilter::kAuto);
+                   seed % 10 == 0 ? PixelFilter::kPrefiltered : PixelFilter::kBicubic);
     const LfPixels filtered =
         bayer == BayerPattern::kNone ? testing::PixelsFor(gather, pixels) : LfPixels();
     for (const bool is_gather : {false, true}) {

@@ -16,8 +16,8 @@ struct LfPixels {
   static constexpr int kRayLane = 3;
   // Values v of the opacities 0 and 1. The range of v has room below and above them, because the
   // filters of collection undershoot and overshoot where the opacity changes abruptly.
-  static constexpr uint16_t kTransparent = 4096;
-  static constexpr uint16_t kOpaque = 61440;
+  static constexpr uint16_t kTransparent = 16384;
+  static constexpr uint16_t kOpaque = 49152;
 
   LfPixels() = default;
   // Creates black pixels without a mask.

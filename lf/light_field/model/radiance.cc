@@ -55,7 +55,8 @@ void MakeRoomForUndershoot(RadianceEncoding* encoding) {
 
 void MakeRoomBesideEdges(std::span<const std::string> image_names, RadianceEncoding* encoding) {
   encoding->pedestal = std::max(encoding->pedestal, kRoomPedestal);
-  if (DefaultMaxRadiance(image_names) == 1) encoding->max_radiance *= 2;
+  const bool has_room_above = DefaultMaxRadiance(image_names) > 1 && encoding->max_radiance >= 4;
+  if (!has_room_above) encoding->max_radiance *= 2;
 }
 
 const char* NameOf(BayerPattern bayer) { return kBayerNames[static_cast<int>(bayer)]; }

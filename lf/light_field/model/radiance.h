@@ -82,7 +82,8 @@ void MakeRoomForUndershoot(RadianceEncoding* encoding);
 
 // Makes more room, also above white, because prefilters undershoot and overshoot more than bicubic
 // interpolation. Raises the pedestal to kRoomPedestal, a quarter of the range. Doubles
-// max_radiance, unless LF images are float files, whose max_radiance is far above white anyway.
+// max_radiance, unless LF images are float files with a max_radiance of at least 4, because these
+// hardly have values near max_radiance.
 inline constexpr double kRoomPedestal = 16384;
 void MakeRoomBesideEdges(std::span<const std::string> image_names, RadianceEncoding* encoding);
 

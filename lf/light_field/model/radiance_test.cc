@@ -182,6 +182,9 @@ TEST(RadianceTable, HasRoomBelowBlackAndAboveWhite) {
   MakeRoomBesideEdges(floats, &encoding);
   EXPECT_EQ(encoding.pedestal, 20000);
   EXPECT_EQ(encoding.max_radiance, 16);
+  encoding.max_radiance = 1;
+  MakeRoomBesideEdges(floats, &encoding);
+  EXPECT_EQ(encoding.max_radiance, 2);
 }
 
 TEST(PixelFootprint, NamesAreThoseOfTheKey) {

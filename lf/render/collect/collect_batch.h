@@ -46,7 +46,8 @@ struct RayReading : PixelReading {  // the filter is only used by kBilinear
 
   // Returns true if LF images are filtered before they are read.
   bool Prefilters() const {
-    return estimator == Estimator::kBilinear && filter == PixelFilter::kPrefiltered;
+    return estimator == Estimator::kBilinear &&
+           (filter == PixelFilter::kPrefiltered || filter == PixelFilter::kAuto);
   }
 };
 

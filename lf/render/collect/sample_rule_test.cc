@@ -45,7 +45,7 @@ TEST(SampleRule, ElementsAreReachableWhereTheyGetRays) {
       GatherReference(field.Camera(LfImageId{i}), pixels, camera, &plate);
     }
     const ReachableElements reachable(ImageIndex(field), camera, {},
-                                      {.reach = PixelReach::kNeighbours}, PixelFilter::kAuto, pool);
+                                      {.reach = PixelReach::kElement}, PixelFilter::kAuto, pool);
     EXPECT_GT(reachable.count(), 1000u);
     EXPECT_LT(reachable.count(), 12000u);
     for (int y = 4; y < 80; y += 8)

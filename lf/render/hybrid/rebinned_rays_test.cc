@@ -21,7 +21,7 @@ struct Fixture {
   bool collects = true;
 
   Fixture() {
-    select.reach = PixelReach::kNeighbours;
+    select.reach = PixelReach::kElement;
     options.max_cells = 4000000;
     options.previews = Previews::kOn;
     frames[2].aperture.radius_w = 0.0004;  // a small lens between the LF cameras

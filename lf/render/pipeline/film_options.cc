@@ -6,9 +6,8 @@ FilmOptions Resolved(FilmOptions options, const Package& package) {
   if (options.mode == RenderMode::kRebin ||
       (options.lens_weights == LensWeights::kAuto && options.CountsRays()))
     options.lens_weights = LensWeights::kNone;
-  if (options.reading.filter == PixelFilter::kAuto && !options.CountsRays() &&
-      package.light_field.encoding.bayer != BayerPattern::kNone)
-    options.reading.filter = PixelFilter::kMosaic;
+  options.reading.filter =
+      FilterOf(options.reading.filter, package.light_field.encoding, options.CountsRays());
   if (!options.max_image_count) options.max_image_count = package.choices.max_image_count;
   return options;
 }

@@ -40,7 +40,7 @@ export interface RendererOptions extends SharedOptions {
   keepPlates?: boolean;
   smoothBelow?: number;
   mode?: "collect" | "rebin" | "hybrid";
-  filter?: "auto" | "nearest" | "bilinear" | "bicubic" | "mosaic";
+  filter?: "auto" | "nearest" | "bilinear" | "bicubic" | "mosaic" | "prefiltered";
 }
 
 export interface PreprocessorRequest {
