@@ -175,7 +175,12 @@ Result<void> CreateFolder(const fs::path& folder) {
   std::vector<fs::path> missing;
   for (fs::path at = folder; !at.empty() && !fs::exists(at, error); at = at.parent_path())
     missing.push_back(at);
-  fs::create_directories(folder, error);
+  // Another process that has finished may remove a parent, which is still empty, at any moment.
+  constexpr int kMostTries = 1000;
+  for (int tries = 0; tries < kMostTries; ++tries) {
+    fs::create_directories(folder, error);
+    if (error != std::errc::no_such_file_or_directory) break;
+  }
   if (error || !fs::is_directory(folder, error))
     return OutputError(fmt::format("{}: cannot be created as a folder: {}", folder.string(),
                                    error ? error.message() : "a file has this name"));

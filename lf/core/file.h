@@ -63,7 +63,8 @@ struct Renaming {
 };
 Result<void> RenameFlushed(std::span<const Renaming> files);
 
-// Creates the folder and its parents. kOutput if that fails or if a file has this name.
+// Creates the folder and its parents, even if other processes create them or remove empty parents
+// at the same time. kOutput if that fails or if a file has this name.
 Result<void> CreateFolder(const std::filesystem::path& folder);
 
 }  // namespace lf

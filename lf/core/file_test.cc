@@ -4,11 +4,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <fstream>
 #include <new>
 #include <stdexcept>
 #include <system_error>
+#include <thread>
 
 namespace lf {
 namespace {
@@ -108,6 +110,23 @@ TEST_F(FileTest, PermissionsStay) {
   fs::permissions(path, fs::perms::owner_read);
   ASSERT_TRUE(WriteFileAtomically(path, "new"));
   EXPECT_EQ(fs::status(path).permissions(), fs::perms::owner_read);
+}
+
+TEST_F(FileTest, AFolderIsCreatedWhileItsEmptyParentIsRemoved) {
+  const fs::path parent = folder_ / "parent";
+  std::atomic<bool> is_done = false;
+  std::thread remover([&] {
+    std::error_code ignored;
+    while (!is_done) fs::remove(parent, ignored);
+  });
+  for (int i = 0; i < 200; ++i) {
+    const Result<void> created = CreateFolder(parent / "child");
+    EXPECT_TRUE(created) << created.error().message;
+    std::error_code ignored;
+    fs::remove(parent / "child", ignored);
+  }
+  is_done = true;
+  remover.join();
 }
 
 TEST_F(FileTest, AFolderCannotReplaceAFile) {
