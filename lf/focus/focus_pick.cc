@@ -21,7 +21,8 @@ constexpr int kPatchSide = 2 * kHalfPatch + 1;
 constexpr int kPatchSize = kPatchSide * kPatchSide;
 constexpr double kStep_px = 0.5;  // change of the largest disparity from one depth to the next
 constexpr double kMostDisplaced = 0.45;  // largest disparity, as a share of the LF image's width
-constexpr double kLeastTexture = 0.004;  // least standard deviation of the root of light in a patch
+// Least standard deviation, in a patch, of the square root of light (ValueAt()).
+constexpr double kLeastTexture = 0.004;
 constexpr double kLeastAgreement = 0.6;  // least score of a depth that is found
 constexpr size_t kLeastViews = 3;        // least number of views besides the first, the reference
 constexpr double kAgreeing = 0.6;        // share of views that must agree on a depth
@@ -36,7 +37,7 @@ struct View {
   LfPixels pixels = {};
 };
 
-// The ray that is searched, with the axes of the patch around it.
+// The ray along which the depth is searched, and the axes of the patch around the ray.
 struct SearchRay {
   Vec3 origin, direction, right, up;  // directions have length 1
   double angle_px = 0;                // width of a pixel of the patch in radians
@@ -114,8 +115,8 @@ std::vector<View> ChooseViews(const LightField& field, const SearchRay& search, 
   return views;
 }
 
-// Returns the root of the bilinearly interpolated light at a position; in the root, noise is about
-// equal in shadows and highlights. None if the image has no value there.
+// Returns the square root of the bilinearly interpolated light at a position, because noise of the
+// square root is about equal in shadows and highlights. None if the image has no value there.
 std::optional<float> ValueAt(const LfPixels& pixels, const Vec2& place) {
   const double x = place.x() - 0.5 - pixels.rect.x_begin, y = place.y() - 0.5 - pixels.rect.y_begin;
   const int column = static_cast<int>(std::floor(x)), row = static_cast<int>(std::floor(y));

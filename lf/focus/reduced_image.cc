@@ -7,8 +7,8 @@
 namespace lf {
 namespace {
 
-// Returns the root of the mean light of one pixel of the reduced image; NaN if one of the LF pixels
-// is masked.
+// Returns the square root of the mean light of one pixel of the reduced image; NaN if one of the LF
+// pixels is masked.
 float ReducedPixel(const LfPixels& pixels, int x_begin, int y_begin, int divisor) {
   double sum = 0;
   for (int y = y_begin; y < y_begin + divisor; ++y)

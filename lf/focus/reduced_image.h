@@ -15,10 +15,10 @@ namespace lf {
 inline constexpr int kMostReducedWidth = 480;
 
 struct ReducedImage {
-  // Square root of light, from 0 (black) to 1; NaN if nothing was recorded. In the root, noise is
-  // about equal in shadows and highlights. A pixel is the root of the mean light of divisor x
-  // divisor pixels of the LF image; the last columns and rows of the LF image are left out if they
-  // do not fill a pixel.
+  // Square root of light, from 0 (black) to 1; NaN if nothing was recorded. Noise of the square
+  // root is about equal in shadows and highlights. A pixel is the square root of the mean light of
+  // divisor x divisor pixels of the LF image; the last columns and rows of the LF image are left
+  // out if they do not fill a pixel.
   Image<float> light;
   int divisor = 1;
 

@@ -120,7 +120,8 @@ class BatchCollector {
   // which the LF image has no weight needs no pixels.
   PixelRect RectOf(LfImageId id, std::span<const size_t> frames) const;
 
-  // CPU seconds that all threads have spent on batches so far, without other items.
+  // Returns the CPU seconds that all threads have spent on collection so far, without the time of
+  // OtherItems.
   double cpu_seconds() const { return static_cast<double>(cpu_ns_.load()) * 1e-9; }
 
  private:

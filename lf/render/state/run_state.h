@@ -45,8 +45,8 @@ struct RunStateOptions {
   FrameFormat format = FrameFormat::kExrHalf;
   bool resume = false;     // continue with the state in the folder
   bool overwrite = false;  // remove the state in the folder
-  RunInputs rays;          // InputsOfRays()
-  RunInputs picture;       // InputsOfPicture()
+  RunInputs rays;          // result of InputsOfRays()
+  RunInputs picture;       // result of InputsOfPicture()
   std::optional<Shard> shard = std::nullopt;
 };
 

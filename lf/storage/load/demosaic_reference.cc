@@ -14,7 +14,7 @@ using Filter = std::array<std::array<int, 5>, 5>;
 // the pixels of the colour that the centre recorded.
 struct Estimate {
   Filter mean;
-  Filter laplacian;  // including the gain
+  Filter laplacian;  // multiplied by the gain of the paper (demosaic.h)
 };
 
 constexpr Estimate kGreen = {{{{0, 0, 0, 0, 0},  //
