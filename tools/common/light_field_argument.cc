@@ -40,7 +40,8 @@ void AddUnusualOptions(CLI::App& app, LightFieldArgument& argument) {
   unusual
       .Add("--fov-deg DEGREES", argument.fov_deg,
            "Field of view of the LF cameras (as recorded)\n"
-           "Needed for poses of Airborne Optical Sectioning (AOS), which do not contain it.")
+           "Across the width and the height, because AOS images are square. Needed for poses of "
+           "Airborne Optical Sectioning (AOS), which do not contain it.")
       ->check(CLI::Range(0., 179.));
   unusual.Add("--image-scale FACTOR", argument.image_scale,
               "Size of the image files relative to calibration\n"

@@ -65,8 +65,8 @@ Result<Similarity> ParseSimilarity(std::string_view text) {
                          .maxCoeff();
   if (!(off <= kTolerance))
     return InputError(fmt::format(
-        "the axes miss right angles or equal lengths by {:.2g}: expected a rotation times one "
-        "scale",
+        "the axes deviate from right angles or equal lengths by {:.2g}: expected a rotation times "
+        "one scale",
         off));
   if (off > 1e-12) {
     const Eigen::JacobiSVD<Mat3> svd(similarity.rotation,

@@ -162,7 +162,7 @@ Result<LightField> ParseMiddlebury(std::string_view text, const fs::path& path,
   std::array<int, 2> size = {};
   while (const std::optional<std::string_view> text_line = lines.Next()) {
     if (light_field.size() == count)
-      return lines.Fault(fmt::format("more lines than the {} that the first line counts", count));
+      return lines.Fault(fmt::format("more lines than the {} that the first line states", count));
     LF_ASSIGN_OR_RETURN(Line line, ParseLine(*text_line, lines));
     const auto fault = [&](const std::string& message) {
       return lines.Fault(fmt::format("{}: {}", ShownWord(line.name), message));

@@ -131,7 +131,7 @@ Result<Intrinsics> IntrinsicsOfColmap(const ColmapCameraModel& model, uint64_t w
                                   height, kMaxSize_px));
   if (width * height > kMaxPixelCount)
     return InputError(
-        fmt::format("images of {} x {} pixels are beyond the limit of 2^30", width, height));
+        fmt::format("images of {} x {} pixels exceed the limit of 2^30 pixels", width, height));
   for (const double parameter : parameters)
     if (!std::isfinite(parameter))
       return InputError(fmt::format("has the parameters {} of {}: expected finite numbers",

@@ -26,8 +26,8 @@ Result<Mat3> NearestRotation(const Mat3& matrix, double tolerance) {
   const double skew = Skew(matrix);
   if (!(skew <= tolerance))
     return InputError(
-        fmt::format("is sheared or scaled unevenly: its axes miss right angles and unit length by "
-                    "{:.2g}, more than {:g}",
+        fmt::format("is sheared or scaled unevenly: its axes deviate from right angles and unit "
+                    "length by {:.2g}, more than {:g}",
                     skew, tolerance));
   if (skew <= kExact) return matrix;
   // The orthogonal factor of the polar decomposition, by Newton's iteration (Higham 1986). For a

@@ -106,7 +106,7 @@ Result<Intrinsics> ResolveIntrinsics(const IntrinsicsKeys& frame, const Intrinsi
   }
   if (*width * *height > kMaxPixelCount)
     return fields.Fault(
-        fmt::format("images of {} x {} pixels are beyond the limit of 2^30", *width, *height));
+        fmt::format("images of {} x {} pixels exceed the limit of 2^30 pixels", *width, *height));
 
   const std::optional<double> fx =
       Focal(frame, top, &IntrinsicsKeys::fl_x, &IntrinsicsKeys::camera_angle_x, *width);

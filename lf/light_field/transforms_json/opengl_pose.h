@@ -15,8 +15,8 @@ using Mat34 = Eigen::Matrix<double, 3, 4>;
 // If s R is a rotation within 1e-12, it is used bit for bit; otherwise the rotation nearest to R is
 // used, because files often have only six digits.
 // kInput: numbers that are not finite or beyond 1e12; a determinant of zero or below (a mirrored
-// axis); axes that miss right angles or equal lengths by more than 1e-3. The message does not name
-// the place in the file; the caller adds it.
+// axis); axes that deviate from right angles or equal lengths by more than 1e-3. The message does
+// not name the place in the file; the caller adds it.
 Result<RigidTransform> CamFromWorldOfOpenGl(const Mat34& world_from_opengl_camera);
 
 // Returns the camera-to-world matrix [R | c] of cam_from_world, with scale 1. Rotations are
