@@ -5,7 +5,9 @@
 namespace lf {
 
 Plane FocusPlane(const PinholeCamera& camera, double focus_distance_w, const FocusTilt& tilt) {
-  // z = g + x tan(h) + u tan(v) with u = -y:  (-tan h, tan v, 1) . X_camera = g
+  // In camera coordinates (x right, y down, z forward), a plane that is tilted by the angles h
+  // (horizontal) and v (vertical) has the points with z = g + x tan(h) - y tan(v). This is
+  // (-tan h, tan v, 1) . X_camera = g.
   const Vec3 normal_camera(-std::tan(tilt.horizontal_rad), std::tan(tilt.vertical_rad), 1);
   const Vec3 normal_world = camera.cam_from_world.rotation.transpose() * normal_camera.normalized();
   const Vec3 on_axis = camera.CentreWorld() + focus_distance_w * camera.ForwardWorld();

@@ -68,7 +68,8 @@ std::vector<uint32_t> RoundRobin(const std::vector<uint32_t>& shuffled,
                                  std::span<const std::vector<ImageRays>> frames) {
   const Takers takers(shuffled.size(), frames);
   const ImagePlaces places = PlacesOf(shuffled);
-  // [frame]: LF images that the frame has not got yet; the next is the last of the vector
+  // [frame]: LF images that the frame takes, the next at the end. An LF image that is taken is
+  // removed once it is at the end.
   std::vector<std::vector<uint32_t>> waiting(frames.size());
   for (size_t f = 0; f < frames.size(); ++f) {
     for (const ImageRays& image : frames[f]) waiting[f].push_back(image.id.value);

@@ -27,8 +27,10 @@ enum class CameraUse : uint8_t {
   // rays through the lens to the plate pass its position, but no pixel of its LF image sees both
   // the lens and the filmed region (Fig. 4.5)
   kSeesNone,
-  kLimit,     // LF images before it in the order already reach the limit --max-images
-  kNoWeight,  // it has no lens weight: no point of the lens is nearest to it (doc/lens-integral.md)
+  kLimit,  // LF images before it in the order already reach the limit --max-images
+  // it has no lens weight, because every point of the lens is nearer to another LF camera
+  // (doc/lens-integral.md)
+  kNoWeight,
 };
 inline constexpr size_t kCameraUseCount = 6;
 // Returns "used", "outside", "angle", "sees-none", "limit" or "no-weight".

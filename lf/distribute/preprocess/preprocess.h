@@ -81,7 +81,7 @@ struct PackageForecast {
   // Number of passes over the LF images; above 1 if the plates do not all fit into the memory at
   // the same time.
   size_t pass_count = 0;
-  double cpu_s = 0;  // CPU time to render; 0 without `rate`
+  double cpu_s = 0;  // CPU time to render; 0 if PreprocessReport::rate is unset
 };
 
 struct PreprocessReport {

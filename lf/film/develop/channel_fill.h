@@ -58,8 +58,9 @@ class ChannelFill {
   uint32_t rays_needed_;
   int fill_radius_px_;
 
-  // Summed-area tables (Crow 1984), [height + 1][width + 1]: entry (x, y) is the sum over all
-  // elements of the columns before x and the rows before y.
+  // Summed-area tables (Crow 1984) of Collected::elements and Collected::rays,
+  // [height + 1][width + 1]: entry (x, y) is the sum over the columns before x and the rows
+  // before y.
   std::vector<uint32_t> element_sums_;
   std::vector<uint64_t> ray_sums_;  // empty if rays_needed is 1: element_sums_ are the same then
   // Column of every collected element, row by row, and the index at which each row begins.

@@ -320,7 +320,7 @@ class Fit {
   std::vector<double> residuals_;  // [samples][3]; NaN: no sample of the channel
   std::vector<float> agreements_;  // [samples][3]: robust weights, in [0, 1]
   std::vector<float> weights_;     // [samples][3]: robust weights times inverse variance
-  double factor_ = 1;  // actual deviation of samples, relative to the one that they state
+  double factor_ = 1;  // actual deviation of samples, relative to the deviation that they state
   int round_ = 0;
   ExposureFit fit_;
 };
