@@ -143,8 +143,8 @@ const char* NameOf(ImageFormat format) {
 Result<void> CheckPixelCount(uint64_t width, uint64_t height, const std::string& name) {
   // Both are below 2^32, so the product does not wrap.
   if (width * height <= kMaxImagePixels) return {};
-  return InputError(fmt::format("{}: claims {} x {} pixels, more than the {} that are read", name,
-                                width, height, kMaxImagePixels));
+  return InputError(fmt::format("{}: claims {} x {} pixels, more than the limit of {}", name, width,
+                                height, kMaxImagePixels));
 }
 
 Result<ImageFormat> ProbeImage(const ByteSource& source, const std::string& name) {

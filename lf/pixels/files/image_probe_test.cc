@@ -36,7 +36,7 @@ std::string MessageOf(const Result<ImageFormat>& result) {
 }
 
 TEST(ImageProbe, RefusesMorePixelsThanAreRead) {
-  const std::string limit = "more than the 1073741824 that are read";
+  const std::string limit = "more than the limit of 1073741824";
   EXPECT_EQ(MessageOf(Probe(PngHeader("\0\0\x80\0"s, "\0\0\x80\1"s))),
             "a: claims 32768 x 32769 pixels, " + limit);
   EXPECT_EQ(MessageOf(Probe(PngHeader("\xff\xff\xff\xff", "\xff\xff\xff\xff"))),

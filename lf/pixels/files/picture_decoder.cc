@@ -11,13 +11,13 @@ Result<void> CheckPictureSize(int64_t width, int64_t height, int64_t channels,
   constexpr int64_t kMaxValues = int64_t{1} << 32;
   if (width < 1 || height < 1 || channels < 1)
     return InputError(
-        fmt::format("{}: claims {} x {} pixels of {} channels", name, width, height, channels));
+        fmt::format("{}: claims {} x {} pixels of {} channels: expected at least 1 of each", name,
+                    width, height, channels));
   LF_RETURN_IF_ERROR(
       CheckPixelCount(static_cast<uint64_t>(width), static_cast<uint64_t>(height), name));
   if (channels > kMaxValues / (width * height))
     return InputError(
-        fmt::format("{}: claims {} x {} pixels of {} channels, more than the {} "
-                    "values that are read",
+        fmt::format("{}: claims {} x {} pixels of {} channels, more than the limit of {} values",
                     name, width, height, channels, kMaxValues));
   return {};
 }
