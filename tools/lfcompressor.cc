@@ -98,13 +98,13 @@ void AddQuality(CLI::App& app, Arguments& a) {
       "lossless: the decoded LF images are bit-identical");
   quality
       .Add("--levels N", a.levels,
-           "Levels of the wavelet transform (by the profile)\n"
+           "Levels of the wavelet transform (depends on the profile)\n"
            "0: 4 levels; 1 level with --profile thesis.")
       ->check(CLI::Range(0, 5));
   auto* threshold =
       quality
           .Add("--threshold X", a.threshold,
-               "Drop details below this (by the profile)\n"
+               "Drop details below this (depends on the profile)\n"
                "Wavelet coefficients smaller than X become 0. The unit is a step of 256 greys. If "
                "the option is not given, X is 3, or 8 with --profile thesis.")
           ->check(CLI::Range(0., 255.));

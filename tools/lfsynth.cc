@@ -78,7 +78,7 @@ void AddRig(CLI::App& app, Arguments& a) {
                     "planar: a grid\n"
                     "band: rows along an arc\n"
                     "hemisphere: a dome");
-  picture.Add("--count N", a.count, "Approximate number of LF cameras (by the scene)")
+  picture.Add("--count N", a.count, "Approximate number of LF cameras (depends on the scene)")
       ->check(CLI::Range(0, 100'000'000));
   picture.Add("--size WIDTHxHEIGHT", a.size_px, "Size of the LF images, such as 960x640")
       ->delimiter('x')
@@ -124,7 +124,7 @@ void AddQuality(CLI::App& app, Arguments& a) {
   picture.AddFlag("--bayer", a.bayer, "Write raw-like 16-bit RGGB mosaics instead");
   quality.Add("--noise X", a.noise, "Standard deviation of noise at radiance 1, for --bayer")
       ->check(CLI::Range(0.0, 10.0));
-  quality.Add("--samples N", a.samples, "Rays per pixel at edges (by the scene)")
+  quality.Add("--samples N", a.samples, "Rays per pixel at edges (depends on the scene)")
       ->check(CLI::Range(0, 4096));
   quality.Add("--truth-samples N", a.truth_samples, "Rays per element of the ground truth")
       ->check(CLI::Range(1, 1'000'000));

@@ -140,7 +140,7 @@ export class ImagePanel {
           `The rectangle that is read: ${x1 - x0} × ${y1 - y0} pixels, ${percent(share)} of the image. ` +
             (overlap.outlines.length > 0
               ? "Within the outline it shows the lens and what is filmed at once."
-              : "It stands beside the lens, and counts for the part that is nearest to it."),
+              : "It stands beside the lens, and counts for the part of the lens that is nearest to it."),
         ),
       );
     } else {

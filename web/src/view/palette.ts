@@ -54,7 +54,7 @@ export const USE_STYLES: UseStyle[] = [
   {
     name: "no-weight",
     label: "Of no weight",
-    help: "no point of the lens is nearest to it",
+    help: "every point of the lens is nearer to another LF camera",
     dark: [140, 150, 90],
     light: [110, 120, 40],
     size: 3.5,
