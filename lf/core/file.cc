@@ -173,11 +173,12 @@ Result<void> RenameFlushed(std::span<const Renaming> files) {
 Result<void> CreateFolder(const fs::path& folder) {
   std::error_code error;
   std::vector<fs::path> missing;
-  for (fs::path at = folder; !at.empty() && !fs::exists(at, error); at = at.parent_path())
-    missing.push_back(at);
-  // Another process that has finished may remove a parent, which is still empty, at any moment.
+  // Another process may remove a parent while it is still empty. Then all is created again.
   constexpr int kMostTries = 1000;
   for (int tries = 0; tries < kMostTries; ++tries) {
+    missing.clear();
+    for (fs::path at = folder; !at.empty() && !fs::exists(at, error); at = at.parent_path())
+      missing.push_back(at);
     fs::create_directories(folder, error);
     if (error != std::errc::no_such_file_or_directory) break;
   }
