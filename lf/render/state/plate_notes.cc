@@ -12,6 +12,7 @@
 #include "lf/core/value_named.h"
 #include "lf/render/collect/frame_lens.h"
 #include "lf/render/state/record_fields.h"
+#include "lf/render/state/run_inputs.h"
 
 namespace lf {
 namespace {
@@ -186,6 +187,12 @@ Result<PlateNotes> PlateNotesOf(const PlateEntries& entries, int width_px, int h
                                 const std::string& name) {
   NotesReader reader(entries, name);
   PlateNotes notes;
+  // Another version may keep opacity, which notes do not describe, in another range of values.
+  const std::string* const law = FindEntry(entries, "law");
+  if (law != nullptr && *law != fmt::format("{}", kRayModelVersion))
+    reader.Fault("law", fmt::format("{}: the plate has rays of another version of the ray model; "
+                                    "use the program that rendered it, or render it again",
+                                    kRayModelVersion));
   notes.frame.value = static_cast<uint32_t>(reader.WholeNumber("sheet.frame", UINT32_MAX));
   const std::vector<double> k = reader.Numbers("sheet.intrinsics", 5);
   Intrinsics& intrinsics = notes.camera.pinhole.intrinsics;

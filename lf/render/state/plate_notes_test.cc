@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "lf/render/state/run_inputs.h"
+
 namespace lf {
 namespace {
 
@@ -88,6 +90,17 @@ TEST(PlateNotes, ListsOfMissingLfImagesAreChecked) {
     EXPECT_NE(fault("1", names).find("p: sheet.skipped is"), std::string::npos) << names;
   EXPECT_NE(fault("1", "[\"a\",\"b\"]").find("at most 1 names"), std::string::npos);
   EXPECT_NE(fault("-1", "[]").find("p: sheet.lf_images_skipped is"), std::string::npos);
+}
+
+TEST(PlateNotes, OtherVersionsOfTheRayModelAreRefused) {
+  for (const int difference : {-1, 0, 1}) {
+    PlateEntries entries = TextOf(Notes());
+    entries.emplace_back("law", std::to_string(kRayModelVersion + difference));
+    const Result<PlateNotes> read = PlateNotesOf(entries, 96, 64, "p");
+    EXPECT_EQ(read.has_value(), difference == 0);
+    const std::string message = read ? "p: law is \"" : read.error().message;
+    EXPECT_TRUE(message.starts_with("p: law is \"")) << message;
+  }
 }
 
 TEST(PlateNotes, FaultsAreNamed) {
