@@ -170,25 +170,46 @@ Result<void> RenameFlushed(std::span<const Renaming> files) {
   return {};
 }
 
-Result<void> CreateFolder(const fs::path& folder) {
+namespace {
+
+// Creates the folder and its missing parents, once. Returns false if another process removed one of
+// them in the meantime.
+Result<bool> TryToCreateFolder(const fs::path& folder) {
   std::error_code error;
   std::vector<fs::path> missing;
-  // Another process may remove a parent while it is still empty. Then all is created again.
-  constexpr int kMostTries = 1000;
-  for (int tries = 0; tries < kMostTries; ++tries) {
-    missing.clear();
-    for (fs::path at = folder; !at.empty() && !fs::exists(at, error); at = at.parent_path())
-      missing.push_back(at);
-    fs::create_directories(folder, error);
-    if (error != std::errc::no_such_file_or_directory) break;
-  }
-  if (error || !fs::is_directory(folder, error))
+  for (fs::path at = folder; !at.empty() && !fs::exists(at, error); at = at.parent_path())
+    missing.push_back(at);
+  fs::create_directories(folder, error);
+  if (error == std::errc::no_such_file_or_directory) return false;
+  if (error)
+    return OutputError(
+        fmt::format("{}: cannot be created as a folder: {}", folder.string(), error.message()));
+  const fs::file_status status = fs::status(folder, error);
+  if (status.type() == fs::file_type::not_found) return false;
+  if (!fs::is_directory(status))
     return OutputError(fmt::format("{}: cannot be created as a folder: {}", folder.string(),
                                    error ? error.message() : "a file has this name"));
   // Until the parent of a new folder is flushed, a crash can lose the folder with all that is in
   // it.
-  for (const fs::path& made : missing) LF_RETURN_IF_ERROR(FlushToDisk(ParentOf(made)));
-  return {};
+  for (const fs::path& made : missing) {
+    const Result<void> flushed = FlushToDisk(ParentOf(made));
+    if (!flushed && !fs::exists(ParentOf(made), error)) return false;
+    LF_RETURN_IF_ERROR(flushed);
+  }
+  return true;
+}
+
+}  // namespace
+
+Result<void> CreateFolder(const fs::path& folder) {
+  constexpr int kMostTries = 1000;
+  for (int tries = 0; tries < kMostTries; ++tries) {
+    LF_ASSIGN_OR_RETURN(const bool is_created, TryToCreateFolder(folder));
+    if (is_created) return {};
+  }
+  return OutputError(
+      fmt::format("{}: cannot be created as a folder: another program removes it again and again",
+                  folder.string()));
 }
 
 }  // namespace lf

@@ -12,6 +12,8 @@
 #include <string>
 #include <utility>
 
+#include "lf/core/file.h"
+
 namespace lf {
 namespace {
 
@@ -67,6 +69,16 @@ bool LockOpenFile(int fd) {
   return false;
 }
 
+// Opens the file, and creates it if it is missing. Returns -1, with the reason in errno, if that
+// fails.
+int OpenLockFile(const std::filesystem::path& path) {
+  return ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+}
+
+Error CannotBeCreated(const std::filesystem::path& path) {
+  return OutputError(fmt::format("{}: cannot be created: {}", path.string(), std::strerror(errno)));
+}
+
 }  // namespace
 
 FileLock::FileLock(std::filesystem::path path, int fd) : path_(std::move(path)), fd_(fd) {}
@@ -99,29 +111,44 @@ bool FileLock::IsHeld(const std::filesystem::path& path) {
   return is_held;
 }
 
+Result<std::optional<FileLock>> FileLock::TakeOpenFile(const std::filesystem::path& path, int fd) {
+  FileLock lock(path, fd);
+  if (!LockOpenFile(fd)) {
+    if (errno != EWOULDBLOCK)
+      return OutputError(
+          fmt::format("{}: cannot be locked: {}", path.string(), std::strerror(errno)));
+    const std::string number = OwnerNumber(fd);
+    return OutputError(
+        fmt::format("{}: is locked: another program{} is at work here; wait for it to end",
+                    path.string(), number.empty() ? "" : fmt::format(" (process {})", number)));
+  }
+  if (!IsStill(fd, path)) return std::optional<FileLock>();
+  // The process number is for people and messages only. The lock does not depend on it.
+  const std::string text = fmt::format("{}\n", ::getpid());
+  if (::ftruncate(fd, 0) != 0 || !Write(fd, text))
+    return OutputError(
+        fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
+  return std::optional<FileLock>(std::move(lock));
+}
+
 Result<FileLock> FileLock::Take(const std::filesystem::path& path) {
   while (true) {
-    const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
-    if (fd < 0)
-      return OutputError(
-          fmt::format("{}: cannot be created: {}", path.string(), std::strerror(errno)));
-    FileLock lock(path, fd);
-    if (!LockOpenFile(fd)) {
-      if (errno != EWOULDBLOCK)
-        return OutputError(
-            fmt::format("{}: cannot be locked: {}", path.string(), std::strerror(errno)));
-      const std::string number = OwnerNumber(fd);
-      return OutputError(
-          fmt::format("{}: is locked: another program{} is at work here; wait for it to end",
-                      path.string(), number.empty() ? "" : fmt::format(" (process {})", number)));
-    }
-    if (!IsStill(fd, path)) continue;
-    // The process number is for people and messages only. The lock does not depend on it.
-    const std::string text = fmt::format("{}\n", ::getpid());
-    if (::ftruncate(fd, 0) != 0 || !Write(fd, text))
-      return OutputError(
-          fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
-    return lock;
+    const int fd = OpenLockFile(path);
+    if (fd < 0) return CannotBeCreated(path);
+    LF_ASSIGN_OR_RETURN(std::optional<FileLock> lock, TakeOpenFile(path, fd));
+    if (lock) return std::move(*lock);
+  }
+}
+
+Result<FileLock> FileLock::TakeInFolder(const std::filesystem::path& folder) {
+  const std::filesystem::path path = folder / "lock";
+  while (true) {
+    LF_RETURN_IF_ERROR(CreateFolder(folder));
+    const int fd = OpenLockFile(path);
+    if (fd < 0 && errno == ENOENT) continue;  // the folder was removed a moment ago
+    if (fd < 0) return CannotBeCreated(path);
+    LF_ASSIGN_OR_RETURN(std::optional<FileLock> lock, TakeOpenFile(path, fd));
+    if (lock) return std::move(*lock);
   }
 }
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
+#include <optional>
 
 #include "lf/core/result.h"
 
@@ -16,6 +16,9 @@ class FileLock {
   // written. Waits a few milliseconds for the lock, and up to a second for a process that has
   // locked the file to write its number.
   static Result<FileLock> Take(const std::filesystem::path& path);
+  // Creates the folder if it is missing, and takes the lock of the file `lock` in it. Errors as
+  // above. Other processes may remove the folder whenever it is empty: it is then created again.
+  static Result<FileLock> TakeInFolder(const std::filesystem::path& folder);
   // True if any process holds the lock now. False if none does, if the file is missing, or if this
   // process may not read it.
   static bool IsHeld(const std::filesystem::path& path);
@@ -33,6 +36,8 @@ class FileLock {
 
  private:
   FileLock(std::filesystem::path path, int fd);
+  // Locks the file that is open as `fd`. Returns nothing if the file was removed in the meantime.
+  static Result<std::optional<FileLock>> TakeOpenFile(const std::filesystem::path& path, int fd);
   std::filesystem::path path_;
   int fd_ = -1;
   bool is_removed_in_the_end_ = false;

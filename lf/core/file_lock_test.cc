@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <string>
 #include <string_view>
@@ -128,6 +129,24 @@ TEST(FileLock, AnOwnerWithoutANumberLocksToo) {
   EXPECT_NE(lock.error().message.find("another program is at work"), std::string::npos)
       << lock.error().message;
   std::filesystem::remove(path);
+}
+
+TEST(FileLock, IsTakenInAFolderThatOthersRemove) {
+  const auto folder = LockPath("g");
+  for (int i = 0; i < 20; ++i) {
+    std::atomic<bool> is_taken = false;
+    std::jthread removes([&] {
+      std::error_code ignored;
+      for (int left = 3; left > 0 && !is_taken;)
+        if (std::filesystem::remove(folder, ignored)) --left;
+    });
+    Result<FileLock> lock = FileLock::TakeInFolder(folder);
+    is_taken = true;
+    ASSERT_TRUE(lock) << lock.error().message;
+    EXPECT_TRUE(FileLock::IsHeld(folder / "lock"));
+    lock->Remove();
+  }
+  std::filesystem::remove(folder);
 }
 
 TEST(FileLock, NeedsAFolder) {

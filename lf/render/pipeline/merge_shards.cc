@@ -172,8 +172,7 @@ class Merger {
   fs::path PartialFolder() const { return options_.output_folder / "partial"; }
   Result<void> Lock() {
     LF_RETURN_IF_ERROR(CreateFolder(options_.output_folder));
-    LF_RETURN_IF_ERROR(CreateFolder(PartialFolder()));
-    LF_ASSIGN_OR_RETURN(FileLock lock, FileLock::Take(PartialFolder() / "lock"));
+    LF_ASSIGN_OR_RETURN(FileLock lock, FileLock::TakeInFolder(PartialFolder()));
     lock_ = std::move(lock);
     return {};
   }

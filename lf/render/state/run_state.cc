@@ -136,8 +136,7 @@ Result<std::unique_ptr<RunState>> RunState::Open(const RunStateOptions& options,
                                                  const CameraPath& path) {
   const fs::path partial = PartialFolder(options);
   LF_RETURN_IF_ERROR(CreateFolder(options.folder));
-  LF_RETURN_IF_ERROR(CreateFolder(partial));
-  LF_ASSIGN_OR_RETURN(FileLock lock, FileLock::Take(partial / "lock"));
+  LF_ASSIGN_OR_RETURN(FileLock lock, FileLock::TakeInFolder(partial));
   std::unique_ptr<RunState> state(new RunState(options, path, std::move(lock)));
   if (options.shard)
     LF_RETURN_IF_ERROR(CreateFolder(state->FinishedPath(FrameId{1}).parent_path()));
