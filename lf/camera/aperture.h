@@ -18,19 +18,20 @@ struct Aperture {
   double rotation_rad = 0;  // counter-clockwise as the photographer sees it (right towards up)
 };
 
-// Relative tolerance of the rim. The rim counts as inside, because LF cameras of regular grids lie
-// exactly on it. In a disk, the squared length of a point may exceed the squared radius by this
-// share. In a polygon, the distance of a point along the normal of an edge may exceed distance_w by
-// half of this share (doc/ray.md).
+// Relative tolerance of the rim. The rim counts as inside, because LF cameras of regular grids
+// often lie exactly on it. In a disk, the squared length of a point may exceed the squared radius
+// by this share. In a polygon, the distance of a point along the normal of an edge may exceed
+// ApertureEdge::distance_w by half of this share (doc/ray.md).
 inline constexpr double kRimTolerance = 1e-9;
 
-// One edge of the opening: normal . l <= distance_w for every point l inside; |normal| = 1.
+// One edge of the opening: normal . l <= distance_w for every point l of the opening, in lens
+// coordinates; |normal| = 1.
 struct ApertureEdge {
   Vec2 normal = Vec2::UnitX();
   double distance_w = 0;
 };
 
-// Vertices of the polygon, counter-clockwise; empty for a disk.
+// Returns the vertices of the polygon in lens coordinates, counter-clockwise; empty for a disk.
 std::vector<Vec2> Vertices(const Aperture& aperture);
 
 // Returns the edges of the polygon. For a disk, returns the edges of the regular polygon with
@@ -41,10 +42,10 @@ std::vector<ApertureEdge> Edges(const Aperture& aperture, int disk_edge_count = 
 // circumscribed about a disk of radius 1: 1 / cos(pi / kDiskEdges).
 inline constexpr double kDiskPolygonRadius = 1.0195911582083184;
 
-// True if the point (right, up) lies in the opening or on its rim.
+// Returns true if the point (right, up) lies in the opening or on its rim.
 bool Contains(const Aperture& aperture, const Vec2& point_lens);
 
-// Contains() for many points: computes the edges of a polygon only once.
+// Tests many points as the function Contains() does, but computes the edges of a polygon only once.
 class ApertureTest {
  public:
   explicit ApertureTest(const Aperture& aperture);
@@ -55,7 +56,7 @@ class ApertureTest {
   std::vector<ApertureEdge> edges_;  // for a polygon; empty for a disk
 };
 
-// Area of the opening in squared world units.
+// Returns the area of the opening in squared world units.
 double Area(const Aperture& aperture);
 
 // Returns `count` points spread uniformly over the opening: the R2 low-discrepancy sequence,

@@ -16,13 +16,14 @@ struct ValueAndSlope {
   double slope = 0;
 };
 
-// The radial part of kRadialTangential, r * numerator(r^2) / denominator(r^2).
+// The radial part of kRadialTangential: the radius rd = r numerator(r^2) / denominator(r^2), and
+// its derivative by r.
 class RadialCurve {
  public:
   explicit RadialCurve(const DistortionParameters& p)
       : numerator_{p[0], p[1], p[4]}, denominator_{p[5], p[6], p[7]} {}
 
-  // Returns radial(s), with s = r^2, and its derivative by s.
+  // Returns numerator(s) / denominator(s), with s = r^2, and its derivative by s.
   ValueAndSlope Factor(double s) const {
     const ValueAndSlope n = Evaluate(numerator_, s), d = Evaluate(denominator_, s);
     return {n.value / d.value, (n.slope * d.value - n.value * d.slope) / (d.value * d.value)};
@@ -40,7 +41,8 @@ class RadialCurve {
   std::array<double, 3> numerator_, denominator_;
 };
 
-// The radial part of kFisheye, theta (1 + k1 theta^2 + ...).
+// The radial part of kFisheye: the radius rd = theta (1 + k1 theta^2 + ... + k4 theta^8), and its
+// derivative by theta.
 class FisheyeCurve {
  public:
   explicit FisheyeCurve(const std::array<double, 4>& k) : k_(k) {}
@@ -55,13 +57,14 @@ class FisheyeCurve {
   std::array<double, 4> k_;
 };
 
-// The radial part of kRadialTangentialThinPrism, theta (1 + k0 theta^2 + ... + k5 theta^12).
+// The radial part of kRadialTangentialThinPrism: the radius theta (1 + k0 theta^2 + ... + k5
+// theta^12), and its derivative by theta.
 class LongFisheyeCurve {
  public:
   explicit LongFisheyeCurve(const DistortionParameters& p) {
     std::copy_n(p.begin(), k_.size(), k_.begin());
   }
-  // Returns the factor of theta, and its derivative by s = theta^2.
+  // Returns the factor 1 + k0 s + ... + k5 s^6, with s = theta^2, and its derivative by s.
   ValueAndSlope Factor(double s) const {
     ValueAndSlope factor{0, 0};
     for (size_t i = k_.size(); i-- > 0;) {
@@ -83,13 +86,13 @@ class LongFisheyeCurve {
 
 std::array<double, 4> FirstFour(const DistortionParameters& p) { return {p[0], p[1], p[2], p[3]}; }
 
-// The radial part of kThinPrism.
+// Returns the radial part of kThinPrism: the radius theta (1 + k1 theta^2 + ... + k4 theta^8).
 FisheyeCurve ThinPrismCurve(const DistortionParameters& p) {
   return FisheyeCurve({p[0], p[1], p[4], p[5]});
 }
 
-// Returns the end of the interval, from 0, in which the curve increases; at most position(1). The
-// curve is sampled at position(t), with t from 0 to 1.
+// Returns the end of the interval [0, end) in which the curve increases; at most position(1). The
+// curve is sampled at the radii position(t), with t from 0 to 1.
 template <class Curve, class Position>
 double GrowthLimit(const Curve& curve, const Position& position) {
   constexpr int kSteps = 1024;
@@ -134,7 +137,7 @@ struct Bent {
   Eigen::Matrix2d jacobian;
 };
 
-// Maps u = (x, y) by kRadialTangential.
+// Returns the distorted position of u = (x, y) by kRadialTangential.
 Bent Bend(const DistortionParameters& p, const RadialCurve& curve, const Vec2& u) {
   const double x = u.x(), y = u.y(), s = x * x + y * y;
   const double p1 = p[2], p2 = p[3];
@@ -148,7 +151,7 @@ Bent Bend(const DistortionParameters& p, const RadialCurve& curve, const Vec2& u
   return bent;
 }
 
-// Maps `at` = (u, v) by kThinPrism.
+// Returns the distorted position of `at` = (u, v) by kThinPrism.
 Bent BendThinPrism(const DistortionParameters& p, const Vec2& at) {
   const double u = at.x(), v = at.y(), s = u * u + v * v;
   const double p1 = p[2], p2 = p[3], sx1 = p[6], sy1 = p[7];
@@ -164,7 +167,7 @@ Bent BendThinPrism(const DistortionParameters& p, const Vec2& at) {
   return bent;
 }
 
-// Maps `at` = (u, v) by kRadialTangentialThinPrism.
+// Returns the distorted position of `at` = (u, v) by kRadialTangentialThinPrism.
 Bent BendRadialTangentialThinPrism(const DistortionParameters& p, const Vec2& at) {
   const double u = at.x(), v = at.y();
   const ValueAndSlope radial = LongFisheyeCurve(p).Factor(u * u + v * v);
@@ -238,8 +241,9 @@ std::optional<Vec3> UnbendEquidistant(const Curve& curve, const BendIt& bend, co
   return Vec3(at->x() * factor, at->y() * factor, std::cos(theta));
 }
 
-// Returns the image of a direction in an ideal fish-eye: (x, y) theta / r. None if theta exceeds
-// `limit`, or if the direction is exactly backwards.
+// Returns the image of a direction (X, Y, Z) in an ideal fish-eye: (X, Y) theta / sqrt(X^2 + Y^2),
+// where theta is the angle from the optical axis. None if theta exceeds `limit`, or if the
+// direction is exactly backwards.
 std::optional<Vec2> Equidistant(const Vec3& direction, double limit) {
   const double across = direction.head<2>().norm();
   const double theta = std::atan2(across, direction.z());
@@ -286,12 +290,12 @@ DistortionMap::DistortionMap(const Distortion& distortion)
       distorted_limit_ = 0.5 * kPi / p[0];
       return;
     case DistortionModel::kDivision:
-      // At this rd, r(rd) has its maximum (k > 0) or a pole (k < 0).
+      // At this rd, r = rd / (1 + k rd^2) has its maximum (k > 0) or a pole (k < 0).
       distorted_limit_ = p[0] == 0 ? kNoLimit : 1 / std::sqrt(std::abs(p[0]));
       if (p[0] > 0) limit_ = 0.5 * distorted_limit_;
       return;
     case DistortionModel::kUnified: {
-      // The limit of rd for r to infinity.
+      // rd approaches 1 / far as r goes to infinity.
       const double far = p[0] * std::sqrt(p[1]);
       distorted_limit_ = far > 0 ? 1 / far : kNoLimit;
       return;

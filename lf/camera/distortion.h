@@ -21,29 +21,34 @@ enum class DistortionModel : uint8_t {
   //   radial = (1 + k1 r^2 + k2 r^4 + k3 r^6) / (1 + k4 r^2 + k5 r^4 + k6 r^6)
   // (COLMAP: SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV)
   kRadialTangential,
-  // k1 k2 k3 k4; with the angle theta from the optical axis:
+  // k1 k2 k3 k4; the distorted radius rd as a function of the angle theta from the optical axis:
   //   rd = theta (1 + k1 theta^2 + k2 theta^4 + k3 theta^6 + k4 theta^8)
   // (OpenCV fisheye; COLMAP: OPENCV_FISHEYE, SIMPLE_RADIAL_FISHEYE, RADIAL_FISHEYE,
   // SIMPLE_FISHEYE, FISHEYE)
   kFisheye,
-  // omega, the field of view of an ideal fish-eye lens: rd = atan(2 r tan(omega / 2)) / omega
+  // omega, the field of view of an ideal fish-eye lens in radians; the distorted radius rd as a
+  // function of the undistorted radius r = sqrt(X^2 + Y^2) / Z:
+  //   rd = atan(2 r tan(omega / 2)) / omega
   // (Devernay and Faugeras 2001; COLMAP: FOV)
   kFov,
   // k; the undistorted radius r as a function of the distorted radius rd (Fitzgibbon 2001):
   //   r = rd / (1 + k rd^2)
   // (COLMAP: SIMPLE_DIVISION, DIVISION)
   kDivision,
-  // alpha beta, a unified model (Khomutenko, Garcia and Martinet 2016); alpha in [0, 1], beta > 0:
+  // alpha beta, a unified model (Khomutenko, Garcia and Martinet 2016); alpha in [0, 1], beta > 0;
+  // with x = X / Z, y = Y / Z, r^2 = x^2 + y^2:
   //   (xd, yd) = (x, y) / (alpha sqrt(beta r^2 + 1) + 1 - alpha)
   // (COLMAP: EUCM)
   kUnified,
-  // k1 k2 p1 p2 k3 k4 sx1 sy1; with (u, v) = (x, y) theta / r and s = theta^2:
+  // k1 k2 p1 p2 k3 k4 sx1 sy1; with the angle theta from the optical axis, s = theta^2 and
+  // (u, v) = (X, Y) theta / sqrt(X^2 + Y^2):
   //   xd = u radial + 2 p1 u v + p2 (s + 2 u^2) + sx1 s
   //   yd = v radial + 2 p2 u v + p1 (s + 2 v^2) + sy1 s
   //   radial = 1 + k1 s + k2 s^2 + k3 s^3 + k4 s^4
   // (COLMAP: THIN_PRISM_FISHEYE)
   kThinPrism,
-  // k0 k1 k2 k3 k4 k5 p0 p1 s0 s1 s2 s3; with (u, v) = (x, y) theta / r and s = theta^2:
+  // k0 k1 k2 k3 k4 k5 p0 p1 s0 s1 s2 s3; with the angle theta from the optical axis, s = theta^2
+  // and (u, v) = (X, Y) theta / sqrt(X^2 + Y^2):
   //   (a, b) = (u, v) (1 + k0 s + k1 s^2 + k2 s^3 + k3 s^4 + k4 s^5 + k5 s^6), q = a^2 + b^2
   //   xd = a + p0 (q + 2 a^2) + 2 p1 a b + s0 q + s1 q^2
   //   yd = b + p1 (q + 2 b^2) + 2 p0 a b + s2 q + s3 q^2
@@ -69,8 +74,8 @@ constexpr size_t StoredParameterCount(DistortionModel model) {
   return model == DistortionModel::kRadialTangentialThinPrism ? 12 : 8;
 }
 
-// True if the parameters are valid for their model: omega in (0, pi); alpha in [0, 1] and beta
-// above 0. All parameters of the other models are valid.
+// Returns true if the parameters are valid for their model: omega of kFov in (0, pi); alpha of
+// kUnified in [0, 1] and beta above 0. All parameters of the other models are valid.
 bool IsDistortion(const Distortion& distortion);
 
 // Distorts and undistorts positions. The constructor computes the limits of the model once for many
@@ -96,8 +101,12 @@ class DistortionMap {
 
  private:
   Distortion distortion_;
-  double limit_;  // largest r = tan(theta), or theta for fish-eyes; used for polynomials only
-  double distorted_limit_;  // largest rd that the radial part of the model reaches
+  // Largest undistorted radius that has an image: r = tan(theta), or theta for fish-eyes. Infinity
+  // if there is no limit. Only polynomial models use this member.
+  double limit_;
+  // Largest distorted radius rd that the radial part of the model reaches; infinity if there is no
+  // limit.
+  double distorted_limit_;
 };
 
 }  // namespace lf

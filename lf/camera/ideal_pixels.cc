@@ -8,7 +8,7 @@
 namespace lf {
 namespace {
 
-// Size of the largest patch. It is wide, because kernels work along scanlines.
+// Size of the largest patch. Patches are wide, because kernels work along scanlines.
 constexpr int kLargestWidth_px = 1024, kLargestHeight_px = 64;
 
 constexpr int kControls = IdealPatch::kControls;
@@ -18,7 +18,8 @@ using Points = std::array<Vec3, kControls>;
 // Returns the control points of the arc that goes through `points` at the parameters kQuinticPlaces
 // (core/quintic.h).
 Points ControlsThrough(const Points& points) {
-  // kValues[i][k] / kDivisors[k] is the blossom (polar form) of t^k that gives control point i.
+  // Control point i is the sum over k of kValues[i][k] / kDivisors[k] times the coefficient of t^k.
+  // These factors are values of the blossom (polar form) of t^k.
   constexpr int kValues[kControls][kControls] = {{1, -5, 10, -10, 5, -1}, {1, -3, 2, 2, -3, 1},
                                                  {1, -1, -2, 2, 1, -1},   {1, 1, -2, -2, 1, 1},
                                                  {1, 3, 2, -2, -3, -1},   {1, 5, 10, 10, 5, 1}};
@@ -78,8 +79,9 @@ class PatchMaker {
     patches_->push_back(patch);
   }
 
-  // Makes the patch go through the ideal positions of six by six points. Returns false if one of
-  // them has no ideal position, or if the error of the patch exceeds kTolerance_px.
+  // Makes the patch go through the ideal positions of six by six points of its rectangle. Returns
+  // false if one of these points has no ideal position, or if the error of the patch exceeds
+  // kTolerance_px.
   bool Fit(IdealPatch* patch) const {
     const PixelRect& rect = patch->rect;
     Points rows[kControls];  // control points of the arc through each row of points
@@ -106,7 +108,7 @@ class PatchMaker {
     return true;
   }
 
-  // Maps a position in [-1, 1] to [0, 1].
+  // Converts a place of core/quintic.h, in [-1, 1], to a parameter of the patch, in [0, 1].
   static double UnitPlace(double place) { return 0.5 * (1 + place); }
 
   bool IsTrue(const IdealPatch& patch, double u, double v) const {

@@ -1,4 +1,5 @@
-// The pixels of an LF camera with its lens distortion undone, without resampling its image.
+// Undoes the lens distortion of an LF camera for the positions of its pixels, without resampling
+// its image.
 //
 // The *ideal position* of a pixel is the position at which a pinhole with the same K would record
 // its ray: q = K d, where d is the direction of the ray in camera axes. It is in homogeneous
@@ -35,7 +36,7 @@ struct IdealArc {
   static constexpr int kControls = 6;
   Vec3 control[kControls];
 
-  // Parameter of the arc at the centre of pixel x.
+  // Returns the parameter of the arc at the centre of pixel x.
   double Parameter(int x) const {
     return (x - x_begin + 0.5) / static_cast<double>(x_end - x_begin);
   }
@@ -51,10 +52,12 @@ struct IdealPatch {
   PixelRect rect;
   Vec3 control[kControls][kControls];  // [row][column]
 
-  // The arc through the centres of the pixels of scanline y, which must be in `rect`.
+  // Returns the arc through the centres of the pixels of scanline y, which must be in `rect`.
   IdealArc Scanline(int y) const { return ArcAt(Parameter(y)); }
+  // Returns the vertical parameter of the patch at the centres of the pixels of scanline y.
   double Parameter(int y) const { return (y + 0.5 - rect.y_begin) / rect.height(); }
-  // The arc at v, which is 0 at the upper border and 1 at the lower one.
+  // Returns the arc at the vertical parameter v: 0 at the upper border of `rect`, 1 at the lower
+  // one.
   IdealArc ArcAt(double v) const;
 };
 

@@ -12,7 +12,9 @@ double Magnification(const PinholeCamera& lf_camera, const RenderCamera& render_
   const Intrinsics& k = lf_camera.intrinsics;
   const Intrinsics& plate = render_camera.pinhole.intrinsics;
   const RayThrough ray(lf_camera, render_camera.pinhole.ForwardWorld());
-  double densest_held = 0, densest = 0;  // most LF pixels per element; _held: within the LF image
+  // Largest number of LF pixels per element: densest_held at points that the LF image shows,
+  // densest at all points.
+  double densest_held = 0, densest = 0;
   for (const double v : {0.1, 0.5, 0.9})
     for (const double u : {0.1, 0.5, 0.9}) {
       const double x = u * plate.width_px, y = v * plate.height_px;

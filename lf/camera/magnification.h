@@ -6,14 +6,15 @@
 
 namespace lf {
 
-// Returns the magnification, the number of elements per LF pixel along an edge: the square root of
-// the area, in elements, that an LF pixel covers on the plate. It is computed at nine points of the
-// plate. The result is the smallest value at the points that the LF image shows, or the smallest of
-// all if it shows none of them. Returns 1 if there is no value at any of them.
+// Returns the magnification, the width of an LF pixel in elements: the square root of the area, in
+// elements, that the LF pixel covers on the plate. The magnification is computed at nine points of
+// the plate. The result is the smallest value at the points that the LF image shows, or the
+// smallest of all values if the LF image shows none of these points. Returns 1 if the magnification
+// is undefined at all nine points.
 double Magnification(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
 
-// Width, in LF pixels, of the largest element that is the mean of all its LF pixels. Larger
-// elements leave out some.
+// Largest width of an element, in LF pixels, at which rendering averages all LF pixels that the
+// element covers. Wider elements use only some of their LF pixels.
 inline constexpr double kWidestElement_px = 16;
 
 // Returns how many LF pixels wide an element is: 1 / Magnification().

@@ -22,12 +22,12 @@ struct Intrinsics {
   double skew_px = 0;
   int width_px = 0;
   int height_px = 0;
-  Distortion distortion = {};  // applied to the directions of rays, before K
+  Distortion distortion = {};  // lens distortion of ray directions, applied before K
   Vignetting vignetting = {};  // falloff of light, by which recorded radiance is divided
 
   bool has_distortion() const { return distortion.model != DistortionModel::kNone; }
   Mat3 Matrix() const;
-  Mat3 InverseMatrix() const;  // closed formula; fx and fy must not be 0
+  Mat3 InverseMatrix() const;  // K^-1, by a closed formula; fx_px and fy_px must not be 0
   friend bool operator==(const Intrinsics&, const Intrinsics&) = default;
 };
 
@@ -47,13 +47,13 @@ struct PinholeCamera {
 std::optional<RigidTransform> LookAlong(const Vec3& centre_world, const Vec3& forward_world,
                                         const Vec3& up_world);
 
-// Returns the ray through continuous pixel position (x, y) of a camera without distortion: p_camera
-// = K^-1 p (thesis Eq. 4.1, 4.2). The ray's direction has length 1 along the optical axis;
-// therefore Ray::At(z) is the point at depth z.
+// Returns the ray through continuous pixel position (x, y) of a camera without distortion. Its
+// direction in camera axes is K^-1 (x, y, 1)^T (thesis Eq. 4.1, 4.2), whose component along the
+// optical axis is 1; therefore Ray::At(z) is the point at depth z.
 Ray RayOfPixel(const PinholeCamera& camera, double x_px, double y_px);
 
-// Projects a point into the image of a camera without distortion, by P = K [R|t] (thesis Eq. 2.6,
-// 2.7). None if the point is at depth 0 or behind the camera.
+// Returns the position, in pixels, of a point in the image of a camera without distortion, by P = K
+// [R|t] (thesis Eq. 2.6, 2.7). None if the point is at depth 0 or behind the camera.
 std::optional<Vec2> Project(const PinholeCamera& camera, const Vec3& point_world);
 
 }  // namespace lf

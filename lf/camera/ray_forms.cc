@@ -19,10 +19,12 @@ RayForms MakeRayForms(const Mat3& direction, const Vec3& centre_world,
   const Vec3& n = render_camera.focus_plane.normal;
   const double h = render_camera.focus_plane.offset_w;
 
-  // (X - c') n.d = [ (c - c') n^T + (h - n.c) I ] d
+  // X is the point where the ray from the LF camera's centre c along d meets the focus plane n.X =
+  // h, and c' is the lens centre:  (X - c') n.d = [ (c - c') n^T + (h - n.c) I ] d
   const Mat3 focus = offset * n.transpose() + (h - n.dot(c)) * Mat3::Identity();
   const Mat3 sensor = plate.intrinsics.Matrix() * plate.cam_from_world.rotation * focus * direction;
-  // (lens point - c') f.d = [ (c - c') f^T - f.(c - c') I ] d
+  // L is the point where the ray meets the lens plane f.(L - c') = 0:
+  //   (L - c') f.d = [ (c - c') f^T - f.(c - c') I ] d
   const Mat3 lens = offset * f.transpose() - f.dot(offset) * Mat3::Identity();
 
   RayForms forms;

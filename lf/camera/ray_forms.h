@@ -22,33 +22,41 @@
 namespace lf {
 
 struct RayForms {
-  PixelForm forward;   // f.d; the ray runs forward where it is > 0
-  PixelForm plane;     // n.d; is 0 where the ray is parallel to the focus plane
-  PixelForm sensor_x;  // element position = (sensor_x p, sensor_y p) / (front p)
+  // f.d, for the ray's direction d and the render camera's forward axis f. The ray runs forward
+  // where this form is above 0.
+  PixelForm forward;
+  // n.d, for the normal n of the focus plane; 0 where the ray is parallel to the focus plane.
+  PixelForm plane;
+  // The ray meets the sensor plate at the element position (sensor_x p, sensor_y p) / (front p).
+  PixelForm sensor_x;
   PixelForm sensor_y;
-  PixelForm front;  // f.(X - c') times n.d; X is in front of the lens where `front p` and `plane p`
-                    // have equal signs
-  PixelForm lens_right;  // lens position = (lens_right p, lens_up p) / (forward p)
+  // f.(X - c') times n.d, where X is the ray's point on the focus plane and c' the lens centre. X
+  // is in front of the lens where `front p` and `plane p` have equal signs.
+  PixelForm front;
+  // The ray meets the lens plane at (right, up) = (lens_right p, lens_up p) / (forward p), in world
+  // units from the lens centre.
+  PixelForm lens_right;
   PixelForm lens_up;
 };
 
 RayForms MakeRayForms(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
-// Same as above. Saves time if the forms of one LF camera are made for many frames, because all of
-// them use the same `direction`.
-//   direction  R^T K^-1 of the LF camera
+// Returns the forms of an LF camera with the given centre. Saves time if the forms of one LF camera
+// are made for many frames, because all of them use the same `direction`.
+//   direction  R^T K^-1 of the LF camera; maps p to the direction of its ray in the world
 RayForms MakeRayForms(const Mat3& direction, const Vec3& centre_world,
                       const RenderCamera& render_camera);
 
 // A half-plane of LF pixels p is given by a form: a ray can be accepted only if `form p <= 0` for
-// all of its half-planes. Together they bound the part of the LF image that sees the lens and the
-// filmed region (thesis Fig. 4.5). The thesis projects lens and region into the LF image, which
-// fails for points beside the LF camera, in the plane through its centre and normal to its axis;
-// half-planes need no projection. Rays with n.d > 0 and rays with n.d < 0 have different
-// half-planes: plane_sign, +1 or -1, is the sign of n.d.
+// all half-planes that are valid for the ray. Together the half-planes bound the part of the LF
+// image that sees the lens and the filmed region (thesis Fig. 4.5). The thesis projects lens and
+// region into the LF image, which fails for points beside the LF camera, in the plane through its
+// centre and normal to its axis; half-planes need no projection. Rays whose direction d has n.d >
+// 0, with the normal n of the focus plane, and rays with n.d < 0 have different half-planes:
+// plane_sign, +1 or -1, is the sign of n.d.
 
-// Returns the half-planes of the conditions plane_sign n.d >= 0, `forward p` >= 0 and
-// plane_sign `front p` >= 0 (the form of a condition a >= 0 is -a), and those of the four edges of
-// the plate. Each edge is moved outwards by margin_px elements.
+// Returns the half-planes of the conditions plane_sign `plane p` >= 0, `forward p` >= 0 and
+// plane_sign `front p` >= 0 (the form of a condition a >= 0 is -a), and the half-planes of the four
+// edges of the plate. Each edge is moved outwards by margin_px elements.
 inline constexpr size_t kPlateHalfPlanes = 7;
 std::array<PixelForm, kPlateHalfPlanes> PlateHalfPlanes(const RayForms& forms,
                                                         const RenderCamera& render_camera,
@@ -56,8 +64,8 @@ std::array<PixelForm, kPlateHalfPlanes> PlateHalfPlanes(const RayForms& forms,
 
 // LensHalfPlane() returns the half-plane of one edge of the lens polygon (for a disk, of its
 // circumscribed 16-gon), moved outwards by margin_w. LensHalfPlanes() returns the half-planes of
-// all edges, moved outwards by `relative_margin` times the radius. They are valid only for rays
-// that run forward.
+// all edges, moved outwards by `relative_margin` times the lens radius. These half-planes are valid
+// only for rays that run forward.
 inline PixelForm LensHalfPlane(const RayForms& forms, const ApertureEdge& edge, double margin_w) {
   return edge.normal.x() * forms.lens_right + edge.normal.y() * forms.lens_up -
          (edge.distance_w + margin_w) * forms.forward;

@@ -1,5 +1,5 @@
-// The ray of an LF camera through a point of the world. Its direction points forward in a frame, as
-// in the ray model (doc/ray.md, steps 2 and 3).
+// The ray of an LF camera through a point of the world. Its direction points forward for the camera
+// of a frame, as in the ray model (doc/ray.md, steps 2 and 3).
 #pragma once
 
 #include <optional>
@@ -12,9 +12,9 @@ namespace lf {
 
 class RayThrough {
  public:
-  //   forward_world  the direction in which the camera of the frame looks
-  //   map            made from the distortion of the LF camera; a caller that has such a map saves
-  //                  the time to make it again
+  //   forward_world  the direction in which the render camera of the frame looks
+  //   map            the map of the LF camera's distortion; given by callers that already have it,
+  //                  because making it takes time
   RayThrough(const PinholeCamera& lf_camera, const Vec3& forward_world)
       : RayThrough(lf_camera, forward_world, DistortionMap(lf_camera.intrinsics.distortion)) {}
   RayThrough(const PinholeCamera& lf_camera, const Vec3& forward_world, const DistortionMap& map)
@@ -26,8 +26,8 @@ class RayThrough {
 
   const Vec3& centre_world() const { return centre_; }
 
-  // Returns the direction of the line through the LF camera's centre and the point, with the sign
-  // for which the direction points forward.
+  // Returns the direction of the line through the LF camera's centre and the point. Its sign is
+  // chosen so that its product with forward_world is not negative. Its length is the distance.
   Vec3 DirectionWorld(const Vec3& point_world) const {
     const Vec3 d = point_world - centre_;
     return forward_.dot(d) < 0 ? Vec3(-d) : d;

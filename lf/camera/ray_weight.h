@@ -1,4 +1,4 @@
-// Weights of rays (doc/ray.md, "What is added").
+// Weights of rays: how much a ray counts in the mean of an element (doc/ray.md, "What is added").
 #pragma once
 
 #include <algorithm>
@@ -11,12 +11,14 @@
 namespace lf {
 
 // Largest weight of a ray. Weights are integers, in proportion to the part of the lens that the
-// ray's LF camera stands for: sum += weight v, count += weight. A ray of weight 0 adds nothing.
+// ray's LF camera stands for. A ray of radiance v adds weight * v to the sum of its element and
+// weight to the element's count. A ray of weight 0 adds nothing.
 inline constexpr uint32_t kMaxWeight = 255;
 
-// Side of a block, in elements. The plate is divided into blocks of 8 x 8 elements; all elements of
-// a block have the same weight. The blocks of different LF images begin at different elements;
-// otherwise the borders of their blocks would add up to a pattern.
+// Side of a block, in elements. For each LF image, the plate is divided into blocks of 8 x 8
+// elements; rays that land in one block have the same weight, apart from the feather. The blocks of
+// different LF images begin at different elements; otherwise the borders of their blocks would add
+// up to a pattern.
 inline constexpr int kWeightBlock = 8;
 
 struct WeightBlocks {
@@ -24,7 +26,8 @@ struct WeightBlocks {
   int shift_x = 0;
   int shift_y = 0;
 
-  // Exclusive end of the block that contains column x, or row y.
+  // EndX() returns the exclusive end of the block that contains column x of the plate, EndY() that
+  // of the block that contains row y.
   int EndX(int x) const { return ((x + shift_x) / kWeightBlock + 1) * kWeightBlock - shift_x; }
   int EndY(int y) const { return ((y + shift_y) / kWeightBlock + 1) * kWeightBlock - shift_y; }
 };
@@ -33,7 +36,8 @@ struct WeightBlocks {
 // is left near the borders of its LF image: from 0 at the border to kWholeFeather inside.
 inline constexpr uint32_t kWholeFeather = 256;
 
-// Returns the weight of element (i, j) of a block, from the feather at the element's centre.
+// Returns the weight of the element in column i and row j of a block: the block's weight times the
+// feather, which is interpolated bilinearly to the element's centre.
 //   weight    the block's weight
 //   above     feather at the two upper corners of the block: left, right
 //   below     feather at the two lower corners of the block: left, right
@@ -60,11 +64,13 @@ class RayWeights {
   // Writes the feather, at most kWholeFeather, at the positions (x + kWeightBlock i, y) of the
   // plate, i in [0, count), which are corners of blocks. Any thread may call it.
   using FeatherFunction = std::function<void(int x, int y, int count, uint16_t* feather)>;
-  // Returns true only if the feather is whole at all positions (x, y) with x_begin <= x <= x_end
-  // and y_begin <= y <= y_end. May be false although it is. Any thread may call it.
+  // Returns true only if the feather is kWholeFeather at all positions (x, y) of the plate with
+  // x_begin <= x <= x_end and y_begin <= y <= y_end. May return false although the feather is
+  // whole. Any thread may call it.
   using WholeFunction = std::function<bool(const PixelRect& rect)>;
-  //   feather_of_row    empty if the image has no feather
-  //   feather_is_whole  empty: always false
+  // Gives each block its own weight.
+  //   feather_of_row    empty if the LF image has no feather
+  //   feather_is_whole  empty: the feather is not known to be whole anywhere
   RayWeights(const WeightBlocks& blocks, RowFunction of_row, FeatherFunction feather_of_row = {},
              WholeFunction feather_is_whole = {})
       : blocks_(blocks),
@@ -74,7 +80,7 @@ class RayWeights {
 
   bool are_same() const { return of_row_ == nullptr; }
   uint32_t same() const { return same_; }
-  // True if the whole plate has the weight 0, so that the image adds nothing to it.
+  // True if the weight is 0 on the whole plate, so that the LF image adds nothing to it.
   bool are_none() const { return are_same() && same_ == 0; }
   bool has_feather() const { return feather_of_row_ != nullptr; }
   const WeightBlocks& blocks() const { return blocks_; }
@@ -96,8 +102,8 @@ class RayWeights {
   void OfRow(int x, int y, int count, uint8_t* weights) const {
     of_row_(blocks_.EndX(x), blocks_.EndY(y), count, weights);
   }
-  // Returns true only if no ray of these elements loses weight by the feather. May be false
-  // although none does.
+  // Returns true only if no ray that lands in these elements loses weight by the feather. May
+  // return false although no ray does.
   bool FeatherIsWhole(const PixelRect& elements) const {
     if (!has_feather()) return true;
     if (!feather_is_whole_) return false;

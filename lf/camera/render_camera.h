@@ -1,4 +1,5 @@
-// The thin-lens camera of one frame: K', R', c', the lens and the focus plane of doc/ray.md.
+// The thin-lens camera of one frame: the calibration matrix K', rotation R', lens centre c', lens
+// and focus plane of doc/ray.md.
 #pragma once
 
 #include <optional>
@@ -9,8 +10,8 @@
 
 namespace lf {
 
-// Tilt of the focus plane. At x to the right and u up, in camera coordinates, the plane has the
-// depth  g + x tan(horizontal) + u tan(vertical),  where g is the focus distance.
+// Tilt of the focus plane. At x to the right of the optical axis and u above it, in world units,
+// the plane has the depth  g + x tan(horizontal) + u tan(vertical),  where g is the focus distance.
 struct FocusTilt {
   double horizontal_rad = 0;
   double vertical_rad = 0;
@@ -25,7 +26,7 @@ struct RenderCamera {
   double time_s = 0;
   double focal_length_w = 0;
   double sensor_width_w = 0;
-  double focus_distance_w = 0;  // g, along the optical axis
+  double focus_distance_w = 0;  // from the lens centre to the focus plane, along the optical axis
   FocusTilt focus_tilt;
   double unit_m = 1;  // metres per world unit
 };
@@ -36,8 +37,8 @@ Plane FocusPlane(const PinholeCamera& camera, double focus_distance_w, const Foc
 // Converts a point of the lens from lens coordinates (right, up) to world coordinates.
 Vec3 LensPointWorld(const RenderCamera& camera, const Vec2& point_lens);
 
-// The refraction of a thin lens: returns the point of the focus plane that element position (x, y)
-// sees through every point of the lens (thesis 2.3.2). None if the line from (x, y) through the
+// Returns the point of the focus plane that element position (x, y) sees through every point of the
+// lens, by the refraction of a thin lens (thesis 2.3.2). None if the line from (x, y) through the
 // lens centre meets the tilted plane only behind the lens or never.
 std::optional<Vec3> FocusPointOfElement(const RenderCamera& camera, double x_px, double y_px);
 

@@ -62,7 +62,7 @@ CameraPair RandomDistortedPair(uint64_t seed) {
   CameraPair pair = RandomCameraPair(seed);
   Intrinsics& k = pair.lf_camera.intrinsics;
   k = {240, 248, 101.2, 68.4, 0.5, 200, 140, kDistortions[seed % 7]};
-  if (seed % 7 == 6) k.fx_px = k.fy_px = 55;  // the fish-eye then sees behind itself
+  if (seed % 7 == 6) k.fx_px = k.fy_px = 55;  // the fish-eye then sees beyond 90 degrees
   return pair;
 }
 

@@ -1,5 +1,6 @@
 // Random pairs of an LF camera and a render camera for tests: LF cameras in front of, behind and in
-// the lens plane, tilted focus planes whose horizon is in view, disks and polygons, rolled images.
+// the lens plane of the render camera; focus planes tilted so far that their horizon is in view;
+// apertures that are disks or polygons; images rolled about the optical axis.
 #pragma once
 
 #include <cstdint>
@@ -14,18 +15,20 @@ struct CameraPair {
   RenderCamera render_camera;
 };
 
-// The LF image has 50 x 35 pixels, the plate 160 x 120 elements. The kind of scene depends on the
-// seed modulo small numbers.
+// Returns a pair with an LF image of 50 x 35 pixels and a sensor plate of 160 x 120 elements. The
+// seed determines all random numbers; its remainders, such as seed % 6, select the number of
+// aperture blades, whether the focus plane is tilted, and where the LF camera stands.
 CameraPair RandomCameraPair(uint64_t seed);
 
-// Same as RandomCameraPair(), but with an LF image of 200 x 140 pixels and lens distortion. The
-// seed selects one of seven distortions: radial (a phone), radial with tangential terms, rational,
+// Returns RandomCameraPair() with an LF image of 200 x 140 pixels and lens distortion. The seed
+// selects one of seven distortions: radial (a phone), radial with tangential terms, rational,
 // radial with a fold within the image, FOV, or one of two fish-eyes.
 CameraPair RandomDistortedPair(uint64_t seed);
 
-// Returns a pair as in a grid rig. The LF camera is `column` pitches to the right of the render
-// camera and `row` pitches below it, in its lens plane and parallel to it. One LF pixel is as large
-// as one element. Accepted rays may lie exactly on the rim of the lens and on element borders.
+// Returns a pair as in a grid rig. The LF camera stands in the lens plane of the render camera,
+// `column` times pitch_w to its right and `row` times pitch_w below it, and looks in the same
+// direction. One LF pixel is as large as one element. The lens has the radius radius_w. Accepted
+// rays may lie exactly on the rim of the lens and on element borders.
 CameraPair ParallelPair(int column, int row, double pitch_w, double radius_w);
 
 }  // namespace lf::testing

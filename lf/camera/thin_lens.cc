@@ -29,7 +29,8 @@ double BlurOnFocusPlane(double aperture_diameter_w, double focus_distance_w, dou
 }
 
 DepthRange DepthOfField(double aperture_diameter_w, double focus_distance_w, double blur_limit_w) {
-  // d |z - g| / z <= c  <=>  d g / (d + c) <= z <= d g / (d - c)
+  // For depth z and focus distance g, the condition d |z - g| / z <= c is equivalent to
+  //   d g / (d + c) <= z <= d g / (d - c)    (no upper limit if d <= c)
   const double d = aperture_diameter_w;
   const double c = blur_limit_w;
   if (!(d > 0)) return {0, kInfinity};

@@ -30,17 +30,18 @@ inline constexpr double kLeastFalloff = 1.0 / 64;
 
 struct Intrinsics;
 
-// Returns r^2, as defined above, of image position (x, y).
+// Returns r^2 of image position (x, y), with r as defined at Vignetting.
 double RadiusSquared(const Intrinsics& k, double x_px, double y_px);
 
-// The least and the largest falloff F in the whole image, exact up to rounding.
+// The least and the largest falloff F(r) of the vignetting in the whole image, exact up to
+// rounding.
 struct FalloffRange {
   double min = 1, max = 1;
 };
 FalloffRange FalloffRangeOf(const Intrinsics& k);
 
-// True if the falloff leaves at least kLeastFalloff, and at most 1 / kLeastFalloff, of the light
-// everywhere in the image.
+// Returns true if the falloff leaves at least kLeastFalloff, and at most 1 / kLeastFalloff, of the
+// light everywhere in the image.
 bool IsFalloff(const Intrinsics& k);
 
 }  // namespace lf

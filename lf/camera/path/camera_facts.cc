@@ -29,7 +29,8 @@ std::vector<CameraFact> CameraFacts(const RenderCamera& camera, FrameId frame) {
   const Aperture& aperture = camera.aperture;
   const double diameter_w = 2 * aperture.radius_w;
   const double mm_per_w = 1e3 * camera.unit_m;
-  const double element_w = camera.focus_distance_w / k.fx_px;  // size on the focus plane
+  // Width of an element on the focus plane.
+  const double element_w = camera.focus_distance_w / k.fx_px;
   const DepthRange depth = DepthOfField(diameter_w, camera.focus_distance_w, element_w);
   return {
       Number("frame", frame.value),

@@ -11,8 +11,8 @@
 namespace lf {
 
 struct CameraFact {
-  std::string name;                // "position_w"; ends in the unit, if any: _w, _mm, _deg, _s
-  std::vector<std::string> parts;  // "x", "y", "z"; empty if there is only one value
+  std::string name;                // such as "position_w"; ends in the unit: _w, _mm, _deg, _s
+  std::vector<std::string> parts;  // names of the values: "x", "y", "z"; empty for one value
   std::vector<double> values;
 };
 

@@ -12,7 +12,8 @@
 namespace lf {
 namespace {
 
-// Limits of the tangent of half the field of view. Values beyond them are mistakes in the file.
+// Limits of the tangent of half the horizontal field of view. A file with values beyond them is
+// considered wrong.
 constexpr double kLeastHalfView = 1e-6;
 constexpr double kMostHalfView = 1e4;
 
@@ -54,7 +55,7 @@ Eigen::Quaterniond OrientationFrom(const MotionValue& value) {
 }
 
 // Returns the pose of a camera at `centre_w` that looks at the point look_at or, if
-// path.keep_direction, in the direction that it had at time 0.
+// path.keep_direction is true, in the direction from its position at time 0 to that point.
 Result<RigidTransform> PoseTowards(const Moment& moment, const Vec3& centre_w) {
   const PathDescription& path = moment.path;
   Vec3 from_w = centre_w;
@@ -86,11 +87,11 @@ Result<RigidTransform> PoseAt(const Moment& moment) {
   return Rolled(pose, roll_rad);
 }
 
-// Sets focal length and sensor width, using tan(view / 2) = width / (2 f) for the horizontal field
-// of view.
+// Sets focal length f and sensor width, using tan(view / 2) = width / (2 f) for the horizontal
+// field of view.
 Result<void> SetOptics(const Moment& moment, RenderCamera* camera) {
   const PathDescription& path = moment.path;
-  double half_view = 0;  // tangent of half the field of view
+  double half_view = 0;  // tangent of half the horizontal field of view; 0 if the path has none
   if (path.field_of_view_rad) {
     LF_ASSIGN_OR_RETURN(const double view_rad, NumberOf(moment, *path.field_of_view_rad));
     half_view = std::tan(view_rad / 2);
@@ -104,7 +105,8 @@ Result<void> SetOptics(const Moment& moment, RenderCamera* camera) {
   return {};
 }
 
-// Returns the distance g along the optical axis at which the tilted focus plane contains the point:
+// Returns the focus distance g for which the tilted focus plane contains a point at depth z, x to
+// the right of the optical axis and u above it:
 //   z = g + x tan(horizontal) + u tan(vertical)
 double DistanceThrough(const Vec3& point_camera, const FocusTilt& tilt) {
   return point_camera.z() - point_camera.x() * std::tan(tilt.horizontal_rad) +
@@ -123,16 +125,17 @@ Result<void> SetFocus(const Moment& moment, RenderCamera* camera) {
     camera->focus_distance_w = DistanceThrough(point_camera, camera->focus_tilt);
     if (!(point_camera.z() > 0) || !(camera->focus_distance_w > 0))
       return ErrorAt(moment, *path.focus_point_w,
-                     fmt::format("the focus plane through this point meets the optical axis {:.6g} "
-                                 "world units in front of the lens; it must be above 0",
-                                 camera->focus_distance_w));
+                     fmt::format("this point is {:.6g} world units in front of the lens, and the "
+                                 "focus plane through it meets the optical axis at {:.6g}: both "
+                                 "must be above 0; move the point or the camera",
+                                 point_camera.z(), camera->focus_distance_w));
   }
   camera->focus_plane = FocusPlane(camera->pinhole, camera->focus_distance_w, camera->focus_tilt);
   return {};
 }
 
-// Sets the intrinsics of a plate at distance b behind the lens. b equals f unless the lens
-// breathes.
+// Sets the intrinsics of a plate at the image distance b behind the lens. b equals the focal length
+// unless the lens breathes.
 Result<void> SetIntrinsics(const Moment& moment, RenderCamera* camera) {
   const PathDescription& path = moment.path;
   const Quantity& source = path.focal_length_w ? *path.focal_length_w : *path.field_of_view_rad;
@@ -164,7 +167,9 @@ Result<double> ApertureDiameterAt(const Moment& moment, double focal_length_w) {
   if (!(diameter_w <= NumberRange::kLargest))
     return ErrorAt(
         moment, *path.f_number,
-        fmt::format("{:.4g} makes a lens {:.4g} world units wide", f_number, diameter_w));
+        fmt::format(
+            "{:.4g} makes a lens {:.4g} world units wide, more than {:g}; give a larger one",
+            f_number, diameter_w, NumberRange::kLargest));
   return diameter_w;
 }
 

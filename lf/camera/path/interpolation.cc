@@ -8,8 +8,9 @@
 namespace lf {
 namespace {
 
-// Returns the slope of the parabola through three values at the first of them, limited so that the
-// cubic stays monotone. h: distances between the knots, d: slopes of the two chords.
+// Returns the slope, at the first of three values, of the parabola through them, limited so that
+// the cubic stays monotone. h0 and h1 are the distances between the knots, d0 and d1 the slopes of
+// the two chords.
 double EndSlope(double h0, double h1, double d0, double d1) {
   const double slope = ((2 * h0 + h1) * d0 - h0 * d1) / (h0 + h1);
   if (slope * d0 <= 0) return 0;
@@ -17,8 +18,8 @@ double EndSlope(double h0, double h1, double d0, double d1) {
   return slope;
 }
 
-// Returns the weighted harmonic mean of the slopes of two chords; 0 if the slopes do not have the
-// same sign, as at a peak.
+// Returns the weighted harmonic mean of the slopes d0 and d1 of two chords, whose knots are h0 and
+// h1 apart; 0 if the slopes do not have the same sign, as at a peak.
 double InnerSlope(double h0, double h1, double d0, double d1) {
   if (d0 * d1 <= 0) return 0;
   const double w0 = 2 * h1 + h0;

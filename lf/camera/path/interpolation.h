@@ -18,7 +18,7 @@ namespace lf {
 // knots   strictly increasing, as many as values; a single value has slope 0
 std::vector<double> MonotoneSlopes(std::span<const double> knots, std::span<const double> values);
 
-// Returns the parameters of the centripetal Catmull-Rom curve: knot[0] = 0,
+// Returns the knots of the centripetal Catmull-Rom curve through the points P: knot[0] = 0,
 //   knot[i + 1] = knot[i] + |P[i + 1] - P[i]|^(1/2)        (Yuksel, Schaefer and Keyser 2011)
 // The curve has no cusp and no loop between two points. A repeated point repeats its knot.
 std::vector<double> CentripetalKnots(std::span<const Vec3> points);
@@ -27,8 +27,8 @@ std::vector<double> CentripetalKnots(std::span<const Vec3> points);
 // the last point, the slope is along the chord to the neighbouring point.
 std::vector<Vec3> CatmullRomSlopes(std::span<const double> knots, std::span<const Vec3> points);
 
-// Evaluates the cubic with values and slopes given at both ends of [knot_a, knot_b], knot_a <
-// knot_b. T is double or an Eigen vector.
+// Returns the value at `knot` of the cubic with the given values and slopes at both ends of
+// [knot_a, knot_b], knot_a < knot_b. T is double or an Eigen vector.
 template <class T>
 T CubicHermite(double knot, double knot_a, double knot_b, const T& value_a, const T& value_b,
                const T& slope_a, const T& slope_b) {

@@ -96,7 +96,7 @@ MotionValue KeyframeCurve::At(double time_s) const {
 MotionValue KeyframeCurve::AtSmooth(const Key& a, const Key& b, size_t index, double time_s) const {
   const double knot_a = knots_[index];
   const double knot_b = knots_[index + 1];
-  if (!(knot_b > knot_a)) return a.value;  // the point is repeated: the camera rests
+  if (!(knot_b > knot_a)) return a.value;  // keys a and b are the same point: the camera rests
   const double knot = CubicHermite(time_s, a.time_s, b.time_s, knot_a, knot_b, knot_slopes_[index],
                                    knot_slopes_[index + 1]);
   return CubicHermite(knot, knot_a, knot_b, a.value, b.value, slopes_[index], slopes_[index + 1]);

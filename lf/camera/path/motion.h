@@ -1,4 +1,4 @@
-// One quantity of the path as a function of time: moved by accelerations (thesis 4.5.1) or through
+// One quantity of a camera path as a function of time, given by accelerations (thesis 4.5.1) or by
 // keyframes.
 #pragma once
 
@@ -13,27 +13,28 @@ namespace lf {
 // quaternion (w, x, y, z).
 using MotionValue = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 4, 1>;
 
-// A constant acceleration during [from, to).
+// A constant acceleration during the time [from_s, to_s).
 struct AccelerationPeriod {
   double from_s = 0;
   double to_s = 0;
-  MotionValue acceleration;  // change of the speed, per second
+  MotionValue acceleration;  // change of the speed per second
 };
 
 struct AcceleratedMotion {
   MotionValue initial;  // value at time 0
-  MotionValue speed;    // change of the value at time 0, per second
+  MotionValue speed;    // change of the value per second, at time 0
   std::vector<AccelerationPeriod> periods;
 };
 
-// Returns the value after constant accelerations. The speed reached at the end of a period is kept,
-// and the accelerations of overlapping periods add up:
+// Returns the value x(t) at time t, for the initial value x0, the initial speed v0 and periods of
+// constant acceleration a. The speed reached at the end of a period is kept, and the accelerations
+// of overlapping periods add up:
 //
 //   x(t) = x0 + v0 t + sum over periods of  a (s^2 / 2 + s (t - from - s)),
 //   s    = min(t, to) - from, the time spent in the period; 0 if t < from
 MotionValue ValueAt(const AcceleratedMotion& motion, double time_s);
 
-// Tells how the curve goes from the previous key to the key that has this value.
+// Shape of the curve between the previous key and the key that has this interpolation.
 enum class Interpolation { kSmooth, kLinear, kStep };
 
 struct Key {
@@ -42,8 +43,8 @@ struct Key {
   Interpolation interpolation = Interpolation::kSmooth;
 };
 
-// The curve that leads to a key with kSmooth. To a key with kLinear leads a straight line, or slerp
-// for unit quaternions (kRotation).
+// Kind of the curve that leads to a key with kSmooth. A straight line leads to a key with kLinear;
+// for unit quaternions (kRotation), a slerp does.
 enum class SmoothCurve {
   kMonotone,    // every component is a monotone cubic, without overshoot
   kCatmullRom,  // for points: centripetal Catmull-Rom; its parameter is a monotone cubic of time
@@ -55,7 +56,8 @@ enum class SmoothCurve {
 // the first key holds; after the last key, the value of the last.
 class KeyframeCurve {
  public:
-  // keys   at least one, times strictly increasing, values of one size
+  // keys   at least one; their times are strictly increasing, their values have the same number of
+  //        components
   KeyframeCurve(std::vector<Key> keys, SmoothCurve curve);
 
   MotionValue At(double time_s) const;
@@ -68,8 +70,8 @@ class KeyframeCurve {
 
   SmoothCurve curve_;
   std::vector<Key> keys_;
-  // Parameters of the smooth curve for each key: its knot, the knot's slope over time, and the
-  // value's slope over the knot.
+  // Parameters of the smooth curve for each key: its knot (interpolation.h), the slope of the knot
+  // over time, and the slope of the value over the knot.
   std::vector<double> knots_;
   std::vector<double> knot_slopes_;
   std::vector<MotionValue> slopes_;

@@ -15,7 +15,7 @@ namespace lf {
 struct Quantity {
   Motion motion;
   // The members below are used to check the range and in messages.
-  std::string label;          // "lens.focus_distance_mm"
+  std::string label;          // name in messages, such as "lens.focus_distance_mm"
   YamlPlace place;            // position in the file where the motion is stated
   NumberRange range;          // limits of every component, in units of the file
   double units_per_file = 1;  // internal value = units_per_file * value in the file
@@ -30,12 +30,12 @@ struct PathDescription {
   int height_px = 0;
 
   Quantity position_w;
-  std::optional<Quantity> look_at_w;    // set unless `orientation` is
+  std::optional<Quantity> look_at_w;    // set unless `orientation` is set
   std::optional<Quantity> orientation;  // yaw, pitch, roll in radians, or quaternion w, x, y, z
-  Vec3 up = -Vec3::UnitY();             // used with look_at
-  bool keep_direction = false;          // with look_at: keeps the direction of time 0 while the
-                                        // camera moves
-  Quantity roll_rad;                    // applied after look_at or orientation
+  Vec3 up = -Vec3::UnitY();             // upward direction in the world; used with look_at_w
+  // Used with look_at_w: true if the camera keeps its direction of time 0 while it moves.
+  bool keep_direction = false;
+  Quantity roll_rad;  // applied after look_at_w or orientation
 
   // Two of the three members below are set; they determine the third quantity. If the file gives
   // only the focal length or only the field of view, the sensor width is 36 mm.
@@ -43,11 +43,11 @@ struct PathDescription {
   std::optional<Quantity> focal_length_w;
   std::optional<Quantity> field_of_view_rad;  // horizontal, when focused at infinity
 
-  std::optional<Quantity> aperture_diameter_w;  // set unless `f_number` is
+  std::optional<Quantity> aperture_diameter_w;  // set unless `f_number` is set
   std::optional<Quantity> f_number;
-  std::optional<Quantity> focus_distance_w;  // set unless `focus_point_w` is
+  std::optional<Quantity> focus_distance_w;  // set unless `focus_point_w` is set
   std::optional<Quantity> focus_point_w;
-  Quantity focus_tilt_rad;  // horizontal, vertical
+  Quantity focus_tilt_rad;  // horizontal and vertical tilt (FocusTilt)
   bool breathing = false;
   int blades = 0;
   Quantity blade_rotation_rad;

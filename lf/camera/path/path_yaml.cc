@@ -22,7 +22,7 @@ constexpr int kMostFrames = 1'000'000;
 constexpr int kLargestSide_px = 65536;
 constexpr long long kMostElements = 1LL << 30;
 
-// Reads fps and frames.
+// Reads the keys `fps` and `frames`.
 void ReadClock(YamlMap* file, PathDescription* path) {
   if (const YamlEntry* fps = file->Require("fps", "fps: 30"))
     path->fps =
@@ -66,8 +66,8 @@ void ReadUnit(YamlMap* file, std::optional<double> light_field_unit_m, PathDescr
   if (!light_field_unit_m) path->unit_m = *unit_m;
 }
 
-// Checks the version of the format, which determines the meaning of all other keys. No other error
-// is reported if it is wrong.
+// Checks the version of the format, which determines the meaning of all other keys. If the version
+// is wrong, no other error is reported.
 bool CheckFormat(YamlMap* file) {
   const YamlEntry* format = file->Require("format", "format: lfpath 1");
   return format && ReadWord(*format->value, "format", {"lfpath 1"}, file->errors());

@@ -10,11 +10,13 @@
 
 namespace lf {
 
+// Reads the camera path from a text, or from a file.
+//
 // text                content of the file
 // name                name of the file in messages: "path.yaml:12:5: ..."
 // light_field_unit_m  metres per world unit of the light field; a path that states another unit is
-//                     an error. nullopt if there is no light field: the unit of the path is used,
-//                     or 1 if the path states none.
+//                     an error. nullopt if there is no light field: the unit that the path states
+//                     is used, or 1 m if it states none.
 // Returns the cameras of all frames. Every key is checked; kInput if anything is wrong. The message
 // states file:line:column and the value found; for an unknown key, it lists the allowed keys and
 // suggests the nearest one.

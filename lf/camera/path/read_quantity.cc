@@ -34,8 +34,8 @@ SmoothCurve CurveOf(ValueShape shape) {
   return SmoothCurve::kMonotone;
 }
 
-// Returns the value of a keyframe. Angles become a quaternion, because yaw, pitch and roll do not
-// define a shorter arc.
+// Returns the value of a keyframe. Angles become a quaternion, because the rotation between two
+// keyframes follows the shorter arc, which needs quaternions (slerp).
 MotionValue KeyValue(const MotionValue& value, ValueShape shape) {
   if (shape != ValueShape::kAngles) return value;
   const Eigen::Quaterniond q = WorldFromCam(value[0], value[1], value[2]);

@@ -12,9 +12,9 @@
 
 namespace lf {
 
-// Units of a quantity. A key in the file is the quantity's name with the suffix of a unit, such as
-// "focus_distance_mm"; a length in world units has no suffix. kDegreesUnsaid: the unit is degrees,
-// but the key has no suffix.
+// Units that a quantity may have in the file. Its key is the quantity's name with the suffix of the
+// unit, such as "focus_distance_mm"; a length in world units has no suffix. kDegreesUnsaid: the
+// unit is degrees, but the key has no suffix.
 enum class QuantityUnit { kNone, kLength, kDegrees, kDegreesUnsaid };
 
 struct QuantitySpec {
@@ -27,7 +27,8 @@ struct QuantitySpec {
 
 class QuantityReader {
  public:
-  //   keyframes, accelerations   the entries of the file with these keys; null if it has none
+  //   keyframes, accelerations   the entries of the file with these keys; null if missing
+  //   unit_m                     metres per world unit
   QuantityReader(const YamlEntry* keyframes, const YamlEntry* accelerations, double unit_m,
                  YamlErrors* errors);
 
@@ -71,8 +72,8 @@ class QuantityReader {
   // Returns the quantity without its motion. `given` is the entry of its keyframes or start, if it
   // has any.
   Quantity Unmoved(const YamlMap& section, const QuantitySpec& spec, const Given& given) const;
-  // Returns the periods of the quantity's accelerations. If there is any, sets `place` to the
-  // position of the last one in the file.
+  // Returns the periods of the quantity's accelerations. If there are any, sets `place` to the
+  // position of one of them in the file.
   std::vector<AccelerationPeriod> TakePeriods(const QuantitySpec& spec, YamlPlace* place);
   std::optional<AcceleratedMotion> ReadAccelerated(const QuantitySpec& spec, const Given& start,
                                                    const Given& speed,

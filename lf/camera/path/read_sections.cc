@@ -11,8 +11,8 @@ namespace lf {
 namespace {
 
 constexpr int kMostBlades = 64;
-constexpr double kDefaultSensorWidth_mm = 36;  // full frame, to which stated focal lengths usually
-                                               // refer
+// Width of a full-frame sensor, to which stated focal lengths usually refer.
+constexpr double kDefaultSensorWidth_mm = 36;
 
 using enum ValueShape;
 using enum QuantityUnit;

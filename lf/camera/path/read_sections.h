@@ -7,8 +7,8 @@
 
 namespace lf {
 
-// Both functions fill in their part of `path`. They add an error for each key that is unknown, is
-// missing, has a wrong type, is out of range, or contradicts another key.
+// Both functions set the members of `path` that their section states. They add an error for each
+// key that is unknown, is missing, has a wrong type, is out of range, or contradicts another key.
 void ReadCameraSection(const YamlNode& node, QuantityReader* quantities, PathDescription* path,
                        YamlErrors* errors);
 void ReadLensSection(const YamlNode& node, QuantityReader* quantities, PathDescription* path,

@@ -35,8 +35,9 @@ Components ReadQuaternion(const YamlNode& node, std::string_view label, YamlErro
   const double length = Eigen::Map<const Eigen::Vector4d>(wxyz->data()).norm();
   constexpr double kForgiven = 0.01;
   if (std::abs(length - 1) > kForgiven) {
-    errors->Add(node.place, fmt::format("{}: a rotation [w, x, y, z] has length 1, this one {:.4g}",
-                                        label, length));
+    errors->Add(node.place,
+                fmt::format("{}: expected a rotation [w, x, y, z] of length 1, found length {:.4g}",
+                            label, length));
     return std::nullopt;
   }
   for (double& component : *wxyz) component /= length;

@@ -9,6 +9,7 @@
 
 namespace lf {
 
+// Shapes of a value in the file, each with the way in which it is written.
 enum class ValueShape {
   kNumber,      // 0.4
   kPoint,       // [x, y, z]
@@ -17,7 +18,7 @@ enum class ValueShape {
   kQuaternion,  // [w, x, y, z], length 1
 };
 
-// Returns the number of components, 1 to 4.
+// Returns the number of components of a value with this shape, 1 to 4.
 int ComponentCount(ValueShape shape);
 
 // Returns an example of a value with this shape, as it is written in a file, for messages.

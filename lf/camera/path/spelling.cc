@@ -7,7 +7,8 @@
 namespace lf {
 
 size_t EditDistance(std::string_view a, std::string_view b) {
-  // Three rows of the table distance[letters of a][letters of b].
+  // Rows i - 2, i - 1 and i of the table of distances, in which entry [i][j] is the distance
+  // between the first i letters of `a` and the first j letters of `b`.
   std::vector<size_t> before(b.size() + 1), row(b.size() + 1), next(b.size() + 1);
   for (size_t j = 0; j <= b.size(); ++j) row[j] = j;
   for (size_t i = 1; i <= a.size(); ++i) {
@@ -25,7 +26,7 @@ size_t EditDistance(std::string_view a, std::string_view b) {
 }
 
 std::string NearestWord(std::string_view word, std::span<const std::string> words) {
-  constexpr size_t kLongestWord = 64;  // longer words are not misspellings
+  constexpr size_t kLongestWord = 64;  // a longer word is not compared with `words`
   if (word.size() > kLongestWord) return {};
   std::string nearest;
   size_t smallest = kLongestWord;

@@ -48,9 +48,9 @@ class YamlErrors {
 struct NumberRange {
   double min = -kLargest;
   double max = kLargest;
-  bool open = false;  // min and max themselves are excluded
+  bool open = false;  // true: min and max themselves are excluded
 
-  // Larger values are considered mistakes.
+  // Largest absolute value of a number in the file; larger numbers are considered mistakes.
   static constexpr double kLargest = 1e9;
   static constexpr NumberRange Any() { return {}; }
   static constexpr NumberRange AtLeast(double min) { return {min, kLargest, false}; }
@@ -58,17 +58,17 @@ struct NumberRange {
   static constexpr NumberRange Within(double min, double max) { return {min, max, false}; }
   static constexpr NumberRange Between(double min, double max) { return {min, max, true}; }
 
-  bool Holds(double value) const;  // false for NaN
-  std::string Describe() const;    // "above 0 (below 1e+09)", "from 1 to 3", ...
+  bool Holds(double value) const;  // true if the value is within the range; false for NaN
+  std::string Describe() const;    // text for messages: "above 0 (below 1e+09)", "from 1 to 3", ...
 };
 
 // A map of the file. A key is allowed once Find() or Require() has looked it up; CheckKeys()
 // reports the other keys.
 class YamlMap {
  public:
-  // title: name in messages: "camera"; empty for the whole file. If the node is not a map, an error
-  // is added, and the map is empty. If a key occurs twice, an error is added, and the first is
-  // kept.
+  // title: name of the map in messages, such as "camera"; empty for the whole file. If the node is
+  // not a map, an error is added, and the map is empty. If a key occurs twice, an error is added,
+  // and the first is kept.
   YamlMap(const YamlNode& node, std::string title, YamlErrors* errors);
   // Makes a map without keys, in place of a map that the file does not have.
   YamlMap(std::string title, YamlErrors* errors) : title_(std::move(title)), errors_(errors) {}
@@ -80,7 +80,8 @@ class YamlMap {
 
   // Returns the entry of a key; null if there is none.
   const YamlEntry* Find(std::string_view key);
-  // Returns the entry; adds an error if there is none. `example` shows what to write: "fps: 30".
+  // Returns the entry of a key; null, with an error, if there is none. `example` shows in the
+  // message what to write, such as "fps: 30".
   const YamlEntry* Require(std::string_view key, std::string_view example);
 
   // Returns the keys that are allowed so far, in the order in which they were looked up.
@@ -109,7 +110,7 @@ std::optional<int> ReadInteger(const YamlNode& node, std::string_view label, int
 std::optional<bool> ReadBool(const YamlNode& node, std::string_view label, YamlErrors* errors);
 std::optional<std::string> ReadWord(const YamlNode& node, std::string_view label,
                                     const std::vector<std::string>& allowed, YamlErrors* errors);
-// Returns a list of exactly `count` numbers.
+// Returns a list of exactly `count` numbers; none, with an error, if the node is no such list.
 std::optional<std::vector<double>> ReadNumbers(const YamlNode& node, std::string_view label,
                                                size_t count, const NumberRange& range,
                                                YamlErrors* errors);

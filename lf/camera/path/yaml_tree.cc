@@ -67,7 +67,7 @@ class TreeBuilder : public YAML::EventHandler {
  private:
   struct OpenNode {
     std::shared_ptr<YamlNode> node;
-    std::optional<YamlEntry> entry;  // in a map: the key whose value follows
+    std::optional<YamlEntry> entry;  // of a map: the entry whose value follows; none: a key follows
   };
 
   [[noreturn]] static void Fail(const YAML::Mark& mark, const std::string& message) {
@@ -139,16 +139,16 @@ Error ErrorAt(std::string_view name, const YAML::Exception& error, std::string_v
 Result<void> CheckBounds(std::string_view text, std::string_view name) {
   if (text.size() > kMaxYamlBytes)
     return InputError(
-        fmt::format("{}: {} bytes; a camera path may have {}: split it, or give fewer keyframes",
+        fmt::format("{}: {} bytes; a camera path has at most {}: split it, or give fewer keyframes",
                     name, text.size(), kMaxYamlBytes));
   const auto mark_count = static_cast<size_t>(std::count_if(text.begin(), text.end(), [](char c) {
     return std::string_view("[]{},:-?&*!|>%\"'").find(c) != std::string_view::npos;
   }));
   if (mark_count > kMaxYamlMarks)
-    return InputError(fmt::format(
-        "{}: {} brackets, commas and other marks of YAML; a camera path may have {}: split it, or "
-        "give fewer keyframes",
-        name, mark_count, kMaxYamlMarks));
+    return InputError(
+        fmt::format("{}: {} brackets, commas and other marks of YAML; a camera path has at most "
+                    "{}: split it, or give fewer keyframes",
+                    name, mark_count, kMaxYamlMarks));
   return {};
 }
 
