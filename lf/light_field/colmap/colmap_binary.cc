@@ -48,7 +48,7 @@ Result<uint64_t> TakeCount(ByteStream* stream, const Place& place, const char* t
   uint64_t count = 0;
   if (!stream->Take(&count)) {
     LF_RETURN_IF_ERROR(stream->Status());
-    return place.Fault(fmt::format("has {} bytes: expected at least the 8 that count its {}",
+    return place.Fault(fmt::format("has {} bytes: expected at least 8, which hold the number of {}",
                                    stream->remaining(), things));
   }
   if (count > stream->remaining() / min_entry_size)

@@ -1,6 +1,6 @@
-// Parses any bytes: the result must be a COLMAP model with sane cameras or an error. The input
-// holds two uint16, the sizes of cameras.bin and images.bin, followed by cameras.bin, images.bin
-// and points3D.bin.
+// Parses any bytes: the result must be an error, or a light field that passes CheckIsSane(). The
+// input holds two uint16, the sizes of cameras.bin and images.bin, followed by cameras.bin,
+// images.bin and points3D.bin.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

@@ -10,14 +10,14 @@ namespace lf {
 namespace {
 
 constexpr uint64_t kMaxSize_px = 65536;
-constexpr uint64_t kMaxPixelCount = 1 << 30;  // as in pixels/files/image_file.h
+constexpr uint64_t kMaxPixelCount = 1 << 30;  // the limit of pixels/files/image_file.h
 constexpr double kMinFocal_px = 0.001;
 constexpr double kMaxFocal_px = 1e7;
 constexpr double kMaxPrincipal_px = 1e7;
 // This limit and the limits below are the same as for transforms.json.
 constexpr double kMaxDistortion = 1e6;
-constexpr double kMaxOmega = 3.1415;
-// The FOV model with a smaller omega bends no ray by more than a rounding error.
+constexpr double kMaxOmega = 3.1415;  // largest field of view of the FOV model, in radians
+// The FOV model with an omega below this limit bends no ray by more than a rounding error.
 constexpr double kMinOmega = 1e-7;
 
 constexpr ColmapCameraModel kModels[] = {
@@ -99,8 +99,9 @@ Result<Distortion> DistortionOf(std::string_view model, std::span<const double> 
     if (omega < kMinOmega) return Distortion{};
   }
   if (!IsDistortion(distortion))
-    return InputError(fmt::format("has alpha {} and beta {}: expected 0 to 1, and above 0",
-                                  distortion.parameters[0], distortion.parameters[1]));
+    return InputError(
+        fmt::format("has alpha {} and beta {}: expected alpha from 0 to 1 and beta above 0",
+                    distortion.parameters[0], distortion.parameters[1]));
   if (distortion.model == DistortionModel::kUnified && distortion.parameters[0] == 0)
     return Distortion{};
   const bool is_of_pinhole = distortion.model == DistortionModel::kRadialTangential ||

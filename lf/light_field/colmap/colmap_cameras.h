@@ -12,8 +12,8 @@ namespace lf {
 
 struct ColmapCameraModel {
   std::string_view name;
-  int number;           // its number in cameras.bin
-  int parameter_count;  // 0: not supported
+  int number;           // the model's number in cameras.bin
+  int parameter_count;  // number of the model's parameters; 0: the model is not supported
 
   bool is_supported() const { return parameter_count > 0; }
 };

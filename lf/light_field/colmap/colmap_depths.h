@@ -17,8 +17,8 @@ class DepthSample {
  public:
   static constexpr size_t kMaxCount = size_t{1} << 20;
 
-  // Returns true if Add() would keep a depth of this observation now. Most observations of a large
-  // model are not kept; for them a caller can skip the computation of the depth.
+  // Returns true if Add() would keep a valid depth of this observation now. Most observations of a
+  // large model are not kept; for these a caller can skip the computation of the depth.
   bool MayKeep(uint64_t point_id, uint32_t image_id) const;
 
   // Adds the depth of a point in one camera. A depth that is not positive and finite is ignored,

@@ -11,7 +11,7 @@
 namespace lf {
 namespace {
 
-constexpr double kLargest_w = 1e12;
+constexpr double kLargest_w = 1e12;  // largest absolute value in a translation
 // Largest deviation of a quaternion's length from 1. Rounding to a few digits causes less.
 constexpr double kNormTolerance = 1e-3;
 
@@ -168,7 +168,7 @@ Result<void> ColmapScene::AddObservation(uint64_t point_id, const Vec3& point_wo
         "model without a range of depths",
         image_id));
   if (!depths_.MayKeep(point_id, image_id))
-    return {};  // saves a lookup of the pose: the poses are scattered in memory
+    return {};  // saves reading the pose, which is slow: poses are scattered in memory
   const RigidTransform& pose = light_field_.cameras[*position].cam_from_world;
   depths_.Add(point_id, image_id, pose.rotation.row(2).dot(point_world) + pose.translation.z());
   return {};

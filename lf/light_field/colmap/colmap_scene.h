@@ -17,9 +17,9 @@
 
 namespace lf {
 
-// Largest number of cameras, and of images.
+// Largest number of cameras, and of images, that a model may have.
 inline constexpr size_t kMaxColmapEntryCount = size_t{1} << 24;
-inline constexpr size_t kMaxColmapNameSize = 4096;  // bytes
+inline constexpr size_t kMaxColmapNameSize = 4096;  // longest name of an image, in bytes
 
 struct ColmapImage {
   uint32_t id = 0;
@@ -65,8 +65,8 @@ class ColmapScene {
   // an id or a name occurred twice.
   Result<void> EndImages();
 
-  // Does nothing, because a depth belongs to an observation of the point. The observations are
-  // added next.
+  // Does nothing, because a depth belongs to an observation of the point by an image. The
+  // observations are added next (AddObservation()).
   Result<void> AddPoint(uint64_t, const Vec3&, bool /*has_track*/) { return {}; }
   // Adds the depth of a point in an image that observes it. Fails if the image is unknown.
   Result<void> AddObservation(uint64_t point_id, const Vec3& point_world, uint32_t image_id);
@@ -86,14 +86,15 @@ class ColmapScene {
 
   std::vector<Intrinsics> cameras_;
   ColmapIds camera_ids_;
-  LightField light_field_;           // until Take(), intrinsics_index is an index into cameras_
-  std::vector<uint32_t> image_ids_;  // parallel to light_field_.cameras; empty after EndImages()
+  LightField light_field_;  // until Take(), LfCamera::intrinsics_index is an index into cameras_
+  std::vector<uint32_t> image_ids_;  // ids of light_field_.cameras; empty after EndImages()
   ColmapIds image_positions_;
   DepthSample depths_;
 };
 
 struct ColmapStreams;
-// Reads cameras and images in either form (read_colmap.cc). Returns the errors of their readers.
+// Reads the cameras and images of a model, in binary or text form (read_colmap.cc). Returns the
+// errors of the functions that read them.
 Result<ColmapScene> ReadColmapScene(ColmapStreams* streams);
 
 }  // namespace lf

@@ -1,5 +1,5 @@
-// Parses any bytes: the result must be a COLMAP model with sane cameras or an error. The input
-// holds cameras.txt, images.txt and points3D.txt, separated by form feeds.
+// Parses any bytes: the result must be an error, or a light field that passes CheckIsSane(). The
+// input holds cameras.txt, images.txt and points3D.txt, separated by form feeds.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

@@ -14,7 +14,7 @@
 
 namespace lf {
 
-inline constexpr size_t kMostPointsSeen = 2048;
+inline constexpr size_t kMostPointsSeen = 2048;  // largest number of points that are returned
 
 // Collects the points that one image sees while a points3D file is read. Internal to this folder.
 class ColmapPointsSeen {

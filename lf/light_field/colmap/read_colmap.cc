@@ -20,8 +20,11 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kExtensions[] = {".bin", ".txt"};  // in order of preference
-constexpr int kFoldersAbove = 3;                         // root/colmap/sparse/0 -> root
+// Extensions of the files of a model, in order of preference.
+constexpr const char* kExtensions[] = {".bin", ".txt"};
+// Number of parent folders in which images are searched: enough to reach `root` from the model
+// folder root/colmap/sparse/0.
+constexpr int kFoldersAbove = 3;
 
 bool IsFile(const fs::path& path) {
   std::error_code error;
@@ -122,8 +125,9 @@ std::vector<fs::path> ImageFolders(const fs::path& model_folder) {
   return folders;
 }
 
-// Returns the part of a message that names files near a missing image: in the first folder that has
-// a file with a similar name, otherwise in the first existing folder that is named `images`.
+// Returns the part of a message that names files near a missing image: files in the first of the
+// ImageFolders() that has a file with a similar name, otherwise in the first existing folder that
+// is named `images`.
 std::string NearbyIn(const fs::path& model_folder, const std::string& name) {
   std::string nearby;
   for (const fs::path& folder : ImageFolders(model_folder)) {
@@ -157,8 +161,8 @@ Result<fs::path> FindImages(const fs::path& model_folder, std::span<const std::s
       model_folder.string(), names.front(), tried, NearbyIn(model_folder, names.front())));
 }
 
-// Returns the folder of the project: `model_folder` without a number, sparse and colmap at the end
-// of its path.
+// Returns the folder of the project: `model_folder` after a numbered folder, `sparse` and `colmap`,
+// if it has them, are removed from the end of its path.
 fs::path ProjectFolder(const fs::path& model_folder) {
   const auto name_of = [](const fs::path& folder) {
     const fs::path clean = folder.lexically_normal();

@@ -28,9 +28,9 @@ Result<std::optional<std::filesystem::path>> FindColmapModel(const std::filesyst
 //   images_folder  folder of the image files; not checked
 // If images_folder is not given, it is the first of these folders that contains one of the first 64
 // images: `images` in the model folder and in the three folders above it, then these four folders
-// themselves. If none of them does, images are searched by name below the project folder, which is
-// the model folder without a number, sparse and colmap at the end
-// (light_field/model/find_images.h).
+// themselves. If none of them does, images are searched by name below the project folder
+// (light_field/model/find_images.h): the model folder after a numbered folder, `sparse` and
+// `colmap` are removed from the end of its path.
 //
 // mask_names are the existing files masks/NAME.png beside the folder of images. depth_range is
 // computed from the points: the 1st and 99th percentile of their depths along the optical axes of
@@ -41,7 +41,7 @@ Result<LightField> ReadColmapModel(
     const std::filesystem::path& model_folder,
     const std::optional<std::filesystem::path>& images_folder = std::nullopt);
 
-// The three files of a model; points may be missing.
+// The three files of a model. The file of the points may be missing.
 struct ColmapStreams {
   ByteStream cameras;
   ByteStream images;
@@ -52,7 +52,8 @@ struct ColmapStreams {
 // Opens the three files. kInput: the folder contains no model, or a file cannot be opened.
 Result<ColmapStreams> OpenColmapStreams(const std::filesystem::path& model_folder);
 
-// Reads only the calibration; `folder` and masks stay empty. Errors as for ReadColmapModel().
+// Reads only the calibration; LightField::folder and mask_names stay empty. Errors as for
+// ReadColmapModel().
 Result<LightField> ParseColmapModel(ColmapStreams streams);
 
 }  // namespace lf

@@ -25,7 +25,8 @@ std::string Shown(std::string_view word) {
   return fmt::format("\"{}\"{}", shown, word.size() > kLongest ? "..." : "");
 }
 
-// Characters in a line of numbers: digits, signs, exponents, and the letters of nan and inf.
+// True for each character that a line of numbers may contain: digits, signs, the decimal point,
+// exponents, and the letters of nan and inf.
 constexpr std::array<bool, 256> kNumberCharacters = [] {
   std::array<bool, 256> table = {};
   for (const char c : std::string_view("0123456789+-.eEnaifNAIF"))

@@ -25,7 +25,7 @@ class TextWords {
   bool NextLine();
   // Moves to the next line that is not blank and not a comment (#...).
   bool NextEntry();
-  // The number in the last comment "# Number of THINGS: NUMBER..." that was skipped, if there was
+  // Returns the NUMBER in the last skipped comment "# Number of THINGS: NUMBER...", if there was
   // one.
   const std::optional<uint64_t>& announced_count() const { return announced_count_; }
 
@@ -43,9 +43,10 @@ class TextWords {
   // character that cannot be part of a number.
   std::optional<uint64_t> SkipNumbers();
 
-  // Reads the next word as a number. kInput if it is missing or not such a number; the message
-  // names the file, the line, and `name` as the quantity that was expected.
-  Result<double> Number(const char* name);  // finite
+  // Number() reads the next word as a finite number, Whole() as a whole number from 0 to max.
+  // kInput if the word is missing or no such number; the message names the file, the line, and
+  // `name` as the quantity that was expected.
+  Result<double> Number(const char* name);
   Result<uint64_t> Whole(const char* name, uint64_t max);
 
   // Returns kInput with the file, this line and the message. If reading the file failed, returns
@@ -59,7 +60,7 @@ class TextWords {
   void NoteComment();
 
   ByteStream* stream_;
-  uint64_t line_number_ = 0;  // 0 before the first line
+  uint64_t line_number_ = 0;  // number of this line, from 1; 0 before the first line
   std::optional<uint64_t> announced_count_;
   std::string word_;  // the current word, if it crosses the end of a block
 };

@@ -14,29 +14,30 @@
 namespace lf {
 namespace {
 
-constexpr size_t kLookedAt = 3;
+constexpr size_t kLookedAt = 3;  // number of LF images whose pixels are examined
 // Each of the kLookedAt LF images is the first readable one among this many successive LF images.
 constexpr size_t kAskedFrom = 5;
 
-// Two pictures count as having the same transparent pixels if at most this share of them differs.
+// Two images count as having the same transparent pixels if at most this share of these pixels is
+// transparent in only one image.
 constexpr double kSameShare = 0.02;
 
 // Facts about one LF image that tell the meaning of its alpha.
 struct ImageEvidence {
   std::string image_name;
   int width = 0;
-  std::vector<bool> is_transparent;  // one per pixel
+  std::vector<bool> is_transparent;  // true for each pixel with alpha 0, row by row
   size_t transparent_count = 0;
   bool is_one_colour = true;  // all transparent pixels have one colour
   bool is_float = false;
-  std::array<double, 3> background = {};  // that colour, if is_one_colour
+  std::array<double, 3> background = {};  // radiance of that colour; valid if is_one_colour
 };
 
-// Returns the radiance of a stored value.
+// Returns the radiance, from 0 to max_radiance, of a value that an image file stores.
 template <class T>
 double RadianceOfStored(const RadianceEncoding& encoding, T value) {
   if constexpr (std::is_floating_point_v<T>) {
-    return value > 0 ? std::min<double>(value, encoding.max_radiance) : 0;  // NaN is no light
+    return value > 0 ? std::min<double>(value, encoding.max_radiance) : 0;  // NaN becomes 0
   } else {
     const int bits = int{8 * sizeof(T)};
     if (!LevelsFit(encoding, bits)) return 0;
@@ -93,7 +94,7 @@ std::optional<LfImageId> ReadableFrom(const LightField& light_field, size_t firs
   return std::nullopt;
 }
 
-// Returns the evidence of each examined LF image that has transparent pixels.
+// Returns the evidence of those examined LF images that have transparent pixels.
 std::vector<ImageEvidence> EvidenceOfSome(const LightField& light_field) {
   std::vector<size_t> firsts;
   for (size_t i = 0; i < kLookedAt; ++i)

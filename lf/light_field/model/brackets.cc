@@ -13,8 +13,10 @@
 namespace lf {
 namespace {
 
+// Positions count as equal up to kSamePlace of the extent of all positions, plus kRounding of the
+// largest distance from the origin.
 constexpr double kSamePlace = 1e-9, kRounding = 1e-14;
-constexpr double kSameRotation = 1e-6;
+constexpr double kSameRotation = 1e-6;  // largest distance of two equal rotation matrices
 
 // Assigns points to the cells of a grid. The grid is so coarse that points within the tolerance of
 // each other rarely lie in different cells.
@@ -22,7 +24,7 @@ class PlaceGrid {
  public:
   explicit PlaceGrid(double tolerance_w) : tolerance_w_(tolerance_w), cell_w_(1024 * tolerance_w) {}
 
-  // Calls use(cell) for each cell that has a point within the tolerance of `point`.
+  // Calls use(cell) for each cell that may contain a point within the tolerance of `point`.
   template <class Use>
   void ForEachCell(const Vec3& point, const Use& use) const {
     std::array<std::array<double, 2>, 3> ends;
@@ -47,7 +49,8 @@ class PlaceGrid {
 
  private:
   double CellOf(double x) const { return cell_w_ > 0 ? std::floor(x / cell_w_) : x; }
-  // Different cells with equal hashes are searched together.
+  // Cells are identified by hashes. If two cells have equal hashes, their points are searched
+  // together.
   static uint64_t Hash(std::array<double, 3> cell) {
     for (double& x : cell) x += 0.0;  // +0 and -0 have one hash
     return HashBytes({reinterpret_cast<const char*>(cell.data()), sizeof(cell)});
@@ -57,7 +60,7 @@ class PlaceGrid {
   double cell_w_;
 };
 
-// Returns the distance up to which two positions count as the same.
+// Returns the distance, in world units, up to which two positions count as the same.
 double ToleranceOf(const LightField& light_field) {
   Eigen::AlignedBox3d box;
   double reach_w = 0;
@@ -91,15 +94,16 @@ std::vector<std::vector<uint32_t>> PosesWithSeveral(const LightField& light_fiel
   return poses;
 }
 
-// Applies the rules of ApplyBrackets() to the LF images of one pose. Returns the number of images
-// for which there is a darker one.
+// Applies the rules of ApplyBrackets() to the LF images of one pose. Returns the number of LF
+// images for which the pose has a darker LF image.
 size_t ApplyToPose(std::vector<uint32_t> images, std::vector<LfCamera>* cameras) {
   const RigidTransform pose = (*cameras)[images[0]].cam_from_world;
   const auto exposure = [&](uint32_t i) { return ExposureOf((*cameras)[i]); };
   std::stable_sort(images.begin(), images.end(),
                    [&](uint32_t a, uint32_t b) { return exposure(a) < exposure(b); });
   // The images are now sorted by exposure, darkest first. Nearly equal exposures form one group.
-  std::vector<size_t> begins;  // where each group begins in `images`; at the end images.size()
+  // Index in `images` at which each group begins; the last entry is images.size().
+  std::vector<size_t> begins;
   for (size_t k = 0; k < images.size(); ++k)
     if (k == 0 || exposure(images[k]) >= kOneExposure * exposure(images[begins.back()]))
       begins.push_back(k);

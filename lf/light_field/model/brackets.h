@@ -15,9 +15,9 @@
 
 namespace lf {
 
-// Returns, for each LF image, the first LF image with the same pose and intrinsics. Positions count
-// as equal if they differ by at most 1e-9 of the extent of all positions, rotations if they differ
-// by at most 1e-6. Time and memory are linear in the number of LF images.
+// Returns, for each LF image, the number of the first LF image with the same pose and intrinsics.
+// Positions count as equal if they differ by at most 1e-9 of the extent of all positions, rotations
+// if they differ by at most 1e-6. Time and memory are linear in the number of LF images.
 std::vector<uint32_t> FirstOfPose(const LightField& light_field);
 
 // Returns how much light the LF image recorded, relative to other LF images: 1 / gain, where `gain`
@@ -27,23 +27,24 @@ double ExposureOf(const LfCamera& camera);
 // Exposures that differ by less than this factor count as equal.
 inline constexpr double kOneExposure = 1.1;
 
-// Raises max_radiance so that gains and falloffs clip no light that integer files recorded. Does
-// nothing if an image is a float file.
+// Raises RadianceEncoding::max_radiance so that no gain or falloff clips light that integer files
+// recorded. Does nothing if an image is a float file.
 void MakeRoomForGains(LightField* light_field);
 
-// Decides which pixels of the LF images of a pose send rays, if encoding.masks_clipped is set:
+// Decides which pixels of the LF images of a pose send rays, if encoding.masks_clipped is true, by
+// setting two members of LfCamera:
 //
-// masks_clipped of an LF image is set if its pose has a darker LF image. Therefore the darkest one
-// keeps its clipped pixels, and an LF image without a darker one is not masked: no element becomes
-// black because all of its light is bright.
+// LfCamera::masks_clipped is true if the pose has a darker LF image. Therefore the darkest LF image
+// of a pose, or its only one, keeps its clipped pixels: no element becomes black because all of its
+// light is bright.
 //
-// `brighter` of an LF image is the darkest LF image of its pose with the next larger exposure. A
-// pixel of the LF image sends no ray if it is not clipped in the brighter image
-// (storage/load/image_reading.h).
+// LfCamera::brighter is the LF image of the pose with the next larger exposure; if several count as
+// having this exposure, the darkest of them. A pixel sends no ray if the same pixel of the brighter
+// LF image is not clipped (storage/load/image_reading.h).
 //
 // All LF images of a pose get the exact pose of the first of them, so that they share lens weights.
 //
-// If encoding.masks_clipped is not set, no LF image is masked, and none has a brighter one. Must be
+// If encoding.masks_clipped is false, no LF image is masked, and none has a brighter one. Must be
 // called again after LF images were renumbered or gains changed. Returns the number of LF images
 // whose pose has a darker one.
 size_t ApplyBrackets(LightField* light_field);

@@ -12,6 +12,7 @@
 namespace lf {
 namespace {
 
+// Numbers of cameras that are sampled, spread over the light field. Rounding may double them.
 constexpr size_t kSpacingSamples = 500;
 constexpr size_t kAxisSamples = 20000;
 
@@ -37,10 +38,10 @@ double SquaredDistance(const Vec3& point, const Ray& axis) {
 }
 
 // Returns the point with the least sum of squared distances to the axes. Returns nullopt if the
-// axes are parallel. The smallest eigenvalue of the mean of I - d d^T, where d is the direction of
-// an axis, is then 0: it is the squared angular spread of the axes.
+// axes are almost parallel: the smallest eigenvalue of the mean of I - d d^T, where d is the
+// direction of an axis, is the squared angular spread of the axes.
 std::optional<Vec3> NearestPoint(const std::vector<Ray>& axes) {
-  constexpr double kLeastSpread = 1e-5;  // about 0.2 degrees
+  constexpr double kLeastSpread = 1e-5;  // squared radians; a spread of about 0.2 degrees
   Mat3 a = Mat3::Zero();
   Vec3 b = Vec3::Zero();
   for (const Ray& axis : axes) {
@@ -79,7 +80,8 @@ double MedianSpacing(const LightField& light_field) {
   if (light_field.size() < 2) return 0;
   const std::vector<Vec3> centres = Centres(light_field);
   const size_t step = std::max<size_t>(1, centres.size() / kSpacingSamples);
-  const bool are_brackets = light_field.encoding.masks_clipped;  // several images of one pose
+  // True if several LF images may have one pose.
+  const bool are_brackets = light_field.encoding.masks_clipped;
   std::vector<double> nearest;
   for (size_t i = 0; i < centres.size(); i += step) {
     double least = std::numeric_limits<double>::infinity();
@@ -97,7 +99,8 @@ LfImageId MiddleCamera(const LightField& light_field,
   const std::vector<Vec3> centres = Centres(light_field);
   Vec3 mean = Vec3::Zero();
   for (const Vec3& centre : centres) mean += centre / static_cast<double>(centres.size());
-  // The nearest camera is at the top; among equally near cameras, the one with the lowest number.
+  // The camera nearest to the mean position is at the top of the heap; among equally near cameras,
+  // the one with the lowest number.
   std::vector<std::pair<double, uint32_t>> heap;
   for (uint32_t i = 0; i < centres.size(); ++i)
     heap.emplace_back((centres[i] - mean).squaredNorm(), i);

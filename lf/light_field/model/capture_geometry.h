@@ -12,14 +12,14 @@ namespace lf {
 
 // Returns the median distance from an LF camera to its nearest neighbour, in world units; 0 for
 // fewer than two cameras. It is measured at fewer than 1,000 cameras spread over the light field.
-// Cameras at exactly the same position are no neighbours if encoding.masks_clipped is set
+// Cameras at exactly the same position do not count as neighbours if encoding.masks_clipped is true
 // (brackets).
 double MedianSpacing(const LightField& light_field);
 
 // Among the LF cameras for which `is_wanted` returns true, returns the one nearest to the mean
-// position. Returns the nearest of all cameras if `is_wanted` is not given or true for none.
-// `is_wanted` is called in order of distance, nearest camera first. The light field must have a
-// camera.
+// position of all LF cameras. Returns the nearest of all cameras if `is_wanted` is not given or
+// true for none. `is_wanted` is called in order of distance, nearest camera first. The light field
+// must have a camera.
 LfImageId MiddleCamera(const LightField& light_field,
                        const std::function<bool(LfImageId)>& is_wanted = {});
 
@@ -27,9 +27,9 @@ LfImageId MiddleCamera(const LightField& light_field,
 // directions almost cancel (the mean is shorter than 0.1).
 Vec3 MeanUpWorld(const LightField& light_field);
 
-// Returns the angle, 0 or more, by which the camera leans to the side: the angle between its up
-// direction and the projection of `up_world` onto its image. Returns 0 if the camera looks almost
-// along `up_world`.
+// Returns the angle in radians, 0 or more, by which the camera leans to the side: the angle between
+// its up direction and the projection of `up_world` onto its image plane. Returns 0 if the camera
+// looks almost along `up_world`.
 double RollOf(const PinholeCamera& camera, const Vec3& up_world);
 
 // Returns the ray through the middle of the image, with a direction of length 1. It is the optical
@@ -42,12 +42,12 @@ Ray CentralRay(const PinholeCamera& camera);
 // over the light field. nullopt if the lines are so nearly parallel that no point can be found.
 std::optional<Vec3> PointNearestToAxes(const LightField& light_field);
 
-// Same as PointNearestToAxes(), but nullopt unless the point is in front of nine tenths of the
+// Returns PointNearestToAxes(), or nullopt unless this point is in front of nine tenths of the
 // cameras that were left in the fit.
 std::optional<Vec3> AxesMeetingPoint(const LightField& light_field);
 
-// Distances from `camera` to the `count` LF cameras nearest to it, along its right and its up axis:
-// the 80th percentile of each, in world units.
+// Distances from `camera` to the `count` LF cameras nearest to it, along the right and along the up
+// axis of `camera`: the 80th percentile of each, in world units.
 struct Reach {
   double right_w = 0;
   double up_w = 0;

@@ -8,9 +8,9 @@
 namespace lf {
 
 struct ChannelUse {
-  int channels = 1;
-  int colours = 1;  // 1: grey or mosaic; 3: R, G, B; the colours are the first channels
-  std::optional<int> alpha;
+  int channels = 1;  // number of all channels
+  int colours = 1;   // number of colours, which are the first channels; 1: grey or mosaic; 3: RGB
+  std::optional<int> alpha;  // index of the alpha channel, if there is one
 };
 
 // Returns the use of the channels: the first three are colours if there are three or more,

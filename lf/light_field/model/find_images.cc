@@ -23,8 +23,8 @@ namespace {
 
 constexpr size_t kAsked = 64;  // number of evenly spread LF images whose files are examined
 constexpr int kMostDepth = 4;  // levels of folders that are searched, counting the topmost
-constexpr size_t kMostFiles = 2000000;  // files that are listed at most
-constexpr int kMostDivisor = 16;
+constexpr size_t kMostFiles = 2000000;  // largest number of image files that are listed
+constexpr int kMostDivisor = 16;  // largest factor by which files may be smaller than calibrated
 
 std::string Lower(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -52,7 +52,8 @@ bool HoldsSomethingElse(const std::vector<std::string>& words) {
   return std::any_of(words.begin() + 1, words.end(), NamesSomethingElse);
 }
 
-// Returns indices of evenly spread LF images, including the first and the last.
+// Returns the indices of up to kAsked LF images, evenly spread over `count` and including the first
+// and the last.
 std::vector<size_t> SpreadOver(size_t count) {
   const size_t asked = std::min(count, kAsked);
   std::vector<size_t> spread;
@@ -122,9 +123,9 @@ class FilesBelow {
     std::vector<std::string> words;
   };
   struct Score {
-    size_t common = 0;
-    int64_t pixels = 0;
-    int64_t above = 0;  // number of folders, negated
+    size_t common = 0;   // number of last parts of the path that agree, counting the base name
+    int64_t pixels = 0;  // number of pixels of the first image of the file's folder
+    int64_t above = 0;   // negated number of parts of the file's path: fewer folders are better
     bool operator<(const Score& other) const {
       return std::tie(common, pixels, above) < std::tie(other.common, other.pixels, other.above);
     }
@@ -153,8 +154,9 @@ class FilesBelow {
 
   fs::path folder_;
   std::vector<File> files_;
+  // Indices into files_, by the base name without extension, in lower case.
   std::unordered_map<std::string, std::vector<size_t>> by_stem_;
-  std::unordered_map<std::string, int64_t> pixels_;  // by folder
+  std::unordered_map<std::string, int64_t> pixels_;  // results of PixelsIn(), by folder
 };
 
 // Returns true if `pixels` is `full` divided by `divisor`, rounded up, down or to the nearest.
@@ -279,7 +281,7 @@ Result<double> FitToImageFiles(const ImageScale& scale, LightField* light_field)
   double divisor = 1 / scale.factor;
   if (scale.kind == ImageScale::Kind::kAuto) divisor = DivisorOf(*light_field, sizes);
   if (sizes.empty() || divisor == 1) return 1;
-  std::map<std::array<int, 2>, std::array<int, 2>> size_of;  // file size by calibrated size
+  std::map<std::array<int, 2>, std::array<int, 2>> size_of;  // size of files by calibrated size
   for (const SizedImage& image : sizes) {
     const Intrinsics& k = IntrinsicsOf(*light_field, image.id);
     if (!IsScaled(k, image.size, divisor))

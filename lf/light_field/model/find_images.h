@@ -17,9 +17,9 @@ namespace lf {
 // A file fits an LF image if both have the same base name; extension, upper and lower case and
 // folders may differ. If several files fit, the best is the one whose path shares most trailing
 // folders with the name; then the one with most pixels (each folder is judged by its first image);
-// then the one in the fewest folders. A file in a folder for something other than photographs
-// (masks, depth, normals) fits only if the name contains such a folder. A file fits a mask only if
-// it also lies in a folder with the name of the mask's folder.
+// then the one nested in the fewest folders. A file in a folder for something other than
+// photographs (masks, depth, normals) fits only if the name contains such a folder. A file fits a
+// mask only if it also lies in a folder with the name of the mask's folder.
 //
 // Changes the names to paths relative to the searched folder, which becomes light_field->folder. LF
 // images without a file keep their names. Returns the number of LF images with a file, and logs it
@@ -44,9 +44,9 @@ struct ImageScale {
 // Reads "auto", "off", or a factor above 0 and up to 100, such as 0.25. kUsage for any other text.
 Result<ImageScale> ParseImageScale(const std::string& text);
 
-// Scales the intrinsics to the size of the files. Returns the factor, which is 1 if nothing
-// changed. Lens distortion is defined on directions and needs no change.
-// kInput for kFactor: a file has another size.
+// Scales the intrinsics to the size of the files. Returns the size of the files divided by the
+// calibrated size; 1 if nothing changed. Lens distortion is defined on directions and needs no
+// change. kInput for kFactor: a file has another size.
 Result<double> FitToImageFiles(const ImageScale& scale, LightField* light_field);
 
 }  // namespace lf

@@ -12,10 +12,11 @@
 
 namespace lf {
 
-// A function that returns [width, height] of an image file.
+// A function that returns the [width, height] of an image file in pixels.
 using ImageSizeSource = std::function<Result<std::array<int, 2>>(const std::filesystem::path&)>;
 
-// Reads the size from the header of the file (ReadImageInfo() of pixels/files).
+// Reads the [width, height] in pixels from the header of the file (ReadImageInfo() of
+// pixels/files).
 Result<std::array<int, 2>> ImageSizeInHeader(const std::filesystem::path& image);
 
 // Returns true for the extensions png, jpg, jpeg, tif, tiff, exr (in upper or lower case), and for

@@ -10,7 +10,7 @@
 namespace lf {
 
 enum class ImageFit {
-  kAsStored,  // calibrated as stored; the orientation tag is ignored
+  kAsStored,  // the file was calibrated as stored; its orientation tag is ignored
   kTurned,    // calibrated after the quarter turn that the tag requests (pixels/files/upright.h)
 };
 

@@ -10,11 +10,11 @@
 namespace lf {
 
 struct LfPixels {
-  // The lanes of an RGB pixel, which a kernel adds at once: v of R, G and B, and the number of
-  // rays.
+  // The lanes of an RGB pixel, which a kernel adds at once: the 16-bit radiances of R, G and B, and
+  // the number of rays.
   static constexpr int kRgbLanes = 4;
   static constexpr int kRayLane = 3;
-  // Values v of the opacities 0 and 1. The range of v has room below and above them, because the
+  // 16-bit values of the opacities 0 and 1. The 16 bits have room below and above them, because the
   // filters of collection undershoot and overshoot where the opacity changes abruptly.
   static constexpr uint16_t kTransparent = 16384;
   static constexpr uint16_t kOpaque = 49152;
@@ -59,10 +59,12 @@ struct LfPixels {
     mosaic_mask.at(column, row) = 0;
   }
 
-  // v of every pixel (light_field/model/radiance.h). A mosaic: [height][width][1]. RGB:
-  // [height][width][4] with R, G, B and 1, or all 0 if the pixel is masked.
+  // 16-bit radiance v of every pixel (light_field/model/radiance.h). The shape of a mosaic is
+  // [height][width][1], the shape of RGB pixels [height][width][4] with R, G, B and 1, or all 0 if
+  // the pixel is masked.
   Image<uint16_t> radiance;
-  BayerPattern bayer = BayerPattern::kNone;  // begins at pixel (0, 0) of the whole LF image
+  // Pattern of a mosaic, which begins at pixel (0, 0) of the whole LF image; kNone for RGB pixels.
+  BayerPattern bayer = BayerPattern::kNone;
   // The pattern of the mosaic from which RGB pixels were made, beginning at pixel (0, 0) of the
   // whole LF image; kNone if every pixel recorded all three colours.
   BayerPattern recorded = BayerPattern::kNone;

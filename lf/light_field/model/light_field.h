@@ -16,9 +16,10 @@
 
 namespace lf {
 
-// Factors of R, G and B. A ChannelGains made from one number has three equal factors.
+// Factors by which the radiances of R, G and B are multiplied. A ChannelGains made from one number
+// has three equal factors.
 struct ChannelGains {
-  ChannelGains(float all = 1) : of_channels{all, all, all} {}  // NOLINT: a number is a gain
+  ChannelGains(float all = 1) : of_channels{all, all, all} {}  // NOLINT: implicit on purpose
   ChannelGains(float r, float g, float b) : of_channels{r, g, b} {}
 
   float& operator[](size_t channel) { return of_channels[channel]; }
@@ -31,11 +32,12 @@ struct ChannelGains {
   std::array<float, 3> of_channels;
 };
 
-// One LF camera. A light field may have a million of them, and therefore it takes only 120 bytes.
+// One LF camera. An LfCamera takes only 120 bytes, because a light field may have a million of
+// them.
 struct LfCamera {
   RigidTransform cam_from_world;
   uint32_t intrinsics_index = 0;  // index into LightField::intrinsics
-  ChannelGains gain;              // factor of the radiance (lf_gain)
+  ChannelGains gain;              // factors of the radiance (lf_gain)
   // ApplyBrackets() sets `brighter` and `masks_clipped` (light_field/model/brackets.h).
   static constexpr uint32_t kNone = UINT32_MAX;
   uint32_t brighter = kNone;   // the LF image of the same pose with the next larger exposure
@@ -54,7 +56,7 @@ struct LightField {
 
   RadianceEncoding encoding;
   double unit_m = 1;                      // metres per world unit
-  std::optional<DepthRange> depth_range;  // of the scene, if the calibration states it
+  std::optional<DepthRange> depth_range;  // depths of the scene, if the calibration states them
 
   size_t size() const { return cameras.size(); }
   PinholeCamera Camera(LfImageId id) const {

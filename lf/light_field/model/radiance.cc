@@ -26,7 +26,8 @@ double WhiteLevel(const RadianceEncoding& encoding, int bits) {
   return encoding.white_level.value_or(LargestStorable(bits));
 }
 
-// Returns the radiance at x. x is 0 at the black level and 1 at the white level.
+// Returns the radiance of a stored value, given as its position x: 0 at the black level and 1 at
+// the white level.
 double RadianceOfResponse(const std::vector<double>& response, double x) {
   if (x >= 1) return response.back();
   const double position = x * static_cast<double>(response.size() - 1);

@@ -12,17 +12,18 @@
 
 namespace lf {
 
-// Default v of no light for raw files with a black level. It leaves room for noise below black.
+// Default pedestal, the 16-bit value v of no light, for raw files with a black level. It leaves
+// room for noise below black.
 inline constexpr double kRawPedestal = 1024;
 
 // Returns true for file names that end in dng or an extension of the cameras' own formats (cr2,
 // cr3, nef, arw, ...), in upper or lower case.
 bool IsRawName(const std::string& file_name);
 
-// Returns the raw facts of the first image, which are used for all images, or nullopt if its name
-// is not the name of a raw file. Its pixels are decoded only if its header does not state the black
-// level. kInput: the file cannot be read or is no raw file; the message says what the user can
-// state instead.
+// RawFactsOfFirstImage() returns the raw facts of the first image, which are used for all images,
+// or nullopt if its name is not the name of a raw file. The pixels of this image are decoded only
+// if its header does not state the black level. kInput: the file cannot be read or is no raw file;
+// the message says what the user can state instead.
 using RawFactsSource = std::function<Result<std::optional<RawFacts>>(const LightField&)>;
 Result<std::optional<RawFacts>> RawFactsOfFirstImage(const LightField& light_field);
 

@@ -12,7 +12,7 @@ BallBlocks::BallBlocks(const std::vector<Ball>& balls) {
 
 // Makes order[begin, end) a block if it has at most kLanes balls. Otherwise splits it in two,
 // across the longest side of the bounding box of the balls' centres, and continues with both parts.
-// The first part fills whole blocks.
+// The size of the first part is a multiple of kLanes.
 void BallBlocks::Build(const std::vector<Ball>& balls, Indices& order, size_t begin, size_t end) {
   Eigen::AlignedBox3d box;
   for (size_t i = begin; i < end; ++i) box.extend(balls[order[i]].centre_world);

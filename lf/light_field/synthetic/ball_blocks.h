@@ -18,10 +18,10 @@ struct Ball {
   double radius_w = 0;
 };
 
-// A cone around the half-line from `origin` along `direction` (unit length): the points whose
-// distance from the half-line is less than base_w / cos + along tan, where `along` is their
-// distance along the half-line, at most `along_end`. `sine` is the sine of half the opening angle;
-// cos and tan are of the same angle.
+// A cone around the half-line from `origin` along `direction` (unit length). It contains the points
+// at a distance `along` from 0 to along_end along the half-line whose distance from the half-line
+// is less than base_w / cos(a) + along tan(a), where a is half the opening angle and `sine` its
+// sine. Lengths are world units.
 struct Cone {
   Vec3 origin = Vec3::Zero();
   Vec3 direction = Vec3::UnitZ();
@@ -36,8 +36,8 @@ class BallBlocks {
   explicit BallBlocks(const std::vector<Ball>& balls);
 
   // Calls visit(i) for the index of every ball that reaches into the cone, and perhaps for some
-  // other balls: the test in single precision is so wide that it never misses a ball. The order is
-  // always the same.
+  // other balls: the test in single precision is so wide that it never misses a ball. Equal
+  // arguments give an equal order of calls.
   template <class Visit>
   void ForEachNear(const Cone& cone, Visit&& visit) const;
 
@@ -47,9 +47,9 @@ class BallBlocks {
   void ForEachAround(const Vec3& point_world, double factor, Visit&& visit) const;
 
  private:
-  static constexpr int kLanes = 8;
-  static constexpr float kSlack = 1.001F;
-  static constexpr float kRounding = 4e-6F;  // relative error of squared distances
+  static constexpr int kLanes = 8;           // number of balls in a block
+  static constexpr float kSlack = 1.001F;    // factor by which the tests are too wide
+  static constexpr float kRounding = 4e-6F;  // largest relative error of squared distances
   using Lanes = Eigen::Array<float, kLanes, 1>;
   struct Block {
     Lanes x = Lanes::Zero(), y = Lanes::Zero(), z = Lanes::Zero(), radius = Lanes::Zero();

@@ -44,8 +44,8 @@ struct BuiltInScene {
   RigOptions rig;
   int width_px = 480;
   int height_px = 320;
-  double focal_length_per_width = 1;  // fx / width
-  int samples = 4;                    // rays per pixel at edges, as in Photograph()
+  double focal_length_per_width = 1;  // focal length divided by image width
+  int samples = 4;                    // rays per pixel at edges of the picture (Photograph())
   double max_radiance = 1;  // upper bound of the radiance; for RadianceEncoding::max_radiance
 };
 

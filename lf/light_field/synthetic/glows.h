@@ -11,7 +11,7 @@
 
 namespace lf {
 
-// Number of radii beyond which a lamp is dark: exp(-3.2^2) = 4e-5.
+// Number of radii from the centre of a lamp beyond which it counts as dark: exp(-3.2^2) = 4e-5.
 inline constexpr double kGlowReach = 3.2;
 
 class Glows {

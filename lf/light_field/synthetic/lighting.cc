@@ -12,9 +12,9 @@ constexpr double kReach = 6;
 // A point counts as lying on a sphere if it is at most this share of the sphere's radius away.
 constexpr double kTouching = 1e-6;
 
-// Returns the share of a lamp's light that passes one sphere. sine_lamp and sine_sphere are the
-// sines of half the angles under which lamp and sphere are seen; `cosine` is the cosine of the
-// angle between their centres.
+// Returns the share of a lamp's light that passes one sphere on the way to a point. sine_lamp and
+// sine_sphere are the sines of half the angles under which the point sees lamp and sphere; `cosine`
+// is the cosine of the angle between their centres.
 Rgb PassedBy(const Occluder& occluder, double sine_lamp, double sine_sphere, double cosine) {
   const double between = std::acos(std::min(1.0, cosine));
   const double sphere = std::asin(std::min(1.0, sine_sphere));
@@ -28,8 +28,9 @@ Rgb PassedBy(const Occluder& occluder, double sine_lamp, double sine_sphere, dou
   return (1 - hidden) + hidden * gathered * occluder.colour;
 }
 
-// Returns the effective cosine of a lamp that may be partly below the horizon of the surface. It is
-// a parabola while the lamp rises over the horizon, then the cosine itself.
+// Returns the effective cosine of the angle of incidence of a lamp's light. The lamp may be partly
+// below the horizon of the surface; then the result is a parabola of `cosine`, otherwise `cosine`
+// itself.
 double RisenCosine(double cosine, double sine_lamp) {
   if (cosine >= sine_lamp) return cosine;
   const double risen = std::max(0.0, cosine + sine_lamp);

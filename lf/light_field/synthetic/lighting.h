@@ -12,8 +12,8 @@ namespace lf {
 // A sphere that casts shadows.
 struct Occluder {
   Sphere sphere;
-  bool is_glass = false;  // glass casts a coloured shadow with a bright spot in the middle
-  Rgb colour = Rgb::Ones();
+  bool is_glass = false;     // glass casts a coloured shadow with a bright spot in the middle
+  Rgb colour = Rgb::Ones();  // colour of the light in the shadow of glass
 };
 
 // All lamps, and all spheres that may hide them.

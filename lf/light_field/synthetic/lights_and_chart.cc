@@ -1,5 +1,5 @@
-// Describes the two scenes for measurements: lights on black, and charts. Both are in front of a
-// camera at z = -1 m that looks along +z.
+// Describes the two scenes for measurements, `lights` and `chart`. Both are composed for a camera
+// at z = -1 m that looks along +z.
 #include <array>
 #include <cmath>
 
@@ -9,7 +9,7 @@ namespace lf {
 namespace {
 
 constexpr double kCameraZ = -1;
-constexpr double kFocalPx = 480;  // focal length of the recommended capture
+constexpr double kFocalPx = 480;  // focal length of the recommended capture, in pixels
 
 // Returns the point that the middle camera sees at (x, y) pixels from the centre of its picture.
 Vec3 PointAt(double x_px, double y_px, double depth_w) {

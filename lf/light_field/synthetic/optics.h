@@ -7,7 +7,8 @@
 
 namespace lf {
 
-// Returns the direction of a ray after its reflection: d - 2 (d.n) n. It has the length of d.
+// Returns the direction of a ray after its reflection, d - 2 (d.n) n, for the direction d and the
+// normal n of unit length. The result has the length of d.
 Vec3 Reflected(const Vec3& direction, const Vec3& normal);
 
 // Returns the direction of a ray after its refraction at a surface, by Snell's law n1 sin = n2 sin,

@@ -30,7 +30,7 @@ double Wave(double t) {
 double SmoothStep(double t) { return t * t * (3 - 2 * t); }
 
 // Returns the contrast that a wave of period 1 keeps when averaged over `width`: 1 for width 0, 0
-// from one period on.
+// for widths of one period and more.
 double Contrast(double width) {
   const double rest = std::max(0.0, 1 - width * width);
   return rest * rest;
@@ -52,8 +52,9 @@ double Checker(const Pattern& pattern, const Vec2& place_w, double width_w) {
                    SquareWave(place_w.y() / period_w, width_w / period_w);
 }
 
-// The row at height v of a table of letters. A row is 1.5 times as high as its letters, and 4/5 as
-// high as the row above. The top edge is v = 0; v increases upwards, so that rows have negative v.
+// The row at height v of a table of letters or bars. A row is 1.5 times as high as its letters, and
+// 4/5 as high as the row above. The top edge is v = 0; v increases upwards, so that rows have
+// negative v.
 struct ShrinkingRow {
   int index = 0;
   double letter_w = 0;  // height of the row's letters
@@ -82,7 +83,7 @@ double Bars(const Pattern& pattern, const Vec2& place_w, double width_w) {
   return 0.5 + 0.5 * SquareWave(place_w.x() / period_w, width_w / period_w);
 }
 
-// 3 x 5 dots for each digit: rows from the top, in each row the left dot first.
+// The 3 x 5 dots of each digit as bits: rows from the top, in each row the left dot first.
 constexpr std::array<uint16_t, 10> kDigits = {
     0b111'101'101'101'111, 0b010'110'010'010'111, 0b111'001'111'100'111, 0b111'001'111'001'111,
     0b101'101'111'001'001, 0b111'100'111'001'111, 0b111'100'111'101'111, 0b111'001'010'010'010,
@@ -91,7 +92,7 @@ constexpr std::array<uint16_t, 10> kDigits = {
 double Letters(const Pattern& pattern, const Vec2& place_w) {
   const ShrinkingRow row = RowAt(place_w.y(), pattern.scale_w);
   if (row.down < 0 || row.down >= 1) return 0;
-  const double across = place_w.x() / row.letter_w * 5;  // in dots: a digit has 3, the gap 1
+  const double across = place_w.x() / row.letter_w * 5;  // in dots; a digit is 3 wide, a gap 1
   const double cell = Floor(across / 4);
   const int dot_x = static_cast<int>(across - 4 * cell);
   if (dot_x >= 3) return 0;
@@ -122,8 +123,8 @@ double Wood(const Pattern& pattern, const Vec2& place_w, double width_w) {
   const double y = place_w.y() / pattern.scale_w + 8 * tone;
   const double width = width_w / pattern.scale_w;
 
-  // The wood has year rings, bent by slow noise, and pores, which are short dark strokes along the
-  // grain.
+  // The wood has year rings, bent by noise of low frequency, fibres, and pores, which are short
+  // dark strokes along the grain.
   const double bend = ValueNoise(2.2 * x, 0.55 * y, seed);
   const double rings = Wave(2.6 * x + 3.2 * bend);
   const double fibre = ValueNoise(26 * x, 1.6 * y, seed + 1) - 0.5;

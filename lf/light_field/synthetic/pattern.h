@@ -1,7 +1,7 @@
-// Procedural textures: the share of a material's second colour at a point of a surface.
-// Lengths are world units on the surface. `width_w` is the width over which the pattern is averaged
-// (the footprint of a pixel; 0 for an exact point). Patterns are filtered analytically where there
-// is a formula, so that a few rays per pixel show no moire.
+// Procedural textures: the share of a material's second colour at a point of a surface. Lengths are
+// world units on the surface. `width_w` is the width over which the pattern is averaged (the
+// footprint of a pixel; 0 for a single point). Patterns are filtered analytically where there is a
+// formula, so that a few rays per pixel show no moire.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,9 @@
 
 namespace lf {
 
+// Kinds of patterns. The lengths are multiples of Pattern::scale_w.
 enum class PatternKind : uint8_t {
-  kPlain,    // 0 everywhere
+  kPlain,    // the value 0 everywhere
   kChecker,  // squares of side scale_w
   kBars,     // rows of upright bars, scale_w wide in the top row, 4/5 as wide in each next row
   kLetters,  // rows of digits, scale_w high in the top row, 4/5 as high in each next row
@@ -26,7 +27,8 @@ struct Pattern {
   uint64_t seed = 0;
 };
 
-// Returns the pattern's value in [0, 1].
+// Returns the pattern's value, in [0, 1], at place_w on the surface, averaged over the width
+// width_w. Both are in world units. kLetters is not averaged.
 double PatternAt(const Pattern& pattern, const Vec2& place_w, double width_w);
 
 // Returns smooth noise in [0, 1). It has one random value per lattice point, and is interpolated

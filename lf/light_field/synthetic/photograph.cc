@@ -13,7 +13,7 @@
 namespace lf {
 namespace {
 
-// Returns the rays of a camera's pixels; inverts the camera's matrix only once.
+// The rays of a camera's pixels. The camera's matrix is inverted only once.
 class PixelRays {
  public:
   explicit PixelRays(const PinholeCamera& camera)
@@ -72,7 +72,8 @@ bool IsEdge(const Scene::Sight& a, const Scene::Sight& b) {
   return ((a.radiance - b.radiance).abs() > kShare * (a.radiance.max(b.radiance) + kDark)).any();
 }
 
-// Divides the picture into tiles; for each tile, finds the shapes that its rays may hit first.
+// Divides the picture into tiles and finds, for each tile, the sector of the scene that its rays
+// may meet.
 class Tiles {
  public:
   Tiles(const Scene& scene, const PixelRays& rays, int width, int height)
@@ -98,9 +99,10 @@ class Tiles {
   }
 
  private:
-  static constexpr int kAcross = 32;  // number of tiles along the longer side of the picture
-  static constexpr double kBow = 1.1;
-  // The margin is one pixel for the border, kGlowReach footprints of a pixel, and a safety margin.
+  static constexpr int kAcross = 32;   // number of tiles along the longer side of the picture
+  static constexpr double kBow = 1.1;  // factor of a cone's sine, for distorted edges of tiles
+  // Width of the border of a tile that its cone contains: one pixel for the neighbouring pixels,
+  // kGlowReach footprints of a pixel, and a safety margin.
   static constexpr double kMargin_px = 1 + kGlowReach * kFootprintPerSide + 0.5;
 
   // Returns a cone around all rays of a tile; none unless all tested positions of the tile have
@@ -129,8 +131,8 @@ class Tiles {
   std::vector<std::optional<Scene::Sector>> sectors_;
 };
 
-// Returns the surfaces and radiance seen by the rays through the pixel centres of row y, from one
-// pixel left of the picture to one pixel right of it.
+// LookAlongRow() returns the surfaces and radiances seen by the rays through the pixel centres of
+// row y, from one pixel left of the picture to one pixel right of it.
 using SightRow = std::vector<Scene::Sight>;
 SightRow LookAlongRow(const Scene& scene, const PixelRays& rays, const Tiles& tiles, int width,
                       int y) {
@@ -144,7 +146,7 @@ SightRow LookAlongRow(const Scene& scene, const PixelRays& rays, const Tiles& ti
   return row;
 }
 
-// R, G, B, and the share of rays that see a surface.
+// Radiance of R, G, B, and opacity: the share of rays that hit a surface.
 using Rgba = Eigen::Array4d;
 
 // Returns the light and opacity that one ray adds to a picture.

@@ -20,8 +20,8 @@ enum class Surroundings : uint8_t {
                  // rays that hit a surface
 };
 
-// Returns the picture that the camera records: linear radiance, averaged over the square of each
-// pixel; black where the camera's lens lets no ray through.
+// Returns the picture that a pinhole camera records: linear radiance, averaged over the square of
+// each pixel; black where the camera's lens lets no ray through.
 //   samples  rays per pixel at edges in the picture, spread over the pixel's square; rounded up to
 //            a square number. A pixel is at an edge if a neighbour shows another surface or another
 //            brightness. Other pixels are sampled by one ray through their centre
@@ -30,9 +30,9 @@ Image<float> Photograph(const Scene& scene, const PinholeCamera& camera, int sam
                         Surroundings surroundings = Surroundings::kShown);
 
 struct LensSampling {
-  // Rays per element, each through its own point of the lens and of the element; rounded up to a
-  // square number. Lamps and textures are averaged over the part of lens and element that each ray
-  // represents.
+  // Number of rays per element, each through its own point of the lens and of the element; rounded
+  // up to a square number. Lamps and textures are averaged over the part of lens and element that
+  // each ray represents.
   int samples = 529;
   uint64_t seed = 0;  // determines the lens points
 };

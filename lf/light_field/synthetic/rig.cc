@@ -12,7 +12,7 @@
 namespace lf {
 namespace {
 
-// The number of rows and of columns. Their product is near the wanted number of cameras.
+// The numbers of rows and columns of a rig. Their product is near the wanted number of cameras.
 struct Grid {
   uint32_t rows = 1;
   uint32_t columns = 1;
@@ -27,7 +27,7 @@ Grid GridOf(const RigOptions& options) {
   return {rows, std::max(1U, static_cast<uint32_t>(columns))};
 }
 
-// Returns `pose` with jitter.
+// Returns the pose of camera `index` with the jitter that RigOptions::jitter describes.
 RigidTransform ShakenPose(const RigOptions& options, uint32_t index, const RigidTransform& pose) {
   if (options.jitter == 0) return pose;
   const auto shake = [&](uint64_t axis) {
@@ -75,7 +75,8 @@ std::vector<RigidTransform> BandPoses(const RigOptions& options) {
   return poses;
 }
 
-// Arranges the dome in Fibonacci's spiral: equal steps of height, each rotated by the golden angle.
+// Returns poses on a dome, along Fibonacci's spiral: from each camera to the next, the height
+// changes by an equal step, and the direction rotates by the golden angle.
 std::vector<RigidTransform> HemispherePoses(const RigOptions& options) {
   const Vec3 up = options.up_world.normalized();
   const Vec3 right = options.view_world.cross(up).normalized();

@@ -10,7 +10,7 @@
 namespace lf {
 
 enum class RigShape : uint8_t {
-  kPlanar,  // a grid in a plane, all cameras looking along `view_world`
+  kPlanar,  // a grid in a plane, all cameras looking along RigOptions::view_world
   kBand,  // at most 3 rows on an arc around the upright line through the target, facing the target
   kHemisphere,  // spread evenly over the dome above the target, facing the target
 };
@@ -21,14 +21,14 @@ struct RigOptions {
   // Both have the number of columns for which rows times columns is nearest to count. The dome has
   // exactly `count` cameras.
   uint32_t count = 289;
-  double spacing_w = 0.0025;  // from camera to camera; kHemisphere ignores it
-  double distance_w = 1;      // from the middle of the rig to the target
+  double spacing_w = 0.0025;  // distance from camera to camera; ignored for kHemisphere
+  double distance_w = 1;      // distance from the middle of the rig to the target
   Vec3 target_world = Vec3::Zero();
-  Vec3 view_world = Vec3::UnitZ();  // from the rig's middle to the target, any length
+  Vec3 view_world = Vec3::UnitZ();  // direction from the rig's middle to the target, any length
   Vec3 up_world = -Vec3::UnitY();
   // Simulates a shaky hand: every camera is moved by up to jitter * RigPitch() along each of its
-  // axes and rotated by up to `jitter` degrees about each of them, uniformly distributed. The
-  // returned poses include the jitter.
+  // axes and rotated by up to `jitter` degrees about each axis, uniformly distributed. The returned
+  // poses include the jitter.
   double jitter = 0;
   uint64_t seed = 0;
 };
@@ -39,7 +39,8 @@ struct RigOptions {
 // view_world is 0 or parallel to up_world; or a band is longer than its full circle.
 Result<std::vector<RigidTransform>> MakeRig(const RigOptions& options);
 
-// Returns the distance from one camera to the next: spacing_w, or on a dome the mean distance.
+// Returns the distance from one camera to the next in world units: RigOptions::spacing_w, or on a
+// dome the mean distance.
 double RigPitch(const RigOptions& options);
 
 }  // namespace lf

@@ -112,8 +112,8 @@ Rgb Scene::Follow(const Beam& beam, Hit* first) const {
   return glow;
 }
 
-// Returns the light that the surface mirrors. A sphere spreads the beam: its focal length is -R/2
-// times the cosine.
+// Returns the light that the surface mirrors. A sphere of radius R spreads the beam: its focal
+// length is -R/2 times the cosine of the angle of incidence.
 Rgb Scene::Reflection(const Beam& beam, const Place& place, double share) const {
   Beam next{{place.point, Reflected(beam.ray.direction, place.normal)},
             place.footprint,
@@ -130,9 +130,10 @@ Rgb Scene::Reflection(const Beam& beam, const Place& place, double share) const 
   return Follow(next, nullptr);
 }
 
-// Follows a beam into the sphere, along the chord, and out. By symmetry, a ray leaves a sphere at
-// the angle at which it entered. Therefore it always gets out, and loses the same share of its
-// light once more. Internal reflections are left out.
+// Returns the light that comes from a glass sphere: the light that the surface mirrors, and the
+// light of a beam that is followed into the sphere, along the chord, and out. By symmetry, a ray
+// leaves a sphere at the angle at which it entered. Therefore the ray always gets out, and loses
+// the same share of its light once more. Internal reflections are left out.
 Rgb Scene::ThroughGlass(const Beam& beam, const Place& place) const {
   LF_CHECK(place.sphere != nullptr);  // the constructor rejects panels of glass
   const Material& glass = *place.material;
@@ -147,8 +148,9 @@ Rgb Scene::ThroughGlass(const Beam& beam, const Place& place) const {
   const Vec3 exit_normal = (sphere.centre_world - exit) / sphere.radius_w;
   const std::optional<Vec3> direction = Refracted(inside, exit_normal, glass.refractive_index);
   if (!direction) return mirrored;  // only due to rounding errors at the very rim
-  // The sphere is treated as a thin ball lens of focal length n R / (2 (n - 1)), which narrows the
-  // footprint. Haze widens it, whatever the sign of the spread.
+  // The sphere is treated as a thin ball lens of focal length n R / (2 (n - 1)), with refractive
+  // index n and radius R, which narrows the footprint. Haze widens it, whatever the sign of the
+  // spread.
   const double focal_w =
       glass.refractive_index * sphere.radius_w / (2 * (glass.refractive_index - 1));
   double spread = place.footprint.spread - place.footprint.width_w / focal_w;

@@ -28,17 +28,17 @@ class Scene {
   // length.
   Rgb RadianceAlong(const Ray& ray, const Footprint& footprint = {}) const;
 
-  // The spheres that rays within a cone may hit first, and the glows that they may pass. With a
-  // sector, SightAlong() returns the same light faster. The cone must contain the rays and
-  // kGlowReach widths of their footprints around them (glows.h).
+  // The indices of the spheres that rays within a cone may hit first, and of the glows that these
+  // rays may pass. With a sector, SightAlong() returns the same light faster. The cone must contain
+  // the rays and kGlowReach widths of their footprints around them (glows.h).
   struct Sector {
     std::vector<uint32_t> spheres;
     std::vector<uint32_t> glows;
   };
   Sector SectorOf(const Cone& cone) const;
 
-  // The radiance, and the shape that the ray hits first. Different shapes in neighbouring pixels
-  // tell where more rays are needed.
+  // The radiance along a ray, and the shape that the ray hits first. Different shapes in
+  // neighbouring pixels tell where more rays are needed.
   //   sector  a sector whose cone contains the ray, or null
   struct Sight {
     Rgb radiance = Rgb::Zero();

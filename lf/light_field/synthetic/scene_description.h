@@ -15,10 +15,10 @@ namespace lf {
 using Rgb = Eigen::Array3d;
 
 enum class Finish : uint8_t {
-  kDiffuse,  // Lambertian under a clear coat that reflects like glass, times `coat`
-  kMirror,   // reflects the share `colour` of the light
-  kGlass,    // a refracting sphere; the share `colour` of the light is left after one radius
-  kLight,    // emits `colour`, which fades out towards the rim of the panel
+  kDiffuse,  // Lambertian under a clear coat that reflects Material::coat times as much as glass
+  kMirror,   // reflects the share Material::colour of the light
+  kGlass,    // refracts; the share Material::colour of the light is left after a path of one radius
+  kLight,    // emits the radiance Material::colour, which fades out towards the rim of the panel
 };
 
 struct Material {
@@ -26,8 +26,8 @@ struct Material {
   Rgb colour = Rgb::Constant(0.5);
   Rgb second_colour = Rgb::Constant(0.5);  // colour where the pattern is 1; kDiffuse only
   Pattern pattern;
-  double coat = 0;                // 0: matte; 1: polished
-  double refractive_index = 1.5;  // of glass and of the coat
+  double coat = 0;                // strength of the clear coat: 0 matte, 1 polished
+  double refractive_index = 1.5;  // refractive index of glass and of the coat
   // Angle by which the material spreads the images of glows that it reflects or refracts, like an
   // imperfect polish. It keeps the tiny images of glows in balls from sparkling.
   double haze_rad = 0;
@@ -68,19 +68,20 @@ struct Lamp {
   Rgb power = Rgb::Constant(1);  // radiance of a white surface that faces the lamp at distance 1
 };
 
-// The light of the distant room: a blend from `floor` to `ceiling` by the height of the direction,
-// and soft spots colour * exp(sharpness (cos - 1)), where cos is of the angle to the spot's
-// direction.
+// A soft spot of light in the distant room (Room). In a direction at the angle a from
+// direction_world, it adds the radiance colour * exp(sharpness (cos(a) - 1)).
 struct RoomSpot {
   Vec3 direction_world = Vec3::UnitZ();  // unit length
   double sharpness = 10;
   Rgb colour = Rgb::Constant(1);
 };
+// The light of the distant room: a blend from `floor` to `ceiling` by the height of the direction,
+// and soft spots.
 struct Room {
   Rgb floor = Rgb::Zero();
   Rgb ceiling = Rgb::Zero();
   std::vector<RoomSpot> spots;
-  Rgb ambient = Rgb::Zero();  // falls on diffuse surfaces from everywhere, less near spheres
+  Rgb ambient = Rgb::Zero();  // light on diffuse surfaces from all directions; less near spheres
 };
 
 struct SceneDescription {

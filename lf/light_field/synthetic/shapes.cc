@@ -31,7 +31,7 @@ PanelPlane::PanelPlane(const Panel& panel)
 std::optional<double> Intersect(const Ray& ray, const PanelPlane& panel) {
   const double along = panel.normal_world.dot(ray.direction);
   const double height_w = panel.offset_w - panel.normal_world.dot(ray.origin);
-  if (!(along * height_w > 0)) return std::nullopt;  // runs away from the plane, or parallel to it
+  if (!(along * height_w > 0)) return std::nullopt;  // the ray does not approach the plane
   const double lambda = height_w / along;
   if (lambda <= kLeastLambda) return std::nullopt;
   const Vec2 place = panel.PlaceOf(ray.At(lambda));

@@ -13,7 +13,8 @@
 
 namespace lf {
 
-// Smallest distance of a hit. Without it, a ray that leaves a surface would hit this surface again.
+// Smallest distance of a hit from the origin of a ray, in world units. Without this limit, a ray
+// that leaves a surface would hit this surface again.
 inline constexpr double kLeastLambda = 1e-7;
 
 // Returns the distance along `ray`, whose direction has unit length, to the first point of the
@@ -34,10 +35,10 @@ struct PanelPlane {
 
   Vec3 centre_world = Vec3::Zero();
   Vec3 normal_world = Vec3::UnitZ();  // unit length
-  double offset_w = 0;                // normal . centre
-  Vec3 right_per_w = Vec3::Zero();    // half axis divided by its squared length
-  Vec3 up_per_w = Vec3::Zero();
-  double half_right_w = 1;  // lengths of the half axes
+  double offset_w = 0;                // normal_world . centre_world
+  Vec3 right_per_w = Vec3::Zero();    // half_right_w of Panel, divided by its squared length
+  Vec3 up_per_w = Vec3::Zero();       // half_up_w of Panel, divided by its squared length
+  double half_right_w = 1;            // lengths of the half axes
   double half_up_w = 1;
   bool is_disk = false;
   uint32_t material = 0;
@@ -62,8 +63,8 @@ class Shapes {
  public:
   Shapes(std::vector<Sphere> spheres, const std::vector<Panel>& panels);
 
-  // Returns the first hit. The direction must have unit length. `among` lists the spheres that are
-  // considered; null: all spheres are. Panels are always considered.
+  // Returns the first hit of the ray, whose direction must have unit length. `among` lists the
+  // spheres that are considered; null: all spheres are. Panels are always considered.
   Hit FirstHit(const Ray& ray, const std::vector<uint32_t>* among = nullptr) const;
 
   // Returns the indices of all spheres that reach into the cone, and perhaps of some others.

@@ -8,7 +8,7 @@
 namespace lf {
 namespace {
 
-// Adds materials, and objects made of these materials.
+// Adds materials and spheres to a scene. Functions that add a material return its index.
 class Table {
  public:
   explicit Table(SceneDescription& scene) : scene_(scene) {}

@@ -17,16 +17,17 @@
 namespace lf {
 
 enum class LfImageFormat : uint8_t {
-  kExr,    // half floats, which are radiance
+  kExr,    // radiance as half floats
   kPng,    // 8-bit sRGB; light brighter than 1 is clipped
-  kPng16,  // 16 bits, linear, up to max_radiance
+  kPng16,  // 16-bit linear radiance, up to max_radiance
   kBayer,  // 16-bit RGGB mosaic as of a raw converter: black level 1024, not white balanced
 };
 
 // Returns how images of this format store radiance up to max_radiance. kPng stores only up to 1.
 RadianceEncoding EncodingOf(LfImageFormat format, double max_radiance);
 
-// Returns the calibration of photographs images/0000.exr ... taken from `poses`. Writes nothing.
+// Returns the calibration of photographs images/0000.exr ... (or .png) taken from `poses`. Writes
+// nothing.
 LightField DescribeLightField(const std::vector<RigidTransform>& poses,
                               const Intrinsics& intrinsics, LfImageFormat format,
                               double max_radiance, const std::filesystem::path& folder);
@@ -40,11 +41,11 @@ Image<uint16_t> Mosaic(ImageView<const float> picture, const RadianceEncoding& e
 
 struct WriteLightFieldOptions {
   LfImageFormat format = LfImageFormat::kExr;
-  int samples = 4;    // rays per pixel at edges, as in Photograph()
-  double noise = 0;   // as in Mosaic(); kBayer only
+  int samples = 4;    // rays per pixel at edges of the picture (Photograph())
+  double noise = 0;   // strength of the noise, as for Mosaic(); used for kBayer only
   uint64_t seed = 0;  // determines the noise
-  // Called after every image, by any thread, but by one at a time. Returns false to stop the work.
-  // May be empty.
+  // Called after every image, by any thread, but by only one thread at a time. Returns false to
+  // stop the work. May be empty.
   std::function<bool(size_t images_done)> keep_going;
 };
 

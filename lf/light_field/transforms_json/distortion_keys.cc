@@ -24,12 +24,12 @@ constexpr const char* kOmegaKey = "lf_fov_omega";
 constexpr const char* kDivisionKeys[] = {"k1"};
 constexpr const char* kUnifiedKeys[] = {"lf_eucm_alpha", "lf_eucm_beta"};
 constexpr const char* kThinPrismKeys[] = {"k1", "k2", "p1", "p2", "k3", "k4", "lf_sx1", "lf_sy1"};
-// Key k1 is COLMAP's k0, the factor of theta^2, as in every other model here. The tangential terms
-// have keys of their own because COLMAP's p0 and p1 are OpenCV's p2 and p1.
+// Key k1 is COLMAP's k0, because in every model here k1 is the factor of theta^2 (or r^2). The
+// tangential terms have keys of their own, because COLMAP's p0 and p1 are OpenCV's p2 and p1.
 constexpr const char* kRadialTangentialThinPrismKeys[] = {
     "k1", "k2", "k3", "k4", "k5", "k6", "lf_p0", "lf_p1", "lf_s0", "lf_s1", "lf_s2", "lf_s3"};
 
-// All keys; DistortionKeys::values has the same order.
+// The keys of all distortion parameters; DistortionKeys::values has the same order.
 constexpr std::array kKeys = {"k1",           "k2",     "k3",     "k4",      "k5",
                               "k6",           "p1",     "p2",     kOmegaKey, "lf_eucm_alpha",
                               "lf_eucm_beta", "lf_sx1", "lf_sy1", "lf_p0",   "lf_p1",
@@ -191,8 +191,7 @@ Result<Distortion> ResolveDistortion(const DistortionKeys& frame, const Distorti
   if (!IsDistortion(distortion))
     return fields.Fault(
         fmt::format("\"camera_model\" is \"{}\" with lf_eucm_alpha {} and lf_eucm_beta {}: "
-                    "expected 0 to 1, and "
-                    "above 0",
+                    "expected alpha from 0 to 1 and beta above 0",
                     model.name, distortion.parameters[0], distortion.parameters[1]));
   if (model.model == DistortionModel::kUnified && distortion.parameters[0] == 0)
     return Distortion{};

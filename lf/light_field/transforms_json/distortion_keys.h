@@ -31,8 +31,9 @@ CameraModelName CameraModelOf(const Distortion& distortion);
 
 // The keys of the top level or of one frame, as written; nullopt for a missing key.
 struct DistortionKeys {
-  std::optional<uint8_t> camera_model;  // index into the list of names in distortion_keys.cc
-  std::optional<bool> is_fisheye;       // key of instant-ngp
+  std::optional<uint8_t> camera_model;  // index into kModels of distortion_keys.cc
+  std::optional<bool> is_fisheye;       // key of a file for instant-ngp
+  // The parameters, in the order of kKeys in distortion_keys.cc.
   std::array<std::optional<double>, 19> values;
 
   friend bool operator==(const DistortionKeys&, const DistortionKeys&) = default;
@@ -42,12 +43,12 @@ struct DistortionKeys {
 // pi).
 Result<DistortionKeys> ReadDistortionKeys(const JsonFields& fields);
 
-// Takes each key from the frame, or from the top level if the frame lacks it; a
-// parameter that both lack is 0. A missing camera_model means OPENCV, or OPENCV_FISHEYE if
-// is_fisheye is true. Radial-tangential and division models whose parameters are all 0, and EUCM
-// with alpha 0, become kNone. kInput: a nonzero parameter that the model does not have, an
-// is_fisheye that contradicts the model, a FOV without omega, an alpha or beta of EUCM out of
-// range. `fields` is for messages.
+// Returns the distortion of a frame. Takes each key from the frame, or from the top level if the
+// frame lacks it; a parameter that both lack is 0. A missing camera_model means OPENCV, or
+// OPENCV_FISHEYE if is_fisheye is true. Radial-tangential and division models whose parameters are
+// all 0, and EUCM with alpha 0, become kNone. kInput: a nonzero parameter that the model does not
+// have, an is_fisheye that contradicts the model, a FOV without omega, an alpha or beta of EUCM out
+// of range. `fields` is for messages.
 Result<Distortion> ResolveDistortion(const DistortionKeys& frame, const DistortionKeys& top,
                                      const JsonFields& fields);
 

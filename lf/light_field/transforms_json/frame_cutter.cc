@@ -15,7 +15,7 @@ constexpr Characters CharactersOf(std::string_view list) {
   return table;
 }
 
-// The characters that have a meaning in strings, in frames, and outside of both.
+// The characters that FrameCutter looks for in strings, in frames, and outside of both.
 constexpr Characters kOfStrings = CharactersOf("\"\\");
 constexpr Characters kOfFrames = CharactersOf("\"{}");
 constexpr Characters kOfRest = CharactersOf("\"{}[]");
@@ -26,7 +26,8 @@ size_t Find(const Characters& characters, std::string_view text) {
   return i;
 }
 
-// True if the key is "frames". `key` is the text between the quotation marks, escapes included.
+// Returns true if the key is "frames". `key` is the text between the quotation marks, escapes
+// included.
 bool IsFrames(std::string_view key) {
   if (key.find('\\') == std::string_view::npos) return key == "frames";
   const std::string quoted = '"' + std::string(key) + '"';
@@ -48,8 +49,8 @@ void FrameCutter::Add(std::string_view piece) {
   }
 }
 
-// Each of the next three functions consumes `piece` up to and including the next character that has
-// a meaning, at least one character, and returns the number of consumed bytes.
+// AddToString(), AddToFrame() and AddToRest() consume `piece` up to and including the next
+// character of their table, at least one character, and return the number of consumed bytes.
 size_t FrameCutter::AddToString(std::string_view piece, std::string* text) {
   size_t size = 0;
   if (is_escaped_) {

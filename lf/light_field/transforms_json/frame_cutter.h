@@ -19,11 +19,12 @@ class FrameCutter {
   // Adds the next piece of the text, of any size.
   void Add(std::string_view piece);
 
-  // The text outside frames so far, with {} in place of each frame.
+  // Returns the text outside frames so far, with {} in place of each frame.
   const std::string& rest() const { return rest_; }
-  // True if the text so far ends inside a frame.
+  // Returns true if the text so far ends inside a frame.
   bool is_in_frame() const { return frame_depth_ > 0; }
-  // Size of all text that is kept: the rest, and the frame that is not complete yet.
+  // Returns the size of all text that is kept in memory: the rest, and the frame that is not
+  // complete yet.
   size_t held_bytes() const { return rest_.size() + frame_.size(); }
 
  private:
@@ -36,13 +37,13 @@ class FrameCutter {
   std::function<void(const std::string&)> take_;
   std::string rest_, frame_;
   bool in_string_ = false;
-  bool is_escaped_ = false;      // a backslash precedes the next character
-  size_t frame_depth_ = 0;       // open brackets {} in the frame
-  size_t depth_ = 0;             // open brackets of both kinds in the rest
+  bool is_escaped_ = false;      // true if a backslash in a string precedes the next character
+  size_t frame_depth_ = 0;       // number of open brackets { in the frame; 0 outside frames
+  size_t depth_ = 0;             // number of open brackets { and [ in rest_
   size_t key_begin_ = 0;         // index in rest_ at which the last string of the top level begins
-  size_t key_size_ = 0;          // size of this string without quotation marks
-  bool is_frames_list_ = false;  // the bracket that opened depth 2 begins the list of "frames"
-  bool is_over_ = false;         // the top level was closed or is no object: no more frames
+  size_t key_size_ = 0;          // size of this string without quotation marks, in bytes
+  bool is_frames_list_ = false;  // true if the last bracket that opened depth 2 is that of "frames"
+  bool is_over_ = false;         // true if no frame can follow: the top level ended or is no object
 };
 
 }  // namespace lf

@@ -12,7 +12,7 @@ namespace lf {
 namespace {
 
 constexpr double kMaxSize_px = 65536;
-constexpr double kMaxPixelCount = 1 << 30;  // as in pixels/files/image_file.h
+constexpr double kMaxPixelCount = 1 << 30;  // the limit of pixels/files/image_file.h
 
 constexpr NumberRule kFocal = {"a number of pixels from 0.001 to 1e7",
                                [](double x) { return x >= 0.001 && x <= 1e7; }};
@@ -31,8 +31,9 @@ constexpr NumberRule kVignetting = {"within +-1e6, such as [-0.3, 0.05, -0.1]",
 
 using Key = std::optional<double> IntrinsicsKeys::*;
 
-// Returns the focal length along one axis. The frame's keys take precedence over those of the top
-// level. At either level, the length takes precedence over the angle.
+// Returns the focal length along one axis, in pixels; none if no key states it. The frame's keys
+// take precedence over those of the top level. At either level, the length takes precedence over
+// the angle.
 std::optional<double> Focal(const IntrinsicsKeys& frame, const IntrinsicsKeys& top, Key length,
                             Key angle, double size_px) {
   for (const IntrinsicsKeys* keys : {&frame, &top}) {

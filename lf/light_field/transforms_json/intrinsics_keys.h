@@ -16,12 +16,12 @@ namespace lf {
 
 // The keys of the top level or of one frame, as written; nullopt for a missing key.
 struct IntrinsicsKeys {
-  std::optional<double> fl_x, fl_y;                      // px
-  std::optional<double> camera_angle_x, camera_angle_y;  // rad, the whole field of view
-  std::optional<double> cx, cy;                          // px
-  std::optional<double> w, h;                            // px
-  std::optional<double> lf_skew;                         // px
-  std::optional<std::array<double, 3>> lf_vignetting;
+  std::optional<double> fl_x, fl_y;                      // focal lengths, px
+  std::optional<double> camera_angle_x, camera_angle_y;  // whole field of view along x and y, rad
+  std::optional<double> cx, cy;                          // principal point, px
+  std::optional<double> w, h;                            // size of the image, px
+  std::optional<double> lf_skew;                         // skew of the calibration matrix, px
+  std::optional<std::array<double, 3>> lf_vignetting;    // Vignetting::v
   DistortionKeys distortion;
 
   friend bool operator==(const IntrinsicsKeys&, const IntrinsicsKeys&) = default;
@@ -30,14 +30,14 @@ struct IntrinsicsKeys {
 // Returns equal hashes for equal keys.
 uint64_t HashOfIntrinsicsKeys(const IntrinsicsKeys& keys);
 
-// Reads the keys and checks the range of every value.
+// Reads the keys. kInput if a value has another type or is out of its range.
 Result<IntrinsicsKeys> ReadIntrinsicsKeys(const JsonFields& fields);
 
-// Takes each key from the frame, or from the top level if the frame lacks it. The focal length
-// along x is computed from the first of these keys that exists: fl_x of the frame, camera_angle_x
-// of the frame, fl_x of the top level, camera_angle_x of the top level. The focal length along y is
-// computed from the corresponding keys; without them, it equals the focal length along x. The
-// principal point is the image centre by default.
+// Returns the intrinsics of a frame. Takes each key from the frame, or from the top level if the
+// frame lacks it. The focal length along x is computed from the first of these keys that exists:
+// fl_x of the frame, camera_angle_x of the frame, fl_x of the top level, camera_angle_x of the top
+// level. The focal length along y is computed from the corresponding keys; without them, it equals
+// the focal length along x. The principal point is the image centre by default.
 //   default_size  returns [width, height]; called if w or h is missing; its error is returned
 //   fields        for messages
 // kInput: no focal length; an invalid distortion (ResolveDistortion()); more than 2^30 pixels; a

@@ -10,13 +10,13 @@
 namespace lf {
 namespace {
 
-constexpr size_t kMostTextBytes = 4096;  // the longest path on Linux
+constexpr size_t kMostTextBytes = 4096;  // length of the longest path on Linux
 
 using simdjson::dom::array;
 using simdjson::dom::element;
 using simdjson::dom::object;
 
-// Returns a value in the form in which messages show it, which is short for any value.
+// Returns a value in the form in which messages show it, shortened if it is long.
 std::string Shown(const element& value) {
   if (value.is<object>()) return "an object";
   array list;

@@ -36,8 +36,8 @@ class JsonFields {
              std::string_view file_path)
       : object_(object), file_(file), frame_index_(frame_index), file_path_(file_path) {}
 
-  bool Has(const char* key) const;  // false also for null
-  bool HasList(const char* key) const;
+  bool Has(const char* key) const;      // false if the key is missing or its value is null
+  bool HasList(const char* key) const;  // true if the value of the key is a list
   // Number() and the functions below return nullopt if the key is missing or null, and kInput if
   // the value has another type or violates the rule.
   Result<std::optional<double>> Number(const char* key, const NumberRule& rule) const;
@@ -57,16 +57,17 @@ class JsonFields {
                                                     size_t rows_max, size_t columns,
                                                     const NumberRule& rule) const;
 
-  // Returns kInput if a key that starts with lf_ is not in `known`. The message names the nearest
-  // known key; if the key is in `known_elsewhere`, it says that the key belongs to
-  // `elsewhere_place`.
+  // Returns kInput if a key that starts with lf_ is not in `known`. If the key is in
+  // `known_elsewhere`, the message says that it belongs `elsewhere_place`, such as "to the top
+  // level"; otherwise the message names the nearest known key.
   Result<void> CheckLfKeys(std::span<const char* const> known,
                            std::span<const char* const> known_elsewhere,
                            const char* elsewhere_place) const;
 
   // Returns the error "a/transforms.json: frames[3] (images/3.png): MESSAGE".
   Error Fault(std::string_view message) const;
-  // Returns the error "... "key" is VALUE: expected EXPECTED", or "... is missing: ...".
+  // Returns the error "... "key" is VALUE: expected EXPECTED", or "... "key" is missing: expected
+  // EXPECTED" if the object does not have the key.
   Error Wrong(const char* key, std::string_view expected) const;
 
  private:

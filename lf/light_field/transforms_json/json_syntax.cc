@@ -22,13 +22,14 @@ class StreamIterator {
   using pointer = const char*;
   using reference = char;
 
-  explicit StreamIterator(ByteStream* stream = nullptr) : stream_(stream) {}  // nullptr: the end
+  // `stream` is null for the iterator that stands for the end.
+  explicit StreamIterator(ByteStream* stream = nullptr) : stream_(stream) {}
   char operator*() const { return stream_->Window().front(); }
   StreamIterator& operator++() {
     stream_->Skip(1);
     return *this;
   }
-  // The parser compares only with the end.
+  // Returns true at the end of the stream, because the parser compares only with the end iterator.
   bool operator==(const StreamIterator&) const { return stream_->Window().empty(); }
 
  private:
@@ -53,9 +54,9 @@ std::string_view AdviceOn(std::string_view what) {
 }  // namespace
 
 Error IsNotJson(const std::filesystem::path& file, std::string_view what) {
-  what.remove_prefix(std::min(what.size(), what.find("] ") + 2));  // drops the library's name
+  what.remove_prefix(std::min(what.size(), what.find("] ") + 2));  // drops "[json.exception...] "
   const std::string_view advice = AdviceOn(what);
-  // Text in another encoding cannot be shown.
+  // Text that is not UTF-8 is left out of the message, because it cannot be shown.
   if (advice.find("UTF-8") != advice.npos) what = what.substr(0, what.find("; last read"));
   return InputError(fmt::format("{}: is not JSON: {}{}", file.string(), what, advice));
 }

@@ -78,7 +78,7 @@ Result<void> ReadColour(const JsonFields& top, RadianceEncoding* encoding) {
   encoding->linear_srgb_from_camera =
       Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(matrix->data());
   if (!(std::abs(encoding->linear_srgb_from_camera.determinant()) > 1e-9))
-    return top.Wrong("lf_camera_to_srgb", "a matrix that keeps the three colours apart");
+    return top.Wrong("lf_camera_to_srgb", "an invertible matrix");
   return {};
 }
 
@@ -122,8 +122,8 @@ Result<void> ReadFootprint(const JsonFields& top, RadianceEncoding* encoding) {
   return {};
 }
 
-// Returns an encoding that has the values of the first camera raw file if keys are missing;
-// otherwise the default encoding.
+// Returns the encoding to which the keys are then applied: if keys are missing and the first image
+// is a camera raw file, the encoding of this file, otherwise the default encoding.
 Result<RadianceEncoding> DefaultEncoding(const JsonFields& top, const LightField& light_field,
                                          const RawFactsSource& raw_facts) {
   const auto stated = [&](const auto&... keys) { return (... && top.Has(keys)); };

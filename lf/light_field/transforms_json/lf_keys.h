@@ -10,7 +10,7 @@
 
 namespace lf {
 
-// All lf_* keys (doc/formats/transforms_json.md).
+// All lf_* keys of the top level, and all of a frame (doc/formats/transforms_json.md).
 inline constexpr const char* kTopLevelLfKeys[] = {"lf_bayer",
                                                   "lf_transfer",
                                                   "lf_response",
@@ -49,7 +49,7 @@ inline constexpr const char* kFrameLfKeys[] = {
 // values are read from these files by `raw_facts`, unless it is null. Other defaults: sRGB without
 // a Bayer pattern, linear with a pattern; pedestal 1024 if the black level is above 0, otherwise 0;
 // max_radiance from DefaultMaxRadiance().
-//   light_field  its image names and folder are used
+//   light_field  only its image names and folder are used
 Result<RadianceEncoding> ReadEncoding(const JsonFields& top, const LightField& light_field,
                                       const RawFactsSource& raw_facts);
 

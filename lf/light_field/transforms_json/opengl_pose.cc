@@ -10,10 +10,10 @@
 namespace lf {
 namespace {
 
-constexpr double kLargest = 1e12;
-constexpr double kSmallestScale = 1e-6;
-constexpr double kSkewTolerance = 1e-3;
-constexpr double kExact = 1e-12;
+constexpr double kLargest = 1e12;        // largest absolute value of a number in a matrix
+constexpr double kSmallestScale = 1e-6;  // smallest factor of the rotation in a matrix
+constexpr double kSkewTolerance = 1e-3;  // allowed deviation from right angles and equal lengths
+constexpr double kExact = 1e-12;         // a scale that differs less from 1 counts as 1
 
 }  // namespace
 

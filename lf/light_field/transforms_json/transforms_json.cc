@@ -27,7 +27,7 @@ using Event = json::parse_event_t;
 
 constexpr size_t kMaxFrameCount = size_t{1} << 24;
 constexpr size_t kMaxHeldBytes = size_t{1} << 30;
-constexpr int kMaxDepth = 8;  // nesting below this depth is not read, so that it takes no memory
+constexpr int kMaxDepth = 8;  // values nested more deeply are not read, so that they take no memory
 
 constexpr NumberRule kFinite = {"finite", [](double) { return true; }};
 constexpr NumberRule kGain = {"a factor from 1e-6 to 1e6",
@@ -45,10 +45,11 @@ class Reader {
     light_field_.folder = path.parent_path();
   }
 
-  // Returns false if the text is not JSON.
+  // Reads one frame. Returns false if its text is not JSON. An error in its keys is kept for
+  // TakeRest().
   bool TakeFrame(const std::string& text) {
     if (!frame_.Parse(text)) return false;
-    if (error_) return true;  // the rest is parsed only to see if the file is JSON
+    if (error_) return true;  // after an error, text is parsed only to see if the file is JSON
     if (Result<void> result = AddFrame(); !result) error_ = result.error();
     return true;
   }
@@ -269,7 +270,8 @@ class Reader {
   const ImageSizeSource& image_size_;
   const RawFactsSource& raw_facts_;
   std::optional<std::array<int, 2>> default_size_;
-  LightField light_field_;  // until Finish(), intrinsics_index is an index into distinct_keys_
+  // Until Finish(), LfCamera::intrinsics_index is an index into distinct_keys_.
+  LightField light_field_;
   Distinct<IntrinsicsKeys, HashOfIntrinsicsKeys> distinct_keys_;
   JsonObject frame_;            // the frame that is being read
   std::optional<Error> error_;  // error of the first faulty frame
@@ -277,8 +279,8 @@ class Reader {
 
 using StreamSource = std::function<Result<ByteStream>()>;
 
-// Reads the file again to find its syntax error, because the parsers of frames do not know their
-// place in the file.
+// Returns the syntax error of the file, for which the file is read again, because the parser of a
+// frame does not know where in the file the frame is.
 Error SyntaxError(const StreamSource& open) {
   Result<ByteStream> stream = open();
   return stream ? JsonSyntaxError(&*stream) : stream.error();

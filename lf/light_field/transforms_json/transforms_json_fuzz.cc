@@ -1,5 +1,5 @@
-// Parses any bytes: the result must be a light field with sane cameras or an error. FrameCutter
-// must find the same frames whether it is given the text byte by byte or at once.
+// Parses any bytes: the result must be an error, or a light field that passes the checks below.
+// FrameCutter must find the same frames whether it is given the text byte by byte or at once.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -431,7 +431,7 @@ TEST(TransformsJson, WrongLfValuesAreErrors) {
   expect(R"("lf_white_balance": [1, 1], )", "a list of 3 numbers");
   expect(R"("lf_white_balance": [1, 0, 1], )", "above 0");
   expect(R"("lf_camera_to_srgb": [1,0,0,0,1,0,0,0,1], )", "3 lists of 3 numbers");
-  expect(R"("lf_camera_to_srgb": [[1,1,1],[1,1,1],[1,1,1]], )", "keeps the three colours apart");
+  expect(R"("lf_camera_to_srgb": [[1,1,1],[1,1,1],[1,1,1]], )", "an invertible matrix");
   expect(R"("lf_max_radiance": 0, )", "lf_max_radiance");
   expect(R"("lf_pedestal": 10.5, )", "whole number");
   expect(R"("lf_pedestal": 65535, )", "lf_pedestal");

@@ -19,7 +19,7 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// The text of a file. The functions append to it. Numbers are written with the fewest digits (at
+// The text of a file, to which the functions append. Numbers are written with the fewest digits (at
 // most 17) that are read back as the same double.
 class JsonText {
  public:
@@ -90,8 +90,8 @@ void AddDistortion(const Distortion& distortion, const Distortion& top, const ch
   }
 }
 
-// Writes the intrinsics. `top` are the intrinsics at the top level. lf_skew and lf_vignetting are
-// left out if they are 0 in `k` and in `top`.
+// Writes the intrinsics `k` of the top level or of a frame. `top` are the intrinsics at the top
+// level. lf_skew and lf_vignetting are left out if they are 0 in `k` and in `top`.
 void AddIntrinsics(const Intrinsics& k, const Intrinsics& top, const char* separator,
                    JsonText* out) {
   AddDistortion(k.distortion, top.distortion, separator, out);
@@ -159,15 +159,16 @@ void AddPose(const RigidTransform& cam_from_world, JsonText* out) {
   rows.topRows<3>() = pose;
   out->Add("\"transform_matrix\": ");
   out->AddMatrix({rows.data(), 16}, 4);
-  // The conversion to a centre and back changes the last bit of most translations.
+  // The conversion to a centre and back changes the last bit of most translations; lf_translation
+  // states these exactly.
   const Result<RigidTransform> read_back = CamFromWorldOfOpenGl(pose);
   if (read_back && read_back->translation == cam_from_world.translation) return;
   out->Add(", \"lf_translation\": ");
   out->AddNumbers({cam_from_world.translation.data(), 3});
 }
 
-// Writes one number if all channels have the same gain, as in most light fields, and nothing if it
-// is 1.
+// Writes lf_gain: one number if all channels have the same gain, as in most light fields, and
+// nothing if this gain is 1.
 void AddGains(const LfCamera& camera, JsonText* out) {
   const std::array<double, 3> gains = {camera.gain[0], camera.gain[1], camera.gain[2]};
   if (!camera.gain.are_equal()) {
@@ -224,7 +225,8 @@ Result<std::string> TransformsJsonText(const LightField& light_field) {
   return out.text();
 }
 
-// Returns the 64-bit FNV-1a hash. It shows whether a file was edited after it was written.
+// Returns the 64-bit FNV-1a hash of the text, which shows whether a file was edited after it was
+// written.
 uint64_t ChecksumOf(std::string_view text) {
   uint64_t sum = 0xcbf29ce484222325;
   for (const char c : text) sum = (sum ^ static_cast<unsigned char>(c)) * 0x100000001b3;
