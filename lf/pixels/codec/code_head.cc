@@ -12,7 +12,8 @@ namespace {
 constexpr std::string_view kMagic = "LFIM";
 constexpr uint64_t kVersion = 1;
 
-// Append and take a signed number, whose sign is stored in the lowest bit.
+// AppendSigned() and TakeSigned() write and read a signed number, whose sign is stored in the
+// lowest bit.
 void AppendSigned(int64_t number, std::string* code) {
   AppendNumber((static_cast<uint64_t>(number) << 1) ^ static_cast<uint64_t>(number >> 63), code);
 }
@@ -105,8 +106,8 @@ Result<CodeHead> TakeHead(std::string_view* code) {
     return Damaged("the size of its tiles is invalid");
   if (info.profile == CodecProfile::kThesis) {
     if (!Take(code, 2, 65536, &head.quantizer)) return Damaged("its quantizer is invalid");
-    constexpr int64_t kLimit = int64_t{1} << 26;  // 16 bits of a pixel plus kHaarBits; sums of
-                                                  // several coefficients then fit 32 bits
+    constexpr int64_t kLimit = int64_t{1} << 26;  // largest coefficient: 16 bits of a pixel, and
+                                                  // kHaarBits; sums of several fit 32 bits
     if (!TakeSigned(code, &head.low) || !TakeSigned(code, &head.high) || head.low < -kLimit ||
         head.high > kLimit || head.low > head.high)
       return Damaged("the range of its coefficients is invalid");

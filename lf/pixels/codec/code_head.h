@@ -27,7 +27,7 @@ struct CodeHead {
   int tile_bits = kTileBits;
 
   // The profiles kDefault and kLossless use these fields.
-  int coefficient_bytes = 2;  // 2 or 4
+  int coefficient_bytes = 2;  // size of a coefficient, 2 or 4
   int fraction_bits = 0;      // number of fraction bits in the coefficients of the finest level
   // Quantiser steps by component. Each component has one step for its approximation, then two for
   // each level from the coarsest to the finest: the first is for the two subbands that are high in
@@ -36,7 +36,7 @@ struct CodeHead {
 
   // The profile kThesis uses these fields.
   int quantizer = 256;
-  // Coefficients that the quantiser's first and last value stand for, in units of 1 / 2^kHaarBits
+  // Coefficients that the quantiser's first and last value stand for, in units of 2^-kHaarBits
   // (haar.h).
   int64_t low = 0;
   int64_t high = 0;
@@ -56,8 +56,8 @@ struct CodeHead {
 int ChannelsOf(PixelLayout layout);  // number of channels of a pixel
 
 void AppendHead(const CodeHead& head, std::string* code);
-// Reads the head from the front of `code` and removes it there. kInput if the head is damaged or of
-// a newer version; the message does not name the file.
+// Reads the head from the front of `code` and removes it there. kInput if the head is damaged or
+// was written by a newer version; the message does not name the file.
 Result<CodeHead> TakeHead(std::string_view* code);
 
 }  // namespace lf

@@ -13,10 +13,10 @@ namespace lf {
 // Compression level of zstd, chosen by measurement (doc/codec.md).
 inline constexpr int kEntropyLevel = 1;
 
-// Appends the compressed bytes to `code`, without their length.
+// Compresses `bytes` and appends the result to `code`, without its length.
 void AppendCompressed(std::span<const uint8_t> bytes, std::string* code);
 
-// Returns true if `code` decompresses to exactly bytes.size() bytes.
+// Decompresses `code` into `bytes`. Returns true if it gives exactly bytes.size() bytes.
 [[nodiscard]] bool Decompress(std::string_view code, std::span<uint8_t> bytes);
 
 // Appends a whole number in as few bytes as it needs: seven bits in each byte, the lowest first.

@@ -5,7 +5,7 @@
 // SynthesizeHaar() with SIMD vectors, compiled for every instruction set; the program chooses one
 // at run time (Highway).
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "lf/pixels/codec/haar.cc"  // NOLINT: as Highway wants it
+#define HWY_TARGET_INCLUDE "lf/pixels/codec/haar.cc"  // NOLINT: Highway reads this macro
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h.
 #include <hwy/highway.h>
@@ -69,7 +69,7 @@ Quad QuadOf(int32_t low, int32_t across, int32_t down, int32_t both) {
 void AnalyzeHaar(const int32_t* values, int width, int height,
                  const std::array<int32_t*, kBands>& bands) {
   const int low_width = LowCount(width), high_width = HighCount(width);
-  // Returns coefficient x of row y after the transform along the row: the low or the high one.
+  // Returns the low or the high coefficient x of row y after the transform along the row.
   const auto across = [&](int x, int y, bool is_high) {
     const int32_t* const row = values + static_cast<size_t>(y) * width;
     if (2 * x + 1 == width) return row[2 * x];

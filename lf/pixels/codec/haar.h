@@ -4,9 +4,9 @@
 //   analysis, along rows, then along columns:     a = (x + y) / 2    d = (x - y) / 2
 //   synthesis, along columns, then along rows:    x = a + d          y = a - d
 //
-// x and y are neighbours. If the number of values is odd, the last one is its own average and has
-// no d. Values are integers in units of 1 / 2^kHaarBits, in which five levels of 16-bit pixels are
-// exact.
+// x and y are neighbours, a is their average and d half of their difference. If the number of
+// values is odd, the last one is its own average and has no d. Values are integers in units of
+// 2^-kHaarBits, in which five levels of 16-bit pixels are exact.
 #pragma once
 
 #include <array>
@@ -18,11 +18,13 @@ namespace lf {
 
 inline constexpr int kHaarBits = 10;
 
-// values  [height][width]
-// bands   as in wavelet53.h; "high" is d
+// Splits a plane into the subbands of one level.
+//   values  [height][width]
+//   bands   indexed by Band (wavelet53.h); a are the low, d the high coefficients
 void AnalyzeHaar(const int32_t* values, int width, int height,
                  const std::array<int32_t*, kBands>& bands);
 
+// Restores the plane from its subbands.
 void SynthesizeHaar(Transform transform, const std::array<const int32_t*, kBands>& bands, int width,
                     int height, int32_t* values);
 

@@ -69,7 +69,7 @@ std::string Encode(ImageView<const Pixel> pixels, const CodecSettings& settings,
 // Head and sections of an encoded image.
 struct Contents {
   CodeHead head;
-  std::vector<std::string_view> sections;  // [resolution][tile]
+  std::vector<std::string_view> sections;  // index: resolution * tile_count() + tile
 };
 
 // Reads head and table of contents from the front of `code`, and divides the rest into sections.

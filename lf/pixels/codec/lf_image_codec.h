@@ -19,12 +19,13 @@
 
 namespace lf {
 
-// Stored values, 8 or 16 bits: [height][width][1] grey or mosaic, [height][width][3] R, G, B.
+// Pixel values as an image file stores them, of 8 or 16 bits: [height][width][1] for grey or a
+// mosaic, [height][width][3] for R, G, B.
 using CodecPixels = std::variant<Image<uint8_t>, Image<uint16_t>>;
 
 enum class PixelLayout : uint8_t {
   kGrey = 0,
-  kMosaic = 1,  // a Bayer pattern; which one does not matter
+  kMosaic = 1,  // a Bayer mosaic of any pattern
   kRgb = 2,
 };
 
@@ -41,7 +42,7 @@ enum class CodecProfile : uint8_t {
 
 struct CodecSettings {
   CodecProfile profile = CodecProfile::kDefault;
-  int levels = 4;  // 1 to 5; the thesis's best is 1
+  int levels = 4;  // number of wavelet levels, 1 to 5; the thesis found 1 to be best
   // Detail coefficients whose magnitude is below this value become 0. It is in units of stored
   // values. kThesis compares coefficients of the averaging transform. kDefault compares
   // coefficients of the transform scaled to unit norm, and its quantiser's step is 1.5 times the
@@ -66,7 +67,7 @@ struct CodeInfo {
   int width = 0;
   int height = 0;
   PixelLayout layout = PixelLayout::kGrey;
-  int bits = 8;  // 8 or 16
+  int bits = 8;  // bits of a stored value, 8 or 16
   CodecProfile profile = CodecProfile::kDefault;
   int levels = 0;
 };

@@ -74,7 +74,7 @@ double Cost(std::span<const uint8_t> bytes) {
 
 struct Choice {
   Packing packing = Packing::kZeros;
-  double cost = 0;  // bytes
+  double cost = 0;  // estimated size of the encoded stream, in bytes
 };
 
 // Returns the packing that needs the fewest bytes. kOverhead is the fixed size of each stream, in
@@ -110,7 +110,7 @@ Choice BestPacking(std::span<const uint32_t> numbers, int escapes_left) {
   return best;
 }
 
-// Chooses the packing by a sample: runs that are spread evenly over the numbers.
+// Returns the best packing for a sample of the numbers: runs that are spread evenly over them.
 Packing ChosenPacking(std::span<const uint32_t> numbers, int escapes_left) {
   constexpr size_t kRun = 256, kRuns = 32;
   const uint32_t largest = *std::max_element(numbers.begin(), numbers.end());

@@ -18,13 +18,14 @@
 
 namespace lf {
 
-// How the numbers of a stream are packed. It is the first byte of the encoded stream.
+// How the numbers of a stream are packed. This value is the first byte of the encoded stream.
 enum class Packing : uint8_t {
   kZeros = 0,  // all numbers are 0; the stream has no other bytes
-  kOne = 1,    // one (two, four) numbers in a byte, the first in the lowest bits
+  kOne = 1,    // 1 number per byte (kTwo: 2, kFour: 4), the first in the lowest bits
   kTwo = 2,
   kFour = 4,
-  kPlanes2 = 18,  // 2 (3, 4) bytes of each number: all lowest bytes, then the next; no escapes
+  kPlanes2 = 18,  // 2 bytes per number (kPlanes3: 3, kPlanes4: 4), without escapes: first the
+                  // lowest bytes of all numbers, then the next bytes of all
   kPlanes3 = 19,
   kPlanes4 = 20,
 };
@@ -33,7 +34,8 @@ enum class Packing : uint8_t {
 // decoder recurse to any depth.
 inline constexpr int kMostEscapes = 4;
 
-// Returns the value with its sign in the lowest bit: 0, -1, 1, -2, ... become 0, 1, 2, 3, ...
+// Returns a number that has the sign of `value` in its lowest bit: 0, -1, 1, -2, ... become 0, 1,
+// 2, 3, ...
 template <class T>
 uint32_t Folded(T value) {
   return (static_cast<uint32_t>(int32_t{value}) << 1) ^ static_cast<uint32_t>(int32_t{value} >> 31);
@@ -45,7 +47,7 @@ template <class T>
 void AppendCoefficients(std::span<const int32_t> values, std::string* code);
 
 // Reads a stream of `count` coefficients from the front of `code` and removes it there. `values`
-// must have slack (wavelet53.h). Returns false if the stream is damaged.
+// must have room for kSlack more elements (wavelet53.h). Returns false if the stream is damaged.
 template <class T>
 [[nodiscard]] bool TakeCoefficients(Transform transform, std::string_view* code, size_t count,
                                     T* values);

@@ -1,5 +1,5 @@
-// The implementations of packing.h, for unsigned numbers of 16 and 32 bits. Internal to this
-// folder.
+// The two implementations that unpack the streams of packing.h, for unsigned numbers of 16 and 32
+// bits. Internal to this folder.
 #pragma once
 
 #include <cstddef>
@@ -19,17 +19,17 @@ inline uint32_t EscapeOf(Packing packing) { return (1u << (8 / PerByte(packing))
 // A stream whose bytes are decompressed and whose escapes are unpacked.
 template <class U>
 struct PackedStream {
-  Packing packing = Packing::kOne;  // not kZeros
-  std::span<const uint8_t> bytes;   // followed by slack (wavelet53.h)
+  Packing packing = Packing::kOne;  // never kZeros, because such a stream has no bytes
+  std::span<const uint8_t> bytes;   // the packed numbers, followed by kSlack bytes (wavelet53.h)
   size_t count = 0;                 // number of numbers in the stream
-  std::span<const U> escapes;       // remainders that are added to the escapes, in order; with
-                                    // slack
-  bool has_signs = false;           // True if the lowest bit of each number is its sign, to be
-                                    // unfolded
+  std::span<const U> escapes;       // remainders that are added to the escapes, in order;
+                                    // followed by kSlack elements
+  bool has_signs = false;           // true if the numbers are results of Folded() (packing.h),
+                                    // which unpacking must reverse
 };
 
-// Unpacks the numbers of a stream. `numbers` must have slack. Returns false if the stream has more
-// or fewer escapes than remainders.
+// Unpacks the numbers of a stream. `numbers` must have room for kSlack more elements. Returns false
+// if the stream has more or fewer escapes than remainders.
 template <class U>
 [[nodiscard]] bool UnpackReference(const PackedStream<U>& stream, U* numbers);
 template <class U>

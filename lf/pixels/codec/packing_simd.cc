@@ -8,7 +8,7 @@
 #include "lf/pixels/codec/packing_kernels.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "lf/pixels/codec/packing_simd.cc"  // NOLINT: as Highway wants it
+#define HWY_TARGET_INCLUDE "lf/pixels/codec/packing_simd.cc"  // NOLINT: Highway reads this macro
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h.
 #include <hwy/highway.h>

@@ -7,7 +7,7 @@
 // MergeColours() with SIMD vectors, compiled for every instruction set; the program chooses one at
 // run time (Highway).
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "lf/pixels/codec/rgb_planes.cc"  // NOLINT: as Highway wants it
+#define HWY_TARGET_INCLUDE "lf/pixels/codec/rgb_planes.cc"  // NOLINT: Highway reads this macro
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h.
 #include <hwy/highway.h>
@@ -84,7 +84,7 @@ void MergeRowSimd(const std::array<const int32_t*, kRgbComponents>& components,
   HWY_DYNAMIC_DISPATCH(Merge16Of32)(components, scale, width, out);
 }
 
-// Add and subtract modulo the range of T, as SIMD instructions do.
+// Sum() and Difference() add and subtract modulo the range of T, as SIMD instructions do.
 template <class T>
 T Sum(T a, T b) {
   using Unsigned = std::make_unsigned_t<T>;

@@ -2,6 +2,8 @@
 // (Malvar and Sullivan 2003). Internal to this folder.
 //
 //   co = r - b    t = b + (co >> 1)    cg = g - t    y = t + (cg >> 1)
+//
+// r, g, b are the colours, y is the brightness, and co and cg are the colour differences.
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
-// One tile in the thesis's profile (thesis 4.2.2, 5.4). Internal to this folder.
+// Encodes and decodes one tile of an image in the thesis's profile (thesis 4.2.2, 5.4). Internal to
+// this folder.
 //
 // The pixels of a mosaic are sorted into four planes, by their position in each 2 x 2 square
 // (Figure 4.6). Other images have one plane for each channel. Tile sizes are powers of two, so that
@@ -17,16 +18,16 @@
 
 namespace lf {
 
-// Thresholded coefficients of a tile. A stream holds one resolution (0 is the approximation), plane
-// after plane.
+// Thresholded coefficients of a tile. streams[r] holds resolution r (0 is the approximation) of one
+// plane after the other.
 struct HaarTile {
   std::vector<std::vector<int32_t>> streams;
-  int32_t low = std::numeric_limits<int32_t>::max();  // least and largest coefficient of all
-                                                      // streams
-  int32_t high = std::numeric_limits<int32_t>::min();
+  int32_t low = std::numeric_limits<int32_t>::max();   // least coefficient of all streams
+  int32_t high = std::numeric_limits<int32_t>::min();  // largest coefficient of all streams
 };
 
-// threshold  as in CodecSettings
+// Transforms a tile, and sets detail coefficients below the threshold to 0.
+//   threshold  CodecSettings::threshold
 template <class Pixel>
 HaarTile TransformTile(const CodeHead& head, double threshold, ImageView<const Pixel> pixels);
 
@@ -35,7 +36,7 @@ HaarTile TransformTile(const CodeHead& head, double threshold, ImageView<const P
 std::string CodeOfSection(const CodeHead& head, const HaarTile& tile, int resolution);
 
 // Decodes the pixels of a tile from its sections, which are ordered by resolution. Returns false if
-// they are damaged.
+// a section is damaged.
 template <class Pixel>
 [[nodiscard]] bool DecodeHaarTile(Transform transform, const CodeHead& head,
                                   std::span<std::string_view> sections, ImageView<Pixel> pixels);

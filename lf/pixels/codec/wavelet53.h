@@ -7,8 +7,8 @@
 //   low[i]  = x[2i]     + (high[i - 1] + high[i] + 2 >> 2)
 //
 // Values beyond the ends are mirrored: x[n] = x[n - 2], high[-1] = high[0]. Rows are transformed
-// first, then columns. All arithmetic is in type T, modulo its range, so that the synthesis
-// restores any x exactly.
+// first, then columns. All arithmetic is in the type T of the values, modulo its range, so that the
+// inverse transform (synthesis) restores any x exactly.
 #pragma once
 
 #include <array>
@@ -20,14 +20,16 @@
 
 namespace lf {
 
-// Slack: number of additional elements behind the end of each array that is passed to the functions
-// below. These functions may read them; they may write them if they write the array.
+// Slack: number of additional elements that each array needs behind its end if it is passed to the
+// functions below. The functions may read these elements, and may overwrite them if the array is an
+// output.
 inline constexpr size_t kSlack = 128;
 
 inline int LowCount(int count) { return (count + 1) / 2; }
 inline int HighCount(int count) { return count / 2; }
 
-// The subbands of a level. The first word is the frequency across, the second the frequency down.
+// The subbands of a level. The first word of a name is the frequency along rows, the second the
+// frequency along columns.
 enum Band { kLowLow = 0, kHighLow = 1, kLowHigh = 2, kHighHigh = 3 };
 inline constexpr int kBands = 4;
 
@@ -52,13 +54,13 @@ struct CodedBand {
 
 template <class T>
 struct CodedBands {
-  int width = 0;  // size of the plane that was split into these subbands
-  int height = 0;
-  std::array<CodedBand<T>, kBands> bands;  // by Band
+  int width = 0;                           // width of the plane that was split into these subbands
+  int height = 0;                          // height of this plane
+  std::array<CodedBand<T>, kBands> bands;  // indexed by Band
 };
 
-// Converts coefficients c to pixels: (c + half >> fraction_bits) + offset, clipped to the range of
-// the pixel type, where half is half of 2^fraction_bits, rounded down.
+// How a coefficient c becomes a pixel: (c + half >> fraction_bits) + offset, clipped to the range
+// of the pixel type, where half is 2^fraction_bits / 2, rounded down.
 struct PixelScale {
   int fraction_bits = 0;
   int offset = 0;
@@ -67,7 +69,7 @@ struct PixelScale {
 enum class Transform { kReference, kSimd };
 
 // Restores a plane from the subbands of one level.
-//   values  [height][width]
+//   values  [height][width], and kSlack more elements
 //   T       int16_t or int32_t
 template <class T>
 void Synthesize(Transform transform, const CodedBands<T>& bands, T* values);
@@ -79,15 +81,15 @@ void SynthesizePixels(Transform transform, const CodedBands<T>& bands, const Pix
                       ImageView<Pixel> pixels);
 
 // Splits a plane into the subbands of one level.
-//   values  [height][width], and slack
-//   bands   [BandHeight][BandWidth] each, and slack
+//   values  [height][width], and kSlack more elements
+//   bands   indexed by Band; [BandHeight][BandWidth] each, and kSlack more elements
 void Analyze(Transform transform, const int32_t* values, int width, int height,
              const std::array<int32_t*, kBands>& bands);
 
-// Returns how much the synthesis amplifies an error of 1 in one coefficient: the Euclidean norm
-// along one dimension. is_high[0] is true if the coefficient's subband is high at the deepest
-// level. Each further entry is about the next finer level, up to the finest: it is true if the
-// result of the level before is the high subband of this level.
+// Returns the Euclidean norm, along one dimension, of the error in the restored values that an
+// error of 1 in one coefficient causes. is_high has one entry for each level of the synthesis, from
+// the coefficient's level to the finest. An entry is true if the coefficient, or what the previous
+// level restored from it, is in the high subband of its level.
 double SynthesisNorm(const std::vector<bool>& is_high);
 
 }  // namespace lf

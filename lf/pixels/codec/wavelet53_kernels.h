@@ -1,4 +1,4 @@
-// The implementations of wavelet53.h. Internal to this folder.
+// The two implementations of the functions that wavelet53.h declares. Internal to this folder.
 #pragma once
 
 #include <array>
@@ -7,6 +7,7 @@
 
 namespace lf {
 
+// The reference implementations.
 template <class T>
 void SynthesizeReference(const CodedBands<T>& bands, T* values);
 template <class T, class Pixel>
@@ -15,7 +16,7 @@ void SynthesizePixelsReference(const CodedBands<T>& bands, const PixelScale& sca
 void AnalyzeReference(const int32_t* values, int width, int height,
                       const std::array<int32_t*, kBands>& bands);
 
-// Implementations with Highway.
+// The implementations with SIMD vectors (Highway).
 template <class T>
 void SynthesizeSimd(const CodedBands<T>& bands, T* values);
 template <class T, class Pixel>

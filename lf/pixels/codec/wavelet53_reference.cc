@@ -10,7 +10,7 @@
 namespace lf {
 namespace {
 
-// Converts modulo the range of T.
+// Returns the value modulo the range of T.
 template <class T>
 T Wrapped(int64_t value) {
   return static_cast<T>(static_cast<std::make_unsigned_t<T>>(value));

@@ -8,7 +8,7 @@
 #include "lf/pixels/codec/wavelet53_kernels.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "lf/pixels/codec/wavelet53_simd.cc"  // NOLINT: as Highway wants it
+#define HWY_TARGET_INCLUDE "lf/pixels/codec/wavelet53_simd.cc"  // NOLINT: Highway reads this macro
 #include <hwy/foreach_target.h>
 // Must come after foreach_target.h.
 #include <hwy/highway.h>
@@ -49,7 +49,7 @@ HWY_INLINE V Update(V left, V right, V two) {
 }
 
 // Coefficients of a row, converted from their encoded values. Usage: Coefficients(band, row,
-// count).At(x), where x is a multiple of the lanes.
+// count).At(x), where x is a multiple of the number of lanes.
 template <class T>
 class Coefficients {
  public:
@@ -79,7 +79,8 @@ void LoadRow(const CodedBand<T>& band, int row, int count, T* HWY_RESTRICT out) 
   for (int x = 0; x < count; x += lanes) hn::StoreU(coefficients.At(x), d, out + x);
 }
 
-// Computes an even row: low - Update(above, below).
+// Computes an even row of values: low - Update(above, below), where `low` is a row of the low
+// subband, and `above` and `below` are the rows of high coefficients on either side of it.
 template <class T>
 void LoadEvenRow(const CodedBand<T>& band, int row, int count, const T* above, const T* below,
                  T* HWY_RESTRICT out) {
@@ -91,7 +92,8 @@ void LoadEvenRow(const CodedBand<T>& band, int row, int count, const T* above, c
     hn::StoreU(hn::Sub(low.At(x), Update(Load(above + x), Load(below + x), two)), d, out + x);
 }
 
-// Computes an odd row: high + Predicted(above, below).
+// Computes an odd row of values: high + Predicted(above, below), where `above` and `below` are the
+// even rows on either side of it.
 template <class T>
 void LiftHigh(const T* high, const T* above, const T* below, int count, T* HWY_RESTRICT out) {
   const hn::ScalableTag<T> d;
@@ -102,7 +104,8 @@ void LiftHigh(const T* high, const T* above, const T* below, int count, T* HWY_R
 }
 
 // Merges the low and the high half of a row, and writes into their slack. Calls store(x, even, odd)
-// for the vectors of values 2x, 2x + 2, ... and 2x + 1, 2x + 3, ..., including some beyond the end.
+// for vectors of the merged values at positions 2x, 2x + 2, ... and 2x + 1, 2x + 3, ..., including
+// some beyond the end.
 template <class T, class Store>
 HWY_INLINE void MergeRow(T* low, T* high, int width, const Store& store) {
   const hn::ScalableTag<T> d;
@@ -138,7 +141,8 @@ struct Half {
   T *high_now, *high_last, *even_now, *even_last, *odd;
 };
 
-// Calls put(y, low, high) for every row of the plane in turn, with the arguments of MergeRow().
+// Calls put(y, low, high) for every row y of the plane in turn; `low` and `high` are its halves, as
+// MergeRow() takes them.
 template <class T, class Put>
 void SynthesizeRows(const CodedBands<T>& bands, const Rows<T>& rows, const Put& put) {
   const int low_rows = LowCount(bands.height), high_rows = HighCount(bands.height);

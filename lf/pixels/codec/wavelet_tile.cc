@@ -12,21 +12,22 @@
 namespace lf {
 namespace {
 
-// Number of fraction bits of lossy coefficients. The transform always rounds down, so its error has
-// the same sign in every LF image, and does not average out: an error of a tenth of a grey step in
-// every LF image is a tenth in a frame, while the noise of quantisation averages out. From the
+// Number of fraction bits of lossy coefficients. They are needed because the transform always
+// rounds down: its error has the same sign in every LF image, and therefore does not average out in
+// a frame, which is a mean of many LF images. The noise of quantisation does average out. From the
 // second level on, coefficients have kMostDoublings more fraction bits.
 constexpr int kFractionBits = 3;
 constexpr int kMostDoublings = 1;
 
-// Returns true if the coefficients of level `depth` that are transformed further are doubled first.
-// These are the low ones, or all four subbands of the level that splits a mosaic. Levels are
-// counted from the pixels, from 1; the level that splits a mosaic is the first.
+// Returns true if coefficients of level `depth` are doubled before the next level transforms them.
+// They are the low subband, or all four subbands if level `depth` splits a mosaic. Levels are
+// counted from the finest, which is 1; only level 1 can split a mosaic.
 bool IsDoubled(const CodeHead& head, int depth) {
   return head.info.profile == CodecProfile::kDefault && depth <= kMostDoublings;
 }
 
-// Returns the depth of the first level of the components, counted as in IsDoubled().
+// Returns the finest level that transforms components, as IsDoubled() counts levels. It is 2 for a
+// mosaic, because level 1 splits the mosaic into its components.
 int FirstDepth(const CodeHead& head) { return head.info.layout == PixelLayout::kMosaic ? 2 : 1; }
 
 struct Size {
@@ -35,8 +36,8 @@ struct Size {
   size_t count() const { return static_cast<size_t>(width) * height; }
 };
 
-// ComponentSize() returns the size of a component. LowSize() returns the size of the low subband of
-// a component of this size after `levels` levels.
+// ComponentSize() returns the size of a component of a tile. LowSize() returns the size of the low
+// subband of a component of this size after `levels` levels.
 Size ComponentSize(const CodeHead& head, int component, int tile_width, int tile_height) {
   if (head.info.layout != PixelLayout::kMosaic) return {tile_width, tile_height};
   const auto band = static_cast<Band>(component);
@@ -55,8 +56,8 @@ int StepIndex(const CodeHead& head, int component, int resolution, bool is_diago
 }
 
 // Returns the norm of the error in the image that an error of 1 in a coefficient causes: the
-// product of the norms of both dimensions and of the colour transform. The subband is `level`
-// levels deep in its component.
+// product of the norms of both dimensions and of the colour transform. The coefficient is in a
+// subband of level `level` of its component; level 1 is the finest.
 double Norm(const CodeHead& head, int component, int level, bool high_across, bool high_down) {
   const auto along = [&](bool is_high, bool component_is_high) {
     std::vector<bool> path(level, false);
@@ -90,7 +91,7 @@ std::vector<std::vector<int32_t>> PlanesOf(const CodeHead& head, ImageView<const
   return planes;
 }
 
-// Splits a plane into its subbands.
+// Splits a plane into its subbands, and doubles the low subband if is_doubled is true.
 using BandPlanes = std::array<std::vector<int32_t>, kBands>;
 BandPlanes Analyzed(Transform transform, const std::vector<int32_t>& plane, Size size,
                     bool is_doubled) {
@@ -112,8 +113,8 @@ int32_t LargestOf(const std::vector<int32_t>& values, size_t count) {
   return largest;
 }
 
-// Appends (|value| + rounding) / step with the sign of the value.
-//   rounding  step / 2: to the nearest; step / 3: values below two thirds of a step become 0
+// Appends for each value (|value| + rounding) / step, rounded down, with the sign of the value.
+//   rounding  step / 2 rounds to the nearest; step / 3 makes values below two thirds of a step 0
 void AppendQuantized(const std::vector<int32_t>& values, size_t count, int32_t step,
                      int32_t rounding, std::vector<int32_t>* out) {
   const size_t begin = out->size();
@@ -151,11 +152,11 @@ void Unpredict(Size size, T* values) {
   for (size_t i = width; i < size.count(); ++i) values[i] = sum(values[i], values[i - width]);
 }
 
-// Memory that a thread reuses.
+// Memory that each thread keeps, to use it for every tile.
 template <class T>
 struct WaveletScratch {
   std::array<std::vector<T>, 4> components;
-  std::array<std::vector<T>, 2> low;  // used in turn
+  std::array<std::vector<T>, 2> low;  // low subbands of successive levels, in turn
   std::vector<T> details;
 
   static WaveletScratch& OfThread() {
@@ -317,6 +318,7 @@ template QuantizedTile QuantizeTile(Transform, const CodeHead&, ImageView<const 
 template QuantizedTile QuantizeTile(Transform, const CodeHead&, ImageView<const uint16_t>);
 
 // The synthesis adds two values, each at most 2.5 times as large as the largest value of a subband.
+// 2 * 2.5 * 6000 is within the range of int16_t.
 bool FitsInTwoBytes(int32_t largest) { return largest <= 6000; }
 
 std::string CodeOfSection(const CodeHead& head, const QuantizedTile& tile, int resolution) {

@@ -1,4 +1,5 @@
-// One tile in the default and the lossless profile, by wavelets. Internal to this folder.
+// Encodes and decodes one tile of an image by wavelets, in the default and the lossless profile.
+// Internal to this folder.
 //
 // A mosaic is transformed once as a single plane, because this separates brightness and colours
 // better than planes of equal colour do. Its four subbands are the components, which are
@@ -21,7 +22,7 @@ void SetSteps(const CodecSettings& settings, CodeHead* head);
 // The quantised coefficients of a tile, in one stream for each component and resolution. Resolution
 // 0 is the approximation, the others are details from the coarsest level to the finest.
 struct QuantizedTile {
-  std::vector<std::vector<int32_t>> streams;  // [component][resolution]
+  std::vector<std::vector<int32_t>> streams;  // index: component * (1 + levels) + resolution
   int32_t largest = 0;                        // largest magnitude of all coefficients before
                                               // quantisation
 };
@@ -38,7 +39,7 @@ bool FitsInTwoBytes(int32_t largest);
 std::string CodeOfSection(const CodeHead& head, const QuantizedTile& tile, int resolution);
 
 // Decodes the pixels of a tile from its sections, which are ordered by resolution. Returns false if
-// they are damaged.
+// a section is damaged.
 template <class Pixel>
 [[nodiscard]] bool DecodeWaveletTile(Transform transform, const CodeHead& head,
                                      std::span<std::string_view> sections, ImageView<Pixel> pixels);

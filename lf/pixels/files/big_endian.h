@@ -11,8 +11,8 @@
 
 namespace lf {
 
-// Returns `count` bytes at `offset` as a number, the most significant first; none if they lie
-// beyond the end.
+// Returns the number in the `count` bytes at `offset`, the most significant byte first; none if the
+// bytes lie beyond the end of the file. `count` is at most 8.
 inline std::optional<uint64_t> BigEndian(const ByteSource& source, uint64_t offset, size_t count) {
   std::array<uint8_t, 8> bytes;
   if (source(offset, std::span(bytes).first(count)) != count) return std::nullopt;

@@ -77,7 +77,7 @@ ExposureFacts FactsOfJpeg(const ByteSource& source) {
 // Reads the Exif data, which are in the chunk eXIf (PNG, third edition, 11.3.4.5).
 ExposureFacts FactsOfPng(const ByteSource& source) {
   constexpr uint64_t kExif = 0x65584966;
-  uint64_t offset = 8;  // chunks: length, type, content, checksum
+  uint64_t offset = 8;  // position of a chunk: length, type, content, checksum
   while (true) {
     const auto length = BigEndian(source, offset, 4), type = BigEndian(source, offset + 4, 4);
     if (!length || !type) return {};

@@ -18,10 +18,11 @@ struct ExposureFacts {
 };
 
 // Reads the header alone: the Exif data of JPEG, TIFF and PNG files; for camera raw files, what
-// LibRaw reads from them. EXR files state no exposure. kInput as for ReadImageInfo().
+// LibRaw reads from them. EXR files state no exposure. kInput in the cases that ReadImageInfo()
+// (image_file.h) lists.
 Result<ExposureFacts> ReadExposureFacts(const std::filesystem::path& path);
 
-// Reads a file that is in memory; messages call it `name`.
+// Reads the exposure from a file that is in memory; messages call the file `name`.
 Result<ExposureFacts> ReadExposureFactsBytes(std::string_view bytes, const std::string& name);
 
 }  // namespace lf

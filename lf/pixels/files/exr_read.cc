@@ -23,7 +23,7 @@
 namespace lf {
 namespace {
 
-// Lets OpenEXR read a file by ByteSource.
+// Lets OpenEXR read the bytes of a FileBytes.
 class InputStream : public Imf::IStream {
  public:
   explicit InputStream(const FileBytes& file) : IStream(file.name.c_str()), file_(file) {}
@@ -45,8 +45,8 @@ class InputStream : public Imf::IStream {
 };
 
 // Checks the header by OpenEXR's C library. kInput: an attribute is damaged, or its length is not
-// that of its value. The C++ library does not check this, and allocates memory for what it takes
-// for the next attribute.
+// that of its value. The C++ library does not check this: it takes other bytes for the next
+// attribute, and allocates as much memory as these claim.
 Result<void> CheckHeader(const FileBytes& file) {
   struct Checked {
     const FileBytes& file;
@@ -103,7 +103,7 @@ class ExrDecoder : public PictureDecoder {
   Result<void> Open(const FileBytes& file) {
     LF_RETURN_IF_ERROR(CheckHeader(file));
     constexpr int kNoThreads = 0;
-    constexpr bool kReconstructs = false;  // a file without its table of offsets is truncated
+    constexpr bool kReconstructs = false;  // without a table of offsets, a file is refused
     LF_RETURN_IF_ERROR(Run(name_, [&] { file_.emplace(stream_, kNoThreads, kReconstructs); }));
     const Imf::Header& header = file_->header(0);
     if (Imf::isNonImage(file_->version()) || (header.hasType() && Imf::isDeepData(header.type())))

@@ -67,8 +67,8 @@ Imf::Header HeaderOf(int width, int height, std::span<const ExrChannel> channels
   return header;
 }
 
-// Rows [begin, end) of all channels, as OpenEXR reads them: halves are converted into buffers, all
-// other values are read where they are.
+// Gives OpenEXR the rows [begin, end) of all channels: values that are stored as half are converted
+// into buffers, all others are read where they are.
 class RowsOfChannels {
  public:
   explicit RowsOfChannels(std::span<const ExrChannel> channels)

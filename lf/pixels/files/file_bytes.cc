@@ -19,7 +19,7 @@ FileBytes FileInMemory(std::string_view bytes, const std::string& name) {
   return {read, bytes.size(), name};
 }
 
-// O_NONBLOCK, because opening a named pipe would wait for its writer.
+// O_NONBLOCK is set because opening a named pipe would otherwise wait for its writer.
 DiskFile::DiskFile(const std::filesystem::path& path)
     : fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
   struct stat status {};
@@ -33,7 +33,8 @@ DiskFile::~DiskFile() {
   if (fd_ >= 0) ::close(fd_);
 }
 
-// Repeats short reads: the system may return fewer bytes than the file has, or be interrupted.
+// Repeats short reads, because the system may return fewer bytes than were requested, or be
+// interrupted by a signal.
 size_t DiskFile::Read(uint64_t offset, std::span<uint8_t> to) {
   size_t done = 0;
   while (done < to.size()) {

@@ -17,7 +17,7 @@ using ByteSource = std::function<size_t(uint64_t offset, std::span<uint8_t> to)>
 struct FileBytes {
   ByteSource read;
   uint64_t size_bytes = 0;
-  std::string name;  // for messages
+  std::string name;  // name of the file, for messages
 };
 
 // Returns a file that consists of `bytes`, which must stay as they are while it is used.

@@ -32,12 +32,12 @@ using StoredImage = std::variant<Image<uint8_t>, Image<uint16_t>, Image<float>>;
 // light_field/model/radiance.h.
 struct RawFacts {
   BayerPattern bayer =
-      BayerPattern::kNone;            // at pixel (0, 0); kNone: not stated, or no Bayer pattern
-  bool is_monochrome = false;         // no colour filter: the pixels are a grey picture
-  std::optional<double> black_level;  // the mean, if the file has several
-  std::optional<double> white_level;
-  std::optional<std::array<double, 3>> white_balance;  // as shot; green is 1
-  std::optional<Mat3> linear_srgb_from_camera;         // for white-balanced colours
+      BayerPattern::kNone;     // pattern from pixel (0, 0) on; kNone: no Bayer pattern stated
+  bool is_monochrome = false;  // no colour filter: the pixels are a grey picture
+  std::optional<double> black_level;  // in raw pixel values; the mean, if the file has several
+  std::optional<double> white_level;  // in raw pixel values
+  std::optional<std::array<double, 3>> white_balance;  // factors of R, G, B as shot; green is 1
+  std::optional<Mat3> linear_srgb_from_camera;         // matrix for white-balanced colours
 };
 
 struct ImageFileInfo {
@@ -46,9 +46,9 @@ struct ImageFileInfo {
   int channels = 0;
   int bits = 0;  // 8, 16 or 32: bits of a value of the StoredImage
   bool is_float = false;
-  std::vector<std::string> channel_names;  // one per channel, as the format calls it
+  std::vector<std::string> channel_names;  // name of each channel in the file's format
   int orientation = 1;                     // EXIF orientation, 1 to 8; the pixels stay as stored
-  std::optional<RawFacts> raw;             // camera raw files only: one channel of 16 bits
+  std::optional<RawFacts> raw;             // set only for camera raw files: 1 channel, 16 bits
 };
 
 // Reads the header alone. kInput as for ReadImage(), except that truncation behind the header is
@@ -101,7 +101,7 @@ using WantedPixels = std::function<Result<PixelRect>(const ImageFileInfo& info)>
 Result<void> ReadImagePart(const std::filesystem::path& path, const WantedPixels& wanted,
                            ImagePart* part);
 
-// These functions read a file that is in memory; messages call it `name`.
+// These functions read a file that is in memory; messages call the file `name`.
 Result<ImageFileInfo> ReadImageInfoBytes(std::string_view bytes, const std::string& name);
 Result<StoredImage> ReadImageBytes(std::string_view bytes, const std::string& name);
 Result<ImageWithInfo> ReadImageWithInfoBytes(std::string_view bytes, const std::string& name);
@@ -140,11 +140,12 @@ struct ExrChannel {
   std::string name;
   std::variant<ImageView<const float>, ImageView<const uint32_t>> pixels;
   int channel = 0;      // channel index in `pixels`
-  bool as_half = true;  // for floats only
+  bool as_half = true;  // true: floats are stored as half; false: as float
 };
 
-// Writes channels of equal size as one EXR file, as WriteImage() does. kOutput: the folder or the
-// disk fails, or the extension is not .exr. kInterrupted as in WriteImage().
+// Writes channels of equal size as one EXR file, atomically and with `metadata` as WriteImage()
+// does. kOutput: the folder or the disk fails, or the extension is not .exr. kInterrupted:
+// is_interrupted returned true; nothing is written.
 Result<void> WriteExr(const std::filesystem::path& path, std::span<const ExrChannel> channels,
                       const ImageMetadata& metadata = {},
                       const std::function<bool()>& is_interrupted = {});

@@ -53,8 +53,8 @@ Result<void> CheckHolds(const fs::path& path, ImageFormat format, PixelType type
                                  path.string(), NameOf(format), kTypes[static_cast<int>(type)]));
 }
 
-// Writes an encoded picture. It was encoded in memory, so that core/file.h detects every failure of
-// the disk.
+// Writes an encoded picture to the disk. Pictures are encoded in memory, so that core/file.h
+// detects every failure of the disk.
 Result<void> Save(const fs::path& path, const Result<std::string>& bytes) {
   if (!bytes) return bytes.error();
   const FileBytes file = FileInMemory(*bytes, path.string());
@@ -82,7 +82,7 @@ Result<std::string> Encode(ImageFormat format, const PictureRows& picture) {
   LF_CHECK(false);
 }
 
-// Returns a picture of the pixels, each value of which `convert` turns into To.
+// Returns a picture of the pixels. `convert` converts each of their values to type To.
 template <class To, class From, class Convert>
 PictureRows RowsOf(const fs::path& path, ImageView<const From> pixels, PixelType type,
                    const Convert& convert) {

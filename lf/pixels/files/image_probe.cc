@@ -33,11 +33,11 @@ Result<void> CheckClaim(const ByteSource& source, uint64_t width, uint64_t heigh
 
 constexpr uint64_t kPngPixels = 0x49444154, kPngEnd = 0x49454e44;  // "IDAT", "IEND"
 
-// A chunk is length, type, content, checksum.
+// A chunk of a PNG file, which consists of length, type, content and checksum.
 struct PngChunk {
   uint64_t type = 0;
-  uint64_t end = 0;  // offset behind the chunk
-  bool is_whole = false;
+  uint64_t end = 0;       // offset behind the chunk
+  bool is_whole = false;  // true if the file does not end within the chunk
 };
 
 // Returns the chunk that begins at `offset`; none if the file ends before its content.
@@ -80,7 +80,7 @@ Result<void> CheckPng(const ByteSource& source, const std::string& name) {
   return CheckPngChunks(source, name);
 }
 
-// Checks the size in the frame header (SOFn). Bytes between segments are skipped, as libjpeg does.
+// Checks the size in the frame header (SOFn). Skips bytes between segments, as libjpeg does.
 Result<void> CheckJpeg(const ByteSource& source, const std::string& name) {
   uint64_t offset = 2;
   while (const auto byte = BigEndian(source, offset++, 1)) {
@@ -96,7 +96,7 @@ Result<void> CheckJpeg(const ByteSource& source, const std::string& name) {
       const auto height = BigEndian(source, offset + 3, 2),
                  width = BigEndian(source, offset + 5, 2);
       if (!width || !height) break;
-      // A Huffman code has at least one bit, and there is one for every 8 x 8 pixels.
+      // A Huffman code has at least one bit, and there is at least one code for every 8 x 8 pixels.
       const bool is_huffman = *marker < 0xc8;
       return CheckClaim(source, *width, *height, is_huffman ? *width * *height / 512 : 0, name);
     }
@@ -141,7 +141,7 @@ const char* NameOf(ImageFormat format) {
 }
 
 Result<void> CheckPixelCount(uint64_t width, uint64_t height, const std::string& name) {
-  // Both are below 2^32, so the product does not wrap.
+  // Width and height are below 2^32, so the product does not wrap.
   if (width * height <= kMaxImagePixels) return {};
   return InputError(fmt::format("{}: claims {} x {} pixels, more than the limit of {}", name, width,
                                 height, kMaxImagePixels));

@@ -36,7 +36,7 @@ Result<std::vector<int>> ColoursFirst(const std::vector<std::string>& channel_na
     return channel_name == "R" || channel_name == "G" || channel_name == "B";
   };
   const std::vector<std::string> layers = ColourLayers(channel_names);
-  std::string chosen;  // "": the channels without a layer, of which some may be missing
+  std::string chosen;  // "" stands for the channels without a layer; R, G or B may be missing
   if (std::none_of(channel_names.begin(), channel_names.end(), is_plain)) {
     if (layers.size() > 1)
       return InputError(

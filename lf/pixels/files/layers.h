@@ -13,7 +13,7 @@ namespace lf {
 // the only layer that has R, G and B, if there is one. The other channels follow in the order of
 // the file.
 //   channel_names  "R", "beauty.R", ...
-//   name           of the file, for messages
+//   name           name of the file, for messages
 // kInput: no channel without a layer is R, G or B, and several layers have all three.
 Result<std::vector<int>> ColoursFirst(const std::vector<std::string>& channel_names,
                                       const std::string& name);

@@ -1,7 +1,7 @@
 // Opens TIFF files with libtiff, and collects its errors and warnings. Internal to this folder.
 //
 // libtiff continues after most errors. It reports them to a handler that belongs to one file here,
-// so many threads can use it at once, and nothing is printed.
+// so many threads can use libtiff at once, and nothing is printed.
 #pragma once
 
 #include <tiffio.h>
@@ -29,14 +29,14 @@ class LibtiffHandle {
   LibtiffHandle(const LibtiffHandle&) = delete;
   LibtiffHandle& operator=(const LibtiffHandle&) = delete;
 
-  // Returns null after Close().
+  // Returns libtiff's object for the file; null after Close().
   TIFF* tiff() const { return tiff_; }
   // Frees libtiff's memory. A file to write must have been completed by TIFFWriteDirectory().
   void Close();
 
   // Returns an error if libtiff reported that pixels are missing or guessed: kInput when reading,
   // kOutput when writing. `succeeded` is the result of the last call. Throws std::bad_alloc if
-  // memory ran out, and what the ByteSource threw.
+  // memory ran out, and rethrows an exception of the ByteSource.
   Result<void> Check(bool succeeded) const;
 
  private:
@@ -55,13 +55,13 @@ class LibtiffHandle {
   void Note(const char* message) noexcept;
 
   std::string name_;
-  const FileBytes* file_ = nullptr;  // null when writing
-  std::string* bytes_ = nullptr;     // null when reading
+  const FileBytes* file_ = nullptr;  // the file to read; null when writing
+  std::string* bytes_ = nullptr;     // bytes of the file to write; null when reading
   uint64_t position_ = 0;
   TIFF* tiff_ = nullptr;
-  char fault_[512] = {};  // the first message that matters; empty: none
+  char fault_[512] = {};  // first message about missing or guessed pixels; empty: none
   bool is_out_of_memory_ = false;
-  std::exception_ptr thrown_;  // by the ByteSource or by `bytes_`
+  std::exception_ptr thrown_;  // exception of the ByteSource or of `bytes_`; null: none
 };
 
 }  // namespace lf

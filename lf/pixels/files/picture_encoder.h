@@ -13,22 +13,22 @@
 namespace lf {
 
 // Number of rows that are made and encoded at a time. It is a multiple of the rows in a block of
-// EXR's compression (16), so that the bytes do not depend on it. To encode this number of rows of
-// 8192 pixels takes about 0.1 s.
+// EXR's compression (16), so that the encoded bytes do not depend on this number. Encoding this
+// many rows of 8192 pixels takes about 0.1 s.
 inline constexpr int kBlockRows = 32;
 
 // A picture whose rows are made while it is encoded.
 struct PictureRows {
-  std::string name;  // of the file, for messages
+  std::string name;  // name of the file, for messages
   int width = 0;
   int height = 0;
   int channels = 0;
-  PixelType type = PixelType::kUint8;  // of all channels; not kHalf
+  PixelType type = PixelType::kUint8;  // type of all channels; not kHalf
   bool is_srgb = false;                // true: the file states that its values are sRGB
   ImageMetadata metadata = {};
-  // Writes the values of row y, [x][channel] without gaps.
+  // Writes the values of row y to `to`, [x][channel] without gaps.
   std::function<void(int y, std::byte* to)> pack_row;
-  // Called before every kBlockRows rows; may be empty.
+  // Called before every kBlockRows rows; the encoding ends if it returns true. May be empty.
   std::function<bool()> is_interrupted = {};
 };
 
@@ -48,10 +48,10 @@ Result<std::string> EncodeExr(const std::string& name, std::span<const ExrChanne
                               const ImageMetadata& metadata,
                               const std::function<bool()>& is_interrupted);
 
-// Returns the value as text.
+// Returns the value of an entry of the metadata as text.
 std::string TextOf(const std::variant<std::string, double, int>& value);
 
-// Returns one line for each entry: "lf.frame: 12\nlf.time_s: 0.25\n".
+// Returns one line for each entry of the metadata: "lf.frame: 12\nlf.time_s: 0.25\n".
 std::string LinesOf(const ImageMetadata& metadata);
 
 }  // namespace lf

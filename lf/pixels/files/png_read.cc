@@ -36,10 +36,10 @@ struct Palette {
 constexpr std::string_view kHarmlessTypes =
     "bKGD cHRM eXIf gAMA hIST iCCP iTXt oFFs pCAL pHYs sBIT sCAL sPLT sRGB sTER tEXt tIME zTXt";
 
-// Returns true if, after this warning ("tEXt: CRC error"), libpng continues with pixels that are
-// missing or guessed, or if the checksum of the compressed pixels is wrong. Data behind the last
-// pixel are harmless. A damaged chunk of an unknown type may be one that the pixels depend on,
-// because its type may be damaged.
+// Returns true if, after this warning, libpng continues with pixels that are missing or guessed, or
+// if the checksum of the compressed pixels is wrong. A warning names the type of the chunk: "tEXt:
+// CRC error". Data behind the last pixel are harmless. A damaged chunk of an unknown type may be
+// one that the pixels depend on, because its type may be damaged.
 bool IsAboutPixels(std::string_view warning) {
   if (warning.starts_with("IDAT: "))
     return !warning.ends_with("Extra compressed data") && !warning.ends_with("Too much image data");
@@ -163,7 +163,8 @@ Result<void> PngDecoder::Open() {
   LF_RETURN_IF_ERROR(CreateStructs());
   LF_RETURN_IF_ERROR(Run([&] {
     png_set_read_fn(png_, this, ReadBytes);
-    png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // CheckPictureSize() limits them
+    // CheckPictureSize() limits width and height.
+    png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
     png_set_chunk_malloc_max(png_, kMostTextBytes);
     png_set_chunk_cache_max(png_, kMostTexts);
     png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
@@ -236,7 +237,7 @@ Result<void> PngDecoder::ReplaceAllIndices(Image<uint8_t>* image) const {
     const int missing = ReplaceIndices(palette_, info_.width, info_.channels, image->row(y));
     if (missing >= 0)
       return InputError(
-          fmt::format("{}: truncated or damaged: row {} has colour {} of a palette of {}",
+          fmt::format("{}: truncated or damaged: row {} has colour {}, but the palette has only {}",
                       file_.name, y, missing, palette_.size));
   }
   return {};

@@ -13,7 +13,7 @@ namespace {
 constexpr double kLargestFactor = 1000;
 
 // Returns the white balance as shot; none if a factor is not in (0, kLargestFactor]. LibRaw has
-// factors of R, G, B and a second green.
+// factors of R, G, B and a second green, which is not used.
 std::optional<std::array<double, 3>> WhiteBalanceOf(const libraw_colordata_t& colour) {
   const auto& factors = colour.cam_mul;
   const std::array<double, 3> balance = {static_cast<double>(factors[0]) / factors[1], 1,
@@ -24,7 +24,8 @@ std::optional<std::array<double, 3>> WhiteBalanceOf(const libraw_colordata_t& co
 }
 
 // Returns the colour matrix; none if LibRaw knows none (it then gives the identity) or an entry
-// exceeds kLargestFactor. LibRaw has rows of R, G, B and a second green.
+// exceeds kLargestFactor. Each row of LibRaw's matrix has entries for R, G, B and a second green,
+// which is not used.
 std::optional<Mat3> LinearSrgbFromCamera(const libraw_colordata_t& colour) {
   Mat3 matrix;
   for (int row = 0; row < 3; ++row)
@@ -64,8 +65,8 @@ bool RepeatsEveryTwo(LibRaw& raw) {
 }
 
 BayerPattern PatternAt(LibRaw& raw, int x, int y) {
-  // COLOR() counts from the corner of the image, inside the margins. Modulo 2, adding a margin is
-  // the same as subtracting it.
+  // LibRaw's COLOR() counts from the corner of the image inside the margins, but x and y from the
+  // corner of the sensor. Modulo 2, adding a margin is the same as subtracting it.
   const libraw_image_sizes_t& sizes = raw.imgdata.sizes;
   const int column = (x + sizes.left_margin) % 2, row = (y + sizes.top_margin) % 2;
   for (const BayerPattern pattern :

@@ -34,7 +34,7 @@ constexpr double kPartPays = 0.85;
 // is complete.
 struct Source : jpeg_source_mgr {
   const ByteSource* bytes = nullptr;
-  uint64_t offset = 0;  // position in the file of the bytes behind the buffer
+  uint64_t offset = 0;  // position in the file of the first byte behind those in the buffer
   std::vector<uint8_t> buffer = std::vector<uint8_t>(kBufferBytes);
 };
 
@@ -96,8 +96,8 @@ struct JpegReader::State {
 
   static State& Of(j_common_ptr common) { return *static_cast<State*>(common->client_data); }
 
-  // Leaves libjpeg with its message by longjmp. No object that was created since setjmp may need
-  // its destructor.
+  // Keeps libjpeg's message and leaves libjpeg by longjmp. No object that was created since setjmp
+  // may need its destructor.
   [[noreturn]] void JumpOut() {
     errors.format_message(reinterpret_cast<j_common_ptr>(&decompress), message);
     std::longjmp(jump, 1);

@@ -31,11 +31,11 @@ class JpegReader {
   // rectangle, and resizes `image` to it, in the same memory if possible. The pixels equal those of
   // the whole picture, bit for bit. The whole file is read in any case, so that the detection of
   // damage does not depend on `wanted`; decoding a part saves only inverse transforms. kInput:
-  // libjpeg had to guess pixels, or the file has more than kMaxScans.
+  // libjpeg had to guess pixels, or the file has more than kMaxScans scans.
   Result<PixelRect> Read(const PixelRect& wanted, Image<uint8_t>* image);
 
-  // A progressive file with more scans could demand hours of work with few bytes. Encoders write
-  // about ten.
+  // Largest number of scans in a progressive file. Encoders write about ten; a small file with very
+  // many scans could demand hours of work.
   static constexpr int kMaxScans = 200;
 
  private:

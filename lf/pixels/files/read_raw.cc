@@ -25,7 +25,7 @@ class QuietLibRaw final : public LibRaw {
  public:
   QuietLibRaw() {
     set_memerror_handler(nullptr, nullptr);
-    set_dataerror_handler(nullptr, nullptr);  // errors are still counted
+    set_dataerror_handler(nullptr, nullptr);  // LibRaw still counts errors
     imgdata.params.use_camera_wb = 1;         // makes LibRaw use the file's colour matrices
     imgdata.params.use_rawspeed = 0;
     imgdata.params.raw_processing_options |= LIBRAW_PROCESSING_DNG_PREFER_LARGEST_IMAGE;
@@ -40,8 +40,8 @@ class QuietLibRaw final : public LibRaw {
     return decoder && std::strcmp(decoder, name) == 0;
   }
 
-  // Returns the part of the sensor that is the image. LibRaw rounds margins to even numbers, so the
-  // active area of a DNG is taken from the file.
+  // Returns the rectangle of the sensor's pixels that are the image. LibRaw rounds margins to even
+  // numbers, so the active area of a DNG is taken from the file.
   PixelRect VisibleArea() const {
     const libraw_image_sizes_t& sizes = imgdata.sizes;
     const tiff_ifd_t* ifd = imgdata.idata.dng_version != 0 ? IfdOfPixels() : nullptr;
@@ -81,7 +81,8 @@ class QuietLibRaw final : public LibRaw {
   }
 
  private:
-  // Returns the directory whose data begin where the pixels begin; null if there is none.
+  // Returns the TIFF directory (IFD) whose data begin where the pixels begin; null if there is
+  // none.
   const tiff_ifd_t* IfdOfPixels() const {
     const int count = static_cast<int>(libraw_internal_data.identify_data.tiff_nifds);
     for (int i = 0; i < std::min(count, LIBRAW_IFD_MAXCOUNT); ++i)
@@ -89,8 +90,8 @@ class QuietLibRaw final : public LibRaw {
     return nullptr;
   }
 
-  // Records tags that LibRaw mostly ignores: layouts that are not in rows and columns, and colours
-  // other than R, G, B.
+  // Records two facts from tags that LibRaw mostly ignores: that the mosaic is not in rows and
+  // columns, and that its colours are not R, G, B.
   static void NoteTag(void* self, int tag, int type, int length, unsigned order, void* stream,
                       INT64) {
     constexpr int kCfaPlaneColor = 50710, kCfaLayout = 50711, kByte = 1, kShort = 3;
@@ -179,7 +180,8 @@ Result<void> CheckSizes(QuietLibRaw& raw, uint64_t size_bytes, const std::string
                     "does not read; write the DNG again, with lossless compression or in strips "
                     "without gaps",
                     name));
-  // The Huffman code of a pixel has at least one bit; a run of equal pixels may share it.
+  // The Huffman code of a pixel has at least one bit, but a run of equal pixels may share it. No
+  // file is expected to hold more pixels per byte than this.
   constexpr double kMostPixelsPerByte = 512;
   const double pixel_count = static_cast<double>(width) * height;
   const double least_bytes = is_packed ? pixel_count * raw.internals().unpacker_data.tiff_bps / 8
@@ -241,7 +243,7 @@ struct RawReader::State {
   State(const ByteSource& source, uint64_t size_bytes, std::string file_name)
       : name(std::move(file_name)), stream(source, size_bytes) {}
   std::string name;
-  RawStream stream;  // outlives `raw`
+  RawStream stream;  // must outlive `raw`, which reads from it
   QuietLibRaw raw;
   PixelRect area;  // the image's rectangle on the sensor
   ImageFileInfo info;

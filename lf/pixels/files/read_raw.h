@@ -27,10 +27,10 @@ class RawReader {
   ~RawReader();
 
   // Before Read(), the black level is known only for DNG files. For other files LibRaw measures it
-  // on the covered pixels of the sensor.
+  // on the pixels of the sensor that are covered from light.
   const ImageFileInfo& info() const;
 
-  // The exposure that the camera states.
+  // Returns the exposure that the file states.
   ExposureFacts exposure() const;
 
   // Decodes the visible pixels into `image`, whose memory is reused. kInput: LibRaw noticed that

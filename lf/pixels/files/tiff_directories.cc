@@ -25,7 +25,7 @@ enum TiffType {
   kDirectory = 13
 };
 
-// Bytes of a number of this type; 0 if it is not a number.
+// Returns the size of a number of this TIFF type, in bytes; 0 if the type is not a number.
 size_t BytesOf(int type) {
   switch (type) {
     case kByte:
@@ -113,9 +113,9 @@ class TiffReader {
       first_ = Unsigned(std::span(head).subspan(4, 4), little_endian_);
   }
 
-  uint64_t first() const { return first_; }  // offset of the first directory; 0: none
+  uint64_t first() const { return first_; }  // offset of the first directory; 0 if there is none
 
-  // Returns none if the directory is beyond the end of the file or has no tag.
+  // Returns the directory at `offset`; none if it is beyond the end of the file or has no tag.
   std::optional<TiffDirectory> ReadAt(uint64_t offset) const {
     std::array<uint8_t, 2> count_bytes{};
     if (source_(offset, count_bytes) != count_bytes.size()) return std::nullopt;

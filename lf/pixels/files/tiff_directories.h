@@ -15,8 +15,8 @@ namespace lf {
 class TiffDirectory {
  public:
   bool Has(int tag) const { return entries_.contains(tag); }
-  // Returns the values of a tag as numbers (fractions are divided). Empty if the tag is missing, is
-  // not a number, has more than `limit` values or lies beyond the end of the file.
+  // Returns the values of a tag as numbers (a fraction as its quotient). Empty if the tag is
+  // missing, is not a number, has more than `limit` values or lies beyond the end of the file.
   std::vector<double> Numbers(int tag, size_t limit) const;
   // Returns the first value of a tag, or `otherwise` if Numbers(tag, 16) is empty.
   double Number(int tag, double otherwise) const;
@@ -26,7 +26,7 @@ class TiffDirectory {
   struct Entry {
     int type = 0;
     uint64_t count = 0;
-    uint64_t offset = 0;  // position in the file
+    uint64_t offset = 0;  // position of the first value in the file
   };
   const ByteSource* source_ = nullptr;
   bool little_endian_ = true;

@@ -124,8 +124,8 @@ std::vector<std::string> ChannelNames(TIFF* tiff, uint16_t photometric, const Ti
   return names;
 }
 
-// Sets the size of the blocks. libtiff decodes a block as a whole, so a file that claims blocks
-// much larger than its picture would need much memory.
+// Sets the size of the blocks. kInput if tiles are much larger than the picture: libtiff decodes a
+// block as a whole, so they would need much memory.
 Result<void> SetBlocks(TIFF* tiff, const std::string& name, TiffLayout* layout) {
   layout->is_tiled = TIFFIsTiled(tiff) != 0;
   const auto height = static_cast<uint32_t>(layout->height);
@@ -139,12 +139,13 @@ Result<void> SetBlocks(TIFF* tiff, const std::string& name, TiffLayout* layout) 
   constexpr uint64_t kUsualTile = uint64_t{1} << 24, kMostTimesPicture = 16;
   if (tile_pixels <= std::max(kUsualTile, std::min(kMaxImagePixels, kMostTimesPicture * pixels)))
     return {};
-  return InputError(fmt::format("{}: claims tiles of {} x {} pixels for a picture of {} x {}", name,
-                                layout->block_width, layout->block_height, layout->width,
-                                layout->height));
+  return InputError(
+      fmt::format("{}: claims tiles of {} x {} pixels, too large for a picture of {} x {}", name,
+                  layout->block_width, layout->block_height, layout->width, layout->height));
 }
 
-// Checks that libtiff uses the sizes of `layout` for blocks, because it writes into our buffers.
+// Checks that libtiff expects blocks of the sizes in `layout`, because libtiff writes whole blocks
+// into buffers of these sizes.
 Result<void> CheckSizesAgree(TIFF* tiff, const TiffLayout& layout, const std::string& name) {
   const uint64_t block_bytes =
       layout.is_tiled ? TIFFTileSize64(tiff) : TIFFVStripSize64(tiff, layout.block_height);
@@ -177,7 +178,7 @@ Result<TiffLayout> TiffLayoutOf(TIFF* tiff, const std::string& name) {
                                                    PLANARCONFIG_CONTIG) == PLANARCONFIG_SEPARATE;
   LF_RETURN_IF_ERROR(CheckColours(photometric, layout.compression, layout.is_separate, name));
   if (photometric == PHOTOMETRIC_YCBCR)
-    TIFFSetField(tiff, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB);  // libjpeg makes RGB of it
+    TIFFSetField(tiff, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB);  // libjpeg converts it to RGB
 
   LF_ASSIGN_OR_RETURN(layout.type, SamplesOf(tiff, name));
   layout.is_inverted = photometric == PHOTOMETRIC_MINISWHITE && StoredBitsOf(layout.type) <= 16;

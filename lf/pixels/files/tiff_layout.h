@@ -13,14 +13,14 @@
 
 namespace lf {
 
-// A picture is stored in blocks: strips of rows, or tiles. Separate planes have blocks of their
-// own, which hold one sample per pixel.
+// A picture is stored in blocks: strips of rows, or tiles. If is_separate is true, each channel is
+// a plane with blocks of its own, which hold one sample per pixel.
 struct TiffLayout {
   int width = 0;
   int height = 0;
-  int samples = 0;  // per pixel, in the file
+  int samples = 0;  // number of samples per pixel, in the file
   TiffSamples type;
-  bool is_inverted = false;      // the first sample is 0 for white; only up to 16 bits
+  bool is_inverted = false;      // true if 0 is white in the first sample; only up to 16 bits
   std::vector<uint8_t> palette;  // R, G, B for each index; empty: none
   int compression = COMPRESSION_NONE;
   bool is_separate = false;
@@ -35,7 +35,7 @@ struct TiffLayout {
   int planes() const { return is_separate ? samples : 1; }
   uint32_t blocks_across() const { return Ceil(width, block_width); }
   uint32_t blocks_down() const { return Ceil(height, block_height); }
-  // Bytes of a row of a block.
+  // Returns the number of bytes of one row of a block.
   uint64_t row_bytes() const {
     return (uint64_t{block_width} * static_cast<uint64_t>(samples_of_block() * type.bits) + 7) / 8;
   }
@@ -47,8 +47,8 @@ struct TiffLayout {
   }
 };
 
-// Describes the picture of the current directory. kInput: it is larger than ReadImage() allows, or
-// of a kind that is not read.
+// Describes the picture of the current directory. kInput: the picture is larger than ReadImage()
+// allows, or of a kind that is not read.
 Result<TiffLayout> TiffLayoutOf(TIFF* tiff, const std::string& name);
 
 }  // namespace lf

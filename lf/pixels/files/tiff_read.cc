@@ -39,7 +39,7 @@ struct Block {
   uint32_t index = 0;
   int plane = 0;
   PixelRect rect;
-  size_t bytes = 0;  // after decoding; the last strip may have fewer than the others
+  size_t bytes = 0;  // size after decoding; the last strip may be smaller
 };
 
 class TiffDecoder : public PictureDecoder {
@@ -113,7 +113,7 @@ Result<void> TiffDecoder::ForEachBlock(const Use& use) {
   return {};
 }
 
-// Detects most truncated files, and those that claim more pixels than a file of their size can
+// Detects most truncated files, and files that claim more pixels than a file of their size can
 // hold, before pixels are allocated.
 Result<void> TiffDecoder::CheckBlocksLieInFile() const {
   const uint64_t ratio = LargestRatio(layout_);
@@ -141,7 +141,7 @@ Result<void> TiffDecoder::CheckBlocksLieInFile() const {
 
 template <class T>
 Result<void> TiffDecoder::ReadValues(Image<T>* image) {
-  // Rows that are stored like those of the image are decoded in place.
+  // Rows that are stored as the image stores them are decoded directly into the image.
   const bool in_place = !layout_.is_tiled && !layout_.is_separate && IsStoredAs<T>(layout_.type);
   return ForEachBlock([&](const Block& block) -> Result<void> {
     if (in_place) {
@@ -203,9 +203,10 @@ Result<void> TiffDecoder::ReadBlock(const Block& block, std::byte* to) {
   return handle_->Check(Decode(block, to));
 }
 
-// libtiff accepts a deflate stream that does not end with the block, as most damaged streams do,
-// and does not verify its checksum then. The stream is therefore inflated by ZlibBlock, and libtiff
-// does the rest (bit order, byte order and predictor) on a stream that is not compressed.
+// libtiff accepts a deflate stream that does not end where the block ends, as is the case for most
+// damaged streams, and then does not verify the stream's checksum. The stream is therefore inflated
+// by ZlibBlock, and libtiff does the rest (bit order, byte order and predictor) on a stream that is
+// not compressed.
 Result<void> TiffDecoder::ReadDeflated(const Block& block, std::byte* to) {
   TIFF* const tiff = handle_->tiff();
   packed_.resize(TIFFGetStrileByteCount(tiff, block.index));
@@ -229,8 +230,8 @@ Result<void> TiffDecoder::ReadDeflated(const Block& block, std::byte* to) {
                                                static_cast<tmsize_t>(block.bytes)) == 1);
 }
 
-// Compares whole rows, except for the bits behind their last pixel, which libtiff leaves as they
-// are.
+// Returns true if the rows of two decoded blocks are equal, except for the bits behind the last
+// pixel of a row, which libtiff does not write.
 bool TiffDecoder::HasSamePixels(const std::byte* a, const std::byte* b, size_t bytes) const {
   const size_t row_bytes = layout_.row_bytes();
   const uint64_t bits = uint64_t{layout_.block_width} *

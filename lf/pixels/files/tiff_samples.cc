@@ -58,7 +58,8 @@ void ConvertToFloats(const TiffSamples& samples, const std::byte* from, size_t c
   return Widen<int64_t>(from, count, to, to_step);
 }
 
-// Calls use(i, value) for each of `count` integers of 1 to 16 bits.
+// Calls use(i, value) for each of `count` integers of `bits` (1 to 16) bits, which are packed with
+// the most significant bit first.
 template <class Use>
 void ForEachPacked(int bits, const std::byte* from, size_t count, const Use& use) {
   uint32_t buffer = 0;

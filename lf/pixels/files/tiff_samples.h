@@ -21,7 +21,7 @@ struct TiffSamples {
 // signed integers of 8, 16, 32 and 64 bits, and floats of 16, 32 and 64 bits.
 bool CanConvert(const TiffSamples& samples);
 
-// Returns the bits of a value of the StoredImage: 8, 16 or 32.
+// Returns the number of bits of the values of a StoredImage that the samples become: 8, 16 or 32.
 int StoredBitsOf(const TiffSamples& samples);
 
 // True if samples of this type are stored as values of type T, so that they need no conversion.

@@ -15,7 +15,8 @@
 namespace lf {
 namespace {
 
-// Reads a number, the least significant byte first, as in EXR; none if it lies beyond the end.
+// Reads a number, the least significant byte first, as in EXR; none if the number lies beyond the
+// end of the file.
 template <class T>
 std::optional<T> LittleEndian(const ByteSource& source, uint64_t offset) {
   std::array<uint8_t, sizeof(T)> bytes;
@@ -89,7 +90,8 @@ Result<void> CheckExr(const ByteSource& source, uint64_t size_bytes, const std::
     return InputError(fmt::format("{}: EXR file is not whole: {}", name, what));
   };
   const std::optional<ExrHeader> header = ReadHeader(source);
-  if (!header) return damaged("its header cannot be read, or is not of rows in one part");
+  if (!header)
+    return damaged("its header is damaged, or describes tiles, several parts or deep data");
   const int64_t blocks = (header->row_count + header->rows_of_block - 1) / header->rows_of_block;
   if (static_cast<uint64_t>(blocks) > size_bytes / sizeof(uint64_t))
     return damaged("it ends within its table of offsets");
@@ -101,7 +103,7 @@ Result<void> CheckExr(const ByteSource& source, uint64_t size_bytes, const std::
     const auto missing = [&] {
       return damaged(fmt::format("block {} of {} is missing", block + 1, blocks));
     };
-    // A block is the number of its first row, its length in bytes, and these bytes.
+    // A block consists of the number of its first row, the length of its content, and its content.
     constexpr uint64_t kBlockHeader = 8;
     if (*offset < first || *offset > size_bytes - std::min(size_bytes, kBlockHeader))
       return missing();
@@ -135,7 +137,8 @@ Result<void> CheckIsWhole(const ByteSource& source, uint64_t size_bytes, const s
     case ImageFormat::kRaw:
       break;
   }
-  return InputError(fmt::format("{}: is a camera raw file, no picture of ours", name));
+  return InputError(
+      fmt::format("{}: is a camera raw file, which lfrendertools does not write", name));
 }
 
 Result<void> CheckFileIsWhole(const std::filesystem::path& path) {

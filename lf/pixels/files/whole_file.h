@@ -23,7 +23,7 @@ namespace lf {
 //   TIFF  the first directory lies in the file
 //   raw   an error, because this project writes none
 //   source  copies the bytes from `offset` on into `to`; returns how many it copied
-//   name    of the file, for messages
+//   name    name of the file, for messages
 Result<void> CheckIsWhole(
     const std::function<size_t(uint64_t offset, std::span<uint8_t> to)>& source,
     uint64_t size_bytes, const std::string& name);

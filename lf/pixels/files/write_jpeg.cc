@@ -77,7 +77,8 @@ struct Encoder {
     });
   }
 
-  // Writes comments after Begin(). A comment that is longer than a segment can be is divided.
+  // Writes `text` as a comment; must follow Begin(). A text that is longer than a segment can be
+  // becomes several comments.
   bool WriteComment(std::string_view text) {
     constexpr size_t kMostBytes = 65533;
     return Run([&] {

@@ -10,7 +10,7 @@
 namespace lf {
 
 // Returns the bytes of a baseline JPEG file, with chroma halved in both directions.
-//   pixels   [height][width][3] sRGB, at most 65500 each way, not empty
+//   pixels   [height][width][3] sRGB; width and height are 1 to 65500
 //   quality  1 to 100
 // kOutput: a side exceeds 65500 pixels, or memory is lacking.
 Result<std::string> EncodeJpeg(ImageView<const uint8_t> pixels, int quality);

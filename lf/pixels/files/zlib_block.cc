@@ -11,7 +11,8 @@ namespace lf {
 namespace {
 
 constexpr size_t kHeaderBytes = 2, kChecksumBytes = 4;
-// A stored block (RFC 1951, 3.2.4) begins with these bytes, and has at most 65535 bytes of content.
+// A stored block (RFC 1951, 3.2.4) has a header of kBlockHeaderBytes bytes and at most 65535 bytes
+// of content.
 constexpr size_t kBlockHeaderBytes = 5, kMostContent = 65535;
 
 // Inflates a stream into one piece of memory after another.
@@ -24,7 +25,7 @@ class Inflater {
   Inflater(const Inflater&) = delete;
   Inflater& operator=(const Inflater&) = delete;
 
-  // Fills `to`, unless the stream ends before. Returns the number of bytes written.
+  // Fills `to`, unless the stream ends earlier. Returns the number of bytes written.
   size_t Next(std::span<uint8_t> to) {
     stream_.next_out = to.data();
     stream_.avail_out = static_cast<uInt>(to.size());

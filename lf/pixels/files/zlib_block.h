@@ -1,4 +1,4 @@
-// Inflates a zlib stream strictly. Internal to this folder.
+// Inflates a zlib stream, and verifies its end and its checksum. Internal to this folder.
 #pragma once
 
 #include <cstddef>
