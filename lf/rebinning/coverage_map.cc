@@ -38,8 +38,8 @@ std::vector<Vec2> PlacesAround(const FrameQueries& frame, const std::vector<bool
     }
   std::vector<Vec2> places;
   if (centres.empty()) return places;
-  for (double y = low.y(); y <= high.y(); y += step_w)    // NOLINT: the places need not be exact
-    for (double x = low.x(); x <= high.x(); x += step_w)  // NOLINT
+  for (double y = low.y(); y <= high.y(); y += step_w)    // NOLINT: rounding of y does no harm
+    for (double x = low.x(); x <= high.x(); x += step_w)  // NOLINT: rounding of x does no harm
       for (size_t i = 0; i < centres.size(); ++i)
         if ((Vec2(x, y) - centres[i]).squaredNorm() <= reaches[i] * reaches[i]) {
           places.emplace_back(x, y);
@@ -76,7 +76,7 @@ void CoverageMap::SetGrid(const SlabSection& section, std::span<const FrameQueri
   while (true) {
     double bits = 1;
     for (int k = 0; k < kCellAxes; ++k) {
-      // One more cell on either side.
+      // Adds one cell beyond the bounds on either side.
       double cells = std::floor(size[k] / width_w_[k / 2]) + 3;
       if (k == kCellAxes - 1) cells = std::ceil(cells / kBits) * kBits;
       bits *= cells;
@@ -130,7 +130,7 @@ void CoverageMap::Spawn(const Slab& slab, const FrameQueries& frame) {
   const double step_px = std::max(kSpawnStep * width_w_[1] / element_uv_w, 0.5);
   const double step_w = kSpawnStep * width_w_[0];
   const size_t point_count = frame.points.point_count();
-  std::map<std::vector<bool>, std::vector<Vec2>> places_of;  // key: is each point queried?
+  std::map<std::vector<bool>, std::vector<Vec2>> places_of;  // key: which lens points are queried
   std::vector<bool> asked(point_count, true);
   const auto steps = [&](int size_px) {
     return static_cast<int>(std::ceil((size_px + 2 * margin_px) / step_px));

@@ -48,7 +48,7 @@ class CoverageMap {
   }
 
   size_t size_bytes() const { return bits_.size() * sizeof(uint64_t); }
-  double share() const;  // marked cells / all cells
+  double share() const;  // share of all cells that are marked, 0 to 1
 
  private:
   static constexpr size_t kBits = 64;
@@ -60,8 +60,9 @@ class CoverageMap {
 
   SlabPoint low_ = SlabPoint::Zero();
   std::array<double, kCellAxes> per_width_ = {};
-  std::array<size_t, kCellAxes> count_ = {};  // cells along each axis; the last a multiple of kBits
-  std::array<double, 2> width_w_ = {};        // width of a cell on the st and on the uv plane
+  // Number of cells along each axis; a multiple of kBits along the last one.
+  std::array<size_t, kCellAxes> count_ = {};
+  std::array<double, 2> width_w_ = {};  // width of a cell on the st and on the uv plane
   LargeVector<uint64_t> bits_;
 };
 

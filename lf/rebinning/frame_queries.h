@@ -14,7 +14,7 @@ namespace lf {
 
 // How densely the light field was recorded around one frame.
 struct LfSampling {
-  double camera_distance_w = 0;      // between neighbouring LF cameras
+  double camera_distance_w = 0;      // distance between neighbouring LF cameras
   double pixel_rad = 0;              // angle that one LF pixel sees
   Vec3 middle_world = Vec3::Zero();  // mean position of the LF cameras
 };

@@ -17,11 +17,11 @@
 namespace lf {
 
 struct FrameRay {
-  float lens_x_w = 0;  // lens coordinates: right, up
+  float lens_x_w = 0;  // position on the lens: to the right and up, world units
   float lens_y_w = 0;
   float x_px = 0;  // continuous position on the sensor plate
   float y_px = 0;
-  std::array<float, 3> rgb = {};  // linear, 0 to 65535
+  std::array<float, 3> rgb = {};  // linear radiance, 0 to 65535
 };
 
 // The largest distances, outside the lens and beside the plate, at which rays are returned.
@@ -34,7 +34,7 @@ struct FrameReach {
 struct AskedSquares {
   static constexpr int kSide = 8;
   int columns = 0;
-  std::vector<bool> asked;  // [rows][columns]; empty: all
+  std::vector<bool> asked;  // [rows][columns]; empty: all squares need rays
 };
 
 // Returns the rays through the middles of cells, in the order of the cells. Leaves out rays that do

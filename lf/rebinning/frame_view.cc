@@ -7,7 +7,7 @@ namespace {
 CellForm FormOf(const SlabPlane& plane, double r_w, const Vec3& centre, const Vec3& normal,
                 double offset = 0) {
   const double of_a = r_w * normal.dot(plane.axis_a), of_b = r_w * normal.dot(plane.axis_b);
-  // Middle of the cell whose biased number is 0 (kCellOffset, slab.h).
+  // Middle of the cell whose number in a key is 0, in widths of cells (kCellOffset, slab.h).
   const double first = 0.5 - kCellOffset;
   return {normal.dot(plane.origin_world - centre) + first * (of_a + of_b) - offset, of_a, of_b};
 }

@@ -10,6 +10,7 @@
 //
 //   X = (S (n . U - o) - U (n . S - o)) / (n . (U - S)).
 //
+// `forward` is the frame's viewing direction, and n and o are normal and offset of its focus plane.
 // All these scalar products are linear forms of the four numbers of the cell.
 #pragma once
 
@@ -38,7 +39,7 @@ struct FrameView {
   struct OfPlane {
     CellForm forward, right, up;
     CellForm plate_x, plate_y;  // position on the plate times depth
-    CellForm focus;             // n . X - o
+    CellForm focus;             // n . X - o, which is 0 on the focus plane
   };
   OfPlane st, uv;
   double lens_reach2_w2;

@@ -1,11 +1,12 @@
-// FindSeenCells(), compiled for every instruction set; one is chosen at run time (Highway).
+// FindSeenCells(), compiled for every instruction set; the program chooses one at run time
+// (Highway).
 //
 // Products and sums are never fused, so results are bit-identical on every instruction set.
 #include "lf/core/check.h"
 #include "lf/rebinning/frame_view.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "lf/rebinning/frame_view_simd.cc"  // NOLINT: as Highway wants it
+#define HWY_TARGET_INCLUDE "lf/rebinning/frame_view_simd.cc"  // NOLINT: Highway reads this macro
 #include <hwy/foreach_target.h>
 // Must follow foreach_target.h.
 #include <hwy/highway.h>
@@ -34,7 +35,6 @@ HWY_INLINE V At(const CellForm& form, V a, V b) {
                  hn::Mul(hn::Set(d, form.of_b), b));
 }
 
-// a b - c d
 HWY_INLINE V Cross(V a, V b, V c, V d) { return hn::Sub(hn::Mul(a, b), hn::Mul(c, d)); }
 
 void FindSeen(const FrameView& view, std::span<const BinnedCell> cells, SeenCells* seen) {

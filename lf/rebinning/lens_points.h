@@ -13,9 +13,9 @@ namespace lf {
 // steps that one set would make in large blurs into noise.
 struct LensPointSets {
   int k = 1;
-  std::vector<std::vector<Vec2>> sets;  // [k * k]
-  // Factor of sigma_st for each point, at least 1; larger if rays near the point are rare. Shaped
-  // like `sets`; empty: all 1.
+  std::vector<std::vector<Vec2>> sets;  // [k * k][points of the set], lens coordinates, world units
+  // Factor of QueryKernel::sigma_st_w for each point, at least 1; larger if rays near the point are
+  // rare. Has the shape of `sets`; empty: all factors are 1.
   std::vector<std::vector<double>> spreads = {};
 
   double SpreadOf(size_t set, size_t point) const {

@@ -1,4 +1,5 @@
-// PixelChances::Choose(), compiled for every instruction set; one is chosen at run time (Highway).
+// PixelChances::Choose(), compiled for every instruction set; the program chooses one at run time
+// (Highway).
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -6,7 +7,7 @@
 #include "lf/rebinning/pixel_chances.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "lf/rebinning/pixel_chances_simd.cc"  // NOLINT: as Highway wants it
+#define HWY_TARGET_INCLUDE "lf/rebinning/pixel_chances_simd.cc"  // NOLINT: Highway reads this macro
 #include <hwy/foreach_target.h>
 // Must follow foreach_target.h.
 #include <hwy/highway.h>

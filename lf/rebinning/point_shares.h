@@ -1,6 +1,6 @@
 // The share of the light through each lens point that a frame interpolates between rebinned rays:
-// from 0 (the point is not queried) to 1. It differs from element to element: shares are given at
-// nodes on the plate and interpolated between these.
+// from 0 (the point is not queried) to 1. The share differs from element to element: shares are
+// given at nodes on the plate and interpolated between these.
 #pragma once
 
 #include <cstddef>
@@ -19,8 +19,8 @@ class NodeAxis {
   // Makes one node.
   explicit NodeAxis(int size_px) : NodeAxis(size_px, 1) {}
   // Makes `count` nodes at equal distances. If count is 3 or more, adds nodes near both ends,
-  // because the field of view of LF images may end there; those less than an element from the end
-  // are left out. A side of one element has one node.
+  // because the field of view of LF images may end there; added nodes less than an element from the
+  // end are left out. A side of one element has one node.
   NodeAxis(int size_px, int count);
 
   int count() const { return static_cast<int>(nodes_px_.size()); }
@@ -38,14 +38,14 @@ class NodeAxis {
 
  private:
   std::vector<double> nodes_px_;
-  std::vector<Place> places_;  // [size_px]
+  std::vector<Place> places_;  // one for each element of the side
 };
 
 struct PointShares {
   NodeAxis columns;
   NodeAxis rows;
   size_t point_count = 0;  // number of lens points in all sets; points are in the order of the sets
-  std::vector<float> values;  // [rows][columns][point_count], 0 to 1
+  std::vector<float> values;  // shares at nodes, 0 to 1: [rows][columns][point_count]
 
   size_t node_count() const { return static_cast<size_t>(columns.count()) * rows.count(); }
   // Writes the shares of lens points [first, first + count) at element (x, y) to out[count].

@@ -23,14 +23,15 @@ struct ProbabilityOptions {
   double sigma_px = 1;         // sigma of the Gaussian, at most kMostSigma_px; 0: no smoothing
   double alpha = 8;            // factor of |LoG|, if black is 0 and white is 1; at most kMostAlpha
   double beta = 0;             // threshold of |LoG|, if black is 0 and white is 1
-  double xi = 0.05;            // least p where |LoG| reaches beta, [0, 1)
+  double xi = 0.05;            // least p of pixels whose |LoG| reaches beta; in [0, 1)
   double second_sigma_px = 0;  // sigma of another Gaussian, which smooths p; 0: no smoothing
 };
 inline constexpr double kMostSigma_px = 8;
 inline constexpr double kMostAlpha = 255;
 
-// Returns the stored value of each linear value (light_field/model/radiance.h), 0 for black to
-// 65535 for white: the inverse of RadianceTable() with a gain of 1.  [65536]
+// Returns a table of 65536 stored values, 0 for black to 65535 for white: one for each 16-bit
+// linear value (light_field/model/radiance.h). It is the inverse of RadianceTable() with a gain of
+// 1.
 std::vector<uint16_t> StoredValueTable(const RadianceEncoding& encoding);
 
 // Computes p of the pixels of `rect`, a part of pixels.rect, in units of 1 / 65535.

@@ -1,4 +1,5 @@
-// Probability maps, compiled for every instruction set; one is chosen at run time (Highway).
+// Computes probability maps; compiled for every instruction set, of which the program chooses one
+// at run time (Highway).
 #include <algorithm>
 #include <cstring>
 
@@ -6,7 +7,7 @@
 #include "lf/rebinning/probability_steps.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "lf/rebinning/probability_map_simd.cc"  // NOLINT: as Highway wants it
+#define HWY_TARGET_INCLUDE "lf/rebinning/probability_map_simd.cc"  // NOLINT: Highway reads it
 #include <hwy/foreach_target.h>
 // Must follow foreach_target.h.
 #include <hwy/highway.h>
@@ -18,7 +19,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::ScalableTag<uint32_t>;
 using D16 = hn::Rebind<uint16_t, D>;
 
-// Room for vectors beyond both ends of a row.
+// Number of additional values at both ends of a row, which whole vectors may read or write.
 constexpr size_t kMargin = 64;
 constexpr int kBandRows = 32;  // rows of the result whose intermediate rows fit the L2 cache
 
@@ -50,7 +51,8 @@ void Across(const SmoothingTaps& taps, const uint16_t* HWY_RESTRICT padded, int 
 
 // Computes one row of the vertical smoothing, and writes its outermost values once more beyond both
 // ends.
-//   rows(k)  input row k rows below the row of the result, k from -radius to radius
+//   rows(k)  returns the input row that is k rows below the row of the result; k is -radius to
+//            radius
 template <class RowAt>
 void Down(const SmoothingTaps& taps, const RowAt& rows, int width, uint32_t* HWY_RESTRICT out) {
   const D d;

@@ -4,8 +4,8 @@
 // its borders with its outermost values.
 //
 //   grey     made of stored values                                  [0, 65535]
-//   across   (sum of taps * grey + 128) >> 8                        in 1 / 16
-//   smooth   (sum of taps * across of the rows + 2048) >> 12        in 1 / 16
+//   across   (sum of taps * grey + 128) >> 8                        in units of 1 / 16
+//   smooth   (sum of taps * across of the rows + 2048) >> 12        in units of 1 / 16
 //   change   min(|left + right + above + below - 4 here| >> 4, 65535), of values of smooth
 //   p        min((change * alpha >> 8) + xi, 65535)  where change >= beta, else 0
 //
@@ -35,7 +35,7 @@ SmoothingTaps MakeTaps(double sigma_px);
 struct ProbabilityParameters {
   SmoothingTaps taps;
   SmoothingTaps second_taps;
-  uint32_t alpha = 0;  // in 1 / 256
+  uint32_t alpha = 0;  // in units of 1 / 256
   uint32_t beta = 0;
   uint32_t xi = 0;
 };
@@ -52,21 +52,21 @@ inline uint16_t ProbabilityOf(const ProbabilityParameters& parameters, int32_t l
 // mosaic.
 class GreyRows {
  public:
-  // Refers to the pixels and to the table, which must outlive it; `part` is the part of the pixels
-  // to read.
+  // Refers to the pixels and to the table, which must outlive this object; `part` is the part of
+  // the pixels to read.
   GreyRows(const LfPixels& pixels, const PixelRect& part,
            const std::vector<uint16_t>& stored_values);
   const PixelRect& plane() const { return plane_; }
   int width() const { return plane_.width(); }
   int height() const { return plane_.height(); }
-  void Read(int y, uint16_t* out) const;  // [width]
+  void Read(int y, uint16_t* out) const;  // writes row y to out[width]
 
  private:
   uint16_t GreenOfPair(int x, int y) const;
 
   const LfPixels& pixels_;
   const uint16_t* stored_;
-  PixelRect plane_;  // in pixels, or in 2 x 2 pixels, of the whole LF image
+  PixelRect plane_;  // in pixels of the LF image; of a mosaic, in squares of 2 x 2 pixels
 };
 
 // Writes p of the pixels of `rect`, copied from `of_plane`, the p of a grey plane with the

@@ -32,7 +32,7 @@ struct BinnedCell {
   // too wide if one of them gets this many rays.
   static constexpr uint32_t kMostRays = 65537;
 
-  CellKey cell = 0;  // 0: the slot is empty
+  CellKey cell = 0;  // key of the cell; 0: the slot is empty
   std::array<uint32_t, 3> rgb = {};
   uint32_t count = 0;
 

@@ -21,7 +21,8 @@ namespace {
 
 using namespace ray_map_format;
 
-// Largest number of shards that are in memory twice: an eighth of all, for any number of threads.
+// Largest number of shards whose cells are in memory twice at a time: an eighth of all shards, for
+// any number of threads.
 constexpr size_t kMostTogether = RayMap::kShards / 8;
 size_t Together(const ThreadPool& pool) {
   return std::min(kMostTogether, static_cast<size_t>(pool.thread_count()));
@@ -71,9 +72,9 @@ std::string FaultOf(const Part& part, size_t shard, const RayMap& map) {
     };
     // Ascending keys are neither 0 nor repeated.
     if (cell.cell <= last)
-      return fault(fmt::format("follows cell {:016x}, keys must ascend", last));
+      return fault(fmt::format("follows cell {:016x}, but keys must ascend", last));
     if (RayMap::ShardOf(cell.cell) != shard)
-      return fault(fmt::format("is of shard {}", RayMap::ShardOf(cell.cell)));
+      return fault(fmt::format("belongs to shard {}", RayMap::ShardOf(cell.cell)));
     if (!map.MayHold(cell.cell))
       return fault(fmt::format("its hash {:016x} is not below the limit {:016x}",
                                MixBits(cell.cell), map.limit()));
@@ -95,12 +96,12 @@ Result<Head> ReadHead(const entry_file::Source& source, const std::string& bytes
   if (head.shard_count != RayMap::kShards || head.is_too_coarse > 1)
     return InputError(
         fmt::format("{}: is damaged: it states {} shards, expected {}, and {} as 'cells are too "
-                    "coarse', expected 0 or 1; make it again",
+                    "coarse', expected 0 or 1; the rays in it cannot be used",
                     source.name(), head.shard_count, RayMap::kShards, head.is_too_coarse));
   constexpr uint64_t kLeast = RayMap::kShards * sizeof(ShardHead);
   if (source.left() < kLeast || head.cell_count > (source.left() - kLeast) / sizeof(BinnedCell))
     return InputError(
-        fmt::format("{}: is truncated: {} bytes follow its head, {} cells need more; {}",
+        fmt::format("{}: is truncated: {} bytes follow its head, but {} cells need more; {}",
                     source.name(), source.left(), head.cell_count, kKind.if_broken));
   const uint64_t size_bytes = kLeast + head.cell_count * sizeof(BinnedCell);
   if (source.left() > size_bytes)

@@ -258,7 +258,7 @@ TEST_F(RayMapFile, CellsThatNoMapHoldsAreRefused) {
   EXPECT_EQ(ErrorOf(FileOfCells({a, b}, 5)), "");
   ExpectError(FileOfCells({b, a}, 5), "keys must ascend");
   ExpectError(FileOfCells({a, a}, 5), "keys must ascend");
-  ExpectError(FileOfCells({a, b}, 6), "is of shard 5");
+  ExpectError(FileOfCells({a, b}, 6), "belongs to shard 5");
   ExpectError(FileOfCells({a}, 5, MixBits(a.cell)), "is not below the limit");
   EXPECT_EQ(ErrorOf(FileOfCells({a}, 5, MixBits(a.cell) + 1)), "");
   BinnedCell none = a;

@@ -11,18 +11,17 @@
 
 namespace lf::ray_map_format {
 
-inline constexpr entry_file::Kind kKind = {
-    "LFCELLS\n", 1, "file of rays", "the rays cannot be used: without the file they begin anew"};
+inline constexpr entry_file::Kind kKind = {"LFCELLS\n", 1, "file of rays",
+                                           "the rays in it cannot be used"};
 
-// The file begins with this head. It is followed by the text of the entries and the hash of head
-// and text.
+// The file begins with this head. The text of the entries follows, then the hash of head and text.
 struct Head {
   char magic[8];
   uint32_t version;
   uint32_t text_bytes;
   uint32_t shard_count;
-  uint32_t is_too_coarse;  // 0 or 1
-  uint64_t limit;
+  uint32_t is_too_coarse;  // RayMap::is_too_coarse(): 0 or 1
+  uint64_t limit;          // RayMap::limit()
   uint64_t cell_count;
 };
 static_assert(sizeof(Head) == 40);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr size_t kLeafRays = 16;
 
-// Coordinates of a ray in sigmas of the kernel.
+// Returns the coordinates of a ray in units of the kernel's sigmas.
 std::array<float, 4> Scaled(double lens_x, double lens_y, double x, double y,
                             const QueryKernel& kernel) {
   return {static_cast<float>(lens_x / kernel.sigma_st_w),

@@ -3,10 +3,11 @@
 //   L   = sum w_i L_i / sum w_i
 //   w_i = exp(-|l - l_i|^2 / 2 sigma_st^2 - |p - p_i|^2 / 2 sigma_uv^2)
 //
-// Here l is the ray's point on the lens and p its position on the plate. The sums run over the
-// rebinned rays with |l - l_i|^2 / sigma_st^2 + |p - p_i|^2 / sigma_uv^2 <= kReach_sigmas^2, or
-// over the k rays that are nearest by this measure. (The factor before Eq. 4.5's exponentials is
-// the same for all rays and cancels.)
+// Here l is the queried ray's point on the lens and p its position on the plate; L_i, l_i and p_i
+// are radiance, point and position of the rebinned ray i. The sums run over the rebinned rays with
+// |l - l_i|^2 / sigma_st^2 + |p - p_i|^2 / sigma_uv^2 <= kReach_sigmas^2, or over the k rays that
+// are nearest by this measure. (The factor before Eq. 4.5's exponentials is the same for all rays
+// and cancels.)
 //
 // Rays are found in a k-d tree (nanoflann), as in the thesis. RayQuery answers single queries, and
 // is the reference that splat.h is compared with.
@@ -21,6 +22,7 @@
 
 namespace lf {
 
+// Sigmas of the weights: on the lens, in world units, and on the plate, in elements.
 struct QueryKernel {
   double sigma_st_w = 0;
   double sigma_uv_px = 0;

@@ -10,8 +10,8 @@ namespace lf {
 namespace {
 
 // Computes the colours of pixels of a mosaic whose eight neighbours are all in the image. All
-// pixels take the same steps without a branch, because the processor could not predict branches on
-// the place in the pattern.
+// pixels take the same steps without a branch, because the processor could not predict branches
+// that depend on a pixel's place in the Bayer pattern.
 class InnerMosaic {
  public:
   explicit InnerMosaic(const LfPixels& pixels) {
@@ -33,7 +33,7 @@ class InnerMosaic {
   }
 
   // Each channel is the value of the pixel itself, or the mean of two or four neighbours. It is
-  // always computed as the mean of four values, some of which are then equal pixels.
+  // always computed as the mean of four values, among which a pixel may occur several times.
   std::array<uint16_t, 3> At(const uint16_t* v, int x, int y) const {
     std::array<uint16_t, 3> rgb;
     const std::array<FourOffsets, 3>& of = offsets_[2 * (y & 1) + (x & 1)];
@@ -128,7 +128,7 @@ std::array<uint16_t, 3> RgbOf(const LfPixels& pixels, const InnerMosaic& inner, 
   return {v[0], v[1], v[2]};
 }
 
-// Adds the rays of one LF image, row by row.
+// Adds the rays of one LF image to BinnedRays, row by row.
 class ImageRebinner {
  public:
   ImageRebinner(const Slab& slab, const PinholeCamera& lf_camera, LfImageId id,
@@ -212,7 +212,7 @@ static_assert(kBandRows % RebinCoverage::kBlock == 0);
 // Pixels within a band that are covered by the same kind of map: `whole` or `by_edges`.
 struct PixelRun {
   PixelRect rect;
-  bool is_whole;            // covered by RebinCoverage::whole
+  bool is_whole;            // true if RebinCoverage::whole covers them
   const IdealPatch* patch;  // the patch with these pixels; null without distortion
 };
 

@@ -2,8 +2,9 @@
 // are kept.
 //
 // The ray of a pixel is kept if a random number in [0, 1) is below its p (probability_map.h). The
-// number depends only on seed, LF image and pixel, so the kept rays depend neither on the number of
-// threads, nor on the order of the LF images, nor on the part of an LF image that is read.
+// random number depends only on seed, LF image and pixel, so the kept rays depend neither on the
+// number of threads, nor on the order of the LF images, nor on the part of an LF image that is
+// read.
 #pragma once
 
 #include <array>
@@ -24,7 +25,7 @@ struct RebinOptions {
   ProbabilityOptions probability;
   uint64_t seed = 0;
   // If true, rays that are not kept are added to the cells that exist already. This reduces noise,
-  // but the cell of every pixel's ray must be found (thesis 5.3).
+  // but takes longer, because the cell of every pixel's ray must be found (thesis 5.3).
   bool averages_others = false;
   // Sigma of a Gaussian that smooths each channel over the LF pixels that recorded it. Reduces
   // noise if few rays are kept. At most kMostSigma_px; 0: colours as recorded.
@@ -37,8 +38,9 @@ int PixelsAround(const RebinOptions& options, bool is_mosaic);
 // Rays of some LF images, sorted into the shards of a RayMap. Clear() keeps the memory for reuse.
 struct BinnedRays {
   std::array<std::vector<BinnedRay>, RayMap::kShards> kept;
-  std::array<std::vector<BinnedRay>, RayMap::kShards> others;  // empty unless averages_others
-  uint64_t looked_at = 0;                                      // number of covered LF pixels
+  // Rays that are not kept; empty unless RebinOptions::averages_others is true.
+  std::array<std::vector<BinnedRay>, RayMap::kShards> others;
+  uint64_t looked_at = 0;  // number of covered LF pixels
 
   void Clear();
 };
@@ -48,7 +50,7 @@ struct BinnedRays {
 struct RebinCoverage {
   static constexpr int kBlock = 8;
   const CoverageMap* whole = nullptr;  // all rays of the squares that it covers are kept
-  // Rays of the squares that only these maps cover are kept with the probability of Eq. 4.4.
+  // Rays of the squares that only these maps cover are kept with the probability p of Eq. 4.4.
   std::array<const CoverageMap*, 2> by_edges = {};
 };
 
@@ -70,7 +72,7 @@ void RebinImage(const Slab& slab, const PinholeCamera& lf_camera, LfImageId id,
                 BinnedRays* rays);
 
 // Returns the approximate share of the pixels of `rect` that the map covers. Tests only the middles
-// of squares, and ignores lens distortion.
+// of squares of RebinCoverage::kBlock pixels a side, and ignores lens distortion.
 double CoveredShare(const Slab& slab, const PinholeCamera& lf_camera, const PixelRect& rect,
                     const CoverageMap& map);
 

@@ -5,8 +5,8 @@
 namespace lf {
 namespace {
 
-// Returns the parameters along the ray where it cuts the two planes; none if it does not cut the st
-// plane first.
+// Returns the parameters along the ray where it cuts the two planes; none if the ray is parallel to
+// a plane or does not cut the st plane first.
 std::optional<std::array<double, 2>> Parameters(const std::array<double, 2>& distances,
                                                 const std::array<double, 2>& slopes) {
   if (slopes[0] == 0 || slopes[1] == 0) return {};
@@ -69,6 +69,7 @@ SlabForms MakeSlabForms(const Slab& slab, const PinholeCamera& lf_camera) {
     const Vec3 normal = here.Normal(), offset = centre - here.origin_world;
     forms.distances[plane] = -normal.dot(offset);
     forms.denominators[plane] = normal.transpose() * direction;
+    // A ray of direction d cuts the plane with normal n at the point X:
     // (X - origin) n.d = [ offset n^T - (n.offset) I ] d
     const Mat3 meet = offset * normal.transpose() - normal.dot(offset) * Mat3::Identity();
     forms.numerators[2 * plane] = here.axis_a.transpose() * meet * direction;

@@ -2,7 +2,8 @@
 // (thesis 2.1.1, 4.3.2).
 //
 // A ray that cuts the st plane at (s, t) and the uv plane at (u, v), measured along the planes'
-// axes from their origins, is in the cell (thesis Eq. 4.3, with a width for each plane)
+// axes from their origins, is in the cell (thesis Eq. 4.3, with cell widths r_st and r_uv for the
+// two planes)
 //
 //   (floor(s / r_st), floor(t / r_st), floor(u / r_uv), floor(v / r_uv))
 //
@@ -22,7 +23,7 @@ namespace lf {
 
 struct SlabPlane {
   Vec3 origin_world = Vec3::Zero();
-  Vec3 axis_a = Vec3::UnitX();  // unit vectors, perpendicular to each other
+  Vec3 axis_a = Vec3::UnitX();  // both axes are unit vectors, at right angles
   Vec3 axis_b = Vec3::UnitY();
 
   Vec3 Normal() const { return axis_a.cross(axis_b); }
@@ -31,11 +32,11 @@ struct SlabPlane {
 struct Slab {
   SlabPlane st;
   SlabPlane uv;
-  double r_st_w = 0;  // width of a cell on either plane, world units
-  double r_uv_w = 0;
+  double r_st_w = 0;  // width of a cell on the st plane, world units
+  double r_uv_w = 0;  // width of a cell on the uv plane, world units
 };
 
-// (s, t, u, v), world units.
+// The points (s, t) and (u, v) where a ray cuts the two planes: s, t, u, v, in world units.
 using SlabPoint = Eigen::Vector4d;
 
 // Returns the points where a ray cuts the planes; none if the ray is parallel to one of them, or
@@ -53,10 +54,12 @@ inline constexpr int kCellOffset = 32768;
 inline constexpr int kCellAxes = 4;
 inline constexpr int kMostCells = 32767;  // cells on either side of the origin, along each axis
 
-// Returns the key of the cell that contains a point, given in cells instead of world units. Returns
-// none if a coordinate is beyond kMostCells.
+// Returns the key of the cell that contains a point whose coordinates are in widths of cells
+// instead of world units. Returns none if a coordinate is not in [-kMostCells, kMostCells).
 std::optional<CellKey> KeyOf(const SlabPoint& cells);
+// Returns the key of the cell that contains a point in world units; none as for KeyOf().
 std::optional<CellKey> CellOf(const Slab& slab, const SlabPoint& point);
+// Returns the middle of a cell, in world units.
 SlabPoint MiddleOf(const Slab& slab, CellKey key);
 
 // The points where the rays of an LF camera cut a slab, as quotients of linear forms in the ideal
@@ -66,17 +69,18 @@ SlabPoint MiddleOf(const Slab& slab, CellKey key);
 struct SlabForms {
   std::array<PixelForm, kCellAxes> numerators;
   std::array<PixelForm, 2> denominators;  // one for the st plane, one for the uv plane
-  // The ray cuts a plane at the parameter distances[plane] / (denominators[plane] p).
+  // The ray's parameter where it cuts a plane (0: st, 1: uv) is distances[plane] /
+  // (denominators[plane] p).
   std::array<double, 2> distances;
 };
 SlabForms MakeSlabForms(const Slab& slab, const PinholeCamera& lf_camera);
-// Like MakeSlabForms(), but points are in cells instead of world units: the key of the ray of a
-// position is KeyOf(Parameterize(forms, position)).
+// Like MakeSlabForms(), but points are in widths of cells instead of world units: the cell of the
+// ray of a pixel position has the key KeyOf(Parameterize(forms, position)).
 SlabForms MakeCellForms(const Slab& slab, const PinholeCamera& lf_camera);
 
-// Returns the same as Parameterize() for the ray of the position, except for rounding, and except
-// that the point may be infinite if the ray is parallel to a plane. KeyOf() returns none for such a
-// point.
+// Returns the same as Parameterize(slab, ray) for the ray of the pixel position, except for
+// rounding, and except that the point may be infinite if the ray is parallel to a plane. KeyOf()
+// returns none for such a point.
 std::optional<SlabPoint> Parameterize(const SlabForms& forms, const Vec3& position);
 
 }  // namespace lf

@@ -8,11 +8,12 @@ namespace lf {
 namespace {
 
 constexpr double kMostTurn_rad = RadiansFromDegrees(30);
-constexpr double kMostCoarser = 1.5;  // acceptable width of a cell, in wanted widths
+constexpr double kMostCoarser = 1.5;  // largest acceptable width of a cell, in wanted widths
 constexpr double kStPerDistance = 0.25, kLeastStPerDistance = 1.0 / 256;
 constexpr double kUvPerPixel = 0.25, kUvPerElement = 0.125;
 
-// Visits the focus points of positions all over the plate and up to one reach beyond its edges.
+// Visits the focus points of 5 x 5 positions, which are spread over the plate and up to one reach
+// beyond its edges.
 template <class Visit>
 void ForEachPlace(const FrameQueries& frame, const Visit& visit) {
   constexpr int kSteps = 4;
@@ -77,8 +78,8 @@ class SectionPlanner {
     return all_look_along;
   }
 
-  // Returns the distance along the normal that differs equally in disparity from the nearest and
-  // the farthest focus.
+  // Returns the distance of the uv plane from the st plane: half-way in disparity between the
+  // nearest and the farthest focus distance along the normal.
   double FocusDistance(const SlabSection& section, const Vec3& position, const Vec3& normal) const {
     if (choices_.uv_distance_w) return *choices_.uv_distance_w;
     double least = std::numeric_limits<double>::infinity(), most = 0;
@@ -97,8 +98,8 @@ class SectionPlanner {
     return 2 / (1 / least + 1 / most);
   }
 
-  // Sets the bounds and moves the planes' origins to their middle. Returns true if all rays cut
-  // both planes.
+  // Sets the bounds, and moves the planes' origins to the middle of the bounds. Returns true if all
+  // rays cut both planes.
   bool SetBounds(SlabSection* section) const {
     bool all_cut = true;
     const std::optional<SlabBounds> bounds = BoundsOf(

@@ -1,5 +1,5 @@
-// Chooses the position of the slab and the width of its cells, so that the rays of some frames are
-// told apart well (thesis 4.3.2, "primary slab").
+// Chooses the position of the slab and the width of its cells, so that the cells distinguish the
+// rays that some frames query (thesis 4.3.2, "primary slab").
 //
 // The st plane passes through the mean position of the frames' cameras and faces in their mean
 // direction. The uv plane is parallel to it, at the focus of the frames: half-way in disparity
@@ -7,10 +7,10 @@
 //
 // On the uv plane, a cell is as wide as a quarter of an LF pixel there or an eighth of an element,
 // whichever is more. On the st plane, a cell is at most as wide as a quarter of the distance
-// between LF cameras. If the focus is pulled away from the uv plane, cells of the st plane are
-// narrower: across one of them, the point of a ray in focus must not move by more than a cell of
-// the uv plane. Cells of the st plane are never narrower than 1/256 of the distance between LF
-// cameras.
+// between LF cameras. If a frame focuses beside the uv plane, cells of the st plane are narrower:
+// while a ray through a point in focus moves across one of them, it must not move across more than
+// one cell of the uv plane. Cells of the st plane are never narrower than 1/256 of the distance
+// between LF cameras.
 #pragma once
 
 #include <cstddef>
@@ -29,7 +29,7 @@ struct SlabChoices {
   std::optional<Vec3> position_world;    // position of the st plane
   std::optional<Vec3> forward_world;     // direction that the st plane faces
   std::optional<double> uv_distance_w;   // distance of the uv plane from the st plane; above 0
-  std::optional<double> r_st_w, r_uv_w;  // widths of cells; above 0
+  std::optional<double> r_st_w, r_uv_w;  // widths of cells on each plane, world units; above 0
 };
 
 // Bounds of points of a slab, in world units along its axes.
@@ -43,7 +43,7 @@ struct SlabSection {
   size_t begin = 0;
   size_t end = 0;
   Slab slab;
-  SlabBounds bounds;      // bounds of the rays that the frames query, their reach included
+  SlabBounds bounds;      // bounds of the rays within reach of the frames' queries
   double pixel_uv_w = 0;  // width of an LF pixel on the uv plane
 };
 
@@ -54,8 +54,8 @@ struct SlabSection {
 std::vector<SlabSection> PlanSlabs(std::span<const FrameQueries> frames,
                                    const SlabChoices& choices);
 
-// Returns the bounds on the slab of all rays that the frames query, their reach included; none if
-// no ray cuts both planes.
+// Returns the bounds, on the slab, of all rays within reach of the frames' queries; none if no ray
+// cuts both planes.
 //   all_cut  becomes false if a ray does not cut both planes; may be null
 std::optional<SlabBounds> BoundsOf(const Slab& slab, std::span<const FrameQueries> frames,
                                    bool* all_cut = nullptr);

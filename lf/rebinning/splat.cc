@@ -107,7 +107,7 @@ class LensGrid {
 struct GroupedPoint {
   Vec2 at;
   double sigma_st_w;
-  size_t number;  // index in PointShares
+  size_t number;  // index of the point in PointShares
 };
 
 // Groups the points of a set into groups of at most eight points near each other: cuts the lens
@@ -305,8 +305,8 @@ SplatFrame SplatReference(std::span<const FrameRay> rays, int width_px, int heig
                           ThreadPool& pool, const PointShares* shares, size_t nearest) {
   SplatFrame frame = EmptyFrame(width_px, height_px);
   if (rays.empty()) return frame;
-  std::map<double, std::unique_ptr<RayQuery>> queries;  // by spread
-  std::vector<size_t> firsts = {0};                     // first index of each set in the shares
+  std::map<double, std::unique_ptr<RayQuery>> queries;  // key: spread of a lens point
+  std::vector<size_t> firsts = {0};  // index in the shares of each set's first point
   for (size_t set = 0; set < lens_points.sets.size(); ++set) {
     firsts.push_back(firsts.back() + lens_points.sets[set].size());
     for (size_t i = 0; i < lens_points.sets[set].size(); ++i) {

@@ -22,8 +22,8 @@ namespace lf {
 
 struct SplatFrame {
   Image<float> rgb;  // [height][width][3]: mean of the rays that could be interpolated, linear
-  // [height][width]: sum of the shares of the lens points with an interpolated ray (1 each without
-  // PointShares) / number of lens points, 0 to 1
+  // [height][width]: the sum of the shares of those lens points whose ray could be interpolated
+  // (without PointShares, each share is 1), divided by the number of lens points; 0 to 1
   Image<float> share;
 };
 

@@ -1,4 +1,5 @@
-// Splats, compiled for every instruction set; one is chosen at run time (Highway).
+// Computes splats; compiled for every instruction set, of which the program chooses one at run time
+// (Highway).
 //
 // Products and sums are never fused, and lanes are added up in a fixed order, so results are
 // bit-identical on every instruction set.
@@ -9,7 +10,7 @@
 #include "lf/rebinning/splat_tile.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "lf/rebinning/splat_simd.cc"  // NOLINT: as Highway wants it
+#define HWY_TARGET_INCLUDE "lf/rebinning/splat_simd.cc"  // NOLINT: Highway reads this macro
 #include <hwy/foreach_target.h>
 // Must follow foreach_target.h.
 #include <hwy/highway.h>
@@ -51,7 +52,8 @@ struct Along {
   HWY_ALIGN float gaussian[kMostAcross];
 
   //   place  position of the ray, in elements of the grid, from the centre of the first element
-  //   scale  k / sigma
+  //   scale  k / sigma: distance between elements of the grid, in sigmas
+  //   count  number of columns or rows of the grid
   HWY_INLINE void Find(float place, float scale, int count) {
     const float reach = static_cast<float>(kReach_sigmas) / scale;
     begin = std::max(0, static_cast<int>(std::ceil(place - reach)));

@@ -17,13 +17,13 @@ struct LensPointGroup {
   static constexpr float kNowhere = 1e18F;  // coordinates of unused lanes
   std::array<float, kPoints> x;
   std::array<float, kPoints> y;
-  std::array<float, kPoints> per_st2;  // 1 / (spread sigma_st)^2
+  std::array<float, kPoints> per_st2;  // 1 / (spread * sigma_st)^2 of each point
   double reach_w = 0;                  // largest reach of the points
   int count = 0;
   size_t first = 0;  // index of the first point in the order of the groups
 };
 
-// The elements (x0 + k column, y0 + k row) of a tile, which use the same lens points.
+// The elements (x0 + k * column, y0 + k * row) of a tile. All of them use the same lens points.
 struct SplatGrid {
   int x0 = 0;
   int y0 = 0;
