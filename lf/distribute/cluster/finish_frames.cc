@@ -80,7 +80,7 @@ Result<size_t> AskToFinish(const ClusterJob& job, const std::string& frames_text
     if (!HasRays(job, *package, frame))
       return UsageError(fmt::format(
           "--finish: frame {} has no rays yet: {} was not begun, or has written no checkpoint of "
-          "it; wait for {}/partial/{}/frame_{:04}.plate",
+          "the frame; wait for {}/partial/{}/frame_{:04}.plate",
           frame.value, package->name, job.output_folder.string(), package->name, frame.value));
   }
   if (unfinished_count == 0) return unfinished_count;

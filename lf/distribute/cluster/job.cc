@@ -20,8 +20,8 @@ namespace {
 
 constexpr size_t kJobLimit_bytes = size_t{64} << 20;
 constexpr const char* kJobFormat = "lfjob 1";
-constexpr size_t kMostFrames = 1'000'000;        // of a package
-constexpr size_t kMostFramesOfJob = 10'000'000;  // of all packages together
+constexpr size_t kMostFrames = 1'000'000;        // largest frame number
+constexpr size_t kMostFramesOfJob = 10'000'000;  // largest number of frames of all packages
 
 // Returns true if the text contains control characters, such as line breaks, which would start a
 // new line in a batch script.
@@ -48,7 +48,7 @@ std::string FaultOf(const ClusterJob& job) {
     return fmt::format("\"slurm_finishing\": expected the number of a job, found \"{}\"",
                        job.slurm_finishing_id);
   if (!job.frame_extension.starts_with('.') || job.frame_extension.find('/') != std::string::npos)
-    return fmt::format("\"frame_extension\": expected one such as .exr, found \"{}\"",
+    return fmt::format("\"frame_extension\": expected an extension such as .exr, found \"{}\"",
                        job.frame_extension);
   return "";
 }
@@ -177,14 +177,16 @@ Result<ClusterJob> ParseJob(std::string_view text, const std::string& name) {
       job.packages.push_back(PackageFromJson(*item, &fault));
       frame_count += job.packages.back().frames.size();
       if (fault.empty() && frame_count > kMostFramesOfJob)
-        fault = fmt::format("\"packages\": expected at most {} frames together", kMostFramesOfJob);
+        fault = fmt::format("\"packages\": expected at most {} frames in all packages together",
+                            kMostFramesOfJob);
       if (!fault.empty()) break;
     }
     const auto known = ClusterEngineOf(engine);
     if (known) job.engine = *known;
     if (fault.empty() && !known)
       fault = fmt::format("\"engine\": expected local or slurm, found \"{}\"", engine);
-    if (fault.empty() && job.packages.empty()) fault = "\"packages\": expected some, found none";
+    if (fault.empty() && job.packages.empty())
+      fault = "\"packages\": expected at least one package, found none";
     if (fault.empty()) fault = FaultOf(job);
   }
   if (!fault.empty())
@@ -210,7 +212,7 @@ Result<void> CheckMayRun(const ClusterJob& job) {
         fmt::format("{}: cannot be read: {}", job.File().string(), std::strerror(errno)));
   if (status.st_uid == ::geteuid() || status.st_uid == 0) return {};
   return UsageError(
-      fmt::format("{}: belongs to another user (number {}), and the program and options that it "
+      fmt::format("{}: belongs to another user (id {}), and the program and options that it "
                   "names would run "
                   "as you: submit the packages anew, into a folder of your own",
                   job.File().string(), status.st_uid));

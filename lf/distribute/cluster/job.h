@@ -27,19 +27,19 @@ namespace lf {
 
 enum class ClusterEngine { kLocal, kSlurm };
 const char* NameOf(ClusterEngine engine);
-std::optional<ClusterEngine> ClusterEngineOf(std::string_view name);  // nullopt: another word
+std::optional<ClusterEngine> ClusterEngineOf(std::string_view name);  // nullopt: of no engine
 
 struct JobPackage {
   std::filesystem::path file;
   std::string name;             // name of the file without extension
   std::vector<FrameId> frames;  // frames to render, ascending
   bool is_whole = true;         // true if `frames` are all frames of the package
-  uint64_t ray_count = 0;       // rays of these frames, approximately
+  uint64_t ray_count = 0;       // approximate number of rays of `frames`
 };
 
 struct ClusterJob {
   std::filesystem::path output_folder;   // DIR
-  std::filesystem::path working_folder;  // lfrenderer runs here; relative paths start here
+  std::filesystem::path working_folder;  // folder where lfrenderer runs; relative paths start here
   std::filesystem::path renderer;        // path of lfrenderer
   std::filesystem::path submitter;       // path of lfsubmit, for batch scripts
   std::vector<JobPackage> packages;
@@ -52,7 +52,7 @@ struct ClusterJob {
   // number of packages rendered at the same time; 0: no limit (slurm), one (local)
   size_t at_once = 0;
   int thread_count = 1;        // threads of each task
-  uint64_t memory_bytes = 0;   // --memory of each task
+  uint64_t memory_bytes = 0;   // --memory of lfrenderer in each task; 0: lfrenderer's default
   uint32_t most_crashes = 10;  // a package that crashes more often fails
   double time_limit_s = 0;     // time limit of a task (slurm); 0: the partition's limit
   std::vector<std::string> sbatch_options;
@@ -65,7 +65,8 @@ struct ClusterJob {
   std::filesystem::path File() const { return Folder() / "job.json"; }
   std::filesystem::path CancelFile() const { return Folder() / "cancelled"; }
   std::filesystem::path FinishFramesFile() const { return Folder() / "finish_frames.json"; }
-  // Locked by the local engine while it runs, and by programs that change the job (TakeJob()).
+  // Returns the file that the local engine locks while it runs, and that programs lock while they
+  // change the job (TakeJob()).
   std::filesystem::path EngineLock() const { return Folder() / "lock"; }
   bool IsCancelled() const;
 };
@@ -91,7 +92,7 @@ Result<void> WriteJob(const ClusterJob& job);
 Result<ClusterJob> ReadJob(const std::filesystem::path& output_folder);
 
 // Returns kUsage if job.json belongs to another user (except root), because the commands in it
-// would run with the rights of the caller.
+// would run with the rights of the caller. kInput: job.json cannot be read.
 Result<void> CheckMayRun(const ClusterJob& job);
 
 }  // namespace lf

@@ -61,7 +61,7 @@ void TakeFacts(const ClusterJob& job, const JobPackage& package, const std::set<
                TaskStatus* status) {
   status->frame_total = package.frames.size();
   status->ray_total = package.ray_count;
-  if (status->state.start_count == 0) return;  // existing frames are from another render
+  if (status->state.start_count == 0) return;  // any existing frames are from another render
   for (const FrameId frame : package.frames)
     if (names.contains(fmt::format("frame_{:04}{}", frame.value, job.frame_extension)))
       ++status->frames_done;
@@ -76,7 +76,7 @@ void TakeQueue(const std::vector<QueuedTask>& queue, JobStatus* status) {
     task.queue = queued.state;
     if (queued.state == "PENDING") {
       task.message = queued.reason;
-      // The task was requeued, and has not started again yet.
+      // A pending task that "runs" was requeued, and has not started again yet.
       if (task.state.phase == TaskPhase::kRunning) task.state.phase = TaskPhase::kInterrupted;
     }
   }

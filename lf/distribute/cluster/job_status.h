@@ -18,10 +18,10 @@ struct TaskStatus {
   std::string message;  // latest message of the task
   size_t frames_done = 0;
   size_t frame_total = 0;
-  std::optional<uint64_t> rays_left;  // as lfrenderer last reported; unset: no report
+  std::optional<uint64_t> rays_left;  // number of rays left, by lfrenderer's last report, if any
   uint64_t rays_done = 0;             // how many of the forecast ray_total rays are done
   uint64_t ray_total = 0;
-  uint64_t image_done = 0;  // LF images read since the last start
+  uint64_t image_done = 0;  // number of LF images read since the last start
   uint64_t image_total = 0;
   double rate = 0;  // in `unit` per second; 0 if the task does not run
   std::string unit;

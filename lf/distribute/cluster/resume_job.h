@@ -23,7 +23,7 @@ Result<FileLock> TakeJob(const ClusterJob& job);
 Result<void> MakeRoomForJob(const ClusterJob& job, bool overwrite);
 
 // Removes the request to cancel the job, and returns the packages to start: those that are neither
-// done nor queued. Resets the crash counts of the packages to start that do not run. If the film
+// done nor queued. Resets the crash counts of these packages, except of those that run. If the film
 // was finished, but packages must be rendered again, removes the state of the finishing task. The
 // caller must hold the lock of TakeJob(). kOutput: the batch system does not answer, or a file
 // cannot be written or removed.

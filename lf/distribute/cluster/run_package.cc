@@ -317,8 +317,8 @@ Result<void> FinishFilm(const ClusterJob& job, const std::string& node,
   if (!is_whole) words.insert(words.end(), {"--frames", FrameRangeText(frames)});
   if (job.video) words.insert(words.end(), {"--video", job.video->string()});
   if (!job.contact_sheet) words.emplace_back("--no-contact-sheet");
-  // Remove the report of an earlier finishing task. Otherwise, if this task fails, the old report
-  // would look like its result.
+  // Removes the report of an earlier finishing task, because it would look like the result of this
+  // task if this task failed.
   const fs::path report = job.Folder() / "report.json";
   std::error_code ignored;
   fs::remove(report, ignored);

@@ -20,8 +20,8 @@ namespace lf {
 //
 // The phase of the result is kDone; kInterrupted, because of `stop` or because the job was
 // cancelled; or kFailed, because lfrenderer could not be started, ended with an exit code other
-// than 0, 5 and 6, or crashed more often than the job allows. A package that is done and whose
-// frames all exist is not rendered again.
+// than 0, kInterrupted and kBelowRequired, or crashed more often than the job allows. A package
+// that is done and whose frames all exist is not rendered again.
 // kOutput: another process holds the task's lock for two minutes; the state cannot be written.
 // kInput: the state is damaged.
 Result<TaskState> RunPackage(const ClusterJob& job, size_t number, const std::string& node,

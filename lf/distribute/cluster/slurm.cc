@@ -15,7 +15,7 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kPatience_s = 60;  // a busy slurmctld answers slowly
+constexpr double kPatience_s = 60;  // timeout of a Slurm command: a busy slurmctld answers slowly
 
 // Returns the error output of a program as one line; if it is empty, its standard output.
 std::string Complaints(const CommandAnswer& answer) {
@@ -97,14 +97,14 @@ std::string PackagesScript(const ClusterJob& job) {
   const std::string cancelled = ShellWord(job.CancelFile().string());
   std::string text =
       Head(job, "packages-%a") +
-      "# The system may take a node away, or begin a task again where its node died.\n"
+      "# Slurm may requeue a task if its node dies or is needed for other jobs.\n"
       "#SBATCH --requeue\n"
-      "# Before the time limit, for lfrenderer to write its state.\n"
+      "# SIGTERM arrives 120 s before the time limit, so that lfrenderer can write its state.\n"
       "#SBATCH --signal=B:TERM@120\n" +
       UserOptions(job) +
       fmt::format(
-          "# Made by lfsubmit. Each task renders one package and goes on with the checkpoint that "
-          "is there:\n"
+          "# Made by lfsubmit. Each task renders one package, from its checkpoint if there is one. "
+          "To submit all:\n"
           "# sbatch --array={} {}\n"
           "\n"
           "is_ending=\n"
@@ -118,12 +118,11 @@ std::string PackagesScript(const ClusterJob& job) {
           "    wait $task\n"
           "    code=$?\n"
           "  done\n"
-          "  [[ $code -gt 128 && ! $is_ending ]] || break  # killed: again\n"
+          "  [[ $code -gt 128 && ! $is_ending ]] || break  # lfsubmit was killed: start it again\n"
           "done\n"
           "\n"
-          "# Interrupted before the time limit, or for others: later again, unless somebody wants "
-          "the "
-          "end.\n"
+          "# A task that was interrupted (time limit, other jobs) is requeued, unless the job\n"
+          "# was cancelled or the task was removed from the queue.\n"
           "me=${{SLURM_ARRAY_JOB_ID}}_$SLURM_ARRAY_TASK_ID\n"
           "if [[ $code == 5 || $is_ending ]] && [[ $code != 0 && ! -e {} ]] &&\n"
           "   [[ $(squeue -h -j \"$me\" -o %T) == RUNNING ]]; then\n"
@@ -139,11 +138,9 @@ std::string PackagesScript(const ClusterJob& job) {
 std::string FinishingScript(const ClusterJob& job) {
   return Head(job, "finish") + "#SBATCH --requeue\n" + UserOptions(job) +
          fmt::format(
-             "# Made by lfsubmit. When no package is left to render: makes sure that all frames "
-             "are "
-             "there, then\n"
-             "# writes contact sheet and video. It fails, and says what is missing, where frames "
-             "are.\n"
+             "# Made by lfsubmit. Runs after all packages: checks that all frames exist, then "
+             "writes the\n"
+             "# contact sheet and the video. Fails if frames are missing, and names them.\n"
              "\n"
              "exec {} --run-finish {}\n",
              ShellWord(job.submitter.string()), ShellWord(job.output_folder.string()));

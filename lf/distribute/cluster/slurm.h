@@ -30,10 +30,11 @@ std::string FinishingScript(const ClusterJob& job);
 //   numbers  ascending
 std::string ArrayText(const std::vector<size_t>& numbers);
 
-// Writes the scripts, and submits these packages and then the finishing task. A finishing task that
-// already waits in the queue is replaced. The finishing task depends on the packages with afterany,
-// because afterok would wait for ever if a task was requeued. Stores the ids of the submissions in
-// the job and writes job.json. kUsage: a path contains control characters. kOutput: sbatch fails.
+// Writes the scripts, and submits some packages (`numbers`: indices in job->packages) and then the
+// finishing task. A finishing task that already waits in the queue is replaced. The finishing task
+// depends on the packages with afterany, because afterok would wait for ever if a task was
+// requeued. Stores the ids of the submissions in the job and writes job.json. kUsage: a path
+// contains control characters. kOutput: sbatch fails, or the disk.
 // If sbatch refuses the packages of a new job, job.json is removed; if it refuses the finishing
 // task, waiting tasks are cancelled.
 Result<void> SubmitToSlurm(ClusterJob* job, const std::vector<size_t>& numbers);

@@ -16,7 +16,8 @@ namespace {
 constexpr size_t kTaskLimit_bytes = size_t{1} << 20;
 constexpr const char* kTaskFormat = "lftask 1";
 
-// Reads the entry `name` of the object "counts", [done, total]. Changes nothing if there is none.
+// Reads the entry `name`, [done, total], of the object "counts" of a progress line. Changes nothing
+// if there is none.
 void GetCount(const Json& line, const char* name, uint64_t* done, uint64_t* total) {
   const auto counts = line.find("counts");
   if (counts == line.end() || !counts->is_object()) return;

@@ -24,12 +24,12 @@ const char* NameOf(TaskPhase phase);
 
 struct TaskState {
   TaskPhase phase = TaskPhase::kWaiting;
-  std::string node;          // name of the machine of the last start
+  std::string node;          // name of the machine where the task was last started
   int64_t process = 0;       // process id of lfrenderer on this node
   uint32_t start_count = 0;  // number of starts of lfrenderer
   uint32_t crash_count = 0;  // number of crashes of lfrenderer or its node
   int exit_code = 0;         // exit code of the last lfrenderer; 0 or 6 if `phase` is kDone
-  std::string message;       // why the task does not run
+  std::string message;       // why the task does not run, or why its exit code is not 0
   double begin_s = 0;        // time of the last start, in seconds since 1970
   double end_s = 0;
 
@@ -47,11 +47,11 @@ Result<void> WriteTaskState(const TaskState& state, const std::filesystem::path&
 
 // The last progress that lfrenderer wrote to its log (--progress json).
 struct TaskProgress {
-  uint64_t done = 0, total = 0;  // number of units; after a resume, only of the work that was left
+  uint64_t done = 0, total = 0;  // work in `unit`; after a resume, without the work done before
   std::string unit;
   double rate = 0;  // in `unit` per second
   double seconds_left = 0;
-  uint64_t image_done = 0, image_total = 0;  // LF images
+  uint64_t image_done = 0, image_total = 0;  // numbers of LF images: read, and to be read in all
   double quiet_s = 0;                        // seconds since the log was last written
   std::string message;                       // last line of the log that is a message
 };
@@ -66,7 +66,7 @@ TaskProgress ReadProgress(const std::filesystem::path& log);
 // Returns the messages since the last start, as far as they are in the last 16 KiB of the log.
 std::vector<std::string> LinesOfLastStart(const std::filesystem::path& log);
 
-// The beginning of the line in a log that precedes the output of each start.
+// Beginning of the header line that precedes the output of each start of lfrenderer in a log.
 inline constexpr std::string_view kLogStart = "-- ";
 
 }  // namespace lf

@@ -14,25 +14,26 @@ namespace lf {
 
 // The error of one image. Errors of several images can be added.
 struct CodeError {
-  double squared = 0;  // sum of (difference / range from black to white)^2
-  uint64_t count = 0;  // number of values
+  double squared = 0;  // sum over all values of (difference / range from black to white)^2
+  uint64_t count = 0;  // number of these values
 
   CodeError& operator+=(const CodeError& other) {
     squared += other.squared;
     count += other.count;
     return *this;
   }
-  // PSNR of all values together; infinite if there is no difference.
+  // Returns the PSNR of all values together; infinite if there is no difference.
   double PsnrDb() const;
 };
 
-// Returns the size of a grey step in stored values: the range from black to white has 255 steps. It
-// is 1 for 8 bits and 257 for 16 bits, unless levels are stated. Half floats are measured as
-// integers with the same bits, because 1024 such integers are a factor of two in radiance; their
-// step is 16, which is about 1 %.
+// Returns the size of a grey step in stored values: the range from black to white has 255 steps. A
+// step is 1 for 8 bits and 257 for 16 bits, unless the encoding states other levels of black and
+// white. Half floats are measured as integers with the same bits, because 1024 such integers are a
+// factor of two in radiance; their step is 16, which is about 1 % of the radiance.
 double GreyStep(const RadianceEncoding& encoding, StoredValues values);
 
-// Returns the error of one image. `decoded` must be the whole image.
+// Returns the error of one image: the difference of `decoded`, which must be the whole image, from
+// the original `coded`.
 CodeError ErrorOf(const CodecPixels& coded, const DecodedPart& decoded, double grey_step);
 
 }  // namespace lf

@@ -57,7 +57,7 @@ Result<PackedStoreWriter> OpenWriter(const CompressSource& source, const Compres
   return PackedStoreWriter::Create(store, source.light_field, plan, std::move(lock));
 }
 
-// Removes the file of the lock at the end, unless a PackedStoreWriter has taken over the lock.
+// A lock whose file the destructor removes, unless a PackedStoreWriter has taken over the lock.
 struct HeldLock {
   std::optional<FileLock> lock;
   HeldLock() = default;
@@ -241,7 +241,7 @@ Result<void> Compressor::Verify() {
   return {};
 }
 
-// Lists the LF images that an existing store lacks.
+// Adds the LF images that an existing store lacks to report_.skipped.
 Result<void> Compressor::FindSkipped() {
   const std::vector<std::string>& names = source_.light_field.image_names;
   LF_ASSIGN_OR_RETURN(const std::vector<PackedCode> codes, FindCodes(options_.store, names));

@@ -19,19 +19,20 @@
 namespace lf {
 
 struct CompressOptions {
-  std::filesystem::path store;  // STORE.lfs
+  std::filesystem::path store;  // path of the packed store, such as STORE.lfs
   // The threshold is in grey steps (GreyStep() of code_quality.h) of the images' values.
   CodecSettings codec;
   // If set, replaces codec's threshold by the largest one at which a sample of the LF images has at
   // least this PSNR.
   std::optional<double> target_psnr_db;
-  uint64_t shard_bytes = 0;  // size of a shard, as in PackedStorePlan
-  bool resume = false;       // resume an unfinished store; a complete one must match the options
-  bool overwrite = false;    // replace an existing store, unfinished or complete
-  bool strict = false;       // an LF image that cannot be read is an error
-  // Reads all encoded images back from the disk. Each must equal the result of encoding its LF
-  // image, and be decoded without damage. If a complete store exists already and is not replaced,
-  // it is only checked.
+  uint64_t shard_bytes = 0;  // approximate size of each file of encoded images; 0: one file
+  // True: resumes an unfinished store. If the store is complete, it must match the options.
+  bool resume = false;
+  bool overwrite = false;  // true: replaces an existing store, unfinished or complete
+  bool strict = false;     // true: an LF image that cannot be read is an error
+  // True: reads all encoded images back from the disk. Each must equal the result of encoding its
+  // LF image, and be decoded without damage. If a complete store exists already and is not
+  // replaced, it is only checked.
   bool verify = false;
   std::string source_name;  // LIGHTFIELD or packages, as the user gave them
   std::string version;      // version of the program
@@ -39,7 +40,7 @@ struct CompressOptions {
 };
 
 struct CompressProgress {
-  size_t done = 0;  // number of LF images
+  size_t done = 0;  // number of LF images that are encoded, or verified if is_verifying
   size_t total = 0;
   // Size of the pixels of the LF images that this call encoded, in the number type of their files.
   uint64_t pixel_bytes = 0;
@@ -51,7 +52,7 @@ struct CompressReport {
   size_t image_count = 0;
   size_t resumed_count = 0;  // LF images that the unfinished store already had
   bool was_there = false;    // true if the store was complete, so that nothing was written
-  double threshold = 0;      // used threshold, in grey steps
+  double threshold = 0;      // threshold of the encoder, in grey steps
   size_t rounded_count = 0;  // LF images with floats that half floats cannot represent exactly
   struct Skipped {
     std::string name;
@@ -59,10 +60,10 @@ struct CompressReport {
   };
   std::vector<Skipped> skipped;  // LF images that are not in the store because they cannot be read
 
-  // Sums over the LF images that this call encoded.
+  // Count, sums and lowest quality of the LF images that this call encoded.
   size_t coded_count = 0;
-  uint64_t source_bytes = 0;  // size of their files
-  uint64_t pixel_bytes = 0;   // size of their pixels, as in CompressProgress
+  uint64_t source_bytes = 0;  // size of the files of the LF images
+  uint64_t pixel_bytes = 0;   // size of the pixels, in the number type of the files
   uint64_t code_bytes = 0;
   CodeError error;
   double worst_psnr_db = 0;  // lowest PSNR of an LF image; infinite if all are exact

@@ -17,14 +17,14 @@ namespace lf {
 
 struct CompressSource {
   LightField light_field;           // contains only the LF images to compress
-  LightFieldIdentity whole;         // the light field that they are from
-  std::vector<uint32_t> whole_ids;  // ids in `whole`, in the order of light_field.cameras; empty:
+  LightFieldIdentity whole;         // the whole light field that the LF images are taken from
+  std::vector<uint32_t> whole_ids;  // id in `whole` of each LF image of `light_field`; empty:
                                     // 0, 1, 2, ...
-  std::vector<PixelRect> rects;     // wanted pixels, in the order of light_field.cameras
+  std::vector<PixelRect> rects;     // pixels to compress of each LF image of `light_field`
 };
 
-// Returns all LF images of the light field, with all their pixels. kUsage: it is a packed store
-// already.
+// Returns all LF images of the light field, with all their pixels. kUsage: the light field is a
+// packed store already.
 Result<CompressSource> SourceOfAll(LightField light_field);
 
 // Returns the LF images from which frames of the packages take rays, in the order of the light

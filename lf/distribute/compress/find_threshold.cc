@@ -25,7 +25,7 @@ Result<double> FindThreshold(const CompressSource& source, const CodecSettings& 
                              double psnr_db, ThreadPool& pool,
                              const std::function<bool()>& is_interrupted) {
   const Error interrupted = {ErrorKind::kInterrupted,
-                             "interrupted while the threshold was searched"};
+                             "interrupted during the search for the threshold of --target-psnr"};
   if (settings.profile == CodecProfile::kLossless)
     return UsageError(
         "--target-psnr cannot be used with --profile lossless, which loses nothing: leave one of "
@@ -61,7 +61,7 @@ Result<double> FindThreshold(const CompressSource& source, const CodecSettings& 
   if (best < psnr_db)
     return UsageError(
         fmt::format("--target-psnr {}: the best quality of these settings is {:.1f} dB: give a "
-                    "lower one, or --profile lossless",
+                    "lower PSNR, or --profile lossless",
                     psnr_db, best));
   int good = 0, bad = kSteps;
   while (bad - good > 1) {

@@ -16,9 +16,9 @@ namespace lf {
 
 struct VerifyOptions {
   std::filesystem::path store;
-  CodecSettings settings;  // settings that it must have been made with
-  PackedStorePlan plan;    // the plan that it must match
-  bool any_shards = true;  // accept shards of any size
+  CodecSettings settings;  // settings that the store must have been made with
+  PackedStorePlan plan;    // the plan that the store must match
+  bool any_shards = true;  // true: shards may have any size
   std::function<bool()> is_interrupted;
 };
 

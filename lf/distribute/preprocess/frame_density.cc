@@ -13,7 +13,7 @@
 namespace lf {
 namespace {
 
-constexpr double kBefore = 0.75, kBehind = 1.25;  // assumed depths, in focus distances
+constexpr double kBefore = 0.75, kBehind = 1.25;  // assumed depths divided by the focus distance
 constexpr double kPlaces[] = {1.0 / 6, 0.5, 5.0 / 6};
 
 // The LF cameras around the lens, and their positions.
@@ -29,10 +29,10 @@ double NearestRay(const LightField& light_field, const Around& around, const Ren
                   double x_px, double y_px) {
   double nearest_w = std::numeric_limits<double>::infinity();
   const std::optional<Vec3> focus = FocusPointOfElement(frame, x_px, y_px);
-  if (!focus) return 0;  // beyond the horizon of a tilted focus plane
+  if (!focus) return 0;  // the element is beyond the horizon of a tilted focus plane
   for (size_t i = 0; i < around.ids.size(); ++i) {
     const double distance_w = LensPointOfLine(frame, around.centres_world[i], *focus).norm();
-    // IsSeenBy() is slow, so it is called only for nearer rays.
+    // IsSeenBy() is slow, so it is called only for rays nearer than all previous ones.
     if (distance_w < nearest_w &&
         IsSeenBy(RayThrough(light_field.Camera(around.ids[i]), frame.pinhole.ForwardWorld()),
                  *focus))
@@ -49,7 +49,8 @@ DepthRange DepthsOfFrame(const DepthRange& depths, const Around& around,
   for (const Vec3& centre : around.centres_world)
     shift_w += frame.pinhole.ForwardWorld().dot(centre - frame.pinhole.CentreWorld()) /
                static_cast<double>(around.centres_world.size());
-  // Depths are at least a tenth of the nearest recorded depth.
+  // The shifted depths are clamped to a tenth of the nearest recorded depth, so that they stay
+  // positive.
   const double least_w = 0.1 * depths.near_w;
   return {std::max(least_w, depths.near_w + shift_w), std::max(least_w, depths.far_w + shift_w)};
 }

@@ -27,13 +27,13 @@ struct FrameDensity {
   // lens
   size_t cameras_in_lens = 0;
   double camera_distance_w = 0;  // s, the distance of neighbouring LF cameras in the lens plane
-  LensCoverage coverage;         // bokeh is cut off where the lens is not covered
+  LensCoverage coverage;         // how the LF cameras cover the lens; bokeh is cut off elsewhere
   // Diameter of the smallest lens around the same centre through which each of nine elements,
   // spread over the plate, has a ray. Infinite if none of the LF cameras around the lens sees the
   // focus point of one of these elements.
   double least_aperture_w = 0;
-  // The nearest and farthest depth of the scene along the frame's axis, and delta(z) at these
-  // depths.
+  // The nearest and farthest depth of the scene along the frame's optical axis, and the
+  // displacement delta of points at these depths, in elements (formula above).
   DepthRange depths;
   double near_displacement_px = 0;
   double far_displacement_px = 0;

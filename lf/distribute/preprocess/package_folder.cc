@@ -40,7 +40,8 @@ Result<PackageFolder> PackageFolder::Open(const fs::path& folder, const std::str
   LF_RETURN_IF_ERROR(CreateFolder(folder));
   LF_ASSIGN_OR_RETURN(FileLock lock, FileLock::Take(folder / ".packages.lock"));
   PackageFolder opened(folder, part, std::move(lock));
-  // The lock guarantees that no process, on this host or another one, still writes these files.
+  // The lock guarantees that no process, on this host or another one, still writes the temporary
+  // files.
   std::vector<fs::path> leftovers = FilesIn(folder);
   std::erase_if(leftovers, [](const fs::path& file) {
     const std::string name = file.filename().string();

@@ -20,8 +20,8 @@ namespace lf {
 class PackageFolder {
  public:
   // Creates the folder if it is missing, and removes temporary packages that killed processes left.
-  //   part       only packages whose names end with this text count as existing ones, and are
-  //              replaced; empty: all packages
+  //   part       only existing packages whose names end with this text are refused or replaced;
+  //              empty: all existing packages
   //   overwrite  true: Publish() replaces existing packages
   // kUsage: packages exist already, and `overwrite` is false. kOutput: the folder cannot be
   // written, or another process holds its lock.
@@ -35,8 +35,8 @@ class PackageFolder {
   std::filesystem::path PathOf(const std::string& name) const;
   // Writes a package under a temporary name. kOutput: the file cannot be written.
   Result<void> Add(const std::string& name, const Package& package, const PackageNotes& notes);
-  // Removes the previous packages, and gives the added packages their final names. kOutput: a file
-  // could not be renamed; the folder then has no packages.
+  // Removes the previous packages (those of `part`), and gives the added packages their final
+  // names. kOutput: a file could not be renamed; neither previous nor added packages are left then.
   Result<void> Publish();
 
  private:

@@ -22,7 +22,8 @@
 namespace lf {
 namespace {
 
-// Largest memory for kept_needs_; enough for 300 frames with 20,000 LF images each.
+// Largest memory for Preprocessor::kept_needs_; enough for the needs of 300 frames with 20,000 LF
+// images each.
 constexpr uint64_t kMostKeptBytes = uint64_t{256} << 20;
 
 double SecondsSince(std::chrono::steady_clock::time_point start) {
@@ -65,8 +66,8 @@ class Gathering {
     }
     for (const LfImageId id : needs.neighbours) images_[id];
   }
-  // Returns the LF images by ascending ids. If frame_count is 0, only the LF camera is needed (a
-  // neighbour).
+  // Returns the LF images by ascending ids. If Image::frame_count is 0, only the LF camera is
+  // needed (a neighbour), not its image.
   const std::map<LfImageId, Image>& images() const { return images_; }
 
  private:
@@ -83,7 +84,7 @@ class Preprocessor {
         options_(options),
         pool_(pool),
         progress_(progress) {
-    // Packages can be rendered with any filter.
+    // kElement is the largest reach, so that packages can be rendered with any filter.
     needs_.select.reach =
         options.reading.estimator == Estimator::kBilinear ? PixelReach::kElement : PixelReach::kOwn;
     needs_.select.max_angle_rad = options.max_angle_rad;
@@ -112,10 +113,10 @@ class Preprocessor {
 
   Result<void> CheckInterrupted() const {
     if (options_.interrupted == nullptr || !*options_.interrupted) return {};
-    return Error{ErrorKind::kInterrupted, "interrupted: no package is kept"};
+    return Error{ErrorKind::kInterrupted, "interrupted: no new package is kept"};
   }
-  // Returns the needs of a frame, from kept_needs_ if they are there. An interruption is an error,
-  // because the needs may then be incomplete.
+  // Returns the needs of a frame, from kept_needs_ if they are there. Returns kInterrupted if the
+  // user interrupted the program, because the needs may then be incomplete.
   Result<FrameNeeds> Needs(FrameId frame) {
     FrameNeeds needs;
     if (const auto kept = kept_needs_.find(frame); kept != kept_needs_.end()) {
@@ -131,7 +132,8 @@ class Preprocessor {
   void Keep(FrameId frame, FrameNeeds needs);
 
   const LightField& light_field_;
-  // Stored in packages, so that all machines that render them use the same prefilters.
+  // The footprint is stored in packages, so that all machines that render them use the same
+  // prefilters.
   std::optional<PixelFootprint> footprint_;
   const CameraPath& path_;
   const PreprocessOptions& options_;
@@ -148,7 +150,7 @@ class Preprocessor {
   // kMostKeptBytes.
   std::map<FrameId, FrameNeeds> kept_needs_;
   uint64_t kept_bytes_ = 0;
-  std::vector<FrameSurroundings> surroundings_;  // index [frame - 1] in the film
+  std::vector<FrameSurroundings> surroundings_;  // [frame number - 1], for all frames of the film
   size_t done_ = 0;
   std::vector<bool> is_counted_;  // [LF image]: true if a finished package needs it
   PreprocessReport report_;
@@ -261,9 +263,9 @@ Result<void> Preprocessor::ForecastFrames() {
   if (std::all_of(report_.frames.begin(), report_.frames.end(),
                   [](const FrameForecast& frame) { return frame.image_count == 0; }))
     return InputError(fmt::format(
-        "no LF image contributes to frames {}-{}: no recorded ray passes both their lens and what "
-        "they see (is the aperture smaller than the camera spacing, or the camera off the "
-        "capture?)",
+        "no LF image contributes to frames {}-{}: no recorded ray comes from the region that they "
+        "show and passes through their lens (is the aperture smaller than the spacing of the LF "
+        "cameras, or the render camera outside of the capture?)",
         frames_.front().value, frames_.back().value));
   return {};
 }
@@ -350,8 +352,8 @@ Result<void> Preprocessor::MakePackage(size_t number, const Section& section, si
   return {};
 }
 
-// Counts the missing files of the package. Adds the LF images and missing files that no earlier
-// package counted to the totals of the film.
+// Counts the missing files of the package. Adds to the totals of the film, in report_, the LF
+// images and the missing files that no earlier package has counted.
 Result<void> Preprocessor::CountMissing(const Package& package, PackageForecast* forecast) {
   is_counted_.resize(light_field_.size(), false);
   for (size_t i = 0; i < package.images.size(); ++i) {
@@ -366,8 +368,9 @@ Result<void> Preprocessor::CountMissing(const Package& package, PackageForecast*
       report_.first_missing =
           package.light_field.ImagePath(LfImageId{static_cast<uint32_t>(i)}).string();
     if (is_missing && options_.strict)
-      return InputError(
-          fmt::format("--strict: {}: does not exist, or is empty", report_.first_missing));
+      return InputError(fmt::format(
+          "--strict: {}: does not exist, or is empty: restore it, or leave --strict out",
+          report_.first_missing));
   }
   return {};
 }

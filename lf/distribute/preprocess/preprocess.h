@@ -38,13 +38,14 @@ struct PreprocessOptions {
   std::optional<double> max_angle_rad;
 
   // Options of the renders that follow. Packages can be rendered with any estimator and any lens
-  // weights. Exception: packages for LensWeights::kNone can only be rendered without lens weights,
-  // because they lack the neighbours, which the lens weights of the other LF cameras depend on.
+  // weights. Exception: packages for LensWeights::kNone and RenderMode::kCollect can only be
+  // rendered with these two, because they lack the neighbours, which lens weights and rebinned rays
+  // need.
   RayReading reading = Estimator::kBilinear;
   LensWeights lens_weights = LensWeights::kAuto;
   // Mode of the renders that follow. It decides what frames need, and therefore the forecast, and
   // which pixels lfcompressor --needed-pixels keeps. If whole LF images are kept, packages can be
-  // rendered in any mode, with the exception above.
+  // rendered in any mode, except for packages for LensWeights::kNone and kCollect.
   RenderMode mode = RenderMode::kCollect;
 
   // Number of packages: package_count if it is set; otherwise, if frames_per_package is set, as
@@ -72,10 +73,10 @@ struct FrameForecast {
 struct PackageForecast {
   std::string name;  // package-0000, or package-0000-of-frames-1-4 for a part of the film
   std::vector<FrameId> frames;
-  size_t image_count = 0;      // LF images that are read
-  size_t missing_count = 0;    // number of these LF images that are missing or empty
-  size_t neighbour_count = 0;  // other LF cameras, whose images are not read
-  uint64_t read_bytes = 0;     // size of the files of image_count LF images
+  size_t image_count = 0;      // number of LF images that are read
+  size_t missing_count = 0;    // number of LF images to read whose files are missing or empty
+  size_t neighbour_count = 0;  // number of other LF cameras: their images are not read
+  uint64_t read_bytes = 0;     // total size of the files that are read
   uint64_t ray_count = 0;
   size_t memory_bytes = 0;
   // Number of passes over the LF images; above 1 if the plates do not all fit into the memory at
@@ -87,15 +88,15 @@ struct PackageForecast {
 struct PreprocessReport {
   size_t light_field_image_count = 0;
   size_t needed_count = 0;    // LF images that packages need, each counted once
-  size_t missing_count = 0;   // number of these LF images that are missing or empty
-  std::string first_missing;  // path of the first missing one
+  size_t missing_count = 0;   // number of needed LF images whose files are missing or empty
+  std::string first_missing;  // path of the first missing or empty file
   std::vector<FrameForecast> frames;
   std::vector<PackageForecast> packages;
   std::optional<RenderRate> rate;
   std::string rate_error;  // reason why `rate` is unset; empty if it is set
-  double index_s = 0;      // time to compute the order and the octree
-  // Time to compute the needs of frames, once to divide the film; and again to make packages, for
-  // needs that did not fit into the memory in between.
+  double index_s = 0;      // time to compute the order of LF images and the octree of LF cameras
+  // Time to compute the needs of frames: once to divide the film, and again to make packages for
+  // needs that were too large to be kept in memory.
   double select_s = 0;
   double density_s = 0;
   double write_s = 0;

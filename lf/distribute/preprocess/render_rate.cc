@@ -19,8 +19,8 @@ namespace {
 
 constexpr size_t kSampleImages = 16;
 
-// Returns up to kSampleImages LF images whose files exist. Their ranks are their indices in
-// needs.images, which replace the order of the light field here.
+// Returns up to kSampleImages LF images whose files exist. The rank of each is its index in
+// needs.images, because Collect() here does not need the order of the whole light field.
 std::vector<SelectedImage> SampleOf(const FrameNeeds& needs, const LfImageStore& store) {
   constexpr size_t kMostAsked = 256;
   std::vector<SelectedImage> sample;
@@ -53,10 +53,9 @@ Result<RenderRate> MeasureRate(const ImageIndex& index, const RenderCamera& fram
   if (sample.empty())
     return InputError(
         needs.images.empty()
-            ? "no LF image is needed"
-            : fmt::format(
-                  "{}: does not exist, nor does any other of the LF images that were searched",
-                  light_field.ImagePath(needs.images.front().id).string()));
+            ? "the frame needs no LF image"
+            : fmt::format("{}: does not exist, nor does any other of the LF images that were tried",
+                          light_field.ImagePath(needs.images.front().id).string()));
   // Nothing else runs in this process, so its CPU time is the time that the pool's threads work.
   const std::clock_t lens_start = std::clock();
   const FrameLens lens(index, frame, needs_options.lens_weights, needs_options.select, pool);

@@ -1,5 +1,5 @@
-// Measures how fast this machine renders a frame, with a few of its LF images. Forecasts use the
-// result.
+// Measures how fast this machine renders a frame, with a few of the LF images that the frame needs.
+// The forecast of lfpreprocessor uses the result.
 #pragma once
 
 #include <cstddef>
@@ -12,11 +12,11 @@
 
 namespace lf {
 
-// CPU time of the parts of a render, in seconds.
+// CPU times of the parts of a render.
 struct RenderRate {
-  double load_s = 0;     // loading one LF image
-  double collect_s = 0;  // collecting one tested ray
-  double finish_s = 0;   // lens weights, developing and writing of one frame
+  double load_s = 0;     // CPU time to load one LF image
+  double collect_s = 0;  // CPU time to collect one tested ray
+  double finish_s = 0;   // CPU time of lens weights, developing and writing of one frame
 };
 
 // Computes the lens weights of the frame, loads a few of the LF images that the frame needs,

@@ -22,8 +22,8 @@ struct Section {
 //   costs  the cost of each frame, in any unit
 std::vector<Section> SplitByCost(std::span<const uint64_t> costs, size_t count);
 
-// Divides frames into sections of about equal cost, as few as possible so that each has at most
-// most_frames frames.
+// Divides frames into sections of about equal cost: into the fewest sections such that each has at
+// most most_frames frames.
 std::vector<Section> SplitToFit(std::span<const uint64_t> costs, size_t most_frames);
 
 }  // namespace lf
