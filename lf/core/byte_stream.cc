@@ -70,7 +70,7 @@ bool ByteStream::ReadMore(size_t count) {
         ::pread(fd_, block_.data() + held, block_.size() - held, static_cast<off_t>(window_end_));
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) {
-      failure_ = got < 0 ? std::strerror(errno) : "it became shorter meanwhile";
+      failure_ = got < 0 ? std::strerror(errno) : "it became shorter while it was read";
       break;
     }
     held += static_cast<size_t>(got);

@@ -15,7 +15,7 @@ namespace lf {
 
 class ByteStream {
  public:
-  // kInput if the file cannot be opened or is no regular file.
+  // Opens a file. kInput if the file cannot be opened or is no regular file.
   static Result<ByteStream> Open(const std::filesystem::path& path);
   // Reads bytes in memory, which must outlive this object. `path` is for messages only.
   ByteStream(std::string_view bytes, std::filesystem::path path);
@@ -52,8 +52,8 @@ class ByteStream {
     return true;
   }
 
-  // kInput if reading failed (with the system's reason), or if the file has become shorter since it
-  // was opened.
+  // Returns kInput if reading failed (with the system's reason), or if the file has become shorter
+  // since it was opened.
   Result<void> Status() const;
 
  private:
@@ -64,7 +64,7 @@ class ByteStream {
   bool ReadMore(size_t count);
 
   std::filesystem::path path_;
-  int fd_ = -1;  // -1: the bytes are in memory
+  int fd_ = -1;  // descriptor of the file; -1: the bytes are in memory
   uint64_t size_ = 0;
   std::vector<char> block_;
   std::string_view window_;  // unread bytes, in block_ or in the caller's memory

@@ -24,7 +24,7 @@
 namespace lf {
 namespace {
 
-constexpr int kFirstOther = 3;  // the descriptor after the three standard files
+constexpr int kFirstOther = 3;  // first file descriptor after the three standard ones
 // Limit of the output of a command: enough for a queue of four million tasks (Slurm's maximum) with
 // 60 bytes each.
 constexpr off_t kMostBytes = off_t{256} << 20;
@@ -63,7 +63,7 @@ struct Launch {
   char* const* argv = nullptr;
   const char* working_folder = nullptr;  // nullptr: the same as ours
   int input = -1, output = -1, complaints = -1;
-  int kept = -1;  // -1: none
+  int kept = -1;  // descriptor that the program inherits; -1: none
   bool ends_with_parent = false;
 };
 
@@ -115,7 +115,8 @@ int Spawn(const Launch& launch, pid_t* pid) {
   const pid_t parent = ::getpid();
   sigset_t all, usual;
   ::sigfillset(&all);
-  ::pthread_sigmask(SIG_SETMASK, &all, &usual);  // blocked until Become() has reset our handlers
+  // Signals are blocked until Become() has reset our handlers.
+  ::pthread_sigmask(SIG_SETMASK, &all, &usual);
   const pid_t child = ::vfork();  // NOLINT(clang-analyzer-security.insecureAPI.vfork)
   if (child == 0) Become(launch, parent, told.fd());  // NOLINT(clang-analyzer-unix.Vfork)
   const int reason = errno;
@@ -141,15 +142,15 @@ Result<std::unique_ptr<ChildProcess>> ChildProcess::Start(const Options& options
   std::error_code ignored;
   if (!options.working_folder.empty() &&
       !std::filesystem::is_directory(options.working_folder, ignored))
-    return OutputError(fmt::format("{}: cannot be run in the folder {}: it does not exist any more",
+    return OutputError(fmt::format("{}: cannot be run in {}: this folder does not exist any more",
                                    name, options.working_folder.string()));
   std::vector<char*> argv;
   for (const std::string& word : options.words) argv.push_back(const_cast<char*>(word.c_str()));
   argv.push_back(nullptr);
   std::unique_ptr<ChildProcess> child(new ChildProcess(name));
   // The input is a pair of sockets instead of a pipe, because sending can then avoid SIGPIPE and
-  // give up after a while. Standard error is a file in memory instead of a second pipe, because it
-  // cannot fill up unread.
+  // give up after a while. Standard error is a file in memory instead of a second pipe, because a
+  // pipe that nobody reads fills up and then blocks the program.
   int input[2] = {-1, -1};
   if (options.has_input && ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, input) != 0)
     return failure(errno);
@@ -201,7 +202,7 @@ void ChildProcess::Signal(int signal) {
   if (!end_) ::kill(pid_, signal);
 }
 
-// Returns an error with the last lines on standard error, which say why the program failed.
+// Returns an error with the end of the program's standard error, which says why it failed.
 Error ChildProcess::Failure(const std::string& reason) const {
   constexpr off_t kQuotedBytes = 600;
   std::string words = complaints_ < 0 ? "" : TextOf(complaints_, kQuotedBytes);
@@ -211,7 +212,7 @@ Error ChildProcess::Failure(const std::string& reason) const {
 }
 
 Result<void> ChildProcess::Write(std::span<const uint8_t> bytes, double patience_s) {
-  if (input_ < 0) return Failure("reads no more");
+  if (input_ < 0) return Failure("has no open input");
   timeval patience{};
   patience.tv_sec = static_cast<time_t>(patience_s);
   patience.tv_usec = static_cast<suseconds_t>(1e6 * (patience_s - std::floor(patience_s)));
@@ -230,14 +231,14 @@ Result<void> ChildProcess::Write(std::span<const uint8_t> bytes, double patience
     }
     const Result<void> end = Finish(patience_s);  // says why the program ended
     if (!end) return end;
-    return Failure(fmt::format("reads no more: {}", std::strerror(error)));
+    return Failure(fmt::format("reads no more input: {}", std::strerror(error)));
   }
   return {};
 }
 
 Result<void> ChildProcess::Finish(double patience_s) {
   if (input_ >= 0) ::close(std::exchange(input_, -1));
-  if (end_) return Failure("has ended before");
+  if (end_) return Failure("has ended already");
   const auto give_up = Clock::now() + std::chrono::duration<double>(patience_s);
   while (!Poll()) {
     if (Clock::now() > give_up) {
@@ -246,7 +247,8 @@ Result<void> ChildProcess::Finish(double patience_s) {
     }
     std::this_thread::sleep_for(kTick);
   }
-  if (lost_reason_ != 0) return Failure(fmt::format("is lost: {}", std::strerror(lost_reason_)));
+  if (lost_reason_ != 0)
+    return Failure(fmt::format("cannot be waited for: {}", std::strerror(lost_reason_)));
   if (end_->signal != 0) return Failure(fmt::format("died of signal {}", end_->signal));
   if (end_->exit_code != 0)
     return Failure(fmt::format("failed with exit code {}", end_->exit_code));

@@ -35,8 +35,9 @@ class ChildProcess {
     int kept = -1;           // a descriptor that the program inherits; -1: none
     bool has_input = false;  // true: standard input is fed by Write(); false: /dev/null
   };
-  // kOutput if the program cannot be run. A program without an input gets SIGTERM if the thread
-  // that started it ends for any reason. A program with an input sees the end of its input instead.
+  // Starts the program. kOutput if it cannot be run. A program without an input gets SIGTERM if the
+  // thread that started it ends for any reason. A program with an input sees the end of its input
+  // instead.
   static Result<std::unique_ptr<ChildProcess>> Start(const Options& options);
   ~ChildProcess();  // kills the program and its process group if it still runs
 
@@ -62,8 +63,8 @@ class ChildProcess {
   pid_t pid_ = 0;                  // 0: not started
   std::optional<ProcessEnd> end_;  // how the program ended; nullopt while it runs
   int lost_reason_ = 0;            // errno if waitpid() failed and `end_` is a guess; else 0
-  int input_ = -1;                 // socket; -1: closed
-  int complaints_ = -1;            // standard error, a file in memory; -1: another file
+  int input_ = -1;                 // socket that feeds the program's input; -1: none, or closed
+  int complaints_ = -1;            // the program's standard error, if that is a file in memory
 };
 
 struct CommandAnswer {

@@ -162,7 +162,8 @@ Result<void> RenameFlushed(std::span<const Renaming> files) {
   std::set<fs::path> folders;
   for (const auto& [from, to] : files) {
     if (::rename(from.c_str(), to.c_str()) != 0)
-      return OutputError(fmt::format("{}: cannot be renamed to: {}", to.string(), SystemReason()));
+      return OutputError(fmt::format("{}: the complete file cannot be renamed to this name: {}",
+                                     to.string(), SystemReason()));
     folders.insert(ParentOf(to));
   }
   // A rename is on the disk only after the folder has been flushed.
@@ -172,8 +173,8 @@ Result<void> RenameFlushed(std::span<const Renaming> files) {
 
 namespace {
 
-// Creates the folder and its missing parents, once. Returns false if another process removed one of
-// them in the meantime.
+// Tries once to create the folder and its missing parents. Returns false if another process removed
+// one of them in the meantime.
 Result<bool> TryToCreateFolder(const fs::path& folder) {
   std::error_code error;
   std::vector<fs::path> missing;

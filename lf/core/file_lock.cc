@@ -17,8 +17,8 @@
 namespace lf {
 namespace {
 
-// True if `path` still names the open file. (The previous owner may have removed the file after it
-// was opened here.)
+// Returns true if `path` still names the file that is open as `fd`. (The previous owner of the lock
+// may have removed the file after it was opened here.)
 bool IsStill(int fd, const std::filesystem::path& path) {
   struct stat open_file {
   }, named_file{};
@@ -43,7 +43,7 @@ bool Write(int fd, const std::string& text) {
   return written >= 0;
 }
 
-// Returns the number of the process that locked the file last, or "" if the file has none.
+// Returns the number of the process that locked the file last, or "" if the file contains none.
 std::string OwnerNumber(int fd) {
   char text[32] = {};
   if (::pread(fd, text, sizeof(text) - 1, 0) <= 0) return "";
@@ -51,7 +51,7 @@ std::string OwnerNumber(int fd) {
 }
 
 // Locking is attempted kAttempts times, with pauses, because IsHeld() in another process locks the
-// file for a moment. While the file contains no process number, it is attempted up to
+// file for a moment. While the file contains no process number, locking is attempted up to
 // kAttemptsWithoutNumber times, because the owner may have locked the file a moment ago and be
 // about to write its number.
 constexpr timespec kPause = {.tv_sec = 0, .tv_nsec = 2'000'000};

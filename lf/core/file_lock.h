@@ -16,8 +16,9 @@ class FileLock {
   // written. Waits a few milliseconds for the lock, and up to a second for a process that has
   // locked the file to write its number.
   static Result<FileLock> Take(const std::filesystem::path& path);
-  // Creates the folder if it is missing, and takes the lock of the file `lock` in it. Errors as
-  // above. Other processes may remove the folder whenever it is empty: it is then created again.
+  // Creates the folder if it is missing, and takes the lock of the file FOLDER/lock. Other
+  // processes may remove the folder whenever it is empty: it is then created again. kOutput as for
+  // Take(), or if the folder cannot be created.
   static Result<FileLock> TakeInFolder(const std::filesystem::path& folder);
   // True if any process holds the lock now. False if none does, if the file is missing, or if this
   // process may not read it.

@@ -39,7 +39,7 @@ struct RigidTransform {
   Vec3 translation = Vec3::Zero();
 
   Vec3 operator*(const Vec3& point_a) const { return rotation * point_a + translation; }
-  // c_from_a = c_from_b * b_from_a
+  // Composes two transforms: c_from_a = c_from_b * b_from_a, where this one is c_from_b.
   RigidTransform operator*(const RigidTransform& b_from_a) const {
     return {rotation * b_from_a.rotation, rotation * b_from_a.translation + translation};
   }

@@ -28,7 +28,7 @@ struct ImageView {
     return row(y)[static_cast<size_t>(x) * channels + channel];
   }
   bool empty() const { return width == 0 || height == 0; }
-  operator ImageView<const T>() const  // NOLINT: as pointers convert
+  operator ImageView<const T>() const  // NOLINT: implicit, as T* converts to const T*
       requires(!std::is_const_v<T>) {
     return {data, width, height, channels, stride};
   }

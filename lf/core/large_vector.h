@@ -23,7 +23,7 @@ struct LargeAllocator {
 
   LargeAllocator() = default;
   template <class U>
-  LargeAllocator(const LargeAllocator<U>& /*other*/) {}  // NOLINT: as allocators convert
+  LargeAllocator(const LargeAllocator<U>& /*other*/) {}  // NOLINT: implicit, as allocators must be
 
   T* allocate(size_t count) {
     if (count > (SIZE_MAX - kCacheLine) / sizeof(T)) throw std::bad_array_new_length();

@@ -6,14 +6,15 @@
 
 namespace lf {
 
-// The points t in [-1, 1] where the polynomial equals the function: the roots of Chebyshev's
-// polynomial T_6, which spread the error evenly over [-1, 1].
+// The points t in [-1, 1] where the polynomial equals the function that it approximates: the roots
+// of Chebyshev's polynomial T_6, which spread the error evenly over [-1, 1].
 inline constexpr std::array<double, 6> kQuinticPlaces = {-0.9659258262890683, -0.7071067811865476,
                                                          -0.2588190451025208, 0.2588190451025208,
                                                          0.7071067811865476,  0.9659258262890683};
 
-// Points t in [-1, 1] where the polynomial differs most from the function: three of the seven
-// extremes of T_6. To first order, the difference is equally large at all seven.
+// Points t in [-1, 1] where the polynomial differs most from the function that it approximates:
+// three of the seven extremes of Chebyshev's T_6. To first order, the difference is equally large
+// at all seven.
 inline constexpr std::array<double, 3> kQuinticWorstPlaces = {-1, 0, 1};
 
 // Returns the coefficients of c[0] + c[1] t + ... + c[5] t^5, whose values at kQuinticPlaces are

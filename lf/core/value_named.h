@@ -1,4 +1,4 @@
-// Finds a value of an enumeration by the name that options and files call it.
+// Finds a value of an enumeration by its name in options and files.
 #pragma once
 
 #include <initializer_list>
