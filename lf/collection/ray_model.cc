@@ -46,7 +46,7 @@ std::optional<PlateElement> RayModel::Collect(int x, int y) const {
 }
 
 std::optional<PlateElement> RayModel::CollectIdeal(const Vec3& position) const {
-  // The numbers are those of doc/ray.md, Geometry. 1. The ray.
+  // The numbers of these steps are those of doc/ray.md, Geometry. 1. The ray.
   const Ray ray{centre_, direction_ * position};
 
   // 2. The ray must run forward.
@@ -57,8 +57,9 @@ std::optional<PlateElement> RayModel::CollectIdeal(const Vec3& position) const {
   const std::optional<Vec3> focus_point = IntersectLine(ray, focus_plane_);
   if (!focus_point || !(forward_.dot(*focus_point - lens_centre_) > 0)) return std::nullopt;
 
-  // 5. The lens, as a quotient so that a camera in the lens plane needs no special case:
-  //    M d / (f.d) with M = (c - c') f^T - (f.(c - c')) I.
+  // 5. The point of the lens plane that the ray meets, as a quotient so that an LF camera in the
+  //    lens plane needs no special case: M d / (f.d) with M = (c - c') f^T - (f.(c - c')) I, for
+  //    the LF camera c, the ray's direction d, the lens centre c' and the forward axis f.
   const Vec3 offset = centre_ - lens_centre_;
   const Vec3 on_lens = offset - ray.direction * (forward_.dot(offset) / along);
   if (!aperture_.Contains({right_.dot(on_lens), up_.dot(on_lens)})) return std::nullopt;

@@ -38,12 +38,12 @@ class RayModel {
  private:
   Intrinsics intrinsics_;
   std::optional<DistortionMap> distortion_;
-  Vec3 centre_;       // c of doc/ray.md
-  Mat3 direction_;    // R^T K^-1 of doc/ray.md
-  Vec3 lens_centre_;  // c' of doc/ray.md
+  Vec3 centre_;       // position of the LF camera in the world: c of doc/ray.md
+  Mat3 direction_;    // maps an ideal position to the direction of its ray: R^T K^-1 of doc/ray.md
+  Vec3 lens_centre_;  // centre of the lens in the world: c' of doc/ray.md
   Vec3 right_, up_, forward_;
   Plane focus_plane_;
-  Mat3 plate_from_world_;  // K' R', to be applied to X - c'
+  Mat3 plate_from_world_;  // K' R' of doc/ray.md: maps X - c' to the plate, for a focus point X
   ApertureTest aperture_;
   int width_px_, height_px_;
 };

@@ -24,16 +24,17 @@ class RowSpans {
     bool empty() const { return !(begin <= end); }
   };
 
-  // The condition right^2 + up^2 <= radius^2 forward^2. The half-planes must fix the sign of
-  // forward, because the square does not show it.
+  // The condition right^2 + up^2 <= radius^2 forward^2 on the values of three linear forms. The
+  // half-planes must fix the sign of `forward`, because the square does not show it.
   struct Disk {
     PixelForm right, up, forward;
     double radius = 0;
   };
 
-  // There are two alternative sets of conditions, called sides, such as n.d < 0 and n.d > 0. A
-  // position p fulfils the conditions of a side if form p <= 0 for all half-planes of the side, and
-  // if p is in the disk. No position may fulfil the conditions of both sides.
+  // There are two alternative sets of conditions, called sides, such as n.d < 0 and n.d > 0 for the
+  // normal n of the focus plane and the direction d of a ray. A position p fulfils the conditions
+  // of a side if form p <= 0 for all half-planes of the side, and if p is in the disk. No position
+  // may fulfil the conditions of both sides.
   std::vector<PixelForm> half_planes[2];
   std::optional<Disk> disk;
   // True if the ray model has more conditions than the half-planes and the disk. The ray model then

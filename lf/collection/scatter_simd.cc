@@ -39,7 +39,7 @@ constexpr float kTwoTo23 = 8388608;
 // counted from the corner of the tile.
 struct TileLayout {
   PixelRect rect;
-  int row_stride;         // even
+  int row_stride;         // difference of the addresses of an element and the one above it; even
   bool has_plate_border;  // true if the tile touches the border of the plate
 };
 
@@ -48,7 +48,7 @@ struct TileLayout {
 template <class Weights>
 struct RgbPixels {
   static constexpr int kLanesPerPixel = LfPixels::kRgbLanes;
-  const uint16_t* values;        // [count][4]
+  const uint16_t* values;        // values of the pixels of the piece, [count][4]
   const uint16_t* values_ahead;  // values of a scanline below, to prefetch
   TileSums::Element* elements;
   Weights weights;  // [i] is the weight of elements[i]
@@ -116,7 +116,7 @@ struct RgbPixels {
 template <class Weights>
 struct MosaicPixels {
   static constexpr int kLanesPerPixel = 1;
-  const uint16_t* values;        // [count]
+  const uint16_t* values;        // values of the pixels of the piece, [count]
   const uint16_t* values_ahead;  // values of a scanline below, to prefetch
   uint64_t* words[2];            // sums of pixels with an even `start` [0], or an odd one [1]
   Weights weights;               // [i] is the weight of word i
@@ -344,8 +344,8 @@ HWY_ATTR uint64_t ScatterTileBy(const ScatterPlan& plan, size_t tile, const LfPi
                            sums->ReserveRgb(part.crowd * most_weight), weights, pixels.any_masked},
                        layout);
     } else {
-      // `first` is the colour of the first pixel of the piece, `other` the colour that alternates
-      // with green in this scanline.
+      // `first` is the colour (0 R, 1 G, 2 B) of the first pixel of the piece, `other` the colour
+      // that alternates with green in this scanline.
       const int x = s.x_begin + part.begin;
       const int first = BayerChannel(pixels.bayer, x, s.y);
       const int other = first == 1 ? BayerChannel(pixels.bayer, x + 1, s.y) : first;

@@ -9,11 +9,12 @@
 namespace lf {
 namespace {
 
-// Largest coordinate of a position. Larger coordinates are never accepted, and could overflow
-// integers.
+// Largest coordinate of a position, in elements (or LF pixels). Larger coordinates are never
+// accepted, and could overflow integers.
 constexpr double kFarthest = 1 << 24;
 
-// RangeOf() widens its bounds by this margin, which is far above the rounding of single precision.
+// RangeOf() widens its bounds by this margin, in elements (or LF pixels), which is far above the
+// rounding of single precision.
 constexpr float kBoundMargin = 0.01F;
 
 // Fits polynomials to the function `position(x)`, which returns an optional Vec2, on pieces [begin,
@@ -112,11 +113,11 @@ void SegmentMaker::Add(int y, int x_begin, int x_end, std::vector<Segment>* segm
 }
 
 // At the distance t from the middle of the block, with the numerator n_0 + n_1 t and the
-// denominator d_0 + d_1 t, the position is
-//   e(t) = (n_0 + n_1 t) / (d_0 + d_1 t) = e_0 + s t / (1 + q t),  q = d_1 / d_0,
-//   s = (n_1 - e_0 d_1) / d_0.
-// This is a geometric series. Its term of t^4 is replaced by lower powers with the help of
-// Chebyshev's polynomial T_4.
+// denominator d_0 + d_1 t, a coordinate of the position is
+//   e(t) = (n_0 + n_1 t) / (d_0 + d_1 t) = e_0 + s t / (1 + q t),
+//   e_0 = n_0 / d_0,  q = d_1 / d_0,  s = (n_1 - e_0 d_1) / d_0.
+// This is the sum of a geometric series. Its term of t^4 is replaced by lower powers with the help
+// of Chebyshev's polynomial T_4.
 void SegmentMaker::AddInBlock(int y, int x_begin, int x_end, int block_begin, int block_size,
                               std::vector<Segment>* segments) const {
   const double half = 0.5 * block_size, middle = block_begin + half;
@@ -175,9 +176,9 @@ void SegmentMaker::AddOfFunction(int y, int x_begin, int x_end, const Function& 
   }
 }
 
-// The bounds are computed from the chord between the first and the last position, w apart. The
-// polynomial deviates from the chord by at most w^2 / 8 times the largest second derivative, and
-// its slope changes by at most w times this derivative.
+// The bounds are computed from the chord between the first and the last position, whose t differ by
+// w. The polynomial deviates from the chord by at most w^2 / 8 times the largest second derivative,
+// and its slope changes by at most w times this derivative.
 PositionRange RangeOf(const float (&c)[Segment::kTerms], float t_begin, int count) {
   const auto w = static_cast<float>(count - 1);
   const float t_end = t_begin + w, t = t_begin;

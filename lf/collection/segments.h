@@ -16,9 +16,10 @@ namespace lf {
 
 // Pixels (or elements) [x_begin, x_begin + count) of row y. With t = i + t_begin (exact in single
 // precision), pixel x_begin + i is mapped to the position with the x-coordinate
-//   base_x + ((((x_poly[5] t + x_poly[4]) t + x_poly[3]) t + ...) t + x_poly[0]
-// and likewise y. x_poly[0] is in [0, 1), so that the error of single precision is at most 1e-4.
-// Perspective alone leads to cubics; lens distortion needs the higher powers.
+//   base_x + (((x_poly[5] t + x_poly[4]) t + x_poly[3]) t + ...) t + x_poly[0]
+// and with the y-coordinate that base_y and y_poly give in the same way. x_poly[0] is in [0, 1), so
+// that the error of single precision is at most 1e-4. Perspective alone leads to cubics; lens
+// distortion needs the higher powers.
 struct Segment {
   // Largest count, for which the kernels have buffers.
   static constexpr int kMaxCount = 1024;

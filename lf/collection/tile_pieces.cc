@@ -7,7 +7,7 @@
 namespace lf {
 namespace {
 
-// Positions that are at least this far apart keep their order in single precision.
+// Positions that are at least this far apart, in elements, keep their order in single precision.
 constexpr float kSureStep = 1e-3F;
 
 int Floor(float f) {

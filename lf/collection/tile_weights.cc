@@ -8,8 +8,9 @@
 namespace lf {
 namespace {
 
-// Writes the weights of the row j of a block, like FeatheredWeight(). Floats hold these integers
-// exactly, and compilers vectorise the loop.
+// Writes the weights of the elements in row j of a block, like FeatheredWeight(). `above` and
+// `below` are the feather at the two upper and the two lower corners of the block. Floats hold
+// these integers exactly, and compilers vectorise the loop.
 void FillFeathered(uint32_t weight, const uint16_t* above, const uint16_t* below, int j,
                    uint8_t (&weights)[kWeightBlock]) {
   constexpr int kOne = 2 * kWeightBlock;
