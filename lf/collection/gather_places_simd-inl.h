@@ -37,8 +37,8 @@ struct Places {
   HWY_ALIGN int32_t pixel[kRoom];
   HWY_ALIGN uint32_t left_right[kRoom];  // weights of left and right pixels, 16 bits each
   HWY_ALIGN uint32_t lower[kRoom];       // weights of the lower pixels
-  // Only for kMosaic: x % 2 + 2 (y % 2), where (x, y) is that upper left pixel, counted in the
-  // whole LF image.
+  // Phase of the Bayer pattern: x % 2 + 2 (y % 2), where (x, y) is the upper left one of the four
+  // pixels, counted in the whole LF image. Only set for PixelFilter::kMosaic.
   HWY_ALIGN int32_t phase[kRoom];
 };
 
@@ -47,9 +47,9 @@ struct Places {
 // overflow.
 constexpr float kWhole = 12582912;
 
-// One coordinate of a position: the last pixel whose centre is not to the right of the position (or
+// One coordinate of a position: the last pixel whose knot is not to the right of the position (or
 // below it), counted from the first pixel of the loaded rectangle, and the distance of the position
-// from this centre in 1/256 px.
+// from this knot in 1/256 px. (The knot is the pixel's centre unless Prefilter::is_even is true.)
 struct Coordinate {
   hn::Vec<LaneI> pixel;
   hn::Vec<LaneI> weight;
@@ -59,7 +59,8 @@ struct Coordinate {
 template <int kDegree>
 class CoordinateFinder {
  public:
-  //   first_px  position of the first knot in the first pixel: 0.5 if knots are at pixel centres
+  //   first_px  position of a pixel's knot, from the pixel's left (or upper) border: 0.5 if knots
+  //             are at pixel centres
   HWY_ATTR HWY_INLINE CoordinateFinder(const float (&polynomial)[Segment::kTerms], int32_t base,
                                        int begin, int end, float first_px)
       : base_((base - begin) * kOne - std::bit_cast<int32_t>(kWhole)), last_(end - begin - 1) {

@@ -22,7 +22,7 @@ struct GatherForms {
   PixelForm lens_right;  // lens position = (lens_right e, lens_up e) / (forward e)
   PixelForm lens_up;
   // X - c in axes of the LF camera, times a positive number. Without lens distortion also
-  // multiplied by K, which yields homogeneous pixel positions.
+  // multiplied by the camera's intrinsic matrix, which yields homogeneous pixel positions.
   PixelForm across_x;
   PixelForm across_y;
   PixelForm depth;
@@ -33,12 +33,14 @@ GatherForms MakeForms(const PinholeCamera& lf_camera, const RenderCamera& render
   const Vec3& n = render_camera.focus_plane.normal;
   const Vec3 offset = lf_camera.CentreWorld() - lens.CentreWorld();
   const Vec3 f = lens.ForwardWorld();
-  // n.(X - c'), the same for all points X of the focus plane.
+  // n.(X - c'), with the letters of GatherForms, which is the same for all points X of the focus
+  // plane.
   const double distance = render_camera.focus_plane.offset_w - n.dot(lens.CentreWorld());
   const double sign = distance < 0 ? -1 : 1;
-  // d' = direction e with f.d' = 1;  X - c' = d' distance / n.d'
+  // `direction` maps an element position e to the direction d' in which the element looks, with
+  // f.d' = 1. The element's focus point X is at X - c' = d' distance / n.d'.
   const Mat3 direction = lens.cam_from_world.rotation.transpose() * lens.intrinsics.InverseMatrix();
-  // (X - c) |n.d'|, where n.d' has the sign of `distance`
+  // `to_focus` maps e to (X - c) |n.d'|, provided that n.d' has the sign of `distance`.
   const Mat3 to_focus = sign * (distance * Mat3::Identity() - offset * n.transpose()) * direction;
   const Mat3 to_lens = offset * f.transpose() - f.dot(offset) * Mat3::Identity();
   GatherForms forms;
@@ -199,7 +201,7 @@ class GatherPlanner {
   int width_, height_;          // size of the finer plate
   std::vector<RowSpan> spans_;  // spans of the current row
   std::vector<Segment> found_;  // segments of the current span
-  int part_end_ = -1;           // end of the part appended last; -1 at a new segment
+  int part_end_ = -1;           // x_end of the part appended last; -1 at a new segment
 };
 
 }  // namespace

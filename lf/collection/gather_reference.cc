@@ -88,8 +88,9 @@ std::optional<RgbRay> InterpolatePixels(const LfPixels& pixels, int width_px, in
   LF_DCHECK(pixels.bayer == BayerPattern::kNone);
   const double left = std::floor(x_px - 0.5), top = std::floor(y_px - 0.5);
   if (!(left >= 0 && left + 1 < width_px && top >= 0 && top + 1 < height_px)) return std::nullopt;
-  // The position in 1/256 px, counted from the upper left knot of the image. Positions beyond the
-  // outermost knots are moved to these.
+  // The position in 1/256 px, counted from the upper left knot of the image. (A knot is where a
+  // value of the image stands: the centre of a pixel, or midway between pixels if
+  // prefilter.is_even.) Positions beyond the outermost knots are moved to these.
   constexpr int64_t kOne = 256;
   const int less = sampling.prefilter.is_even ? 1 : 0;
   const auto from_knot = [&](double position_px, int size_px) {
@@ -158,7 +159,7 @@ uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& recorde
   const LfPixels& pixels = sampling.prefilter.changes_nothing() ? recorded : filtered;
   const int samples = sampling.samples;
   const GatherModel model(lf_camera, WithFinerPlate(render_camera, samples));
-  // Returns the ray of element (x, y).
+  // Returns the ray of element (x, y); none if the LF image did not record it.
   const auto ray_of = [&](int x, int y) -> std::optional<RgbRay> {
     std::array<uint32_t, 3> sum = {}, counted = {};
     uint32_t rays = 0;

@@ -23,7 +23,8 @@ namespace lf {
 //              (mosaic_filter.h), and the ray adds a count from 1 to kRecordedShare to each colour
 //   kPrefiltered  interpolates linearly between four values of an LF image that was filtered before
 //              (prefilter.h), so that an element of any size needs only one sample
-//   kAuto      is kPrefiltered, or what FilterOf() says of the whole light field
+//   kAuto      stands for the filter that FilterOf() returns for the whole light field;
+//              SamplingOf() takes it as kPrefiltered
 enum class PixelFilter { kAuto, kNearest, kBilinear, kBicubic, kMosaic, kPrefiltered };
 
 // Returns "auto", "nearest", "bilinear", "bicubic", "mosaic" or "prefiltered".
@@ -44,7 +45,7 @@ struct PixelReading {
 
   PixelReading() = default;
   PixelReading(PixelFilter the_filter)
-      : filter(the_filter) {}  // NOLINT: a filter alone says enough
+      : filter(the_filter) {}  // NOLINT: implicit, because most callers give only a filter
 };
 
 inline constexpr int kBilinearFrom = 3;
@@ -61,10 +62,11 @@ struct GatherSampling {
   PixelFilter filter = PixelFilter::kBilinear;  // never kAuto
   bool is_cubic = false;  // true: interpolates between sixteen pixels where possible
   // Number of samples along each edge of an element: the number of LF pixels along an edge, rounded
-  // up, at most kMostSamples; 1 if that number is at most kFinerAtMost. The element's ray is the
-  // mean of samples^2 evenly spaced rays, or of as many of these as exist.
+  // up, at most kMostSamples; 1 if there are at most kFinerAtMost LF pixels along an edge, or if
+  // the filter is kPrefiltered. The element's ray is the mean of samples^2 evenly spaced rays, or
+  // of as many of these as exist.
   int samples = 1;
-  // By which the LF image must be filtered before it is sampled.
+  // The filter that must be applied to the LF image before it is sampled.
   Prefilter prefilter = {};
 };
 GatherSampling SamplingOf(const PinholeCamera& lf_camera, const RenderCamera& render_camera,

@@ -41,8 +41,8 @@ bool IsInner(const Segment& s, int begin, int count, const PixelRect& rect) {
          is_inner(RangeOf(s.y_poly, t, count), s.base_y, rect.y_begin, rect.y_end);
 }
 
-// The pixels that a ray is interpolated between: four or sixteen, with or without the shares of a
-// mosaic.
+// The pixels that a ray is interpolated between: four or sixteen, with or without the shares that
+// mosaic_filter.h gives them.
 enum class Reading { kFour, kSixteen, kMosaicFour, kMosaicSixteen };
 
 constexpr bool IsMosaic(Reading reading) { return reading >= Reading::kMosaicFour; }

@@ -9,8 +9,8 @@
 //   column_k = round(sum_i d_i s_ik (p_ik - 2^15) / 2^10),   d = CubicTapsAt(down, 11)
 //   S = sum_k c_k column_k,  D = sum_k c_k sum_i d_i s_ik,   c = CubicTapsAt(right, 11)
 // The ray's value is 2^10 S / D + 2^15, rounded half up, clipped to 16 bits. The ray counts as
-// D / 2^22 rays, rounded half up: from 1 to kRecordedShare, because the weights of every second
-// pixel add up to a number from 0 to 1. All sums fit into 32 bits.
+// D / 2^22 rays, rounded half up: from 1 to kRecordedShare, because the cubic weights of every
+// second pixel of a row or column add up to a share from 0 to 1. All sums fit into 32 bits.
 //
 // A ray interpolated between four pixels lies `right` / 256 px to the right of the upper left one
 // and `down` / 256 px below it. The bilinear weights a_x a_y of the pixels add up to 2^16, and each
@@ -37,14 +37,14 @@ inline constexpr int kShareShift = 9;
 inline constexpr int kShareBits = 7;  // D / 2^kShareBits is the count of a ray of four pixels
 
 // Returns the share s of pixel (x, y) in colour `channel`, for an LF image whose mosaic had the
-// pattern `recorded`. kNone means that all pixels recorded all colours.
+// pattern `recorded`. The pattern kNone means that all pixels recorded all colours.
 inline uint32_t RecordedShareOf(BayerPattern recorded, int x, int y, int channel) {
   const bool is_recorded =
       recorded == BayerPattern::kNone || BayerChannel(recorded, x, y) == channel;
   return is_recorded ? kRecordedShare : 1;
 }
 
-// Returns the value of a ray of sixteen pixels, from S and D.
+// Returns the value of a ray of sixteen pixels, from S (`sum`) and D (`count`) as defined above.
 inline uint32_t CubicMosaicValue(int32_t sum, int32_t count) {
   const float quotient = static_cast<float>(sum) / static_cast<float>(count);
   const float value = quotient * (1 << kMosaicColumnShift) + 32768.5F;

@@ -27,20 +27,20 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Tables for one Bayer pattern, with d and the share s as in mosaic_filter.h. They are indexed by
+// Tables for one Bayer pattern, with the weights d and the shares s of mosaic_filter.h, indexed by
 // the phase (Places::phase) of the upper left one of the inner four pixels. In the last lane, which
 // counts rays, every pixel has the share of a recorded one.
 struct MosaicTable {
   // Weights for rays of sixteen pixels. Columns 0 and 2 of the pixels have index 0, columns 1 and 3
   // have index 1.
   struct Columns {
-    // [column % 2][row / 2]: d s of two successive rows, interleaved for each lane.
+    // [column % 2][row / 2]: products d s for two successive rows, interleaved for each lane.
     HWY_ALIGN int16_t weights[2][2][8];
-    HWY_ALIGN int32_t counts[2][4];  // d s of all four rows added up
+    HWY_ALIGN int32_t counts[2][4];  // [column % 2][lane]: sum of the products d s of four rows
   };
   Columns columns[4][kCubicSteps + 1];  // [phase][down]
-  // Weights for rays of four pixels, [phase][row]: 2 s of the left and the right pixel, interleaved
-  // for each lane.
+  // Weights for rays of four pixels, [phase][row]: twice the shares s of the left and the right
+  // pixel, interleaved for each lane.
   HWY_ALIGN uint16_t rows[4][2][8];
 
   explicit MosaicTable(BayerPattern recorded) {
@@ -82,7 +82,8 @@ inline const MosaicTable& TableOfMosaic(BayerPattern recorded) {
   return tables[static_cast<int>(recorded)];
 }
 
-// a_x a_y s / 2^9 is the upper half of the 32-bit product of 64 a_x and 2 a_y s.
+// The t of mosaic_filter.h, a_x a_y s / 2^9 for bilinear weights a_x, a_y and the share s, is the
+// upper half of the 32-bit product of 2^kSideShift a_x and 2 a_y s.
 constexpr int kSideShift = 16 - kShareShift - 1;
 
 // AddMosaicRay() and AddCubicMosaicRay() add ray i of `places` to element i of `sums`.

@@ -164,7 +164,8 @@ bool PatchEdges::Narrow(const BezierWeights& row, Form* form, Span* span) const 
     *span = {1, 0};
     return true;
   }
-  // The polynomial rises if the values at its control points do.
+  // The polynomial rises (or falls) along the whole scanline if the values at its control points
+  // do.
   const bool rises = values.back() > values.front();
   if (!(rises ? std::is_sorted(values.begin(), values.end())
               : std::is_sorted(values.rbegin(), values.rend())))

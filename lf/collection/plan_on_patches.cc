@@ -77,9 +77,11 @@ class PatchPlanner {
   // The open conditions: those that are not known to hold on a whole hull. A condition that holds
   // on a hull holds on all its parts.
   struct Conditions {
-    bool sides[2] = {true, true};  // [0]: n.d < 0, [1]: n.d > 0; false: accepts no ray
-    uint64_t plate[2];             // for each side, a bit for each half-plane
-    uint64_t lens;                 // a bit for each edge of a polygonal lens
+    // [0]: rays with n.d < 0, [1]: with n.d > 0 (n: normal of the focus plane, d: direction of the
+    // ray); false: the side accepts no ray.
+    bool sides[2] = {true, true};
+    uint64_t plate[2];  // for each side, a bit for each half-plane
+    uint64_t lens;      // a bit for each edge of a polygonal lens
     bool disk;
   };
 
@@ -156,8 +158,8 @@ class PatchPlanner {
   }
 
   // Sets `edges_` to the open conditions of a part of a patch. Returns false if edges cannot decide
-  // them: because both sides of n.d = 0 are open, or because the disk is open and the LF camera
-  // lies in the lens plane or PatchEdges::AddDisk() refuses the disk.
+  // them: because both sides (Conditions::sides) are open, or because the disk is open and the LF
+  // camera lies in the lens plane or PatchEdges::AddDisk() refuses the disk.
   bool SetEdges(const IdealPatch& part, const Conditions& open) {
     if (open.sides[0] == open.sides[1]) return false;
     edges_.Begin(part);
@@ -258,7 +260,7 @@ class PatchPlanner {
       if (share == RayShare::kNone) return share;
       open->disk = share == RayShare::kSome;
     }
-    // The two sides of n.d = 0 exclude each other.
+    // The two sides exclude each other: all rays are on one side if it has no open condition.
     const bool on_plate =
         (open->sides[0] && open->plate[0] == 0) || (open->sides[1] && open->plate[1] == 0);
     return on_plate && open->lens == 0 && !open->disk ? RayShare::kAll : RayShare::kSome;

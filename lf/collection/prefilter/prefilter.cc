@@ -24,7 +24,7 @@ void FilterPixels(const Prefilter& filter, const LfPixels& pixels, LfPixels* out
   thread_local std::vector<uint16_t> padded;
   thread_local std::vector<int32_t> filtered;
   padded.assign(row_values + 2 * margin, 0);
-  // A ring of rows, and a row of zeros.
+  // A ring of the filtered rows that are still needed, and a row of zeros for missing rows.
   const auto ring = static_cast<size_t>(before + 1 + after);
   filtered.assign((ring + 1) * row_values, 0);
   const auto at = [&](int y) {

@@ -8,8 +8,8 @@
 // the filter, and T(f) = sinc(f)^2 linear interpolation. The error is
 //   integral of S ((P H T - sinc(w f))^2 + (P H)^2 A / N) df
 // The first term is the difference of sharpness. A(f), the sum of T(f + j)^2 over all integers j
-// other than 0, is the aliasing of interpolation. Its phase is another one in each LF image, so
-// that the mean of N rays averages it.
+// other than 0, is the aliasing of interpolation. Its phase differs from LF image to LF image, so
+// that its power is divided by N in the mean of N rays.
 //
 // The filtered values stand at knots: at the centres of pixels if the filter has an odd number of
 // weights, as is best for elements about as wide as 1, 3, 5 ... LF pixels, otherwise midway between
@@ -34,8 +34,8 @@ struct Prefilter {
 
   bool is_even = false;  // true: knots are midway between pixels
   int count = 1;         // number of different weights
-  // The weights of pixels at the distances 0, 1, 2 ... on both sides of a knot; 1/2, 3/2 ... if
-  // is_even.
+  // The weights, times kOne, of the pixels at the distances 0, 1, 2 ... px on both sides of a knot;
+  // 1/2, 3/2 ... px if is_even.
   std::array<int16_t, kMostWeights> weights = {kOne};
 
   bool changes_nothing() const { return !is_even && count == 1; }
@@ -56,14 +56,14 @@ inline constexpr double kFinerAtMost = 1.25;
 // is the knot at the centre of pixel (x, y), or the one between (x, y) and (x + 1, y + 1) if
 // filter.is_even; the result then has one column and one row less.
 //
-// A knot is masked if its pixel, or one of the two pixels beside it along the axis that is
-// filtered, is masked. Other pixels that are masked or not in `pixels` count as that pixel, or as
-// the mean of the two. If `pixels` is a part of the LF image, values that need pixels beyond it are
-// only right at the borders of the LF image.
+// A knot is masked if the pixel at it is masked or, if filter.is_even, one of the two pixels beside
+// it along the filtered axis. Other pixels that are masked or not in `pixels` count as the pixel at
+// the knot, or as the mean of the two beside it. If `pixels` is a part of the LF image, values that
+// need pixels beyond this part are only right at the borders of the LF image.
 //   pixels  RGB
 void FilterPixels(const Prefilter& filter, const LfPixels& pixels, LfPixels* out);
 
-// Computes the same values literally, one at a time.
+// Computes the values of FilterPixels() literally, one at a time.
 void FilterPixelsReference(const Prefilter& filter, const LfPixels& pixels, LfPixels* out);
 
 }  // namespace lf

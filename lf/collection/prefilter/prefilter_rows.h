@@ -12,8 +12,8 @@ inline constexpr int kPrefilterFraction = 2;
 
 // Filters a row of pixels along the row. A value of the result is 2^kPrefilterFraction times the
 // filtered value; lane kRayLane is 2^kPrefilterFraction, or 0 if the pixel is masked.
-//   row         its pixels, with filter.count masked pixels before and behind them
-//   any_masked  true if one of the other pixels is masked
+//   row         pixels of the row, with filter.count masked pixels before and behind them
+//   any_masked  true if a pixel of the row itself is masked
 //   count       number of knots
 void FilterAlongRow(const Prefilter& filter, const uint16_t* row, bool any_masked, int count,
                     int32_t* out);
@@ -25,7 +25,7 @@ void FilterAlongRow(const Prefilter& filter, const uint16_t* row, bool any_maske
 void FilterAlongColumns(const Prefilter& filter, const int32_t* const* rows, bool any_missing,
                         int count, uint16_t* out);
 
-// Returns the knots of the pixels in `rect`.
+// Returns the rectangle of the knots that FilterPixels() makes of the pixels in `rect`.
 inline PixelRect KnotsOf(const Prefilter& filter, const PixelRect& rect) {
   const int less = filter.is_even ? 1 : 0;
   if (rect.width() <= less || rect.height() <= less) return {};

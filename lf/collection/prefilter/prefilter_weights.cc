@@ -11,13 +11,15 @@
 namespace lf {
 namespace {
 
-constexpr double kSteps = 16;  // widths per LF pixel
+constexpr double kSteps = 16;  // steps of an element's width per LF pixel
 
-// The power spectrum of scenes falls as 1 / (f^2 + f0^2), like that of edges.
+// The power spectrum of scenes is assumed to fall as 1 / (f^2 + kLowFrequency^2), like that of
+// edges; f is in cycles per LF pixel.
 constexpr double kLowFrequency = 0.02;
 
-// Returns N of prefilter.h. Chosen by true lens pictures (doc/quality.md): a larger number makes
-// what is in focus sharper, and lets blurs through that are made of few LF images alias more.
+// Returns N of prefilter.h, the number of rays that average aliasing. It was chosen with pictures
+// of true lenses (doc/quality.md): a larger N makes the focus plane sharper, but blur that is made
+// of few LF images aliases more.
 double RaysFor(PixelFootprint footprint) { return footprint == PixelFootprint::kArea ? 3 : 6; }
 
 double Sinc(double x) {
@@ -52,7 +54,7 @@ Design Designed(double width_px, PixelFootprint footprint, bool is_even, int cou
     b.head(count) += scene * pixel * tent * wanted * waves;
     constant += scene * wanted * wanted;
   }
-  // The weights add up to 1.
+  // The last equation demands that the weights add up to 1.
   for (int k = 0; k < count; ++k) a(k, count) = a(count, k) = !is_even && k == 0 ? 1 : 2;
   b[count] = 1;
   const Eigen::VectorXd solution = a.fullPivLu().solve(b);
