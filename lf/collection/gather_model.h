@@ -35,7 +35,7 @@ class GatherModel {
   RenderCamera render_camera_;
   Vec3 forward_, right_, up_;
   RayThrough ray_;
-  Vec3 offset_;  // from the lens centre to the LF camera, in the world
+  Vec3 offset_;  // vector from the lens centre to the LF camera, in the world
   ApertureTest aperture_;
   bool may_lack_rays_ = false;
 };

@@ -35,8 +35,8 @@ constexpr uint16_t kMiddle = 0x8000;
 struct Places {
   static constexpr int kRoom = Segment::kMaxCount + kLanes;
   HWY_ALIGN int32_t pixel[kRoom];
-  HWY_ALIGN uint32_t left_right[kRoom];  // weights of left and right pixels, 16 bits each
-  HWY_ALIGN uint32_t lower[kRoom];       // weights of the lower pixels
+  HWY_ALIGN uint32_t left_right[kRoom];  // weights of the left (low 16 bits) and the right pixels
+  HWY_ALIGN uint32_t lower[kRoom];       // weights of the two lower pixels
   // Phase of the Bayer pattern: x % 2 + 2 (y % 2), where (x, y) is the upper left one of the four
   // pixels, counted in the whole LF image. Only set for PixelFilter::kMosaic.
   HWY_ALIGN int32_t phase[kRoom];
@@ -84,7 +84,7 @@ class CoordinateFinder {
 
  private:
   float polynomial_[Segment::kTerms];
-  int32_t base_;  // (base - begin) in 1/256 px, less the bits of kWhole
+  int32_t base_;  // (base - begin) in 1/256 px, minus the bits of the float kWhole
   int32_t last_;
 };
 

@@ -17,7 +17,7 @@ namespace {
 // is the lens centre and f the forward axis of the render camera. The direction d of the element's
 // ray is X - c or c - X, whichever runs forward.
 struct GatherForms {
-  PixelForm plane;       // > 0 where X is in front of the lens
+  PixelForm plane;       // above 0 where X is in front of the lens
   PixelForm forward;     // f.(X - c) times a positive number: > 0 if d = X - c
   PixelForm lens_right;  // lens position = (lens_right e, lens_up e) / (forward e)
   PixelForm lens_up;
@@ -198,7 +198,7 @@ class GatherPlanner {
   SegmentMaker maker_;
   RowSpans rows_;
   GatherPlan plan_;
-  int width_, height_;          // size of the finer plate
+  int width_, height_;          // size of the finer plate, in its elements
   std::vector<RowSpan> spans_;  // spans of the current row
   std::vector<Segment> found_;  // segments of the current span
   int part_end_ = -1;           // x_end of the part appended last; -1 at a new segment

@@ -45,7 +45,7 @@ struct PixelReading {
 
   PixelReading() = default;
   PixelReading(PixelFilter the_filter)
-      : filter(the_filter) {}  // NOLINT: implicit, because most callers give only a filter
+      : filter(the_filter) {}  // NOLINT: implicit, because `footprint` has a default
 };
 
 inline constexpr int kBilinearFrom = 3;

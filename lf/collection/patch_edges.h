@@ -55,7 +55,7 @@ class PatchEdges {
   struct Form {
     Grid grid;
     double rounding;
-    double root;  // root on the previous scanline
+    double root;  // root of the form on the previous scanline, in the parameter along it
   };
 
   struct Disk {

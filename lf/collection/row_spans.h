@@ -75,7 +75,7 @@ void RowSpans::Find(int y, int x_begin, int x_end, const Accepted& accepted,
   for (const int side : {0, 1}) {
     if (is_shut_[side]) continue;
     auto [begin, end, tie, sure] = FindCandidate(side, y + 0.5, x_begin, x_end);
-    const auto is_accepted = [&, sure = sure](int x) {  // copied, as clang below 16 requires
+    const auto is_accepted = [&, sure = sure](int x) {  // `sure` is copied for clang below 16
       const bool is_sure = x + 0.5 > sure.begin && x + 0.5 < sure.end && !model_decides &&
                            (!disk || IsSurelyInDisk(x + 0.5, y + 0.5));
       return is_sure || accepted(side, x);

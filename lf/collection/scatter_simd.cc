@@ -221,7 +221,8 @@ HWY_ATTR HWY_INLINE void FindStarts(const Segment& s, int begin, int count, cons
   const int corner = kClamp ? 0 : upper * tile.row_stride + left;
   const auto base = hn::Set(df, kTwoTo23 - static_cast<float>(corner));
   auto less = hn::Neg(hn::Iota(di, std::bit_cast<int32_t>(kTwoTo23)));
-  auto t = hn::Iota(df, s.t_begin + static_cast<float>(begin));  // exact, also after each addition
+  // t is exact, also after each addition.
+  auto t = hn::Iota(df, s.t_begin + static_cast<float>(begin));
   for (int i = 0; i < count; i += kLanes, t = hn::Add(t, hn::Set(df, kLanes))) {
     auto x = hn::Floor(x_poly.At(t)), y = hn::Floor(y_poly.At(t));
     if constexpr (kClamp) {

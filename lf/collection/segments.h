@@ -107,7 +107,7 @@ inline float PositionAt(const float (&polynomial)[Segment::kTerms], float t) {
 struct PositionRange {
   float low, high;
   float least_step, most_step;
-  float first, last;  // values at the first and the last position
+  float first, last;  // the coordinate of the first and of the last position
 };
 PositionRange RangeOf(const float (&polynomial)[Segment::kTerms], float t_begin, int count);
 

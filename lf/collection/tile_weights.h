@@ -43,7 +43,7 @@ class TileWeights {
   std::vector<uint16_t> above_;
   std::vector<uint16_t> below_;
   int below_y_ = 0;            // y of the corners that below_ holds
-  bool is_feathered_ = false;  // false: above_ and below_ are not used
+  bool is_feathered_ = false;  // true if above_ and below_ are used, because feather is not whole
 };
 
 }  // namespace lf

@@ -61,7 +61,7 @@ std::string TextOf(int file, off_t most_bytes = std::numeric_limits<off_t>::max(
 // All that a new process needs to become a program.
 struct Launch {
   char* const* argv = nullptr;
-  const char* working_folder = nullptr;  // nullptr: the same as ours
+  const char* working_folder = nullptr;  // where the program starts; nullptr: the same as ours
   int input = -1, output = -1, complaints = -1;
   int kept = -1;  // descriptor that the program inherits; -1: none
   bool ends_with_parent = false;
@@ -69,8 +69,8 @@ struct Launch {
 
 // Lets the program inherit no open file except the standard files and `kept`.
 void CloseOtherFilesAtExec(int kept) {
-  if (::close_range(kFirstOther, ~0u, CLOSE_RANGE_CLOEXEC) != 0) {  // Linux older than 5.11
-    constexpr int kHighest = 65536;  // not the limit of open files, which may be a billion
+  if (::close_range(kFirstOther, ~0u, CLOSE_RANGE_CLOEXEC) != 0) {  // fails before Linux 5.11
+    constexpr int kHighest = 65536;  // the limit of open files, which may be a billion, is not used
     for (int file = kFirstOther; file < kHighest; ++file) ::fcntl(file, F_SETFD, FD_CLOEXEC);
   }
   if (kept >= 0) ::fcntl(kept, F_SETFD, 0);
@@ -179,7 +179,7 @@ ChildProcess::~ChildProcess() {
 
 void ChildProcess::Kill() {
   if (pid_ == 0 || end_) return;
-  ::kill(-pid_, SIGKILL);  // the whole process group
+  ::kill(-pid_, SIGKILL);  // kills the whole process group
   while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) continue;
   end_ = {.exit_code = 0, .signal = SIGKILL};
 }

@@ -31,7 +31,7 @@ class ChildProcess {
     std::vector<std::string> words;        // the program, searched in PATH, and its arguments
     std::filesystem::path working_folder;  // empty: the same as ours
     int output = -1;                       // descriptor of standard output; -1: /dev/null
-    int complaints = -1;     // standard error; -1: a file in memory, whose end is quoted in errors
+    int complaints = -1;     // descriptor of standard error; -1: a file in memory, quoted in errors
     int kept = -1;           // a descriptor that the program inherits; -1: none
     bool has_input = false;  // true: standard input is fed by Write(); false: /dev/null
   };
@@ -60,7 +60,7 @@ class ChildProcess {
   void Kill();
 
   std::string name_;
-  pid_t pid_ = 0;                  // 0: not started
+  pid_t pid_ = 0;                  // process id of the program; 0: not started
   std::optional<ProcessEnd> end_;  // how the program ended; nullopt while it runs
   int lost_reason_ = 0;            // errno if waitpid() failed and `end_` is a guess; else 0
   int input_ = -1;                 // socket that feeds the program's input; -1: none, or closed

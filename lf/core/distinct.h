@@ -21,7 +21,7 @@ class Distinct {
   size_t size() const { return list_.size(); }
   // Returns the index of the value in the list. Appends the value if it is new.
   uint32_t IndexOf(const T& value) {
-    list_.push_back(value);  // so that the set can compare it
+    list_.push_back(value);  // because the set compares only values in the list
     const auto [index, is_new] = indices_.insert(static_cast<uint32_t>(list_.size() - 1));
     if (!is_new) list_.pop_back();
     return *index;

@@ -44,7 +44,7 @@ const std::string& Host() {
 
 // The parts of a temporary name.
 struct NameParts {
-  std::string file;  // the final name
+  std::string file;  // final name of the file
   pid_t process = 0;
   std::string host;
 };

@@ -27,7 +27,7 @@ namespace lf {
 
 enum class ClusterEngine { kLocal, kSlurm };
 const char* NameOf(ClusterEngine engine);
-std::optional<ClusterEngine> ClusterEngineOf(std::string_view name);  // nullopt: of no engine
+std::optional<ClusterEngine> ClusterEngineOf(std::string_view name);  // nullopt: no engine's name
 
 struct JobPackage {
   std::filesystem::path file;
@@ -38,7 +38,7 @@ struct JobPackage {
 };
 
 struct ClusterJob {
-  std::filesystem::path output_folder;   // DIR
+  std::filesystem::path output_folder;   // folder DIR of the frames and of the job's own files
   std::filesystem::path working_folder;  // folder where lfrenderer runs; relative paths start here
   std::filesystem::path renderer;        // path of lfrenderer
   std::filesystem::path submitter;       // path of lfsubmit, for batch scripts
@@ -51,7 +51,7 @@ struct ClusterJob {
   ClusterEngine engine = ClusterEngine::kLocal;
   // number of packages rendered at the same time; 0: no limit (slurm), one (local)
   size_t at_once = 0;
-  int thread_count = 1;        // threads of each task
+  int thread_count = 1;        // number of threads of each task
   uint64_t memory_bytes = 0;   // --memory of lfrenderer in each task; 0: lfrenderer's default
   uint32_t most_crashes = 10;  // a package that crashes more often fails
   double time_limit_s = 0;     // time limit of a task (slurm); 0: the partition's limit
@@ -73,7 +73,7 @@ struct ClusterJob {
 
 // The name and the files of a task of the job: a package, or the finishing task.
 struct ClusterTask {
-  std::string name;  // used in names of files and in messages
+  std::string name;  // name of the package, or "finish"; used in messages
   std::filesystem::path state, log, lock;
 };
 ClusterTask PackageTask(const ClusterJob& job, size_t number);

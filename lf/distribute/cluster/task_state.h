@@ -25,7 +25,7 @@ const char* NameOf(TaskPhase phase);
 struct TaskState {
   TaskPhase phase = TaskPhase::kWaiting;
   std::string node;          // name of the machine where the task was last started
-  int64_t process = 0;       // process id of lfrenderer on this node
+  int64_t process = 0;       // process id of lfrenderer on `node`
   uint32_t start_count = 0;  // number of starts of lfrenderer
   uint32_t crash_count = 0;  // number of crashes of lfrenderer or its node
   int exit_code = 0;         // exit code of the last lfrenderer; 0 or 6 if `phase` is kDone
@@ -53,7 +53,7 @@ struct TaskProgress {
   double seconds_left = 0;
   uint64_t image_done = 0, image_total = 0;  // numbers of LF images: read, and to be read in all
   double quiet_s = 0;                        // seconds since the log was last written
-  std::string message;                       // last line of the log that is a message
+  std::string message;                       // last message in the log since the last start
 };
 
 // Returns the progress of the last start in a log. Until this start has reported progress, unit,

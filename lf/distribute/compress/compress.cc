@@ -98,7 +98,7 @@ class Compressor {
   CodecSettings settings_;
   std::optional<ImageCoder> coder_;
 
-  std::mutex mutex_;  // guards everything below
+  std::mutex mutex_;  // guards all members below
   CompressReport report_;
   CompressProgress now_;
   std::optional<Error> error_;

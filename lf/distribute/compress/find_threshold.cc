@@ -13,7 +13,7 @@
 namespace lf {
 namespace {
 
-constexpr size_t kLookedAt = 12;  // LF images in the sample
+constexpr size_t kLookedAt = 12;  // largest number of LF images in the sample
 
 // Thresholds that are tried, in grey steps: from 0.05 on, each 5 % above the previous one.
 constexpr int kSteps = 160;

@@ -141,8 +141,8 @@ class Preprocessor {
   const std::function<void(size_t, size_t)>& progress_;
   NeedsOptions needs_;
   std::vector<FrameId> frames_;
-  std::optional<PackageFolder> folder_;  // unset: nothing is written
-  std::unique_ptr<LfImageStore> store_;  // states file sizes and which pixels are kept
+  std::optional<PackageFolder> folder_;  // where packages are written; unset: nothing is written
+  std::unique_ptr<LfImageStore> store_;  // tells file sizes, and which pixels a store has kept
   LightFieldIdentity whole_;
   ImagePlaces places_;
   std::optional<ImageIndex> index_;

@@ -31,7 +31,7 @@ enum class PackageBalance { kRays, kFrames };
 struct PreprocessOptions {
   std::optional<std::filesystem::path> output_folder;  // unset: only forecasts
   bool overwrite = false;                              // true: existing packages are replaced
-  std::vector<FrameId> frames;                         // ascending; empty: all frames of the path
+  std::vector<FrameId> frames;  // frames to pack, ascending; empty: all frames of the path
   ImageOrder order = ImageOrder::kShuffle;
   uint64_t seed = 0;
   std::optional<size_t> max_image_count;
@@ -65,8 +65,8 @@ struct PreprocessOptions {
 
 struct FrameForecast {
   FrameId frame;
-  size_t image_count = 0;  // LF images that are read
-  uint64_t ray_count = 0;  // rays that are tested or rebinned
+  size_t image_count = 0;  // number of LF images that are read
+  uint64_t ray_count = 0;  // number of rays that are tested or rebinned
   FrameDensity density;
 };
 
