@@ -13,8 +13,8 @@ namespace {
 
 constexpr int kReach = 2;
 
-// Five rows of the mosaic's values, with mirrored ends: all values from which the RGB pixels of a
-// row are computed.
+// Five rows of the values of a mosaic or of its mask, with mirrored ends: all values from which one
+// row of RGB pixels is computed.
 template <class T>
 class RowWindow {
  public:
@@ -72,8 +72,8 @@ class RowWindow {
 RowGains GainsOf(const std::array<double, 3>& white_balance, int c) {
   constexpr int kGreen = 1;
   const int d = 2 - c;
-  // DemosaicPairs() computes 4 L at C and 10 L at G. The factors are gain / 4 and gain / 10, in
-  // units of 1/16, times the ratio of the white balance.
+  // DemosaicPairs() computes 4 L at a pixel of C and 10 L at a pixel of G, where L is the Laplacian
+  // (demosaic.h). The factors are gain / 4 and gain / 10, in units of 1/16, times BalanceRatio().
   return {.g_at_c = 2 * BalanceRatio(white_balance, c, kGreen),  // gain 1/2
           .d_at_c = 3 * BalanceRatio(white_balance, c, d),       // gain 3/4
           .c_at_g = BalanceRatio(white_balance, kGreen, c),      // gain 5/8

@@ -11,15 +11,17 @@
 
 namespace lf {
 
-// A colour is a sum in units of 1/4096: weights of pixels are multiples of 1/16, ratios are
-// multiples of 1/256.
+// A colour is computed as a sum in units of 1/4096: weights of pixels are multiples of 1/16, ratios
+// of white balance factors are multiples of 1/256.
 inline constexpr int kWeightBits = 4;
 inline constexpr int kRatioBits = 8;
-// Largest ratio: 8. With it no sum reaches 2^31, because the weights of a sum are at most 4096
-// (mean) and 12 * 2048 (Laplacian): (4096 + 12 * 2048) * 65535 < 2^31.
+// Largest ratio of white balance factors: 8, in units of 1/256. With it no sum reaches 2^31,
+// because the weights of a sum are at most 4096 (mean) and 12 * 2048 (Laplacian): (4096 + 12 *
+// 2048) * 65535 < 2^31.
 inline constexpr int32_t kMaxRatio = 8 << kRatioBits;
 
-// Returns w[recorded] / w[missing] in units of 1/256, at most kMaxRatio, for the white balance w.
+// Returns the ratio of the white balance factors of two channels, `recorded` / `missing`, in units
+// of 1/256. It is at most kMaxRatio.
 inline int32_t BalanceRatio(const std::array<double, 3>& white_balance, int recorded, int missing) {
   const double of_recorded = white_balance[static_cast<size_t>(recorded)];
   const double of_missing = white_balance[static_cast<size_t>(missing)];
@@ -28,7 +30,7 @@ inline int32_t BalanceRatio(const std::array<double, 3>& white_balance, int reco
   return static_cast<int32_t>(std::min<double>(ratio, kMaxRatio));
 }
 
-// Returns the position inside an image of `size` >= 2 that a position beyond it is mirrored to.
+// Returns `position` mirrored about the outermost pixels into [0, size); `size` is at least 2.
 inline int Mirrored(int position, int size) {
   while (position < 0 || position >= size)
     position = position < 0 ? -position : 2 * (size - 1) - position;

@@ -7,14 +7,14 @@
 namespace lf {
 namespace {
 
-// Weights of 5 x 5 pixels, in units of 1/16.
+// Weights of the 5 x 5 pixels around a pixel, in units of 1/16.
 using Filter = std::array<std::array<int, 5>, 5>;
 
 // Filters for a missing colour: `mean` for the pixels that recorded this colour, `laplacian` for
 // the pixels of the colour that the centre recorded.
 struct Estimate {
   Filter mean;
-  Filter laplacian;  // multiplied by the gain of the paper (demosaic.h)
+  Filter laplacian;  // already multiplied by the gain of the paper (demosaic.h)
 };
 
 constexpr Estimate kGreen = {{{{0, 0, 0, 0, 0},  //
@@ -27,7 +27,7 @@ constexpr Estimate kGreen = {{{{0, 0, 0, 0, 0},  //
                                {-2, 0, 8, 0, -2},
                                {0, 0, 0, 0, 0},
                                {0, 0, -2, 0, 0}}}};
-// R or B at G, from the pixels beside it.
+// Estimate of R or B at a pixel of G, if its left and right neighbours recorded this colour.
 constexpr Estimate kBeside = {{{{0, 0, 0, 0, 0},  //
                                 {0, 0, 0, 0, 0},
                                 {0, 8, 0, 8, 0},
@@ -38,7 +38,7 @@ constexpr Estimate kBeside = {{{{0, 0, 0, 0, 0},  //
                                 {-2, 0, 10, 0, -2},
                                 {0, -2, 0, -2, 0},
                                 {0, 0, 1, 0, 0}}}};
-// R or B at G, from the pixels above and below.
+// Estimate of R or B at a pixel of G, if the pixels above and below it recorded this colour.
 constexpr Estimate kAbove = {{{{0, 0, 0, 0, 0},  //
                                {0, 0, 8, 0, 0},
                                {0, 0, 0, 0, 0},
@@ -49,7 +49,7 @@ constexpr Estimate kAbove = {{{{0, 0, 0, 0, 0},  //
                                {1, 0, 10, 0, 1},
                                {0, -2, 0, -2, 0},
                                {0, 0, -2, 0, 0}}}};
-// R at B, and B at R.
+// Estimate of R at a pixel of B, and of B at a pixel of R.
 constexpr Estimate kOpposite = {{{{0, 0, 0, 0, 0},  //
                                   {0, 4, 0, 4, 0},
                                   {0, 0, 0, 0, 0},
@@ -61,7 +61,7 @@ constexpr Estimate kOpposite = {{{{0, 0, 0, 0, 0},  //
                                   {0, 0, 0, 0, 0},
                                   {0, 0, -3, 0, 0}}}};
 
-// One pixel (x, y) of an image with its surroundings.
+// One pixel (x, y) of a mosaic with its surroundings.
 class Surroundings {
  public:
   Surroundings(const LfPixels& mosaic, int width, int height, int x, int y)
@@ -90,7 +90,8 @@ class Surroundings {
   }
 
  private:
-  // Column and row in mosaic_.
+  // These functions return the column and row in mosaic_ of the pixel at the offset (dx, dy),
+  // mirrored into the image.
   int Column(int dx) const { return Mirrored(x_ + dx, width_) - mosaic_.rect.x_begin; }
   int Row(int dy) const { return Mirrored(y_ + dy, height_) - mosaic_.rect.y_begin; }
 

@@ -1,6 +1,6 @@
-// A plain loop that compilers vectorise. It is compiled for every instruction set, and the program
-// chooses one of these versions at run time (Highway). The version for the baseline of x86-64 takes
-// more than twice as long.
+// The inner loop of demosaicing, a plain loop that compilers vectorise. Highway compiles it for
+// several instruction sets, and the program chooses one of these versions at run time. The version
+// for the baseline of x86-64 takes more than twice as long as those for newer instruction sets.
 #include "lf/storage/load/demosaic_row.h"
 
 #include <algorithm>
@@ -38,8 +38,8 @@ HWY_ATTR HWY_INLINE uint32_t Colour(int32_t sum) {
   return static_cast<uint32_t>(std::min(std::max((sum + (1 << (kBits - 1))) >> kBits, 0), 65535));
 }
 
-// c, g and d in the names are C, G and D of RowGains. "near" is the sum of the pixels above and
-// below; "left" and "right" are the pairs beside the pair `here`.
+// In the names, c, g and d are the colours C, G and D of RowGains, "near" means the sum of the
+// pixels above and below, and "left" and "right" are the pairs beside the pair `here`.
 template <bool kCIsRed>
 HWY_ATTR void DemosaicPairsBy(const uint16_t* const rows[5], const RowGains& gains, int pair_count,
                               uint16_t* HWY_RESTRICT rgb) {

@@ -9,9 +9,12 @@ namespace lf {
 // of a mosaic holds G and either R or B, which is called C here; D is the colour that the row
 // lacks.
 struct RowGains {
-  int32_t g_at_c = 0;  // factor of 4 C minus the four C that are 2 pixels away
+  // For the colours G and D at a pixel of C: factor of 4 C minus the four C that are 2 pixels away.
+  int32_t g_at_c = 0;
   int32_t d_at_c = 0;
-  int32_t c_at_g = 0;  // factor of 10 G minus a weighted sum of the other G
+  // For the colours C and D at a pixel of G: factor of 10 G minus a weighted sum of the G around
+  // it.
+  int32_t c_at_g = 0;
   int32_t d_at_g = 0;
 };
 
@@ -19,7 +22,7 @@ struct RowGains {
 // recorded C, the second recorded G.
 //   rows  mosaic rows y - 2 to y + 2, at the first pair; two values before the first pair and two
 //         after the last pair are read
-//   rgb   [pair_count][2][4]: R, G, B, 1
+//   rgb   [pair_count][2][4]: the lanes R, G, B, 1 of LfPixels
 void DemosaicPairs(const uint16_t* const rows[5], bool c_is_red, const RowGains& gains,
                    int pair_count, uint16_t* rgb);
 

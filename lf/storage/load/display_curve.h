@@ -10,8 +10,8 @@ namespace lf {
 
 class DisplayCurve {
  public:
-  // The levels are stored values of 16 bits, with white above black. Below black the curve
-  // continues as a straight line. Above white the sRGB formula is continued.
+  // The levels are stored values of 16 bits; white must be above black. Below black the curve
+  // continues as a straight line. Above white it continues by the sRGB formula.
   DisplayCurve(double black_level, double white_level);
 
   uint16_t OnCurve(uint16_t stored) const { return on_curve_[stored]; }

@@ -14,7 +14,7 @@ namespace lf {
 
 // Reads PNG, JPEG, TIFF, EXR and camera raw files (pixels/files/image_file.h) and converts their
 // values to radiance as LightField::encoding says:
-//   - Integers of 8 or 16 bits are converted by the table of the encoding. Floats are radiance
+//   - Integers of 8 or 16 bits are converted by a table (RadianceTables). Floats are radiance
 //     already, and are quantised.
 //   - With a Bayer pattern, a file has one channel. The store returns it as a mosaic, or as RGB
 //     pixels computed from the mosaic (demosaic.h). Without a pattern, a file is RGB, or grey,
@@ -43,8 +43,8 @@ class FolderStore : public LfImageStore {
  private:
   // Buffers of one load, which are reused for later loads.
   struct Loading {
-    ImagePart part;   // stored values
-    LfPixels mosaic;  // before it is converted to RGB
+    ImagePart part;   // stored values of the image file
+    LfPixels mosaic;  // the mosaic that is converted to RGB
   };
 
   Result<void> LoadBy(Loading* loading, LfImageId id, const PixelRect& rect,
@@ -56,10 +56,10 @@ class FolderStore : public LfImageStore {
   void GiveBack(std::unique_ptr<Loading> loading) const;
 
   const LightField& light_field_;
-  const RadianceTables tables_;  // for images without a gain of their own
+  const RadianceTables tables_;  // for LF images of gain 1
   const Mosaics mosaics_;
   mutable std::mutex mutex_;
-  mutable std::vector<std::unique_ptr<Loading>> loadings_;  // one for each simultaneous load
+  mutable std::vector<std::unique_ptr<Loading>> loadings_;  // buffers that no load uses now
 };
 
 }  // namespace lf

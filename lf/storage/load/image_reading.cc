@@ -14,8 +14,9 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// Reads at least the pixels `rect` of the picture as the calibration describes it. Sets part->rect
-// to the rectangle that was read.
+// Reads at least the pixels `rect` of a file and rotates them if the calibration belongs to the
+// rotated picture. `rect` and part->rect, the rectangle that was read, count pixels of the picture
+// that the calibration describes.
 Result<void> ReadFitting(const fs::path& path, bool is_mosaic, const Intrinsics& intrinsics,
                          const PixelRect& rect, ImagePart* part) {
   bool is_turned = false;
@@ -33,8 +34,9 @@ Result<void> ReadFitting(const fs::path& path, bool is_mosaic, const Intrinsics&
   return {};
 }
 
-// Refuses a raw file in a light field whose encoding is not that of raw files. Otherwise the mosaic
-// of the raw file would be shown as a grey picture, or its linear light be taken for sRGB.
+// Returns kInput for a camera raw file in a light field whose encoding is not that of raw files.
+// Without this check, the mosaic of the raw file would be shown as a grey picture, or its linear
+// light would be taken for sRGB.
 Result<void> CheckRaw(const RawFacts& raw, const RadianceEncoding& encoding, const fs::path& path) {
   if (raw.is_monochrome) {
     if (encoding.bayer == BayerPattern::kNone && encoding.transfer != Transfer::kSrgb) return {};
@@ -60,7 +62,7 @@ Result<void> CheckEncoding(const ImagePart& file, const RadianceEncoding& encodi
   if (file.info.raw) LF_RETURN_IF_ERROR(CheckRaw(*file.info.raw, encoding, path));
   if (encoding.bayer != BayerPattern::kNone && file.info.channels != 1)
     return InputError(
-        fmt::format("{}: has {} channels, but lf_bayer says that it is a mosaic of one",
+        fmt::format("{}: has {} channels, but lf_bayer says that it is a mosaic of one channel",
                     path.string(), file.info.channels));
   if (std::holds_alternative<Image<float>>(file.image)) return {};
   return CheckLevels(encoding, std::holds_alternative<Image<uint8_t>>(file.image) ? 8 : 16,
@@ -103,7 +105,8 @@ void ForEachSeenBrighter(const LightField& light_field, LfImageId id, const Pixe
   ImagePart part;
   const Result<ChannelUse> use = ReadStoredPixels(light_field, brighter, around, &part);
   if (!use) return;
-  // Marks the pixels whose rays the darker LF image sends: a square around each clipped pixel.
+  // Marks the pixels whose rays this LF image, the darker one, sends: a square around each pixel
+  // that the brighter LF image clips.
   Image<uint8_t> is_left(rect.width(), rect.height(), 1);
   ForEachClipped(part, use->colours, encoding, around, [&](int x, int y) {
     const PixelRect square =

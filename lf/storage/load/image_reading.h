@@ -19,10 +19,10 @@
 
 namespace lf {
 
-// Reads at least the pixels `wanted` of the picture as the calibration describes it, which may be
-// rotated against the file. `wanted` must contain a pixel of the picture. Sets part->rect to the
-// rectangle that was read. kInput, naming the file: it cannot be read, or does not fit the
-// calibration or the encoding.
+// Reads at least the pixels `wanted` of an LF image from its file. The file may be rotated against
+// the picture that the calibration describes; `wanted` and part->rect, the rectangle that was read,
+// count pixels of that picture. `wanted` must contain a pixel of the picture. kInput, naming the
+// file: it cannot be read, or does not fit the calibration or the encoding.
 Result<ChannelUse> ReadStoredPixels(const LightField& light_field, LfImageId id,
                                     const PixelRect& wanted, ImagePart* part);
 
@@ -48,6 +48,7 @@ void ForEachUnkept(const Image<T>& stored, const PixelRect& stored_rect, int cha
 
 // Calls mask(x, y) for the pixels of `rect`, which lies in part.rect, whose alpha is below one
 // half.
+//   alpha  index of the channel that holds alpha
 template <class Mask>
 void ForEachTransparent(const ImagePart& part, int alpha, const PixelRect& rect, const Mask& mask) {
   std::visit(
@@ -59,8 +60,8 @@ void ForEachTransparent(const ImagePart& part, int alpha, const PixelRect& rect,
       part.image);
 }
 
-// Calls mask(x, y) for the pixels of `rect`, which lies in part.rect, that have a clipped colour.
-// Floats are never clipped.
+// Calls mask(x, y) for the pixels of `rect`, which lies in part.rect, that are clipped in one of
+// the first `colours` channels. Floats are never clipped.
 template <class Mask>
 void ForEachClipped(const ImagePart& part, int colours, const RadianceEncoding& encoding,
                     const PixelRect& rect, const Mask& mask) {
@@ -76,22 +77,23 @@ void ForEachClipped(const ImagePart& part, int colours, const RadianceEncoding& 
       part.image);
 }
 
-// Distance in pixels around each clipped pixel of the brighter LF image within which the darker LF
-// image sends rays. It covers the four pixels that an interpolation reads and, for mosaics, the
-// mosaic pixels from which these are computed. Within this distance, pixels that the brighter LF
-// image does not clip send rays from both LF images.
+// Returns the reach of the darker one of two LF images in a bracket (light_field/model/brackets.h),
+// in pixels: it sends rays only within this distance of the pixels that the brighter one clips. The
+// distance covers the four pixels that an interpolation reads and, for mosaics, the mosaic pixels
+// from which these are computed. Within it, a pixel that the brighter LF image does not clip sends
+// two rays, one from each LF image.
 inline int ReachOfDarker(BayerPattern bayer) { return bayer == BayerPattern::kNone ? 1 : 4; }
 
-// Calls mask(x, y) for the pixels of `rect` that the next brighter LF image of the pose shows,
-// which means that it clips no pixel within ReachOfDarker() of them. Reads the brighter LF image;
-// masks nothing if it cannot be read.
+// Calls mask(x, y) for the pixels of `rect` that the next brighter LF image of the same pose shows,
+// which means that it clips no pixel within ReachOfDarker() of them. Reads the brighter LF image,
+// and calls mask() for no pixel if that image cannot be read.
 void ForEachSeenBrighter(const LightField& light_field, LfImageId id, const PixelRect& rect,
                          const std::function<void(int x, int y)>& mask);
 
 // Calls mask(x, y) for all masked pixels of `rect`. A pixel is masked if alpha is a mask and masks
 // it, if the pixel is clipped or a brighter LF image shows it (in brackets,
-// light_field/model/brackets.h), or if the mask file masks it, which is read if there is one.
-// mask() may be called several times for one pixel. kInput: the mask file cannot be read.
+// light_field/model/brackets.h), or if the LF image has a mask file that masks it. mask() may be
+// called several times for one pixel. kInput: the mask file cannot be read.
 template <class Mask>
 Result<void> ForEachMasked(const LightField& light_field, LfImageId id, const ImagePart& part,
                            const ChannelUse& use, const PixelRect& rect, const Mask& mask) {
@@ -114,7 +116,7 @@ Result<void> ForEachMasked(const LightField& light_field, LfImageId id, const Im
   return {};
 }
 
-// Returns kInput if integers of `bits` bits cannot hold the light field's levels.
+// Returns kInput if integers of `bits` bits cannot hold the black and white level of the encoding.
 //   path  path of the image, for the message
 Result<void> CheckLevels(const RadianceEncoding& encoding, int bits, const std::string& path);
 

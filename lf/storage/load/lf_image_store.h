@@ -47,9 +47,10 @@ class LfImageStore {
   virtual void Announce(LfImageId /*id*/) const {}
 };
 
-// Calls store.Load() with the memory of `pixels`, and returns them. Exceptions of the store become
-// errors of the image, because an exception that leaves a thread ends the program: kOutput if there
+// Calls store.Load() with the memory of `pixels`, and returns the loaded pixels. Exceptions of the
+// store become errors, because an exception that leaves a thread ends the program: kOutput if there
 // is not enough memory, otherwise KindOfReadFailure() of core/file.h.
+//   name  name of the LF image, for messages
 Result<LfPixels> LoadWithoutThrowing(const LfImageStore& store, LfImageId id, const PixelRect& rect,
                                      const std::string& name, LfPixels pixels);
 
@@ -59,7 +60,7 @@ Result<LfPixels> LoadWithoutThrowing(const LfImageStore& store, LfImageId id, co
 // time.
 class MachineFailure {
  public:
-  // Ignores errors of the image itself, which are not kOutput.
+  // Ignores errors of kinds other than kOutput, because these are faults of the LF image.
   void Note(const Error& error);
   // Returns the first error that was noted, which is kOutput; success if there is none.
   Result<void> Check() const;

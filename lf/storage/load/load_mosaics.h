@@ -1,4 +1,5 @@
-// Loads mosaics as recorded or as RGB, for any store. Internal to this folder.
+// Loads pixels for any store, with mosaics as recorded or converted to RGB. Internal to this
+// folder.
 #pragma once
 
 #include <functional>

@@ -8,11 +8,12 @@
 namespace lf {
 namespace {
 
-constexpr double kLeastStep = 0.08;  // of an edge, in radiance
-constexpr double kFlat = 0.1;        // largest step beside an edge, relative to that of the edge
+constexpr double kLeastStep = 0.08;  // least radiance by which the two sides of an edge differ
+constexpr double kFlat = 0.1;        // largest step beside an edge, as a share of the edge's step
 constexpr int kLeastEdges = 200;
-constexpr double kMostOfPoints = 0.3;  // share of pixels within edges
-constexpr int kMostSide_px = 2048;     // of the part of an LF image that is looked at
+// Pixels show points if a smaller share of the edges has a value between their two sides.
+constexpr double kMostOfPoints = 0.3;
+constexpr int kMostSide_px = 2048;  // most width and height of the part of an LF image that is read
 
 struct Edges {
   int count = 0;
@@ -28,13 +29,13 @@ void CountEdge(const std::array<double, 5>& value, double least_step, Edges* edg
     return;
   constexpr double kEnd = 0.15;
   const double between = (value[2] - value[1]) / step;
-  if (between < -kEnd || between > 1 + kEnd) return;  // a line, not an edge
+  if (between < -kEnd || between > 1 + kEnd) return;  // the pixel is on a thin line, not at an edge
   ++edges->count;
   if (between > kEnd && between < 1 - kEnd) ++edges->with_value_between;
 }
 
 void CountEdges(const LfPixels& pixels, double least_step, Edges* edges) {
-  constexpr int kLane = 1;  // green
+  constexpr int kLane = 1;  // lane of the green values
   const int width = pixels.rect.width(), height = pixels.rect.height();
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)

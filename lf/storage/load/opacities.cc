@@ -24,7 +24,7 @@ uint16_t OpacityOf(T alpha) {
 
 constexpr uint32_t kOpacityRange = LfPixels::kOpaque - LfPixels::kTransparent;
 
-// Stores the lanes of a pixel that sends rays, with an opacity of a / kMostOpacity.
+// Stores the opacity a / kMostOpacity in the lanes of a pixel that sends rays.
 void StoreOpacity(uint32_t a, uint16_t* lanes) {
   const uint32_t v = LfPixels::kTransparent + (a * kOpacityRange + kMostOpacity / 2) / kMostOpacity;
   std::fill_n(lanes, LfPixels::kRayLane, static_cast<uint16_t>(v));

@@ -14,15 +14,15 @@
 
 namespace lf {
 
-// Values of a picture of opacities [height][width][1]. 0 sends no ray, because the pixel is masked;
-// any other o covers (o - 1) / kMostOpacity of the light behind it.
+// Values of a picture of opacities [height][width][1]. A pixel of value 0 is masked and sends no
+// ray. A pixel of any other value o covers (o - 1) / kMostOpacity of the light behind it.
 inline constexpr uint16_t kMaskedOpacity = 0;
 inline constexpr uint16_t kMostOpacity = 65534;
 
 // Reads the opacities of the pixels `rect`, which lies in part.rect, from the file's alpha. Pixels
-// that the mask file or a bracket masks (ForEachMasked()) become kMaskedOpacity. Alpha of 8 bits is
-// exact. Alpha of 16 bits is exact except for 65534, which counts as opaque. Floats are rounded to
-// 16 bits; NaN is transparent. kInput: the mask file cannot be read.
+// that the mask file or a bracket masks (ForEachMasked()) become kMaskedOpacity. Each alpha of 8 or
+// 16 bits has an opacity of its own, except that 65534 of 16 bits counts as opaque. Float alphas
+// are rounded to 16 bits; NaN is transparent. kInput: the mask file cannot be read.
 Result<Image<uint16_t>> ReadOpacities(const LightField& light_field, LfImageId id,
                                       const ImagePart& part, const ChannelUse& use,
                                       const PixelRect& rect);
@@ -31,8 +31,8 @@ Result<Image<uint16_t>> ReadOpacities(const LightField& light_field, LfImageId i
 // background b becomes
 //   straight       a v + (1 - a) b
 //   premultiplied  v + (1 - a) (b - pedestal)
-// in integers, rounded to nearest and clipped at 65535. Masks pixels that send no ray. Fills
-// pixels->opacity, rounded to nearest, if the encoding HasOpacity(). The pixels are R, G and B.
+// in integers, rounded to nearest and clipped at 65535. Masks the pixels of kMaskedOpacity. Fills
+// pixels->opacity, rounded to nearest, if encoding.HasOpacity(). `pixels` must be RGB.
 //   opacities_rect  pixels of the LF image that `opacities` holds; contains pixels->rect
 void ComposeWithBackground(const Image<uint16_t>& opacities, const PixelRect& opacities_rect,
                            const RadianceEncoding& encoding, LfPixels* pixels);

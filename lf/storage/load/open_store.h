@@ -10,7 +10,7 @@
 namespace lf {
 
 // Returns a PackedStore if light_field.folder is the file of a packed store, otherwise a
-// FolderStore. Keeps a reference to `light_field`, which must outlive the store. kInput as
+// FolderStore. The store keeps a reference to `light_field`, which must outlive it. kInput as
 // PackedStore::Open().
 Result<std::unique_ptr<LfImageStore>> OpenStore(const LightField& light_field, Mosaics mosaics);
 

@@ -17,7 +17,7 @@ inline uint16_t HalfOf(float value) {
   constexpr uint32_t kTooLarge = 0x477FF000;  // 65520; from here on infinity is nearest
   if (magnitude >= kTooLarge) return sign | 0x7C00;
   // `shift` is the number of bits by which a half's significand is shorter than the float's. The
-  // exponents differ by 112; below 2^-14 halves have a fixed step of 2^-24.
+  // biases of the exponents differ by 112; below 2^-14 halves have a fixed step of 2^-24.
   const uint32_t exponent = magnitude >> 23;
   const bool is_normal = exponent > 112;
   if (!is_normal && exponent < 102) return sign;
@@ -44,7 +44,8 @@ inline uint16_t OrderedOfHalf(uint16_t half) {
   return static_cast<uint16_t>((half & 0x8000) != 0 ? ~half : half | 0x8000);
 }
 
-// Integers beyond the infinities, which lossy encoding may produce, become infinities, never NaN.
+// Returns the half of an ordered integer. Integers beyond those of the two infinities, which lossy
+// encoding may produce, become infinities, never NaN.
 inline uint16_t HalfOfOrdered(uint16_t ordered) {
   constexpr uint16_t kLeast = 0x03FF, kMost = 0xFC00;
   if (ordered < kLeast) ordered = kLeast;

@@ -20,7 +20,8 @@ namespace {
 
 constexpr uint8_t kMaskedBelow = 128;
 
-// Moves a rectangle by (x, y), between coordinates of the whole image and of its encoded part.
+// Returns `rect` moved by (x, y). Converts between coordinates of a whole LF image and of the part
+// that is encoded.
 PixelRect Moved(const PixelRect& rect, int x, int y) {
   return {rect.x_begin + x, rect.y_begin + y, rect.x_end + x, rect.y_end + y};
 }
@@ -29,7 +30,7 @@ std::string TextOf(const PixelRect& rect) {
   return fmt::format("[{}, {}) x [{}, {})", rect.x_begin, rect.x_end, rect.y_begin, rect.y_end);
 }
 
-// Checks in the store's table that the image can be loaded.
+// Returns kInput if the store does not list the LF image, or lists it without encoded pixels.
 Result<void> CheckListed(const PackedCode& code, const LightField& light_field, LfImageId id) {
   if (!code.is_listed())
     return InputError(
@@ -42,7 +43,9 @@ Result<void> CheckListed(const PackedCode& code, const LightField& light_field, 
   return {};
 }
 
-// Checks the head of an encoded image before memory is allocated for its pixels.
+// Checks the head of an encoded image against the store's table and the encoding, before memory is
+// allocated for its pixels.
+//   grey_too  a grey image is valid in place of `layout`
 Result<void> CheckCode(std::string_view bytes, int bits, PixelLayout layout, bool grey_too,
                        const PixelRect& rect) {
   LF_ASSIGN_OR_RETURN(const CodeInfo info, ReadCodeInfo(bytes));
@@ -57,8 +60,9 @@ Result<void> CheckCode(std::string_view bytes, int bits, PixelLayout layout, boo
   return {};
 }
 
-// Moves the decoded pixels into `part`, together with their memory, and converts them to stored
-// values: along `curve`, or to floats.
+// Moves the decoded pixels, together with their memory, into `part`, and converts kDisplay16 to
+// stored values by `curve`, and kHalf to floats.
+//   coded  pixels of the LF image that are encoded
 void MakePart(StoredValues values, const PixelRect& coded, const std::optional<DisplayCurve>& curve,
               DecodedPart* decoded, Image<float>* floats, ImagePart* part) {
   part->rect = Moved(decoded->rect, coded.x_begin, coded.y_begin);

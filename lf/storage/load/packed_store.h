@@ -19,23 +19,23 @@ namespace lf {
 
 // Decodes the recorded values (recorded_image.h) and converts them to radiance as FolderStore does
 // for files. After lossless encoding, both stores give the same bits, unless floats were rounded to
-// half floats. Takes 32 bytes of memory for each LF image of the light field, and as many
-// connections to the file as threads have loaded at the same time. While one image loads, its
-// encoded bytes, its stored values and the result are in memory together. Keeps a reference to
-// `light_field`, which must outlive the store.
+// half floats. Takes 32 bytes of memory for each LF image of the light field, and opens the file as
+// many times as threads have loaded at the same time. While one image loads, its encoded bytes, its
+// stored values and the result are in memory together. Keeps a reference to `light_field`, which
+// must outlive the store.
 class PackedStore : public LfImageStore {
  public:
-  // Opens the file light_field.folder. Its LF images are found by name, so that the light field may
-  // be the store's own or another one, such as that of a package. kInput as
-  // storage/packed/packed_store_file.h says.
+  // Opens the file light_field.folder. LF images are found in it by name, so that `light_field` may
+  // be the store's own light field or another one, such as that of a package. kInput as
+  // FindCodes() and ReadDisplayLevels().
   static Result<std::unique_ptr<PackedStore>> Open(const LightField& light_field, Mosaics mosaics);
 
   // Loads the pixels of `rect`, clipped to the image. kInput as LfImageStore says, naming store and
   // image: the image is not in the store, the pixels lie beyond those that were encoded, or the
   // store is damaged.
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override;
-  // An LF image without encoded pixels was missing or broken when the store was made. It does not
-  // count as left out on purpose.
+  // An LF image that is listed without encoded pixels was missing or broken when the store was
+  // made. It does not count as left out on purpose.
   bool IsPartial() const override;
   bool Keeps(LfImageId id, const PixelRect& rect) const override;
   // Returns true if the store's table lists encoded pixels.
@@ -52,7 +52,7 @@ class PackedStore : public LfImageStore {
     DecodedPart mask;
     ImagePart part;  // the stored values that are converted to radiance
     Image<float> floats;
-    LfPixels mosaic;  // before it is converted to RGB
+    LfPixels mosaic;  // the mosaic that is converted to RGB
   };
 
   PackedStore(const LightField& light_field, Mosaics mosaics, std::vector<PackedCode> codes);
@@ -62,12 +62,12 @@ class PackedStore : public LfImageStore {
   void GiveBack(std::unique_ptr<Loading> loading) const;
 
   const LightField& light_field_;
-  const RadianceTables tables_;  // for images without a gain of their own
+  const RadianceTables tables_;  // for LF images of gain 1
   const Mosaics mosaics_;
-  const std::vector<PackedCode> codes_;  // in the order of light_field.cameras
-  std::optional<DisplayCurve> curve_;    // set if any image is encoded along it
+  const std::vector<PackedCode> codes_;  // entry of each LF image, in the order of their ids
+  std::optional<DisplayCurve> curve_;    // set if any LF image is encoded as kDisplay16
   mutable std::mutex mutex_;
-  mutable std::vector<std::unique_ptr<Loading>> loadings_;  // one for each simultaneous load
+  mutable std::vector<std::unique_ptr<Loading>> loadings_;  // buffers that no load uses now
 };
 
 }  // namespace lf

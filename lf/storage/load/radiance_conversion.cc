@@ -54,7 +54,8 @@ void ConvertByValue(const Image<T>& stored, const PixelRect& stored_rect, int co
   });
 }
 
-// Converts 8-bit RGB with one look-up and one | for each colour, and one store for each pixel.
+// Converts 8-bit RGB by a table look-up and an | for each colour, and a single store for each
+// pixel.
 void ConvertByLanes(const Image<uint8_t>& stored, const PixelRect& stored_rect,
                     const LaneTable& lanes, LfPixels* pixels) {
   const int channels = stored.channels();
@@ -108,8 +109,8 @@ class RowFalloff {
   std::vector<double> falloff_;
 };
 
-// Converts each stored value with gain and falloff. light_of(value) returns the radiance before
-// both, which is never NaN.
+// Converts each stored value to radiance, multiplied by the gain and divided by the falloff.
+// light_of(value) returns the radiance before gain and falloff, which is never NaN.
 template <class T, class LightOf>
 void ConvertWithFalloff(const Image<T>& stored, const PixelRect& stored_rect, int colours,
                         const LightOf& light_of, const RadianceEncoding& encoding,

@@ -12,26 +12,28 @@
 
 namespace lf {
 
-// RadianceTable() of each colour, in the form that the conversion of 8-bit RGB uses: the three
-// words of a pixel's colours, combined with |, are the four lanes R, G, B, 1 of LfPixels.
+// RadianceTable() of each colour [colour][8-bit value], in the form that the conversion of 8-bit
+// RGB uses: the entries of a pixel's three colours, combined with |, are the four lanes R, G, B, 1
+// of LfPixels.
 using LaneTable = std::array<std::array<uint64_t, 256>, 3>;
 
-// Tables of one encoding and of the gains of an image. A table is empty if the levels do not fit
-// its number of bits.
+// Tables that convert stored values of 8 and 16 bits to radiance, for one encoding and the gains of
+// one LF image. A table is empty if integers of its number of bits cannot hold the black and white
+// level.
 class RadianceTables {
  public:
   RadianceTables(const RadianceEncoding& encoding, const ChannelGains& gains);
   // Makes only the tables for files with `bits` bits per value; the other tables stay empty.
   RadianceTables(const RadianceEncoding& encoding, const ChannelGains& gains, int bits);
 
-  // Return null if the levels do not fit the number of bits. If all gains are equal, the channels
-  // share a table.
+  // These functions return the table of a channel; null if it is empty. The channels share one
+  // table if all gains are equal.
   const uint16_t* of_8bit(int channel) const { return TableOf(of_8bit_, channel); }
   const uint16_t* of_16bit(int channel) const { return TableOf(of_16bit_, channel); }
   const LaneTable& lanes() const { return lanes_; }
 
  private:
-  using Tables = std::vector<std::vector<uint16_t>>;  // one table, or one for each channel
+  using Tables = std::vector<std::vector<uint16_t>>;  // one table for all channels, or one for each
   static const uint16_t* TableOf(const Tables& tables, int channel) {
     if (tables.empty()) return nullptr;
     return tables[tables.size() == 1 ? 0 : static_cast<size_t>(channel)].data();
@@ -44,10 +46,11 @@ class RadianceTables {
 
 // Computes the radiance of pixels->rect, which lies in part.rect. Integers are converted by tables,
 // floats are quantised; if the camera has a falloff, every pixel is converted as QuantizeRadiance()
-// does. Writes all lanes, and masks nothing. The levels must fit the integers.
-//   colours  1: grey or mosaic; 3: the first three channels
-//   plain    the tables of gain 1; tables for other gains are made when needed
-//   camera   the gains are taken from it
+// does. Writes all lanes, and masks nothing. Integers of the part must be able to hold the black
+// and white level.
+//   colours  number of channels that are used: 1 (grey or mosaic) or 3 (R, G, B)
+//   plain    the tables for gain 1; tables for other gains are made when needed
+//   camera   LF camera whose gains are used
 //   k        intrinsics of the camera, for the falloff
 void ConvertRadiance(const ImagePart& part, int colours, const RadianceTables& plain,
                      const RadianceEncoding& encoding, const LfCamera& camera, const Intrinsics& k,

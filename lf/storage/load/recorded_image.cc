@@ -23,8 +23,7 @@ PixelRect WholeOf(const LightField& light_field, LfImageId id) {
   return {0, 0, k.width_px, k.height_px};
 }
 
-// Returns the first `channels` channels of the pixels `rect`, with each value converted by
-// convert().
+// Returns the first `channels` channels of the pixels `rect`. convert() converts each value.
 template <class To, class From, class Convert>
 Image<To> Cut(const Image<From>& stored, const PixelRect& stored_rect, const PixelRect& rect,
               int channels, const Convert& convert) {
@@ -54,7 +53,7 @@ void CutStored(const ImagePart& part, int channels, RecordedImage* image) {
     image->pixels = Cut<uint16_t>(
         std::get<Image<float>>(part.image), part.rect, image->rect, channels, [image](float value) {
           const uint16_t ordered = OrderedOfFloat(value);
-          // The condition is false for NaN, which counts as no loss.
+          // The condition is false for NaN, because turning NaN into 0 does not count as rounding.
           if (FloatOfOrdered(ordered) < value || FloatOfOrdered(ordered) > value)
             image->is_rounded = true;
           return ordered;
@@ -91,7 +90,9 @@ Result<RecordedImage> ReadRecordedImage(const LightField& light_field, LfImageId
   RecordedImage image;
   image.rect = Intersection(rect, WholeOf(light_field, id));
   if (image.rect.empty())
-    return InputError(fmt::format("{}: has none of the pixels that are needed", path.string()));
+    return InputError(fmt::format("{}: has none of the pixels [{}, {}) x [{}, {}) that are needed",
+                                  path.string(), rect.x_begin, rect.x_end, rect.y_begin,
+                                  rect.y_end));
   ImagePart part;
   LF_ASSIGN_OR_RETURN(const ChannelUse use, ReadStoredPixels(light_field, id, image.rect, &part));
   CutStored(part, use.colours, &image);

@@ -16,23 +16,25 @@
 namespace lf {
 
 struct RecordedImage {
-  // Pixels of `rect`: grey, a mosaic, or R, G, B. Further channels of a file are left out.
+  // Stored values of the pixels `rect`: grey, a mosaic, or R, G, B. Other channels are left out.
   CodecPixels pixels;
   PixelLayout layout = PixelLayout::kGrey;
   // kUint8 or kUint16; kHalf for float files, as ordered integers (ordered_half.h).
   StoredValues values = StoredValues::kUint8;
   PixelRect rect;
-  Image<uint8_t> mask;  // [height][width]: 0 masked, 255 not; empty: nothing is masked
-  // Replaces the mask if alpha is light (opacities.h). Empty: every pixel is opaque.
+  Image<uint8_t> mask;  // [height][width]: 0 masked, 255 not masked; empty: no pixel is masked
+  // Opacity of each pixel (opacities.h), which replaces the mask if alpha is light. Empty: every
+  // pixel is opaque.
   Image<uint16_t> opacities;
-  bool is_rounded = false;    // a float was not a half float, and was rounded to the nearest one
-  uint64_t source_bytes = 0;  // size of the image's file and its mask file
+  bool is_rounded = false;  // true if a float was no half float and was rounded to the nearest one
+  uint64_t source_bytes = 0;  // size of the LF image's file and its mask file
 };
 
 // Reads the pixels of `rect`, clipped to the image, rotated upright as in the calibration, and not
 // composed with a background. Pixels that are masked by alpha, the mask file (folder_store.h) or
-// brackets (light_field/model/brackets.h) are 0 in the mask. Floats become the nearest half floats,
-// NaN becomes 0. When half floats are loaded, they are quantised as floats of image files are.
+// brackets (light_field/model/brackets.h) are 0 in the mask or the opacities. Floats become the
+// nearest half floats, NaN becomes 0. When half floats are loaded, they are quantised as floats of
+// image files are.
 // kInput as FolderStore::Load(), and if `rect` lies outside the image.
 Result<RecordedImage> ReadRecordedImage(const LightField& light_field, LfImageId id,
                                         const PixelRect& rect);
@@ -40,11 +42,11 @@ Result<RecordedImage> ReadRecordedImage(const LightField& light_field, LfImageId
 // Returns RecordedImage::source_bytes without reading the image; 0 if the file does not exist.
 uint64_t SourceBytesOf(const LightField& light_field, LfImageId id);
 
-// Returns the pixels that a store must hold so that `rect` can be loaded. For mosaics they include
-// the pixels around `rect` that demosaicing needs.
+// Returns the pixels that a packed store must hold so that `rect` can be loaded. For mosaics they
+// include the pixels around `rect` that demosaicing needs.
 PixelRect RectToRecord(const LightField& light_field, LfImageId id, const PixelRect& rect);
 
-// Encodes the pixels by `settings`, and the mask or the opacities without loss.
+// Encodes the pixels by `settings`, and the mask or the opacities losslessly.
 CodedImage CodeOf(const RecordedImage& image, const CodecSettings& settings);
 
 }  // namespace lf

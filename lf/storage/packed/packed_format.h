@@ -13,16 +13,16 @@
 
 namespace lf {
 
-// Page size of SQLite. On average half a page is wasted for each encoded image: 16 % of 200 kB with
-// pages of 64 KiB, 4 % with these pages of 16 KiB.
+// Page size of SQLite. On average half a page is wasted for each encoded image: 16 % of an image of
+// 200 kB with pages of 64 KiB, 4 % with these pages of 16 KiB.
 inline constexpr int kPageBytes = 16384;
 inline constexpr DatabaseFormat kStoreFormat = {"packed store", 0x4C465053 /* "LFPS" */, 1,
                                                 kPageBytes};
 inline constexpr DatabaseFormat kShardFormat = {"shard of a packed store", 0x4C465348 /* "LFSH" */,
                                                 1, kPageBytes};
 
-// Returns the identity of the LF images as a store lists them, without mask files, because masks
-// are stored with the encoded images.
+// Returns the identity of the LF images that a packed store lists. It does not cover mask files,
+// because a store holds masks with the encoded images.
 LightFieldIdentity IdentityInStore(const LightField& light_field);
 
 // Tables of a store besides settings and intrinsics (doc/formats/packed_store.md).
@@ -32,11 +32,12 @@ create table lf_images (id integer primary key, whole_id integer, name text not 
 create index lf_images_by_name on lf_images (name);
 create table codes (id integer primary key, shard integer, kind text, x_begin integer,
   y_begin integer, x_end integer, y_end integer, bytes integer, source_bytes integer);)";
-// Table of the encoded images, in the store or in its shards.
+// Table of the encoded images, in the file of the store or in its shards.
 inline constexpr const char* kBlobsTable =
     "create table blobs (id integer primary key, code blob not null, mask blob);";
 
-// Opens the file of a store, which holds the encoded images itself or leaves them to shards.
+// Opens the file of a packed store for reading. It has the table of encoded images unless the store
+// has shards.
 inline Result<Database> OpenStoreDatabase(const std::filesystem::path& path) {
   const std::string tables = fmt::format("{}{}{}", kSettingsTable, kIntrinsicsTable, kStoreTables);
   return Database::Open(path, kStoreFormat, {tables + kBlobsTable, tables});
@@ -45,20 +46,21 @@ inline Result<Database> OpenShardDatabase(const std::filesystem::path& path) {
   return Database::Open(path, kShardFormat, {fmt::format("{}{}", kSettingsTable, kBlobsTable)});
 }
 
-// Name of each StoredValues.
+// Name of each StoredValues in the column `kind` of the table `codes`, in the order of the
+// enumeration.
 inline constexpr const char* kKindNames[] = {"uint8", "uint16", "half", "display16"};
 
 inline constexpr const char* kComplete = "complete";
 inline constexpr const char* kUnfinished = "unfinished";
 inline constexpr int kMostShards = 9999;
 
-// Returns the path of a shard: "films/a-0003.lfs" for "films/a.lfs", 3.
+// Returns the path of a shard: "films/a-0003.lfs" for shard 3 of the store "films/a.lfs".
 inline std::filesystem::path ShardPath(const std::filesystem::path& store, int number) {
   return store.parent_path() /
          fmt::format("{}-{:04}{}", store.stem().string(), number, store.extension().string());
 }
 
-// Returns the name of a file while it is being written.
+// Returns the path that the file of a store or shard has while it is being written.
 inline std::filesystem::path UnfinishedPath(std::filesystem::path path) {
   return path += ".unfinished";
 }

@@ -18,9 +18,9 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr size_t kMostOpenShards = 8;  // shards that one reader keeps open
+constexpr size_t kMostOpenShards = 8;  // most shards that one PackedCodeReader keeps open
 
-// A complete store's file and its settings.
+// The file of a complete packed store, and its settings.
 struct OpenedStore {
   Database database;
   Settings settings;
@@ -77,7 +77,8 @@ Result<Database> OpenShardOf(const fs::path& path, const std::string& store, int
   return database;
 }
 
-// Returns the entries of all LF images, indexed by their ids in the store.
+// Returns an entry for each LF image of the store, indexed by its id. An LF image without an
+// encoded image has an entry that is not listed.
 Result<std::vector<PackedCode>> ReadCodes(OpenedStore* store) {
   LF_ASSIGN_OR_RETURN(const double shards, store->settings.Number("shards", 0, kMostShards));
   LF_ASSIGN_OR_RETURN(Statement count, store->database.Prepare("select count(*) from lf_images"));
@@ -112,7 +113,8 @@ Result<std::vector<PackedCode>> ReadCodes(OpenedStore* store) {
   return codes;
 }
 
-// A file with the table of encoded images, and the command that reads one of them.
+// An open file with the table of encoded images (a shard, or a store without shards), and the SQL
+// command that reads one encoded image.
 struct OpenBlobs {
   int shard = 0;
   Database database;
@@ -136,7 +138,7 @@ LightFieldIdentity IdentityInStore(const LightField& light_field) {
 }
 
 bool IsPackedStore(const fs::path& path) {
-  constexpr size_t kApplicationId = 68;  // position in an SQLite file, most significant byte first
+  constexpr size_t kApplicationId = 68;  // position in an SQLite file; the highest byte comes first
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return false;
   char head[kApplicationId + 4] = {};
@@ -174,7 +176,7 @@ Result<PackedStoreFacts> ReadPackedStore(const fs::path& path) {
   facts.shard_count = static_cast<size_t>(shards);
   LF_ASSIGN_OR_RETURN(light_field.intrinsics, ReadIntrinsics(settings, &store.database));
   LF_RETURN_IF_ERROR(ReadImages(&store, &facts));
-  // Checks all shards now, and not when the first LF image of each is loaded.
+  // Checks all shards now, so that a missing one is found before the first LF image is loaded.
   for (int number = 1; number <= static_cast<int>(facts.shard_count); ++number)
     LF_RETURN_IF_ERROR(OpenShardOf(path, settings.Text("store"), number));
   return facts;
@@ -211,8 +213,8 @@ Result<std::vector<PackedCode>> FindCodes(const fs::path& path,
                                           std::span<const std::string> names) {
   LF_ASSIGN_OR_RETURN(OpenedStore store, OpenComplete(path));
   LF_ASSIGN_OR_RETURN(const std::vector<PackedCode> codes, ReadCodes(&store));
-  // Merges `names` and the names in the store, both in ascending order, so that no further table of
-  // a million names is needed.
+  // Merges `names` and the names in the store, both in ascending order, so that no hash table of a
+  // million names is needed.
   std::vector<uint32_t> order(names.size());
   std::iota(order.begin(), order.end(), 0U);
   std::stable_sort(order.begin(), order.end(),
@@ -239,8 +241,8 @@ struct PackedCodeReader::State {
   fs::path path;
   std::string store;  // the store's id
   int shard_count = 0;
-  std::deque<OpenBlobs> open;  // most recently opened at the end
-  Statement* last = nullptr;   // the command whose row Read() returned
+  std::deque<OpenBlobs> open;  // open files, the most recently opened at the end
+  Statement* last = nullptr;   // SQL command whose row Read() returned; null: none
 
   Result<OpenBlobs> OpenShard(int number) const;
   Result<OpenBlobs*> At(int shard);

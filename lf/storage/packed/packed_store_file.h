@@ -22,11 +22,12 @@ namespace lf {
 
 // Meaning of the numbers in an encoded image.
 enum class StoredValues : uint8_t {
-  kUint8 = 0,      // stored values of 8 bits
-  kUint16 = 1,     // stored values of 16 bits
+  kUint8 = 0,      // 8-bit values as the image file stored them
+  kUint16 = 1,     // 16-bit values as the image file stored them
   kHalf = 2,       // radiance: bit patterns of half floats, as ordered integers
                    // (storage/load/ordered_half.h)
-  kDisplay16 = 3,  // 16 bits along a tone curve: ReadDisplayLevels(), storage/load/display_curve.h
+  kDisplay16 = 3,  // 16-bit values of the image file, mapped to a tone curve
+                   // (ReadDisplayLevels(), storage/load/display_curve.h)
 };
 
 inline constexpr const char* kStoreExtension = ".lfs";
@@ -34,30 +35,30 @@ inline constexpr const char* kStoreExtension = ".lfs";
 // Returns true if the first bytes of the file identify a packed store. False for a shard of a
 // store.
 bool IsPackedStore(const std::filesystem::path& path);
-// Returns true if the folder of the light field is a file with the extension of a packed store.
-// Opening it tells whether it is a valid store of this version.
+// Returns true if `folder` of the light field has the extension of a packed store and is no
+// directory. Only opening the file tells whether it is a valid store of this version.
 inline bool HoldsPackedStore(const LightField& light_field) {
   std::error_code error;
   return light_field.folder.extension() == kStoreExtension &&
          !std::filesystem::is_directory(light_field.folder, error);
 }
-// Returns the stores in a folder, sorted by path.
+// Returns the paths of the packed stores directly in a folder, sorted.
 std::vector<std::filesystem::path> PackedStoresIn(const std::filesystem::path& folder);
 
-// Everything in a store but the encoded images.
+// Everything in a packed store but the encoded images.
 struct PackedStoreFacts {
-  LightField light_field;           // folder: the store's file; no masks, which are stored with the
-                                    // encoded images
-  LightFieldIdentity whole;         // the light field that the LF images are from
-  std::vector<uint32_t> whole_ids;  // ids in `whole`, in the order of light_field.cameras
-  std::string source;               // LIGHTFIELD, as the user gave it to the writer
+  LightField light_field;    // LF cameras of the store; `folder` is the store's file; no mask
+                             // files, because masks are stored with the encoded images
+  LightFieldIdentity whole;  // identity of the light field that the LF images are from
+  std::vector<uint32_t> whole_ids;  // id of each LF image in that light field
+  std::string source;               // argument LIGHTFIELD of the program that wrote the store
   std::string codec;                // settings of the codec, in words
   std::string written_by;
-  size_t shard_count = 0;  // 0: the encoded images are in the file itself
+  size_t shard_count = 0;  // number of shards; 0: the encoded images are in the store's file itself
 };
 
-// Reads everything but the encoded images. kInput: the file cannot be read, is no complete packed
-// store, is damaged, has another version, or lacks a shard.
+// Reads everything in a packed store but the encoded images. kInput: the file cannot be read, is no
+// complete packed store, is damaged, has another version, or lacks a shard.
 Result<PackedStoreFacts> ReadPackedStore(const std::filesystem::path& path);
 
 // Returns the store's file, followed by its shards.
@@ -69,9 +70,10 @@ std::vector<std::filesystem::path> FilesOf(const std::filesystem::path& path,
 // may be corrected later.
 struct DisplayLevels {
   double black = 0;
-  double white = 0;  // above black
+  double white = 0;  // must be above `black`
 };
-// Reads the levels. kInput as ReadPackedStore(), and if the store has no such levels.
+// Reads the display levels of a packed store. kInput as ReadPackedStore(), and if the store has no
+// display levels.
 Result<DisplayLevels> ReadDisplayLevels(const std::filesystem::path& path);
 
 // Returns PackedStoreFacts::codec without reading the other facts. Settings that begin with
@@ -87,18 +89,19 @@ struct PackedCode {
   static constexpr uint32_t kNotListed = UINT32_MAX;
 
   uint32_t id = kNotListed;  // id of the LF image in the store
-  uint16_t shard = 0;        // 0: the store's file itself
+  uint16_t shard = 0;        // number of the shard that has the image; 0: the store's file
   StoredValues values = StoredValues::kUint8;
   PixelRect rect;      // pixels of the LF image that are encoded
-  uint64_t bytes = 0;  // encoded pixels and mask; 0: missing, because the LF image could not be
-                       // read
+  uint64_t bytes = 0;  // size of the encoded pixels and mask; 0: the store lacks them, because the
+                       // LF image could not be read
 
   bool is_listed() const { return id != kNotListed; }
 };
 
-// Returns an entry for each of `names`; it is not listed if the store has no LF image of this name.
-// If a name occurs twice in `names`, the two entries belong to the first and the second LF image of
-// this name in the store. Takes seconds for a million names. kInput as ReadPackedStore().
+// Returns an entry for each of `names`. Its is_listed() is false if the store has no LF image of
+// this name. If a name occurs twice in `names`, the two entries belong to the first and the second
+// LF image of this name in the store. Takes seconds for a million names. kInput as
+// ReadPackedStore().
 Result<std::vector<PackedCode>> FindCodes(const std::filesystem::path& path,
                                           std::span<const std::string> names);
 
@@ -114,7 +117,7 @@ class PackedCodeReader {
 
   struct Bytes {
     std::string_view code;
-    std::string_view mask;  // encoded mask or opacities; empty: none
+    std::string_view mask;  // encoded mask or opacities; empty: the LF image has none
   };
   // Reads an encoded image, which must be in the store. The bytes are valid until the next call.
   // kInput, naming the file: the checksum shows damage, or a shard is missing or belongs to another

@@ -1,5 +1,6 @@
-// Reads any bytes as a file: the result must be a packed store or an error. A store must have only
-// valid cameras and tables, and reading its encoded images must succeed or return an error.
+// Reads any bytes as the file of a packed store: the result must be the facts of a store or an
+// error. The LF cameras of a store must be valid, and reading its encoded images must succeed or
+// return an error.
 #include <unistd.h>
 
 #include <cstddef>

@@ -49,7 +49,7 @@ std::string TextOf(const std::optional<DisplayLevels>& levels) {
   return levels ? fmt::format("{} {}", levels->black, levels->white) : std::string();
 }
 
-// Settings that an unfinished store must share with the plan by which it is resumed.
+// Returns the settings that an unfinished store must share with the plan by which it is resumed.
 SettingList SettingsOfPlan(const LightField& light_field, const PackedStorePlan& plan) {
   const LightFieldIdentity images = IdentityInStore(light_field);
   SettingList settings = {{"light_field.images", fmt::format("{}", plan.whole.image_count)},
@@ -90,7 +90,8 @@ Result<bool> HasTables(Database* database) {
   return select.Step();
 }
 
-// Makes all tables in one transaction, so that a program that is killed here leaves all or none.
+// Makes all tables of a store in one transaction, so that a program that is killed here leaves all
+// tables or none.
 Result<void> MakeTables(const LightField& light_field, const PackedStorePlan& plan,
                         Database* database) {
   LF_RETURN_IF_ERROR(
@@ -108,7 +109,8 @@ Result<void> MakeTables(const LightField& light_field, const PackedStorePlan& pl
   return database->Execute("commit");
 }
 
-// Returns the first difference as text: "codec default, levels 4, threshold 3, but now it is ...".
+// Returns the first difference between the settings of a store and a plan, as text: "codec default,
+// levels 4, threshold 3, but now it is ...".
 std::optional<std::string> FirstDifference(const Settings& settings, const LightField& light_field,
                                            const PackedStorePlan& plan, bool any_shards) {
   const auto shown = [](const std::string& value) { return value.empty() ? "(none)" : value; };
@@ -124,7 +126,8 @@ void RemoveWithJournal(const fs::path& path) {
   fs::remove(fs::path(path) += "-journal", ignored);
 }
 
-// Returns the id of a store, or of a shard's store; empty if the file is neither.
+// Returns the id that a store states for itself, or a shard for its store; empty if the file cannot
+// be read as `format`.
 std::string StoreIdIn(Result<Database> database, const DatabaseFormat& format) {
   if (!database) return {};
   const Result<Settings> settings = Settings::Read(*database, format.name);
@@ -137,8 +140,8 @@ std::string StoreOfShard(const fs::path& path) {
   return StoreIdIn(OpenShardDatabase(path), kShardFormat);
 }
 
-// Removes an unfinished store and its shards, including the shards that already have their final
-// names, and the unfinished shards behind them.
+// Removes an unfinished store and all its shards, both those with names of unfinished shards and
+// those that already have their final names.
 void RemoveUnfinishedFiles(const fs::path& path) {
   const std::string store = StoreIdOf(UnfinishedPath(path));
   RemoveWithJournal(UnfinishedPath(path));
@@ -161,9 +164,10 @@ struct PackedStoreWriter::State {
   uint64_t shard_bytes = 0;
   std::string store;
   std::string replaced;                // id of the older store that has the final name; empty: none
-  std::vector<uint64_t> source_bytes;  // of the LF images that earlier runs added; 0 for others
+  std::vector<uint64_t> source_bytes;  // CodedImage::source_bytes of each LF image that earlier
+                                       // runs added; 0 for others
 
-  std::mutex mutex;  // guards everything below
+  std::mutex mutex;  // guards all members below
   std::vector<bool> has;
   std::optional<Database> database;
   std::optional<Statement> insert_code;
@@ -200,7 +204,7 @@ struct PackedStoreWriter::State {
   }
 };
 
-// Reads the contents of a store that is resumed.
+// Reads the id of a store that is resumed, its number of shards, and which LF images it has.
 Result<void> PackedStoreWriter::State::Read(const Settings& settings) {
   store = settings.Text("store");
   LF_ASSIGN_OR_RETURN(const double shards, settings.Number("shards", 0, kMostShards));
@@ -222,8 +226,8 @@ Result<void> PackedStoreWriter::State::Read(const Settings& settings) {
       });
 }
 
-// Renames shards that already have their final names back to the names of unfinished shards. Their
-// writer was killed while it finished the store.
+// Renames shards that already have their final names back to the names of unfinished shards. They
+// have final names if an earlier writer was killed while it finished the store.
 Result<void> PackedStoreWriter::State::TakeShardsBack() const {
   std::error_code error;
   for (int n = 1; n <= shard_count; ++n) {
@@ -239,7 +243,7 @@ Result<void> PackedStoreWriter::State::TakeShardsBack() const {
   return {};
 }
 
-// Returns kUsage if the name of a shard is taken: by a file that is a shard neither of this store
+// Returns kUsage if the path of a shard is taken by a file that is a shard neither of this store
 // nor of the store that is replaced.
 Result<void> PackedStoreWriter::State::CheckIsFree(const fs::path& shard_path) const {
   std::error_code error;
@@ -252,7 +256,7 @@ Result<void> PackedStoreWriter::State::CheckIsFree(const fs::path& shard_path) c
                   shard_path.string()));
 }
 
-// Opens a shard, and makes it if it does not exist.
+// Opens a shard for writing, and makes it if it does not exist.
 Result<void> PackedStoreWriter::State::OpenShard(int number) {
   if (number > kMostShards)
     return OutputError(
@@ -295,8 +299,8 @@ Result<void> PackedStoreWriter::State::Insert(LfImageId id, const CodedImage& im
   }
   ++batch_size;
   if (!insert_blob) {
-    // The row may exist: an earlier program may have committed it here, and ended before it
-    // committed the row of `codes`.
+    // Uses "or replace", because the row may exist: an earlier program may have committed it to a
+    // shard, and ended before it committed the row of the table `codes` to the store.
     LF_ASSIGN_OR_RETURN(Statement prepared, (shard ? *shard : *database)
                                                 .Prepare("insert or replace into blobs values "
                                                          "(?, ?, ?)"));
@@ -319,7 +323,7 @@ Result<void> PackedStoreWriter::State::Insert(LfImageId id, const CodedImage& im
   return {};
 }
 
-// Commits encoded images before the rows that refer to them.
+// Commits the encoded images in the shard before the rows of the store that refer to them.
 Result<void> PackedStoreWriter::State::CommitBatch() {
   if (batch_size == 0) return {};
   batch_size = 0;
@@ -403,7 +407,8 @@ Result<PackedStoreWriter> PackedStoreWriter::Create(const fs::path& path,
                                                     std::optional<FileLock> lock) {
   if (IsUnfinished(path))
     return UsageError(
-        fmt::format("{}: an unfinished store of this name exists: continue it, or start it again",
+        fmt::format("{}: an unfinished store of this name exists: continue it with --resume, or "
+                    "start it again with --overwrite",
                     UnfinishedPath(path).string()));
   return Open(path, light_field, plan, std::move(lock));
 }

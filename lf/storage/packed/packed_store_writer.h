@@ -21,32 +21,33 @@ namespace lf {
 
 // Everything that determines a store. An unfinished store is resumed only with an equal plan.
 struct PackedStorePlan {
-  LightFieldIdentity whole;         // the light field that the LF images are from
+  LightFieldIdentity whole;         // identity of the light field that the LF images are from
   std::vector<uint32_t> whole_ids;  // id of each LF image in `whole`; empty: 0, 1, 2, ...
-  std::vector<PixelRect> rects;     // wanted pixels of each LF image; empty: all pixels
+  std::vector<PixelRect> rects;     // pixels of each LF image that are encoded; empty: all pixels
   std::string codec;                // all settings of the encoder, in words
   std::optional<DisplayLevels> display_levels = {};  // set if images are encoded as kDisplay16
-  // 0: one file. Otherwise the encoded images are in STORE-0001.lfs, STORE-0002.lfs, ... of about
-  // this size, beside STORE.lfs, which has everything else.
+  // Size of a shard. If it is not 0, the encoded images are in STORE-0001.lfs, STORE-0002.lfs, ...
+  // of about this size, beside STORE.lfs, which has everything else. 0: the store is one file.
   uint64_t shard_bytes = 0;
-  // These are for information only. They may differ when an unfinished store is resumed.
+  // `source` and `version` are for information only. They may differ when an unfinished store is
+  // resumed.
   std::string source;   // LIGHTFIELD or packages, as the user gave them
   std::string version;  // version of the program
 };
 
-// One encoded LF image, to be added.
+// One encoded LF image, which PackedStoreWriter::Add() writes.
 struct CodedImage {
   StoredValues values = StoredValues::kUint8;
   PixelRect rect;    // pixels of the LF image that are encoded; not empty
   std::string code;  // encoded colours, or mosaic (pixels/codec/lf_image_codec.h)
-  std::string mask;  // encoded grey picture of equal size: with 8 bits, 0 is masked; with 16 bits,
-                     // opacities (storage/load/opacities.h); empty: there is none
-  uint64_t source_bytes = 0;  // size of the files that it was made from; for information
+  std::string mask;  // encoded grey picture of the size of `rect`: a mask if it has 8 bits (0 is
+                     // masked), opacities if it has 16 (storage/load/opacities.h); empty: none
+  uint64_t source_bytes = 0;  // size of the files that the LF image was read from, for information
 };
 
 // Writes a packed store. Until Finish() its file is STORE.lfs.unfinished, which no reader accepts
-// as a store; its shards have similar names. An older store of the final name stays unchanged until
-// then. The lock STORE.lfs.lock allows one writer at a time.
+// as a store, and its shards are STORE-0001.lfs.unfinished and so on. An older store of the final
+// name stays unchanged until Finish(). The lock STORE.lfs.lock allows one writer at a time.
 class PackedStoreWriter {
  public:
   // Takes the lock, for a caller that checks existing files before it writes. The caller passes the
@@ -62,8 +63,8 @@ class PackedStoreWriter {
                                           const PackedStorePlan& plan,
                                           std::optional<FileLock> lock = {});
   // Resumes an unfinished store. If there is none, or it has no tables yet, begins a new one.
-  // kUsage: the unfinished store is of other images or settings (the message names the first
-  // difference). kInput: it is no packed store, or damaged. kOutput as Create().
+  // kUsage: the unfinished store was begun for other LF images or settings (the message names the
+  // first difference). kInput: its file is no packed store, or is damaged. kOutput as Create().
   static Result<PackedStoreWriter> Resume(const std::filesystem::path& path,
                                           const LightField& light_field,
                                           const PackedStorePlan& plan,
@@ -74,16 +75,16 @@ class PackedStoreWriter {
 
   PackedStoreWriter(PackedStoreWriter&&) noexcept;
   PackedStoreWriter& operator=(PackedStoreWriter&&) noexcept;
-  ~PackedStoreWriter();  // drops everything that is not committed
+  ~PackedStoreWriter();  // drops LF images that are not committed
 
   bool Has(LfImageId id) const;
   // Returns CodedImage::source_bytes of an LF image that the store had when it was opened; 0 for
-  // others.
+  // other LF images.
   uint64_t SourceBytes(LfImageId id) const;
 
   // Adds an LF image that the store does not have. Commits if 64 LF images were added since the
-  // last commit, or if the first of these was added 2 s ago. May be called by many threads at the
-  // same time. kOutput: the disk fails; no more can be added.
+  // last commit, or if the first of these was added at least 2 s ago. May be called by many threads
+  // at the same time. kOutput: the disk fails; no LF image can be added afterwards.
   Result<void> Add(LfImageId id, const CodedImage& image);
   // Commits the LF images that were added, so that they are on the disk permanently.
   Result<void> Commit();
@@ -91,7 +92,7 @@ class PackedStoreWriter {
   // Shards are renamed first. LF images that were not added are listed without an encoded image.
   // Nothing may be called afterwards.
   Result<void> Finish();
-  // Removes all that was written. Called instead of Finish().
+  // Removes all that was written. Is called instead of Finish().
   void Abandon();
 
  private:
@@ -103,9 +104,9 @@ class PackedStoreWriter {
   std::unique_ptr<State> state_;
 };
 
-// Checks that a complete store matches this plan in everything but the encoded images.
-//   any_shards  accept shards of any size
-// kInput: it differs (the message names the first difference), or cannot be read.
+// Checks that a store matches a plan in everything but the encoded images.
+//   any_shards  shards of any size match
+// kInput: the store differs (the message names the first difference), or cannot be read.
 Result<void> CheckIsOfPlan(const std::filesystem::path& path, const LightField& light_field,
                            const PackedStorePlan& plan, bool any_shards);
 

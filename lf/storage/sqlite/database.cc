@@ -17,14 +17,15 @@ namespace {
 
 constexpr int kMaxBlobBytes = 1 << 30;
 
-// Limit of the steps of SQLite's virtual machine for one command. A row takes some 10 steps for
-// each value, and each value takes at least a byte of the file. A damaged file could take any
-// number of steps, because a page may be a child of several other pages.
+// One command may take kStepsOfSmallFile steps of SQLite's virtual machine, and kStepsOfByte more
+// for each byte of the file. This is checked every kStepsBetweenLooks steps. Reading takes about 10
+// steps for each value, and each value takes at least a byte of the file. A damaged file could take
+// any number of steps, because a page may be listed as the child of several other pages.
 constexpr int kStepsBetweenLooks = 1000;
 constexpr int64_t kStepsOfSmallFile = 10'000'000, kStepsOfByte = 20;
 constexpr size_t kHashBytes = sizeof(uint64_t);
 
-// Returns the checksum as bytes, the least significant first.
+// Returns the checksum of `bytes` as 8 bytes, the least significant first.
 std::string HashText(std::string_view bytes) {
   std::string text(kHashBytes, '\0');
   const uint64_t hash = HashBytes(bytes);
@@ -44,8 +45,8 @@ std::string UriOf(const fs::path& path) {
   return uri + "?immutable=1";
 }
 
-// Returns the length that the file's header states for the file; 0 if it states no valid length
-// (SQLite's "Database File Format", 1.3).
+// Returns the length in bytes that the header of an SQLite file states for the file; 0 if it states
+// no valid length (SQLite's "Database File Format", 1.3).
 uintmax_t BytesOfPages(const fs::path& path) {
   constexpr size_t kHeadBytes = 100, kPageSize = 16, kChanges = 24, kPages = 28, kPagesValid = 92;
   char head[kHeadBytes] = {};
@@ -67,17 +68,17 @@ uintmax_t BytesOfPages(const fs::path& path) {
 
 struct Database::State {
   sqlite3* handle = nullptr;
-  std::string name;  // for messages
-  std::string what;
+  std::string name;  // path of the file, for messages
+  std::string what;  // name of this kind of file in messages: "package"
   ErrorKind kind = ErrorKind::kInput;
-  int64_t most_steps = INT64_MAX;  // limit for one command
+  int64_t most_steps = INT64_MAX;  // limit of the steps of SQLite's virtual machine for one command
 
   ~State() { sqlite3_close(handle); }
 
   Error Fault(std::string_view message) const {
     return {kind, fmt::format("{}: {}", name, message)};
   }
-  // Returns SQLite's last error.
+  // Returns the last error of SQLite for this database.
   Error Failed() const {
     if (kind == ErrorKind::kOutput)
       return Fault(fmt::format("cannot be written: {}", sqlite3_errmsg(handle)));
@@ -89,7 +90,7 @@ struct Database::State {
 struct Statement::State {
   sqlite3_stmt* handle = nullptr;
   std::shared_ptr<Database::State> database;
-  int64_t steps = 0;  // since the command began
+  int64_t steps = 0;  // steps of SQLite's virtual machine since the command began
   bool is_too_long = false;
 
   ~State() { sqlite3_finalize(handle); }
@@ -111,7 +112,7 @@ Statement& Statement::Bind(int parameter, double value) {
 }
 
 Statement& Statement::Bind(int parameter, std::string_view text) {
-  // SQLite would take a null pointer for NULL and not for an empty text.
+  // SQLite would store a null pointer as NULL and not as an empty text.
   const char* const letters = text.empty() ? "" : text.data();
   LF_CHECK(sqlite3_bind_text64(state_->handle, parameter + 1, letters, text.size(),
                                SQLITE_TRANSIENT, SQLITE_UTF8) == SQLITE_OK);
@@ -206,10 +207,10 @@ Result<std::string_view> Statement::Blob(int column) const {
     return Wrong(column, "something else", "bytes");
   const auto* const data = static_cast<const char*>(sqlite3_column_blob(state_->handle, column));
   const auto size = static_cast<size_t>(sqlite3_column_bytes(state_->handle, column));
-  if (size < kHashBytes) return Wrong(column, fmt::format("{} bytes", size), "8 and more");
+  if (size < kHashBytes) return Wrong(column, fmt::format("{} bytes", size), "8 or more");
   const std::string_view stored(data, size), bytes = stored.substr(0, size - kHashBytes);
   if (HashText(bytes) != stored.substr(bytes.size()))
-    return Wrong(column, "bytes of another checksum", "the one that was written");
+    return Wrong(column, "bytes with a wrong checksum", "the bytes that were written");
   return bytes;
 }
 
@@ -275,7 +276,7 @@ Result<int64_t> Database::Pragma(const char* name) {
   return statement.Integer(0);
 }
 
-// A file of another kind or version is wrong input, even if the database is opened for writing.
+// Returns kInput for a file of another kind or version, even if the database is opened for writing.
 Result<void> Database::CheckFormat(const DatabaseFormat& format) {
   const auto wrong = [this](const std::string& message) {
     return InputError(Fault(message).message);
@@ -306,7 +307,7 @@ Result<Database> Database::Create(const fs::path& path, const DatabaseFormat& fo
   if (sqlite3_open_v2(path.c_str(), &state->handle, kFlags, nullptr) != SQLITE_OK)
     return state->Failed();
   Database database(std::move(state));
-  // The file has a temporary name and is flushed when it is complete, so no journal is needed.
+  // No journal is needed, because the file has a temporary name and is flushed when it is complete.
   LF_RETURN_IF_ERROR(database.Execute(
       fmt::format("pragma page_size = {}; pragma journal_mode = off; pragma synchronous = off; "
                   "pragma application_id = {}; pragma user_version = {};",
@@ -323,9 +324,9 @@ Result<Database> Database::OpenToAppend(const fs::path& path, const DatabaseForm
   if (sqlite3_open_v2(path.c_str(), &state->handle, kFlags, nullptr) != SQLITE_OK)
     return state->Failed();
   Database database(std::move(state));
-  // Uses a rollback journal and not a write-ahead log. Batches write new pages, which the journal
+  // Uses a rollback journal and not a write-ahead log: batches write new pages, which the journal
   // need not save, and after every batch the file is complete without any other file. Reading
-  // page_count rolls back an interrupted batch of an earlier program.
+  // page_count below rolls back an interrupted batch of an earlier program.
   LF_RETURN_IF_ERROR(database.Execute(
       fmt::format("pragma page_size = {}; pragma journal_mode = delete; pragma synchronous = full;",
                   format.page_bytes)));
@@ -362,12 +363,11 @@ Result<Database> Database::Open(const fs::path& path, const DatabaseFormat& form
   constexpr int kFlags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX;
   if (sqlite3_open_v2(UriOf(path).c_str(), &state->handle, kFlags, nullptr) != SQLITE_OK)
     return state->Fault(fmt::format("cannot be read: {}", sqlite3_errmsg(state->handle)));
-  // The file may be from anybody: it must not run any code, and sizes are checked before memory is
-  // allocated.
+  // Anybody may have made the file, so SQLite must not run any code that the file contains.
   sqlite3_db_config(state->handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(state->handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
-  // A value cannot be longer than the file, whatever length a damaged row states for it. Limits
-  // SQLite accordingly (to at least kLeastLimit).
+  // Limits the bytes of one value, for which SQLite allocates memory, to the length of the file
+  // (but at least kLeastLimit), whatever length a damaged row states.
   constexpr uintmax_t kLeastLimit = 1 << 20;
   const uintmax_t longest = std::clamp<uintmax_t>(size, kLeastLimit, kMaxBlobBytes);
   sqlite3_limit(state->handle, SQLITE_LIMIT_LENGTH, static_cast<int>(longest));

@@ -2,9 +2,9 @@
 // format"). No other folder uses SQLite.
 //
 // A file states its kind by its application_id, and its version by its user_version. It is written
-// under a temporary name, either at once (core/file.h) or in batches over hours, and then only
-// read: as immutable and without locks, so that any number of machines may read it over a network
-// file system.
+// under a temporary name, either at once (core/file.h) or in batches over hours. When it is
+// complete, it is only read, as immutable and without locks, so that any number of machines may
+// read it over a network file system.
 #pragma once
 
 #include <cstddef>
@@ -21,12 +21,12 @@ namespace lf {
 
 struct DatabaseFormat {
   const char* name;         // name of this kind of file in messages: "package"
-  uint32_t application_id;  // four letters, the first in the highest byte
-  int version;              // version that this program writes; it cannot read older ones
-  int page_bytes = 65536;   // a power of 2; should be small for small files
+  uint32_t application_id;  // SQLite's id of the file's kind: four letters, first in highest byte
+  int version;              // version that this program writes; it can read no other version
+  int page_bytes = 65536;   // size of SQLite's pages, a power of 2; should be small for small files
 };
 
-// One prepared command, which is run step by step. The database must outlive it. Columns and
+// One prepared SQL command, which is run step by step. The database must outlive it. Columns and
 // parameters are counted from 0.
 class Statement {
  public:
@@ -35,7 +35,7 @@ class Statement {
   ~Statement();
 
   Statement& Bind(int parameter, int64_t value);
-  Statement& Bind(int parameter, double value);  // keeps all bits, except of NaN
+  Statement& Bind(int parameter, double value);  // stores all bits of any value but NaN
   Statement& Bind(int parameter, std::string_view text);
   // Binds bytes followed by their checksum, to be read by Blob().
   Statement& BindBlob(int parameter, std::string_view bytes);
@@ -43,8 +43,8 @@ class Statement {
 
   // Moves to the next row. Returns false if there is none; the command may then be bound and run
   // again. Errors are kInput (damage) for a database that is read, and kOutput (a disk failure) for
-  // one that is written. A command that takes more steps than a file of this length can need is an
-  // error, because the file is damaged.
+  // one that is written. It is an error if a command takes more steps of SQLite's virtual machine
+  // than an intact file of this length can need, because the file is then damaged.
   Result<bool> Step();
   // Runs a command that returns no rows.
   Result<void> Run();
@@ -52,13 +52,13 @@ class Statement {
   void Reset();
 
   bool IsNull(int column) const;
-  // These functions return values of the current row. kInput if the column has another type, or a
-  // blob's checksum is wrong.
+  // These functions return a value of the current row. kInput if the column has another type, the
+  // number is outside of [low, high], or a blob's checksum is wrong.
   Result<int64_t> Integer(int column) const;
   Result<int64_t> Integer(int column, int64_t low, int64_t high) const;
-  Result<double> Real(int column) const;  // always finite
+  Result<double> Real(int column) const;  // the number is finite
   Result<std::string> Text(int column) const;
-  // Returns the bytes without their checksum; valid until the next step.
+  // Returns the bytes without their checksum. They are valid until the next Step() or Reset().
   Result<std::string_view> Blob(int column) const;
 
  private:
@@ -74,11 +74,11 @@ class Database {
   // Creates an empty database and replaces an existing file of this name. kOutput: it cannot be
   // written.
   static Result<Database> Create(const std::filesystem::path& path, const DatabaseFormat& format);
-  // Opens a file for reading. The scripts are alternatives: the file must have exactly the tables
-  // and indices that one of them creates, letter by letter. kInput: the file cannot be read, is no
-  // database, is of another kind or version, was copied only in part, or has other tables and
-  // indices. No table is read before this check, because a view or a generated column in place of a
-  // table could take any time and memory.
+  // Opens a file for reading. The SQL scripts are alternatives: the file must have exactly the
+  // tables and indices that one of the scripts creates, by the same SQL. kInput: the file cannot be
+  // read, is no database, is of another kind or version, was copied only in part, or has other
+  // tables and indices. No table is read before this check, because a view or a generated column in
+  // place of a table could take any time and memory.
   static Result<Database> Open(const std::filesystem::path& path, const DatabaseFormat& format,
                                const std::vector<std::string>& scripts);
 
@@ -100,7 +100,7 @@ class Database {
   Result<void> Execute(const std::string& sql);
   Result<Statement> Prepare(const std::string& sql);
 
-  const std::string& name() const;  // its path, as messages show it
+  const std::string& name() const;  // path of the file, as messages show it
   // Returns the error "package-0000.lfp: " + message: kInput, or kOutput for a database that is
   // written.
   Error Fault(std::string_view message) const;
@@ -115,8 +115,8 @@ class Database {
   std::shared_ptr<State> state_;
 };
 
-// Calls row(statement), which returns a Result<void>, for every row of a command without
-// parameters.
+// Calls row(statement), which returns a Result<void>, for every row that an SQL command without
+// parameters returns.
 template <class Row>
 Result<void> ForEachRow(Database& database, const std::string& sql, const Row& row) {
   LF_ASSIGN_OR_RETURN(Statement select, database.Prepare(sql));

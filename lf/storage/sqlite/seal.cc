@@ -13,8 +13,8 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// The footer consists of 8 letters, the size of the file in front of the footer, and the XXH3 of
-// the file's bytes. Both numbers are stored with the least significant byte first.
+// The footer consists of 8 letters, the number of bytes of the file in front of the footer, and the
+// XXH3 of these bytes. Both numbers have 8 bytes, the least significant first.
 constexpr std::string_view kLetters = "LFSEAL1\n";
 constexpr size_t kSealBytes = 24;
 constexpr size_t kPartBytes = size_t{1} << 20;
@@ -25,7 +25,7 @@ std::string NumberText(uint64_t number) {
   return text;
 }
 
-// Returns the footer for the first `size` bytes; empty if the file has fewer bytes.
+// Returns the footer for the first `size` bytes of a file; empty if the file has fewer bytes.
 std::string SealOf(std::istream& file, uint64_t size) {
   Hasher hasher;
   std::string part(kPartBytes, '\0');

@@ -1,6 +1,6 @@
-// A checksum footer behind the end of a file, where SQLite does not read. It covers every byte,
-// including numbers, words and SQLite's own structures. It is for files that are read completely in
-// any case.
+// Writes and checks a checksum footer behind the last page of an SQLite file, where SQLite does not
+// read. The footer covers every byte, including numbers, words and SQLite's own structures.
+// Checking reads the whole file, so the footer is for files that are read completely in any case.
 #pragma once
 
 #include <filesystem>

@@ -13,11 +13,11 @@
 namespace lf {
 namespace {
 
-// Name of each DistortionModel.
+// Name of each DistortionModel in the table of intrinsics, in the order of the enumeration.
 constexpr const char* kModelNames[] = {
     "none",     "radial_tangential", "fisheye",    "fov",
     "division", "unified",           "thin_prism", "radial_tangential_thin_prism"};
-// Name of each Transfer.
+// Name of each Transfer in the setting "transfer", in the order of the enumeration.
 constexpr const char* kTransferNames[] = {"srgb", "linear", "response"};
 
 Result<Intrinsics> ReadIntrinsicsRow(const Settings& settings, const Statement& row) {
@@ -36,14 +36,16 @@ Result<Intrinsics> ReadIntrinsicsRow(const Settings& settings, const Statement& 
   const auto* const name = std::find(std::begin(kModelNames), std::end(kModelNames), model);
   const auto numbers = ParseNumbers(parameters);
   if (name == std::end(kModelNames) || !numbers)
-    return settings.Damaged(fmt::format("a lens distortion is {} {}", model, parameters));
+    return settings.Damaged(fmt::format(
+        "a lens distortion is '{} {}', expected a known model and its numbers", model, parameters));
   k.distortion.model = static_cast<DistortionModel>(name - std::begin(kModelNames));
-  // The parameters of the distortion are followed by those of the vignetting if there is one.
+  // The parameters of the vignetting, if the lens has one, follow those of the distortion.
   const size_t of_distortion = StoredParameterCount(k.distortion.model);
   const size_t of_both = of_distortion + k.vignetting.v.size();
   if (numbers->size() != of_distortion && numbers->size() != of_both)
-    return settings.Damaged(fmt::format("a lens distortion is {} {}: expected {} or {} parameters",
-                                        model, parameters, of_distortion, of_both));
+    return settings.Damaged(
+        fmt::format("a lens distortion is '{} {}', expected {} or {} parameters", model, parameters,
+                    of_distortion, of_both));
   const auto rest = numbers->begin() + static_cast<std::ptrdiff_t>(of_distortion);
   std::copy(numbers->begin(), rest, k.distortion.parameters.begin());
   std::copy(rest, numbers->end(), k.vignetting.v.begin());
@@ -52,7 +54,7 @@ Result<Intrinsics> ReadIntrinsicsRow(const Settings& settings, const Statement& 
   return k;
 }
 
-// Reads alpha and background. Older files have neither.
+// Reads the settings "alpha" and "background", which older files lack.
 Result<void> ReadAlpha(const Settings& settings, RadianceEncoding* encoding) {
   encoding->alpha = AlphaMeaningOf(settings.Text("alpha"));
   if (!encoding->alpha && !settings.Text("alpha").empty())
@@ -66,7 +68,8 @@ Result<void> ReadAlpha(const Settings& settings, RadianceEncoding* encoding) {
   LF_ASSIGN_OR_RETURN(const std::vector<double> background, settings.Numbers("background", 3, 3));
   encoding->background.emplace();
   for (size_t c = 0; c < 3; ++c) {
-    if (!IsWithin(background[c], 0, kMostNumber)) return settings.Wrong("background", "radiances");
+    if (!IsWithin(background[c], 0, kMostNumber))
+      return settings.Wrong("background", "three radiances of at least 0");
     (*encoding->background)[c] = background[c];
   }
   return {};
@@ -126,7 +129,7 @@ Result<void> ReadPixelSettings(const Settings& settings, LightField* light_field
   encoding.masks_clipped = settings.Text("clipped") == "mask";
   if (!encoding.masks_clipped && !settings.Text("clipped").empty())
     return settings.Wrong("clipped", "mask");
-  // Older files do not have the footprint.
+  // Older files lack the setting "footprint".
   encoding.footprint = PixelFootprintOf(settings.Text("footprint"));
   if (!encoding.footprint && !settings.Text("footprint").empty())
     return settings.Wrong("footprint", "areas or points");
@@ -188,8 +191,8 @@ void BindCamera(const LightField& light_field, LfImageId id, int parameter, Stat
 
 namespace {
 
-// Reads the column of gains, which holds a number, or a text of three numbers if each channel has
-// its own gain.
+// Reads the column of gains, which holds one number if all channels have the same gain, otherwise a
+// text of three numbers.
 Result<ChannelGains> ReadGains(const Settings& settings, const Statement& row, int column,
                                const std::string& name) {
   ChannelGains gains;
@@ -204,8 +207,9 @@ Result<ChannelGains> ReadGains(const Settings& settings, const Statement& row, i
       numbers.size() == 3 && std::all_of(numbers.begin(), numbers.end(),
                                          [](double gain) { return IsWithin(gain, 1e-6, 1e6); });
   if (!are_gains)
-    return settings.Damaged(
-        fmt::format("LF image '{}' has the gain {}", name, fmt::join(numbers, " ")));
+    return settings.Damaged(fmt::format(
+        "LF image '{}' has the gain '{}', expected one or three numbers from 1e-6 to 1e6", name,
+        fmt::join(numbers, " ")));
   for (size_t c = 0; c < 3; ++c) gains[c] = static_cast<float>(numbers[c]);
   return gains;
 }
@@ -221,7 +225,8 @@ Result<LfCamera> ReadCamera(const Settings& settings, const Statement& row, int 
   LF_ASSIGN_OR_RETURN(const std::string_view pose, row.Blob(column + 2));
   const std::vector<double> numbers = NumbersOf<double>(pose);
   if (numbers.size() != kPoseNumbers)
-    return settings.Damaged(fmt::format("the pose of LF image {} has {} bytes", name, pose.size()));
+    return settings.Damaged(fmt::format("the pose of LF image {} has {} bytes, expected {}", name,
+                                        pose.size(), kPoseNumbers * sizeof(double)));
   camera.cam_from_world = PoseOfNumbers(std::span<const double>(numbers).first<kPoseNumbers>());
   if (!IsPose(camera.cam_from_world))
     return settings.Damaged(

@@ -13,8 +13,9 @@
 
 namespace lf {
 
-// Returns the settings "unit_m", "depth_range", "bayer", "transfer", ...: the unit, the depth range
-// and the whole encoding. ReadPixelSettings() reads them into `light_field`.
+// Returns the settings that describe the pixels of a light field: the world unit ("unit_m"), the
+// depth range, and all members of LightField::encoding ("bayer", "transfer", ...).
+// ReadPixelSettings() reads them into `light_field`.
 SettingList SettingsOfPixels(const LightField& light_field);
 Result<void> ReadPixelSettings(const Settings& settings, LightField* light_field);
 
@@ -23,14 +24,16 @@ create table intrinsics (id integer primary key, width integer, height integer, 
   cx real, cy real, skew real, distortion text, parameters text);)";
 
 Result<void> WriteIntrinsics(const std::vector<Intrinsics>& intrinsics, Database* database);
-//   settings  the settings of the file, for messages
+// Reads the table of intrinsics, ordered by id.
+//   settings  the settings of the file, which name the file in messages
 Result<std::vector<Intrinsics>> ReadIntrinsics(const Settings& settings, Database* database);
 
-// Binds the columns of an LF camera, beginning at `parameter`: intrinsics, gain, x, y, z (the
-// position, which only people read) and pose.
+// Binds an LF camera to the parameters of `statement` from number `parameter` on: index of its
+// intrinsics, gain, x, y, z (the position in world units, which only people read) and pose.
 void BindCamera(const LightField& light_field, LfImageId id, int parameter, Statement* statement);
-// Reads the columns intrinsics, gain, pose, beginning at `column`.
-//   name              name of the LF image, for messages; an empty name is damage
+// Reads an LF camera from three columns of a row, beginning at `column`: intrinsics, gain, pose.
+//   settings          the settings of the file, which name the file in messages
+//   name              name of the LF image, for messages; kInput if it is empty
 //   intrinsics_count  number of rows in the table of intrinsics
 Result<LfCamera> ReadCamera(const Settings& settings, const Statement& row, int column,
                             const std::string& name, size_t intrinsics_count);

@@ -48,7 +48,8 @@ Result<std::vector<double>> Settings::Numbers(const std::string& key, size_t cou
                                               size_t count_max) const {
   auto numbers = ParseNumbers(Text(key));
   if (!numbers || numbers->size() < count_min || numbers->size() > count_max)
-    return Wrong(key, "numbers");
+    return Wrong(key,
+                 fmt::format("finite numbers (at least {}, at most {})", count_min, count_max));
   return *std::move(numbers);
 }
 
@@ -71,7 +72,7 @@ Result<uint64_t> Settings::Whole(const std::string& key) const {
 Result<int> Settings::Word(const std::string& key, std::span<const char* const> words) const {
   for (size_t i = 0; i < words.size(); ++i)
     if (Text(key) == words[i]) return static_cast<int>(i);
-  return Wrong(key, "another word");
+  return Wrong(key, "a word that this version knows");
 }
 
 }  // namespace lf

@@ -1,5 +1,6 @@
 // Converts numbers to and from blobs (least significant byte first) and text, and checks the
-// numbers of a file against limits. The readers of calibrations and paths have the same limits.
+// numbers of packages and packed stores against limits. The readers of calibration files and camera
+// paths have the same limits.
 #pragma once
 
 #include <array>
@@ -24,7 +25,7 @@ std::string BytesOf(std::span<const Number> numbers) {
   return {reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes()};
 }
 
-// Returns as many numbers as the bytes hold.
+// Returns the numbers that the bytes hold. Ignores an incomplete number at the end.
 template <class Number>
 std::vector<Number> NumbersOf(std::string_view bytes) {
   std::vector<Number> numbers(bytes.size() / sizeof(Number));
@@ -32,12 +33,13 @@ std::vector<Number> NumbersOf(std::string_view bytes) {
   return numbers;
 }
 
-// Numbers of a pose: the rotation by rows, then the translation.
+// Count of the numbers of a pose: 9 of the rotation, row by row, then 3 of the translation.
 inline constexpr size_t kPoseNumbers = 12;
 std::array<double, kPoseNumbers> NumbersOfPose(const RigidTransform& pose);
 RigidTransform PoseOfNumbers(std::span<const double, kPoseNumbers> numbers);
 
-// Returns the numbers of a text, separated by spaces; nullopt if a word is not a finite number.
+// Returns the numbers of a text, separated by single spaces; nullopt if a word is not a finite
+// number.
 std::optional<std::vector<double>> ParseNumbers(const std::string& text);
 
 inline constexpr int64_t kMostSide_px = 65536;
@@ -49,7 +51,8 @@ inline bool IsWithin(double value, double low, double high) {
   return value >= low && value <= high;
 }
 bool IsPose(const RigidTransform& pose);
-// True if the intrinsics are plausible. Does not check the distortion.
+// True if focal lengths, principal point, skew and number of pixels are within plausible limits.
+// Does not check the distortion.
 bool IsCamera(const Intrinsics& k);
 bool IsStoredDistortion(const Distortion& distortion);
 
