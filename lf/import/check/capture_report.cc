@@ -15,7 +15,8 @@
 namespace lf {
 namespace {
 
-// If the number of values is even, the median is the lower of the two middle values.
+// Returns minimum, median and maximum of at least one value. If the number of values is even, the
+// median is the lower of the two middle values.
 Spread SpreadOf(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<ptrdiff_t>((values.size() - 1) / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -57,7 +58,8 @@ std::vector<CameraGroup> GroupCameras(const LightField& light_field) {
   for (const LfCamera& camera : light_field.cameras) ++image_counts[camera.intrinsics_index];
   struct Members {
     size_t image_count = 0;
-    std::vector<std::pair<size_t, size_t>> intrinsics;  // index, number of LF images
+    // Index of each of the group's intrinsics, and number of its LF images.
+    std::vector<std::pair<size_t, size_t>> intrinsics;
   };
   std::map<std::tuple<DistortionModel, int, int>, Members> members;
   for (size_t i = 0; i < image_counts.size(); ++i) {
@@ -146,7 +148,7 @@ CaptureReport ReportCapture(const LightField& light_field, const CaptureReportOp
 
   const std::vector<uint32_t> firsts = FirstOfPose(light_field);
   report.brackets = FindBrackets(light_field, firsts, options.lights);
-  // The LF images of a bracketed pose count as one camera, which the first of them stands for.
+  // The LF images of a bracketed pose count as one camera; only the first of them enters `ids`.
   std::vector<Vec3> positions;
   std::vector<LfImageId> ids;
   Eigen::AlignedBox3d box;

@@ -20,8 +20,8 @@ struct Spread {
   double max = 0;
 };
 
-// The LF cameras that share a distortion model and an image size. A Spread is over all LF images of
-// these cameras.
+// The LF cameras that share a distortion model and an image size. Each Spread is taken over all LF
+// images of these cameras.
 struct CameraGroup {
   DistortionModel model = DistortionModel::kNone;
   int width_px = 0;
@@ -29,22 +29,23 @@ struct CameraGroup {
   size_t image_count = 0;
   size_t intrinsics_count = 0;  // number of different intrinsics
   Spread fx_px, fy_px, cx_px, cy_px;
-  Spread horizontal_fov_rad, vertical_fov_rad;  // along the middle row, the middle column
+  Spread horizontal_fov_rad, vertical_fov_rad;  // field of view of the middle row, middle column
 };
 
 enum class DistanceSource {
   kStated,      // CaptureReportOptions::distance_w
-  kDepthRange,  // reciprocal of the mean of 1 / near and 1 / far of the calibration
+  kDepthRange,  // reciprocal of the mean of 1 / near and 1 / far, for LightField::depth_range
   kMeeting,     // median distance from the cameras to the point where their axes meet
 };
 
 // How densely the cameras sample a scene at the distance z. b is the median spacing, F the median
-// focal length of the largest group of cameras. Between neighbouring images, a point moves by the
-// disparity F b / z pixels. A frame focused at z shows a point at z' as copies that are F b |1/z -
-// 1/z'| pixels of an LF image apart. They are visible as ghosts if this is more than about a pixel.
+// focal length, in pixels, of the largest group of cameras. Between neighbouring images, a point
+// moves by the disparity F b / z pixels. A frame focused at z shows a point at z' as copies that
+// are F b |1/z - 1/z'| pixels of an LF image apart. The copies are visible as ghosts if they are
+// more than about a pixel apart.
 struct Density {
   DistanceSource source = DistanceSource::kStated;
-  double distance_w = 0;
+  double distance_w = 0;     // the distance z
   double spacing_rad = 0;    // angle of the spacing b, seen from the distance z
   double disparity_px = 0;   // F b / z
   double near_ghost_px = 0;  // distance between copies of a point at z' = 0.75 z
@@ -54,7 +55,7 @@ struct Density {
 struct CaptureWarning {
   std::string kind;                // a word for programs, such as "upside-down"
   std::string message;             // the fault and its remedy
-  size_t image_count = 0;          // affected LF images; 0: the whole capture is affected
+  size_t image_count = 0;          // number of affected LF images; 0: the capture as a whole
   std::vector<std::string> names;  // names of the first 5 affected LF images
 };
 
@@ -62,24 +63,24 @@ struct CaptureReport {
   size_t image_count = 0;
   size_t mask_count = 0;
   std::vector<CameraGroup> groups;  // the largest image_count first
-  Vec3 box_min_w = Vec3::Zero();    // bounding box of the positions
+  Vec3 box_min_w = Vec3::Zero();    // bounding box of the camera positions
   Vec3 box_max_w = Vec3::Zero();
   // Distance from a camera to its nearest neighbour. None for fewer than two cameras. LF images of
   // one pose with several exposures count as one camera.
   std::optional<Spread> spacing_w;
-  std::optional<Vec3> meeting_point_w;  // AxesMeetingPoint() (capture_geometry.h)
+  std::optional<Vec3> meeting_point_w;  // where the optical axes meet: AxesMeetingPoint()
   std::optional<DepthRange> depth_range;
   double unit_m = 1;
   std::optional<AlphaMeaning> alpha;             // meaning of the images' alpha, if known
   std::array<double, 3> background = {0, 0, 0};  // radiance behind the images, if alpha is no mask
   bool keeps_opacity = false;             // true: nothing is behind the images; frames have opacity
-  std::optional<Density> density;         // set if a distance is known
+  std::optional<Density> density;         // set if spacing_w and a distance to the scene are known
   std::optional<FoundBrackets> brackets;  // poses with several exposures
   std::vector<CaptureWarning> warnings;
 };
 
 struct CaptureReportOptions {
-  std::optional<double> distance_w;  // distance to the scene; overrides other sources
+  std::optional<double> distance_w;  // distance to the scene; overrides the other DistanceSources
   std::vector<double> lights = {};   // LightOf() (exif_gains.h) of each LF image; empty: unknown
 };
 

@@ -76,7 +76,8 @@ std::vector<CaptureWarning> WarnOfUpsideDown(const LightField& light_field) {
   }
   // The eigenvector of the largest eigenvalue of `spread` is the axis along which most up vectors
   // lie, in either direction. The eigenvalue is 2/3 for cameras on a dome. Cameras that lie on
-  // their side around a ring have no common up direction; for arcs of such rings it is up to 0.61.
+  // their side around a ring have no common up direction; for arcs of such rings, the eigenvalue is
+  // up to 0.61.
   constexpr double kCommonUp = 0.65;
   const Eigen::SelfAdjointEigenSolver<Mat3> eigen(spread);
   if (!(eigen.eigenvalues()[2] >= kCommonUp)) return {};
@@ -101,14 +102,14 @@ std::vector<CaptureWarning> WarnOfRepeats(const LightField& light_field,
                                           std::span<const LfImageId> ids,
                                           std::span<const double> nearest_w) {
   constexpr double kSamePlace = 1e-8, kRounding = 1e-14;
-  // Bounds the distance that rounding can cause between two equal positions.
+  // Returns an upper bound of the distance that rounding can cause between two equal positions.
   const auto rounding_w = [&](size_t i) {
     return kRounding * light_field.cameras[ids[i].value].cam_from_world.translation.norm();
   };
   std::vector<double> apart_w;  // nearest-neighbour distances of cameras that share no position
   for (size_t i = 0; i < nearest_w.size(); ++i)
     if (nearest_w[i] > rounding_w(i)) apart_w.push_back(nearest_w[i]);
-  double typical_w = 0;  // median of apart_w, which one distant camera does not change
+  double typical_w = 0;  // median of apart_w, on which one distant camera has little influence
   if (!apart_w.empty()) {
     const auto middle = apart_w.begin() + static_cast<ptrdiff_t>(apart_w.size() / 2);
     std::nth_element(apart_w.begin(), middle, apart_w.end());

@@ -11,26 +11,27 @@
 
 namespace lf {
 
-// Returns the warnings facing-away and diverging-axes.
+// Returns the warning "facing-away" or "diverging-axes".
 std::vector<CaptureWarning> WarnOfDirections(const LightField& light_field);
 
-// Returns the warning upside-down.
+// Returns the warning "upside-down".
 std::vector<CaptureWarning> WarnOfUpsideDown(const LightField& light_field);
 
-// Returns the warning repeated-positions about cameras whose distance to the nearest neighbour is
-// less than 1e-8 of the median distance.
+// Returns the warning "repeated-positions" about cameras whose distance to the nearest neighbour is
+// less than 1e-8 of the median of these distances.
 //   nearest_w  NearestDistances() of the LF images `ids`
 std::vector<CaptureWarning> WarnOfRepeats(const LightField& light_field,
                                           std::span<const LfImageId> ids,
                                           std::span<const double> nearest_w);
 
-// Returns the warning brackets if the light field does not state how the exposures of a pose
-// differ, or if clipped pixels are not masked.
+// Returns the warning "brackets" if the calibration does not state the gains of the exposures of a
+// pose, or if clipped pixels are not masked.
 std::vector<CaptureWarning> WarnOfBrackets(const FoundBrackets& brackets, bool masks_clipped);
 
-// Returns the warning sparse if the ghosts are more than 1 % of the image width apart.
+// Returns the warning "sparse" if the ghosts Density::near_ghost_px are more than 1 % of the image
+// width apart.
 //   width_px   width of an LF image
-//   spacing_w  distance between neighbouring cameras
+//   spacing_w  median distance between neighbouring cameras
 std::vector<CaptureWarning> WarnOfSparseness(const Density& density, double width_px,
                                              double spacing_w);
 

@@ -36,7 +36,10 @@ CodeChecker::Fault CodeChecker::Check(LfImageId id, bool decode) const {
                               name)};
   const Intrinsics& k = light_field_.intrinsics[light_field_.cameras[id.value].intrinsics_index];
   if (Intersection(code.rect, {0, 0, k.width_px, k.height_px}) != code.rect)
-    return {false, fmt::format("{}: has more pixels than the calibration says", name)};
+    return {false,
+            fmt::format("{}: has pixels in the packed store that lie beyond the {} x {} pixels of "
+                        "the calibration",
+                        name, k.width_px, k.height_px)};
   if (!decode) return {};
   const Result<void> decoded = Decode(id);
   return {false, decoded ? "" : fmt::format("{}: {}", name, decoded.error().message)};

@@ -17,13 +17,13 @@ class CodeChecker {
  public:
   static Result<std::unique_ptr<CodeChecker>> Open(const LightField& light_field);
 
-  // The result of a check. `reason` is "" if there is no fault.
+  // The result of a check. `reason` is a message that names the LF image; "" if there is no fault.
   struct Fault {
     bool is_missing = false;
     std::string reason;
   };
   // Checks one LF image. May be called by many threads at the same time.
-  //   decode  false: checks only the store's table; true: also decodes the image and its mask
+  //   decode  false: checks only the entry in the store's table; true: also decodes image and mask
   Fault Check(LfImageId id, bool decode) const;
 
  private:

@@ -18,7 +18,8 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// Number of images that are checked before progress is reported and `interrupted` is read.
+// Number of LF images that are checked, by their headers or by all pixels, before progress is
+// reported and CheckOptions::interrupted is read.
 constexpr size_t kHeadersPerRound = 512;
 constexpr size_t kImagesPerRound = 64;
 

@@ -24,18 +24,19 @@ enum class ImageCheck {
 
 struct ImageFault {
   LfImageId id;
-  std::string reason;  // names the file
+  std::string reason;  // what is wrong, and with which file
 };
 
 struct ImageFaults {
-  std::vector<ImageFault> missing;  // the file does not exist
-  // The header (kPixels: the pixels) cannot be read, or the size differs from the calibration.
+  std::vector<ImageFault> missing;  // LF images whose file or mask file does not exist
+  // LF images whose header (with kPixels: whose pixels) cannot be read, or whose size differs from
+  // the calibration.
   std::vector<ImageFault> broken;
 };
 
 struct CheckOptions {
   ImageCheck check = ImageCheck::kHeaders;
-  const std::atomic<bool>* interrupted = nullptr;  // read between rounds of images; may be null
+  const std::atomic<bool>* interrupted = nullptr;  // true ends the check early; null: never
   std::function<void(size_t done, size_t total)> progress;
 };
 

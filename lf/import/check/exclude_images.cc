@@ -25,8 +25,8 @@ void AddEntries(std::string_view text, std::string_view separators,
 
 std::string_view BaseName(std::string_view name) { return name.substr(name.rfind('/') + 1); }
 
-// Patterns that names are matched with. A name is looked up among the exact patterns; only patterns
-// with wildcards are tried one by one.
+// Patterns with which names of LF images are compared. A name is looked up in a table of all
+// patterns; only patterns with wildcards are tried one by one.
 class PatternSet {
  public:
   explicit PatternSet(std::span<const std::string> patterns)
@@ -54,8 +54,8 @@ class PatternSet {
     return matches;
   }
 
-  // Returns the first pattern that matched no name; null if there is none. If a pattern was given
-  // twice, a match of either counts for both.
+  // Returns the first pattern that matched no name; null if all matched. If a pattern was given
+  // twice, a match counts for both.
   const std::string* FirstUnused() const {
     for (size_t i = 0; i < used_.size(); ++i)
       if (!used_[i] && !used_[exact_.at(patterns_[i])]) return &patterns_[i];
@@ -91,11 +91,12 @@ Result<size_t> ExcludeImages(std::span<const std::string> patterns, LightField* 
     if (!set.Matches(light_field->image_names[i])) kept.push_back(i);
   if (const std::string* unused = set.FirstUnused())
     return InputError(
-        fmt::format("\"{}\" names none of the {} images to exclude; the first is called {}",
+        fmt::format("--exclude: \"{}\" names none of the {} images; the first is called {}",
                     *unused, light_field->size(), light_field->image_names[0]));
   if (kept.empty())
-    return InputError(fmt::format("all {} images are excluded: a light field needs at least one",
-                                  light_field->size()));
+    return InputError(
+        fmt::format("--exclude: all {} images are excluded: a light field needs at least one",
+                    light_field->size()));
   const size_t removed = light_field->size() - kept.size();
   const bool has_masks = !light_field->mask_names.empty();
   for (size_t i = 0; i < kept.size(); ++i) {

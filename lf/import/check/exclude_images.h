@@ -20,7 +20,7 @@ Result<std::vector<std::string>> ReadPatterns(std::span<const std::string> optio
 // part after the last '/' are compared. A pattern is a name or a shell pattern with * ? [abc], in
 // which * also matches '/'.
 // Returns the number of removed LF images.
-// kInput, with nothing removed: a pattern that matches no image, or no image would remain.
+// kInput, with nothing removed: a pattern matches no LF image, or no LF image would remain.
 Result<size_t> ExcludeImages(std::span<const std::string> patterns, LightField* light_field);
 
 }  // namespace lf

@@ -76,7 +76,7 @@ Result<ExifGains> GainFromExif(std::span<const StatedExposure> stated, LightFiel
   LF_CHECK(stated.size() == light_field->size() && !stated.empty());
   ExifGains found;
   found.image_count = stated.size();
-  // A lens without electrical contacts has no f-number to report.
+  // Files state no f-number if the lens has no electrical contacts.
   found.has_f_numbers = std::any_of(stated.begin(), stated.end(), [](const StatedExposure& one) {
     return one.facts.f_number.has_value();
   });

@@ -16,7 +16,7 @@ namespace lf {
 struct StatedExposure {
   LfImageId id;
   ExposureFacts facts;
-  std::string fault;  // reason why the file cannot be read; "": it was read
+  std::string fault;  // reason why the file cannot be read; "": the file was read
 };
 
 // Reads the headers of the files of `ids` in parallel.
@@ -32,7 +32,7 @@ struct ExifGains {
   size_t image_count = 0;
   float least_gain = 1, most_gain = 1;
   bool has_f_numbers = true;  // false: no file states an f-number, and all are assumed equal
-  LfImageId reference;        // an LF image whose gain is 1
+  LfImageId reference;        // LF image of the median exposure; its gain is 1
 };
 
 // Sets the gain of each LF image to the value that makes it as bright as the LF image with the

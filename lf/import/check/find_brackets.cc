@@ -10,8 +10,8 @@
 namespace lf {
 namespace {
 
-// Returns the different exposures, in ascending order. Unknown ones (0 or NaN) are dropped. Of
-// exposures that are less than a factor of kOneExposure apart, only the smallest is kept.
+// Returns the different exposures, in ascending order. Unknown exposures (0 or NaN) are dropped. Of
+// exposures that differ by less than the factor kOneExposure, only the smallest is kept.
 std::vector<double> DifferentOnes(std::vector<double> exposures) {
   std::erase_if(exposures, [](double x) { return !(x > 0); });
   std::sort(exposures.begin(), exposures.end());

@@ -12,14 +12,15 @@
 namespace lf {
 
 struct FoundBrackets {
-  size_t pose_count = 0;                           // poses with several exposures
-  size_t image_count = 0;                          // LF images of these poses
-  size_t least_exposures = 0, most_exposures = 0;  // number of different exposures of a pose
+  size_t pose_count = 0;   // number of poses with several exposures
+  size_t image_count = 0;  // number of LF images of these poses
+  // Least and largest number of different exposures that one of these poses has.
+  size_t least_exposures = 0, most_exposures = 0;
   // Exposures of the pose with most exposures, ascending, in stops (factors of two) relative to the
-  // middle one (for an even number of exposures, to the darker of the two in the middle).
+  // middle exposure (if their number is even, to the smaller of the two in the middle).
   std::vector<double> stops;
-  bool are_gains = false;       // true: exposures come from lf_gain in the calibration
-  std::vector<bool> of_images;  // [LF images]: true for the images of these poses
+  bool are_gains = false;       // true: the exposures come from lf_gain in the calibration
+  std::vector<bool> of_images;  // [LF images]: true for LF images of poses with several exposures
 };
 
 // Finds the poses with several exposures; nullopt if there are none. Exposures of one pose that

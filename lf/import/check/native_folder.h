@@ -11,7 +11,7 @@ namespace lf {
 
 // Makes the names of images and masks relative to `folder`, which must exist and becomes
 // LightField::folder. No file is moved. An absolute name stays absolute if it shares only the root
-// with the folder. Symbolic links in the paths of both folders are resolved.
+// with `folder`. Symbolic links in the paths of the old and the new folder are resolved.
 // kInput: `folder` or the previous LightField::folder does not exist.
 Result<void> MoveToFolder(const std::filesystem::path& folder, LightField* light_field);
 

@@ -12,9 +12,9 @@ namespace {
 constexpr size_t kLeafSize = 8;
 constexpr size_t kPointsPerTask = 1024;
 
-// A kd-tree, stored as an order of the points. The middle entry of each range of `order_` is the
-// median along the widest axis of the range; points before it have smaller or equal coordinates
-// along that axis.
+// A kd-tree, stored in `order_`, a permutation of the points' indices. The middle entry of each
+// range of `order_` is the median along the axis in which the range is widest; entries before it
+// have smaller or equal coordinates along that axis. The two halves beside it are the subtrees.
 class KdTree {
  public:
   explicit KdTree(std::span<const Vec3> points)

@@ -90,8 +90,9 @@ Result<Similarity> ReadSimilarity(const std::string& text_or_file) {
 
 Result<void> Transform(const Similarity& b_from_a, LightField* light_field) {
   for (size_t i = 0; i < light_field->size(); ++i) {
-    // x_cam = R x_a + t is scaled by s, the scale of b_from_a. With x_a = Q^T (x_b - q) / s, where
-    // Q and q are its rotation and translation, x_cam becomes R Q^T x_b + s t - R Q^T q.
+    // With the old pose R, t a point of world a is at x_cam = R x_a + t. Camera coordinates grow by
+    // s, the scale of b_from_a, whose rotation and translation are Q and q. Insertion of
+    // x_a = Q^T (x_b - q) / s gives s x_cam = R Q^T x_b + s t - R Q^T q.
     RigidTransform& pose = light_field->cameras[i].cam_from_world;
     pose.rotation = pose.rotation * b_from_a.rotation.transpose();
     pose.translation = b_from_a.scale * pose.translation - pose.rotation * b_from_a.translation;

@@ -27,8 +27,8 @@ struct Similarity {
 // the place in the file; the caller adds it.
 Result<Similarity> ParseSimilarity(std::string_view text);
 
-// Parses the text itself if it consists of 16 numbers, otherwise the file of that name, which may
-// have at most 64 KiB.
+// Parses the text itself if it states a similarity (ParseSimilarity()), otherwise the file of that
+// name, which may have at most 64 KiB.
 Result<Similarity> ReadSimilarity(const std::string& text_or_file);
 
 // Transforms poses and depth range from world a to world b, so that pixels still see the same

@@ -1,4 +1,4 @@
-// Parses any bytes: the result must be a similarity or an error.
+// Parses any bytes as a 4x4 matrix: the result must be a valid similarity or an error.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

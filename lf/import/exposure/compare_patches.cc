@@ -15,7 +15,7 @@ constexpr int kSide = 2 * kHalf + 1;
 constexpr int kPadded = kPatchWindowSide;  // side of the window: the patch and its neighbours
 static_assert(kPadded == kSide + 2);
 constexpr double kLeastShare = 2. / 3;  // least share of a patch's pixels that must be used
-constexpr double kDarkest = 0.01;       // radiance; a channel is not compared if its mean is lower
+constexpr double kDarkest = 0.01;       // least mean radiance of a channel that is compared
 // The three parts of the standard deviation of one pixel's light: relative to the light; absolute,
 // in radiance; and relative to the step to the neighbour that differs most.
 constexpr double kNoise = 0.005, kDarkNoise = 0.001, kOfStep = 0.15;
@@ -32,8 +32,8 @@ PatchWindow WindowOf(const ExposureView& view, const PatchGrid& grid) {
 
 float Sum(const std::array<float, 3>& light) { return light[0] + light[1] + light[2]; }
 
-// Returns the largest difference between the light of a pixel and of one of its four neighbours;
-// NaN if one of the five pixels is not recorded.
+// Returns the largest difference between the light (the sum of R, G and B) of a pixel and of one of
+// its four neighbours; NaN if one of the five pixels is not recorded.
 float StepAt(const PatchWindow& window, size_t pixel) {
   const float own = Sum(window[pixel]);
   float step = own > 0 ? 0 : std::numeric_limits<float>::quiet_NaN();
@@ -48,9 +48,10 @@ float StepAt(const PatchWindow& window, size_t pixel) {
 template <class T>
 using PatchPixels = std::array<T, size_t{kSide} * kSide>;
 
-// The pixels of a patch that both LF images recorded. Every array has one entry for each of them.
+// The pixels of a patch that both LF images recorded. The first `count` entries of every array
+// belong to these pixels.
 struct Pixels {
-  std::array<PatchPixels<float>, 3> a, b;  // light, by channel
+  std::array<PatchPixels<float>, 3> a, b;  // light of each channel in LF images a and b
   PatchPixels<float> a_sum, b_sum, a_step, b_step, weight, level;
   PatchPixels<Vec2> a_at, b_at;
   size_t count = 0;
@@ -77,9 +78,10 @@ void Gather(const PatchWindow& window_a, const PatchWindow& window_b, const Patc
     }
 }
 
-// Sets the weights of the pixels. `gain` is the factor that makes image b as bright as image a;
-// after it, both have equal influence. Because it also multiplies the noise of b, the geometric
-// mean of both images' noise is used as the absolute noise: kDarkNoise sqrt(gain).
+// Sets the weights and levels of the pixels. `gain` is the factor that makes image b as bright as
+// image a. Multiplied by it, image b has as much influence as a. Because the gain also multiplies
+// the noise of b, the geometric mean of both images' noise is used as the absolute noise:
+// kDarkNoise sqrt(gain).
 //   scale  radiance of one step of ExposureView::light
 void Weigh(double gain, double scale, Pixels* pixels) {
   const auto g = static_cast<float>(gain);
@@ -94,7 +96,7 @@ void Weigh(double gain, double scale, Pixels* pixels) {
   }
 }
 
-// Weighted sums of the light in image a and in image b.
+// Weighted sums of the light of the pixels in LF image a and in LF image b.
 struct Ratio {
   double a = 0, b = 0;
 };
@@ -119,7 +121,8 @@ double Deviation(const Pixels& pixels, size_t c, const Ratio& sums) {
   return std::sqrt(squares / (sums.a * sums.a) + kLeastDeviation * kLeastDeviation);
 }
 
-// Computes the weighted mean and variance of r^2 (camera/vignetting.h) over the pixels.
+// Computes the weighted mean and variance of r^2 (camera/vignetting.h) over the pixels, which are
+// at the positions `at` of an LF image.
 void TakeRadii(const Intrinsics& k, const PatchPixels<Vec2>& at, const Pixels& pixels, float* mean,
                float* variance) {
   double weights = 0, sum = 0, squares = 0;

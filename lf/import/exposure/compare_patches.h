@@ -13,8 +13,8 @@
 
 namespace lf {
 
-// Light in R, G and B of a patch of 13 x 13 pixels and of the pixels around it; 0 if the light of a
-// pixel was not recorded.
+// Light in R, G and B, as in ExposureView::light, of a patch of 13 x 13 pixels and of the pixels
+// around it, row by row; 0 if the light of a pixel was not recorded.
 inline constexpr int kPatchWindowSide = 15;
 using PatchWindow = std::array<std::array<float, 3>, size_t{kPatchWindowSide} * kPatchWindowSide>;
 
@@ -28,16 +28,16 @@ struct ComparedImage {
 // LF images.
 class ComparedPatch {
  public:
-  //   a      must outlive the patch
+  //   a      the LF image of the patch; its view and intrinsics must outlive the patch
   //   white  radiance of the largest value of ExposureView::light
   ComparedPatch(const ComparedImage& a, const Place& place, double white);
 
-  // Returns the sample of this patch and of the same place in b. A pixel is used if it and its four
-  // neighbours are recorded in both LF images. The weight of a pixel is the inverse of its
-  // variance, estimated from noise and from a share of the gradient. The deviations of the sample's
-  // ratios are computed from the residuals of the pixels. None if fewer than two thirds of the
-  // pixels are used, or if all channels are dark.
-  //   grid  pixels of b that show the place (PatchSeenBy())
+  // Returns a sample that compares this patch with the same place in b. A pixel is used if it and
+  // its four neighbours are recorded in both LF images. The weight of a pixel is the inverse of its
+  // variance, estimated from noise and from a share of the step to its neighbours. The deviations
+  // of the sample's ratios are computed from the residuals of the pixels. None if fewer than two
+  // thirds of the pixels are used, or if all channels are dark.
+  //   grid  positions in b that show the pixels of the patch (PatchSeenBy())
   std::optional<ExposureSample> CompareWith(const ComparedImage& b, const PatchGrid& grid) const;
 
  private:

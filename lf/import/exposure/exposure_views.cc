@@ -13,15 +13,15 @@ namespace {
 
 // Largest number of LF images that are completely in memory at the same time.
 constexpr size_t kMostAtOnce = 16;
-// Values above this share of the largest light count as clipped, because demosaicking and JPEG do
-// not keep the largest value exactly.
+// Values from this share of the largest radiance on count as clipped, because demosaicing and JPEG
+// do not keep the largest value exactly.
 constexpr double kClippedFrom = 0.97;
 
 int DivisorOf(int width_px, int most_px) { return std::max(1, (width_px + most_px - 1) / most_px); }
 
 // Returns the smallest 16-bit radiance (light_field/model/radiance.h) that counts as clipped in the
-// LF image: kClippedFrom of the largest radiance that its file can hold. This is at most 1 in an
-// integer file, even if the light field can hold more.
+// LF image: kClippedFrom of the largest radiance that its file can hold. An integer file holds a
+// radiance of at most 1, even if the light field can hold more.
 double ClippedFrom(const RadianceEncoding& encoding, const std::string& name) {
   const double of_file = std::min(encoding.max_radiance, DefaultMaxRadiance({&name, 1}));
   return encoding.pedestal + kClippedFrom * of_file * encoding.Scale();
@@ -88,9 +88,10 @@ Result<std::vector<ExposureView>> LoadExposureViews(const LightField& light_fiel
   MachineFailure failure;
   for (size_t begin = 0; begin < views.size(); begin += kMostAtOnce) {
     if (options.interrupted && *options.interrupted)
-      return Error{ErrorKind::kInterrupted,
-                   fmt::format("interrupted after comparing the exposure of {} of {} images", begin,
-                               views.size())};
+      return Error{
+          ErrorKind::kInterrupted,
+          fmt::format("interrupted after loading {} of {} images to compare their exposure", begin,
+                      views.size())};
     const size_t count = std::min(kMostAtOnce, views.size() - begin);
     pool.ForEach(count, [&](size_t i) {
       const LfImageId id{static_cast<uint32_t>(begin + i)};

@@ -12,25 +12,29 @@ namespace lf {
 namespace {
 
 constexpr int kRounds = 16;
-constexpr int kHuberRounds = 5;          // Huber's weights; later Tukey's, which are 0 for outliers
-constexpr double kHuber = 1.345;         // in standard deviations (95 % efficient on normal noise)
-constexpr double kTukey = 4.685;         // in standard deviations (95 % efficient on normal noise)
-constexpr double kLeastFactor = 0.2;     // lower bound of factor_
+// The first kHuberRounds rounds use Huber's weights, the others Tukey's, which are 0 for outliers.
+constexpr int kHuberRounds = 5;
+// Tuning constants of these weights, in standard deviations. Both make the fit 95 % efficient on
+// normal noise.
+constexpr double kHuber = 1.345;
+constexpr double kTukey = 4.685;
+constexpr double kLeastFactor = 0.2;     // lower bound of Fit::factor_
 constexpr double kUnit = 0.01;           // deviation of a sample whose weight is 1
-constexpr double kLeastFalloff = 0.05;   // lower bound of a falloff, while fitting
+constexpr double kLeastFalloff = 0.05;   // lower bound of the share F of a falloff, while fitting
 constexpr double kPriorDeviation = 1;    // prior standard deviation of falloff coefficients
-constexpr size_t kLeastPerImage = 12;    // least number of agreeing samples of an LF image
-constexpr double kAgrees = 0.1;          // a sample agrees if its robust weight is larger
-constexpr double kMostDeviation = 0.02;  // largest deviation of a log gain that is used
+constexpr size_t kLeastPerImage = 12;    // an LF image with fewer agreeing log ratios is kAlone
+constexpr double kAgrees = 0.1;          // a log ratio agrees if its robust weight is larger
+constexpr double kMostDeviation = 0.02;  // largest standard deviation of a log gain that is used
 constexpr double kCommonShare = 0.25;    // share of a pair's spread that more samples do not reduce
-constexpr double kBelievedSamples = 8;  // number of places for which the spread of all pairs counts
+// The spread of all pairs counts as much as the spread of this number of places of one pair.
+constexpr double kBelievedSamples = 8;
 
 double BoundedFalloff(const Vignetting& falloff, double r_squared) {
   return std::max(kLeastFalloff, falloff.Falloff(r_squared));
 }
 
-// Returns the mean of ln F over values of r^2 with this mean and variance, to the second order. F
-// is the falloff.
+// Returns the mean of ln F over values of r^2 with this mean and variance, to the second order.
+// F(r) is the share of light that the falloff leaves (camera/vignetting.h).
 double MeanLogShare(const Vignetting& falloff, double r_squared, double variance) {
   const double share = BoundedFalloff(falloff, r_squared);
   const auto& [v1, v2, v3] = falloff.v;
@@ -39,7 +43,7 @@ double MeanLogShare(const Vignetting& falloff, double r_squared, double variance
   return std::log(share) + bend * variance / 2;
 }
 
-// Returns the derivatives of ln F by v1, v2 and v3.
+// Returns the derivatives of ln F(r) by the coefficients v1, v2 and v3 of the falloff F.
 Eigen::Vector3d Slope(const Vignetting& falloff, double r_squared) {
   return Eigen::Vector3d(r_squared, r_squared * r_squared, r_squared * r_squared * r_squared) /
          BoundedFalloff(falloff, r_squared);
@@ -95,7 +99,7 @@ class Fit {
     }
   }
 
-  // Computes the residuals, factor_, and the weight of each sample in each channel.
+  // Computes residuals_, factor_, agreements_ and weights_ from the present gains and falloffs.
   void Weigh() {
     std::vector<double> sizes;
     for (size_t i = 0; i < samples_.size(); ++i)
@@ -125,9 +129,9 @@ class Fit {
     return (1 - x * x) * (1 - x * x);
   }
 
-  // Makes one Gauss-Newton step for all gains and falloffs at once. The gains are eliminated: the
-  // matrix of their equations is the Laplacian of the graph of pairs, solved by conjugate
-  // gradients.
+  // Makes one Gauss-Newton step for all gains and falloffs at once. The gains are eliminated first:
+  // the matrix of their equations is the Laplacian of the graph whose nodes are LF images and whose
+  // edges are pairs_; conjugate gradients solve it.
   void Step() {
     const auto images = static_cast<Eigen::Index>(groups_.size());
     const auto unknowns =
@@ -245,8 +249,8 @@ class Fit {
     return variances;
   }
 
-  // Finds the LF images whose gains are determined by enough samples, and the components that they
-  // form.
+  // Finds the LF images whose gains are determined by enough samples, and the components that these
+  // LF images form.
   void FindComponents() {
     std::vector<size_t> counts(groups_.size());
     for (size_t i = 0; i < samples_.size(); ++i)
@@ -317,10 +321,10 @@ class Fit {
   const FitOptions options_;
   std::vector<std::array<uint32_t, 2>> pairs_;
   std::vector<uint32_t> pair_of_;  // index into pairs_, for each sample
-  std::vector<double> residuals_;  // [samples][3]; NaN: no sample of the channel
+  std::vector<double> residuals_;  // [samples][3]: log ratio minus model; NaN: no log ratio
   std::vector<float> agreements_;  // [samples][3]: robust weights, in [0, 1]
   std::vector<float> weights_;     // [samples][3]: robust weights times inverse variance
-  double factor_ = 1;  // actual deviation of samples, relative to the deviation that they state
+  double factor_ = 1;  // actual size of residuals, as a multiple of ExposureSample::deviation
   int round_ = 0;
   ExposureFit fit_;
 };

@@ -20,22 +20,23 @@
 namespace lf {
 namespace {
 
-constexpr int kWidest_px = 240, kNarrowest_px = 80;  // largest and smallest width of a view
+constexpr int kWidest_px = 240, kNarrowest_px = 80;  // limits of LoadViewsOptions::width_px
 constexpr double kLeastAgreement = 0.8;  // least correlation of a patch that is compared
 constexpr size_t kProbed = 6;        // number of LF images that are first searched at all depths
-constexpr size_t kProbedPlaces = 3;  // every third place of these images is searched
-constexpr size_t kLeastProbes = 50;  // least number of depths that must be found in these images
+constexpr size_t kProbedPlaces = 3;  // every third place of the kProbed LF images is searched
+constexpr size_t kLeastProbes = 50;  // fewer depths found in the kProbed LF images are not used
 constexpr size_t kMostSamples = 4'000'000;
-constexpr size_t kLeastSamples = 60;  // samples kept of each LF image, even beyond kMostSamples
+// Every LF image may keep so many samples, even if all LF images together exceed kMostSamples.
+constexpr size_t kLeastSamples = 60;
 constexpr size_t kImagesPerRound = 64;
 constexpr size_t kLeastImagesPerCamera = 8;
 constexpr double kLeastCornerLight = 0.05, kMostCornerLight = 1.25;
 
-// The groups of cameras that share a falloff.
+// Groups of LF cameras that share a falloff.
 struct CameraGroups {
-  std::vector<uint32_t> of_images;
-  std::vector<uint32_t> of_intrinsics;
-  std::vector<Vignetting> known;  // known falloff of each group
+  std::vector<uint32_t> of_images;      // group of each LF image
+  std::vector<uint32_t> of_intrinsics;  // group of each of LightField::intrinsics
+  std::vector<Vignetting> known;        // falloff of each group in the calibration
 };
 
 CameraGroups GroupCameras(const LightField& field) {
@@ -60,9 +61,9 @@ class Sampler {
   Sampler(const LightField& field, const std::vector<ExposureView>& views)
       : field_(field), views_(views), nearby_(field) {}
 
-  // Searches some places of some LF images at all depths. All LF images are then searched only
-  // beyond half of the depth that the nearest 2 % of the places found have, because a search of all
-  // depths takes several times as long.
+  // Searches some places of some LF images at all depths. SamplesOf() then searches only beyond
+  // half of the depth below which 2 % of the found depths lie, because a search of all depths takes
+  // several times as long.
   void FindNearestDepth(ThreadPool& pool) {
     const size_t count = std::min(kProbed, field_.size());
     std::vector<std::vector<double>> depths(count);
@@ -139,11 +140,11 @@ class Sampler {
   const LightField& field_;
   const std::vector<ExposureView>& views_;
   const NearbyCameras nearby_;
-  double nearest_w_ = 0;  // nearest depth that is searched
+  double nearest_w_ = 0;  // nearest depth that SamplesOf() searches; 0: searches all depths
 };
 
-// Returns the largest width of views that fit into the memory together; 0 if not even the narrowest
-// ones fit.
+// Returns the largest width, in pixels, with which the views of all LF images fit into the memory
+// together; 0 if not even the narrowest views fit.
 int WidthWithin(const LightField& field, size_t memory_bytes) {
   for (int width = kWidest_px; width >= kNarrowest_px; width -= 20) {
     size_t bytes = 0;
@@ -179,8 +180,8 @@ Result<std::vector<ExposureSample>> TakeSamples(const LightField& plain,
   return samples;
 }
 
-// Returns the mean |ln(a / b) - model| of the agreeing samples, with the gains and falloffs of the
-// calibration in the model (FitExposure()).
+// Returns the mean of |ln(a / b) - model| over the agreeing samples, with the gains and falloffs of
+// the calibration in the model of FitExposure().
 double StepBefore(const LightField& field, const std::vector<ExposureSample>& samples,
                   const ExposureFit& fit, const CameraGroups& groups) {
   std::vector<std::array<double, 3>> log_gains(field.size());
@@ -199,8 +200,8 @@ double StepBefore(const LightField& field, const std::vector<ExposureSample>& sa
   return count > 0 ? sum / static_cast<double>(count) : 0;
 }
 
-// Returns facts about the falloffs; none if one of them is implausible for a lens, or if the
-// samples do not reach far enough towards the corners.
+// Returns facts about the fitted falloffs; none if one of the falloffs is implausible for a lens,
+// or if the samples do not reach far enough towards the corners of the images.
 std::optional<FoundFalloff> BelievableFalloff(const LightField& field, const CameraGroups& groups,
                                               const std::vector<ExposureSample>& samples,
                                               const ExposureFit& fit) {

@@ -23,26 +23,28 @@ struct MatchExposureOptions {
   // Memory for small views of all LF images (exposure_views.h). Narrower views are used if the
   // widest do not fit.
   size_t memory_bytes = size_t{2} << 30;
-  const std::atomic<bool>* interrupted = nullptr;  // read between rounds of images; may be null
+  const std::atomic<bool>* interrupted = nullptr;  // true ends the matching early; null: never
   std::function<void(size_t done, size_t total)> progress;
 };
 
 struct FoundFalloff {
-  double corner_min = 1, corner_max = 1;  // share of the light in the farthest corner
-  double reach = 0;                       // radius r that a tenth of the samples exceeds
-  size_t camera_count = 0;                // number of estimated falloffs
+  // Least and largest share of the light, over all falloffs, that is left in the image corner
+  // farthest from the principal point.
+  double corner_min = 1, corner_max = 1;
+  double reach = 0;         // radius r (camera/vignetting.h) that a tenth of the samples exceeds
+  size_t camera_count = 0;  // number of estimated falloffs
 };
 
 struct MatchedExposure {
-  std::vector<ChannelGains> gains;      // one for each of LightField::cameras
-  std::vector<Vignetting> falloffs;     // one for each of LightField::intrinsics
+  std::vector<ChannelGains> gains;      // gains for each of LightField::cameras
+  std::vector<Vignetting> falloffs;     // falloff for each of LightField::intrinsics
   float least_gain = 1, most_gain = 1;  // range of the gains of LF images that were matched
-  std::optional<FoundFalloff> falloff;  // none: not requested, or not believable
+  std::optional<FoundFalloff> falloff;  // none: falloffs were not requested, or are not believable
   // Mean relative difference of the light of the same place in two neighbouring LF images, which is
   // the strength of seams. `before` uses the exposure of the calibration, `after` the matched one.
   double step_before = 0, step_after = 0;
-  size_t sample_count = 0;  // number of samples, over all channels, that agree with the result
-  size_t component_count = 0;
+  size_t sample_count = 0;            // ExposureFit::sample_count (fit_exposure.h)
+  size_t component_count = 0;         // number of components (MatchExposure())
   std::vector<LfImageId> left_alone;  // LF images whose gains cannot be fitted and are kept
   std::vector<LfImageId> unreadable;  // LF images that cannot be read; their gains are kept
 };

@@ -11,12 +11,13 @@
 namespace lf {
 namespace {
 
-constexpr double kLeastCosine = 0.8;  // least cosine of the angle between optical axes
+// Least cosine of the angle between the optical axes of compared LF cameras.
+constexpr double kLeastCosine = 0.8;
 constexpr size_t kMostRings = 9;
 constexpr int kViewsPerRing = 6;
-constexpr double kInnerRing = 2;   // radius of the innermost ring, in spacings
-constexpr double kRingFactor = 2;  // radius of a ring relative to the one before
-constexpr size_t kNearest = 6;     // nearest LF images, compared besides those of the rings
+constexpr double kInnerRing = 2;   // radius of the innermost ring, in spacings of LF cameras
+constexpr double kRingFactor = 2;  // radius of a ring, relative to the next smaller ring
+constexpr size_t kNearest = 6;  // number of nearest LF images, compared besides those of the rings
 
 }  // namespace
 
@@ -57,8 +58,8 @@ void NearbyCameras::Split(size_t begin, size_t end) {
   Split(middle + 1, end);
 }
 
-// Visits the cameras of a range of order_. Each range is split into two halves; the half on the
-// point's side is visited first. Skips halves that are farther from the point than `limit`, which a
+// Visits the LF cameras of a range of order_: its root, then the two halves beside the root, first
+// the half on the point's side. Skips halves that are farther from the point than `limit`, which a
 // visit may lower.
 template <typename Visit>
 void NearbyCameras::Search(size_t begin, size_t end, const Vec3& point_world, const double& limit,
@@ -76,7 +77,7 @@ void NearbyCameras::Search(size_t begin, size_t end, const Vec3& point_world, co
 
 std::vector<uint32_t> NearbyCameras::Nearest(const Vec3& point_world, size_t count,
                                              LfImageId camera) const {
-  std::vector<std::pair<double, uint32_t>> found;  // a heap, the farthest on top
+  std::vector<std::pair<double, uint32_t>> found;  // heap of distance and index, farthest on top
   double limit = std::numeric_limits<double>::infinity();
   Search(0, order_.size(), point_world, limit, [&](uint32_t other) {
     if (other == camera.value || forwards_[other].dot(forwards_[camera.value]) < kLeastCosine)
@@ -101,7 +102,7 @@ View NearbyCameras::ViewOf(const PinholeCamera& camera, uint32_t other) const {
           Vec2(camera.RightWorld().dot(offset), camera.UpWorld().dot(offset)).norm()};
 }
 
-// Returns the views that are nearest to evenly spread positions on a ring.
+// Returns the views nearest to evenly spread positions on a ring around `camera`.
 //   turn         rotates the positions, in units of the step between two positions
 //   least_share  views must be at least this share of the radius away, and at most twice the
 //                radius; 0: views may be at any distance

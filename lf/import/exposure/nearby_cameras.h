@@ -15,7 +15,7 @@ namespace lf {
 
 class NearbyCameras {
  public:
-  // Refers to the light field, which must outlive it.
+  // Keeps a reference to the light field, which must outlive this object.
   explicit NearbyCameras(const LightField& light_field);
 
   // Returns up to `count` LF cameras, the nearest to a point first. They look in about the same
@@ -23,8 +23,9 @@ class NearbyCameras {
   std::vector<uint32_t> Nearest(const Vec3& point_world, size_t count, LfImageId camera) const;
 
   // Returns rings of up to six views around `camera` for DepthOf() (focus/place_depth.h); each ring
-  // is twice as wide as the one before. Depths from the rings of ChooseRings() would not be precise
-  // enough: a wrong disparity makes the estimated falloff too weak. Images are not loaded.
+  // is twice as wide as the one before. Depths from the rings of ChooseRings(), of which each is
+  // four times as wide, would not be precise enough: a wrong disparity makes the estimated falloff
+  // too weak. Images are not loaded.
   Rings DepthRings(LfImageId camera) const;
 
   // Returns the views whose light is compared with the light of `camera`: the views of the rings
@@ -40,9 +41,9 @@ class NearbyCameras {
               const Visit& visit) const;
 
   const LightField& field_;
-  std::vector<Vec3> centres_;    // [cameras]
-  std::vector<Vec3> forwards_;   // [cameras]
-  std::vector<uint32_t> order_;  // a balanced tree: the middle entry of each range is its root
+  std::vector<Vec3> centres_;    // position of each LF camera in the world
+  std::vector<Vec3> forwards_;   // viewing direction of each LF camera in the world, of length 1
+  std::vector<uint32_t> order_;  // balanced tree of LF cameras: each range's middle is its root
   std::vector<uint8_t> axes_;    // axis of each root's split, at the root's index in order_
   Vec3 least_ = Vec3::Zero(), most_ = Vec3::Zero();  // corners of the box of all centres
   double spacing_w_ = 0;

@@ -6,8 +6,8 @@
 namespace lf {
 
 inline constexpr const char* kImagesName =
-    "images";  // folder of the images, beside the calibration
+    "images";  // name of the folder of image files, beside the calibration file
 inline constexpr size_t kMaxImageCount = size_t{1} << 24;
-inline constexpr double kLargest_w = 1e12;  // largest coordinate, as in transforms.json
+inline constexpr double kLargest_w = 1e12;  // largest coordinate of a camera, as in transforms.json
 
 }  // namespace lf

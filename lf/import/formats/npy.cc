@@ -128,7 +128,7 @@ class HeaderReader {
   std::string_view all_, text_;
 };
 
-// The text of the header, and the bytes behind it, which are the values.
+// The text of a file's header, and the bytes of the numbers behind it.
 struct Parts {
   std::string_view header, values;
 };

@@ -11,7 +11,7 @@ namespace lf {
 
 struct NpyArray {
   std::vector<size_t> shape;
-  std::vector<double> values;  // in C order: the last index runs fastest
+  std::vector<double> values;  // numbers in C order: the last index runs fastest
 };
 
 // Parses a .npy file of format 1 or 2 with little-endian floats of 4 or 8 bytes ('<f4', '<f8') in C

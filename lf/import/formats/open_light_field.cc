@@ -46,8 +46,8 @@ std::string OtherCalibrations(const fs::path& folder) {
   return fmt::format("; it holds {}: name the file itself to read it", fmt::join(names, ", "));
 }
 
-// Returns the first option in `options` that only folders of the Stanford form accept, for
-// messages; "" if there is none.
+// Returns the first option in `options` that only folders with Stanford names accept, as messages
+// name it; "" if there is none.
 std::string_view StanfordOptionOf(const OpenOptions& options) {
   if (options.focal_px) return "--focal-px";
   if (options.pitch_w) return "--pitch";
@@ -104,7 +104,7 @@ Result<LightField> OpenPackedStore(const fs::path& path, const OpenOptions& opti
   return std::move(facts.light_field);
 }
 
-// Opens a calibration file. Returns nullopt if its name is of no known kind.
+// Opens a calibration file or packed store. Returns nullopt if its name is of no known kind.
 std::optional<Result<LightField>> OpenFile(const fs::path& path, const OpenOptions& options) {
   if (path.extension() == ".json" && IsAosFile(path)) return OpenAos(path, options);
   if (path.extension() == kStoreExtension) return OpenPackedStore(path, options);
@@ -172,8 +172,8 @@ Result<void> CompleteEncoding(const OpenOptions& options, const fs::path& path,
                               LightField* light_field) {
   RadianceEncoding& encoding = light_field->encoding;
   const bool is_raw = IsRawName(light_field->image_names[0]);
-  // If pattern or transfer differ from their defaults, the calibration stated the encoding
-  // completely.
+  // If Bayer pattern or transfer differ from their defaults, the calibration has stated the
+  // encoding completely.
   if (is_raw && encoding.bayer == BayerPattern::kNone && encoding.transfer == Transfer::kSrgb)
     LF_RETURN_IF_ERROR(CompleteEncodingOfRaw(light_field));
   if (options.bayer) {
@@ -190,7 +190,8 @@ Result<void> CompleteEncoding(const OpenOptions& options, const fs::path& path,
                   path.string(), light_field->ImagePath({0}).string()));
 }
 
-// Finds image files that were moved, renamed or downscaled after they were calibrated.
+// Finds image files that were moved or renamed after they were calibrated, and scales the
+// intrinsics if the files are of another size than calibrated.
 Result<void> FindImages(const OpenOptions& options, const fs::path& path, LightField* light_field) {
   const std::string name = light_field->image_names[0];
   LF_ASSIGN_OR_RETURN(const size_t found_count, FindImageFiles(options.images_folder, light_field));
@@ -305,7 +306,7 @@ std::string LightFieldsBelow(const fs::path& folder) {
   }
   if (names.empty()) return "";
   std::sort(names.begin(), names.end());
-  return fmt::format("; but {}/ in it does", fmt::join(names, "/, "));
+  return fmt::format("; but there is a light field in {}/", fmt::join(names, "/, "));
 }
 
 Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& options) {
@@ -384,8 +385,7 @@ Result<LightField> OpenLightField(const fs::path& path, const OpenOptions& optio
     LF_RETURN_IF_ERROR(CompleteEncoding(options, path, &light_field));
   }
   LF_RETURN_IF_ERROR(CompleteAlpha(options, path, &light_field));
-  // A packed store already states which LF images mask clipped pixels, because its masks are
-  // encoded.
+  // A packed store needs no ApplyBrackets(), because its encoded masks contain the clipped pixels.
   if (!HoldsPackedStore(light_field) && light_field.encoding.masks_clipped)
     ApplyBrackets(&light_field);
   const Intrinsics& first = light_field.Camera({0}).intrinsics;

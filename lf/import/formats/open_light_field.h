@@ -13,19 +13,19 @@
 namespace lf {
 
 struct OpenOptions {
-  // Values that the names in a Stanford folder may lack: see StanfordOptions in
-  // import/formats/read_stanford.h. kUsage for calibrations of another kind. focal_px is offered by
-  // several programs, the others only by lfimport.
+  // focal_px to flip_y are values that the names in a folder with Stanford names may lack
+  // (StanfordOptions, import/formats/read_stanford.h). kUsage for calibrations of another kind.
+  // focal_px is an option of several programs, the others only of lfimport.
   std::optional<double> focal_px = {};
   std::optional<Vec2> pitch_w = {};
   std::optional<double> plane_distance_w = {};
   bool flip_x = false;
   bool flip_y = false;
-  // The field of view of all cameras, required for poses of Airborne Optical Sectioning
-  // (import/formats/read_aos.h). kUsage for calibrations of another kind.
+  // The field of view of all cameras across both width and height, required for poses of Airborne
+  // Optical Sectioning (import/formats/read_aos.h). kUsage for calibrations of another kind.
   std::optional<double> fov_deg = {};
   // Folder in which image files are searched by name (light_field/model/find_images.h). kUsage for
-  // packed stores and folders of the Stanford form.
+  // packed stores and folders with Stanford names.
   std::optional<std::filesystem::path> images_folder = {};
   // How much the size of image files may differ from the calibrated size.
   ImageScale image_scale = {};
@@ -36,15 +36,15 @@ struct OpenOptions {
   std::optional<AlphaMeaning> alpha = {};
   std::optional<std::array<double, 3>> background = {};
   bool keeps_opacity = false;  // needs a black background; see RadianceEncoding::keeps_opacity
-  // True: ignores the transforms.json in a folder if HoldsOwnAndItsSource() is true. Only lfimport
-  // sets this, when it writes that file again.
+  // If true, the transforms.json in a folder is ignored if HoldsOwnAndItsSource() is true. Only
+  // lfimport sets this, when it writes that file again.
   bool passes_over_own = false;
   // Bayer pattern of the images; overrides the calibration and the files. Only lfimport offers it.
   std::optional<BayerPattern> bayer = {};
 };
 
-// Returns true if the folder holds both a transforms.json that lfimport wrote, unchanged, and the
-// calibration that it was made from.
+// Returns true if the folder holds both a transforms.json that lfimport wrote and nobody changed,
+// and a calibration of another form, from which it may have been made.
 bool HoldsOwnAndItsSource(const std::filesystem::path& folder);
 
 // Opens a calibration file, or the first of these that it finds in a folder:
@@ -57,7 +57,7 @@ bool HoldsOwnAndItsSource(const std::filesystem::path& folder);
 // - poses.json, or any .json file with M3x4 matrices: import/formats/read_aos.h
 // - images with Stanford names, in the folder or its images/: import/formats/read_stanford.h
 // - STORE.lfs: storage/packed/packed_store_file.h
-// A file that a line names after "or any" is opened only if `path` is the file itself. Two
+// A file of a kind named after "or any" is opened only if `path` is the file itself. Two
 // NAME_par.txt or two STORE.lfs in a folder are an error.
 //
 // If image files are not where the calibration says, they are searched by name in its folder or in

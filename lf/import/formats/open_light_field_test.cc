@@ -176,7 +176,8 @@ TEST_F(OpenLightFieldTest, PointsToAFolderBelow) {
   ASSERT_TRUE(WriteFileAtomically(folder_ / "inner" / "transforms.json", kCalibration));
   const Result<LightField> light_field = OpenLightField(folder_);
   ASSERT_FALSE(light_field);
-  EXPECT_NE(light_field.error().message.find("; but inner/ in it does"), std::string::npos)
+  EXPECT_NE(light_field.error().message.find("; but there is a light field in inner/"),
+            std::string::npos)
       << light_field.error().message;
 }
 

@@ -25,8 +25,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr size_t kMaxFileSize = size_t{64} << 20;  // some hundred thousand images
-constexpr int kMaxDepth = 8;  // nesting below this depth is not read, so that it takes no memory
+constexpr size_t kMaxFileSize = size_t{64} << 20;  // bytes; enough for some hundred thousand images
+constexpr int kMaxDepth = 8;  // deepest nesting that is kept; deeper JSON values take no memory
 constexpr double kAosRotationTolerance = 1e-3;
 constexpr const char* kMatrixKey = "M3x4";
 
@@ -52,7 +52,8 @@ std::optional<Mat34> MatrixOf(const json& entry) {
   return matrix;
 }
 
-// Returns the image name of an entry. The message of kInput does not name the place in the file.
+// Returns the image name of an entry. The message of kInput does not name the entry; the caller
+// adds it.
 Result<std::string> NameOf(const json& entry) {
   const auto name = entry.find("imagefile");
   if (name == entry.end() || !name->is_string() || name->get_ref<const std::string&>().empty())
@@ -68,7 +69,7 @@ Result<RigidTransform> PoseOf(const json& entry) {
     return InputError(fmt::format(
         "\"{}\" is missing or of another form: expected 3 lists of 4 numbers", kMatrixKey));
   if (!(matrix->col(3).cwiseAbs().maxCoeff() <= kLargest_w))
-    return InputError(fmt::format("\"{}\" holds a number beyond {:g}", kMatrixKey, kLargest_w));
+    return InputError(fmt::format("\"{}\" holds a position beyond {:g}", kMatrixKey, kLargest_w));
   const Result<Mat3> rotation = NearestRotation(matrix->leftCols<3>(), kAosRotationTolerance);
   if (!rotation) return InputError(fmt::format("\"{}\" {}", kMatrixKey, rotation.error().message));
   return RigidTransform{*rotation, matrix->col(3)};
@@ -77,8 +78,8 @@ Result<RigidTransform> PoseOf(const json& entry) {
 Result<LightField> PosesOf(const json& top, const fs::path& path) {
   const auto images = top.is_object() ? top.find("images") : top.end();
   if (!top.is_object() || images == top.end() || !images->is_array() || images->empty())
-    return InputError(
-        fmt::format("{}: expected an object {{...}} with a list \"images\"", path.string()));
+    return InputError(fmt::format(
+        "{}: expected an object {{...}} with a list \"images\" that is not empty", path.string()));
   LightField light_field;
   light_field.folder = path.parent_path();
   for (const json& entry : *images) {

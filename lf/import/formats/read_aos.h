@@ -30,13 +30,13 @@ bool IsAosFile(const std::filesystem::path& path);
 
 // Reads the poses; all images get the size of the first one. If the first image does not exist
 // under its name, but with the extension .png instead of .tif or .tiff, all such names are changed,
-// as AOS's programs do. Images that are not square cause a warning.
+// as AOS's programs do. Warns if the first image is not square.
 // kInput names the file and the image, the value found and what was expected; kUsage for a fov_deg
 // outside 0.01 to 179.
 Result<LightField> ReadAos(const std::filesystem::path& path, const AosOptions& options);
 
-// Reads only the poses and names, no intrinsics. `path` is needed only for messages and
-// LightField::folder.
+// Reads only poses and image names, no intrinsics, from the text of a file. `path` is needed only
+// for messages and LightField::folder.
 Result<LightField> ParseAosPoses(std::string_view text, const std::filesystem::path& path);
 
 }  // namespace lf

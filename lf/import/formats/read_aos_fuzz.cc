@@ -1,4 +1,5 @@
-// Parses any bytes: the result must be sane poses or an error.
+// Parses any bytes as a poses.json of Airborne Optical Sectioning: the result must be valid poses
+// or an error.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>

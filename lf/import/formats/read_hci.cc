@@ -43,7 +43,7 @@ std::map<std::string, std::string, std::less<>> KeysOf(std::string_view text) {
   return keys;
 }
 
-// Reads numbers by their keys; errors name the file, the key and the value.
+// Reads numbers of a parameters.cfg by their keys. Errors name the file, the key and the value.
 class Parameters {
  public:
   Parameters(std::string_view text, const fs::path& path) : keys_(KeysOf(text)), path_(path) {}
@@ -79,7 +79,7 @@ class Parameters {
 };
 
 // Returns the depth range by Z = F b / (F b / Z0 + d): points with a larger disparity d are nearer.
-// Returns nullopt if an end of the range is not stated, or is at infinity or beyond.
+// Returns nullopt if disp_min or disp_max is not stated, or corresponds to no finite depth.
 //   focal_baseline  F b, for the focal length F and the distance b of neighbouring cameras
 //   plane_per_w     1 / Z0, for the focus distance Z0
 Result<std::optional<DepthRange>> DepthsOf(const Parameters& parameters, double focal_baseline,
@@ -115,10 +115,10 @@ Result<LightField> ParseHci(std::string_view text, const fs::path& path) {
   const double plane_per_m = plane_m > 0 ? 1 / plane_m : 0;
   const double farthest_px = focal_px * pitch_m * plane_per_m * std::max(columns, rows);
   if (!(focal_px >= 1e-3 && focal_px <= 1e7 && farthest_px <= 1e7))
-    return InputError(
-        fmt::format("{}: the focal length comes to {:g} px, and principal points are "
-                    "{:g} px apart: expected at most 1e7",
-                    path.string(), focal_px, farthest_px));
+    return InputError(fmt::format(
+        "{}: the focal length comes to {:g} px, and principal points are up to "
+        "{:g} px apart: expected a focal length from 0.001 to 1e7 px, and at most 1e7 px",
+        path.string(), focal_px, farthest_px));
 
   LightField light_field;
   light_field.folder = path.parent_path();

@@ -1,4 +1,5 @@
-// Parses any bytes: the result must be a light field with sane cameras or an error.
+// Parses any bytes as a parameters.cfg of the 4D Light Field Benchmark: the result must be a light
+// field with valid cameras or an error.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>

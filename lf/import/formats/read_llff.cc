@@ -17,20 +17,19 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr size_t kRowSize = 17;
-constexpr double kLlffRotationTolerance = 1e-3;  // some files are saved as 32-bit floats
+constexpr double kLlffRotationTolerance = 1e-3;  // wide enough for files saved as 32-bit floats
 
-// One row of the array.
+// One row of the array in poses_bounds.npy: the values of one image.
 class Row {
  public:
   explicit Row(const double* numbers) : matrix_(numbers), near_far_(numbers + 15) {}
 
-  // The messages of kInput do not name the place in the file. This also holds for the functions
-  // below.
+  // The kInput messages of this class do not name the file and the row; the caller adds them.
   Result<RigidTransform> CamFromWorld() const {
     if (!matrix_.allFinite() || !(Centre().cwiseAbs().maxCoeff() <= kLargest_w))
-      return InputError(
-          fmt::format("the pose holds a number that is not finite, or beyond {:g}", kLargest_w));
-    Mat3 axes;  // right, down, forward as rows
+      return InputError(fmt::format(
+          "the pose holds a number that is not finite, or a position beyond {:g}", kLargest_w));
+    Mat3 axes;  // camera axes right, down and forward, as rows
     axes.row(0) = matrix_.col(1);
     axes.row(1) = matrix_.col(0);
     axes.row(2) = -matrix_.col(2);
@@ -100,8 +99,8 @@ Result<void> CheckShape(const NpyArray& array, size_t image_count, const fs::pat
   return {};
 }
 
-// Returns kInput if the image does not have the stated size. The size differs if the images are
-// LLFF's downsampled copies (images_4, images_8) instead of the images that LLFF was run on.
+// Returns kInput if the image does not have the size that the file states. Sizes differ if the
+// images are LLFF's downsampled copies (images_4, images_8) instead of those that LLFF was run on.
 Result<void> CheckSize(const Intrinsics& k, const std::array<int, 2>& size, const fs::path& image,
                        const fs::path& path) {
   if (k.width_px == size[0] && k.height_px == size[1]) return {};

@@ -2,8 +2,9 @@
 // array of (N, 17) numbers beside a folder images/. The rows belong to the image files sorted by
 // name:
 //
-//   a 3x5 matrix, row by row: camera axes down, right, backwards | centre | height, width, focal
-//   near and far bound of the depths
+//   15 numbers: a 3x5 matrix, row by row, with the columns: camera axes down, right and backwards |
+//               camera centre | (height, width, focal length in pixels)
+//    2 numbers: near and far bound of the depths
 #pragma once
 
 #include <filesystem>
@@ -21,8 +22,8 @@ inline constexpr const char* kLlffName = "poses_bounds.npy";
 
 // Parses the content of a file.
 //   bytes        the file's content
-//   path         the file's name for messages; its folder becomes LightField::folder
-//   image_names  the files in images/, sorted
+//   path         the file's path for messages; its folder becomes LightField::folder
+//   image_names  names of the image files in images/, sorted
 //   image_size   returns the size of an image; called for the first image only
 // The principal point is the image centre; depth_range extends from the smallest near bound to the
 // largest far bound.

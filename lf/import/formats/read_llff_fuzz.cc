@@ -1,4 +1,5 @@
-// Parses any bytes: the result must be a light field with sane cameras or an error.
+// Parses any bytes as a poses_bounds.npy of LLFF: the result must be a light field with valid
+// cameras or an error.
 #include <array>
 #include <cstddef>
 #include <cstdint>

@@ -20,7 +20,7 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr size_t kNumberCount = 21;  // K, R and t in a line
+constexpr size_t kNumberCount = 21;  // count of the numbers K, R and t in a line
 constexpr double kMiddleburyRotationTolerance = 1e-4;
 constexpr const char* kLineForm =
     "NAME k11 k12 k13 k21 k22 k23 k31 k32 k33 r11 r12 r13 r21 r22 r23 r31 r32 r33 t1 t2 t3";
@@ -41,7 +41,7 @@ std::string ShownWord(std::string_view word) {
                                  : std::string(word.substr(0, kLongest)) + "...";
 }
 
-// Iterates over the lines that are not blank.
+// Iterates over the lines of a text that are not blank.
 class Lines {
  public:
   Lines(std::string_view text, const fs::path& path) : text_(text), path_(path) {}
@@ -85,7 +85,7 @@ Result<Line> ParseLine(std::string_view text, const Lines& lines) {
     const std::optional<double> number = ParseNumber(word);
     if (!number)
       return lines.Fault(fmt::format(
-          "{} of {} numbers is {}: expected {}", i + 1, kNumberCount,
+          "number {} of {} is {}: expected {}", i + 1, kNumberCount,
           word.empty() ? "missing" : fmt::format("\"{}\"", ShownWord(word)), kLineForm));
     numbers[i] = *number;
   }
@@ -99,8 +99,8 @@ Result<Line> ParseLine(std::string_view text, const Lines& lines) {
   return line;
 }
 
-// Returns the intrinsics without the image size. The message of kInput does not name the place in
-// the file.
+// Returns the intrinsics of the matrix K, without the image size. The message of kInput does not
+// name the file and the line; the caller adds them.
 Result<Intrinsics> IntrinsicsOf(Mat3 k) {
   if (!(std::abs(k(2, 2)) > 1e-9))
     return InputError(fmt::format(
@@ -138,7 +138,8 @@ Result<size_t> ParseCount(std::optional<std::string_view> line, const Lines& lin
   return static_cast<size_t>(*count);
 }
 
-// Returns the size of an image that may have been moved or renamed since it was calibrated.
+// Returns width and height of an image file that may have been moved or renamed since it was
+// calibrated.
 Result<std::array<int, 2>> SizeWherever(const fs::path& image, const fs::path& folder) {
   LightField one;
   one.folder = folder;
@@ -172,7 +173,7 @@ Result<LightField> ParseMiddlebury(std::string_view text, const fs::path& path,
     const Result<Mat3> rotation = NearestRotation(line.r, kMiddleburyRotationTolerance);
     if (!rotation) return fault("R " + rotation.error().message);
     if (!(line.t.cwiseAbs().maxCoeff() <= kLargest_w))
-      return fault(fmt::format("t holds a number beyond {:g}", kLargest_w));
+      return fault(fmt::format("t holds a number beyond +-{:g}", kLargest_w));
     if (light_field.size() == 0) {
       LF_ASSIGN_OR_RETURN(size, image_size(light_field.folder / line.name));
     }

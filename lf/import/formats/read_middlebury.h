@@ -2,8 +2,9 @@
 // of images, then a line for each image:
 //   imgname.png k11 k12 k13 k21 k22 k23 k31 k32 k33 r11 r12 r13 r21 r22 r23 r31 r32 r33 t1 t2 t3
 //
-// P = K [R t], camera axes x right, y down, z forward. In the file the centre of the upper left
-// pixel is (0, 0); 0.5 is added to cx and cy on reading.
+// P = K [R t] projects a point of the world to a pixel; the camera axes are x right, y down, z
+// forward. In the file, the centre of the upper left pixel is (0, 0); 0.5 is added to k13 and k23
+// on reading.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +19,7 @@ namespace lf {
 
 // Parses the content of a file.
 //   text        the file's content
-//   path        the file's name for messages; its folder becomes LightField::folder
+//   path        the file's path for messages; its folder becomes LightField::folder
 //   image_size  called for the first image; all images get the size that it returns
 // kInput names the file, the line and the image, the value found and what was expected.
 Result<LightField> ParseMiddlebury(std::string_view text, const std::filesystem::path& path,
@@ -28,7 +29,7 @@ Result<LightField> ParseMiddlebury(std::string_view text, const std::filesystem:
 // first image, which is searched by name if it is not beside the file.
 Result<LightField> ReadMiddlebury(const std::filesystem::path& path);
 
-bool IsMiddleburyName(std::string_view file_name);  // ends in _par.txt
+bool IsMiddleburyName(std::string_view file_name);  // true if the name ends in _par.txt
 
 // Returns the files in a folder for which IsMiddleburyName() is true, sorted.
 std::vector<std::filesystem::path> MiddleburyFiles(const std::filesystem::path& folder);

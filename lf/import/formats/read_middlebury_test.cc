@@ -85,10 +85,10 @@ TEST(Middlebury, BrokenLinesAreErrorsThatNameTheLine) {
     all.push_back("line 3: ");
     ExpectMiddleburyError("2\n" + kLine + line + "\n", all);
   };
-  expect("b.png 1 2 3", {"4 of 21 numbers is missing", "NAME k11 k12"});
+  expect("b.png 1 2 3", {"4 of 21 is missing", "NAME k11 k12"});
   expect("b.png" + kK + kR + " 1 2 3 4", {"\"4\" behind the last number"});
-  expect("my b.png" + kK + kR + " 1 2 3", {"1 of 21 numbers is \"b.png\""});
-  expect("b.png" + kK + kR + " 1 nan 3", {"20 of 21 numbers is \"nan\""});
+  expect("my b.png" + kK + kR + " 1 2 3", {"1 of 21 is \"b.png\""});
+  expect("b.png" + kK + kR + " 1 nan 3", {"20 of 21 is \"nan\""});
   expect(std::string("b\0.png", 6) + kK + kR + " 1 2 3", {"NUL"});
   expect("b.png 500 0 320 0 510 240 0 0 0" + kR + " 1 2 3", {"b.png: k33 is 0"});
   expect("b.png 500 0 320 1 510 240 0 0 1" + kR + " 1 2 3", {"below its diagonal"});

@@ -23,16 +23,16 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kNameForm = "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext";
-constexpr double kLargestPrincipal_px = 1e7;  // as in transforms.json
+constexpr double kLargestPrincipal_px = 1e7;  // limit of principal points in transforms.json
 
 struct StanfordImage {
   std::string file_name;
   StanfordName name;
 };
 
-// The images of the light field, sorted by row and column, and the names of all other files. If
-// some names state positions, an image whose name states none (such as sheet_01_02.png) belongs to
-// the other files.
+// The images of a folder that form the light field, sorted by row and column, and the names of all
+// other files. If some names state positions, an image whose name states none (such as
+// sheet_01_02.png) belongs to the other files.
 struct Listing {
   std::vector<StanfordImage> images;
   std::vector<std::string> others;
@@ -78,7 +78,8 @@ void WarnOfOthers(const fs::path& folder, const Listing& listing) {
              others.size() > kShown ? ", ..." : "");
 }
 
-// Returns the lfimport command that adds the missing values. Its numbers are only a start.
+// Returns the lfimport command that adds the values that the names lack. Its numbers are examples,
+// which the user has to replace.
 std::string ImportCommand(const fs::path& folder, const StanfordOptions& options, bool needs_pitch,
                           int width_px) {
   const std::string word =
@@ -161,7 +162,8 @@ Vec2 MiddleOf(const std::vector<Vec2>& positions) {
   return box.center();
 }
 
-// Returns the intrinsics of the camera at `offset_w` from the middle of the grid.
+// Returns the intrinsics of the camera at the offset `offset_w` (x right, y down) from the middle
+// of the grid. The message of kInput does not name the image; the caller adds it.
 Result<Intrinsics> IntrinsicsOf(const StanfordName& name, const ImageFileInfo& info,
                                 const StanfordOptions& options, const Vec2& offset_w) {
   Intrinsics k;

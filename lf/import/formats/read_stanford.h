@@ -4,9 +4,9 @@
 //   NAME_ROW_COL_Y_X[_FOCALMM_SENSORMM].ext      positions in millimetres
 //   NAME_ROW_COL.ext                             a grid, placed by StanfordOptions::pitch_w
 //
-// The cameras look straight ahead, R = I, in a world with x right, y down and z into the scene.
-// Their centres are (X, Y, 0) / 1000 metres; if pitch_w is given, the pitch times (COL, ROW, 0),
-// with the middle of the grid as origin.
+// The cameras look straight ahead (their rotation is the identity) in a world with x right, y down
+// and z into the scene. Their centres are (X, Y, 0) / 1000 metres. If pitch_w is given, they are
+// (pitch_w.x COL, pitch_w.y ROW, 0) instead, with the middle of the grid as origin.
 #pragma once
 
 #include <filesystem>
@@ -17,34 +17,36 @@
 
 namespace lf {
 
-// Returns true if the folder contains an image file with such a name.
+// Returns true if the folder contains a file whose name ParseStanfordName() accepts.
 bool HoldsStanfordNames(const std::filesystem::path& folder);
 
-// Values that the names do not state. Only lfimport offers all of them. kUsage if a pitch or
-// plane_distance_w is outside (0, 1e9].
+// Values that the file names may lack. Only lfimport offers all of them as options.
+// ReadStanfordFolder() returns kUsage if a pitch or plane_distance_w is outside (0, 1e9].
 struct StanfordOptions {
-  std::optional<double> focal_px = {};  // focal length of all cameras; overrides the names
-  // Distance from one column, and from one row, to the next; overrides positions in the names.
+  std::optional<double> focal_px = {};  // focal length of all cameras; overrides the file names
+  // Distance from one column (x), and from one row (y), to the next; overrides positions in the
+  // names.
   std::optional<Vec2> pitch_w = {};
-  // Depth Z0 of the plane without disparity, for rectified slabs. A camera at the offset (x, y)
-  // from the middle of the grid has its principal point at
+  // Depth Z0 of the plane without disparity, for rectified images. A camera of focal length F at
+  // the offset (x, y) from the middle of the grid has its principal point at
   //   (w/2 + F x / Z0,  h/2 + F y / Z0)
+  // of an image of w x h pixels. Unset: the principal point is the image centre.
   std::optional<double> plane_distance_w = {};
-  // Negates x or y, for a data set whose rows or columns are counted in the opposite direction.
+  // True negates the x or y of all positions, for light fields whose columns or rows are counted in
+  // the opposite direction.
   bool flip_x = false;
   bool flip_y = false;
-  // The light field as the user typed it, for the command in messages; empty: the folder.
+  // LIGHTFIELD as the user typed it, for the command in messages; empty: the folder.
   std::filesystem::path asked_for = {};
 };
 
-// Reads all images with such names, sorted by row and column. All images get the size that the
-// header of the first one states; the principal point is the image centre, the focal length FOCAL /
-// SENSOR * width pixels. Other files, and images without a position if others have one, are left
-// out with a warning that states their number and the names of the first three.
-// kInput: no such name; two images with the same row and column; names that lack the position or
-// the focal length (the message contains the lfimport command that adds it); a focal length in only
-// some of the names, or out of range; a position beyond 1e12 world units; an unreadable first
-// image.
+// Reads all images whose names ParseStanfordName() accepts, sorted by row and column. All images
+// get the size that the header of the first one states; the focal length is FOCALMM / SENSORMM *
+// width pixels. Other files, and images whose names state no position if others state one, are left
+// out with a warning that states their number and the names of the first three. kInput: no such
+// name; two images with the same row and column; names that lack the position or the focal length
+// (the message contains the lfimport command that adds it); a focal length in only some of the
+// names, or out of range; a position beyond 1e12 world units; an unreadable first image.
 Result<LightField> ReadStanfordFolder(const std::filesystem::path& folder,
                                       const StanfordOptions& options = {});
 

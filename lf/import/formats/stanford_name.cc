@@ -30,7 +30,7 @@ std::optional<double> ParseDecimal(std::string_view text) {
   return value;
 }
 
-// Parses ROW and COL from two fields.
+// Parses two fields of a name as ROW and COL.
 std::optional<StanfordName> ParseGridPlace(const std::string_view* fields) {
   const std::optional<int> row = ParseIndex(fields[0]);
   const std::optional<int> column = ParseIndex(fields[1]);
@@ -38,7 +38,7 @@ std::optional<StanfordName> ParseGridPlace(const std::string_view* fields) {
   return StanfordName{*row, *column, std::nullopt, std::nullopt};
 }
 
-// Parses ROW, COL, Y and X from four fields.
+// Parses four fields of a name as ROW, COL, Y and X.
 std::optional<StanfordName> ParsePosition(const std::string_view* fields) {
   std::optional<StanfordName> name = ParseGridPlace(fields);
   const std::optional<double> y_mm = ParseDecimal(fields[2]);
@@ -54,8 +54,8 @@ std::optional<StanfordName> ParseStanfordName(std::string_view file_name) {
   if (!IsImageName(file_name)) return std::nullopt;
   std::string_view stem = file_name.substr(0, file_name.rfind('.'));
   if (stem.ends_with('_')) stem.remove_suffix(1);
-  // Split off up to six last fields, each of which follows a '_'. The rest is NAME, which may be
-  // empty.
+  // Splits off at most the last six fields, each of which follows a '_'. The rest is NAME, which
+  // may be empty.
   std::array<std::string_view, 6> fields;
   size_t count = 0;
   for (; count < fields.size(); ++count) {

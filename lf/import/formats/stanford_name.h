@@ -20,15 +20,15 @@ struct StanfordName {
   std::optional<Position> position;
   struct Lens {
     double focal_mm = 0;
-    double sensor_width_mm = 0;  // both lengths are above 0
+    double sensor_width_mm = 0;  // above 0, as is focal_mm
   };
-  std::optional<Lens> lens;  // set only if `position` is set
+  std::optional<Lens> lens;  // lens of the camera; set only if `position` is set
 };
 
-// Returns nullopt if the name has another form. NAME may contain blanks and underscores; ROW and
-// COL are digits, the other fields decimal numbers without exponent. If NAME itself ends in
-// numbers, the form with most fields that fits is used. A '_' before the extension is skipped,
-// because names in the archive end in it.
+// Returns the values in a file name; nullopt if the name has another form. NAME may contain blanks
+// and underscores; ROW and COL are digits, the other fields decimal numbers without exponent. If
+// NAME itself ends in numbers, the fitting form with the most fields is used. A '_' before the
+// extension is skipped, because names in the Stanford Light Field Archive end in it.
 std::optional<StanfordName> ParseStanfordName(std::string_view file_name);
 
 }  // namespace lf

@@ -1,5 +1,5 @@
-// Parses any bytes as a file name: either it does not have the Stanford form, or its values are
-// sane.
+// Parses any bytes as a file name: either the name does not have the Stanford form, or its values
+// must be finite and within their limits.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
