@@ -1,4 +1,4 @@
-// Finds the depths around which most of the depths found in an image lie. Internal to focus.
+// Finds the depths around which most of the depths found in an LF image lie. Internal to focus.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 namespace lf {
 
 // Returns at most three depths, the best first; each is clearly different from the better ones.
-// Each depth in `found` supports the depths around it by a Gaussian in the logarithm of depth, as
-// wide as its uncertainty, but at least 3 % wide.
+// Each depth in `found` supports the depths around it by a Gaussian in the logarithm of depth,
+// whose standard deviation is FoundDepth::error, but at least 3 %.
 std::vector<SubjectDepth> BestDepths(std::vector<FoundDepth> found);
 
 }  // namespace lf

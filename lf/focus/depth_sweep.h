@@ -9,7 +9,8 @@
 
 namespace lf {
 
-// Depths that are evenly spaced in 1 / depth, the nearest first.
+// Depths that are evenly spaced in 1 / depth, the nearest first. Names with per_w and PerW() mean
+// 1 / depth, per world unit.
 struct DepthSweep {
   double from_per_w = 0, step_per_w = 0;
   size_t count = 0;
@@ -27,7 +28,7 @@ inline double MeanOfLargest(std::vector<double>* values, size_t count) {
 }
 
 // Returns the largest local maximum of `scores` that lies more than `width` indices before `first`
-// or after `last`. Returns `none` if no such maximum is larger.
+// or after `last`. Returns `none` if no such maximum is larger than `none`.
 inline double PeakElsewhere(std::span<const double> scores, size_t first, size_t last, size_t width,
                             double none) {
   double rival = none;

@@ -14,9 +14,10 @@
 namespace lf {
 namespace {
 
-constexpr double kMostSpacings = 8, kLeastSpacings = 2.5;  // limits of the aperture's diameter
-// An aperture this narrow contains only the LF camera at its middle. It is so narrow because, in
-// captures shaped like rings, the hat weights of other LF cameras reach far into the lens.
+constexpr double kMostSpacings = 8, kLeastSpacings = 2.5;  // limits of ExampleAperture::spacings
+// An aperture of this diameter contains only the LF camera at its middle. A wider one could contain
+// others, because in captures shaped like rings the hat weights of other LF cameras reach far into
+// the lens.
 constexpr double kSharpSpacings = 0.001;
 
 // Returns a guess at the focus if neither the pixels nor the points of a reconstruction show the
@@ -46,7 +47,7 @@ std::string WhyNotSure(const Subject& subject, const Subject& points) {
 }
 
 // Returns the focus at the subject's best depth, subject.depths[0].
-//   things  for people: what was found at this depth, such as "places of the image"
+//   things  word for what lies at this depth, for the reason: "places of the image"
 ExampleFocus FocusOf(const Subject& subject, const char* things) {
   const SubjectDepth& best = subject.depths[0];
   ExampleFocus focus{best.distance_w, fmt::format("where {} of {} {} lie", best.place_count,
@@ -57,7 +58,7 @@ ExampleFocus FocusOf(const Subject& subject, const char* things) {
 }
 
 // Returns at most kMost focus distances to try: the guess, then the depths found in the pixels,
-// then the depths of the points. Leaves out a distance within 3 % of one that is already listed.
+// then the depths of the points. Leaves out a distance within 3 % of a distance already listed.
 std::vector<double> CandidatesOf(const std::vector<SubjectDepth>& depths, const Subject& points,
                                  double guess_w) {
   constexpr size_t kMost = 3;
@@ -127,18 +128,19 @@ Result<ExampleFocus> ChooseFocus(const LightField& light_field, const LfImageSto
   return focus;
 }
 
-// A point away from the focus plane appears as several ghosts instead of as a blur. The distance
-// between two ghosts is the point's displacement between neighbouring LF cameras. Ghosts up to
-// kGoodCopies_px apart are invisible. If they are farther apart, the lens is made narrower, which
-// blurs less. If they are more than kMostCopies_px apart, or if the focus may be wrong, only a lens
-// that contains a single LF camera gives a clear picture.
+// Returns the aperture for a focus. A point away from the focus plane appears as several ghosts
+// instead of as a blur. The distance between two ghosts is the point's displacement between
+// neighbouring LF cameras. Ghosts up to kGoodCopies_px apart are invisible. If they are farther
+// apart, the lens is made narrower, so that there are fewer of them. If they are more than
+// kMostCopies_px apart, or if the focus may be wrong, only a lens that contains a single LF camera
+// gives a clear picture.
 ExampleAperture ChooseAperture(const ExampleFocus& focus, double fx_px, double spacing_w) {
   constexpr double kGoodCopies_px = 3, kMostCopies_px = 16;
   if (!focus.doubt.empty())
     return {kSharpSpacings,
             "which holds one LF camera, so that the first frame is sharp at any distance"};
-  // If the depths are unknown, the nearest point is assumed to be at the focus distance / (1 +
-  // kUnknownRange).
+  // If the depths are unknown, the nearest point is assumed to be at
+  // focus.distance_w / (1 + kUnknownRange).
   constexpr double kUnknownRange = 0.25;
   double range_per_w = kUnknownRange / focus.distance_w;
   if (focus.near_w < focus.far_w)

@@ -1,4 +1,4 @@
-// Focus distance and aperture of an example path. Internal to example_path.cc.
+// Chooses focus distance and aperture of an example path. Internal to example_path.cc.
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@ struct ExampleFocus {
   std::string doubt = {};
   std::vector<double> candidates_w = {};
   // A range of depths that contains the focus and four fifths of the depths found in the scene.
-  // Both are 0 if the focus is given or not sure.
+  // Both ends are 0 if the focus is given by the user or not sure.
   double near_w = 0, far_w = 0;
 };
 

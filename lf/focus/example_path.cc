@@ -36,7 +36,8 @@ Vec3 LevelUp(const LightField& light_field, const PinholeCamera& camera) {
   return roll_rad == 0 ? camera.UpWorld() : Vec3(across.normalized());
 }
 
-// Rounds down to an even size (at least 2), because video needs even sizes.
+// Returns the largest even size that is not above `size`, but at least 2, because video needs even
+// sizes.
 int Even(int size) { return std::max(2, size - size % 2); }
 
 // Returns the largest frame within the LF camera's view, at most as wide as the LF image and at
@@ -53,7 +54,7 @@ Intrinsics InscribedFrame(const PinholeCamera& camera, const Vec3& up_world) {
     return Intrinsics{k.fx_px, k.fx_px, width / 2.0, height / 2.0, 0, width, height};
   };
   const auto is_seen = [&](const Intrinsics& frame) {
-    constexpr int kPoints = 16;  // steps along each side of the frame
+    constexpr int kPoints = 16;  // number of steps between the tested points of each side
     constexpr double kTolerance_px = 0.5;
     const PinholeCamera pinhole{frame, *pose};
     for (int i = 0; i <= kPoints; ++i) {
@@ -104,7 +105,8 @@ Movement MakeMovement(ExampleMove move, const PinholeCamera& camera, const Reach
     return movement;
   }
   if (move == ExampleMove::kDolly) {
-    // The rays of the picture's corners diverge. LF cameras must be where these rays pass.
+    // Distance that the lens can move ahead. Farther ahead, the rays of the picture's borders,
+    // which diverge, no longer come through the captured positions.
     const Intrinsics& k = camera.intrinsics;
     const double room_w =
         std::min((reach.right_w - aperture_diameter_w / 2) * 2 * k.fx_px / k.width_px,
@@ -169,8 +171,8 @@ Result<ExamplePath> MakeExamplePath(const LightField& light_field, const LfImage
   const ExampleAperture aperture = ChooseAperture(focus, camera.intrinsics.fx_px, spacing_w);
   example.aperture_reason = aperture.reason;
   const double largest_w = 2 * std::max(reach.right_w, reach.up_w);
-  // Diameter, in spacings of the LF cameras, that the lens may have even if the capture is
-  // narrower.
+  // Diameter, as a multiple of the spacing of the LF cameras, that the lens may have even if the
+  // capture is narrower.
   constexpr double kLeastOfBand = 2.2;
   example.aperture_diameter_w =
       std::min(aperture.spacings * spacing_w, std::max(kLeastOfBand * spacing_w, largest_w));
@@ -189,10 +191,11 @@ Result<ExamplePath> MakeExamplePath(const LightField& light_field, const LfImage
       "format: lfpath 1\n"
       "fps: {}\n"
       "frames: {}\n"
-      "resolution: [{}, {}]            # of what the LF image shows\n"
+      "resolution: [{}, {}]            # pixels; the frame lies within the LF image\n"
       "camera:\n"
       "  field_of_view_deg: {:.7g}     # horizontal, that of the LF camera\n"
-      "  focal_length_mm: {:.5g}         # on a sensor {} mm wide: what f-numbers count from\n"
+      "  focal_length_mm: {:.5g}         # if the sensor is {} mm wide; f-numbers refer to this "
+      "length\n"
       "  position: {}\n"
       "  look_at: {}\n"
       "  up: {}\n"
@@ -209,7 +212,7 @@ Result<ExamplePath> MakeExamplePath(const LightField& light_field, const LfImage
       options.move == ExampleMove::kOrbit ? "look_at                # keeps looking at the focus"
                                           : "direction",
       example.aperture_diameter_w, spacing_w, movement.first_focus_distance_w,
-      options.move == ExampleMove::kFocusPull ? "moves, see below" : focus.reason);
+      options.move == ExampleMove::kFocusPull ? "at time 0; see keyframes" : focus.reason);
   example.yaml += movement.keyframes;
   return example;
 }

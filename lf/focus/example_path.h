@@ -22,7 +22,7 @@ enum class ExampleMove { kStatic, kOrbit, kDolly, kFocusPull };
 std::optional<ExampleMove> ParseExampleMove(std::string_view name);
 
 struct ExampleOptions {
-  LfImageId camera;  // the path starts at the LF camera of this LF image
+  LfImageId camera;  // LF image at whose LF camera the path starts
   ExampleMove move = ExampleMove::kFocusPull;
   std::optional<double> focus_distance_w;  // unset: MakeExamplePath() finds it
   // Returns points of the scene that the LF image shows, in world coordinates. May be left empty if
@@ -35,7 +35,7 @@ struct ExamplePath {
   double focus_distance_w = 0;
   std::string focus_reason;  // how the focus distance was found, for people
   double aperture_diameter_w = 0;
-  std::string aperture_reason;  // reason, for people; to be printed after "DIAMETER, "
+  std::string aperture_reason;  // reason of the diameter, to be printed after "DIAMETER, "
   // The reason why the focus may be wrong; empty if the focus is sure. If there is a doubt,
   // candidates_w holds at most three focus distances to try, the most likely first.
   std::string doubt;

@@ -15,10 +15,10 @@
 namespace lf {
 namespace {
 
-constexpr size_t kMostAtOnce = 4;  // largest number of whole LF images in memory
+constexpr size_t kMostAtOnce = 4;  // largest number of LF images in memory before they are reduced
 
-// Loads the views. Removes views that cannot be loaded, and rings with too few views. kOutput: the
-// machine lacks memory or open files.
+// Loads the images of all views. Removes views whose image cannot be loaded, and rings that then
+// have too few views. kOutput: the machine lacks memory or open files.
 Result<void> LoadRings(const LightField& field, const LfImageStore& store, ThreadPool& pool,
                        Rings* rings) {
   MachineFailure failure;
@@ -71,7 +71,7 @@ Result<Subject> FindSubject(const LightField& light_field, const LfImageStore& s
   subject.is_sure = subject.depths[0].place_count >= kLeastPlaces &&
                     subject.depths[0].share >= kLeastShare &&
                     4 * subject.place_count >= subject.textured_count;
-  LogDebug("LF camera {}: {} of {} textured places have a depth, {:.4g} to {:.4g}; rings {}",
+  LogDebug("LF camera {}: {} of {} textured places have a depth, {:.4g} to {:.4g}, from {} rings",
            camera.value, subject.place_count, subject.textured_count, subject.near_w, subject.far_w,
            rings.size());
   return subject;

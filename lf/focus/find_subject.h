@@ -14,7 +14,7 @@
 namespace lf {
 
 struct SubjectDepth {
-  double distance_w = 0;   // along the optical axis, in world units
+  double distance_w = 0;   // the depth, along the optical axis
   double share = 0;        // weight of the places near this depth, as a share of all weight
   size_t place_count = 0;  // number of places of the image near this depth
 };
@@ -24,21 +24,21 @@ struct Subject {
   bool is_sure = false;              // true if the first depth is sure
   size_t place_count = 0;            // number of places whose depth was found
   size_t textured_count = 0;         // number of places with texture, whose depth was searched
-  // A tenth of the places with a depth is nearer than near_w, a tenth is farther than far_w. Both
-  // are 0 if no depth was found.
+  // A tenth of the places with a depth is nearer than near_w, a tenth is farther than far_w.
+  // near_w and far_w are 0 if no depth was found.
   double near_w = 0;
   double far_w = 0;
 };
 
-// Searches the depth of up to 176 places with texture, evenly spread over the image of `camera`.
+// Searches the depth of up to 176 places with texture, spread evenly over the image of `camera`.
 // Each place is compared with up to five rings of LF cameras around `camera`; each ring is four
 // times as wide as the one before. Near cameras tell the depth without ambiguity, far cameras tell
 // it precisely. The weight of a place depends on its texture, on how clearly the LF images agree on
 // one depth, and on how near the place is to the middle of the image. Places that do not move from
 // image to image do not count: watermarks, and places that are too far away.
 //
-// The best depth is the one around which most weight lies, within a few percent. It is sure if at
-// least eight places, with together at least a tenth of the whole weight, lie around it, and if
+// The best depth is the depth around which, within a few percent, most weight lies. It is sure if
+// at least eight places, with together at least a tenth of the whole weight, lie around it, and if
 // depths were found for at least a quarter of the textured places.
 //   store  a store with Mosaics::kToRgb
 // kInput: the image of `camera` cannot be loaded. Other images that cannot be loaded are left out.

@@ -16,15 +16,17 @@
 namespace lf {
 namespace {
 
-constexpr int kHalfPatch = 5;  // half width of a patch, in elements or LF pixels (the larger ones)
+// Half width of a patch, in elements or in LF pixels, whichever are larger.
+constexpr int kHalfPatch = 5;
 constexpr int kPatchSide = 2 * kHalfPatch + 1;
 constexpr int kPatchSize = kPatchSide * kPatchSide;
-constexpr double kStep_px = 0.5;  // change of the largest disparity from one depth to the next
-constexpr double kMostDisplaced = 0.45;  // largest disparity, as a share of the LF image's width
-// Least standard deviation, in a patch, of the square root of light (ValueAt()).
+// Step of the largest disparity from one tested depth to the next, in LF pixels.
+constexpr double kStep_px = 0.5;
+constexpr double kMostDisplaced = 0.45;  // largest disparity tested, in widths of the LF image
+// Least standard deviation in a patch with texture, of the square root of light (ValueAt()).
 constexpr double kLeastTexture = 0.004;
 constexpr double kLeastAgreement = 0.6;  // least score of a depth that is found
-constexpr size_t kLeastViews = 3;        // least number of views besides the first, the reference
+constexpr size_t kLeastViews = 3;        // least number of views that are compared with the first
 constexpr double kAgreeing = 0.6;        // share of views that must agree on a depth
 constexpr double kLeastCosine = 0.5;     // least cosine of the angle between optical axis and ray
 
@@ -39,8 +41,8 @@ struct View {
 
 // The ray along which the depth is searched, and the axes of the patch around the ray.
 struct SearchRay {
-  Vec3 origin, direction, right, up;  // directions have length 1
-  double angle_px = 0;                // width of a pixel of the patch in radians
+  Vec3 origin, direction, right, up;  // direction, right and up have length 1
+  double angle_px = 0;                // width of a pixel of the patch, in radians
 
   Vec3 At(double depth_w, double x, double y) const {
     return origin + depth_w * (direction + angle_px * (x * right + y * up));
@@ -59,8 +61,8 @@ SearchRay MakeSearchRay(const RenderCamera& frame, const Ray& ray, double lf_foc
   return search;
 }
 
-// Returns the wanted positions of LF cameras relative to the ray: on the ray, on a ring as wide as
-// the lens, and on a ring half as wide.
+// Returns the wanted positions of LF cameras in the plane normal to the ray: on the ray, on a ring
+// of radius `radius_w` around it, and on a ring half as wide.
 std::vector<Vec2> WantedPlaces(double radius_w) {
   std::vector<Vec2> places = {Vec2::Zero()};
   for (int i = 0; i < 12; ++i) {
@@ -115,8 +117,9 @@ std::vector<View> ChooseViews(const LightField& field, const SearchRay& search, 
   return views;
 }
 
-// Returns the square root of the bilinearly interpolated light at a position, because noise of the
-// square root is about equal in shadows and highlights. None if the image has no value there.
+// Returns the square root of the bilinearly interpolated light (mean of R, G and B) at a position,
+// because noise of the square root is about equal in shadows and highlights. None if one of the
+// four pixels around the position is masked or was not loaded.
 std::optional<float> ValueAt(const LfPixels& pixels, const Vec2& place) {
   const double x = place.x() - 0.5 - pixels.rect.x_begin, y = place.y() - 0.5 - pixels.rect.y_begin;
   const int column = static_cast<int>(std::floor(x)), row = static_cast<int>(std::floor(y));
@@ -158,7 +161,7 @@ std::optional<double> ReadPatch(const View& view, const SearchRay& search, doubl
 }
 
 struct Agreement {
-  double score = -1;   // mean of the largest 60 % of the correlations; -1: unknown
+  double score = -1;   // mean of the largest 60 % of the views' correlations; -1: unknown
   double texture = 0;  // standard deviation of the first view's patch
 };
 
@@ -184,12 +187,13 @@ Agreement AgreementAt(std::span<const View> views, const SearchRay& search, doub
   return {MeanOfLargest(&correlations, static_cast<size_t>(count)), *texture};
 }
 
-// Returns the depths that are tested, from the nearest that all views can show.
+// Returns the depths that are tested, from the nearest depth that all views can show.
 DepthSweep MakeSweep(std::span<const View> views) {
   double baseline_w = 0;
   for (const View& view : views) baseline_w = std::max(baseline_w, view.offset_w);
   const Intrinsics& k = views[0].rays.intrinsics();
-  // The largest disparity, in LF pixels, at 1 / depth = 1.
+  // The largest disparity between the first view and another, in LF pixels, at the depth of one
+  // world unit.
   const double px_per_w = std::max(1e-12, k.fx_px * baseline_w);
   DepthSweep sweep;
   sweep.from_per_w = kMostDisplaced * k.width_px / px_per_w;
@@ -215,8 +219,9 @@ PixelRect PartOf(const View& view, const SearchRay& search, const DepthSweep& sw
   return Intersection(part, {0, 0, k.width_px, k.height_px});
 }
 
-// Reads the rectangles of all views. Removes views that cannot be read. Errors: kOutput if the
-// machine failed; the error of a view, or kInput, if too few views are left.
+// Reads the rectangle PartOf() of each view. Removes views that cannot be read. Errors: kOutput if
+// the machine lacks something, such as memory; the error of a view, or kInput, if too few views are
+// left.
 Result<void> LoadViews(const LightField& field, const LfImageStore& store, const SearchRay& search,
                        const DepthSweep& sweep, ThreadPool& pool, std::vector<View>* views) {
   std::vector<std::optional<Error>> errors(views->size());
@@ -283,7 +288,7 @@ Result<FocusPick> FindFocus(const LightField& light_field, const LfImageStore& s
     return InputError(
         "the LF images do not agree on a distance here. Click on an edge or a texture, away from "
         "outlines of things in front");
-  // The rival is the best of the other peaks.
+  // The rival is the best of the other peaks. A rival that is almost as good lowers the certainty.
   constexpr size_t kPeakWidth = 4;
   std::vector<double> scores;
   for (const Agreement& agreement : agreements) scores.push_back(agreement.score);

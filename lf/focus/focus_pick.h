@@ -21,27 +21,29 @@ struct FocusPick {
   // In [0, 1]: high if the LF images agree well at this depth, and much better than at other
   // depths.
   double certainty = 0;
-  std::vector<LfImageId> images;  // the compared images; the first is nearest to the ray's origin
+  // The compared LF images. The LF camera of the first one is nearest to the ray's origin.
+  std::vector<LfImageId> images;
 };
 
 // A pick below this certainty is a guess. Repeating patterns and outlines cause such picks.
 inline constexpr double kLeastCertainty = 0.2;
 
-// Returns the ray that an LF image records at the continuous position (x, y), with the lens
-// distortion undone. None if no ray arrives there.
+// Returns the ray that an LF image records at the continuous position (x_px, y_px), with the lens
+// distortion undone. None if no ray arrives at this position.
 std::optional<Ray> RayOfLfPixel(const PinholeCamera& lf_camera, double x_px, double y_px);
 
 // Returns the point of the scene that the ray meets. The compared LF cameras are around the ray's
-// origin, about as far from it as the rim of the frame's lens, because the disparity between such
-// cameras equals the blur of the lens.
+// origin, within about the radius of the frame's lens, because the disparity between such cameras
+// equals the blur of the lens.
 //   ray    starts at the lens centre of `frame`, or at an LF camera
 //   store  a store with Mosaics::kToRgb
 // kInput, in words for the person who clicked: too few LF cameras see the point, it has no texture,
-// or the images agree on no depth. Errors of store.Load() if too few images can be read.
+// or the LF images agree on no depth. Errors of store.Load() if too few LF images can be read.
 Result<FocusPick> FindFocus(const LightField& light_field, const LfImageStore& store,
                             const RenderCamera& frame, const Ray& ray, ThreadPool& pool);
 
-// Returns the focus distance for which the frame's tilted focus plane contains the point.
+// Returns the focus distance with which the focus plane of the frame, tilted as in `frame`,
+// contains the point.
 double FocusDistanceThrough(const RenderCamera& frame, const Vec3& point_world);
 
 }  // namespace lf

@@ -12,21 +12,25 @@
 namespace lf {
 namespace {
 
-constexpr int kColumns = 16, kRows = 11;   // cells of the image; each has at most one place
-constexpr double kLeastTexture = 0.006;    // least gradient, per pixel, in the weakest direction
-constexpr double kLeastDeviation = 0.002;  // smaller deviations count as this, against noise
-constexpr double kLeastAgreement = 0.65;   // least score of a depth that is found
-constexpr double kAgreeing = 0.6;  // share of views that must agree; the others may not see it
+constexpr int kColumns = 16, kRows = 11;  // cells of the image; each has at most one place
+constexpr double kLeastTexture = 0.006;   // least TextureAt() of a place
+// Smaller standard deviations of a patch count as this one, so that mere noise does not correlate.
+constexpr double kLeastDeviation = 0.002;
+constexpr double kLeastAgreement = 0.65;  // least score of a depth that is found
+// Share of views that must agree on a depth. The other views may be unable to see the place.
+constexpr double kAgreeing = 0.6;
 constexpr size_t kLeastViews = 2;
-constexpr double kStep_px = 0.5;  // change of the largest disparity from one depth to the next
-constexpr double kMostDisplaced = 0.45;  // largest disparity, as a share of the image's width
+// Step of the largest disparity from one depth of a sweep to the next, in reduced pixels.
+constexpr double kStep_px = 0.5;
+constexpr double kMostDisplaced = 0.45;  // largest disparity tested, in widths of the image
 constexpr double kLeastMove_px = 1;      // in reduced pixels; places that move less are not used
-constexpr double kStill = 0.9;           // least correlation of a place that does not move
+constexpr double kStill = 0.9;           // least StillAgreement() of a place that does not move
 constexpr size_t kMostRings = 5;
 constexpr int kViewsPerRing = 6;
-constexpr double kInnerRing = 2;      // radius of the innermost ring, in spacings
-constexpr double kRingFactor = 4;     // radius of a ring, relative to the next smaller ring
-constexpr double kLeastCosine = 0.8;  // least cosine of the angle between optical axes
+constexpr double kInnerRing = 2;   // radius of the innermost ring, in spacings of LF cameras
+constexpr double kRingFactor = 4;  // radius of a ring, relative to the next smaller ring
+// Least cosine of the angle between the optical axes of compared LF cameras.
+constexpr double kLeastCosine = 0.8;
 
 // Returns the sum of value(i) over the pixels i of a patch. It is computed in about as many
 // independent chains of additions as a processor runs at the same time.
@@ -96,8 +100,8 @@ bool Sample(const ReducedImage& image, const PatchGrid& grid, Patch* patch) {
   return true;
 }
 
-// Returns the correlation of the place's patch with `other`, whose mean is subtracted; -1 if a
-// pixel of `other` is not recorded.
+// Subtracts the mean from `other` and returns its correlation with the place's patch; -1 if a pixel
+// of `other` is NaN.
 double Correlation(const Place& place, Patch* other) {
   const double deviation = Centre(other);
   if (std::isnan(deviation)) return -1;
@@ -127,7 +131,8 @@ double CorrelationAt(const View& view, const Place& place, double depth_w) {
 
 namespace {
 
-// Returns the mean of the largest 60 % of the correlations; -1 if too few views see the place.
+// Returns the mean of the largest 60 % of the correlations, but at least of two; -1 if there are
+// fewer than two. Sorts the correlations.
 double Agreement(std::vector<double>* correlations) {
   if (correlations->size() < kLeastViews) return -1;
   const auto count = static_cast<size_t>(kAgreeing * static_cast<double>(correlations->size()));
@@ -142,8 +147,8 @@ double AgreementAt(std::span<const View> views, const Place& place, double depth
   return Agreement(&correlations);
 }
 
-// Returns the agreement of the views at the pixel position of the place itself, where a watermark
-// would be in every image.
+// Returns the agreement of the views at the pixel position that the place has in its own image. A
+// watermark is at the same pixel position in every image.
 double StillAgreement(const Rings& rings, const Place& place, int divisor) {
   std::vector<double> correlations;
   for (const std::vector<View>& ring : rings)
@@ -169,18 +174,21 @@ double LargestMove(const Rings& rings, const Place& place, double depth_w, int d
   return largest;
 }
 
-// Returns the largest disparity, in reduced pixels, at 1 / depth = 1.
+// Returns the largest disparity between the place's image and a view, in reduced pixels, at the
+// depth of one world unit. The disparity is inversely proportional to the depth.
 double PixelsPerW(std::span<const View> views, const Intrinsics& k, int divisor) {
   double baseline_w = 0;
   for (const View& view : views) baseline_w = std::max(baseline_w, view.offset_w);
   return std::max(1e-12, k.fx_px * baseline_w / divisor);
 }
 
-// The best depth of a sweep.
+// The depth of a sweep at which the views agree best.
 struct Peak {
-  double score = -1, rival = -1;        // agreement; rival: at the best local maximum elsewhere
-  double per_w = 0;                     // 1 / depth, refined between the steps
-  double from_per_w = 0, to_per_w = 0;  // range around per_w that is almost as good
+  // `score` is the agreement of the views at this depth, `rival` the agreement at the best local
+  // maximum elsewhere; -1 if there is none.
+  double score = -1, rival = -1;
+  double per_w = 0;                     // 1 / depth, interpolated between the depths of the sweep
+  double from_per_w = 0, to_per_w = 0;  // range of 1 / depth around it that is almost as good
 };
 
 Peak FindPeak(const DepthSweep& sweep, std::span<const View> views, const Place& place) {
@@ -217,7 +225,8 @@ std::optional<FoundDepth> DepthOf(const Rings& rings, const Place& place, const 
   sweep.count = static_cast<size_t>(sweep.from_per_w / sweep.step_per_w) + 1;
   Peak peak = FindPeak(sweep, rings[0], place);
   if (peak.score < kLeastAgreement) return std::nullopt;
-  // LF images of a repeated pattern agree at several depths.
+  // Rejects a place if the agreement is almost as good elsewhere: LF images of a repeated pattern
+  // agree at several depths.
   constexpr double kClear = 0.1, kLeastClear = 0.3;
   const double clear = std::min(1.0, (peak.score - peak.rival) / kClear);
   if (clear < kLeastClear) return std::nullopt;
@@ -247,7 +256,8 @@ std::optional<FoundDepth> DepthOf(const Rings& rings, const Place& place, const 
 namespace {
 
 // Returns the square root of the smaller eigenvalue of the mean of g g^T over a patch, where g is
-// the gradient. It is 0 on straight edges, whose disparity is known only across the edge.
+// the gradient of `light` per reduced pixel. The result is 0 on straight edges, whose disparity is
+// known only across the edge.
 double TextureAt(const Image<float>& light, int x, int y) {
   double xx = 0, xy = 0, yy = 0;
   for (int j = y - kHalfPatch; j <= y + kHalfPatch; ++j)

@@ -1,5 +1,5 @@
 // Finds the depth of one textured place of an LF image by comparing it with the LF images around it
-// (plane sweep). Used by find_subject.cc and by code that compares LF images itself.
+// (plane sweep).
 #pragma once
 
 #include <array>
@@ -26,28 +26,30 @@ using Patch = std::array<float, kPatchSize>;
 struct View {
   LfImageId id;
   RayThrough rays;
-  double offset_w = 0;  // distance to the camera of the place, normal to its optical axis
+  double offset_w = 0;  // distance from the camera of the place, normal to that camera's axis
   std::shared_ptr<const ReducedImage> image = nullptr;
 };
 
 using Rings = std::vector<std::vector<View>>;   // the innermost ring first
-inline constexpr size_t kLeastViewsOfRing = 2;  // rings of fewer views are not used
+inline constexpr size_t kLeastViewsOfRing = 2;  // least number of views of a ring that is used
 
 // Returns LF cameras around `camera` in up to five rings; each ring is four times as wide as the
 // one before. A ring contains the LF cameras nearest to six evenly spread positions. Images are not
 // loaded.
 Rings ChooseRings(const LightField& field, LfImageId camera);
 
-// A place in the image of one LF camera (the camera of the place): the ray of the place, and the
-// directions to the pixels around it.
+// A place in the image of one LF camera (the camera of the place): the ray of the place, the
+// directions to the pixels around it, and these pixels.
 struct Place {
   Vec2 at_px;              // position in the LF image
-  Vec3 origin, direction;  // the direction has length 1 along the optical axis
-  Vec3 right, down;        // steps to the next reduced pixel, at depth 1
+  Vec3 origin, direction;  // ray of the place; the direction advances by 1 along the optical axis
+  Vec3 right, down;        // steps to the next reduced pixel, in the plane at depth 1
   double weight = 0;       // larger with more texture and nearer to the middle of the image
   Patch patch;             // pixels of the reduced image, minus their mean
   double deviation = 0;    // standard deviation of the patch
 
+  // Returns the point, in world coordinates, that the camera of the place sees at a depth and at an
+  // offset of (x, y) reduced pixels from the place.
   Vec3 At(double depth_w, double x, double y) const {
     return origin + depth_w * (direction + x * right + y * down);
   }
@@ -68,8 +70,7 @@ struct PatchGrid {
            (index / kPatchSide - kHalfPatch) * step_y;
   }
 };
-// Returns the grid of a place at a depth in a view; none if the view's lens has no image of the
-// place.
+// Returns the grid of a place at a depth in a view; none if the view records no ray from there.
 std::optional<PatchGrid> PatchSeenBy(const View& view, const Place& place, double depth_w);
 
 // Returns the correlation of the place's patch with the view's pixels at a depth, in [-1, 1]; -1 if
@@ -78,7 +79,7 @@ double CorrelationAt(const View& view, const Place& place, double depth_w);
 
 struct FoundDepth {
   double distance_w = 0, weight = 0;
-  double error = 0;  // standard deviation relative to distance_w
+  double error = 0;  // standard deviation of the depth, relative to distance_w
 };
 
 // Returns the depth on which most views agree. None if no depth is clearly better than the others;
@@ -87,8 +88,8 @@ struct FoundDepth {
 //   rings      rings of views whose images are loaded; at least one ring, each with at least two
 //              views
 //   k          intrinsics of the camera of the place
-//   divisor    divisor of the reduced images
-//   nearest_w  no nearer depths are tested; 0: tests from the nearest depth that the images of the
+//   divisor    divisor of the reduced images (ReducedImage::divisor)
+//   nearest_w  least depth that is tested; 0: tests from the least depth that the images of the
 //              innermost ring can show
 std::optional<FoundDepth> DepthOf(const Rings& rings, const Place& place, const Intrinsics& k,
                                   int divisor, double nearest_w = 0);

@@ -28,7 +28,8 @@ std::vector<FoundDepth> DepthsOf(const PinholeCamera& camera, std::span<const Ve
         at->y() > k.height_px)
       continue;
     const Vec2 off = (*at - Vec2(k.width_px, k.height_px) / 2) / (0.5 * k.width_px);
-    constexpr double kMiddle = 0.5;  // standard deviation, in half widths, as in FindSubject()
+    // Standard deviation of the weight, as a share of half the image's width, as in FindSubject().
+    constexpr double kMiddle = 0.5;
     found.push_back({depth_w, std::exp(-0.5 * off.squaredNorm() / (kMiddle * kMiddle)), 0});
   }
   return found;

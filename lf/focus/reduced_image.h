@@ -1,4 +1,4 @@
-// Reduced LF images for the search of depths. They are grey and at most 480 pixels wide.
+// Grey copies of LF images in reduced size, for the search of depths.
 #pragma once
 
 #include <optional>
@@ -12,18 +12,18 @@
 
 namespace lf {
 
-inline constexpr int kMostReducedWidth = 480;
+inline constexpr int kMostReducedWidth = 480;  // pixels; limit of LoadReducedImage()
 
 struct ReducedImage {
-  // Square root of light, from 0 (black) to 1; NaN if nothing was recorded. Noise of the square
-  // root is about equal in shadows and highlights. A pixel is the square root of the mean light of
-  // divisor x divisor pixels of the LF image; the last columns and rows of the LF image are left
-  // out if they do not fill a pixel.
+  // Square root of the mean light of R, G and B, from 0 (black) to 1. Noise of the square root is
+  // about equal in shadows and highlights. The mean is taken over divisor x divisor pixels of the
+  // LF image; NaN if one of them is masked. The last columns and rows of the LF image are left out
+  // if they do not fill a reduced pixel.
   Image<float> light;
   int divisor = 1;
 
-  // Returns the value at a position, interpolated between pixels; NaN outside the centres of the
-  // border pixels, and if one of the four pixels around was not recorded.
+  // Returns the value at a position, interpolated between four reduced pixels; NaN outside the
+  // centres of the border pixels, and if one of the four is NaN.
   //   place_px  continuous position in the LF image
   float At(const Vec2& place_px) const;
 };

@@ -1,4 +1,4 @@
-// Texture for scenes that tests draw.
+// Texture of the synthetic scenes that tests of focus and import/exposure render.
 #pragma once
 
 #include <cmath>
