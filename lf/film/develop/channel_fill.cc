@@ -66,12 +66,13 @@ ChannelFill::Collected ChannelFill::InSquare(int x, int y, int half_side) const 
   return {elements, ray_sums_[d] - ray_sums_[b] - ray_sums_[c] + ray_sums_[a]};
 }
 
-// Returns the smallest half side whose square around (x, y) contains enough collected elements and
-// rays; `most` + 1 if the square of half side `most` does not. Doubles the half side at first,
-// because for nearly all elements a small square is enough.
+// Returns half the side, in elements, of the smallest square around (x, y) that contains enough
+// collected elements (elements with rays) and enough rays, as IsEnough() defines it; `most` + 1 if
+// even the square of half side `most` does not. Doubles the half side at first, because for nearly
+// all elements a small square is enough.
 int ChannelFill::SmallestSquare(int x, int y, int most) const {
   if (!IsEnough(InSquare(x, y, most))) return most + 1;
-  int too_small = 0, enough = 1;  // one element is never enough
+  int too_small = 0, enough = 1;  // half side 0 is 1 element: never enough
   while (enough < most && !IsEnough(InSquare(x, y, enough))) {
     too_small = enough;
     enough *= 2;
@@ -84,8 +85,9 @@ int ChannelFill::SmallestSquare(int x, int y, int most) const {
   return enough;
 }
 
-// Finds the collected elements within the squared radius `radius2` of (x, y), always in the same
-// order (row by row), because At() adds floating-point numbers in this order.
+// Finds the collected elements (elements with rays) whose squared distance from (x, y) is at most
+// `radius2`, always in the same order (row by row), because At() adds floating-point numbers in
+// this order.
 void ChannelFill::FindNeighbours(int x, int y, int64_t radius2, Scratch& scratch) const {
   scratch.neighbours_.clear();
   const int radius = static_cast<int>(std::sqrt(static_cast<double>(radius2)));
@@ -108,8 +110,8 @@ void ChannelFill::FindNeighbours(int x, int y, int64_t radius2, Scratch& scratch
   }
 }
 
-// Returns the squared radius of the smallest disk that contains enough of the neighbours. If there
-// are too few, the disk contains all of them.
+// Returns the squared radius of the smallest disk around the element to be filled that contains
+// enough of its neighbours. If there are too few, the disk contains all of them.
 int64_t ChannelFill::SmallestDisk(Scratch& scratch) const {
   const auto further = [](const Scratch::Ring& a, const Scratch::Ring& b) {
     return a.distance2 > b.distance2;

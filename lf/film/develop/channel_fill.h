@@ -14,9 +14,8 @@ class ChannelFill {
  public:
   //   mean, ray_count  mean value and number of the rays of each element
   //                    [height][width][channels]; must outlive this object
-  //   rays_needed      least number of rays that the neighbours of an element have together; at
-  //                    least 1
-  //   fill_radius_px   DevelopOptions::fill_radius_px
+  //   rays_needed      number of rays that averaged neighbours must have together; at least 1
+  //   fill_radius_px   largest distance, in elements, from which an element without rays is filled
   //   is_interrupted   called before each row; once it returns true, this object must not be used
   ChannelFill(const Image<float>& mean, const Image<uint32_t>& ray_count, int channel,
               uint32_t rays_needed, int fill_radius_px,
@@ -25,15 +24,16 @@ class ChannelFill {
   // Working memory of one thread, reused from call to call.
   class Scratch;
 
-  // Returns the inverse-distance mean at (x, y), as Develop() defines it; 0 if no collected element
-  // is near. Finds the radius by counts in squares, each in constant time, and then visits only
-  // collected elements, so that empty surroundings cost almost nothing.
+  // Returns the mean of the collected elements around (x, y), weighted by inverse distance, as
+  // Develop() defines it; 0 if no collected element is near. Finds the radius by counts in squares,
+  // each in constant time, and then visits only collected elements, so that empty surroundings cost
+  // almost nothing.
   float At(int x, int y, Scratch& scratch) const;
 
  private:
   struct Collected {
     uint64_t elements = 0;
-    uint64_t rays = 0;  // at most rays_needed are counted for each element
+    uint64_t rays = 0;  // sum of min(number of rays, rays_needed_) over these elements
   };
   struct Neighbour {
     int x;
@@ -62,11 +62,13 @@ class ChannelFill {
   // [height + 1][width + 1]: entry (x, y) is the sum over the columns before x and the rows
   // before y.
   std::vector<uint32_t> element_sums_;
-  std::vector<uint64_t> ray_sums_;  // empty if rays_needed is 1: element_sums_ are the same then
-  // Column of every collected element, row by row, and the index at which each row begins.
+  std::vector<uint64_t> ray_sums_;  // empty if rays_needed_ is 1, as it would equal element_sums_
+  // columns_ holds the column of every collected element, row by row; row_begin_ the index in
+  // columns_ at which each row begins.
   std::vector<int> columns_;
   std::vector<size_t> row_begin_;
-  std::vector<double> weights_;  // weights_[d^2] = 1 / d: weight of a neighbour at distance d
+  // weights_[d^2] is the weight of a neighbour at distance d, in elements: 1 / d, or 2 if d = 0.
+  std::vector<double> weights_;
 };
 
 class ChannelFill::Scratch {
@@ -76,7 +78,7 @@ class ChannelFill::Scratch {
     uint64_t rays;
   };
   std::vector<Neighbour> neighbours_;
-  std::vector<Ring> nearest_first_;  // heap with the nearest neighbour on top
+  std::vector<Ring> nearest_first_;  // heap of the neighbours, the nearest on top
 };
 
 }  // namespace lf

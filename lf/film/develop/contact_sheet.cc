@@ -14,8 +14,8 @@ constexpr int kBorderPx = 4;
 constexpr uint8_t kBorderGrey = 24;
 
 // The columns (or rows) of a picture that are averaged into one column (or row) of the reduced
-// picture, from `begin` on, and the share of each in the average. Only parts of the first and of
-// the last may be covered.
+// picture, from `begin` on, and the share of each in the average. The first and the last of them
+// may be covered only in part.
 struct Cover {
   int begin = 0;
   std::vector<float> shares;  // their sum is 1
@@ -44,7 +44,7 @@ Image<uint8_t> Reduced(const Image<uint8_t>& picture, int width, int height) {
   const std::vector<Cover> columns = Covers(picture.width(), width);
   const std::vector<Cover> rows = Covers(picture.height(), height);
   Image<uint8_t> reduced(width, height, 3);
-  // Weighted mean of rows of the picture.
+  // Weighted mean, in linear light, of the rows that become one row of the reduced picture.
   std::vector<float> row(3 * static_cast<size_t>(picture.width()));
   for (int y = 0; y < height; ++y) {
     std::fill(row.begin(), row.end(), 0.0f);

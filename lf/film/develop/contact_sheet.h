@@ -29,7 +29,7 @@ class ContactSheet {
   Result<void> Write(const std::filesystem::path& path) const;
 
  private:
-  int width_;  // size of the pictures before they are reduced
+  int width_;  // size of the pictures before they are reduced, in pixels
   int height_;
   int columns_;
   int reduced_width_;

@@ -13,10 +13,12 @@ namespace lf {
 namespace {
 
 constexpr int kChannels = SensorPlate::kChannels;
-// Number of fills between two calls of is_interrupted(). A fill takes up to 0.1 ms.
+// Number of values (one channel of one element) that a thread fills between two calls of
+// is_interrupted(). Filling one value takes up to 0.1 ms.
 constexpr int kFilledPerQuestion = 64;
 
-// Returns the share of the completion in a channel with `count` collected rays.
+// Returns the weight of the completion (the interpolated part of the frame) in a channel that has
+// `count` collected rays: 1 if it has none. 0 if there is no completion.
 double ShareOf(const Completion* completion, int x, int y, uint64_t count) {
   if (completion == nullptr) return 0;
   const double share = completion->share.at(x, y);
@@ -24,7 +26,7 @@ double ShareOf(const Completion* completion, int x, int y, uint64_t count) {
 }
 
 // Returns the number of rays that decides whether a channel is filled: `count`, or the largest
-// number if the element is interpolated, because it then needs no fill.
+// uint32_t if the element has a completion, because it then needs no fill.
 uint32_t KnownCount(const Completion* completion, int x, int y, uint32_t count) {
   const bool is_completed = completion != nullptr && completion->share.at(x, y) > 0;
   return is_completed ? std::numeric_limits<uint32_t>::max() : count;
@@ -108,7 +110,7 @@ DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, 
   pool.ForEach(height, [&](size_t row) {
     const int y = static_cast<int>(row);
     ChannelFill::Scratch scratch;
-    int filled = 0;  // filled channels of this row
+    int filled = 0;  // number of values (channels of elements) filled in this row
     if (ends()) return;
     for (int x = 0; x < width; ++x) {
       Vec3 camera_rgb;

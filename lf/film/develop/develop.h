@@ -1,5 +1,5 @@
-// Develops sums and counts into a picture: average, fill, white balance, colour (thesis 4.3.1;
-// doc/ray.md, "Develop").
+// Develops the sums and counts of a sensor plate into a picture: average, fill, white balance,
+// colour (thesis 4.3.1; doc/ray.md, "Develop").
 #pragma once
 
 #include <array>
@@ -15,41 +15,42 @@ namespace lf {
 
 // The part of a frame that was interpolated from rebinned rays (render/hybrid/rebinned_rays.h).
 struct Completion {
-  Image<float> rgb;  // [height][width][3], in the units of the plate's values
+  Image<float> rgb;  // [height][width][3], as 16-bit values like those of the plate
   // [height][width] Weight of rgb, in [0, 1], in an element that also has collected rays; the mean
-  // of these rays has the weight 1 - share. A channel without collected rays takes rgb alone. 0:
-  // rgb is unknown.
+  // of these rays has the weight 1 - share. A channel without collected rays takes rgb alone. Where
+  // share is 0, rgb is unknown.
   Image<float> share;
 };
 
-// Default and largest DevelopOptions::fill_radius_px. The default is enough to fill the elements
-// between the rays of mosaics, or of LF pixels that are larger than elements.
+// Default and largest value of DevelopOptions::fill_radius_px, in elements. The default is enough
+// to fill the elements between the rays of mosaics, or of LF pixels that are larger than elements.
 inline constexpr int kFillRadius_px = 2;
 inline constexpr int kMostFillRadius_px = 4096;
 // An element that is smoothed takes light from collected elements (elements with rays) at most this
-// far away.
+// number of elements away.
 inline constexpr int kSmoothRadius_px = 32;
 
 struct DevelopOptions {
-  double pedestal = 0;  // radiance = (sum / count - pedestal) / scale
+  double pedestal = 0;  // radiance = (sum of values / number of rays - pedestal) / scale
   double scale = 65535;
   std::array<double, 3> white_balance = {1, 1, 1};
   Mat3 linear_srgb_from_camera = Mat3::Identity();
 
-  // An element with fewer rays than this in a channel, but at least one, is smoothed. 0 or 1: no
-  // element is smoothed.
+  // An element with fewer rays than this in a channel, but at least one, is smoothed: averaged with
+  // its neighbours. 0 or 1: no element is smoothed.
   uint32_t smooth_below = 0;
-  // A channel without a ray takes light from collected elements at most this far away. The channel
-  // stays black if there are none, because light that was not recorded must not be invented. 0:
-  // nothing is filled.
+  // An element without a ray in a channel takes light from elements that have one, at most this
+  // number of elements away. The channel stays black if there are none, because light that was not
+  // recorded must not be invented. 0: nothing is filled.
   int fill_radius_px = kFillRadius_px;
 
-  // For a plate with opacities: opacity = (sum / count - transparent) / (opaque - transparent).
+  // For a plate with opacities: opacity = (mean - transparent) / (opaque - transparent), where mean
+  // is the sum of values / number of rays of the opacity channel.
   double transparent = 0;
   double opaque = 65535;
 
-  // If given, mixed with collected light, and used alone in elements without rays. Not for a plate
-  // with opacities.
+  // Light interpolated from rebinned rays. If given, it is mixed with collected light, and used
+  // alone in elements without rays. Must be null for a plate with opacities.
   const Completion* completion = nullptr;
 
   // If given, any thread calls it, before each row and at least once for every 64 elements that are
@@ -59,14 +60,15 @@ struct DevelopOptions {
 
 struct DevelopedFrame {
   Image<float> rgb;           // [height][width][3] linear light, sRGB primaries
-  Image<uint32_t> ray_count;  // [height][width][3]
+  Image<uint32_t> ray_count;  // [height][width][3] number of rays
   Image<float> coverage;      // [height][width] share of the channels with a ray of their own
-  // [height][width] in [0, 1], multiplied into rgb; empty for a plate without opacities
+  // [height][width] in [0, 1]; empty for a plate without opacities. rgb is multiplied by it.
   Image<float> opacity = {};
   // [height][width] number of LF images of equal weight that would give the same noise; empty
   // without lens weights. With lens weights, ray_count holds sums of weights.
   Image<float> effective_count = {};
-  // [height][width] share of each element that was interpolated; empty without completion
+  // [height][width] share of each element that was interpolated from rebinned rays; empty without
+  // completion
   Image<float> interpolated = {};
 };
 
@@ -75,8 +77,9 @@ struct DevelopedFrame {
 // completion that has no ray, or fewer than smooth_below, takes the inverse-distance mean of
 // collected elements of the channel,
 //
-//   sum_i v_i / d_i  /  sum_i 1 / d_i      (Shepard 1968; d between element centres, in elements)
+//   (sum_i v_i / d_i) / (sum_i 1 / d_i)                                       (Shepard 1968)
 //
+// where v_i is the average of collected element i and d_i the distance of its centre, in elements,
 // over all collected elements within the smallest radius in which there are at least 4 of them,
 // with at least smooth_below rays together. The radius is at most fill_radius_px for an element
 // without a ray, and kSmoothRadius_px otherwise, even if it contains fewer. The element's own

@@ -13,7 +13,8 @@ namespace lf {
 Image<float> DevelopOpacity(const SensorPlate& plate, const DevelopOptions& options,
                             const std::function<bool()>& is_interrupted, ThreadPool& pool) {
   LF_CHECK(plate.has_opacity() && options.opaque > options.transparent);
-  // Number of fills between two calls of is_interrupted(). A fill takes up to 0.1 ms.
+  // Number of elements that a thread fills between two calls of is_interrupted(). Filling one takes
+  // up to 0.1 ms.
   constexpr int kFillsPerQuestion = 64;
   constexpr uint64_t kMostCount = std::numeric_limits<uint32_t>::max();
   const int width = plate.width(), height = plate.height();

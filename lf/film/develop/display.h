@@ -17,7 +17,8 @@ inline double LinearFromDisplay(double display) {
 }
 
 // Returns the 8-bit display value nearest to a linear value, clipped; 0 for NaN. The value is
-// exact, because the linear value is compared with those half-way between the display values.
+// exact, because the linear value is compared with the linear values of the half-way points between
+// display values.
 class Display8 {
  public:
   Display8() {
@@ -34,14 +35,15 @@ class Display8 {
     if (!(linear > 0)) return 0;
     if (linear >= 1) return 255;
     uint8_t value = first_[static_cast<int>(linear * kCells)];
-    while (above_[value] <= linear) ++value;  // at most once: a cell is narrower than a step
+    // Runs at most once, because a cell is narrower than the difference of two values of above_.
+    while (above_[value] <= linear) ++value;
     return value;
   }
 
  private:
   static constexpr int kCells = 4096;
   std::array<float, 256> above_;  // [i] smallest linear value whose display value is i + 1
-  // Display value at the beginning of each of kCells parts of [0, 1]
+  // Display value at the beginning of each of the kCells cells that divide [0, 1].
   std::array<uint8_t, kCells> first_;
 };
 

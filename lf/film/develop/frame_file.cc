@@ -13,8 +13,8 @@
 namespace lf {
 namespace {
 
-// Returns display values, which the encoder of the file clips to [0, 1] and rounds; nullopt if
-// interrupted.
+// Returns the sRGB display values of linear light, which the encoder of the file clips to [0, 1]
+// and rounds; nullopt if interrupted.
 std::optional<Image<float>> DisplayValues(const Image<float>& linear,
                                           const std::function<bool()>& is_interrupted) {
   Image<float> display(linear.width(), linear.height(), linear.channels());
@@ -60,8 +60,8 @@ struct DisplayStep {
   }
 };
 
-// Returns the display value of a stored colour, which is not multiplied with alpha, over black.
-// Alpha is a share of linear light.
+// Returns the 8-bit display value of a stored colour composited over black. `display` is not
+// multiplied by alpha, and alpha is a share of linear light.
 template <class T>
 uint8_t OverBlack(T display, T alpha) {
   static const Display8 display8;
@@ -69,8 +69,8 @@ uint8_t OverBlack(T display, T alpha) {
   return display8(static_cast<float>(LinearFromDisplay(display / kMost) * (alpha / kMost)));
 }
 
-// Returns the first three channels as display values over black. In files with alpha, floats (EXR)
-// are multiplied with alpha already, and integers (PNG) are not.
+// Returns the first three channels as display values, composited over black. In files with alpha,
+// floats (EXR) are multiplied by alpha already, and integers (PNG) are not.
 template <class T>
 Image<uint8_t> Picture(const Image<T>& image) {
   Image<uint8_t> picture(image.width(), image.height(), 3);

@@ -16,13 +16,13 @@
 namespace lf {
 
 enum class FrameFormat {
-  // exr: R G B count.R count.G count.B coverage. Plates with opacities add A, which is multiplied
-  // into R G B; with lens weights there is the channel effective, and with rebinned rays the
-  // channel interpolated. Colours are half, counts 32-bit integers.
+  // "exr": an EXR file with the channels R G B count.R count.G count.B coverage. Plates with
+  // opacities add A, by which R G B are multiplied; lens weights add the channel effective, and
+  // rebinned rays the channel interpolated. Counts are 32-bit integers, all other channels half.
   kExrHalf,
-  kExrFloat,  // exr-float: as exr, with colours as float
-  kPng8,      // png: sRGB, 8 bit; plates with opacities add alpha, by which RGB is not multiplied
-  kPng16,     // png16: as png, with 16 bit
+  kExrFloat,  // "exr-float": as "exr", with float instead of half
+  kPng8,      // "png": sRGB, 8 bit; plates with opacities add alpha, by which RGB is not multiplied
+  kPng16,     // "png16": as "png", with 16 bit
 };
 
 // Parses "exr", "exr-float", "png" or "png16"; none for any other text.
@@ -40,7 +40,7 @@ Result<void> WriteFrame(const std::filesystem::path& path, const DevelopedFrame&
                         FrameFormat format, const ImageMetadata& metadata,
                         const std::function<bool()>& is_interrupted = {});
 
-// Returns the picture of a frame's file of any format, over black, as 8-bit sRGB
+// Returns the picture in a frame's file of any format, composited over black, as 8-bit sRGB
 // [height][width][3], for contact sheet and video. kInput: as for ReadImage(), or the file has
 // fewer than three channels.
 Result<Image<uint8_t>> ReadDisplayImage(const std::filesystem::path& path);

@@ -19,8 +19,8 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// Returns the frame rate as text. Rates of television, such as 29.97, are fractions N * 1000 /
-// 1001.
+// Returns the frame rate as text for ffmpeg. Rates of television, such as 29.97, become fractions N
+// * 1000 / 1001 with an integer N.
 std::string FrameRate(double fps) {
   const double whole = std::round(fps * 1.001);
   if (fps != std::round(fps) && std::abs(fps * 1.001 - whole) < 1e-6 * whole)
@@ -58,7 +58,7 @@ Result<void> CheckVideoTool() {
     return OutputError(error.message +
                        "; a video needs ffmpeg with libx264 (Debian: apt-get install ffmpeg)");
   };
-  // Encodes one small picture, because an installed ffmpeg may lack the encoder.
+  // Encodes one small picture, because an installed ffmpeg may lack libx264.
   auto ffmpeg = StartFed({"ffmpeg", "-hide_banner", "-nostats", "-loglevel", "error", "-f",
                           "rawvideo", "-pixel_format", "rgb24", "-video_size", "16x16", "-i",
                           "pipe:0", "-c:v", "libx264", "-f", "null", "-"});
@@ -86,7 +86,7 @@ bool IsEmptyOrVideo(const fs::path& path) {
 Result<void> CheckVideoTarget(const fs::path& path) {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
   std::error_code error;
-  // A render makes the folder of its frames, but no other folder.
+  // The video's folder must exist, because a render makes no folder but that of its frames.
   if (!fs::is_directory(folder, error))
     return OutputError(
         fmt::format("--video {}: there is no folder {}", path.string(), folder.string()));
@@ -101,7 +101,7 @@ Result<void> CheckVideoTarget(const fs::path& path) {
 struct VideoWriter::State {
   fs::path path;
   fs::path unfinished;
-  int width = 0;  // size of the pictures; the size of the video is even
+  int width = 0;  // size of the pictures, in pixels; the video is cropped to even sizes
   int height = 0;
   double patience_s = 0;
   size_t picture_count = 0;

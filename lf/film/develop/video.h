@@ -16,9 +16,9 @@ Result<void> CheckVideoTool();
 // file that is not a video. kOutput otherwise.
 Result<void> CheckVideoTarget(const std::filesystem::path& path);
 
-// Writes an mp4 (H.264, yuv420p, sRGB as BT.709) of 8-bit sRGB pictures, frame by frame. Odd sizes
-// are cropped by one pixel, because H.264 needs even ones. The file appears under its name when it
-// is complete. One thread at a time may use a VideoWriter.
+// Writes an mp4 (H.264, yuv420p, sRGB tagged as BT.709) of 8-bit sRGB pictures, frame by frame. An
+// odd width or height is cropped by one pixel, because yuv420p needs even ones. The file appears
+// under its name when it is complete. One thread at a time may use a VideoWriter.
 class VideoWriter {
  public:
   //   patience_s  seconds after which ffmpeg is killed if it reads nothing, or does not end in

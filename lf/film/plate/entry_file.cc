@@ -58,7 +58,7 @@ std::string TextOf(const PlateEntries& entries) {
 
 Result<std::unique_ptr<Source>> Source::OfFile(const fs::path& path, const Kind& kind) {
   auto source = std::make_unique<Source>(path.string(), kind);
-  // O_NONBLOCK, because opening a named pipe would wait for its writer.
+  // Without O_NONBLOCK, opening a named pipe would wait for its writer.
   source->fd_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   struct stat status {};
   if (source->fd_ < 0 || ::fstat(source->fd_, &status) != 0)

@@ -21,12 +21,12 @@ static_assert(std::endian::native == std::endian::little, "numbers in the file a
 struct Kind {
   std::string_view magic;  // eight characters, the last a line feed
   uint32_t version;
-  // Words for messages:
-  std::string_view noun;       // names the kind of file: "is no plate"
+  // Words for error messages about such a file:
+  std::string_view noun;       // the kind of file, such as "plate" in "is no plate"
   std::string_view if_broken;  // what damage means to the user, and what to do
 };
 
-// Every head begins with these fields.
+// The head of every file, of plates or of rebinned rays, begins with these fields.
 struct HeadBegin {
   char magic[8];
   uint32_t version;
@@ -54,7 +54,7 @@ class Source {
 
   // Reads the next `size` bytes. kInput if fewer are left, or if they cannot be read.
   Result<void> Read(void* to, size_t size);
-  // Returns the error for a damaged file.
+  // Returns the error (kInput) that says that the file is damaged, why, and what to do.
   Error Damaged(const std::string& reason) const;
 
  private:
@@ -70,12 +70,14 @@ struct Front {
   PlateEntries entries;
 };
 
-// Reads a head of `head_bytes` bytes, text and checksum. kInput if the file is of another kind or
-// version, truncated or damaged, or if its text is not made of lines "key: value".
+// Reads a head of `head_bytes` bytes, the entries and the checksum of both. kInput if the file is
+// truncated, damaged, or of another kind or version, or if its text is not made of "key: value"
+// lines.
 Result<Front> ReadFront(Source& source, size_t head_bytes);
 
-// Returns head, text and checksum. Writes magic, version and text_bytes (HeadBegin) into the head.
-// The entries must be as PlateEntries demands.
+// Returns the first bytes of a file: head, text of the entries, and checksum of both. Writes magic,
+// version and text_bytes (HeadBegin) into the head. Keys and values must be as PlateEntries
+// demands.
 std::string FrontOf(const Kind& kind, std::string head, const PlateEntries& entries);
 
 // Writes a file from front to back.

@@ -22,11 +22,11 @@ namespace entry_file {
 class Source;
 }
 
-// The entries of a plate's file describe the plate, in the order written. Keys are words of
-// [a-z0-9_.], each once; values have no control characters.
+// Keys and values that describe the plate, in the order in which its file holds them. Keys are
+// words of [a-z0-9_.], and none occurs twice; values have no control characters.
 using PlateEntries = std::vector<std::pair<std::string, std::string>>;
 
-// Returns the value of a key; null if there is none.
+// Returns the value of a key; null if no entry has this key.
 const std::string* FindEntry(const PlateEntries& entries, std::string_view key);
 
 // Writes the plate atomically (core/file.h), compressed by the threads of `pool`. The bytes depend

@@ -54,7 +54,8 @@ Result<void> PlateReader::ReadHead() {
   if (head.rows_per_chunk < 1 || head.rows_per_chunk > most_rows)
     return InputError(fmt::format("{}: chunks of {} rows; expected 1 to {}", source_->name(),
                                   head.rows_per_chunk, most_rows));
-  // Refuses a file that is too short for its size, before anybody allocates a plate of this size.
+  // Refuses a file that is too short for the size of plate that its head states, before anybody
+  // allocates a plate of this size.
   const uint64_t least = uint64_t{(head.height - 1) / head.rows_per_chunk + 1} * sizeof(ChunkHead);
   if (head.wide_count > source_->left() / sizeof(WideWord) ||
       least + head.wide_count * sizeof(WideWord) > source_->left())
@@ -128,7 +129,8 @@ Result<void> PlateReader::AddWide(SensorPlate* plate) {
     LF_RETURN_IF_ERROR(source_->Read(block.data(), block.size() * sizeof(WideWord)));
     hasher.Add({reinterpret_cast<const char*>(block.data()), block.size() * sizeof(WideWord)});
     for (const WideWord& word : block) {
-      // No render adds 2^44 rays to one element. Without larger counts, sums of plates cannot wrap.
+      // Counts above 2^44, which no render reaches, are refused, so that adding plates cannot
+      // overflow 64 bits.
       if (word.index < next_index || word.index >= word_count ||
           word.count <= SensorPlate::kMaxCount || word.count > uint64_t{1} << 44 ||
           word.sum > 65535 * word.count)

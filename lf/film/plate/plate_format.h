@@ -13,7 +13,7 @@ namespace lf::plate_format {
 
 inline constexpr entry_file::Kind kKind = {"LFPLATE\n", 1, "plate", "the plate cannot be used"};
 
-// The file begins with this head. The text of the entries follows, then the hash of both.
+// A plate's file begins with this head. The text of its entries follows, then the hash of both.
 struct Head {
   char magic[8];
   uint32_t version;
@@ -26,10 +26,10 @@ struct Head {
 };
 static_assert(sizeof(Head) == 40);
 
-// Precedes each chunk, which holds the packed words of some rows, compressed.
+// Head of a chunk. The packed words of some rows of the plate follow it, compressed.
 struct ChunkHead {
   uint32_t stored_bytes;
-  uint32_t reserved;  // 0
+  uint32_t reserved;  // always 0
   uint64_t hash;      // XXH3 of the stored bytes, seeded by the number of the chunk
 };
 static_assert(sizeof(ChunkHead) == 16);

@@ -35,7 +35,7 @@ struct ElementSum {
 
 class SensorPlate {
  public:
-  static constexpr int kChannels = 3;  // the colours
+  static constexpr int kChannels = 3;  // the colours R, G and B
   static constexpr int kOpacityChannel = 3;
   static constexpr int kSumBits = 40;
   static constexpr uint64_t kOneRay = uint64_t{1} << kSumBits;
@@ -66,7 +66,7 @@ class SensorPlate {
   // Adds the sum of any number of rays. Needs sum <= 65535 * count.
   void Add(int x, int y, int channel, const ElementSum& rays);
 
-  // Adds another plate of the same size and channels.
+  // Adds all sums and counts of another plate, which must have the same size and channels.
   void Merge(const SensorPlate& other);
 
   // These functions show how sums and counts are stored, for files. words() are the packed words
@@ -104,12 +104,12 @@ class SensorPlate {
 // one plate that do not overlap may be written at the same time.
 class PlateTile {
  public:
-  // `rect` must lie on the plate.
+  // Makes a tile of the part `rect` of the plate, which must lie on the plate.
   PlateTile(SensorPlate* plate, const PixelRect& rect);
 
   const PixelRect& rect() const { return rect_; }
 
-  // The tile's words in row y of the plate, [width][channels()].
+  // Returns the tile's words in row y of the plate, [width][channels()].
   uint64_t* row(int y) {
     LF_DCHECK(y >= rect_.y_begin && y < rect_.y_end);
     return plate_->packed_.data() + plate_->IndexOf(rect_.x_begin, y, 0);

@@ -6,8 +6,9 @@
 
 namespace lf::testing {
 
-// Returns a plate of noise. About every tenth word is empty. If `has_wide`, the rays of two words
-// exceed any packed word; other words may be wide only because of the plate's count_limit.
+// Returns a plate of noise. About every tenth word is empty. If `has_wide`, two words have more
+// rays than a packed word can count; other words are wide only if they have more than count_limit
+// rays.
 inline SensorPlate NoisePlate(int width, int height, uint64_t seed, uint32_t count_limit,
                               bool has_wide) {
   SensorPlate plate(width, height, count_limit);

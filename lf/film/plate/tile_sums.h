@@ -1,6 +1,6 @@
-// Sums that a batch of LF images adds to one tile of a plate, before they are added to the plate.
-// They are small enough for the second level cache, and laid out so that the rays of neighbouring
-// LF pixels fall on neighbouring words.
+// Sums of the rays that a batch of LF images adds to one tile of a plate, kept here until they are
+// added to the plate. They are small enough for the second level cache, and laid out so that the
+// rays of neighbouring LF pixels fall on neighbouring words.
 #pragma once
 
 #include <cstddef>
@@ -16,13 +16,13 @@ namespace lf {
 
 class TileSums {
  public:
-  // For RGB LF images: sums of 16-bit values and the number of rays.
+  // Sums for RGB LF images: the sums of the 16-bit values R, G and B, then the number of rays.
   struct alignas(16) Element {
     uint32_t rgb_rays[4] = {};
   };
 
-  // For rays that count differently in each colour: sums of 16-bit values times counts, and the
-  // counts. The fourth lanes are not flushed.
+  // Sums for rays that count differently in each colour: sums of 16-bit value times count, and sums
+  // of counts, R G B. The fourth numbers are never added to the plate.
   struct alignas(16) CountedElement {
     uint32_t rgb[4] = {};
     uint32_t counts[4] = {};
@@ -51,8 +51,8 @@ class TileSums {
   // Largest number of rays of value 65535 whose sum fits in 32 bits.
   static constexpr uint32_t kMaxRays = 65537;
 
-  // ray_limit: number of rays after which sums are flushed (those of mosaics later, unless a test
-  // sets it below kMaxRays).
+  // ray_limit: number of rays after which sums are added to the plate; below kMaxRays for tests
+  // only. If it is kMaxRays, sums of mosaics take SensorPlate::kMaxCount rays.
   explicit TileSums(uint32_t ray_limit = kMaxRays)
       : ray_limit_(ray_limit),
         mosaic_limit_(ray_limit == kMaxRays ? SensorPlate::kMaxCount : ray_limit) {}
@@ -64,16 +64,16 @@ class TileSums {
   };
 
   // Makes `tile` the destination of everything that is added until Flush().
-  //   watched  elements of the tile whose sums Added() returns; they must live until its last
-  //            call. If empty, nothing is kept beside the sums.
-  //   target   kOpacity: the plate must have opacity; only RGB may be reserved, and nothing watched
+  //   watched  elements of the tile whose sums Added() returns; must outlive the calls of Added()
+  //   target   if kOpacity, the plate must have opacity, `watched` must be empty, and only
+  //            ReserveRgb() may be called
   void Begin(PlateTile* tile, std::span<const PlateElement> watched = {},
              Target target = Target::kColours);
   const PixelRect& rect() const { return tile_->rect(); }
 
-  // Words or elements from one row to the next. This is at least a cache line more than the width,
-  // because columns at a distance of a power of two would share a few lines of the first level
-  // cache.
+  // Number of words or elements from one row to the next. This is at least a cache line more than
+  // the width, because columns at a distance of a power of two would share a few lines of the first
+  // level cache.
   int stride() const { return rect().width() + 8; }
 
   // Returns the sums [height][stride()], to whose elements `rays` more rays may then be added, even
@@ -84,15 +84,16 @@ class TileSums {
     return elements_.data();
   }
 
-  // As ReserveRgb(), for counted elements [height][stride()].
+  // As ReserveRgb(), but returns sums [height][stride()] for rays that count differently in each
+  // colour.
   CountedElement* ReserveCounted(uint32_t rays) {
     if (rays > counted_headroom_) MakeCountedRoom(rays);
     counted_headroom_ -= rays;
     return counted_.data();
   }
 
-  // As ReserveRgb(), for words [height][kMosaicRows][stride()]. Zeros may be added to kMargin words
-  // in front of and behind the rows of the tile.
+  // As ReserveRgb(), but returns packed words [height][kMosaicRows][stride()] for mosaics. Zeros
+  // may be added to kMargin words in front of and behind the rows of the tile.
   uint64_t* ReserveMosaic(uint32_t rays) {
     if (rays > mosaic_headroom_) MakeMosaicRoom(rays);
     mosaic_headroom_ -= rays;
@@ -101,11 +102,11 @@ class TileSums {
 
   uint32_t max_reserve() const { return ray_limit_; }
 
-  // Adds everything to the plate; the sums are 0 again.
+  // Adds all sums to the plate and sets them to 0.
   void Flush();
 
   // Returns the exact sum and count that were added to a watched element since Begin(), over all
-  // three layouts, however often the sums were flushed meanwhile.
+  // three layouts (RGB, counted and mosaic), however often the sums were flushed meanwhile.
   //   index  of the element among those given to Begin()
   ElementSum Added(size_t index, int channel) const;
 
@@ -118,7 +119,8 @@ class TileSums {
   void FlushRgbBy(const AddTo& add_to);
   void FlushCounted();
   void FlushMosaic();
-  // Return the sums that are not flushed yet, one function for each layout; 0 if it is not in use.
+  // Return the sums that are not flushed yet, one function for each layout; 0 if the layout is not
+  // in use.
   ElementSum PendingRgb(const PlateElement& element, int channel) const;
   ElementSum PendingCounted(const PlateElement& element, int channel) const;
   ElementSum PendingMosaic(const PlateElement& element, int channel) const;
@@ -136,12 +138,12 @@ class TileSums {
   uint32_t rgb_headroom_ = 0;
   uint32_t counted_headroom_ = 0;
   uint32_t mosaic_headroom_ = 0;
-  // All 0, except between the first Reserve*() and Flush().
+  // Sums of the three layouts. They are 0, except between the first Reserve*() and Flush().
   LargeVector<Element> elements_;
   LargeVector<CountedElement> counted_;
   LargeVector<uint64_t> words_;
   std::span<const PlateElement> watched_;
-  std::vector<ElementSum> watched_flushed_;  // [watched][channel] flushed since Begin()
+  std::vector<ElementSum> watched_flushed_;  // [watched][channel] sums flushed since Begin()
 };
 
 }  // namespace lf
