@@ -30,8 +30,8 @@ double AngleBetween(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-// Returns the largest angle between the optical axis and a ray of the LF image; pi if it is
-// unknown.
+// Returns the largest angle, in radians, between the optical axis and a ray of the LF image; pi if
+// it is unknown.
 double ViewAngle(const Intrinsics& k) {
   const Mat3 to_camera = k.InverseMatrix();
   const auto angle_of = [&](const Vec3& ideal) {
@@ -98,8 +98,8 @@ struct CameraTree::Builder {
   void Add(size_t begin, size_t end, int levels) {
     const auto digit = [&](size_t i, int level) { return codes[i].first >> (3 * (level - 1)) & 7; };
     const bool is_leaf = end - begin <= kMostInLeaf || levels == 0;
-    // Skips levels at which all codes have the same digit, because such a node would have a single
-    // child.
+    // Skips levels at which all codes have the same digit, because a node of such a level would
+    // have a single child.
     while (!is_leaf && levels > 0 && digit(begin, levels) == digit(end - 1, levels)) --levels;
     const size_t node = tree.nodes_.size();
     tree.nodes_.emplace_back();
@@ -160,10 +160,11 @@ CameraTree::CameraTree(const LightField& light_field) : light_field_(light_field
 void CameraTree::ForEachLeaf(const SeenRegion& region,
                              const std::function<void(size_t leaf, bool all_inside)>& visit) const {
   constexpr double kRounding = 1e-6;
-  // If the angle between the optical axes is larger, the LF camera and the frame have no ray
-  // direction in common.
+  // If the angle between the optical axes of an LF camera and of the frame is larger than this,
+  // they have no ray direction in common.
   const double most_angle = region.ray_angle_rad() + view_angle_rad_ + kRounding;
-  uint32_t inside_until = 0;  // nodes with a smaller index are inside, because a node above them is
+  // Nodes with a smaller index than this are inside the region, because a node above them is.
+  uint32_t inside_until = 0;
   for (uint32_t n = 0; n < nodes_.size();) {
     const Node& node = nodes_[n];
     const Vec3 axis = Eigen::Map<const Eigen::Vector3f>(node.axis).cast<double>();

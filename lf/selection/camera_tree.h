@@ -39,16 +39,16 @@ class CameraTree {
   // The last child has the same `next` as node n.
   struct Node {
     float low[3], high[3];  // bounds of the LF cameras' positions, rounded outwards
-    float axis[3];          // at most spread_rad from the optical axis of every LF camera
+    float axis[3];  // unit vector; at most spread_rad from the optical axis of each LF camera
     float spread_rad;
-    uint32_t next;  // the node after all nodes below this one
+    uint32_t next;  // index of the node after all nodes below this one
     uint32_t leaf_begin, leaf_end;
   };
   struct Builder;
 
   const LightField& light_field_;
   std::vector<LfImageId> ids_;
-  std::vector<uint32_t> leaf_begin_;  // [leaf_count() + 1]: offsets in ids_
+  std::vector<uint32_t> leaf_begin_;  // [leaf_count() + 1]: index of a leaf's first entry in ids_
   std::vector<Node> nodes_;           // a node is before the nodes below it
   double view_angle_rad_ = 0;         // largest angle between a ray and its LF camera's axis
 };

@@ -1,5 +1,5 @@
-// Boxes around the ideal positions of the pixels of a distorted LF image. With them, selection
-// finds quickly which parts of the LF image may contribute.
+// Boxes around the ideal positions (without lens distortion) of the pixels of an LF image. With
+// them, selection finds quickly which parts of the LF image may contribute.
 #pragma once
 
 #include <vector>
@@ -10,8 +10,9 @@
 
 namespace lf {
 
-// A part of the LF image. If has_bounds, the ideal position q of each of its pixels that has a ray
-// satisfies |q - middle| <= extent in every coordinate. Otherwise q is unknown.
+// A part of the LF image. If has_bounds, the ideal position q (homogeneous, without lens
+// distortion) of each of its pixels that has a ray satisfies |q - middle| <= extent in every
+// coordinate. Otherwise q is unknown.
 struct IdealCell {
   PixelRect rect;
   Vec3 middle;

@@ -17,7 +17,7 @@ class ImageIndex {
  public:
   //   places  places of all LF images of light_field, which may be a part of a larger light field
   ImageIndex(const LightField& light_field, ImagePlaces places);
-  // Makes an index with the places of ShuffledPlaces().
+  // Makes an index with the random order that ShuffledPlaces() makes from `seed`.
   explicit ImageIndex(const LightField& light_field, uint64_t seed = 0);
 
   const LightField& light_field() const { return tree_.light_field(); }

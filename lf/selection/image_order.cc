@@ -61,15 +61,15 @@ class Takers {
 
  private:
   std::vector<size_t> begin_;
-  std::vector<std::pair<uint32_t, uint64_t>> takers_;  // frame, number of rays
+  std::vector<std::pair<uint32_t, uint64_t>> takers_;  // index of a frame, number of rays
 };
 
 std::vector<uint32_t> RoundRobin(const std::vector<uint32_t>& shuffled,
                                  std::span<const std::vector<ImageRays>> frames) {
   const Takers takers(shuffled.size(), frames);
   const ImagePlaces places = PlacesOf(shuffled);
-  // [frame]: LF images that the frame takes, the next at the end. An LF image that is taken is
-  // removed once it is at the end.
+  // [frame]: LF images that the frame takes, the next one last. An LF image that is already in the
+  // order is removed once it is last.
   std::vector<std::vector<uint32_t>> waiting(frames.size());
   for (size_t f = 0; f < frames.size(); ++f) {
     for (const ImageRays& image : frames[f]) waiting[f].push_back(image.id.value);
@@ -77,7 +77,7 @@ std::vector<uint32_t> RoundRobin(const std::vector<uint32_t>& shuffled,
               [&](uint32_t a, uint32_t b) { return places.of_images[a] > places.of_images[b]; });
   }
   std::vector<uint64_t> rays(frames.size(), 0);
-  using Turn = std::pair<uint64_t, uint32_t>;  // number of rays, frame
+  using Turn = std::pair<uint64_t, uint32_t>;  // number of rays of a frame so far, its index
   std::priority_queue<Turn, std::vector<Turn>, std::greater<>> turns;
   for (uint32_t f = 0; f < frames.size(); ++f) turns.emplace(0, f);
   std::vector<bool> is_taken(shuffled.size(), false);
@@ -93,7 +93,8 @@ std::vector<uint32_t> RoundRobin(const std::vector<uint32_t>& shuffled,
     std::vector<uint32_t>& queue = waiting[f];
     while (!queue.empty() && is_taken[queue.back()]) queue.pop_back();
     if (queue.empty()) continue;
-    // If the frame has got rays in turns of other frames since it was queued, it is queued again.
+    // A frame that has got rays in turns of other frames since it was queued takes no LF image now,
+    // and is queued again.
     if (had == rays[f]) take(queue.back());
     turns.emplace(rays[f], f);
   }

@@ -31,9 +31,9 @@ enum class ImageOrder { kShuffle, kRoundRobin, kArea };
 const char* NameOf(ImageOrder order);
 std::optional<ImageOrder> ImageOrderOf(const std::string& name);
 
-// Places of the LF images of a whole light field, or of a package.
+// Places (ranks in the order) of the LF images of a whole light field, or of a package.
 struct ImagePlaces {
-  std::vector<uint32_t> of_images;  // [LfImageId]
+  std::vector<uint32_t> of_images;  // [LfImageId] place of the LF image
   uint32_t end = 0;                 // number of LF images of the whole light field
 };
 

@@ -13,10 +13,10 @@ namespace {
 
 constexpr double kLensMargin = 1e-6;
 constexpr double kPlateMarginPx = 1e-6;
-constexpr double kPixelMarginPx = 1e-6;    // rounding error of a vertex
-constexpr int kNeighboursPx = 2;           // number of pixels on each side of a ray
+constexpr double kPixelMarginPx = 1e-6;    // rounding error of a vertex of the polygon
+constexpr int kNeighboursPx = 2;           // number of pixels read on each side of a ray
 constexpr double kBesideElement_px = 3.1;  // pixels beside an element that a prefilter reads
-constexpr double kZeroMargin = 1e-12;      // rounding error of a form, relative to its terms
+constexpr double kZeroMargin = 1e-12;      // rounding error of a linear form, relative to its terms
 
 // Returns how many pixels on each side of a ray are read for the ray.
 int NeighboursOf(PixelReach reach, const PinholeCamera& lf_camera, const RenderCamera& camera) {
@@ -26,8 +26,8 @@ int NeighboursOf(PixelReach reach, const PinholeCamera& lf_camera, const RenderC
   return static_cast<int>(std::ceil(width_px / 2 + kBesideElement_px));
 }
 
-// Returns the largest difference, within the LF image, between a form and its value in the middle
-// of the image.
+// Returns the largest difference, within the LF image, between a linear form of the pixel position
+// and its value in the middle of the image.
 double SpreadOf(const PixelForm& form, const Intrinsics& image) {
   return 0.5 * (std::abs(form[0]) * image.width_px + std::abs(form[1]) * image.height_px);
 }
@@ -36,7 +36,8 @@ double InMiddle(const PixelForm& form, const Intrinsics& image) {
   return Value(form, 0.5 * image.width_px, 0.5 * image.height_px);
 }
 
-// Returns true if the form is below 0 in the whole LF image, by more than the rounding error.
+// Returns true if a linear form of the pixel position is below 0 in the whole LF image, by more
+// than the rounding error.
 bool IsBelowZero(const PixelForm& form, const Intrinsics& image) {
   const double spread = SpreadOf(form, image), middle = InMiddle(form, image);
   return middle + spread < -kZeroMargin * (spread + std::abs(middle) + std::abs(form[2]));
@@ -88,8 +89,8 @@ class Clipped {
     count_ = kept_count;
   }
 
-  // Returns the bounds of the pixels whose centres are in the polygon's bounding box, and of
-  // `beyond` more on each side.
+  // Returns the bounds of the pixels whose centres are in the polygon's bounding box, extended by
+  // `beyond` pixels on each side and clipped to the image.
   PixelRect Pixels(const Intrinsics& image, int beyond) const {
     if (empty()) return {};
     Vec2 low = vertices_[0], high = vertices_[0];
@@ -177,7 +178,7 @@ PixelRect BoundsOfCells(std::span<const IdealCell> cells, std::span<const PixelF
   return rect;
 }
 
-// Returns a cell whose box contains the ideal positions of all pixels.
+// Returns a cell whose box contains the ideal positions of all pixels of the LF image.
 IdealCell BoundImage(const Intrinsics& image, std::span<const IdealCell> cells) {
   IdealCell whole;
   if (!image.has_distortion()) {
@@ -219,10 +220,11 @@ ImageOverlap::ImageOverlap(const PinholeCamera& lf_camera, std::span<const Ideal
   axes_world_ = direction_world_ * box.extent.asDiagonal();
 }
 
-// A ray of direction d meets the lens plane at M d / (f.d) (doc/ray.md, 5). The separating line is
-// normal to the direction from the lens centre to the point where the ray of direction
-// middle_world_ meets the lens plane. It touches a circle that contains every polygon by which
-// Rect() clips, so that PlainlyMisses() never contradicts Rect().
+// A ray of direction d meets the lens plane at M d / (f.d) (doc/ray.md, 5), where f is the render
+// camera's forward direction and the matrix M is constant. The separating line is normal to the
+// direction from the lens centre to the point where the ray of direction middle_world_ meets the
+// lens plane. It touches a circle that contains every polygon by which Rect() clips, so that
+// PlainlyMisses() never contradicts Rect().
 bool ImageOverlap::PlainlyMisses(const RenderCamera& render_camera) const {
   if (!has_bounds_) return false;
   constexpr double kRounding = 1e-9;

@@ -13,7 +13,7 @@
 
 namespace lf {
 
-// Which pixels the value of a ray is computed from.
+// The pixels from which the value of a ray is computed.
 enum class PixelReach {
   kOwn,         // one pixel: rays pass through pixel centres only
   kNeighbours,  // 4 or 16 pixels around the ray, which may pass through any point

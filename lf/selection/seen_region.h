@@ -58,10 +58,11 @@ class SeenRegion {
 
   Vec3 centre_, right_, up_, forward_;
   double radius_w_ = 0;
-  // [side]: largest and smallest component of t in the direction of this side.
+  // [side]: largest (slope_) and smallest (other_slope_) component of t = X / (depth of X) in the
+  // direction of this side.
   double slope_[4] = {};
   double other_slope_[4] = {};
-  double q_low_ = 0, q_high_ = 0;  // bounds of q, in 1 / world units
+  double q_low_ = 0, q_high_ = 0;  // bounds of q = 1 / (depth of X)
   double ray_angle_rad_ = 0;
   bool is_empty_ = false;       // no element has a focus point
   bool is_everything_ = false;  // no bounds are known

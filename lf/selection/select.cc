@@ -12,11 +12,11 @@ namespace lf {
 namespace {
 
 // Number of frames that are processed together. It limits the memory: each pair of a frame and a
-// leaf that it visits takes 8 bytes.
+// leaf of the camera tree that it visits takes 8 bytes.
 constexpr size_t kFramesTogether = 64;
 constexpr size_t kLeavesPerTask = 4;
 
-// Caches the cells of the last LF camera, because neighbouring LF cameras mostly have the same
+// Caches the IdealCells of the last LF camera, because neighbouring LF cameras mostly have the same
 // intrinsics.
 class CellsOfLast {
  public:
@@ -42,14 +42,14 @@ void Prefetch(const LfCamera& camera) {
 
 PixelRect WholeImage(const Intrinsics& k) { return {0, 0, k.width_px, k.height_px}; }
 
-// A pair of a frame and a leaf whose LF cameras may have rays for the frame.
+// A pair of a frame and a leaf of the camera tree whose LF cameras may have rays for the frame.
 struct Visit {
   uint32_t leaf;
   uint32_t frame : 31;
   uint32_t all_inside : 1;
 };
 
-// Returns the visits of all frames, sorted by leaf and then by frame.
+// Returns the visits (pairs of a frame and a leaf) of all frames, sorted by leaf, then by frame.
 std::vector<Visit> VisitsOf(const CameraTree& tree, std::span<const SeenRegion> regions,
                             ThreadPool& pool) {
   std::vector<std::vector<Visit>> of_frames(regions.size());
@@ -85,7 +85,7 @@ class Selector {
     return VisitsOf(index_.tree(), regions_, pool);
   }
 
-  // Appends the LF images of one leaf that at least one frame takes.
+  // Appends to `found` the LF images of one leaf that at least one frame takes.
   //   visits  all visits of this leaf
   void Examine(std::span<const Visit> visits, CellsOfLast* cells,
                std::vector<SelectedImage>* found) const {
@@ -93,7 +93,8 @@ class Selector {
     const std::span<const LfImageId> ids = index_.tree().Leaf(visits.front().leaf);
     for (size_t i = 0; i < ids.size(); ++i) {
       const LfImageId id = ids[i];
-      // LF cameras that are neighbours in space are scattered in memory.
+      // The processor cannot foresee the next LF camera, because neighbours in space are scattered
+      // in memory.
       if (i + 1 < ids.size()) Prefetch(light_field.cameras[ids[i + 1].value]);
       const LfCamera& lf_camera = light_field.cameras[id.value];
       const PinholeCamera camera = light_field.Camera(id);
@@ -144,8 +145,8 @@ std::vector<size_t> LeavesOf(std::span<const Visit> visits) {
   return begin;
 }
 
-// Sorts by place, and joins the entries of the same LF image, which were found for different
-// frames.
+// Sorts by place in the order, and joins the entries of the same LF image, which were found for
+// different frames.
 void JoinByPlace(std::vector<SelectedImage>* images) {
   std::sort(images->begin(), images->end(),
             [](const SelectedImage& a, const SelectedImage& b) { return a.place < b.place; });

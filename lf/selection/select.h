@@ -18,7 +18,7 @@
 
 namespace lf {
 
-// A range [begin, end) of places in the order.
+// A range [begin, end) of places (ranks of LF images) in the order (image_order.h).
 struct PlaceRange {
   uint32_t begin = 0;
   uint32_t end = UINT32_MAX;
@@ -31,7 +31,7 @@ struct PlaceRange {
 struct TakingFrame {
   RenderCamera camera;
   PlaceRange places = {};  // the frame takes only the LF images at these places
-  // Returns false if the frame does not take an LF image, because it has no lens weight there.
+  // Returns false if the frame does not take an LF image, because all its lens weights there are 0.
   // Empty: no LF image is left out for this reason. Several threads call it at the same time.
   std::function<bool(LfImageId id)> takes = {};
 };
@@ -41,7 +41,7 @@ struct TakingFrame {
 // misses the frame.
 struct SelectedImage {
   LfImageId id;
-  uint32_t place = 0;        // its rank in the order (image_order.h)
+  uint32_t place = 0;        // rank of the LF image in the order (image_order.h)
   PixelRect rect;            // bounds of its rectangles for all frames that take it
   uint32_t frame_count = 0;  // number of frames that take it
   uint64_t ray_count = 0;    // sum of the pixel counts of these rectangles: rays to be tested
@@ -71,7 +71,7 @@ bool IsWithinAngle(const LfCamera& lf_camera, const RenderCamera& frame,
 std::vector<SelectedImage> SelectImages(const ImageIndex& index,
                                         std::span<const TakingFrame> frames,
                                         const SelectOptions& options, ThreadPool& pool);
-// Selects the LF images of frames that take all of them.
+// Selects LF images for frames that take every LF image that contributes to them.
 std::vector<SelectedImage> SelectImages(const ImageIndex& index,
                                         std::span<const RenderCamera> frames,
                                         const SelectOptions& options, ThreadPool& pool);

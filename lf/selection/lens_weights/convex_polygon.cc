@@ -7,8 +7,8 @@
 namespace lf {
 namespace {
 
-// Returns the area of the intersection of the triangle (origin, a, b) with the disk; negative if
-// the triangle is clockwise.
+// Returns the area of the intersection of the triangle (origin, a, b) with the disk around the
+// origin; negative if the triangle is clockwise.
 double TriangleAreaInDisk(const Vec2& a, const Vec2& b, double radius) {
   const double r2 = radius * radius;
   const auto sector = [r2](const Vec2& from, const Vec2& to) {

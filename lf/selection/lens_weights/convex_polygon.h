@@ -10,7 +10,7 @@ namespace lf {
 class ConvexPolygon {
  public:
   ConvexPolygon() = default;
-  //   vertices  counter-clockwise
+  //   vertices  the corners in counter-clockwise order
   explicit ConvexPolygon(std::vector<Vec2> vertices) : vertices_(std::move(vertices)) {}
 
   static ConvexPolygon SquareAround(const Vec2& middle, double half_side);

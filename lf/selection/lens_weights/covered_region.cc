@@ -26,7 +26,7 @@ std::vector<Vec2> ConvexHull(std::span<const Vec2> points) {
         hull.pop_back();
       hull.push_back(*it);
     }
-    hull.pop_back();  // the other chain begins with it
+    hull.pop_back();  // the other chain begins with this point
   };
   add_chain(sorted.begin(), sorted.end());
   add_chain(sorted.rbegin(), sorted.rend());

@@ -14,11 +14,11 @@
 namespace lf {
 namespace {
 
-// Approximate upper bound of the movement of lens points from one node to the next, as a share of
-// the distance between LF cameras.
+// Approximate upper bound of how far the lens points of LF cameras move from one node of the grid
+// to the next, as a share of the distance between LF cameras.
 constexpr double kStepOfDistance = 1.0 / 3;
-constexpr int kMostNodes = 48;         // columns or rows of nodes
-constexpr int kLeastNodeStep_px = 32;  // a finer grid would cost more time than the rays
+constexpr int kMostNodes = 48;         // largest number of columns or rows of nodes
+constexpr int kLeastNodeStep_px = 32;  // in elements; a finer grid would cost more than the rays
 // If lens points move by less than this share of the distance between LF cameras, the LF cameras
 // are in the lens plane except for rounding errors.
 constexpr double kAtRest = 1e-6;
@@ -60,7 +60,8 @@ double DistanceAround(const LensPoints& seen, double radius) {
   return std::max(radius, distances[count - 1]) * std::sqrt(kPi / static_cast<double>(count));
 }
 
-// Largest movement of lens points from one edge of the plate to the other.
+// Largest movement of the lens points of LF cameras, in world units, as the element moves from the
+// left to the right edge of the plate (across), or from the upper to the lower edge (down).
 struct Movement {
   double across = 0;
   double down = 0;
@@ -198,7 +199,7 @@ FrameWeights::Node FrameWeights::MakeNode(const RenderCamera& frame,
   Node node;
   const std::optional<Vec3> focus = FocusPointOfElement(
       frame, NodePosition(column, columns_, width_px_), NodePosition(row, rows_, height_px_));
-  if (!focus) return node;  // no ray: beyond the horizon of a tilted focus plane
+  if (!focus) return node;  // the node is beyond the horizon of a tilted focus plane
   const LensPoints seen = PointsAt(frame, centres_world, *focus);
   std::vector<double> shares(seen.points.size(), 0);
   const auto mix = [&](const std::vector<double>& part, double by) {

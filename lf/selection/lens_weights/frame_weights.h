@@ -36,11 +36,11 @@ inline constexpr int kLensWeightsVersion = 3;
 
 // Returns "none", "area", "hat" or "auto".
 const char* NameOf(LensWeights weights);
-std::optional<LensWeights> LensWeightsOf(std::string_view name);  // nullopt: another word
+std::optional<LensWeights> LensWeightsOf(std::string_view name);  // nullopt for any other word
 
-// AutoHatShare() returns the share of the hats in the weights of kAuto. It is 1 if the diameter is
-// at most kHatsUpTo camera distances, and 0 from kCellsFrom camera distances on. In between it
-// changes smoothly, so that nothing jumps while an aperture opens.
+// AutoHatShare() returns the share of the hats in the weights of kAuto. It is 1 if the lens's
+// diameter is at most kHatsUpTo camera distances, and 0 from kCellsFrom camera distances on. In
+// between it changes smoothly, so that nothing jumps while an aperture opens.
 inline constexpr double kHatsUpTo = 1;
 inline constexpr double kCellsFrom = 1.75;
 double AutoHatShare(double diameter_w, double camera_distance_w);
@@ -99,9 +99,9 @@ class FrameWeights {
   struct CameraShare {
     size_t camera;
     double share;
-    double distance_w;  // from the lens centre to the LF camera's lens point
+    double distance_w;  // distance from the lens centre to the LF camera's lens point
   };
-  using Node = std::vector<CameraShare>;  // the LF cameras with a share above 0
+  using Node = std::vector<CameraShare>;  // the LF cameras with a share above 0 at a node
   // Position of the middle of a block, across or down: the index of the node to its left (or above
   // it), and the distance from this node in 1/256 of the distance between nodes.
   struct Place {
@@ -123,10 +123,10 @@ class FrameWeights {
   int rows_ = 1;
   double farthest_w_ = 0;             // largest CameraShare::distance_w at any node
   double step_w_ = 0;                 // largest movement of lens points from one node to the next
-  std::vector<Place> places_across_;  // [end of the block]
-  std::vector<Place> places_down_;
-  std::vector<size_t> nodes_begin_;  // [camera]: index of its first weight in weights_, or kNone
-  std::vector<uint16_t> weights_;    // for each camera that takes part: [row][column], in 1/256
+  std::vector<Place> places_across_;  // [end_x] of a block: position of its middle, across
+  std::vector<Place> places_down_;    // [end_y] of a block: position of its middle, down
+  std::vector<size_t> nodes_begin_;   // [camera]: index of its first weight in weights_, or kNone
+  std::vector<uint16_t> weights_;     // for each camera that takes part: [row][column], in 1/256
 };
 
 // CameraDistance() returns the approximate distance between neighbouring LF cameras around the

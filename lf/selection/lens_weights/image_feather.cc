@@ -30,8 +30,9 @@ ImageFeather::ImageFeather(const PinholeCamera& lf_camera, const RenderCamera& f
   const double distance = frame.focus_plane.offset_w - n.dot(lens.CentreWorld());
   const double sign = distance < 0 ? -1 : 1;
   const Mat3 direction = lens.cam_from_world.rotation.transpose() * lens.intrinsics.InverseMatrix();
-  // X - c' = direction e distance / n.(direction e), where c' is the centre of the lens, and X - c
-  // = X - c' - offset. to_focus e is X - c multiplied by |n.(direction e)|.
+  // X is the focus point of the position e = (x, y, 1) on the plate, c the centre of the LF camera,
+  // and c' the centre of the lens: X - c' = distance (direction e) / n.(direction e), and
+  // X - c = X - c' - offset. If X is in front of the lens, to_focus e = (X - c) |n.(direction e)|.
   const Mat3 to_focus = sign * (distance * Mat3::Identity() - offset * n.transpose()) * direction;
   to_focus_ = lf_camera.cam_from_world.rotation * to_focus;
   to_pixel_ = intrinsics_.Matrix() * to_focus_;
@@ -50,7 +51,8 @@ void ImageFeather::OfRow(int x, int y, int count, uint16_t* feather) const {
     feather[i] = 0;
     if (!(before_lens_.dot(e) > 0)) continue;
     const double side = runs_forward_.dot(e) < 0 ? -1 : 1;
-    // Most positions are inside, and this test is five times as fast as what follows.
+    // Most positions are farther inside the LF image than its feathered border. This test is five
+    // times as fast as At().
     if (!is_distorted && IsInside(side * (to_pixel_ * e)))
       feather[i] = kWholeFeather;
     else
@@ -58,8 +60,8 @@ void ImageFeather::OfRow(int x, int y, int count, uint16_t* feather) const {
   }
 }
 
-// A projective map takes a rectangle in front of it to a quadrilateral, which is within any
-// rectangle that contains its corners.
+// It suffices to test the corners of `rect`, because a projective map takes a rectangle in front of
+// it to a quadrilateral, which is within any rectangle that contains its corners.
 bool ImageFeather::IsWhole(const PixelRect& rect) const {
   if (intrinsics_.has_distortion()) return false;
   double side = 0;

@@ -40,8 +40,8 @@ class ImageFeather {
 
  private:
   double At(const Vec3& direction) const;
-  // True if the position at = (x z, y z, z) is so far from the borders of the LF image that the
-  // feather is whole.
+  // True if the position (x, y), given as at = (x z, y z, z), is so far from the borders of the LF
+  // image that the feather is whole.
   bool IsInside(const Vec3& at) const {
     return at.z() > 0 && at.x() >= border_px_ * at.z() &&
            at.x() <= (intrinsics_.width_px - border_px_) * at.z() &&
@@ -52,12 +52,12 @@ class ImageFeather {
   double border_px_;  // width of the feathered border, and a little more
   // The following are linear in the position e = (x, y, 1) on the plate. X is the focus point of
   // the position, c the centre of the LF camera.
-  Mat3 to_focus_;      // X - c in axes of the LF camera, times a positive factor
-  Mat3 to_pixel_;      // the same in pixels, as homogeneous coordinates, without lens distortion
+  Mat3 to_focus_;      // times e: X - c in axes of the LF camera, times a positive factor
+  Mat3 to_pixel_;      // times e: homogeneous position of X in the LF image, without distortion
   Vec3 before_lens_;   // times e: > 0 if X is in front of the lens
   Vec3 runs_forward_;  // times e: >= 0 if X - c points forward; otherwise c - X does
   mutable std::once_flag map_is_made_;
-  // made on the first call of OfRow(), because it is slow
+  // Made by the first call of OfRow() that needs it, because making it is slow.
   mutable std::optional<DistortionMap> map_;
 };
 

@@ -83,8 +83,8 @@ class HatMaker {
 };
 
 // For a point outside of the circle around the opening, returns the other point that is nearest to
-// the closest place of this circle. Only the buckets around that place are searched. Returns
-// nullopt if these contain no other point, or if `point` is in the circle.
+// the place on this circle that is closest to `point`. Only the buckets around that place are
+// searched. Returns nullopt if these contain no other point, or if `point` is in the circle.
 std::optional<Vec2> PointAtRim(const Vec2& point, std::span<const Vec2> points,
                                const PointGrid& grid, double radius) {
   const double distance = point.norm();

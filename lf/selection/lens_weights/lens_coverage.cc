@@ -27,7 +27,7 @@ std::vector<Vec2> OneOfEachPlace(std::span<const Vec2> points, double distance) 
 }
 
 // Returns the median of the distances to the nearest neighbours, weighted by their squares, so that
-// cameras that crowd in a corner do not decide. 0 if there are no two points.
+// cameras that crowd in a corner do not decide. 0 if there are fewer than two points.
 double DistanceOfDistinct(const std::vector<Vec2>& points) {
   const PointGrid grid(points);
   std::vector<double> distances;

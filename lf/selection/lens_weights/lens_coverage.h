@@ -10,8 +10,8 @@
 
 namespace lf {
 
-// The light at a point of the lens is unknown if the point is farther than this from every LF
-// camera, in distances between LF cameras.
+// The light at a point of the lens is unknown if the rays of all LF cameras meet the lens plane
+// farther than this from the point, in units of the distance between LF cameras.
 inline constexpr double kFarDistances = 2;
 
 // Returns the distance between LF cameras: the median of the distances of points from their nearest
@@ -23,7 +23,7 @@ double DistanceOfMost(std::span<const Vec2> points);
 // two different points.
 CoveredRegion CoveredBy(std::span<const Vec2> points);
 
-// Programs warn if the uncovered share is above this.
+// Programs warn if the uncovered share of a lens is above this.
 inline constexpr double kMuchUncovered = 0.1;
 
 struct LensCoverage {
@@ -37,6 +37,7 @@ struct LensCoverage {
   double fitting_diameter_w = 0;
 };
 
+// Returns how well the LF cameras cover the opening of the lens.
 //   points  one for each LF camera, in lens coordinates: the intersection of its ray (through the
 //           focus point of the element, say) with the lens plane
 LensCoverage CoverageOf(std::span<const Vec2> points, const Aperture& aperture);

@@ -24,10 +24,11 @@ class PointGrid {
   // Ring k consists of the buckets whose larger distance in columns or rows from this bucket is k.
   int ring_count() const { return std::max(columns_, rows_); }
 
-  // Returns a lower bound of the distance of the points in a ring.
+  // Returns a lower bound of the distance of a ring's points from the place that it surrounds.
   double LeastDistanceOf(int ring) const { return std::max(0, ring - 1) * bucket_size_; }
 
-  // Calls use(i) for the points in a ring of `centre`, which may be anywhere in the plane.
+  // Calls use(i) for the index i of each point in a ring around `centre`, which may be anywhere in
+  // the plane.
   template <class Use>
   void ForEachInRing(const Vec2& centre, int ring, const Use& use) const {
     const int column = ColumnOf(centre), row = RowOf(centre);
