@@ -19,7 +19,8 @@ std::string Brief(double value) {
 
 std::string Exact(double value) { return fmt::format("{}", value == 0 ? 0.0 : value); }
 
-// A column of the table: the texts [frame][part] of one fact.
+// A column of the table: one fact about the camera of each frame, as texts [frame][part]. A part is
+// a component, such as x.
 struct TableColumn {
   CameraFact fact;  // the fact in the first frame
   std::vector<std::vector<std::string>> texts;

@@ -9,15 +9,16 @@
 
 namespace lf {
 
-// Returns one line for each fact that is the same in all frames, then a table of the other facts:
-// one line per frame, with aligned columns below two header lines for the names of the facts and of
-// their parts. Numbers have five digits.
+// Returns one line for each fact about the camera (such as its position) that is the same in all
+// frames, then a table of the other facts: one line per frame, with aligned columns below two
+// header lines for the names of the facts and of their parts. Numbers have five digits.
 std::string CameraTable(const CameraPath& path, const std::vector<FrameId>& frames);
 
-// Returns the facts of one frame, one per line.
+// Returns the facts about the camera of one frame, one per line.
 std::string CameraBlock(const CameraPath& path, FrameId frame);
 
-// Returns one line per frame below a header line, with all digits; infinity is "inf".
+// Returns comma-separated values: one line per frame below a header line, with all digits; infinity
+// is "inf".
 std::string CameraCsv(const CameraPath& path, const std::vector<FrameId>& frames);
 
 // Returns {"fps", "frames", "resolution", "unit_m", "cameras": [{"frame": 1, ...}, ...]} with all

@@ -13,7 +13,7 @@ namespace lf {
 // long as it is unknown; "verifying" when all LF images are encoded.
 std::string ProgressDetail(const CompressProgress& now);
 
-// Returns ratio, quality and speed, skipped LF images, and the next step.
+// Returns the report: compression ratio, quality, speed, skipped LF images, and the next command.
 std::string CompressText(const CompressReport& report, const CompressOptions& options);
 std::string CompressJson(const CompressReport& report, const CompressOptions& options);
 

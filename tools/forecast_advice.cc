@@ -12,8 +12,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kMostOfLimit = 0.98;
 
-// Returns the change of 1 / depth that moves the copies of an edge kMostOfLimit * kDoubleEdge_px
-// elements apart; infinite for a single LF camera.
+// Returns the change of 1 / depth, from that of the focus plane, at which the copies of an edge are
+// kMostOfLimit * kDoubleEdge_px elements apart; infinite for a single LF camera.
 double StepPerW(const RenderCamera& camera, const FrameDensity& density) {
   const double elements = camera.pinhole.intrinsics.fx_px * density.camera_distance_w;
   return elements > 0 ? kMostOfLimit * kDoubleEdge_px / elements : kInfinity;

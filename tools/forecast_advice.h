@@ -29,11 +29,11 @@ struct ForecastAdvice {
 ForecastAdvice AdviceOf(const PreprocessReport& report, const CameraPath& path,
                         bool are_depths_known);
 
-// Returns "31.2 mm", "2.05 m", "1.2 km".
+// Returns a length with its unit, such as "31.2 mm", "2.05 m" or "1.2 km".
 std::string LengthText(double length_w, double unit_m);
-// Returns "between 1.2 m and 3 m" or "farther than 1.2 m", rounded inwards.
+// Returns a range, such as "between 1.2 m and 3 m" or "farther than 1.2 m", rounded inwards.
 std::string RangeText(const DepthRange& range, double unit_m);
-// Returns "30 mm", rounded down.
+// Returns a length, such as "30 mm", rounded down.
 std::string AtMostText(double length_w, double unit_m);
 
 }  // namespace lf

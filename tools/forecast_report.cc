@@ -42,7 +42,7 @@ const FrameForecast& Worst(const PreprocessReport& report, const Badness& badnes
       [&](const FrameForecast& a, const FrameForecast& b) { return badness(a) < badness(b); });
 }
 
-// Returns a few frames, spread over the film.
+// Returns the indices of at most 12 frames, spread over the film.
 std::vector<size_t> ShownFrames(size_t frame_count) {
   constexpr size_t kMost = 12;
   std::vector<size_t> shown;
@@ -70,7 +70,7 @@ void AddPackages(const PreprocessReport& report, const ForecastFacts& facts, std
   }
   if (report.packages.size() > 1)
     *lines +=
-        fmt::format("largest of their rays / mean: {:.3f}\n", LargestOverMean(report.packages));
+        fmt::format("rays, largest package / mean: {:.3f}\n", LargestOverMean(report.packages));
 }
 
 void AddDensity(const PreprocessReport& report, const CameraPath& path, std::string* lines) {
@@ -100,9 +100,9 @@ namespace {
 std::string DepthsText(const ForecastFacts& facts) {
   if (facts.depths_from == "LF images") return " (depths estimated from LF images)";
   if (!facts.depths_from.empty()) return "";
-  return " (25 % off the focus; no focus distance is advised, because neither the calibration nor "
-         "the LF images tell the depths of the scene: give --depths NEAR FAR, lf_depth_range in "
-         "transforms.json, or the points3D of a COLMAP model)";
+  return " (assumed to be 25 % off the focus distance; no focus distance is advised, because "
+         "neither the calibration nor the LF images tell the depths of the scene: give --depths "
+         "NEAR FAR, lf_depth_range in transforms.json, or the points3D of a COLMAP model)";
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ struct ForecastFacts {
   std::string light_field;     // LIGHTFIELD as the user typed it
   std::string output;          // folder of the packages; empty: nothing is written (--plan)
   std::string render_options;  // options of lfrenderer that the packages need
-  bool rebins = false;         // RenderMode::kRebin or kHybrid
+  bool rebins = false;         // true for RenderMode::kRebin and kHybrid
   ImageOrder order = ImageOrder::kShuffle;
   uint64_t seed = 0;
   int thread_count = 1;
@@ -24,18 +24,20 @@ struct ForecastFacts {
   std::string depths_from;
 };
 
-// Returns warnings that the capture is too sparse: what to expect, why, and what would help.
+// Returns warnings about missing LF images, double edges, black frames, and lenses that exceed the
+// capture: what to expect, why, and what would help.
 std::vector<std::string> DensityWarnings(const PreprocessReport& report, const CameraPath& path,
                                          const ForecastFacts& facts);
 
 // Returns the LF images that packages need and whose files do not exist or are empty.
 MissingImages MissingOf(const PreprocessReport& report);
 
-// Returns one line per fact, a table of packages, a table of some frames, and the warnings.
+// Returns the report as text: one line per fact, a table of packages, a table of some frames, and
+// the warnings.
 std::string ForecastText(const PreprocessReport& report, const CameraPath& path,
                          const ForecastFacts& facts);
 
-// Returns all packages and all frames; lengths are in world units.
+// Returns JSON about all packages and all frames; lengths are in world units.
 std::string ForecastJson(const PreprocessReport& report, const CameraPath& path,
                          const ForecastFacts& facts);
 

@@ -52,8 +52,8 @@ void Warn(const LightField& light_field, const ExposureArguments& arguments,
          {});
 }
 
-// Returns all LF images if `asks_all` is true, otherwise the LF images that share their pose with
-// another one.
+// Returns the LF images whose files are asked for their exposure: all if `asks_all` is true,
+// otherwise those that share their pose with another one.
 std::vector<LfImageId> ImagesToAsk(const LightField& light_field, bool asks_all) {
   std::vector<bool> is_asked(light_field.size(), asks_all);
   if (!asks_all) {
@@ -67,7 +67,7 @@ std::vector<LfImageId> ImagesToAsk(const LightField& light_field, bool asks_all)
   return ids;
 }
 
-// Returns "-2, 0 and +2", rounded to hundredths.
+// Returns exposures in stops as text, such as "-2, 0 and +2", rounded to hundredths.
 std::string StopsText(const std::vector<double>& stops) {
   std::string text;
   for (size_t i = 0; i < stops.size(); ++i) {
@@ -130,7 +130,7 @@ Result<std::optional<ExifGains>> StateBrackets(const ExposureArguments& argument
     LF_ASSIGN_OR_RETURN(gains, GainFromExif(stated, light_field));
   }
   if (arguments.mask_clipped) light_field->encoding.masks_clipped = true;
-  ApplyBrackets(light_field);  // again, because --exclude and gains changed the light field
+  ApplyBrackets(light_field);  // once more, because --exclude and gains changed the light field
   return gains;
 }
 
@@ -226,8 +226,8 @@ std::string FalloffText(const FoundFalloff& falloff) {
   const std::string min = fmt::format("{:.1f}", 100 * falloff.corner_min);
   const std::string max = fmt::format("{:.1f}", 100 * falloff.corner_max);
   return fmt::format(
-      "{} % of the light is left in the corners; a tenth of the places lie beyond "
-      "{:.2f} of the way there",
+      "{} % of the light is left in the corners; a tenth of the compared places lie "
+      "beyond {:.2f} of the distance from the axis to the corners",
       min == max ? min : fmt::format("{} to {}", min, max), falloff.reach);
 }
 

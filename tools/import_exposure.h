@@ -38,31 +38,34 @@ Result<std::optional<ExifGains>> StateBrackets(const ExposureArguments& argument
                                                LightField* light_field,
                                                std::vector<double>* lights);
 
-// Adds the warning no-f-number, and the warning no-brackets if --mask-clipped masks nothing.
+// Adds the warning no-f-number if --gain-from-exif found no f-number, and no-brackets if
+// --mask-clipped masks nothing. With --match-exposure and masks, first updates the report's
+// brackets.
 void WarnOfBracketOptions(const ExposureArguments& arguments, const std::optional<ExifGains>& gains,
                           LightField* light_field, CaptureReport* report);
 
-// Estimates the exposure and writes it into the light field. Warns about gains and falloffs that
-// stay unchanged.
+// Estimates the gains of the LF images and, with --vignetting, the falloffs of their lenses, and
+// writes them into the light field. Warns about gains and falloffs that stay unchanged.
 Result<MatchedExposure> MatchAndApply(const ExposureArguments& arguments,
                                       const CommonOptions& common,
                                       const std::atomic<bool>& interrupted, ThreadPool& pool,
                                       LightField* light_field, CaptureReport* report);
 
-// Returns the line `brackets` of the report: "25 poses x 3 exposures, -2, 0 and +2 stops by
+// Returns the line `brackets` of the report, such as "25 poses x 3 exposures, -2, 0 and +2 stops by
 // lf_gain".
 std::string BracketsText(const FoundBrackets& brackets);
-// Returns the line `gains` of the report.
+// Returns the line `gains` of the report: the range of the gains that --gain-from-exif computed.
 std::string ExifGainsText(const ExifGains& gains);
 
 nlohmann::ordered_json BracketsJson(const FoundBrackets& brackets);
 nlohmann::ordered_json ExifGainsJson(const ExifGains& gains);
 
-// Returns the line `exposure` of the report and the lines below it: "81 of 81 images matched, ...".
+// Returns the line `exposure` of the report, such as "81 of 81 images matched by ...".
 std::string ExposureText(const MatchedExposure& exposure);
-// Returns the line `seams` of the report.
+// Returns the line `seams` of the report: how much neighbouring images differ before and after they
+// are matched.
 std::string SeamsText(const MatchedExposure& exposure);
-// Returns the line `falloff` of the report.
+// Returns the line `falloff` of the report: the share of the light that is left in the corners.
 std::string FalloffText(const FoundFalloff& falloff);
 
 nlohmann::ordered_json ExposureJson(const MatchedExposure& exposure);

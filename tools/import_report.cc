@@ -51,15 +51,15 @@ Spread Degrees(const Spread& rad) {
   return {DegreesFromRadians(rad.min), DegreesFromRadians(rad.median), DegreesFromRadians(rad.max)};
 }
 
-// Return a number, a spread or a point for people, with five digits. A spread is one number if its
-// ends have the same digits.
+// Return a number, a spread or a point as text for people, with five digits. A spread is one number
+// if its smallest and largest value have the same digits.
 std::string Brief(double value) { return fmt::format("{:.5g}", value == 0 ? 0.0 : value); }
 std::string Brief(const Spread& spread) {
   const std::string min = Brief(spread.min), max = Brief(spread.max);
   return min == max ? max : fmt::format("{} ({} to {})", Brief(spread.median), min, max);
 }
 std::string Brief(Vec3 point) {
-  for (double& x : point)  // hides rounding errors
+  for (double& x : point)  // coordinates that are only rounding errors become 0
     if (std::abs(x) < 1e-9 * point.cwiseAbs().maxCoeff()) x = 0;
   return fmt::format("{}, {}, {}", Brief(point.x()), Brief(point.y()), Brief(point.z()));
 }

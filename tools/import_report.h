@@ -13,22 +13,22 @@ namespace lf {
 
 struct ImportReport {
   std::string light_field;  // LIGHTFIELD as the user typed it
-  std::string first_image;  // path of its file, which shows where the images were found
+  std::string first_image;  // path of the first image's file, which shows where images were found
   CaptureReport capture;
-  std::optional<ImageFaults> faults;  // nullopt: not checked
+  std::optional<ImageFaults> faults;  // nullopt: the files were not checked
   size_t excluded_count = 0;
-  std::optional<ExifGains> exif_gains;      // nullopt: not requested
-  std::optional<MatchedExposure> exposure;  // nullopt: not requested
-  std::string written;                      // path of the transforms.json; "": not written
+  std::optional<ExifGains> exif_gains;      // nullopt without --gain-from-exif
+  std::optional<MatchedExposure> exposure;  // nullopt: exposures were not matched
+  std::string written;                      // path of the transforms.json; "": nothing was written
 };
 
 // Adds the warnings missing-images and broken-images if `faults` contains such LF images.
 void WarnOfFaults(const LightField& light_field, ImportReport* report);
 
-// Returns one line per fact, then the warnings.
+// Returns the report as text: one line per fact, then the warnings.
 std::string ReportText(const ImportReport& report);
 
-// Returns all digits; unknown values are null.
+// Returns the report as JSON, with all digits; unknown values are null.
 std::string ReportJson(const ImportReport& report);
 
 }  // namespace lf

@@ -11,7 +11,7 @@
 namespace lf {
 namespace {
 
-constexpr size_t kMostMessage = 72;  // characters; the log has the whole message
+constexpr size_t kMostMessage = 72;  // longest shown message, in characters; the log has all of it
 
 std::string EngineText(const ClusterJob& job) {
   if (job.engine == ClusterEngine::kLocal)

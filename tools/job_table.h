@@ -11,7 +11,7 @@ namespace lf {
 // Returns one line about the whole job, and a table with a row for each package.
 std::string JobTable(const ClusterJob& job, const JobStatus& status);
 
-// Returns "3 of 8 packages done, 2 running; 214 of 480 frames, 47 %".
+// Returns a summary such as "3 of 8 packages done, 2 running; 214 of 480 frames, 47 %".
 std::string JobSummary(const JobStatus& status);
 
 }  // namespace lf

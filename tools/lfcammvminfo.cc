@@ -29,7 +29,7 @@ program also checks the path: the exit code is 0 if the path has no error.)",
 
 struct Arguments {
   std::string path;
-  uint32_t frame = 0;  // 0: all frames
+  uint32_t frame = 0;  // number of the frame to be shown; 0: all frames
   std::optional<double> unit_m;
   bool csv = false;
 };

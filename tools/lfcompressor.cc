@@ -105,8 +105,9 @@ void AddQuality(CLI::App& app, Arguments& a) {
       quality
           .Add("--threshold X", a.threshold,
                "Drop details below this (depends on the profile)\n"
-               "Wavelet coefficients smaller than X become 0. The unit is a step of 256 greys. If "
-               "the option is not given, X is 3, or 8 with --profile thesis.")
+               "Wavelet coefficients smaller than X become 0. The unit of X is 1/255 of the range "
+               "from black to white. If the option is not given, X is 3, or 8 with --profile "
+               "thesis.")
           ->check(CLI::Range(0., 255.));
   quality
       .Add("--target-psnr DB", a.target_psnr,

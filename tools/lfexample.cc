@@ -32,8 +32,8 @@ a COLMAP model. A warning says when the depth is uncertain, and what to try. Ren
 };
 
 // Returns the LF camera nearest to the middle of the capture whose LF image can be read and that is
-// nearly level, because levelling a picture crops it. kOutput: the machine lacks memory or open
-// files.
+// nearly level, because levelling a picture crops it. If there is none, it need not be level.
+// kOutput: the machine lacks memory or open files.
 lf::Result<lf::LfImageId> FindMiddleCamera(const lf::LightField& light_field,
                                            const lf::LfImageStore& store) {
   lf::MachineFailure failure;
@@ -56,8 +56,8 @@ lf::Result<lf::LfImageId> FindMiddleCamera(const lf::LightField& light_field,
   return found;
 }
 
-// Finds a camera by its number or by the name of its image: the whole name, its last part, or the
-// last part without the suffix.
+// Finds an LF camera by its number, or by the name of its image: the whole name, its last part, or
+// the last part without the suffix. "-1" is FindMiddleCamera().
 lf::Result<lf::LfImageId> FindCamera(const lf::LightField& light_field,
                                      const lf::LfImageStore& store, const std::string& text) {
   if (text == "-1") return FindMiddleCamera(light_field, store);
@@ -155,7 +155,7 @@ int main(int argc, char** argv) {
     LF_ASSIGN_OR_RETURN(options.camera, FindCamera(light_field, *store, camera));
     LF_ASSIGN_OR_RETURN(const lf::ExamplePath example,
                         lf::MakeExamplePath(light_field, *store, options, pool));
-    // A path that does not render is a bug of ours; find it here and not in the renderer.
+    // A path that cannot be parsed is a bug of ours, and is reported here instead of by lfrenderer.
     LF_RETURN_IF_ERROR(lf::ParsePathYaml(example.yaml, output, light_field.unit_m));
     LF_RETURN_IF_ERROR(lf::WriteFileAtomically(output, example.yaml));
     if (!example.doubt.empty())

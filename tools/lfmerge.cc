@@ -35,8 +35,8 @@ added. The program needs the memory of one frame. It keeps the plates. The exit 
 renders left out LF images because they were missing or broken.)",
 };
 
-// Returns the LF images of a light field that is in the folder of the frames. They must not be
-// overwritten, and the plates do not state where the LF images are.
+// Returns the image files of the light field in the folder of the frames, if there is one. They
+// must not be overwritten, and the plates do not state where they are.
 std::vector<std::filesystem::path> LfImagesIn(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> images;
   std::error_code error;

@@ -55,7 +55,7 @@ bit-identical to those of a render without interruption.)",
 
 using Progress = std::function<void(const lf::RenderProgress&)>;
 
-// The result of a render with the options made from the arguments.
+// The report of a render, and its options, which were made from the arguments.
 struct Rendered {
   lf::Result<lf::RenderReport> report;
   lf::RenderOptions options;

@@ -126,7 +126,8 @@ Result<void> Act(const lf::SubmitArguments& arguments, const lf::CommonOptions& 
                         lf::RunPackage(job, number, lf::NodeName(), lf::CatchInterrupts()));
     const Result<void> outcome = lf::OutcomeOf(job.packages[number].name, state);
     if (state.phase != lf::TaskPhase::kDone || outcome) return outcome;
-    // Slurm must see the package as done; the finishing task judges the film.
+    // The package is done, but not as required. Slurm must see it as done, because the finishing
+    // task judges the whole film.
     lf::LogWarning("{}", outcome.error().message);
     return {};
   }

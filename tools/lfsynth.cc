@@ -231,7 +231,7 @@ int main(int argc, char** argv) {
     if (!a.truth.empty()) {
       LF_ASSIGN_OR_RETURN(path, lf::ReadPathYaml(a.truth, 1.0));
     }
-    // The lock prevents mixing two scenes in one folder.
+    // The lock keeps two processes from mixing their scenes in one folder.
     LF_ASSIGN_OR_RETURN(const lf::FileLock lock, LockFolder(a.output));
     LF_RETURN_IF_ERROR(CheckMayWrite(a));
     const auto [width_px, height_px] =

@@ -91,7 +91,7 @@ void AddInterpolation(OptionGroup& group, RebinArguments& a) {
       ->check(CLI::Range(1, 8));
   group.AddChoice("--reparameterise", a.reparameterise, {"on", "off"},
                   "Measure distances of rays on lens and focus plane\n"
-                  "on: of each frame\n"
+                  "on: distances are measured on the lens plane and focus plane of each frame\n"
                   "off: distances are measured on the planes of the slab");
 }
 

@@ -20,7 +20,8 @@ struct RebinArguments {
   std::vector<double> slab_position_w, slab_forward;
 
   void AddTo(CLI::App& app);
-  // Converts the arguments. kUsage: values that are impossible for a slab.
+  // Converts the arguments to options. kUsage if a value is impossible, or if values contradict
+  // each other.
   Result<RebinPassOptions> Make(uint64_t seed) const;
 };
 

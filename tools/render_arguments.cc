@@ -20,7 +20,7 @@
 namespace lf {
 namespace {
 
-// Parses the value of --fill.
+// Parses the value of --fill: a radius in elements, or "off", which is 0.
 Result<int> ParseFill(const std::string& text) {
   if (text == "off") return 0;
   int radius_px = -1;
@@ -177,7 +177,7 @@ void AddRunning(CLI::App& app, RenderArguments& a) {
       ->check(NotEmpty());
 }
 
-// Reads "samples>=N" or "noise<=X"; an empty text is no rule.
+// Reads "samples>=N" into *samples, or "noise<=X" into *noise; an empty text is no rule.
 Result<void> ReadRule(const std::string& text, const std::string& option,
                       std::optional<uint32_t>* samples, std::optional<double>* noise) {
   if (text.empty()) return {};

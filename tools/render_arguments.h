@@ -19,8 +19,8 @@
 namespace lf {
 
 struct RenderArguments {
-  std::vector<std::string> inputs;  // LIGHTFIELD PATH.yaml, or PACKAGE...
-  LightFieldArgument light_field;   // options of the light field; path: --lightfield
+  std::vector<std::string> inputs;  // the words LIGHTFIELD PATH.yaml, or PACKAGE...
+  LightFieldArgument light_field;   // its options; its `path` is the value of --lightfield
   std::string output, video, frames, memory = "8G", format = "exr", mode = "collect";
   std::string estimator = "auto", filter = "auto", lens_weights = "auto", back_end = "fast",
               lf_pixels = "auto";
@@ -44,7 +44,7 @@ struct RenderArguments {
   //   seed_given  true if --seed is given; packages contain a seed of their own
   Result<void> Check(bool seed_given) const;
 
-  // Converts the arguments.
+  // Converts the arguments to options.
   //   frame_count  number of frames of the film
   Result<RenderOptions> MakeOptions(const CommonOptions& common, size_t frame_count) const;
 

@@ -12,7 +12,8 @@ constexpr const char* kAdvice =
     "the report names them; once they are mended, render again without --resume, which would keep "
     "the finished frames";
 
-// Returns "2 of 20 in package-0000, 1 of 18 in package-0003".
+// Returns how many LF images packages lack, such as "2 of 20 in package-0000, 1 of 18 in
+// package-0003".
 std::string PackagesText(const RenderReport& report) {
   constexpr size_t kMostNamed = 20;
   std::string text;

@@ -14,13 +14,14 @@ namespace lf {
 //   advice  remedy that the message gives to the user
 MissingImages MissingOf(const RenderReport& report, const std::string& advice);
 
-// Returns true if the limit accepts what the render left out. A number is compared with all
-// packages together, in which each LF image counts once; a percentage with each package.
+// Returns true if the limit accepts the LF images that the render left out. A limit that is a
+// number holds for all packages together, in which each LF image counts once; a percentage holds
+// for each package.
 bool Accepts(const MissingLimit& limit, const RenderReport& report);
 
 // Warns about LF images that were left out, if the limit accepts them. kBelowRequired if the limit
 // does not accept them, or if `required` is an error; the message contains both faults.
-//   required  the result of CheckRequired()
+//   required  the result of CheckRequired() or CheckRequiredNoise()
 Result<void> EndOfRender(const RenderReport& report, const MissingLimit& limit,
                          const Result<void>& required);
 

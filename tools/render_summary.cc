@@ -46,7 +46,7 @@ void WarnOfEmptyElements(const RenderReport& report) {
                CauseOfEmptyElements(report, *worst));
 }
 
-// Reports how much of the pictures is interpolated, and from what.
+// Reports how much of the pictures is interpolated, and from how many rebinned rays.
 void TellRebinning(const RenderReport& report) {
   if (!report.rebinning) return;
   double least = 1, most = 0;
@@ -72,7 +72,7 @@ void TellRebinning(const RenderReport& report) {
                                   : "there was no room for all rays");
 }
 
-// Reports which lens weights kAuto chose.
+// Reports which lens weights the frames have: area, hat, or a mix of both.
 void TellLensWeights(const RenderReport& report) {
   size_t cells = 0, hats = 0, both = 0;
   for (const FrameReport& frame : report.frames) {
@@ -94,7 +94,7 @@ void TellLensWeights(const RenderReport& report) {
         cells, hats, both);
 }
 
-// Reports with how many LF images frames reached the required noise.
+// Reports how many frames reached the requested noise, and with how many LF images.
 void TellNoise(const RenderReport& report) {
   uint64_t fewest = UINT64_MAX, most = 0;
   size_t measured = 0, met = 0;
@@ -111,8 +111,8 @@ void TellNoise(const RenderReport& report) {
   LogInfo("noise: {} of {} frames have at most the requested noise{}", met, measured, images);
 }
 
-// Counts the frames whose badness exceeds the limit, and calls `warn` with the count and the worst
-// frame.
+// Counts the frames whose badness exceeds the limit. If there are any, calls `warn` with the count
+// and the worst frame.
 template <class Badness>
 void WarnOfFrames(const RenderReport& report, double limit, const Badness& badness,
                   const std::function<void(size_t count, const FrameReport& worst)>& warn) {

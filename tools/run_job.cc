@@ -52,8 +52,8 @@ Result<void> RunJob(ClusterJob job, FileLock lock, const std::vector<size_t>& nu
     outcome = WaitForJob(job, stop, [&] { Show(job, meter); });
   }
   if (!outcome && outcome.error().kind != ErrorKind::kBelowRequired) return outcome.error();
-  // Show what lfrenderer reported about the whole film: rays, warnings, where to look. Its error is
-  // left out here, because it is returned as `outcome`.
+  // Shows what lfrenderer reported about the whole film: rays, warnings, where to look. Its error
+  // is left out here, because it is returned as `outcome`.
   for (const std::string& line : LinesOfLastStart(FinishingTask(job).log))
     if (!line.starts_with("error: ")) LogInfo("{}", line);
   if (common.json) LF_RETURN_IF_ERROR(PrintReport(ToJson(job, LookAtJob(job))));

@@ -57,7 +57,7 @@ Result<fs::path> FindRenderer(const std::string& asked_for) {
   return renderer;
 }
 
-// The parts of the command line PACKAGES -- ARGUMENTS.
+// The parts of the command line of lfsubmit: PACKAGES -- ARGUMENTS, the latter for lfrenderer.
 struct Words {
   std::vector<fs::path> files;
   std::vector<std::string> arguments;

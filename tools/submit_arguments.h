@@ -17,15 +17,15 @@ namespace lf {
 struct SubmitArguments {
   std::vector<std::string> words;  // PACKAGES, and after "--" the arguments of lfrenderer
   std::string output, frames, video, memory, time_limit, renderer;
-  std::optional<std::string> engine;  // unset: local for a new job
+  std::optional<std::string> engine;  // unset: local for a new job, unchanged for a resumed one
   std::optional<uint64_t> at_once;
   std::optional<uint32_t> most_crashes;
   std::vector<std::string> sbatch_options;
   bool no_contact_sheet = false, overwrite = false, wait = false;
   // The arguments below are for an existing job.
   std::string status, cancel, resume;
-  std::vector<std::string> finish;       // DIR FRAMES
-  std::vector<std::string> run_package;  // NUMBER DIR
+  std::vector<std::string> finish;       // the two values of --finish: DIR FRAMES
+  std::vector<std::string> run_package;  // the two values of --run-package: NUMBER DIR
   std::string run_finish;
 
   void AddTo(CLI::App& app);
@@ -37,7 +37,7 @@ struct SubmitArguments {
 
   // Returns a new job. Reads all packages and checks the arguments of lfrenderer.
   Result<ClusterJob> MakeJob(const CommonOptions& common) const;
-  // Applies the given engine, processes, memory and limits to a job that is resumed.
+  // Applies the given arguments to a job that is resumed, and writes the job to its file.
   Result<void> Change(ClusterJob* job, const CommonOptions& common) const;
 
  private:

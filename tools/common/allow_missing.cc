@@ -23,7 +23,7 @@ bool ReadDigits(std::string_view text, uint64_t* value) {
   return error == std::errc{} && rest == end;
 }
 
-// Reads "2.5" as millionths of a percent, from 0 to 100.
+// Reads a percentage from 0 to 100, such as "2.5", as a number of millionths of a percent.
 bool ReadPercentage(std::string_view text, uint64_t* millionths) {
   const size_t point = text.find('.');
   uint64_t whole = 0, decimals = 0;
@@ -54,7 +54,7 @@ Result<MissingLimit> MissingLimit::Parse(const std::string& text) {
 
 bool MissingLimit::Allows(uint64_t missing, uint64_t asked) const {
   if (!is_share_) return missing <= value_;
-  // No light field has more LF images, and the products below fit into 64 bits.
+  // No light field has more LF images than this, and the products below fit into 64 bits.
   const uint64_t most = UINT32_MAX;
   return std::min(missing, most) * 100 * kMillion <= std::min(asked, most) * value_;
 }

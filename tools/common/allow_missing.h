@@ -31,7 +31,7 @@ class MissingLimit {
 
  private:
   std::string text_ = "0";
-  uint64_t value_ = 0;  // LF images, or millionths of a percent
+  uint64_t value_ = 0;  // number of LF images or, if is_share_, millionths of a percent
   bool is_share_ = false;
 };
 
@@ -55,8 +55,8 @@ struct MissingImages {
 // Returns the outcome of a program that has written all of its results: success if nothing is
 // missing, or, with a warning, if the limit accepts what is missing. Otherwise kBelowRequired.
 Result<void> EndWithMissing(const MissingImages& missing, const MissingLimit& limit);
-// As above, for a caller that has itself compared the numbers with the limit, for example
-// separately for each package.
+// Returns the same outcome for a caller that has itself compared the numbers with the limit, for
+// example separately for each package.
 //   is_accepted  result of this comparison
 Result<void> EndWithMissing(const MissingImages& missing, const MissingLimit& limit,
                             bool is_accepted);

@@ -8,7 +8,7 @@
 
 namespace lf {
 
-// Returns bytes. The units are powers of 1024. kUsage: the message names the option.
+// Returns the number of bytes. The units are powers of 1024. kUsage: the message names the option.
 Result<size_t> ParseByteSize(const std::string& text, const std::string& option);
 
 }  // namespace lf

@@ -90,7 +90,7 @@ std::string NamesOf(const CLI::Option& option) {
   for (const std::string& name : option.get_snames()) names += "-" + name + ", ";
   for (const std::string& name : option.get_lnames()) names += "--" + name + ", ";
   names.resize(names.size() - 2);
-  if (option.get_type_size() == 0) return names;  // a flag
+  if (option.get_type_size() == 0) return names;  // flags have no placeholder
   const std::string type_name = option.get_type_name();
   return names + " " + type_name.substr(0, type_name.find(':'));
 }
@@ -110,8 +110,8 @@ std::string SummaryOf(const CLI::Option& option) {
   return fmt::format("{} ({})", summary, value);
 }
 
-// Returns the allowed values "0 to 180", from the description of a validator: "INT in [0 - 180]".
-// Returns nothing for a choice of words, because the placeholder shows them.
+// Returns the allowed values, such as "0 to 180", from the description of a validator, such as
+// "INT in [0 - 180]". Returns nothing for a choice of words, because the placeholder shows them.
 std::string ValuesOf(const std::string& validator) {
   if (validator == "NONNEGATIVE") return "0 or more";
   if (validator == "POSITIVE") return "more than 0";
@@ -128,8 +128,8 @@ std::string JoinedNames(const std::set<CLI::Option*>& options) {
   return CLI::detail::join(names, ", ");
 }
 
-// Returns the default and the limits that the parser knows: "Default: 0 (all); values: 0 to 180;
-// not with --packages".
+// Returns the default and the limits of an option that the parser knows, such as
+// "Default: 0 (all); values: 0 to 180; not with --packages".
 std::string FactsOf(const CLI::Option& option) {
   std::vector<std::string> facts;
   if (option.get_required()) facts.push_back("required");
@@ -170,7 +170,7 @@ std::vector<std::string> GroupsOf(const CLI::App& app, bool is_all) {
   return groups;
 }
 
-// Returns the column at which the summaries begin.
+// Returns the column at which the summaries of the options begin.
 size_t ColumnOf(const CLI::App& app) {
   size_t widest = 0;
   for (const std::string_view group : kShownGroups)

@@ -15,7 +15,8 @@ static_assert(std::atomic<int64_t>::is_always_lock_free);
 RenderSignals render_signals;
 std::atomic<int64_t> first_interrupt_ns = 0;
 
-// Wrappers such as `timeout` send one interrupt twice: to the program and to its process group.
+// Interrupts within this time count as one, because wrappers such as `timeout` send an interrupt
+// twice: to the program and to its process group.
 constexpr int64_t kOneInterrupt_ns = 500'000'000;
 
 int64_t NowNanoseconds() {
@@ -24,7 +25,7 @@ int64_t NowNanoseconds() {
   return int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
 
-// Sets the flag. If a person repeats the interrupt, ends the program.
+// Sets the flag. If a person repeats SIGINT, ends the program at once.
 void Interrupt(int signal, std::atomic<bool>* flag) {
   if (!*flag) {
     first_interrupt_ns = NowNanoseconds();

@@ -12,8 +12,9 @@ namespace lf {
 // not end it, because batch systems repeat SIGTERM.
 const std::atomic<bool>& CatchInterrupts();
 
-// As CatchInterrupts(), for a render: after one of these signals the render writes a checkpoint and
-// ends; after SIGUSR1 it writes a checkpoint and continues. Must be called only once.
+// As CatchInterrupts(), for a render: after SIGINT, SIGTERM or SIGHUP the render writes a
+// checkpoint and ends; after SIGUSR1 it writes a checkpoint and continues. Must be called only
+// once.
 RenderSignals& CatchRenderSignals();
 
 }  // namespace lf

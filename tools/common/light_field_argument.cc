@@ -46,7 +46,7 @@ void AddUnusualOptions(CLI::App& app, LightFieldArgument& argument) {
   unusual.Add("--image-scale FACTOR", argument.image_scale,
               "Size of the image files relative to calibration\n"
               "FACTOR: size of the image files divided by the calibrated size, such as 0.25\n"
-              "auto: 1, or the one of 1/2 to 1/16 that fits all image files\n"
+              "auto: 1, or the factor of 1/2, 1/3, ... 1/16 that fits all image files\n"
               "off: the image files must have the calibrated size");
   unusual.AddChoice(
       "--image-alpha", argument.image_alpha, {"auto", "mask", "straight", "premultiplied"},

@@ -1,4 +1,4 @@
-// The argument LIGHTFIELD, which all programs share.
+// The argument LIGHTFIELD and its options, which all programs share.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -19,14 +19,14 @@ struct LightFieldArgument {
   void AddTo(CLI::App& app);
   // Adds only the options, without the positional argument.
   void AddOptionsTo(CLI::App& app);
-  // kUsage: a value that cannot be parsed.
+  // Converts the options. kUsage if a value cannot be parsed.
   Result<OpenOptions> Options() const;
   Result<LightField> Open() const;
   // kUsage if an option is given that packages would ignore, because they contain their calibration
   // and the meaning of alpha. With --lightfield (`path`), only --image-alpha and --background are
   // refused; the other options apply to the light field that it names.
   Result<void> CheckWithPackages() const;
-  // Returns the options as they were given, for the command line of another program.
+  // Returns the given options as words, for the command line of another program.
   std::vector<std::string> Words() const;
 };
 

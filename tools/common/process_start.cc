@@ -25,7 +25,8 @@ namespace {
   std::_Exit(status);
 }
 
-// Ends the program, or ignores SIGUSR1. Calls only functions that signal handlers may call.
+// Ignores SIGUSR1; ends the program at any other signal. Calls only functions that signal handlers
+// may call.
 void OnEarlySignal(int signal) {
   if (signal == SIGUSR1) return;
   constexpr const char* kClearLine = "\r\x1b[K";
@@ -67,7 +68,7 @@ namespace {
 
 int TellException() {
   const auto is_about_threads = [](const std::exception& error) {
-    // oneTBB throws an exception without any other sign of its cause.
+    // Only the text of oneTBB's exception tells that a thread could not be started.
     return std::string_view(error.what()).find("pthread_create") != std::string_view::npos;
   };
   constexpr const char* kNoThread =

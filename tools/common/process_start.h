@@ -10,15 +10,15 @@ namespace lf {
 //   written can then get their descriptors and receive messages, and a report to stdout still
 //   fails.
 // - SIGINT, SIGTERM and SIGHUP end the program with exit code 5 and a last line, unless the caller
-//   ignores them. Programs with a checkpoint catch them later (interrupt.h). SIGUSR1 asks for a
-//   checkpoint, which does not exist yet, and does nothing.
+//   ignores them. Programs with a checkpoint catch them later (interrupt.h). SIGUSR1, which asks
+//   for a checkpoint, is ignored, because there is nothing to save yet.
 // - An uncaught exception, even of a library's constructor, ends the program with its reason as the
 //   last line, and exit code 4 if the machine lacks memory or threads. Files that are being written
 //   keep their temporary names.
 void StartProcess();
 
-// Prints the reason of the current exception as the last line. To be called in a handler. Returns
-// the exit code.
+// Prints the reason of the current exception as the last line. To be called in a catch block or in
+// the handler of uncaught exceptions. Returns the exit code.
 int TellException();
 
 }  // namespace lf

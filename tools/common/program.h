@@ -37,12 +37,12 @@ struct CommonOptions {
 // refused as unknown. A text is passed to OptionGroup::Add(); nullptr: the option is not offered.
 struct OfferedOptions {
   bool threads = false;
-  const char* seed = nullptr;    // what the seed decides
-  const char* strict = nullptr;  // what becomes an error
-  const char* json = nullptr;    // what is printed
+  const char* seed = nullptr;    // help text: what the seed decides
+  const char* strict = nullptr;  // help text: what becomes an error
+  const char* json = nullptr;    // help text: what is printed
   bool progress = false;
-  bool verbose = false;  // the program, or a library that it uses, calls LogDebug()
-  bool quiet = false;    // the program calls LogInfo() or shows progress
+  bool verbose = false;  // true if the program, or a library that it uses, calls LogDebug()
+  bool quiet = false;    // true if the program calls LogInfo() or shows progress
 };
 
 class Program {

@@ -31,7 +31,8 @@ class ProgressMeter {
   // Cheap: prints at most a few times per second (bar), once per second (json) or every few seconds
   // (plain).
   void Update(uint64_t done, uint64_t total, const std::string& detail);
-  // As above, with "LF image 3/10, frame 1/4" as detail; in JSON, "counts": {"frame": [1, 4]}.
+  // Reports also what is done of other things: the detail is "LF image 3/10, frame 1/4"; JSON has
+  // "counts": {"LF image": [3, 10], "frame": [1, 4]}.
   void Update(uint64_t done, uint64_t total, const std::vector<ProgressCount>& counts);
 
  private:
@@ -49,9 +50,9 @@ class ProgressMeter {
 // line is too short for a bar.
 std::string ProgressLine(double share, const std::string& numbers, size_t width);
 
-// Returns "1.5 G", "320 M", "12 k".
+// Returns a number with a prefix, such as "1.5 G", "320 M" or "12 k".
 std::string ShortNumber(double value);
-// Returns "3 h 20 min", "2 min 5 s", "14 s".
+// Returns a time, such as "3 h 20 min", "2 min 5 s" or "14 s".
 std::string ShortDuration(double seconds);
 
 }  // namespace lf

@@ -47,7 +47,7 @@ class EditReader : public nlohmann::json_sax<Json> {
     return true;
   }
 
-  std::string key_;  // empty: a key that no edit has
+  std::string key_;  // the key that was read last; empty if no edit has this key
 };
 
 }  // namespace

@@ -14,7 +14,8 @@ namespace lf {
 // Keeps only the newest event of each kind: a slow page misses old news, and nothing accumulates.
 class EventBoard {
  public:
-  // data  one line of JSON
+  // Posts an event, which replaces the one of the same kind.
+  //   data  one line of JSON
   void Post(const std::string& kind, const std::string& data);
 
   // Returns the events after number `seen` as text of an event stream, and advances `seen`. Returns

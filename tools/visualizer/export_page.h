@@ -16,9 +16,9 @@ namespace lf {
 struct ExportFacts {
   size_t file_count = 0;
   uint64_t byte_count = 0;
-  size_t image_count = 0;     // LF images that the film uses
-  size_t missing_count = 0;   // how many of them were left out: they cannot be read
-  std::string first_missing;  // why the first of these cannot be read
+  size_t image_count = 0;     // number of LF images to be exported
+  size_t missing_count = 0;   // number of these that were left out, because they cannot be read
+  std::string first_missing;  // why the first missing LF image cannot be read
 };
 
 // Exports everything that the page reads about the path: cameras, frames, what each frame uses, and

@@ -22,7 +22,7 @@ constexpr const char* kBytes = "application/octet-stream";
 // ending.
 struct Name {
   std::vector<std::string> parts;
-  std::string ending;  // ".bin"
+  std::string ending;  // such as ".bin"
 };
 
 Name Split(std::string_view text) {

@@ -23,7 +23,7 @@ PageAnswer Refusal(const Error& error);  // status 507 for kOutput, otherwise 42
 
 // Functions of the page that need a server.
 struct PageAbilities {
-  bool is_server = true;  // edits, previews, focus picking, news; false: an exported folder
+  bool is_server = true;  // edits, previews, focus picking and news work; false: an export
 };
 
 // Returns scene.json: the contents of the scene, and the names of all other data.
@@ -33,19 +33,21 @@ std::string SceneJson(const PageScene& scene, const PathDraft& draft,
 // Returns {"id": ..., "fault": ...} for a new text of PATH.yaml, which becomes a draft if it has no
 // fault.
 std::string PathNewsJson(PageScene& scene, const std::string& text);
-// Returns {"id": ..., "frames": ..., ...} for a path.
+// Returns the head of a path, which says what its frames have in common: {"id": ..., "frames": ...,
+// ...}.
 std::string PathHeadJson(const PathDraft& draft);
-// Returns {"done": frames, "total": frames, "images": [...], "rays": [...]}.
+// Returns how many frames are examined, and the numbers of LF images and rays of each frame:
+// {"done": frames, "total": frames, "images": [...], "rays": [...]}.
 std::string FilmJson(const FilmUse::Facts& facts);
-// Returns {"cameras_in_lens": ..., ...}.
+// Returns how densely the LF cameras record a frame: {"cameras_in_lens": ..., ...}.
 std::string DensityJson(PageScene& scene, const PathDraft& draft, FrameId frame);
-// Returns {"id": ..., "name": ..., "centre": [...], ...}.
+// Returns pose and image size of an LF camera: {"id": ..., "name": ..., "centre": [...], ...}.
 std::string CameraJson(const PageScene& scene, LfImageId id);
 // Returns {"rect": [x_begin, y_begin, x_end, y_end], "outlines": [[[x, y], ...]]}; "rect" is left
 // out if no ray of the LF image can contribute.
 std::string OverlapJson(PageScene& scene, const PathDraft& draft, FrameId frame, LfImageId id);
 
-// Largest width and height of LF images for the page.
+// Longest side, in pixels, of the small and of the large picture of an LF image on the page.
 inline constexpr int kSmallSide_px = 256;
 inline constexpr int kLargeSide_px = 1280;
 

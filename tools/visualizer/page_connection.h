@@ -18,7 +18,7 @@ RequestHead HeadOf(MHD_Connection* connection, const char* path, const char* met
 
 // Writes a refusal to the socket, because libmicrohttpd accepts no answer while a body is read. The
 // caller must then close the connection.
-//   status  413 Content Too Large
+//   status  the status line, such as "413 Content Too Large"
 void SendLast(MHD_Connection* connection, std::string_view status, const PageAnswer& refusal);
 
 }  // namespace lf

@@ -27,7 +27,7 @@ namespace {
 constexpr unsigned kMode = MHD_USE_EPOLL_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME;
 constexpr size_t kHeaderBytes = 32 << 10;
 constexpr size_t kThreads = 8, kMostStreams = 16;
-constexpr int kMostRequests = 96;  // number of requests whose headers were read
+constexpr int kMostRequests = 96;  // largest number of requests in progress whose headers were read
 constexpr size_t kMostWaiting = 128;
 // Must exceed kMostRequests + kMostWaiting: at this limit libmicrohttpd accepts no more
 // connections, and a new client would not even get a refusal.
@@ -35,8 +35,8 @@ constexpr unsigned kMostConnections = 256;
 constexpr std::chrono::milliseconds kPatience(5000);
 constexpr unsigned kSilence_s = 10;  // limit for a client that sends no more or reads nothing
 constexpr size_t kMostBodiesBytes = 2 * kMostBodyBytes;
-constexpr size_t kMostAnswersBytes = size_t{256} << 20;  // for comparison, a million LF cameras are
-                                                         // 12 MB
+constexpr size_t kMostAnswersBytes = size_t{256} << 20;  // for comparison, the positions of a
+                                                         // million LF cameras take 12 MB
 
 // Paths are compared as they were sent: no name of ours needs unescaping.
 size_t KeepEscapes(void*, MHD_Connection*, char* text) { return std::string_view(text).size(); }
@@ -46,7 +46,7 @@ struct Request {
   RequestHead head;
   std::string body;
   size_t body_bytes = 0;  // share of the byte budget that `body` takes
-  bool is_begun = false;  // a thread makes the answer and then resumes the connection
+  bool is_begun = false;  // true once a thread was asked for the answer
   std::optional<PageAnswer> answer;
 };
 
@@ -170,11 +170,11 @@ void PageDaemon::Parts::AnswerLater(Request& request) {
     is_taken = threads.Run([this, &request] {
       try {
         request.answer = Make(request);
-      } catch (const std::exception&) {  // no memory, not even for a refusal
+      } catch (const std::exception&) {  // there is no memory, not even for a refusal
       }
       MHD_resume_connection(request.connection);
     });
-  } catch (const std::exception&) {  // no memory
+  } catch (const std::exception&) {  // there is no memory to queue the task
   }
   if (!is_taken) MHD_resume_connection(request.connection);
 }
@@ -202,7 +202,8 @@ void PageDaemon::Parts::End(MHD_Connection* connection, void** request) {
     --request_count;
     bodies.Return(ended->body_bytes);
   }
-  waiting.Add(SocketOf(connection));  // until its next request, or its end (OnConnection())
+  // The connection waits until its next request, or until it ends (OnConnection()).
+  waiting.Add(SocketOf(connection));
 }
 
 MHD_Result PageDaemon::Parts::OnRequest(void* parts, MHD_Connection* connection, const char* path,

@@ -56,7 +56,7 @@ PageAnswer Save(PageScene& scene, const Json& json) {
   const std::string text = TextOf(json, "text");
   const auto draft = scene.AddDraft(text);
   if (!draft) return RefusedPath(draft.error(), scene.arguments().path.filename().string());
-  static std::mutex one_page_at_a_time;  // each page sees what another has written
+  static std::mutex one_page_at_a_time;  // so that each page sees what another has written
   const std::lock_guard lock(one_page_at_a_time);
   const auto force = json.find("force");
   const bool is_forced = force != json.end() && force->is_boolean() && force->get<bool>();

@@ -10,8 +10,8 @@
 
 namespace lf {
 
-// Requests by name, with JSON bodies. Mistakes of the user are answered with "error"; HTTP errors
-// are for requests that the page never makes.
+// Answers a POST request by its name; its body is JSON. Mistakes of the user are answered with
+// "error"; HTTP errors are for requests that the page never makes.
 //   check         {"text"} -> the head of the path (PathHeadJson), or "error", "line", "column"
 //   save          {"text", "expected": id of PATH.yaml's text as the page knows it, "force"}
 //                 -> {"id"}; "conflict" with "error" if the file was changed meanwhile

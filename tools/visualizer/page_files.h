@@ -7,14 +7,14 @@
 namespace lf {
 
 struct PageFile {
-  const char* name;  // index.html
-  const char* type;  // text/html; charset=utf-8
+  const char* name;  // such as index.html
+  const char* type;  // MIME type, such as text/html; charset=utf-8
   std::string_view bytes;
 };
 
 // Returns all files of the page; none in a build without Node.js and npm.
 std::span<const PageFile> PageFiles();
-// Returns nullptr if there is no such file.
+// Returns the file of this name, or nullptr if there is none.
 const PageFile* FindPageFile(std::string_view name);
 
 }  // namespace lf

@@ -26,8 +26,8 @@ Json OfPackages(const PageScene& scene) {
   return packages;
 }
 
-// Returns the directions through the corners of the image, in the world, at depth 1, without
-// distortion.
+// Returns the world directions, at depth 1, of the rays through the four corners of the LF image,
+// without lens distortion.
 Json CornersOf(const PinholeCamera& camera) {
   PinholeCamera straight = camera;
   straight.intrinsics.distortion = {};

@@ -10,7 +10,7 @@ namespace {
 
 bool Listen(int socket, int port) {
   const int yes = 1;  // allows the port of a server that has just ended; SO_REUSEPORT would allow
-                      // sharing
+                      // sharing it with another program
   ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
   sockaddr_in address = {};
   address.sin_family = AF_INET;

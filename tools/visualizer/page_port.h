@@ -6,7 +6,7 @@
 namespace lf {
 
 struct PagePort {
-  int socket = -1;  // listens; its owner closes it
+  int socket = -1;  // the listening socket, which its owner must close
   int port = 0;
 };
 

@@ -16,7 +16,7 @@ namespace lf {
 inline constexpr size_t kMostBodyBytes = size_t{9} << 20;
 
 struct RequestHead {
-  std::string method;  // GET
+  std::string method;  // such as GET
   std::string path;    // the path as it was sent, up to the first question mark
   std::vector<std::pair<std::string, std::string>> headers;
 };

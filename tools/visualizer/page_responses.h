@@ -15,7 +15,7 @@ namespace lf {
 struct ResponseEnd {
   void operator()(MHD_Response* response) const { MHD_destroy_response(response); }
 };
-using Response = std::unique_ptr<MHD_Response, ResponseEnd>;  // nullptr: no memory
+using Response = std::unique_ptr<MHD_Response, ResponseEnd>;  // nullptr if there is no memory
 
 // Bounds the total size of the bytes that connections make the server hold. Thread-safe.
 class ByteBudget {
@@ -41,8 +41,9 @@ class ByteBudget {
 // from elsewhere.
 void AddHeaders(MHD_Response* response, const char* type);
 
-// The body is sent uncompressed, because compression gains nothing on one machine. It counts in the
-// budget until it is sent; an answer beyond the budget becomes a refusal with 503.
+// Returns the response that sends an answer. Its body is not compressed, because compression gains
+// nothing on one machine. The body counts in the budget until it is sent; an answer beyond the
+// budget becomes a refusal with 503.
 Response ResponseOf(PageAnswer& answer, ByteBudget& budget);
 Response ResponseOf(const PageFile& file);
 

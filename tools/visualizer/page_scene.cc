@@ -73,7 +73,7 @@ Result<std::shared_ptr<PathDraft>> PageScene::AddDraft(const std::string& text) 
   draft->text = text;
   draft->path = std::make_shared<const CameraPath>(std::move(path));
   draft->cameras_hash = HashOfCameras(*draft->path);
-  std::list<std::shared_ptr<PathDraft>> forgotten;  // their threads end outside the lock
+  std::list<std::shared_ptr<PathDraft>> forgotten;  // their threads end after the lock is released
   const std::lock_guard lock(mutex_);
   drafts_.push_front(draft);
   while (drafts_.size() > kMostDrafts)
@@ -116,7 +116,7 @@ FrameUse PageScene::UseOf(const PathDraft& draft, FrameId frame) {
 }
 
 std::shared_ptr<FilmUse> PageScene::FilmOf(PathDraft& draft) {
-  std::vector<std::shared_ptr<FilmUse>> left;  // their threads end outside the lock
+  std::vector<std::shared_ptr<FilmUse>> left;  // their threads end after the lock is released
   const std::lock_guard lock(mutex_);
   if (draft.film) return draft.film;
   draft.film_number = ++films_begun_;

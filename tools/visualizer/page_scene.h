@@ -27,10 +27,10 @@ namespace lf {
 // The command line of lfvisualizer.
 struct PageArguments {
   std::string light_field;                       // LIGHTFIELD as it was given
-  std::vector<std::string> light_field_options;  // --fov-deg 60 ...
+  std::vector<std::string> light_field_options;  // words, such as --fov-deg 60
   std::filesystem::path path;                    // PATH.yaml
   std::vector<std::string> packages;
-  std::filesystem::path watch;  // DIR of a render; empty: none
+  std::filesystem::path watch;  // folder of the watched render; empty if none is watched
   NeedsOptions needs;
   std::string estimator = "bilinear", lens_weights = "auto";
   double max_angle_deg = 0;
@@ -40,12 +40,12 @@ struct PageArguments {
 
 // A path while it is edited: its text, checked by the parser of the programs.
 struct PathDraft {
-  std::string id;  // IdOfText(text)
+  std::string id;  // hash of the text: IdOfText(text)
   std::string text;
   std::shared_ptr<const CameraPath> path;
   std::string cameras_hash;       // hash of the cameras, in the form that packages store
-  std::shared_ptr<FilmUse> film;  // created on demand
-  uint64_t film_number = 0;       // number of this film in the order of their starts
+  std::shared_ptr<FilmUse> film;  // null until FilmOf() is called
+  uint64_t film_number = 0;       // number of the film in the order in which films were started
 };
 
 class PageScene {
@@ -67,12 +67,12 @@ class PageScene {
   std::shared_ptr<PathDraft> first_draft() const { return first_draft_; }
   // Parses and keeps a draft. kInput: the error that the programs would report.
   Result<std::shared_ptr<PathDraft>> AddDraft(const std::string& text);
-  // Returns a draft, or nullptr if it is unknown. Keeps only the first draft and the few drafts
-  // that were used last.
+  // Returns a draft, or nullptr if it is unknown. The scene keeps only the first draft and the few
+  // drafts that were used last.
   std::shared_ptr<PathDraft> FindDraft(const std::string& id);
 
-  // Returns what a frame uses, as decided by its package if the draft has the cameras of that
-  // package.
+  // Returns which LF images a frame uses, as decided by its package if the draft has the cameras of
+  // that package.
   FrameUse UseOf(const PathDraft& draft, FrameId frame);
   // Starts to examine all frames of the draft in the background. Only the three films that were
   // started last continue; older films are stopped.
@@ -97,7 +97,7 @@ class PageScene {
   std::mutex mutex_;  // guards drafts and their films
   uint64_t films_begun_ = 0;
   std::shared_ptr<PathDraft> first_draft_;
-  std::list<std::shared_ptr<PathDraft>> drafts_;  // the last used first
+  std::list<std::shared_ptr<PathDraft>> drafts_;  // the most recently used one first
 };
 
 // Returns a hash of the text: 16 hexadecimal digits.

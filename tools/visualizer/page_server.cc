@@ -53,7 +53,7 @@ struct PageServer::Parts {
   void Watch();
 
   PageScene& scene;
-  int socket;  // listens; owned until the daemon takes it over
+  int socket;  // the listening socket; -1 once the daemon has taken it over
   PreviewRender preview;
   PageDaemon daemon;
 };
@@ -64,7 +64,7 @@ PageAnswer PageServer::Parts::Get(std::string_view name) {
   return Answer(scene, name);
 }
 
-// Tells pages when the watched render has news.
+// Tells pages when the watched render or PATH.yaml has changed.
 void PageServer::Parts::Watch() {
   std::string seen;
   std::string path_id = scene.first_draft()->id;

@@ -18,11 +18,14 @@ namespace lf {
 
 class PageServer {
  public:
-  // port  0: any free port
+  // Opens the port on this machine. kOutput: the port cannot be opened, or the program was built
+  // without the page.
+  //   port  0: any free port
   static Result<std::unique_ptr<PageServer>> Open(PageScene& scene, int port);
   ~PageServer();
 
-  // Returns http://127.0.0.1:8080/0123456789abcdef0123456789abcdef/.
+  // Returns the address of the page, such as
+  // http://127.0.0.1:8080/0123456789abcdef0123456789abcdef/.
   const std::string& address() const { return address_; }
   // Serves the page until the flag is set. kOutput: the machine has no thread or memory left.
   Result<void> ServeUntil(const std::atomic<bool>& interrupted);

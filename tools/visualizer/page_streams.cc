@@ -52,13 +52,13 @@ ssize_t PageStreams::Read(void* stream, uint64_t /*position*/, char* text, size_
   Stream& of = *static_cast<Stream*>(stream);
   try {
     return of.streams.ReadNews(of, text, most_bytes);
-  } catch (const std::exception&) {  // no memory
+  } catch (const std::exception&) {  // there is no memory for the text
     return MHD_CONTENT_READER_END_WITH_ERROR;
   }
 }
 
 ssize_t PageStreams::ReadNews(Stream& stream, char* text, size_t most_bytes) {
-  // The lock excludes WakeAll() between reading the board and the suspension.
+  // The lock prevents WakeAll() from running between the reading of the board and the suspension.
   const std::lock_guard lock(mutex_);
   if (events_.is_closed()) return MHD_CONTENT_READER_END_OF_STREAM;
   if (stream.text.empty()) {

@@ -17,7 +17,7 @@ class PageStreams {
  public:
   PageStreams(EventBoard& events, size_t most_count) : events_(events), most_count_(most_count) {}
 
-  // Returns false if too many streams are open, or if there is no memory.
+  // Opens a stream. Returns false if too many streams are open, or if there is no memory.
   //   response  sends news to this connection until either side closes it
   bool Open(MHD_Connection* connection, Response* response);
 
@@ -29,7 +29,7 @@ class PageStreams {
   struct Stream {
     PageStreams& streams;
     MHD_Connection* connection;
-    uint64_t seen = 0;  // number of the last news
+    uint64_t seen = 0;  // number of the last event that was read from the board
     // Text to be sent. The first text is sent at once, so that the page knows that it is connected.
     std::string text = ": hello\n\n";
     bool is_woken = false;

@@ -55,13 +55,13 @@ class PreviewRender {
 
   PageScene& scene_;
   ThreadPool pool_;  // separate, so that the page's answers do not wait for the render
-  std::atomic<bool> interrupted_ = false;  // the current render is to end
-  mutable std::mutex mutex_;               // guards all below
+  std::atomic<bool> interrupted_ = false;  // true if the current render is to end
+  mutable std::mutex mutex_;               // guards the members below, except thread_
   std::condition_variable changed_;
   std::optional<Wish> wish_;
   bool is_ending_ = false;
   FrameId shown_;
-  std::shared_ptr<const GrowingPicture> picture_;  // shows frame `shown_`; null before the first
+  std::shared_ptr<const GrowingPicture> picture_;  // picture of frame shown_; null before the first
   uint64_t picture_count_ = 0;
   std::thread thread_;
 };

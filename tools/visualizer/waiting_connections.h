@@ -20,7 +20,7 @@ class WaitingConnections {
   WaitingConnections(size_t most_count, std::chrono::milliseconds patience)
       : most_count_(most_count), patience_(patience) {}
 
-  // Closes the connection if there is no memory to store it.
+  // Adds a connection, or closes it if there is no memory to store it.
   void Add(int socket);
   // Called when the headers of the connection's request are complete, or when the connection has
   // ended. Does nothing if the connection is not waiting.
