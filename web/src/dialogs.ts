@@ -75,11 +75,11 @@ export function showCommands(state: State): void {
 
 const KEYS: [string, string][] = [
   ["Space", "play, pause"],
-  ["← →", "a frame back, on; with Shift ten"],
+  ["← →", "one frame back or on; with Shift, ten"],
   ["Home End", "first and last frame"],
-  ["[ ]", "LF images that this frame takes, one by one"],
+  ["[ ]", "previous and next LF image that this frame takes"],
   ["1 … 5", "views: overview, aperture, side, top, through the lens"],
-  ["K", "a key of the focus distance at this frame"],
+  ["K", "add a key of the focus distance at this frame"],
   ["P", "preview of this frame"],
   ["Ctrl+Z, Ctrl+Shift+Z", "undo, redo"],
   ["Ctrl+S", "save the path"],

@@ -21,7 +21,7 @@ export type Change =
   | "path" // a new valid path: the cameras of all frames may differ
   | "text" // the text of the path, valid or not
   | "frame"
-  | "use" // the use of the current frame has been received
+  | "use" // it is known now which LF cameras the current frame uses
   | "film"
   | "density"
   | "selected"
@@ -340,7 +340,7 @@ export class State {
     } catch (error) {
       if (id !== this.selectedId) return;
       if (this.scene.server) this.fail(error);
-      else this.say("Of this LF camera the exported page has no image.");
+      else this.say("The exported page has no image of this LF camera.");
     }
   }
 

@@ -2,7 +2,7 @@
 
 export const USES = ["used", "outside", "angle", "sees-none", "limit", "no-weight"] as const;
 export const USED = 0;
-// The frame does not use the LF camera, but another frame of the film does.
+// Kind of an LF camera that this frame does not use, but another frame of the film does.
 export const IN_OTHER_FRAME = USES.length;
 
 export interface FrameUse {

@@ -7,7 +7,7 @@ export interface GrowingPicture {
   fullWidth: number;
   fullHeight: number;
   hasRays: boolean;
-  halves: Uint16Array; // R, G, B and ray count of each element
+  halves: Uint16Array; // R, G, B and ray count of each element, as half floats
 }
 
 export function readPicture(bytes: ArrayBuffer): GrowingPicture {
@@ -36,8 +36,8 @@ function displayValue(linear: number): number {
   return Math.round(255 * (linear <= 0.0031308 ? 12.92 * linear : 1.055 * linear ** (1 / 2.4) - 0.055));
 }
 
-// Returns a table of the display values of all half floats. With it, a picture of a megapixel is developed in some
-// milliseconds.
+// Returns a table of the display values, from 0 to 255, of all half floats, brightened by `stops`. With it, a picture
+// of a megapixel is developed in some milliseconds.
 function displayTable(stops: number): Uint8ClampedArray {
   const table = new Uint8ClampedArray(65536);
   const factor = 2 ** stops;

@@ -97,7 +97,7 @@ export class EditPanel {
   private readonly opened = new Set<string>();
   private typing = 0; // timer that calls takeText() after a pause in typing; 0: nothing was typed
   private filledWith = ""; // text of the document when the text area was last filled
-  private isSettling = false;
+  private isSettling = false; // true until the browser has moved the focus after a field was changed
 
   constructor(
     private readonly root: HTMLElement,
@@ -156,7 +156,7 @@ export class EditPanel {
     if (this.isSettling) return;
     const focused = document.activeElement;
     const isTyped = focused instanceof HTMLInputElement && focused.value !== focused.defaultValue;
-    if (isTyped && this.fields.contains(focused)) return; // do not replace a field in which the user types
+    if (isTyped && this.fields.contains(focused)) return; // a field in which the user types is not replaced
     this.redrawFields();
   }
 
@@ -440,7 +440,7 @@ export class EditPanel {
       element(
         "p",
         { class: "muted" },
-        "From this frame on; each replaces how the camera, or the focus, moved in the whole film.",
+        "Each begins at this frame, and replaces the previous motion of the camera or focus in the whole film.",
       ),
       row("Orbit", angle, "° in", orbitSeconds, "s", element("button", { click: makeOrbit }, "Apply")),
       row("Dolly", way, "in", dollySeconds, "s", element("button", { click: makeDolly }, "Apply")),

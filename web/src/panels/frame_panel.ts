@@ -53,7 +53,7 @@ export class FramePanel {
       rows.push(["Focus tilt", `${degrees(camera.tiltHorizontal)}, ${degrees(camera.tiltVertical)}`]);
     }
     const view = (2 * Math.atan(camera.width / 2 / camera.fx) * 180) / Math.PI;
-    rows.push(["Field of view", `${precise(view, 3)}°`]);
+    rows.push(["Horizontal field of view", `${precise(view, 3)}°`]);
     rows.push(["Plate", `${camera.width} × ${camera.height}`]);
     return list(rows);
   }
@@ -77,8 +77,8 @@ export class FramePanel {
       return element(
         "p",
         { class: "bad" },
-        "No LF image has a ray for this frame: it is black. Does the camera look from where the " +
-          "light field was captured, and the way it was?",
+        "No LF image has a ray for this frame: it is black. Is the camera where the light field was " +
+          "captured, and does it look in a direction that was captured?",
       );
     return list(rows);
   }
@@ -100,10 +100,10 @@ export class FramePanel {
         "p",
         { class: "muted" },
         density.depths_known
-          ? "How far apart two neighbouring LF cameras show the same point: up to about an " +
-              "element it is blur, above four double edges."
-          : "The light field does not say how deep the scene is: asked a quarter before and " +
-              "behind the focus distance.",
+          ? "How far apart two neighbouring LF cameras show the same point: up to about one " +
+              "element looks like blur, more than four look like double edges."
+          : "The light field does not state the depths of the scene. The depths shown are a quarter " +
+              "nearer and farther than the focus distance.",
       ),
     );
     if (density.uncovered_share >= 0.1)

@@ -139,8 +139,8 @@ export class ImagePanel {
           { class: "muted" },
           `The rectangle that is read: ${x1 - x0} × ${y1 - y0} pixels, ${percent(share)} of the image. ` +
             (overlap.outlines.length > 0
-              ? "Within the outline it shows the lens and what is filmed at once."
-              : "It stands beside the lens, and counts for the part of the lens that is nearest to it."),
+              ? "Its pixels within the outline see both the lens and the filmed region."
+              : "The LF camera is beside the lens, and stands for the part of the lens that is nearest to it."),
         ),
       );
     } else {

@@ -12,8 +12,8 @@ import { length, percent, precise } from "../words";
 
 export interface PickRequest {
   camera?: number; // the LF camera whose image was clicked; unset: the frame's picture was clicked
-  x: number;
-  y: number;
+  x: number; // column of the clicked position, in pixels of the LF image or elements of the frame
+  y: number; // its row
 }
 
 // Sets a quantity of the focus. If it has keys, sets the key at `time` or adds one; otherwise sets its value for the
@@ -31,7 +31,7 @@ function setFocusDistance(document: PathDocument, time: number, distance: number
   const { given, hasAccelerations } = document.quantity("focus_distance");
   if (given) setFocus(document, "focus_distance", time, distance);
   else document.useFocusDistance(distance);
-  return given && !hasAccelerations ? "" : ", instead of how the focus was given";
+  return given && !hasAccelerations ? "" : ", which replaces the previous definition of the focus";
 }
 
 // Asks the server for the distance of the point at a position in a picture, and focuses on it.

@@ -164,7 +164,7 @@ export class RenderPanel {
       ),
     );
     if (!preview) {
-      this.status.textContent = "lfrenderer renders it here, as the path is now, saved or not.";
+      this.status.textContent = "Nothing is rendered yet. A preview uses the path as it is now, saved or not.";
       return;
     }
     const words = {
@@ -199,7 +199,7 @@ export class RenderPanel {
     const age = Math.max(0, Math.round(Date.now() / 1000 - frame.changed_s));
     this.status.textContent = frame.finished
       ? `Frame ${frame.frame}, finished`
-      : `Frame ${frame.frame} grows; this is of ${age < 2 ? "now" : `${age} s ago`}`;
+      : `Frame ${frame.frame} is being rendered; this picture is ${age < 2 ? "new" : `${age} s old`}`;
     this.status.className = "muted";
     void this.load(`watch/${frame.frame}.bin`, frame.changed);
   }
@@ -254,7 +254,7 @@ export class RenderPanel {
       // If the server says "no such frame", the file was just being replaced, and an event about its next version
       // follows.
       if (!(error instanceof Error && /no such frame/.test(error.message))) {
-        this.picture = null; // it would show another frame
+        this.picture = null; // because the old picture shows another frame
         this.shownName = "";
         this.state.fail(error);
         this.fault = this.state.message?.text ?? "";
@@ -288,7 +288,7 @@ export class RenderPanel {
           "p",
           { class: "muted" },
           `Rays of each element: least ${shortNumber(range.least)}, median ` +
-            `${shortNumber(range.median)}, most ${shortNumber(range.most)}. Without any: green.`,
+            `${shortNumber(range.median)}, most ${shortNumber(range.most)}. Elements without rays are green.`,
         ),
       );
     } else {

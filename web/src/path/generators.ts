@@ -10,10 +10,10 @@ export interface OrbitOptions {
   // The axis of the orbit, of any length. The camera's `up` is set to this direction or to the opposite one, whichever
   // is nearer to it.
   axis: Vector;
-  startPosition: Vector; // of the camera; must not be on the axis
-  degrees: number; // right-handed around the axis
+  startPosition: Vector; // position of the camera at the start; must not be on the axis
+  degrees: number; // angle of the orbit, right-handed around the axis
   seconds: number;
-  start?: number; // seconds; default: 0
+  start?: number; // time at which the orbit begins, seconds; default: 0
 }
 
 export interface DollyOptions {
@@ -24,16 +24,16 @@ export interface DollyOptions {
 }
 
 export interface FocusPullOptions {
-  from: number; // focus distances, world units
+  from: number; // first focus distance, world units
   to: number;
   seconds: number; // duration of the pull, without `hold`
-  hold?: number; // seconds before and after the pull
+  hold?: number; // time without movement before and after the pull, seconds
   start?: number; // time of the pull's beginning, seconds; default: `hold`
 }
 
 // Angle between keys. With it, the Catmull-Rom curve through the keys deviates from the circle by at most 0.13 % of the
-// radius (2/27 angle^2). The deviation is largest in the first and the last segment, because the curve starts and ends
-// in the direction of the chord there.
+// radius (2/27 angle^2, with the angle in radians). The deviation is largest in the first and the last segment, because
+// the curve starts and ends in the direction of the chord there.
 const kOrbitStep_deg = 7.5;
 const kResolution = 1e-5; // precision with which positions are written, as a share of the movement's size
 

@@ -4,13 +4,13 @@ import type { ConstantSpec, ConstantValue, PathValue, QuantitySpec, Section, Sha
 export type Interpolation = "smooth" | "linear" | "step";
 
 export interface Keyframe {
-  time: number; // seconds
+  time: number; // time of the key, seconds
   value: PathValue;
-  interpolation: Interpolation; // between the previous key and this one
+  interpolation: Interpolation; // how the value changes from the previous key to this one
 }
 
 export interface Acceleration {
-  from: number; // seconds
+  from: number; // time at which the acceleration begins, seconds
   to: number;
   value: PathValue; // in units of the quantity per second squared
 }

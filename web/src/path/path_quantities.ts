@@ -19,7 +19,7 @@ export interface QuantitySpec {
   below?: number;
   least?: number; // every component must be at least this
   zeroIfNotGiven?: boolean;
-  rivals: string[]; // alternatives: only one of them and this quantity may be in a file
+  rivals: string[]; // names of alternatives: a file may contain only one of them or this quantity
   freeWithoutSensor?: boolean; // rivals are allowed if the file has no sensor_width
 }
 

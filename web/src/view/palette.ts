@@ -14,7 +14,7 @@ export const USE_STYLES: UseStyle[] = [
   {
     name: "used",
     label: "Collected",
-    help: "pixels of this LF image become rays of the frame; the brighter, the more of them",
+    help: "pixels of this LF image become rays of the frame; the brighter the point, the larger their share",
     dark: [255, 170, 50],
     light: [200, 90, 0],
     size: 6,
@@ -22,7 +22,7 @@ export const USE_STYLES: UseStyle[] = [
   {
     name: "outside",
     label: "Stands outside",
-    help: "no ray through lens and sensor plate passes here",
+    help: "stands where no ray through lens and sensor plate passes",
     dark: [92, 98, 112],
     light: [150, 154, 164],
     size: 2.5,
@@ -38,7 +38,7 @@ export const USE_STYLES: UseStyle[] = [
   {
     name: "sees-none",
     label: "Sees none of it",
-    help: "stands well, but no pixel of its LF image sees the lens and what is filmed",
+    help: "stands where rays of the frame may pass, but no pixel of its LF image sees both lens and filmed region",
     dark: [70, 180, 190],
     light: [0, 120, 135],
     size: 3.5,
@@ -54,7 +54,7 @@ export const USE_STYLES: UseStyle[] = [
   {
     name: "no-weight",
     label: "Of no weight",
-    help: "every point of the lens is nearer to another LF camera",
+    help: "is farther from every point of the lens than another LF camera",
     dark: [140, 150, 90],
     light: [110, 120, 40],
     size: 3.5,

@@ -9,8 +9,8 @@ import type { DensityFacts, Vec3 } from "../data/scene";
 import { closed, Faces, Lines } from "./lines";
 
 const GRID = 6; // number of cells along the width of the focus plane
-const BEHIND = 0.35; // length of the widened frustum's rays behind the lens, about, in focus distances
-const BEYOND = 1.5; // length of these rays in front of the lens, about, in focus distances
+const BEHIND = 0.35; // approximate length of the widened frustum's rays behind the lens, in focus distances
+const BEYOND = 1.5; // approximate length of these rays in front of the lens, in focus distances
 
 export class RenderCameraModel {
   readonly object = new THREE.Group();

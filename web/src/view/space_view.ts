@@ -43,7 +43,7 @@ export class SpaceView {
     this.points.object.geometry.computeBoundingBox();
     this.model = new RenderCameraModel(origin);
     this.size = extentOf(positions);
-    // Computed as if the LF cameras filled a square. LF cameras in a volume look denser on the screen.
+    // The spacing is computed as if the LF cameras filled a square. LF cameras in a volume look denser on the screen.
     this.spacing = (0.7 * this.size) / Math.max(1, Math.sqrt(positions.length / 3) - 1);
     this.ring = dots(11, 0xffffff);
     this.ring.visible = false;
