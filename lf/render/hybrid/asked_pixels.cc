@@ -22,8 +22,8 @@ uint32_t PhaseOf(uint32_t place) {
   return phase;
 }
 
-// camera_ is the widened camera of ReachedCamera() only if the finished frame needs rebinned rays.
-// Previews do not widen it, so that no LF image is read for previews alone.
+// camera_ is the widened camera of LensGaps::ReachedCamera() only if the finished frame needs
+// rebinned rays. Previews do not widen it, so that no LF image is read for previews alone.
 AskedPixels::AskedPixels(const LensGaps& gaps, bool collects, Previews previews)
     : camera_(gaps.asks_in_the_end() ? gaps.ReachedCamera() : gaps.camera()),
       asks_in_the_end_(gaps.asks_in_the_end()),

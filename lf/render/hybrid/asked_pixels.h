@@ -1,5 +1,5 @@
-// Finds the pixels of LF images from which the rebinned rays of one frame are made. Needs only
-// calibrations, no pixels.
+// Finds the pixels of LF images from which the rebinned rays of one frame are made. Needs only the
+// calibration of the LF cameras, no pixels.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +15,9 @@
 
 namespace lf {
 
-// Says which frames have previews. A preview is a picture of an unfinished frame; more rebinned
-// rays are kept for it. Only a frame that also collects rays can have previews.
+// Says which frames have previews. A preview is a picture of an unfinished frame. Rebinned rays are
+// kept for it, in addition to those that the finished frame needs. Only a frame that also collects
+// rays can have previews.
 enum class Previews {
   kAuto,  // frames that collect more than kPreviewedFrom LF images
   kOn,
@@ -25,14 +26,15 @@ enum class Previews {
 // Returns "auto", "on" or "off".
 const char* NameOf(Previews previews);
 inline constexpr size_t kPreviewedFrom = 256;
-// For the previews of a frame, rays are kept only up to the place of the kPreviewImages-th LF image
-// that the frame collects. The LF images up to there are spread over the whole lens (thesis 4.2.1).
+// For the previews of a frame, rebinned rays are kept only from the LF images up to the
+// kPreviewImages-th one that the frame collects, in the order in which LF images are taken. These
+// LF images are spread over the whole lens (thesis 4.2.1).
 inline constexpr size_t kPreviewImages = 64;
 
-// Returns the first place of the phase that contains `place`. Phases divide the order of the LF
-// images: they begin at place 0 and at kDecisionPlaces (render/collect/collect.h) times the powers
-// of four. At the beginning of each phase, the queries of the previews (the rays to be interpolated
-// for them, rebinning/frame_queries.h) are updated.
+// Returns the first place of the phase that contains `place`. A place is a position in the order of
+// the LF images, from 0. Phases divide this order: they begin at place 0 and at kDecisionPlaces
+// (render/collect/collect.h) times the powers of four. At the beginning of each phase, the queries
+// of the previews (the rays to be interpolated for them, rebinning/frame_queries.h) are updated.
 uint32_t PhaseOf(uint32_t place);
 
 class AskedPixels {
@@ -46,13 +48,14 @@ class AskedPixels {
   // Returns true if rays are kept for previews in the phase that begins at place `phase`.
   bool IsPreviewed(uint32_t phase) const { return is_previewed_ && phase < changes_until_; }
 
-  // A camera whose lens and plate contain all rays that the finished frame needs. Selection uses it
-  // to find the LF images.
+  // A camera whose lens and plate contain all rebinned rays that the finished frame needs.
+  // Selection uses it to find the LF images that have such rays.
   const RenderCamera& camera() const { return camera_; }
 
   // Returns the bounds of those pixels of an LF image whose rays may be kept; empty if no ray may
   // be kept.
-  //   overlap, place  overlap and place of this LF image
+  //   overlap, place  overlap of this LF image with frames, and its place in the order of the LF
+  //                   images
   PixelRect RectOf(const LfCamera& lf_camera, const ImageOverlap& overlap, uint32_t place,
                    const SelectOptions& select) const;
 
@@ -66,7 +69,8 @@ class AskedPixels {
 
 // Returns the rectangle of an LF image that must be read to rebin the pixels of `rect`: `rect` with
 // a margin on all sides, clipped to the image.
-//   around_px  width of the margin: PixelsAround() (rebinning/rebin_image.h) for mosaics
+//   around_px  width of the margin: the result of PixelsAround() (rebinning/rebin_image.h) for a
+//              mosaic
 PixelRect GrownBy(const PixelRect& rect, int around_px, const Intrinsics& image);
 
 }  // namespace lf

@@ -1,6 +1,7 @@
-// The slabs of a film (rebinning/slab_plan.h), planned for all of its frames together. The slab of
-// a frame, and therefore its cells, do not depend on which frames are rendered in the same pass or
-// package.
+// The slabs of a film: the pairs of planes on which its rebinned rays are described
+// (rebinning/slab_plan.h). They are planned for all frames of the film together, so that the slab
+// of a frame, and therefore its cells, do not depend on which frames are rendered in the same pass
+// or package.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +18,7 @@ namespace lf {
 
 struct SampledFrame {
   RenderCamera camera;
-  FrameSampling sampling;  // SamplingOf() in the whole light field
+  FrameSampling sampling;  // result of SamplingOf() in the whole light field
 };
 
 class FilmSlabs {
@@ -28,13 +29,13 @@ class FilmSlabs {
 
   // Returns the index of the frame's slab; nullopt if there are no LF cameras around its lens.
   std::optional<size_t> SlabOf(FrameId frame) const { return slab_of_[frame.value - 1]; }
-  // Returns the section of a slab. Its bounds contain the rays of all frames of the film that use
-  // the slab.
+  // Returns the section of the film that has the slab with this index. SlabSection::bounds contain
+  // the rays of all frames of the film that use the slab.
   const SlabSection& section(size_t slab) const { return sections_[slab]; }
 
  private:
   std::vector<SlabSection> sections_;
-  std::vector<std::optional<size_t>> slab_of_;  // [frame - 1]
+  std::vector<std::optional<size_t>> slab_of_;  // [frame - 1]: index in sections_
 };
 
 }  // namespace lf

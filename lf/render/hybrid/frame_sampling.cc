@@ -33,8 +33,8 @@ double NearestOf(std::span<const Vec2> seen_through, const Vec2& point) {
   return nearest_w;
 }
 
-// Returns FrameSampling::hole_w. Measures it at some points of the lens, and adds the distance
-// between these points as a margin.
+// Returns FrameSampling::hole_w before it is limited. Measures it at some points of the lens, and
+// adds the distance between these points as a margin.
 double HoleOf(const RenderCamera& frame, std::span<const Vec2> seen_through) {
   constexpr int kAsked = 64;
   const LensPointSets points = MakeLensPoints(frame.aperture, kAsked, 1, 0);

@@ -1,6 +1,6 @@
 // Measures the density of the LF cameras around the lens of a frame, and derives the frame's
-// queries: the rays that are interpolated from rebinned rays. Both need only calibrations, no
-// pixels.
+// queries: the rays that are interpolated from rebinned rays. Both need only the calibration of the
+// LF cameras, no pixels.
 #pragma once
 
 #include <cstdint>
@@ -58,7 +58,8 @@ FrameSampling SamplingOf(const ImageIndex& index, const RenderCamera& frame,
 inline constexpr PixelReach kWidestReach = PixelReach::kNeighbours;
 
 struct QueryOptions {
-  // Least sigma of the kernels (ray_query.h) in the lens plane, in distances between LF cameras.
+  // Least sigma of the kernels (rebinning/ray_query.h) in the lens plane, in distances between LF
+  // cameras.
   double sigma_st = 0.5;
   // Sigma of the kernels on the plate, in elements, or in LF pixels if these are larger.
   double sigma_uv = 0.35;

@@ -14,7 +14,7 @@ namespace lf {
 namespace {
 
 constexpr int kLeastNodes = 17, kMostNodes = 65;
-constexpr size_t kMostNodeValues = size_t{1} << 17;  // number of nodes times lens points
+constexpr size_t kMostNodeValues = size_t{1} << 17;  // limit of nodes times lens points
 
 }  // namespace
 
@@ -44,8 +44,9 @@ LensGaps::LensGaps(const ImageIndex& index, const RenderCamera& frame,
 
 // Chooses the numbers of columns and rows of nodes, from kLeastNodes to kMostNodes. From one node
 // to the next, the point where an LF camera's ray through the node's focus point meets the lens
-// plane shall move by at most half of kCoveredDistances. The grid is made coarser if nodes times
-// lens points would exceed kMostNodeValues.
+// plane shall move by at most half of the distance up to which a ray covers a lens point
+// (kCoveredDistances). The grid is made coarser if nodes times lens points would exceed
+// kMostNodeValues.
 void LensGaps::SetNodes(const std::vector<LfImageId>& near, const ImageIndex& index) {
   constexpr size_t kAsked = 64;
   const RenderCamera& frame = all_.camera;
@@ -91,8 +92,9 @@ void LensGaps::FindGaps(const std::vector<LfImageId>& near, const ImageIndex& in
   const double near_w =
       std::max(kCoveredDistances * distance_w,
                std::sqrt(Area(frame.aperture) / static_cast<double>(points.size())));
-  // Squared reach of each lens point, over all sets. Only LF cameras seen within the reach may
-  // cover the point, or have rays for its kernel.
+  // Squared reach of each lens point of all sets. An LF camera can cover the point, or have rays
+  // for the point's kernel, only if its line to the focus point meets the lens plane within this
+  // reach.
   std::vector<double> reach2_w2;
   for (size_t set = 0; set < all_.points.sets.size(); ++set)
     for (size_t i = 0; i < all_.points.sets[set].size(); ++i) {

@@ -1,13 +1,15 @@
 // Finds, for each element, the parts of a frame's lens that no collected ray passes through. Needs
-// only calibrations, so that it can be done before an LF image is read (thesis 4.3.3).
+// only the calibration of the LF cameras, so that gaps are known before an LF image is read (thesis
+// 4.3.3).
 //
 // The lens is represented by points spread over it (lens points). A lens point is covered for an
 // element once the collected LF images have a ray that lands in this element and passes through the
 // lens near the point. "Near" means within kCoveredDistances times the distance between LF cameras,
 // or within the distance between lens points, whichever is larger. A lens point that is not covered
-// is a gap: rebinned rays are used for it. This detects an aperture that is larger than the
-// captured band, and an aperture that lies between LF cameras. A lens point is no gap if no LF
-// camera within the reach of its kernel sees the element, because no rebinned ray could fill it.
+// is a gap: rebinned rays are used for it. Gaps therefore occur where an aperture is larger than
+// the captured band, and where a small aperture lies between LF cameras. A lens point is no gap if
+// no LF camera within the reach of its kernel sees the element, because no rebinned ray could fill
+// it.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +41,8 @@ class LensGaps {
   //   collected          empty: the frame collects no rays, and all lens points are gaps
   //   lens_test          true if there are no lens weights, so that only rays through the opening
   //                      of the lens are collected
-  //   places             places of the LF images that the frame takes
+  //   places             range of the places (positions in the order) of the LF images that the
+  //                      frame takes
   //   camera_distance_w  CameraDistanceAround() in the whole light field. Must be set if the index
   //                      covers only a part of the light field; unset: measured in `index`
   LensGaps(const ImageIndex& index, const RenderCamera& frame, const CollectedWeights& collected,
@@ -51,15 +54,14 @@ class LensGaps {
   bool can_be_asked() const { return sampling_.lf.camera_distance_w > 0; }
   const FrameSampling& sampling() const { return sampling_; }
   const RenderCamera& camera() const { return all_.camera; }
-  // Number of LF images that have a collected ray at any node.
+  // Number of LF images that have a collected ray at one or more nodes.
   size_t collected_count() const { return collected_places_.size(); }
-  // Returns the place after the first `count`, by ascending places, of the LF images that
-  // collected_count() counts; the place after all of them if they are fewer. 0 if there is none, or
-  // if `count` is 0.
+  // Takes the first `count` LF images, by ascending places, of those that collected_count() counts
+  // (all if they are fewer). Returns the place after the last of these; 0 if there are none.
   uint32_t PlaceAfter(size_t count) const;
 
-  // QueriesAt() returns the queries when exactly the LF images at places before `place` are
-  // collected. AsksAt() returns true if any node then needs rebinned rays.
+  // QueriesAt() returns the queries that the frame needs when exactly the LF images at places
+  // before `place` are collected. AsksAt() returns true if any node then needs rebinned rays.
   FrameQueries QueriesAt(uint32_t place) const;
   bool AsksAt(uint32_t place) const;
   bool asks_in_the_end() const { return asks_in_the_end_; }

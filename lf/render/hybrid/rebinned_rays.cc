@@ -18,15 +18,15 @@ namespace {
 // into the map. A ray that waits to be inserted takes 16 bytes.
 constexpr long long kPixelsAtOnce = 4 << 20;
 // If all rays are kept, LF images are divided into strips of this number of rows, which limits the
-// number of rays that wait.
+// number of rays that wait to be inserted.
 constexpr int kStripRows = 64;
 // At most kEstimatedFrom LF images are used to estimate the number of rays that the frames of a
 // section need. All rays are kept if no section's estimate exceeds kFitShare times
 // max_cells_per_section_.
 constexpr size_t kEstimatedFrom = 256;
 constexpr double kFitShare = 0.9;
-// Expected cells per estimated ray: kRoom if all rays are kept, kRoomByEdges if only rays at edges
-// are kept.
+// Number of cells expected for each estimated ray: kRoom if all rays are kept, kRoomByEdges if only
+// rays at edges are kept.
 constexpr double kRoom = 1.1, kRoomByEdges = 0.15;
 
 bool Covers(const CoverageMap& map, const Slab& slab, CellKey cell) {
@@ -103,8 +103,8 @@ void RebinnedRays::MakeSections(const FilmSlabs& slabs) {
 RebinnedRays::~RebinnedRays() = default;
 
 // Estimates the number of rays that finished frames need: finds, for some LF images spread over the
-// order, the share of their pixels that in_the_end covers. Then decides which rays are kept, and
-// makes the maps.
+// order, the share of their pixels that Section::in_the_end covers. Then decides which rays are
+// kept, and makes the maps.
 void RebinnedRays::MakeMaps(const ImageIndex& index) {
   std::vector<RenderCamera> reached;
   for (const AskingFrame& asking : asking_) reached.push_back(asking.asked.camera());
@@ -133,8 +133,8 @@ void RebinnedRays::MakeMaps(const ImageIndex& index) {
         most, static_cast<size_t>(totals[i] * (keeps_all_ ? kRoom : kRoomByEdges)));
 }
 
-// Begins a phase: updates the coverage of previews, and drops the cells that only earlier previews
-// needed.
+// Begins a phase (PhaseOf()): updates the coverage of previews, and drops the cells that only
+// earlier previews needed.
 void RebinnedRays::Begin(uint32_t phase, Section& section) {
   section.phase = phase;
   std::vector<FrameQueries> queries;
@@ -188,7 +188,8 @@ PixelRect RebinnedRays::RectOf(LfImageId id, uint32_t place) const {
                  light_field_.Camera(id).intrinsics);
 }
 
-// Returns null if the frame needs no rays or has no slab.
+// Returns the entry of asking_ for frames_[frame]; null if the frame needs no rebinned rays or has
+// no slab.
 const RebinnedRays::AskingFrame* RebinnedRays::Asking(size_t frame) const {
   const auto found = std::find_if(asking_.begin(), asking_.end(), [&](const AskingFrame& asking) {
     return asking.frame == &frames_[frame];
@@ -212,7 +213,8 @@ void RebinnedRays::Take(std::span<const BatchImage> images, uint32_t place_end) 
     const auto left = images.subspan(static_cast<size_t>(first - images.begin()));
     section->places_done = place_end;
     if (left.empty()) continue;
-    // A batch never extends into the next phase, because decision_places ends batches there.
+    // A batch never extends into the next phase, because CollectOptions::decision_places ends
+    // batches there.
     const uint32_t phase = PhaseOf(left.front().place);
     LF_CHECK(PhaseOf(left.back().place) == phase);
     if (phase != section->phase) Begin(phase, *section);
@@ -293,9 +295,9 @@ SplatFrame RebinnedRays::SplatOf(const Section& section, const FrameQueries& que
   return SplatBy(rays, queries, queries.points, queries.shares ? &*queries.shares : nullptr);
 }
 
-// Interpolates a frame if !options_.reparameterise: distances between rays are measured on the
-// planes of the slab. Splats the rays of each lens point separately, and returns the mean of these
-// pictures.
+// Interpolates a frame, with distances between rays measured on the planes of the slab
+// (options_.reparameterise is false). Splats the rays of each lens point separately, and returns
+// the mean of these pictures.
 SplatFrame RebinnedRays::SplatOfPoints(const Section& section, const FrameQueries& queries) const {
   const Intrinsics& plate = queries.camera.pinhole.intrinsics;
   SplatFrame sum{Image<float>(plate.width_px, plate.height_px, 3),
@@ -383,11 +385,11 @@ std::vector<std::string> RebinnedRays::Describe() const {
     const SlabSection& plan = section->plan;
     const double distance_w =
         (plan.slab.uv.origin_world - plan.slab.st.origin_world).dot(plan.slab.st.Normal());
-    lines.push_back(
-        fmt::format("slab {} of {}: {} frames, planes {:.4g} apart, cells {:.3g} wide on st and "
-                    "{:.3g} on uv (world units), {:.1f} % of its bounds needed",
-                    lines.size() + 1, sections_.size(), plan.end - plan.begin, distance_w,
-                    plan.slab.r_st_w, plan.slab.r_uv_w, 100 * section->in_the_end.share()));
+    lines.push_back(fmt::format(
+        "slab {} of {}: {} frames, planes {:.4g} apart, cells {:.3g} wide on the st plane and "
+        "{:.3g} on the uv plane (world units), {:.1f} % of its bounds needed",
+        lines.size() + 1, sections_.size(), plan.end - plan.begin, distance_w, plan.slab.r_st_w,
+        plan.slab.r_uv_w, 100 * section->in_the_end.share()));
   }
   return lines;
 }

@@ -2,13 +2,13 @@
 // LF image, and interpolates the frames from these rays (thesis 4.3.2, 4.3.3).
 //
 // The rays that a finished frame needs are known from calibrations (lens_gaps.h). All of them are
-// kept if there is room, otherwise only rays at edges in the LF images (Eq. 4.4). A preview (a
-// picture of an unfinished frame, asked_pixels.h) needs more rays: while few LF images are
+// kept if there is room, otherwise only rays at edges in the LF images (thesis Eq. 4.4). A preview
+// (a picture of an unfinished frame, asked_pixels.h) needs more rays: while few LF images are
 // collected, rebinned rays at edges fill the lens points that no collected ray covers yet. The
 // queries of previews (the rays to be interpolated, rebinning/frame_queries.h) are updated before
-// the LF images at places 64, 256, 1024, ...: cells that no query can use any more are dropped, and
-// rebinning stops once no frame needs more rays. All of this depends on places, not on time, so
-// that the kept rays depend neither on the number of threads nor on interruptions.
+// the LF images at places 64, 256, 1024, ... of the order: cells that no query can use any more are
+// dropped, and rebinning stops once no frame needs more rays. All of this depends on places, not on
+// time, so that the kept rays depend neither on the number of threads nor on interruptions.
 #pragma once
 
 #include <atomic>
@@ -37,7 +37,7 @@ namespace lf {
 enum class KeptRays {
   kAuto,   // kAll if they fit in max_cells, otherwise kEdges
   kAll,    // all rays
-  kEdges,  // rays at edges in the LF images, by Eq. 4.4
+  kEdges,  // rays at edges in the LF images, by thesis Eq. 4.4
 };
 // Returns "auto", "all" or "edges".
 const char* NameOf(KeptRays kept);
@@ -50,8 +50,8 @@ struct RebinPassOptions {
   // If true, distances between rays are measured on each frame's lens plane and focus plane. If
   // false, they are measured on the planes of the slab; query.lens_sets must then be 1.
   bool reparameterise = true;
-  // If true, the slower SplatReference() interpolates the rays, with `nearest` as its argument
-  // (rebinning/splat.h).
+  // If true, the slower SplatReference() (rebinning/splat.h) interpolates the rays. If `nearest` is
+  // not 0, it interpolates between this number of nearest rays, instead of the rays within reach.
   bool is_reference = false;
   size_t nearest = 0;
   SlabChoices slab;
@@ -59,7 +59,8 @@ struct RebinPassOptions {
   size_t max_cells = 0;  // largest number of cells in the maps of all sections together
 };
 
-// A frame that may be completed by rebinned rays, from the LF images at all places.
+// A frame that may be completed by rebinned rays. These are made from the LF images at all places
+// of the order.
 struct RebinnedFrame {
   FrameId id;
   LensGaps gaps;
@@ -96,7 +97,8 @@ class RebinnedRays : public ImageConsumer {
   const RayMap& map(size_t section) const;
   size_t max_cells_per_section() const { return max_cells_per_section_; }
   uint32_t places_done(size_t section) const;
-  //   map  a map of max_cells_per_section() with the rays of all LF images at places before
+  // Replaces the map of a section, for example by one that an earlier run saved.
+  //   map  made for max_cells_per_section() cells; has the rays of all LF images at places before
   //        places_done
   void Restore(size_t section, RayMap map, uint32_t places_done);
 
@@ -111,9 +113,10 @@ class RebinnedRays : public ImageConsumer {
   struct Facts {
     size_t section_count = 0;
     size_t cell_count = 0;
-    uint64_t looked_at = 0;  // number of LF pixels within the coverage maps
+    uint64_t looked_at = 0;  // number of LF pixels that the coverage maps cover
     double cpu_s = 0;        // CPU time of all threads
-    // true: all rays that finished frames need are kept; false: only their rays at edges
+    // true: all rays that finished frames need are kept; false: only those at edges in the LF
+    // images
     bool keeps_all = false;
     bool is_full = false;        // true: cells were dropped because a section had too many
     bool is_too_coarse = false;  // true if RayMap::is_too_coarse() is true for a section
@@ -124,7 +127,7 @@ class RebinnedRays : public ImageConsumer {
 
  private:
   struct Section;
-  // A frame that needs rays and has a slab.
+  // A frame that needs rebinned rays and has a slab.
   struct AskingFrame {
     const RebinnedFrame* frame;
     size_t slab;
@@ -147,7 +150,7 @@ class RebinnedRays : public ImageConsumer {
   const RebinPassOptions options_;
   ThreadPool& pool_;
   const std::vector<uint16_t> stored_values_;
-  std::vector<AskingFrame> asking_;  // by ascending ids
+  std::vector<AskingFrame> asking_;  // frames that need rebinned rays, by ascending ids
   std::vector<std::unique_ptr<Section>> sections_;
   SharedIdealPixels ideal_pixels_;
   bool keeps_all_ = false;

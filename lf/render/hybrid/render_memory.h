@@ -1,4 +1,5 @@
-// Divides the memory of a render (--memory) between rebinned rays and collection, for each mode.
+// Divides the memory of a render (--memory) between rebinned rays, plates and LF images, for each
+// render mode.
 #pragma once
 
 #include <cstddef>
@@ -21,10 +22,12 @@ struct RenderMemory {
 //   max_cells       RebinPassOptions::max_cells; 0: as many as fit in half of the memory (kRebin),
 //                   or in a quarter of it (kHybrid)
 //   frame_count     number of frames to render. With kRebin, all of them are in one pass.
-//   measured_bytes  if noise is measured, the memory for each frame's moments, in addition to its
-//                   plate; otherwise 0. With kRebin, frames have plates only if this is above 0.
-// kOutput: the memory does not suffice for max_cells (or for RebinnedRays::kLeastCells), for one
-// frame, or, with kRebin and plates, for all frames. The message names the memory that is needed.
+//   measured_bytes  memory of the noise moments of one frame (collect/noise_moments.h), in addition
+//                   to its plate; 0 if noise is not measured. With kRebin, frames have plates only
+//                   if this is above 0.
+// kOutput: the memory does not suffice for max_cells rebinned rays (at least
+// RebinnedRays::kLeastCells), for one frame, or, with kRebin and plates, for all frames. The
+// message names the memory that is needed.
 Result<RenderMemory> PlanRenderMemory(size_t memory_bytes, RenderMode mode, size_t max_cells,
                                       const LightField& light_field, const RayReading& reading,
                                       int plate_width, int plate_height, size_t frame_count,

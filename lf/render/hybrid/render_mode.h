@@ -16,7 +16,7 @@ enum class RenderMode { kCollect, kRebin, kHybrid };
 
 // Returns "collect", "rebin" or "hybrid".
 const char* NameOf(RenderMode mode);
-std::optional<RenderMode> RenderModeOf(std::string_view name);  // nullopt: the name is of no mode
+std::optional<RenderMode> RenderModeOf(std::string_view name);  // nullopt if no mode has this name
 
 inline bool Collects(RenderMode mode) { return mode != RenderMode::kRebin; }
 inline bool Rebins(RenderMode mode) { return mode != RenderMode::kCollect; }
