@@ -23,18 +23,18 @@ double SecondsSince(Clock::time_point start) {
 
 // An LF image of a batch while it is decoded.
 struct Loading {
-  size_t index = 0;  // index in order_
+  size_t index = 0;  // index of the LF image in State::order_
   std::optional<Result<LfPixels>> pixels;
 };
 
-// A batch: the LF images with indices [begin, end) in order_.
+// A batch: the LF images with indices [begin, end) in State::order_.
 struct Batch {
   size_t begin = 0;
   size_t end = 0;
   uint32_t place_end = 0;      // when the batch is done, all places before this one are done
-  std::vector<size_t> frames;  // frames that take the batch; empty: all
+  std::vector<size_t> frames;  // indices of the frames that take the batch; empty: all
   std::vector<Loading> loading;
-  std::vector<BatchImage> images;  // the LF images that are not broken, once all are loaded
+  std::vector<BatchImage> images;  // its LF images that are not broken; set once all are loaded
   bool is_loaded = false;
 };
 
@@ -74,7 +74,7 @@ class FrameCollector::State {
   static bool Takes(const CollectedFrame& frame) {
     return !frame.is_stopped && frame.progress.places_done < frame.places.end;
   }
-  // True if options_.consumer still needs LF images before this place.
+  // True if options_.consumer still needs LF images at places before place_end.
   bool ConsumerWants(uint32_t place_end) const {
     return options_.consumer != nullptr && options_.consumer->places_done() < place_end;
   }
@@ -121,7 +121,7 @@ Result<bool> FrameCollector::State::Step() {
     batch_ = next_.end > next_.begin ? std::move(next_) : BatchFrom(images_done_);
     next_ = {};
     if (batch_.begin == batch_.end) {
-      spare_.clear();  // frames are developed in this memory next
+      spare_.clear();  // frees the memory in which frames are developed next
       return false;
     }
     takers = FramesOf(batch_);
@@ -273,7 +273,8 @@ Result<void> FrameCollector::State::FinishLoading(Batch* batch) {
     if (options_.strict || error.kind != ErrorKind::kInput) return error;
     if (whole_ && !store_.IsThere(*whole_))
       return InputError(fmt::format(
-          "the LF images have disappeared: {} was read before, and does not exist any more",
+          "the LF images have disappeared: {} was read before, and does not exist any more: make "
+          "its folder accessible again",
           light_field_.image_names[whole_->value]));
     Skip(image, error);
   }

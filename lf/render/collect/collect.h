@@ -57,7 +57,8 @@ struct CollectOptions {
   // package must set it, because its places are those of the whole light field.
   uint32_t place_end = 0;
   bool strict = false;  // true: a broken LF image is an error; false: it is skipped
-  const std::atomic<bool>* interrupted = nullptr;  // may be null; true: Step() returns kInterrupted
+  // Once it is true, Step() returns kInterrupted. Null: nothing interrupts.
+  const std::atomic<bool>* interrupted = nullptr;
 };
 
 struct SkippedImage {
@@ -67,8 +68,9 @@ struct SkippedImage {
 };
 
 struct CollectTimes {
-  double load_cpu_s = 0;     // CPU time to read and decode LF images, sum of all threads
-  double load_wall_s = 0;    // time for this work with waits for the disk, sum of all threads
+  double load_cpu_s = 0;  // CPU time to read and decode LF images, sum of all threads
+  // Elapsed time to read and decode LF images, with waits for the disk, sum of all threads.
+  double load_wall_s = 0;
   double collect_cpu_s = 0;  // CPU time to plan and add rays, sum of all threads
   double wall_s = 0;         // duration of all steps
 };
@@ -104,7 +106,7 @@ class FrameCollector {
   // called again.
   Result<bool> Step();
 
-  // Stops a frame: it takes no more LF images.
+  // Stops a frame, given by its index in frames(): it takes no more LF images.
   void Stop(size_t frame);
 
   // The constructor's `frames`, with their progress.
@@ -127,7 +129,7 @@ struct CollectStatistics {
 };
 
 struct CollectProgress {
-  size_t image_count = 0;  // LF images of `order` that are done
+  size_t image_count = 0;  // number of LF images of `order` that are done
   uint64_t tested_count = 0;
 };
 

@@ -113,7 +113,7 @@ void BatchCollector::Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>
 
 // Returns how many of the frames, from the first one on, are planned together: all; or, if LF
 // images are filtered, those that read the same filtered LF images, so that memory holds only one
-// of each.
+// filtered copy of each LF image.
 size_t BatchCollector::CountTogether(const std::vector<BatchImage>& batch,
                                      std::span<const BatchFrame> frames) const {
   if (!reading_.Prefilters()) return frames.size();
@@ -192,8 +192,8 @@ std::span<BatchFrame> BatchCollector::FramesThatMayTake(const std::vector<BatchI
 void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span<BatchFrame> frames,
                                  const OtherItems& other_items,
                                  const std::atomic<bool>* interrupted) {
-  // First plans the segments of every pair of frame and LF image, then adds the rays of every pair
-  // of frame and tile.
+  // First plans the segments (pieces of scanlines) of every pair of frame and LF image, then adds
+  // the rays of every pair of frame and tile.
   const size_t contribution_count = frames.size() * batch.size();
   while (contributions_.size() < contribution_count) contributions_.emplace_back();
   ForEachTimed(contribution_count, [&](size_t i) {
@@ -252,8 +252,8 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
         AddToTile(contribution, task.tile, *contribution.opacity, &sums);
     sums.Flush();
   };
-  // The other items are long and therefore come first: if the last items are short, threads wait
-  // only briefly at the end.
+  // Items of `other_items` take longer than tiles, and therefore come first: if the last items are
+  // short, threads wait only briefly at the end.
   pool_.ForEach(other_items.count + tasks.size(), [&](size_t i) {
     if (i < other_items.count) {
       other_items.run(i);
@@ -276,7 +276,7 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
 }
 
 // Filters the LF images of the batch for the planned contributions to `frame_count` frames, and
-// sets the pixels of these.
+// sets the pixels and the opacity of these contributions.
 void BatchCollector::FilterImages(const std::vector<BatchImage>& batch, size_t frame_count) {
   std::vector<std::vector<Prefilter>> filters(batch.size());
   const auto for_each_planned = [&](const auto& body) {
@@ -301,7 +301,7 @@ void BatchCollector::FilterImages(const std::vector<BatchImage>& batch, size_t f
   });
 }
 
-// Adds the rays of one LF image that land in a tile. Returns their number.
+// Adds the rays of one LF image that land in a tile to `sums`. Returns the number of these rays.
 uint64_t BatchCollector::AddToTile(const Contribution& contribution, size_t tile,
                                    const LfPixels& pixels, TileSums* sums) const {
   return reading_.estimator == Estimator::kBilinear
@@ -353,8 +353,9 @@ void BatchCollector::AddOpacityByReference(const BatchImage& image, const PixelR
       plate->Add(x, y, SensorPlate::kOpacityChannel, opacity.At(x, y, 0));
 }
 
-// Runs body(i) for all items and measures the CPU time. If there are many items, several are run as
-// one task, because reading the clock takes longer than an item whose LF image misses the frame.
+// Runs body(i) for each item i in [0, count), and measures the CPU time. If there are many items,
+// several are run as one task, because reading the clock takes longer than an item whose LF image
+// misses the frame.
 void BatchCollector::ForEachTimed(size_t count, const std::function<void(size_t)>& body) {
   constexpr size_t kTasksPerThread = 64, kMostItems = 32;
   const size_t tasks_wanted = kTasksPerThread * static_cast<size_t>(pool_.thread_count());

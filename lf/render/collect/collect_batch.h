@@ -38,11 +38,11 @@ enum class Estimator { kNearest, kBilinear };
 const char* NameOf(Estimator estimator);
 
 // Says how rays are made from the pixels of LF images.
-struct RayReading : PixelReading {  // the filter is only used by kBilinear
+struct RayReading : PixelReading {  // its filter is only used by kBilinear
   Estimator estimator = Estimator::kNearest;
 
   RayReading() = default;
-  RayReading(Estimator the_estimator) : estimator(the_estimator) {}  // NOLINT: it says enough
+  RayReading(Estimator the_estimator) : estimator(the_estimator) {}  // NOLINT: implicit on purpose
 
   // Returns true if LF images are filtered before they are read.
   bool Prefilters() const {
@@ -74,15 +74,17 @@ struct BatchImage {
 };
 
 // A frame that takes those LF images of a batch whose places are in `places`.
+// BatchCollector::Add() sets the last two members.
 struct BatchFrame {
-  size_t frame = 0;
+  size_t frame = 0;  // index in the frames of the BatchCollector
   PlaceRange places;
-  bool is_done = false;  // set by Add(): true if the plate has all these LF images, false if none
-  FrameRays rays;        // set by Add() if is_done
+  // true: the plate has the rays of all these LF images; false: it has the rays of none of them
+  bool is_done = false;
+  FrameRays rays;  // counts of the rays that Add() tested and added; zeros if is_done is false
 };
 
-// Work other than collection, which the threads of the pool do at the same time: `count` items, of
-// which run(i) does item i.
+// Work other than collecting rays, such as decoding the next batch, that the threads of the pool do
+// at the same time. It has `count` items; run(i) does item i.
 struct OtherItems {
   size_t count = 0;
   std::function<void(size_t)> run;
@@ -110,9 +112,9 @@ class BatchCollector {
                  bool whole_images, ThreadPool& pool);
   ~BatchCollector();
 
-  // Adds the LF images to the plates of `frames` and runs the other items. May change the order of
-  // `frames`. Once *interrupted is true, no further frame is begun, and the frames that are begun
-  // are finished. Items of `other_items` may then be left out.
+  // Adds the rays of the LF images to the plates of `frames`, and runs `other_items`. May change
+  // the order of `frames`. Once *interrupted is true, no further frame is begun, and the frames
+  // that are begun are finished. Items of `other_items` may then be left out.
   void Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>& frames,
            const OtherItems& other_items, const std::atomic<bool>* interrupted);
 
@@ -120,8 +122,8 @@ class BatchCollector {
   // which the LF image has no weight needs no pixels.
   PixelRect RectOf(LfImageId id, std::span<const size_t> frames) const;
 
-  // Returns the CPU seconds that all threads have spent on collection so far, without the time of
-  // OtherItems.
+  // Returns the CPU seconds that all threads together have spent on collecting rays so far, without
+  // the time of OtherItems.
   double cpu_seconds() const { return static_cast<double>(cpu_ns_.load()) * 1e-9; }
 
  private:
@@ -131,7 +133,8 @@ class BatchCollector {
     ScatterPlan scatter;  // used by kNearest; kBilinear uses `gather`
     GatherPlan gather;
     RayWeights weights;
-    // The filtered LF image that `gather` reads, which filtered_ or the batch owns.
+    // The pixels and the opacity of the LF image, filtered if `gather` needs it. filtered_ or the
+    // batch owns them.
     const LfPixels* pixels = nullptr;
     const LfPixels* opacity = nullptr;
     std::atomic<uint64_t> accepted_count = 0;
@@ -164,7 +167,7 @@ class BatchCollector {
   size_t plan_bytes_;
   bool whole_images_;
   ThreadPool& pool_;
-  std::vector<std::vector<PlateTile>> tiles_;  // tiles of each frame's plate
+  std::vector<std::vector<PlateTile>> tiles_;  // [frame]: the tiles of its plate
   std::deque<Contribution>
       contributions_;  // [frame][LF image] of a batch; the next batch reuses their memory
   // Ideal pixels of the LF cameras of the last batch, by the index of their intrinsics.

@@ -36,14 +36,14 @@ struct FrameRays {
 // whose places are below places_done. Broken LF images count as done.
 struct FrameProgress {
   uint32_t places_done = 0;
-  FrameRays rays;  // rays that this collector added
+  FrameRays rays;  // counts of the rays that this FrameCollector tested and added
 };
 
 struct CollectedFrame {
   RenderCamera camera;
   SensorPlate* plate = nullptr;  // receives the rays; must not be null
-  // The frame takes the LF images at these places. The plate must already have the rays of those at
-  // places before `begin`.
+  // The frame takes the LF images at these places of the order. The plate must already have the
+  // rays of the frame's LF images at places before places.begin.
   PlaceRange places = {};
   ImageWeights weights = {};
   // Moments of the plate, made for its width and height. They are updated with the plate, and

@@ -18,17 +18,18 @@ class FilteredImages {
   // Runs body(i) for i in [0, count), by several threads.
   using ForEach = std::function<void(size_t count, const std::function<void(size_t)>& body)>;
 
-  // Forgets all LF images, because others follow, but keeps the memory.
+  // Forgets all filtered LF images, because another batch follows, but keeps their memory for it.
   void Clear();
 
-  // Filters each LF image of the batch with each of its filters, unless that was done since the
-  // last Clear(). Forgets the results of other filters, so that the memory stays small if every
+  // Filters each LF image of the batch with each of its filters, unless this was done since the
+  // last Clear(). Forgets the results of all other filters, so that the memory stays small if every
   // frame needs another filter.
   //   filters  the prefilters of each LF image; may contain equal ones
   void Filter(const std::vector<BatchImage>& batch, std::vector<std::vector<Prefilter>> filters,
               const ForEach& for_each);
 
-  // Returns the pixels, or the opacity, of image `k` of the batch, filtered by one of its filters.
+  // Returns the pixels, or the opacity, of image `k` of the batch, filtered by `filter`, which must
+  // be one of its filters.
   const LfPixels& Pixels(const std::vector<BatchImage>& batch, size_t k,
                          const Prefilter& filter) const;
   const LfPixels& Opacity(const std::vector<BatchImage>& batch, size_t k,
@@ -42,8 +43,8 @@ class FilteredImages {
   };
   const Filtered& Of(size_t k, const Prefilter& filter) const;
 
-  std::vector<std::list<Filtered>> filtered_;  // of each LF image of the batch
-  std::list<Filtered> spare_;                  // whose memory is used again
+  std::vector<std::list<Filtered>> filtered_;  // [k]: filtered copies of LF image k of the batch
+  std::list<Filtered> spare_;                  // unused entries, whose memory is used again
 };
 
 }  // namespace lf

@@ -40,7 +40,8 @@ FrameLens::FrameLens(const ImageIndex& index, const RenderCamera& frame, LensWei
     near.push_back(light_field_.Camera(LfImageId{id}).CentreWorld());
   }
   weights_.emplace(frame, near, kind, pool, light_field_.encoding.masks_clipped);
-  // The disk is made slightly larger, so that rays on its border count as inside.
+  // The disk that replaces the aperture is made slightly larger, so that rays on its border count
+  // as inside.
   camera_.aperture = {weights_->reach_w() * (1 + 1e-6), 0, 0};
 }
 

@@ -61,7 +61,7 @@ class FrameLens {
 
   // Properties of the lens weights; facts() returns nullopt if there are none.
   struct Facts {
-    double hat_share = 0;  // FrameWeights::hat_share()
+    double hat_share = 0;  // share of the hat weights: FrameWeights::hat_share()
     LensCoverage coverage;
   };
   std::optional<Facts> facts() const;
@@ -80,7 +80,7 @@ class FrameLens {
   RenderCamera camera_;
   double camera_distance_w_ = 0;
   std::optional<FrameWeights> weights_;
-  std::map<uint32_t, size_t> cameras_;  // from LfImageId to index in weights_
+  std::map<uint32_t, size_t> cameras_;  // from LfImageId::value to the index in weights_
 };
 
 // Returns the side of the squares of FrameLens::EffectiveCounts(), in elements.

@@ -15,7 +15,8 @@ class ImageConsumer {
  public:
   virtual ~ImageConsumer() = default;
 
-  // Returns the place before which all LF images are done, like FrameProgress::places_done.
+  // Returns the place of the order before which all LF images are done, like
+  // FrameProgress::places_done.
   virtual uint32_t places_done() const = 0;
   // Returns the bounds of the pixels that the object needs of the LF image at `place`; empty if it
   // needs none. Any thread may call this, for LF images that have not been passed to Take() yet.

@@ -20,14 +20,14 @@ constexpr size_t kDevelopBytesPerElement = 64;
 // Additional memory to develop a frame with opacity, for each element: opacity, its counts and
 // tables.
 constexpr size_t kOpacityBytes = 16;
-constexpr size_t kSheetBytesPerElement = 3;  // for each picture of the contact sheet
+constexpr size_t kSheetBytesPerElement = 3;  // 8-bit RGB picture of the contact sheet
 constexpr size_t kMostSheetPictures = 12;
 
 // Memory while one LF image is decoded, for each pixel: the file, its stored values, and the
-// decoder's own memory.
+// decoder's own memory. The second number is for float files.
 constexpr size_t kDecodeBytesPerPixel = 16;
 constexpr size_t kDecodeFloatBytesPerPixel = 32;
-constexpr size_t kTileBytes = kMiB;  // for the sums of the tile that a thread works on
+constexpr size_t kTileBytes = kMiB;  // sums of the tile that one thread works on
 
 // Limits of the number of LF images in a batch (PlanMemory()). In a batch that reaches them, adding
 // the tiles to the plates and waiting for the last task take little time compared with collecting
@@ -42,9 +42,9 @@ constexpr size_t kMostPlanBytes = 64 * kMiB;
 // Memory that the largest LF image needs.
 struct ImageNeed {
   size_t pixels = 1;
-  size_t kept_bytes = 1;    // for its 16-bit radiance, mask, and ideal pixels if it is distorted
-  size_t decode_bytes = 1;  // while a thread decodes it
-  size_t plan_bytes = 1;    // for the plan of its rays in one frame
+  size_t kept_bytes = 1;    // radiance, mask, opacity, ideal pixels
+  size_t decode_bytes = 1;  // in addition, while a thread decodes it
+  size_t plan_bytes = 1;    // plan of its rays in one frame
 };
 
 ImageNeed NeedOf(const LightField& light_field, Estimator estimator, int plate_width,
@@ -91,7 +91,8 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
       kProgramBytes + light_field.size() * (sizeof(LfCamera) + 128) +
       element_count * (develop_bytes + sheet_pictures * kSheetBytesPerElement) +
       static_cast<size_t>(thread_count) * (need.decode_bytes + kTileBytes);
-  // Memory for one LF image of each of the two batches, filtered in one of them, and for one plan.
+  // Memory for one LF image in each of the two batches, for its filtered copy in one of them, and
+  // for one plan.
   const size_t copies = reading.Prefilters() ? 3 : 2;
   const size_t pair_bytes = copies * need.kept_bytes + need.plan_bytes;
   const size_t frame_bytes = plan.plate_bytes + bytes_per_frame;
@@ -106,7 +107,8 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
       std::max({kEnoughBatchImages, kEnoughBatchImagesPerThread * static_cast<size_t>(thread_count),
                 std::min(kMostBatchImages, kRaysPerElement * element_count / need.pixels)});
   plan.batch_image_count = std::clamp<size_t>(free_bytes / 4 / pair_bytes, 1, enough);
-  // If several frames are planned together, threads wait less often for the last task of a frame.
+  // Memory for more plans than one frame needs lets several frames be planned together: threads
+  // then wait less often for the last task of a frame.
   plan.plan_bytes =
       std::max(plan.batch_image_count * need.plan_bytes, std::min(kMostPlanBytes, free_bytes / 16));
   const size_t images_bytes = plan.batch_image_count * copies * need.kept_bytes + plan.plan_bytes;

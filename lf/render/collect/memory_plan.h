@@ -29,7 +29,8 @@ struct MemoryPlan {
 // at most the largest of these numbers of LF images, because larger batches gain nothing: 16; two
 // for each thread; as many as have the pixels of eight plates together (at most 64). kOutput if the
 // memory does not suffice for one plate and two LF images; the message names the least memory that
-// suffices. Prefilters need a filtered LF image for each one of a batch.
+// suffices. If LF images are prefiltered, the memory of one batch also holds a filtered copy of
+// each of its LF images.
 //   bytes_per_frame  further memory for each frame, such as its moments (noise_moments.h)
 Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field,
                               const RayReading& reading, int plate_width, int plate_height,

@@ -50,8 +50,9 @@ class HexReader {
   size_t count_ = 0;
 };
 
-// Tests some inequalities that hold for all integers S_i and W_i. Returns false if one of them does
-// not hold for these sums and moments. All products fit in 128 bits.
+// Tests some inequalities that hold for any sums S_i and counts W_i of LF images (noise_moments.h).
+// Returns false if these sums and moments break one of them, so that they cannot be right. All
+// products fit in 128 bits.
 bool CanBe(const ElementSum& total, const ElementMoments& moments) {
   const UInt128 sum = total.sum, count = total.count, n = moments.image_count;
   const UInt128 squares = moments.sum_squares, cross = moments.cross_sum;
@@ -66,9 +67,10 @@ bool CanBe(const ElementSum& total, const ElementMoments& moments) {
 
 double StandardErrorOfMean(const ElementSum& total, const ElementMoments& moments) {
   if (moments.image_count < 2) return std::numeric_limits<double>::infinity();
-  // The moments of T_i = S_i - m0 W_i, where m0 is the integer nearest to the mean m, are computed
-  // exactly. Only m - m0, at most 1/2, needs floating point. Intermediate unsigned values may wrap,
-  // but the results are below 2^122 in magnitude, and correct as signed numbers.
+  // The moments of T_i = S_i - m0 W_i (S_i, W_i and the mean m are those of noise_moments.h; m0 is
+  // the integer nearest to m) are computed exactly. Only m - m0, at most 1/2, needs floating point.
+  // Intermediate unsigned values may wrap, but the results are below 2^122 in magnitude, and
+  // correct as signed numbers.
   const UInt128 mean = (total.sum + total.count / 2) / total.count;
   const UInt128 count_squares = moments.count_squares;
   const UInt128 squares =
@@ -156,7 +158,7 @@ Result<NoiseMoments> NoiseMoments::Read(std::string_view text, const SensorPlate
       return fault(fmt::format("moments of the rays in channel {} of element ({}, {})", channel,
                                at.x, at.y));
   }
-  if (!reader.is_at_end()) return fault("nothing behind it");
+  if (!reader.is_at_end()) return fault("the end of the text behind it");
   return read;
 }
 

@@ -38,19 +38,21 @@ namespace lf {
 
 using UInt128 = unsigned __int128;
 
-// The moments of one element and channel. The plate has the sums of S_i and W_i.
+// The moments of one element and channel, to which LF image i adds the sum S_i of its rays' values
+// and the count W_i of its rays. The plate has the sums of S_i and W_i over all LF images.
 struct ElementMoments {
   UInt128 sum_squares = 0;    // sum of S_i^2
   UInt128 cross_sum = 0;      // sum of S_i W_i
   UInt128 count_squares = 0;  // sum of W_i^2
-  uint32_t image_count = 0;   // n
+  uint32_t image_count = 0;   // number n of LF images with W_i > 0
 
   friend bool operator==(const ElementMoments&, const ElementMoments&) = default;
 };
 
-// Returns the standard error of the mean, in units of the rays' values v; infinity if n < 2. The
-// result has the same bits on every machine.
-//   total  sum S_i and sum W_i, from the plate
+// Returns the standard error of an element's mean (the root of the variance of m above), in units
+// of the rays' values v; infinity if moments.image_count is below 2. The result has the same bits
+// on every machine.
+//   total  the element's sum and count in the plate: those of all LF images together
 double StandardErrorOfMean(const ElementSum& total, const ElementMoments& moments);
 
 class NoiseMoments {

@@ -20,7 +20,7 @@ namespace {
 // An LF camera, prepared for many calls of Sees().
 struct Viewer {
   RayThrough ray;
-  double border_px;  // rays nearer to the border of the image do not count
+  double border_px;  // rays nearer than this to the border of the LF image are ignored
   RayWeights weights;
 };
 

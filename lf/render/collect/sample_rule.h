@@ -34,7 +34,7 @@ class ReachableElements {
   static constexpr int kGrid = 8;  // side of a square, in elements
 
   // places   only LF images whose places are in this range are considered
-  // filter   used only if select.reach is kNeighbours (bilinear)
+  // reading  used only if select.reach is not kOwn, which is the reach of kNearest
   // weights  returns the weights of an LF image in the frame; empty: all rays through the lens have
   //          weight 1. Rays of weight 0 make no element reachable.
   ReachableElements(const ImageIndex& index, const RenderCamera& camera, const PlaceRange& places,
@@ -44,8 +44,10 @@ class ReachableElements {
   bool Holds(int x, int y) const {
     return is_reachable_[static_cast<size_t>(y / kGrid) * columns_ + x / kGrid] != 0;
   }
-  size_t count() const { return count_; }              // number of reachable elements
-  size_t image_count() const { return image_count_; }  // LF images selected within `places`
+  // Number of reachable elements.
+  size_t count() const { return count_; }
+  // Number of LF images within `places` that selection found for the frame.
+  size_t image_count() const { return image_count_; }
 
  private:
   size_t columns_ = 0;
@@ -64,11 +66,12 @@ uint32_t DecisionPlaces(size_t light_field_image_count, size_t frame_image_count
 // every channel, or if no element is reachable. Returns quickly if far fewer elements have them.
 bool HasSamples(const SensorPlate& plate, const ReachableElements& reachable, uint32_t samples);
 
-// share: share of the reachable elements that have at least `samples` rays in every channel; 1 if
-// no element is reachable. most_have: the largest N for which the rule "samples>=N" is met.
+// The result of MeasureSamples().
 struct SampleShare {
+  // Share of the reachable elements that have at least `samples` rays in every channel; 1 if no
+  // element is reachable.
   double share = 1;
-  uint64_t most_have = 0;
+  uint64_t most_have = 0;  // largest N for which the rule "samples>=N" is met
 };
 SampleShare MeasureSamples(const SensorPlate& plate, const ReachableElements& reachable,
                            uint32_t samples);

@@ -1,4 +1,5 @@
-// The ideal pixels of LF cameras with distortion, made once for all LF images that share them.
+// The ideal pixels (camera/ideal_pixels.h) of LF cameras with distortion, made once for all LF
+// images that share them.
 #pragma once
 
 #include <cstddef>
