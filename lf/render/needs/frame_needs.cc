@@ -85,7 +85,7 @@ class NeedsFinder {
     return GrownBy(rect, PixelsAround(options_.rebin.rebin, true), camera.intrinsics);
   }
 
-  // Merges `rebinned` into the needs. Both lists are by ascending ranks.
+  // Merges `rebinned` into needs_.images. Both lists are by ascending ranks.
   void Join(const std::vector<FrameNeeds::Image>& rebinned) {
     const auto place = [this](const FrameNeeds::Image& image) { return index_.PlaceOf(image.id); };
     std::vector<FrameNeeds::Image> joined;
@@ -103,8 +103,8 @@ class NeedsFinder {
   }
 
   // Finds the LF cameras that are needed for lens weights, gaps of the lens, and rebinned rays with
-  // the default options. Includes what any mode and estimator needs, so that a package serves all
-  // of them.
+  // the default options. Includes the LF cameras that any mode or estimator needs, so that a
+  // package serves all of them.
   void FindNeighbours() {
     SelectOptions widest = options_.select;
     widest.reach = kWidestReach;

@@ -52,10 +52,10 @@ struct FrameNeeds {
   // Other LF cameras that are needed to compute lens weights and gaps (render/hybrid/lens_gaps.h),
   // by ascending ids. The LF cameras of `images` and `neighbours` alone give the same lens weights,
   // the same LF images within max_image_count, and the same rebinned rays (for the default options)
-  // as the whole light field. Empty if HasNeighbours() is false.
+  // as the whole light field. Empty if NeedsOptions::HasNeighbours() is false.
   std::vector<LfImageId> neighbours;
-  // Density of the LF cameras around the lens; set if HasNeighbours() is true, or if it was passed
-  // to NeedsOf().
+  // Density of the LF cameras around the lens; set if NeedsOptions::HasNeighbours() is true, or if
+  // it was passed to NeedsOf().
   std::optional<FrameSampling> sampling;
 
   std::optional<double> camera_distance_w() const;
@@ -67,7 +67,7 @@ FrameSurroundings SurroundingsOf(const FrameSampling& sampling);
 // Returns the sampling of a frame of the film that the package stores; nullopt if it stores none.
 std::optional<FrameSampling> SamplingOf(const Package& package, FrameId frame);
 
-// Returns what a frame needs.
+// Returns the LF images, pixels and LF cameras that a frame needs.
 //   sampling  density of the LF cameras around the lens in the whole light field. Must be set if
 //             `index` covers only a part of the light field; unset: measured in `index`
 FrameNeeds NeedsOf(const ImageIndex& index, const RenderCamera& frame, const NeedsOptions& options,
