@@ -23,13 +23,13 @@ namespace lf {
 struct PackageFrame {
   FrameId id;
   uint64_t image_count = 0;  // number of LF images that are read for the frame
-  uint64_t ray_count = 0;    // number of their pixels that are tested as rays or rebinned
+  uint64_t ray_count = 0;    // number of LF pixels that are tested as rays or rebinned
 };
 
 // Density of LF cameras around the lens of a frame (render/hybrid/frame_sampling.h). It is measured
 // in the whole light field, because the package may lack some LF cameras.
 struct FrameSurroundings {
-  double camera_distance_w = 0;  // approximate spacing of the LF cameras; 0: there are none
+  double camera_distance_w = 0;  // approximate spacing of LF cameras around the lens; 0: none
   double pixel_rad = 0;          // angle that one LF pixel covers
   Vec3 middle_world = Vec3::Zero();
   double hole_w = 0;  // FrameSampling::hole_w: distance from lens points to LF cameras
@@ -48,9 +48,9 @@ struct PackageChoices {
   // of the lens that each LF camera gets as its lens weight, and rebinned rays are made from their
   // LF images.
   bool has_neighbours = true;
-  // Render mode for which the images' `rect` and `frame_count` are computed: "collect", "rebin" or
-  // "hybrid" (render/hybrid/render_mode.h). A package with neighbours can be rendered in any mode
-  // if the LF images are whole.
+  // Render mode for which `rect`, `frame_count` and `ray_count` of each PackageImage are computed:
+  // "collect", "rebin" or "hybrid" (render/hybrid/render_mode.h). A package with neighbours can be
+  // rendered in any mode if the LF images are whole.
   std::string mode = "collect";
 };
 
@@ -63,7 +63,8 @@ struct PackageImage {
   uint64_t file_bytes = 0;
   PixelRect rect;            // bounds of the pixels that are read
   uint32_t frame_count = 0;  // number of frames that need the LF image; 0: a neighbour
-  uint64_t ray_count = 0;    // its pixels that are tested as rays or rebinned, sum of all frames
+  // Number of pixels of the LF image that are tested as rays or rebinned, sum of all frames.
+  uint64_t ray_count = 0;
 };
 
 struct Package {
@@ -71,7 +72,8 @@ struct Package {
   size_t number = 1;  // number of this package, from 1 to `count`
   size_t count = 1;   // number of packages of the film
   LightField light_field;
-  ImagePlaces places;                // ranks in the order of the whole light field
+  // Ranks of the LF images of `light_field` in the order of the whole light field.
+  ImagePlaces places;
   CameraPath path;                   // camera path of the whole film
   std::vector<PackageFrame> frames;  // the frames to render, by ascending ids
   LightFieldIdentity whole;          // identity of the light field from which the package is made
@@ -83,12 +85,13 @@ struct Package {
   std::vector<FrameSurroundings> surroundings;
 
   std::vector<FrameId> FrameIds() const;
-  // Returns camera_distance_w around the lens of a frame of the film; nullopt if it was not
+  // Returns FrameSurroundings::camera_distance_w of a frame of the film; nullopt if it was not
   // measured.
   std::optional<double> CameraDistance(FrameId frame) const;
 };
 
-// Returns a whole light field and path as one package, with the LF images in a shuffled order.
+// Returns a whole light field and path as one package, with the LF images in an order shuffled by
+// `seed`.
 Package PackageOfAll(LightField light_field, CameraPath path, uint64_t seed);
 
 }  // namespace lf

@@ -33,10 +33,11 @@ struct ReadPackageOptions {
   bool check_seal = true;
 };
 
-// Reads a package. Its name is the file's name without extension. light_field.folder is the path
-// that the LF images had when the package was made. If that path no longer exists, the path with
-// the same position relative to the package is used instead, so that a light field and its packages
-// may be moved together. kInput: the file cannot be read, is damaged, or has another version.
+// Reads a package. Its name is the file's name without extension. Package::light_field.folder is
+// the path that the folder of the LF images (or the packed store) had when the package was made. If
+// that path no longer exists, the path with the same position relative to the package is used
+// instead, so that a light field and its packages may be moved together. kInput: the file cannot be
+// read, is damaged, or has another version.
 Result<Package> ReadPackage(const std::filesystem::path& path,
                             const ReadPackageOptions& options = {});
 

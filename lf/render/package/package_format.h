@@ -28,8 +28,8 @@ inline constexpr size_t kCameraNumbers = 33;
 std::array<double, kCameraNumbers> NumbersOfCamera(const RenderCamera& camera);
 RenderCamera CameraOfNumbers(std::span<const double, kCameraNumbers> numbers);
 
-// Number of values that describe a FrameSurroundings, in the order of its fields: middle_world has
-// three.
+// Number of values that describe a FrameSurroundings, in the order of its members, of which
+// middle_world has three values.
 inline constexpr size_t kSurroundingsNumbers = 6;
 
 }  // namespace lf

@@ -138,7 +138,7 @@ Result<void> Reader::ReadImages() {
   std::vector<uint32_t> places = package_.places.of_images;
   std::sort(places.begin(), places.end());
   if (std::adjacent_find(places.begin(), places.end()) != places.end())
-    return Damaged("two LF images have one place");
+    return Damaged("two LF images have the same place in the order");
   return {};
 }
 
@@ -182,7 +182,8 @@ Result<void> Reader::ReadSurroundings(const std::vector<double>& numbers, int64_
                         numbers[0] >= 0 && numbers[1] >= 0 && numbers[5] >= 0 &&
                         (numbers[0] == 0 || numbers[1] > 0);
   if (!are_sane || package_.surroundings.size() != before)
-    return Damaged(fmt::format("the LF cameras around frame {} are not described", frame));
+    return Damaged(fmt::format(
+        "the values of the LF cameras around frame {} are missing or impossible", frame));
   package_.surroundings.push_back(
       {numbers[0], numbers[1], {numbers[2], numbers[3], numbers[4]}, numbers[5]});
   return {};
@@ -201,7 +202,8 @@ Result<void> Reader::ReadFrames() {
         LF_ASSIGN_OR_RETURN(const std::string_view bytes, row.Blob(1));
         const std::vector<double> numbers = NumbersOf<double>(bytes);
         if (numbers.size() != kCameraNumbers)
-          return Damaged(fmt::format("the camera of frame {} has {} bytes", number, bytes.size()));
+          return Damaged(fmt::format("the camera of frame {} has {} bytes, expected {}", number,
+                                     bytes.size(), kCameraNumbers * sizeof(double)));
         const bool are_finite = std::all_of(numbers.begin(), numbers.end(),
                                             [](double x) { return std::abs(x) <= kMostNumber; }) &&
                                 IsWithin(numbers[5], 1, kMostSide_px) &&
@@ -215,7 +217,9 @@ Result<void> Reader::ReadFrames() {
             (plate.width_px == film.cameras.front().pinhole.intrinsics.width_px &&
              plate.height_px == film.cameras.front().pinhole.intrinsics.height_px);
         if (!are_finite || !IsRenderCamera(camera) || !has_size)
-          return Damaged(fmt::format("the camera of frame {} is none", number));
+          return Damaged(fmt::format(
+              "the camera of frame {} has impossible values, or another resolution than frame 1",
+              number));
         film.cameras.push_back(camera);
         LF_ASSIGN_OR_RETURN(const int64_t is_rendered, row.Integer(2, 0, 1));
         LF_ASSIGN_OR_RETURN(const int64_t images, row.Integer(3, 0, kMostImages));

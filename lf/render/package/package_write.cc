@@ -67,7 +67,7 @@ class Writer {
     return settings;
   }
 
-  // Writes rows in the order of ranks, so that SQLite appends them.
+  // Writes one row for each LF image, by ascending ranks, because SQLite then only appends rows.
   Result<void> WriteImages() {
     LF_CHECK(package_.images.size() == light_field_.size());
     LF_ASSIGN_OR_RETURN(Statement image,
@@ -99,7 +99,7 @@ class Writer {
     return insert->Run();
   }
 
-  // Writes all frames of the film, and marks those of the package as rendered.
+  // Writes all frames of the film, and marks those that this package renders (is_rendered).
   Result<void> WriteFrames() {
     LF_ASSIGN_OR_RETURN(
         Statement insert,
@@ -119,7 +119,7 @@ class Writer {
       insert.Bind(8, int64_t{is_rendered}).Bind(9, static_cast<int64_t>(frame.image_count));
       insert.Bind(10, static_cast<int64_t>(frame.ray_count));
       const std::optional<double> distance_w = package_.CameraDistance(FrameId{n});
-      insert.Bind(11, distance_w ? *distance_w : -1.0);  // -1: not known
+      insert.Bind(11, distance_w ? *distance_w : -1.0);  // -1: not measured
       const std::vector<double> surroundings = SurroundingsOf(n);
       insert.BindBlob(12, BytesOf(std::span<const double>(surroundings)));
       LF_RETURN_IF_ERROR(insert.Run());
