@@ -118,7 +118,7 @@ inline Json ParseRecord(std::string_view text, const char* format, std::string* 
   Json json = Json::parse(text, nullptr, false);
   std::string found;
   if (json.is_discarded())
-    *fault = "it is no JSON, or only a part of it";
+    *fault = "the text is no JSON, or is cut off";
   else
     RecordFields(json, fault).Get("format", &found);
   if (fault->empty() && found != format)

@@ -22,38 +22,40 @@
 
 namespace lf {
 
-// Samples of a frame, set with --stop-when or --require "samples>=N"
+// Samples of a frame, measured for --stop-when or --require "samples>=N"
 // (render/collect/sample_rule.h). `asked` is N.
 struct FrameSamples {
   uint32_t asked = 0;
   SampleShare measured;
 };
 
-// Noise of a frame with --stop-when or --require "noise<=X" (render/collect/noise_rule.h).
+// Noise of a frame, measured for --stop-when or --require "noise<=X" (render/collect/noise_rule.h).
 struct FrameNoise {
   double asked = 0;               // X, in linear radiance
   std::optional<double> reached;  // unset: cannot be measured (MeasureNoise() is infinite)
   uint32_t places = 0;            // the LF images before this place of the order were collected
-  uint64_t image_count = 0;       // number of these LF images that have rays in the frame
+  uint64_t image_count = 0;       // number of LF images before this place with rays in the frame
 };
 
 struct FrameReport {
   FrameId frame;
   FrameRays rays;
-  // The next three have a number for each of the channels R, G, B: elements without a collected ray
-  // that are not interpolated; smallest and median number of rays that an element collected.
+  // The next three arrays have one value for each of the channels R, G, B: the number of elements
+  // that have neither a collected ray nor an interpolated colour; the smallest and the median
+  // number of rays that an element collected.
   std::array<uint64_t, 3> empty_element_count{};
   std::array<uint64_t, 3> min_count{};
   std::array<uint64_t, 3> median_count{};
   double develop_s = 0;
-  std::optional<FrameSamples> samples;  // set if a rule of samples was given
+  std::optional<FrameSamples> samples;  // set if a rule "samples>=N" was given
   RunInputs camera;                     // result of InputsOfCamera()
   // Facts about lens weights; unset if there are none. With lens weights, counts are sums of
   // weights.
   struct Weighed {
-    double effective_count = 0;  // median over elements that LF images see
-                                 // (render/collect/frame_lens.h)
-    double hat_share = 0;        // share of the hat weights in all weights
+    // Median of FrameLens::EffectiveCounts(), the effective numbers of LF images, over the elements
+    // that LF images see.
+    double effective_count = 0;
+    double hat_share = 0;  // share of the hat weights in all weights
     LensCoverage coverage;
   };
   std::optional<Weighed> weighed = std::nullopt;
@@ -62,14 +64,14 @@ struct FrameReport {
   std::optional<uint32_t> places_done = std::nullopt;
   // The share of the picture that is interpolated from rebinned rays; unset if the mode has none.
   std::optional<double> interpolated_share = std::nullopt;
-  std::optional<FrameNoise> noise = std::nullopt;  // set if a rule of noise was given
+  std::optional<FrameNoise> noise = std::nullopt;  // set if a rule "noise<=X" was given
 };
 
 // Facts about rebinned rays (render/hybrid/rebinned_rays.h).
 struct RebinReport {
   size_t slab_count = 0;         // largest number of slabs in a pass
   uint64_t cell_count = 0;       // largest number of cells at the end of a pass
-  uint64_t looked_at_count = 0;  // number of LF pixels within the coverage maps
+  uint64_t looked_at_count = 0;  // number of LF pixels that the coverage maps cover
   double cpu_s = 0;              // CPU time to make cells from LF pixels
   // Says which of the rays that finished frames need were kept. "all": all of them; "edges": only
   // rays at edges in the LF images; "some": not even all of these, because there was no room.
@@ -81,7 +83,7 @@ struct RebinReport {
 // Report of one of the packages that one call of RenderPackages() has rendered.
 struct PackageReport {
   std::string name;
-  size_t selected_image_count = 0;  // as in RenderReport
+  size_t selected_image_count = 0;  // largest number of LF images that a pass reads
   size_t skipped_image_count = 0;
 };
 
@@ -101,7 +103,8 @@ struct RenderReport {
   std::vector<SkippedImage> skipped;
   std::vector<PackageReport> packages;  // empty unless RenderPackages() was called
   double total_s = 0;
-  double load_cpu_s = 0;  // this and the next two are sums of CollectTimes
+  // This and the next two: the CollectTimes (render/collect/collect.h) of all passes, added up.
+  double load_cpu_s = 0;
   double load_wall_s = 0;
   double collect_cpu_s = 0;
   std::optional<RebinReport> rebinning = std::nullopt;
@@ -120,7 +123,7 @@ struct RenderReport {
 // Returns a report with the counts of a developed frame.
 FrameReport MakeFrameReport(FrameId frame, const FrameRays& rays, const DevelopedFrame& developed);
 
-// Returns the largest resident memory of this process so far.
+// Returns the largest resident memory that this process has had so far.
 uint64_t PeakMemoryBytes();
 
 std::string ToJson(const RenderReport& report);

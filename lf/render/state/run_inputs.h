@@ -33,9 +33,9 @@ struct RunChoices {
   LensWeights lens_weights = LensWeights::kNone;
   std::optional<size_t> max_image_count;
   std::optional<double> max_angle_rad;
-  std::optional<uint32_t> stop_at_samples;  // at most one stop rule is set
+  std::optional<uint32_t> stop_at_samples;  // unset if stop_at_noise is set
   std::optional<double> stop_at_noise;
-  // "as recorded", or the settings of the lossy codec that changed the pixels.
+  // "as recorded", or the settings of the lossy codec that changed the pixels of the LF images.
   std::string pixels = "as recorded";
   std::string format = "exr";
   uint32_t smooth_below = 0;

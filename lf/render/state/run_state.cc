@@ -314,9 +314,9 @@ Result<FrameProgress> RunState::LoadPlate(FrameId frame, SensorPlate* plate,
   LF_RETURN_IF_ERROR(get("progress.rays_tested", &progress.rays.tested_count));
   LF_RETURN_IF_ERROR(get("progress.rays_accepted", &progress.rays.accepted_count));
   if (reader.width() != plate->width() || reader.height() != plate->height())
-    return InputError(fmt::format("{}: has {} x {} elements, expected {} x {}", path.string(),
-                                  reader.width(), reader.height(), plate->width(),
-                                  plate->height()));
+    return InputError(fmt::format(
+        "{}: has {} x {} elements, expected {} x {}; remove the file to render its frame anew",
+        path.string(), reader.width(), reader.height(), plate->width(), plate->height()));
   if (reader.has_opacity() != plate->has_opacity())
     return WithAdvice(InputError(fmt::format("{}: has {} channels, expected {}", path.string(),
                                              reader.has_opacity() ? 4 : 3, plate->channels())));

@@ -39,12 +39,12 @@
 namespace lf {
 
 struct RunStateOptions {
-  std::filesystem::path folder;  // DIR
-  std::string package;           // name; empty unless other packages may be rendered into DIR
+  std::filesystem::path folder;  // DIR, the output folder
+  std::string package;           // name of the package; empty unless packages may share DIR
   std::vector<FrameId> frames;   // all frames of the package, ascending
   FrameFormat format = FrameFormat::kExrHalf;
-  bool resume = false;     // continue with the state in the folder
-  bool overwrite = false;  // remove the state in the folder
+  bool resume = false;     // true: continues from the state in the folder
+  bool overwrite = false;  // true: removes the state in the folder
   RunInputs rays;          // result of InputsOfRays()
   RunInputs picture;       // result of InputsOfPicture()
   std::optional<Shard> shard = std::nullopt;
@@ -52,8 +52,8 @@ struct RunStateOptions {
 
 class RunState {
  public:
-  // Makes the folder, locks it and, with options.resume, reads the state in it. The path must
-  // outlive the object.
+  // Makes the folder, locks it and, with options.resume, reads the state in it. The camera path
+  // must outlive the object.
   // kUsage: the folder has an unfinished render, and neither resume nor overwrite is set; the state
   // was made from other inputs (the message names the first input that differs, and both values);
   // or packages or shards that are in the folder were rendered from other inputs.
@@ -61,7 +61,7 @@ class RunState {
   // kOutput: the folder cannot be written, or another process renders into it.
   static Result<std::unique_ptr<RunState>> Open(const RunStateOptions& options,
                                                 const CameraPath& path);
-  ~RunState();  // removes partial/ if it is empty
+  ~RunState();  // removes the folder of the state if it is empty
 
   // Reports of the frames that are finished and whose files exist.
   const std::map<FrameId, FrameReport>& finished() const { return finished_; }
