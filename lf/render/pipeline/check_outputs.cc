@@ -69,8 +69,10 @@ class Replaced {
  private:
   std::map<FileNumber, fs::path> numbers_;
   std::set<std::string, std::less<>> names_;
-  std::map<std::string, fs::path> paths_;  // from the canonical path to the path as given
-  std::map<fs::path, fs::path> folders_;   // from a folder as given to its canonical path
+  // From the canonical path of an output to its path as given.
+  std::map<std::string, fs::path> paths_;
+  // From a folder of inputs, as given, to its canonical path.
+  std::map<fs::path, fs::path> folders_;
 };
 
 Error Refusal(const fs::path& output, std::string_view what, const fs::path& input) {

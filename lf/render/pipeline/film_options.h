@@ -76,7 +76,7 @@ struct FilmOptions {
 // Returns the options, with these values replaced by what follows from the package and from other
 // options:
 //   lens_weights     kNone if the mode is kRebin, or if it was kAuto and rays are counted
-//   reading.filter   if it was kAuto: as FilterOf() says
+//   reading.filter   if it was kAuto: the choice of FilterOf() (collection/gather_sampling.h)
 //   max_image_count  the limit that the package was made with, if it was unset
 FilmOptions Resolved(FilmOptions options, const Package& package);
 

@@ -20,8 +20,8 @@ Result<std::unique_ptr<FilmRenderer>> FilmRenderer::Open(Package package, const 
   const size_t fit = setup->plan().frames_per_pass;
   if (fit < setup->frames().size())
     return OutputError(
-        fmt::format("{} frames cannot be rendered at the same time: {} MiB of memory suffice for "
-                    "{}: allow more memory, or open fewer frames",
+        fmt::format("{} frames cannot be rendered at the same time: {} MiB of memory suffice only "
+                    "for {} frames: allow more memory, or open fewer frames",
                     setup->frames().size(), work.memory_bytes >> 20, fit));
   LF_RETURN_IF_ERROR(setup->PlanSlabs());
   auto renderer = std::make_unique<FilmRenderer>(*setup, setup->frames());
@@ -71,7 +71,8 @@ Result<void> FilmRenderer::FindLenses() {
   return {};
 }
 
-// Returns the frame for the selection of the LF images whose rays have a weight in it.
+// Returns the description of a frame by which selection finds the LF images whose rays have a
+// weight in the frame.
 TakingFrame FilmRenderer::Taking(const Frame& frame) const {
   TakingFrame taking = {frame.lens->camera(), frame.places};
   if (film_.lens_weights != LensWeights::kNone)
@@ -279,8 +280,8 @@ uint32_t FilmRenderer::PlaceOfEnd(size_t f) const {
 
 // A frame that has all LF images that it takes is completed as at the end of the render
 // (kInTheEnd), even if it takes only a part of the light field. A frame that was stopped or is
-// finished early is completed at its last place: it has more gaps, because the remaining LF images
-// do not cover them.
+// finished early is completed at its last place. It has more gaps, because the LF images after this
+// place do not cover them.
 std::optional<Completion> FilmRenderer::Complete(size_t f) {
   if (!rebinned_) return std::nullopt;
   const uint32_t done = Progress(f).places_done;

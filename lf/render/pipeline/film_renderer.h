@@ -47,8 +47,8 @@ class EarlierRun {
   // Adds the rays that the earlier run collected for the frame to the plate, and returns the
   // frame's progress.
   //   plate    empty, of the frame's size
-  //   moments  receives the moments of these rays, if the earlier run kept them; null: they are not
-  //            needed
+  //   moments  receives the noise moments of these rays, if the earlier run kept them; null: they
+  //            are not needed
   virtual Result<FrameProgress> LoadPlate(FrameId frame, SensorPlate* plate,
                                           std::optional<NoiseMoments>* moments) const = 0;
   // The rebinned rays of a section (RebinnedRays::map()), made from the LF images at places before
@@ -93,8 +93,9 @@ class FilmRenderer {
   // Returns the frame's progress. It counts all rays in the plate, including those of the earlier
   // run.
   FrameProgress Progress(size_t f) const;
-  const SensorPlate& plate(size_t f) const { return frames_[f].plate; }  // only if HasPlates()
-  // Returns the moments of the plate. Returns null if noise is not measured, or if the moments lack
+  // Must be called only if FilmOptions::HasPlates() is true.
+  const SensorPlate& plate(size_t f) const { return frames_[f].plate; }
+  // Returns the noise moments of the plate; null if noise is not measured, or if the moments lack
   // LF images whose rays are in the plate.
   const NoiseMoments* moments(size_t f) const {
     return frames_[f].has_noise ? &frames_[f].moments : nullptr;
@@ -140,7 +141,7 @@ class FilmRenderer {
   CollectProgress progress() const { return done_; }
   std::span<const SkippedImage> skipped() const { return collector_->skipped(); }
   const CollectTimes& times() const { return collector_->times(); }
-  // Null if the mode has no rebinned rays.
+  // The rebinned rays of the frames; null if the mode has none.
   const RebinnedRays* rebinned() const { return rebinned_.get(); }
   // kInput: no LF image contributes to any frame, and no ray was collected before. This is so if no
   // recorded ray passes both a frame's lens and the region that the frame sees.
@@ -158,11 +159,12 @@ class FilmRenderer {
     SensorPlate plate{0, 0};
     NoiseMoments moments;  // moments of the plate; empty if noise is not measured
     // Places of the LF images that this run still collects. If there is an earlier run, the plate
-    // has those before `begin`.
+    // already has the rays of the LF images at places before places.begin.
     PlaceRange places;
-    FrameRays earlier_rays;        // rays in the plate when this run began
-    uint32_t decision_places = 0;  // stop_at_samples is applied at multiples of this number
-    uint32_t next_decision = 0;    // next place at which the stop rule is applied
+    FrameRays earlier_rays;  // rays in the plate when this run began
+    // FilmOptions::stop_at_samples is applied at places that are multiples of this number.
+    uint32_t decision_places = 0;
+    uint32_t next_decision = 0;  // next place at which the stop rule is applied
     bool is_released = false;
     bool is_stopped = false;  // true: stopped by its rule, with the LF images before next_decision
     bool has_noise = false;   // true if the moments include all LF images in the plate
@@ -191,7 +193,7 @@ class FilmRenderer {
   uint32_t DecisionFrom(size_t f, uint32_t place) const;
   void DecideStops();
 
-  std::unique_ptr<FilmSetup> own_setup_;  // null unless made by Open()
+  std::unique_ptr<FilmSetup> own_setup_;  // setup of a renderer made by Open(); otherwise null
   const FilmSetup& setup_;
   const FilmOptions& film_;  // options of the setup
   const SelectOptions select_;

@@ -63,8 +63,8 @@ void FilmRenderer::ForgetRaysAhead() {
   for (size_t i = 0; i < rebinned_->section_count(); ++i) {
     if (rebinned_->places_done(i) <= least) continue;
     LogInfo(
-        "rebinned rays are made again, because a frame has collected fewer LF images than they "
-        "have");
+        "rebinned rays are made again, because they were made from more LF images than a frame has "
+        "collected");
     rebinned_->Restore(i, RayMap(rebinned_->max_cells_per_section(), 0), 0);
   }
 }

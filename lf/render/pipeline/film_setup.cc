@@ -66,7 +66,8 @@ Result<void> FilmSetup::CheckStore() const {
   return {};
 }
 
-// Decides what LF pixels show, if the filter has to know it.
+// Decides on the footprint of LF pixels (each pixel averages over its area, or shows a point), if
+// the filter has to know it.
 Result<void> FilmSetup::FindFootprint() {
   if (!film_.reading.Prefilters() || film_.reading.footprint) return {};
   film_.reading.footprint = light_field().encoding.footprint;
@@ -107,8 +108,9 @@ Result<void> FilmSetup::PlanSlabs() {
 
 Error NoneContributes(std::span<const FrameId> frames) {
   return InputError(fmt::format(
-      "no LF image contributes to frames {}-{}: no recorded ray passes both their lens and what "
-      "they see (is the aperture smaller than the camera spacing, or the camera off the capture?)",
+      "no LF image contributes to frames {}-{}: no recorded ray passes through both their lens and "
+      "the region that they see (is the aperture smaller than the distance between LF cameras, or "
+      "the render camera far from them?)",
       frames.front().value, frames.back().value));
 }
 

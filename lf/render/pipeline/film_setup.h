@@ -24,9 +24,9 @@ namespace lf {
 class FilmSetup {
  public:
   // Resolves the options, opens the LF images and plans the memory. With kBilinear, also makes room
-  // in the radiance encoding for values below black, and finds out what LF pixels show
-  // (MeasureFootprint()) if the filter needs it and neither the options nor the light field say it.
-  // The pool must outlive the object.
+  // in the radiance encoding for values below black, and measures the footprint of LF pixels
+  // (MeasureFootprint()) if the filter needs it and neither the options nor the light field state
+  // it. The pool must outlive the object.
   //   frames  some frames of the package, ascending; empty: all of its frames
   // kUsage: the options are not compatible with each other or with the package.
   // kInput: the packed store lacks pixels that a frame needs (CheckKept() of
@@ -57,7 +57,8 @@ class FilmSetup {
   // part of the film. Does nothing if the mode has no rebinned rays, or if the slabs are planned
   // already. kInterrupted: WorkOptions::stop is set.
   Result<void> PlanSlabs();
-  const FilmSlabs& slabs() const { return *slabs_; }  // only after PlanSlabs()
+  // Must be called only after PlanSlabs().
+  const FilmSlabs& slabs() const { return *slabs_; }
 
  private:
   FilmSetup(Package package, const FilmOptions& film, const WorkOptions& work,

@@ -40,7 +40,7 @@ struct FilmFiles {
   int width_px = 0;
   int height_px = 0;
   double fps = 0;
-  const std::atomic<bool>* stop = nullptr;  // true interrupts the functions; may be null
+  const std::atomic<bool>* stop = nullptr;  // once true, the functions end; may be null
 
   // WriteContactSheet() writes the sheet `name` into the folder; WriteVideo() writes an mp4. Both
   // read the files of these frames.

@@ -44,8 +44,8 @@ Result<std::vector<FrameId>> ParseFrameRange(std::string_view text, size_t frame
           fmt::format("{} \'{}\': expected a range such as 1-100, 1-100x2 or 3,7,9", option, text));
     if (last < first)
       return UsageError(
-          fmt::format("{} \'{}\': the first frame of a range is at most the last: {}-{}", option,
-                      text, last, first));
+          fmt::format("{} \'{}\': the first frame of a range must be at most the last: write {}-{}",
+                      option, text, last, first));
     if (step < 1)
       return UsageError(
           fmt::format("{} \'{}\': expected a step of at least 1 after x", option, text));

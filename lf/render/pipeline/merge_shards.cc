@@ -61,7 +61,7 @@ Result<std::vector<fs::path>> FilesOf(const std::vector<fs::path>& given) {
   std::sort(files.begin(), files.end());
   for (size_t i = 1; i < files.size(); ++i)
     if (files[i] == files[i - 1])
-      return UsageError(fmt::format("{}: is given twice", files[i].string()));
+      return UsageError(fmt::format("{}: is given twice: give each plate once", files[i].string()));
   return files;
 }
 
@@ -118,7 +118,10 @@ class Merger {
 
   Result<RenderReport> Run(const std::vector<fs::path>& given) {
     LF_ASSIGN_OR_RETURN(const std::vector<fs::path> files, FilesOf(given));
-    if (files.empty()) return InputError("no plates");
+    if (files.empty())
+      return InputError(
+          "no plates are named: expected plate files of lfrenderer --shard or --keep-plates, or "
+          "folders with such files");
     for (const fs::path& file : files) {
       if (IsStopped()) return Interrupted();
       LF_ASSIGN_OR_RETURN(ShardPlate plate, Look(file));
@@ -204,9 +207,11 @@ class Merger {
               fmt::format("frame {}: {} is shard {}, and so is another file: give each shard once",
                           id.value, plate.path.string(), plate.shard.Text()));
         if (plate.width_px != one.width_px || plate.height_px != one.height_px)
-          return InputError(fmt::format("frame {}: {} has {} x {} elements, {} has {} x {}",
-                                        id.value, one.path.string(), one.width_px, one.height_px,
-                                        plate.path.string(), plate.width_px, plate.height_px));
+          return InputError(
+              fmt::format("frame {}: {} has {} x {} elements, but {} has {} x {}: give plates of "
+                          "one render only",
+                          id.value, one.path.string(), one.width_px, one.height_px,
+                          plate.path.string(), plate.width_px, plate.height_px));
         if (const auto difference = FirstDifference(plate.inputs, one.inputs))
           return InputError(fmt::format(
               "frame {}: {}: give only shards that were rendered with the same inputs and options",
@@ -271,8 +276,9 @@ class Merger {
     return {};
   }
 
-  // Compares the film and the render camera in an earlier report with those of the plates. They may
-  // differ after an interrupted --overwrite, which leaves frames of the film that it was replacing.
+  // Compares the film and the render camera in an earlier report with those of the plates. The two
+  // may differ after an interrupted --overwrite, which leaves frames of the film that it was
+  // replacing.
   std::optional<InputDifference> DifferenceFrom(const RunInputs& film_before,
                                                 const MergedFrame& frame) const {
     if (const auto difference = FirstDifference(film_before, FilmInputs())) return difference;
@@ -352,8 +358,8 @@ class Merger {
     return report;
   }
 
-  // Sets selected_image_count to the number of LF images of the frame that takes most, and adds the
-  // LF images that were skipped when the plates were rendered.
+  // Sets RenderReport::selected_image_count to the largest number of LF images that a frame takes,
+  // and adds the LF images that were skipped when the plates were rendered.
   void AddImages(RenderReport* report) const {
     for (const auto& [id, frame] : frames_) {
       uint64_t count = 0;

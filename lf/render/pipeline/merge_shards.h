@@ -21,13 +21,13 @@ struct MergeOptions {
   FrameFormat format = FrameFormat::kExrHalf;
   std::optional<std::filesystem::path> video;
   bool contact_sheet = true;
-  bool resume = false;     // keep frames that exist already
-  bool overwrite = false;  // replace frames that exist already
+  bool resume = false;     // true: keeps frames that exist already
+  bool overwrite = false;  // true: replaces frames that exist already
   RenderSignals* signals = nullptr;
 };
 
 struct MergeProgress {
-  size_t plate_count = 0;  // plates that are done
+  size_t plate_count = 0;  // number of plates that are done
   size_t plate_total = 0;
   size_t frame_count = 0;
   size_t frame_total = 0;

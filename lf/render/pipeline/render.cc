@@ -112,7 +112,8 @@ class Renderer {
   Result<RenderReport> Run(Package package);
 
  private:
-  // True for a whole film. Its frames must not all be black; those of a section or a shard may be.
+  // True if a whole film is rendered. Its frames must not all be black, while the frames of a
+  // section or a shard may all be black.
   bool IsWhole() const { return setup_->package().name.empty() && !setup_->film().shard; }
   bool IsStopped() const { return setup_->work().IsStopped(); }
   Result<void> Begin(Package package);
@@ -264,8 +265,8 @@ Result<void> Renderer::RunPasses(std::vector<FrameId> frames) {
       begin_s_,
       black_count_,
       [this](const CollectProgress& pass, size_t finished_count) { Report(pass, finished_count); }};
-  // Reports a film without contributing LF images now, and not after hours of work. The check is
-  // skipped if an earlier run left plates or frames, because LF images then contribute.
+  // Finds out now, and not after hours of work, that no LF image contributes to the film. The check
+  // is skipped if an earlier run left plates or frames, because LF images then contribute.
   if (totals_.pass_count > 1 && IsWhole() && !rebins && !state_->HasPlates() &&
       state_->finished().empty())
     LF_RETURN_IF_ERROR(CheckAnyContributes(frames));
@@ -286,7 +287,8 @@ Result<void> Renderer::RunPasses(std::vector<FrameId> frames) {
 }
 
 Result<void> Renderer::CheckAnyContributes(std::span<const FrameId> frames) const {
-  // With lens weights, LF cameras beside the lens contribute as well; only a pass can find these.
+  // With lens weights, LF cameras beside the lens contribute as well; only RenderPass can find
+  // these.
   if (setup_->film().lens_weights != LensWeights::kNone) return {};
   std::vector<RenderCamera> cameras;
   for (const FrameId frame : frames) cameras.push_back(setup_->path().Camera(frame));

@@ -24,7 +24,7 @@ namespace lf {
 // Requests to a render in progress. Code that sets `stop` or `save` must set `attention`
 // afterwards. Signal handlers may set all three.
 struct RenderSignals {
-  std::atomic<bool> attention = false;  // true: the step ends soon, and the other flags are read
+  std::atomic<bool> attention = false;  // true: the work pauses soon, to read `stop` and `save`
   std::atomic<bool> stop = false;       // true: the state is written, and the render ends
   std::atomic<bool> save = false;       // true: the state is written, and the render continues
 };
@@ -36,16 +36,18 @@ struct FolderOptions {
   // output may replace them.
   std::vector<std::filesystem::path> inputs;
   FrameFormat format = FrameFormat::kExrHalf;
-  std::optional<std::filesystem::path> video;  // an mp4 of the frames; must be unset for a shard
-  bool contact_sheet = true;                   // contact_sheet.png beside the frames
-  bool keep_plates = false;  // writes frame_0001.plate, ...; must be false with kRebin or a shard
+  // Path of an mp4 of the frames to write. Must be unset for a shard.
+  std::optional<std::filesystem::path> video;
+  bool contact_sheet = true;  // true: writes contact_sheet.png beside the frames
+  // True: writes frame_0001.plate, ... beside the frames. Must be false with kRebin or a shard.
+  bool keep_plates = false;
 
   // Interval between checkpoints (run_state.h), in seconds; 0: checkpoints are written only when a
   // signal requests one. The interval is extended if checkpoints would take more than 5 % of the
   // time.
   double dump_every_s = 30;
-  bool resume = false;     // continue with the state in the folder
-  bool overwrite = false;  // remove the state in the folder
+  bool resume = false;     // true: continues from the state in the folder
+  bool overwrite = false;  // true: removes the state in the folder
   // Frames to finish at once, with the rays that the state in the folder already has of each. The
   // report of such a frame says at which place of the order it ended. A frame without rays in the
   // state is rendered as usual. Needs `resume`; must be empty for a shard.
@@ -58,24 +60,24 @@ struct FolderOptions {
 struct RenderOptions {
   std::vector<FrameId> frames;       // some frames of the package, ascending; empty: all
   FilmOptions film;                  // what the frames are made of
-  WorkOptions work;                  // how the work is done; `signals` sets its flags
+  WorkOptions work;                  // how the work is done; `signals` replaces its flags
   FolderOptions folder;              // where the frames are written
-  RenderSignals* signals = nullptr;  // read often; may be null
+  RenderSignals* signals = nullptr;  // requests to this render, read often; may be null
 };
 
 struct RenderProgress {
-  size_t frame_count = 0;  // frames that are finished
+  size_t frame_count = 0;  // number of finished frames
   size_t frame_total = 0;
-  uint64_t ray_count = 0;  // rays that are tested; ray_total is an estimate
+  uint64_t ray_count = 0;  // number of rays tested so far; ray_total is an estimate
   uint64_t ray_total = 0;
-  size_t image_count = 0;  // LF images that are read, in all passes; image_total is an estimate
+  size_t image_count = 0;  // LF images read so far, sum of all passes; image_total is an estimate
   size_t image_total = 0;
 };
 
 // Checks the options of the film (CheckFilmOptions()) and of the folder. Render() calls this before
 // it starts; a program may call it before a job waits in a queue.
-// kUsage: the options are not compatible; an output would replace a file that is read; the lens of
-// a frame is a pinhole, but lens weights by area need its area.
+// kUsage: the options are not compatible; an output would replace a file that the render reads; the
+// lens of a frame is a pinhole, but lens weights by area need its area.
 Result<void> CheckRenderOptions(const Package& package, const RenderOptions& options);
 
 // Puts the LF images of a whole light field (a package without surroundings) in `order`, computed

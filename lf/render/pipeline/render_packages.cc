@@ -16,7 +16,7 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr size_t kLookedAt = 16;  // number of image files to check, about
+constexpr size_t kLookedAt = 16;  // approximate number of image files to check
 
 // The properties that must be equal in all packages of one film.
 struct Film {
@@ -265,7 +265,7 @@ Result<RenderReport> RenderPackages(PackagedFilm film, const RenderOptions& opti
   }
   std::vector<FrameId> frames;
   RenderReport report;
-  CameraPath path;  // the same in all packages
+  CameraPath path;  // camera path of the film, the same in all packages
   for (const PackagePart& part : parts) {
     LF_ASSIGN_OR_RETURN(Package package, OpenAgain(part, &film));
     RenderOptions of_part = options;

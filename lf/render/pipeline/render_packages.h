@@ -46,7 +46,7 @@ struct PackagePart {
   std::filesystem::path path;
   std::vector<FrameId> frames;
   bool is_whole = true;    // true if these are all frames of the package
-  uint64_t ray_count = 0;  // rays of these frames, approximately
+  uint64_t ray_count = 0;  // approximate number of rays of these frames
   // Size and modification time of the file when it was checked. A file whose size and time are the
   // same later is taken to be unchanged.
   uint64_t file_bytes = 0;
@@ -63,8 +63,8 @@ struct PackagedFilm {
 };
 
 // Opens every package with OpenPackage(), and checks that all packages are of the same film.
-// kUsage: two packages have a frame or their name in common. kInput: packages are of different
-// films or light fields. Other errors are those of OpenPackage().
+// kUsage: two packages have a frame in common, or have the same name. kInput: packages are of
+// different films or light fields. Other errors are those of OpenPackage().
 Result<PackagedFilm> OpenPackages(std::vector<std::filesystem::path> paths,
                                   std::optional<LightFieldPlace> place);
 

@@ -94,7 +94,8 @@ Result<void> RenderPass::Collect() {
   return {};
 }
 
-// Finishes the early frames before collection, because they get no more rays than the state has.
+// Finishes the frames of early_ before collection, because they get no more rays than the state
+// has.
 Result<void> RenderPass::FinishEarlyFrames() {
   for (size_t f = 0; f < renderer_.frame_count(); ++f) {
     if (renderer_.IsReleased(f) || !EndsEarly(renderer_.id(f))) continue;
@@ -190,7 +191,7 @@ Result<FrameReport> RenderPass::WriteFiles(size_t f, const std::optional<Complet
 Result<void> RenderPass::WriteFinishedPlate(size_t f, std::filesystem::path path) const {
   const FilmSetup& setup = context_.setup;
   FrameProgress progress = renderer_.Progress(f);
-  progress.places_done = renderer_.PlaceOfEnd(f);  // places_done must not depend on the passes
+  progress.places_done = renderer_.PlaceOfEnd(f);  // must not depend on the division into passes
   PlateEntries text = context_.state.PlateText(renderer_.id(f), progress, renderer_.moments(f));
   PlateNotes notes = NotesOf(f);
   notes.skipped = SkippedOf(

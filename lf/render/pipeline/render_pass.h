@@ -31,7 +31,7 @@ struct PassContext {
   DumpClock& clock;
   // Totals of finished passes and earlier runs; its total_s is that of earlier runs alone.
   RenderReport& totals;
-  double begin_s;       // time when this run began
+  double begin_s;       // NowSeconds() when this run began
   size_t& black_count;  // number of frames that no LF image contributes to
   std::function<void(const CollectProgress&, size_t finished_count)> progress;
 };
@@ -56,9 +56,9 @@ class RenderPass : private EarlierRun {
   Result<void> Finish();
 
  private:
-  // How much of a frame is saved in the folder.
+  // How much of an unfinished frame is saved in the folder.
   struct Saved {
-    uint32_t places = 0;   // places_done of the plate in the state on the disk
+    uint32_t places = 0;   // FrameProgress::places_done of the plate on the disk
     double picture_s = 0;  // NowSeconds() when its picture was last written
   };
 

@@ -16,8 +16,8 @@ constexpr double kLastPictures_s = 2;
 
 }  // namespace
 
-// Saves the plates, then the rebinned rays, then pictures: those that were written longest ago
-// first, until picture_budget_s has passed.
+// Saves the plates, then the rebinned rays, then pictures of unfinished frames. Those pictures that
+// were written longest ago come first; no picture is begun after picture_budget_s.
 Result<void> RenderPass::Save(double picture_budget_s) {
   LF_RETURN_IF_ERROR(context_.state.SaveTotals(Totals()));
   for (size_t f = 0; f < saved_.size(); ++f) {
@@ -78,8 +78,8 @@ Result<void> RenderPass::SaveWhenDue() {
            renderer_.images().size(), NowSeconds() - begin_s);
   if (clock.Done(begin_s, NowSeconds()))
     LogInfo(
-        "a checkpoint took {:.1f} s: the next one follows after {:.0f} s, so that they cost no "
-        "more than {:.0f} % of the time",
+        "a checkpoint took {:.1f} s: the next one follows after {:.0f} s, so that "
+        "checkpoints take no more than {:.0f} % of the time",
         NowSeconds() - begin_s, clock.interval_s(), 100 * DumpClock::kMostShare);
   return {};
 }
