@@ -1,5 +1,5 @@
-// Finds what each frame of a film needs, in the background, while a person looks at the first
-// frames.
+// Counts the LF images and rays that each frame of a film needs, in the background, while a person
+// looks at the first frames.
 #pragma once
 
 #include <atomic>

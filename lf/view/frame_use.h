@@ -19,17 +19,18 @@ namespace lf {
 
 // An LF camera gets the first of these values that applies.
 enum class CameraUse : uint8_t {
-  kUsed,  // pixels of its LF image are read for the frame
-  // no ray that passes through the lens and hits the plate passes its position (Fig. 4.4)
+  kUsed,  // pixels of the LF camera's image are read for the frame
+  // no ray that passes through the lens and hits the plate passes the position of the LF camera
+  // (thesis Fig. 4.4)
   kOutside,
-  // the angle between its optical axis and the optical axis of the frame exceeds --max-angle
+  // the angle between the optical axes of the LF camera and the frame exceeds --max-angle
   kAngle,
-  // rays through the lens to the plate pass its position, but no pixel of its LF image sees both
-  // the lens and the filmed region (Fig. 4.5)
+  // rays through the lens to the plate pass the position of the LF camera, but no pixel of its
+  // image sees both the lens and the filmed region (thesis Fig. 4.5)
   kSeesNone,
-  kLimit,  // LF images before it in the order already reach the limit --max-images
-  // it has no lens weight, because every point of the lens is nearer to another LF camera
-  // (doc/lens-integral.md)
+  kLimit,  // LF images earlier in the order already reach the limit --max-images
+  // the LF camera has no lens weight, because every point of the lens is nearer to another LF
+  // camera (doc/lens-integral.md)
   kNoWeight,
 };
 inline constexpr size_t kCameraUseCount = 6;

@@ -11,7 +11,9 @@ namespace lf {
 namespace {
 
 constexpr uint8_t kMaskedGrey = 128;
-constexpr int kSteps = 8192;  // steps of linear light; near black, a step is 0.4 display values
+// Number of steps of linear light from 0 to 1. Near black, a step is 0.4 of a display value (0 to
+// 255).
+constexpr int kSteps = 8192;
 
 uint8_t DisplayValue(double linear) {
   static const std::vector<uint8_t> values = [] {

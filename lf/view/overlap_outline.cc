@@ -11,12 +11,13 @@
 namespace lf {
 namespace {
 
-constexpr int kBorderSteps = 32;  // steps per side of the image at which the border is sampled
-constexpr int kEdgeSteps = 12;    // straight pieces that approximate a bent edge
+constexpr int kBorderSteps = 32;  // steps per side of the LF image at which its border is sampled
+constexpr int kEdgeSteps = 12;    // number of straight pieces that approximate a bent edge
 
 using Polygon = std::vector<Vec2>;
 
-// Returns the part of the polygon with form <= 0 (Sutherland, Hodgman 1974).
+// Clips a convex polygon at a line: returns the part where the linear form is at most 0
+// (Sutherland, Hodgman 1974).
 Polygon Clip(const Polygon& polygon, const PixelForm& form) {
   Polygon kept;
   for (size_t i = 0; i < polygon.size(); ++i) {
@@ -51,7 +52,8 @@ std::optional<Polygon> IdealBox(const Intrinsics& k, const DistortionMap& map) {
   return Box(low, high);
 }
 
-// Returns a polygon in ideal positions as the LF camera records it, with its edges bent.
+// Returns how the LF camera records a polygon that is given in ideal positions: lens distortion
+// bends the edges.
 Polygon Bent(const Polygon& ideal, const Intrinsics& k, const DistortionMap& map) {
   Polygon bent;
   const Mat3 inverse = k.InverseMatrix();

@@ -31,17 +31,17 @@ inline constexpr size_t kFrameNumbers = 31;
 std::string FramesBytes(const CameraPath& path);
 
 // Returns a head of 16 bytes: uint32 number of LF cameras; uint32 number of LF images that are
-// read; float camera distance (NaN if unset); uint32 0. Then the ids (uint32) of the LF images that
-// are read, in reading order. Then, in the same order, the share of each one's pixels that is read
-// (float). Then one byte per LF camera: its CameraUse.
+// read; float FrameUse::camera_distance_w (NaN if unset); uint32 0 (unused). Then the ids (uint32)
+// of the LF images that are read, in reading order. Then, in the same order, for each of them, the
+// share of its pixels that is read (float). Then one byte per LF camera: its CameraUse.
 std::string FrameUseBytes(const LightField& light_field, const FrameUse& use);
 
 // Returns one uint16 per LF camera: the number of frames that use its image.
 std::string FilmUseBytes(const FilmUse::Facts& facts);
 
 // Returns a head of eight uint32: width and height of the picture; width and height of the full
-// frame; 1 if ray counts are known, otherwise 0; 0, 0, 0. Then four half floats for each element,
-// row by row: R, G, B and ray count.
+// frame; 1 if ray counts are known, otherwise 0; three unused zeros. Then four half floats for each
+// element, row by row: R, G, B and ray count.
 std::string PictureBytes(const GrowingPicture& picture);
 
 }  // namespace lf

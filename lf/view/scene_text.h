@@ -22,6 +22,7 @@ namespace lf {
 //   collected FRAME ID SHARE           every LF camera that the frame uses, by ascending ID, and
 //                                      the share of the LF image's pixels that are read
 //
+//   seed  seed of the shuffled order in which the frames take LF images
 //   emit  receives the text in parts. If it returns an error, WriteSceneText() returns this error
 Result<void> WriteSceneText(const LightField& light_field, const CameraPath& path,
                             const std::vector<FrameId>& frames, uint64_t seed,

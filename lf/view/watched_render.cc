@@ -21,7 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostNested = 2;  // the deepest folder of a checkpoint is partial/package-0000/
+// Levels of folders below the output folder that are searched. The deepest folders with pictures
+// are those of packages, such as partial/package-0000/.
+constexpr int kMostNested = 2;
 constexpr size_t kMostDigits = 7;
 
 // Returns the frame number in a file name such as frame_0001.exr or frame_0001.png; nullopt for
@@ -140,8 +142,8 @@ GrowingPicture PictureOf(const DevelopedFrame& frame, int max_side_px) {
 Result<GrowingPicture> ReadGrowingPicture(const fs::path& path, int max_side_px) {
   LF_ASSIGN_OR_RETURN(const ImageWithInfo read, ReadImageWithInfo(path));
   if (read.info.channels < 3)
-    return InputError(fmt::format("{}: has {} channels, a frame has R, G and B", path.string(),
-                                  read.info.channels));
+    return InputError(fmt::format("{}: has {} channels, expected at least R, G and B",
+                                  path.string(), read.info.channels));
   std::array<int, 3> count_channels = {-1, -1, -1};
   const auto channel_named = [&](const std::string& name) {
     const auto& names = read.info.channel_names;

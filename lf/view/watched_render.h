@@ -28,7 +28,7 @@ struct WatchedFrame {
 std::vector<WatchedFrame> LookAtRender(const std::filesystem::path& folder);
 
 struct GrowingPicture {
-  int full_width_px = 0;  // size of the frame itself
+  int full_width_px = 0;  // width and height of the frame itself
   int full_height_px = 0;
   bool has_rays = false;
   // [height][width][4]: R, G, B in linear light, and the number of rays of an element, averaged
