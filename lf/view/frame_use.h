@@ -38,7 +38,7 @@ inline constexpr size_t kCameraUseCount = 6;
 std::string_view NameOf(CameraUse use);
 
 struct FrameUse {
-  std::vector<CameraUse> of_cameras;    // [LF camera]
+  std::vector<CameraUse> of_cameras;    // [LF camera]: kUsed, or why it is not used
   std::vector<FrameNeeds::Image> used;  // LF images that are read, in reading order
   // approximate distance between neighbouring LF cameras around the lens, in world units; set if
   // NeedsOptions::HasNeighbours() is true

@@ -123,7 +123,7 @@ class FrameCollector {
 };
 
 struct CollectStatistics {
-  std::vector<FrameRays> frames;  // in the order of the argument `frames`
+  std::vector<FrameRays> frames;  // ray counts of each frame, in the order of `frames`
   std::vector<SkippedImage> skipped;
   CollectTimes times;
 };

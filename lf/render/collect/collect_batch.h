@@ -38,7 +38,7 @@ enum class Estimator { kNearest, kBilinear };
 const char* NameOf(Estimator estimator);
 
 // Says how rays are made from the pixels of LF images.
-struct RayReading : PixelReading {  // its filter is only used by kBilinear
+struct RayReading : PixelReading {  // its member `filter` is used only by kBilinear
   Estimator estimator = Estimator::kNearest;
 
   RayReading() = default;

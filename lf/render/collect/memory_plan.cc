@@ -42,9 +42,9 @@ constexpr size_t kMostPlanBytes = 64 * kMiB;
 // Memory that the largest LF image needs.
 struct ImageNeed {
   size_t pixels = 1;
-  size_t kept_bytes = 1;    // radiance, mask, opacity, ideal pixels
-  size_t decode_bytes = 1;  // in addition, while a thread decodes it
-  size_t plan_bytes = 1;    // plan of its rays in one frame
+  size_t kept_bytes = 1;    // its radiance, mask, opacity and ideal pixels
+  size_t decode_bytes = 1;  // memory to decode it, in one thread
+  size_t plan_bytes = 1;    // the plan of its rays in one frame
 };
 
 ImageNeed NeedOf(const LightField& light_field, Estimator estimator, int plate_width,
@@ -55,7 +55,7 @@ ImageNeed NeedOf(const LightField& light_field, Estimator estimator, int plate_w
   const size_t decode_bytes_per_pixel = DefaultMaxRadiance(light_field.image_names) > 1
                                             ? kDecodeFloatBytesPerPixel
                                             : kDecodeBytesPerPixel;
-  constexpr size_t kPatchBytesPerPixel = 1;  // camera/ideal_pixels.h
+  constexpr size_t kPatchBytesPerPixel = 1;  // table of ideal pixels (camera/ideal_pixels.h)
   ImageNeed need;
   for (const Intrinsics& k : light_field.intrinsics) {
     const size_t pixels = static_cast<size_t>(k.width_px) * k.height_px;

@@ -41,9 +41,9 @@ using UInt128 = unsigned __int128;
 // The moments of one element and channel, to which LF image i adds the sum S_i of its rays' values
 // and the count W_i of its rays. The plate has the sums of S_i and W_i over all LF images.
 struct ElementMoments {
-  UInt128 sum_squares = 0;    // sum of S_i^2
-  UInt128 cross_sum = 0;      // sum of S_i W_i
-  UInt128 count_squares = 0;  // sum of W_i^2
+  UInt128 sum_squares = 0;    // sum over LF images of S_i^2 (S_i: sum of its ray values)
+  UInt128 cross_sum = 0;      // sum over LF images of S_i W_i (W_i: count of its rays)
+  UInt128 count_squares = 0;  // sum over LF images of W_i^2
   uint32_t image_count = 0;   // number n of LF images with W_i > 0
 
   friend bool operator==(const ElementMoments&, const ElementMoments&) = default;

@@ -51,7 +51,7 @@ class ReachableElements {
 
  private:
   size_t columns_ = 0;
-  std::vector<uint8_t> is_reachable_;  // [rows][columns] of squares
+  std::vector<uint8_t> is_reachable_;  // [rows][columns] of squares: 1 if reachable, else 0
   size_t count_ = 0;
   size_t image_count_ = 0;
 };

@@ -19,7 +19,7 @@ namespace lf {
 // kept for it, in addition to those that the finished frame needs. Only a frame that also collects
 // rays can have previews.
 enum class Previews {
-  kAuto,  // frames that collect more than kPreviewedFrom LF images
+  kAuto,  // a frame has previews if it collects more than kPreviewedFrom LF images
   kOn,
   kOff,
 };

@@ -14,7 +14,7 @@ namespace lf {
 namespace {
 
 constexpr int kLeastNodes = 17, kMostNodes = 65;
-constexpr size_t kMostNodeValues = size_t{1} << 17;  // limit of nodes times lens points
+constexpr size_t kMostNodeValues = size_t{1} << 17;  // limit of the product nodes x lens points
 
 }  // namespace
 

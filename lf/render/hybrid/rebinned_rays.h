@@ -36,7 +36,7 @@ namespace lf {
 // Says which of the rays that finished frames need are kept.
 enum class KeptRays {
   kAuto,   // kAll if they fit in max_cells, otherwise kEdges
-  kAll,    // all rays
+  kAll,    // all rays that finished frames need
   kEdges,  // rays at edges in the LF images, by thesis Eq. 4.4
 };
 // Returns "auto", "all" or "edges".
@@ -114,12 +114,12 @@ class RebinnedRays : public ImageConsumer {
     size_t section_count = 0;
     size_t cell_count = 0;
     uint64_t looked_at = 0;  // number of LF pixels that the coverage maps cover
-    double cpu_s = 0;        // CPU time of all threads
+    double cpu_s = 0;        // CPU time to make cells from LF pixels, sum of all threads
     // true: all rays that finished frames need are kept; false: only those at edges in the LF
     // images
     bool keeps_all = false;
     bool is_full = false;        // true: cells were dropped because a section had too many
-    bool is_too_coarse = false;  // true if RayMap::is_too_coarse() is true for a section
+    bool is_too_coarse = false;  // true: a cell got more rays than it can hold
   };
   Facts facts() const;
   // Returns one line of text for each section, which describes its slab and coverage for the log.

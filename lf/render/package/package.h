@@ -29,7 +29,7 @@ struct PackageFrame {
 // Density of LF cameras around the lens of a frame (render/hybrid/frame_sampling.h). It is measured
 // in the whole light field, because the package may lack some LF cameras.
 struct FrameSurroundings {
-  double camera_distance_w = 0;  // approximate spacing of LF cameras around the lens; 0: none
+  double camera_distance_w = 0;  // spacing of the LF cameras around the lens; 0 if there are none
   double pixel_rad = 0;          // angle that one LF pixel covers
   Vec3 middle_world = Vec3::Zero();
   double hole_w = 0;  // FrameSampling::hole_w: distance from lens points to LF cameras

@@ -85,7 +85,7 @@ FilmOptions Resolved(FilmOptions options, const Package& package);
 struct WorkOptions {
   size_t memory_bytes = size_t{8} << 30;
   bool strict = false;        // true: a broken LF image is an error; false: it is skipped
-  bool whole_images = false;  // SelectOptions::whole_images; true is slower
+  bool whole_images = false;  // value of SelectOptions::whole_images; true is slower
   // If not null: when any thread sets it to true, a step ends soon with kInterrupted. The caller
   // then clears the flag, and may continue with the next step.
   const std::atomic<bool>* interrupted = nullptr;

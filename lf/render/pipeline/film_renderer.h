@@ -155,7 +155,7 @@ class FilmRenderer {
  private:
   struct Frame {
     FrameId id;
-    std::optional<FrameLens> lens;  // set by Begin()
+    std::optional<FrameLens> lens;  // unset until Begin()
     SensorPlate plate{0, 0};
     NoiseMoments moments;  // moments of the plate; empty if noise is not measured
     // Places of the LF images that this run still collects. If there is an earlier run, the plate
@@ -200,7 +200,7 @@ class FilmRenderer {
   std::vector<Frame> frames_;
   std::vector<SelectedImage> images_;
   std::unique_ptr<FrameCollector> collector_;
-  std::unique_ptr<RebinnedRays> rebinned_;  // null if the mode has none
+  std::unique_ptr<RebinnedRays> rebinned_;  // the rebinned rays; null if the mode has none
   CollectProgress done_;
 };
 

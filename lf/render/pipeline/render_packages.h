@@ -57,7 +57,7 @@ struct PackagePart {
 struct PackagedFilm {
   std::vector<std::filesystem::path> paths;
   std::optional<LightFieldPlace> place;
-  std::vector<PackagePart> parts;  // one for each path
+  std::vector<PackagePart> parts;  // one part for each path
   size_t film_count = 1;           // number of packages of the film; `paths` may lack some
   Package first;                   // package of paths.front()
 };

@@ -26,7 +26,7 @@ inline double NowSeconds() {
 struct PassContext {
   const FilmSetup& setup;
   const FolderOptions& folder;
-  RenderSignals* signals;  // may be null
+  RenderSignals* signals;  // requests to the render; may be null
   RunState& state;
   DumpClock& clock;
   // Totals of finished passes and earlier runs; its total_s is that of earlier runs alone.

@@ -32,7 +32,7 @@ struct PlateNotes {
   // TextOf() writes only the first names, up to 256 KiB.
   uint64_t skipped_count = 0;
   std::vector<std::string> skipped = {};
-  DevelopOptions develop;  // all options, except `completion` and `is_interrupted`
+  DevelopOptions develop;  // how to develop; without `completion` and `is_interrupted`
 
   // Facts about lens weights (render/collect/frame_lens.h); unset if there are no lens weights.
   struct Weighed {

@@ -31,10 +31,10 @@ struct FrameSamples {
 
 // Noise of a frame, measured for --stop-when or --require "noise<=X" (render/collect/noise_rule.h).
 struct FrameNoise {
-  double asked = 0;               // X, in linear radiance
+  double asked = 0;               // X of the rule, in linear radiance
   std::optional<double> reached;  // unset: cannot be measured (MeasureNoise() is infinite)
   uint32_t places = 0;            // the LF images before this place of the order were collected
-  uint64_t image_count = 0;       // number of LF images before this place with rays in the frame
+  uint64_t image_count = 0;       // number of LF images before `places` with rays in the frame
 };
 
 struct FrameReport {
