@@ -16,8 +16,8 @@ std::vector<LfImageId> CamerasAroundLens(const ImageIndex& index, const RenderCa
   middle.pinhole.intrinsics.cy_px -= 0.5 * k.height_px;
   middle.pinhole.intrinsics.width_px = middle.pinhole.intrinsics.height_px = 0;
   const CameraTree& tree = index.tree();
-  // The radius begins with the larger of the lens radius and a thousandth of the distance to the
-  // focus point. It doubles up to 29 times.
+  // The radius of the lens that is searched begins with the larger of the lens radius and a
+  // thousandth of the distance to the focus point. It doubles up to 29 times.
   constexpr int kDoublings = 30;
   double radius_w =
       std::max(frame.aperture.radius_w, 1e-3 * (*focus - frame.pinhole.CentreWorld()).norm());

@@ -32,8 +32,8 @@ FrameLens::FrameLens(const ImageIndex& index, const RenderCamera& frame, LensWei
   grown.aperture = {frame.aperture.radius_w + kReach_distances * camera_distance_w_, 0, 0};
   for (const SelectedImage& image : SelectImages(index, std::span(&grown, 1), select, pool))
     cameras_[image.id.value] = 0;
-  // LF cameras are in the order of their ids, because weights must not depend on the order of the
-  // LF images.
+  // LF cameras are passed to FrameWeights in the order of their ids, because weights must not
+  // depend on the order of the LF images.
   std::vector<Vec3> near;
   for (auto& [id, camera] : cameras_) {
     camera = near.size();

@@ -32,7 +32,7 @@ Result<void> FilmRenderer::PrepareStops(CollectOptions* collect) {
     const ReachableElements& reachable = ReachableOf(f);
     if (film_.stop_at_samples) {
       // Batches end at the multiples of the smallest decision_places of all frames. The
-      // decision_places of each frame is a multiple of it.
+      // decision_places of each frame is a multiple of this smallest one.
       frame.decision_places = DecisionPlaces(setup_.index().place_end(), reachable.image_count());
       collect->decision_places = collect->decision_places == 0
                                      ? frame.decision_places

@@ -52,8 +52,8 @@ Result<std::unique_ptr<FilmSetup>> FilmSetup::Make(Package package, const FilmOp
   return setup;
 }
 
-// Checks, frame by frame, that a packed store that keeps only some pixels has all that the frames
-// need. Without this check, the render would fail only after hours of work.
+// Checks, frame by frame, that a packed store that keeps only some pixels has all pixels that the
+// frames need. Without this check, the render would fail only after hours of work.
 Result<void> FilmSetup::CheckStore() const {
   if (!store_->IsPartial()) return {};
   const NeedsOptions needs = Needs();

@@ -101,7 +101,7 @@ struct MergedFrame {
   bool is_kept = false;               // true: the frame of an earlier merge is kept
 };
 
-// Merges the plates of all frames.
+// Adds the plates of each frame, and makes the pictures of all frames.
 class Merger {
  public:
   Merger(const MergeOptions& options, ThreadPool& pool,

@@ -40,9 +40,9 @@ struct Film {
   }
 };
 
-// Checks that the packed store has the pixels that the package needs; it may have been made for
-// other packages. An LF image that was broken when the store was made (no bytes) is accepted here:
-// it is skipped when it is loaded, like a broken file.
+// Checks that the packed store has the pixels that the package needs, because the store may have
+// been made for other packages. An LF image that was broken when the store was made (no bytes) is
+// accepted here: it is skipped when it is loaded, like a broken file.
 Result<void> CheckCodes(const fs::path& path, const Package& package) {
   const LightField& light_field = package.light_field;
   const auto codes = FindCodes(light_field.folder, light_field.image_names);
