@@ -1,6 +1,7 @@
 // Pixels in memory: [height][width][channels], with `stride` values from one row to the next.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -48,7 +49,15 @@ class Image {
   // afterwards.
   void Resize(int width, int height, int channels) {
     LF_CHECK(width >= 0 && height >= 0 && channels >= 1);
-    pixels_.resize(static_cast<size_t>(width) * height * channels);
+    const size_t count = static_cast<size_t>(width) * height * channels;
+    if (count > pixels_.capacity()) {
+      // A vector that grows by itself would copy the old pixels. The room beyond `count` avoids
+      // that the memory is replaced again for an image that is a little larger.
+      const size_t room = std::max(count, pixels_.capacity() + pixels_.capacity() / 2);
+      pixels_.clear();
+      pixels_.reserve(room);
+    }
+    pixels_.resize(count);
     width_ = width;
     height_ = height;
     channels_ = channels;
