@@ -144,7 +144,7 @@ TEST(PathYaml, QuantitiesStayInTheirRange) {
   path.pose = "position: [0, 0, 0], look_at: [0, 0, 1], up: [0, 0, 0]";
   EXPECT_TRUE(Says(path, "[0, 0, 0], sensor", "camera.up: [0, 0, 0] is no direction"));
   path.pose = "position: [0, 0, 0], quaternion: [2, 0, 0, 0]";
-  EXPECT_TRUE(Says(path, "[2", "camera.quaternion: a rotation [w, x, y, z] has length 1"));
+  EXPECT_TRUE(Says(path, "[2", "camera.quaternion: expected a rotation [w, x, y, z] of length 1"));
   path = {};
   path.more = "keyframes: {aperture_diameter: [{time: 0.01, value: -1}]}\n";
   EXPECT_TRUE(Says(path, "-1", "keyframes.aperture_diameter.value: expected a number at least 0"));

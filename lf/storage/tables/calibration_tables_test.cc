@@ -114,7 +114,7 @@ TEST_F(CalibrationTablesTest, ALensOfAnOlderModelIsWrittenWithEightParameters) {
 TEST_F(CalibrationTablesTest, AWrongNumberOfParametersIsDamage) {
   Insert("radial_tangential_thin_prism", "1 2 3 4 5 6 7 8");
   const std::string message = Read().error().message;
-  EXPECT_NE(message.find("radial_tangential_thin_prism 1 2 3 4 5 6 7 8: expected 12 or 15"),
+  EXPECT_NE(message.find("radial_tangential_thin_prism 1 2 3 4 5 6 7 8', expected 12 or 15"),
             std::string::npos)
       << message;
 }
