@@ -108,8 +108,8 @@ Result<Head> ReadHead(const entry_file::Source& source, const std::string& bytes
     return source.Damaged(fmt::format("{} bytes follow its end", source.left() - size_bytes));
   if (head.cell_count > max_cells)
     return InputError(
-        fmt::format("{}: contains {} cells, but {} are allowed; give the same --max-rays and "
-                    "--memory as when it was written, or remove the file",
+        fmt::format("{}: contains {} cells, but {} are allowed: --max-rays or --memory differs "
+                    "from when it was written",
                     source.name(), head.cell_count, max_cells));
   return head;
 }

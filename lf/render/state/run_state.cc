@@ -36,9 +36,12 @@ std::optional<FrameId> FrameOf(const fs::path& path) {
   return frame;
 }
 
-// Adds the remedy to an error: if a damaged file is removed, only its frame is rendered again.
-Error WithAdvice(const Error& error) {
-  return {error.kind, error.message + "; remove the file to render its frame anew"};
+// Advice for a damaged file: only the work that it holds is done again if it is removed.
+constexpr const char* kPlateAdvice = "remove the file to render its frame anew";
+constexpr const char* kRaysAdvice = "remove the file to rebin its rays anew";
+
+Error WithAdvice(const Error& error, const char* advice) {
+  return {error.kind, fmt::format("{}; {}", error.message, advice)};
 }
 
 std::vector<fs::path> FilesOf(const fs::path& folder) {
@@ -85,14 +88,15 @@ fs::path PartialFolder(const RunStateOptions& options) {
 
 template <class Number>
 Result<void> NumberOf(const fs::path& path, const PlateEntries& entries, const char* key,
-                      Number* value) {
+                      const char* advice, Number* value) {
   const std::string* text = FindEntry(entries, key);
   const std::string number = text == nullptr ? "(none)" : *text;
   const char* const end = number.data() + number.size();
   const auto [rest, error] = std::from_chars(number.data(), end, *value);
   if (error == std::errc{} && rest == end) return {};
   return WithAdvice(
-      InputError(fmt::format("{}: {} is {}, expected a whole number", path.string(), key, number)));
+      InputError(fmt::format("{}: {} is {}, expected a whole number", path.string(), key, number)),
+      advice);
 }
 
 RunInputs Joined(RunInputs a, const RunInputs& b) {
@@ -264,7 +268,7 @@ Result<void> RunState::ReadFinished(const fs::path& path) {
 
 Result<void> RunState::CheckPlate(FrameId frame) const {
   const Result<PlateReader> reader = PlateReader::Open(PlatePath(frame));
-  if (!reader) return WithAdvice(reader.error());
+  if (!reader) return WithAdvice(reader.error(), kPlateAdvice);
   RunInputs recorded;
   for (const auto& entry : reader->entries())
     if (!entry.first.starts_with(kProgress)) recorded.push_back(entry);
@@ -307,26 +311,30 @@ Result<FrameProgress> RunState::LoadPlate(FrameId frame, SensorPlate* plate,
   const fs::path path = PlatePath(frame);
   LF_ASSIGN_OR_RETURN(PlateReader reader, PlateReader::Open(path));
   const auto get = [&](const char* key, auto* value) {
-    return NumberOf(path, reader.entries(), key, value);
+    return NumberOf(path, reader.entries(), key, kPlateAdvice, value);
   };
   LF_RETURN_IF_ERROR(get(kPlacesDone, &progress.places_done));
   LF_RETURN_IF_ERROR(get("progress.lf_images", &progress.rays.image_count));
   LF_RETURN_IF_ERROR(get("progress.rays_tested", &progress.rays.tested_count));
   LF_RETURN_IF_ERROR(get("progress.rays_accepted", &progress.rays.accepted_count));
   if (reader.width() != plate->width() || reader.height() != plate->height())
-    return InputError(fmt::format(
-        "{}: has {} x {} elements, expected {} x {}; remove the file to render its frame anew",
-        path.string(), reader.width(), reader.height(), plate->width(), plate->height()));
+    return WithAdvice(
+        InputError(fmt::format("{}: has {} x {} elements, expected {} x {}", path.string(),
+                               reader.width(), reader.height(), plate->width(), plate->height())),
+        kPlateAdvice);
   if (reader.has_opacity() != plate->has_opacity())
     return WithAdvice(InputError(fmt::format("{}: has {} channels, expected {}", path.string(),
-                                             reader.has_opacity() ? 4 : 3, plate->channels())));
-  if (const Result<void> added = reader.AddTo(plate); !added) return WithAdvice(added.error());
+                                             reader.has_opacity() ? 4 : 3, plate->channels())),
+                      kPlateAdvice);
+  if (const Result<void> added = reader.AddTo(plate); !added)
+    return WithAdvice(added.error(), kPlateAdvice);
   const std::string* const noise = FindEntry(reader.entries(), kNoise);
   if (moments == nullptr || noise == nullptr) return progress;
   Result<NoiseMoments> read = NoiseMoments::Read(*noise, *plate);
   if (!read)
-    return WithAdvice(InputError(
-        fmt::format("{}: {} is damaged: {}", path.string(), kNoise, read.error().message)));
+    return WithAdvice(InputError(fmt::format("{}: {} is damaged: {}", path.string(), kNoise,
+                                             read.error().message)),
+                      kPlateAdvice);
   *moments = *std::move(read);
   return progress;
 }
@@ -363,9 +371,9 @@ Result<std::optional<RunState::Rays>> RunState::LoadRays(FrameId first, size_t s
   };
   Result<RaysFile> file = ReadRays(path, max_cells, pool, check);
   if (!file && file.error().kind == ErrorKind::kUsage) return file.error();
-  if (!file) return WithAdvice(file.error());
+  if (!file) return WithAdvice(file.error(), kRaysAdvice);
   Rays rays{std::move(file->map), 0};
-  LF_RETURN_IF_ERROR(NumberOf(path, file->entries, kPlacesDone, &rays.places_done));
+  LF_RETURN_IF_ERROR(NumberOf(path, file->entries, kPlacesDone, kRaysAdvice, &rays.places_done));
   return std::optional<Rays>(std::move(rays));
 }
 

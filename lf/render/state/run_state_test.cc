@@ -51,6 +51,17 @@ class RunStateTest : public ::testing::Test {
     ASSERT_TRUE(state->SaveFinished(frame));
   }
 
+  // Adds the rays of one section of frames 1 to 3 to the state: one cell.
+  void AddRays() {
+    BinnedRay ray;
+    ray.cell = 5;
+    ray.rgb = {1000, 2000, 3000};
+    RayMap map(1000);
+    map.Add(RayMap::ShardOf(ray.cell), std::span(&ray, 1));
+    const std::unique_ptr<RunState> state = *Open(true);
+    ASSERT_TRUE(state->SaveRays(FrameId{1}, 0, "1-3", map, 128, pool_));
+  }
+
   fs::path folder_;
   CameraPath path_;
   const LightField field_ = testing::NoiseField();
@@ -151,15 +162,7 @@ TEST_F(RunStateTest, WhatAKilledProcessLeftIsCleared) {
 }
 
 TEST_F(RunStateTest, RebinnedRaysAreThoseOfTheSameFrames) {
-  BinnedRay ray;
-  ray.cell = 5;
-  ray.rgb = {1000, 2000, 3000};
-  RayMap map(1000);
-  map.Add(RayMap::ShardOf(ray.cell), std::span(&ray, 1));
-  {
-    const std::unique_ptr<RunState> state = *Open(false);
-    ASSERT_TRUE(state->SaveRays(FrameId{1}, 0, "1-3", map, 128, pool_));
-  }
+  AddRays();
   const auto state = Open(true);
   ASSERT_TRUE(state) << state.error().message;
   const auto rays = (*state)->LoadRays(FrameId{1}, 0, "1-3", 1000, pool_);
@@ -173,6 +176,25 @@ TEST_F(RunStateTest, RebinnedRaysAreThoseOfTheSameFrames) {
   EXPECT_NE(others.error().message.find("rays.frames 1-3, this call has 1"), std::string::npos)
       << others.error().message;
   EXPECT_FALSE((*state)->LoadRays(FrameId{1}, 1, "1-3", 1000, pool_)->has_value());
+}
+
+TEST_F(RunStateTest, AdviceIsAboutTheWorkThatTheFileHolds) {
+  LeaveUnfinished();
+  AddRays();
+  const auto state = Open(true);
+  ASSERT_TRUE(state) << state.error().message;
+  SensorPlate small(40, 30);
+  const auto other = (*state)->LoadPlate(FrameId{2}, &small);
+  ASSERT_FALSE(other);
+  EXPECT_TRUE(other.error().message.ends_with(
+      ": has 80 x 60 elements, expected 40 x 30; remove the file to render its frame anew"))
+      << other.error().message;
+  const auto too_many = (*state)->LoadRays(FrameId{1}, 0, "1-3", 0, pool_);
+  ASSERT_FALSE(too_many);
+  EXPECT_TRUE(too_many.error().message.ends_with(
+      "contains 1 cells, but 0 are allowed: --max-rays or --memory differs from when it was "
+      "written; remove the file to rebin its rays anew"))
+      << too_many.error().message;
 }
 
 TEST_F(RunStateTest, OneAtATime) {
