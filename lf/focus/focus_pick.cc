@@ -75,7 +75,8 @@ std::vector<Vec2> WantedPlaces(double radius_w) {
 }
 
 // Chooses the LF camera nearest to each wanted position. If fewer than nine LF cameras lie within
-// the outer ring, both rings are widened.
+// the outer ring, both rings are widened. The views ascend by the distance of their LF cameras from
+// the ray's origin, so that the nearest view that can be read comes first.
 std::vector<View> ChooseViews(const LightField& field, const SearchRay& search, double radius_w) {
   struct Candidate {
     LfImageId id;
@@ -114,6 +115,11 @@ std::vector<View> ChooseViews(const LightField& field, const SearchRay& search, 
       views.push_back({nearest->id, RayThrough(field.Camera(nearest->id), search.direction),
                        nearest->place.norm()});
   }
+  const auto from_origin = [&](const View& view) {
+    return (view.rays.centre_world() - search.origin).norm();
+  };
+  std::stable_sort(views.begin(), views.end(),
+                   [&](const View& a, const View& b) { return from_origin(a) < from_origin(b); });
   return views;
 }
 

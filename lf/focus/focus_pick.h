@@ -21,7 +21,8 @@ struct FocusPick {
   // In [0, 1]: high if the LF images agree well at this depth, and much better than at other
   // depths.
   double certainty = 0;
-  // The compared LF images. The LF camera of the first one is nearest to the ray's origin.
+  // The compared LF images, by ascending distances of their LF cameras from the ray's origin. LF
+  // images that cannot be read are left out.
   std::vector<LfImageId> images;
 };
 

@@ -33,7 +33,7 @@ class WallStore : public LfImageStore {
  public:
   explicit WallStore(const LightField& field) : field_(field) {}
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override {
-    if (is_broken) return InputError("wall.png: not found");
+    if (is_broken || id == broken_id) return InputError("wall.png: not found");
     const PinholeCamera camera = field_.Camera(id);
     const double gain = 1 - 0.02 * (id.value % 5);
     pixels->Reset(rect, BayerPattern::kNone);
@@ -49,6 +49,7 @@ class WallStore : public LfImageStore {
   }
 
   bool is_broken = false;
+  std::optional<LfImageId> broken_id;
 
  private:
   const LightField& field_;
@@ -142,6 +143,24 @@ TEST(FocusPick, StartsFromPixelsOfLfImages) {
     EXPECT_EQ(pick->images[0], id);
     EXPECT_NEAR(pick->point_world.z(), kNear_w, 0.01 * kNear_w);
   }
+}
+
+TEST(FocusPick, TheNearestImageThatCanBeReadComesFirst) {
+  const LightField field = FieldBeforeWalls();
+  ThreadPool pool(2);
+  const Ray ray = RayOfPixel(Frame().pinhole, 200, 120);
+  const auto distance = [&](LfImageId id) {
+    return (field.Camera(id).CentreWorld() - ray.origin).norm();
+  };
+  WallStore store(field);
+  const auto whole = FindFocus(field, store, Frame(), ray, pool);
+  ASSERT_TRUE(whole) << whole.error().message;
+  store.broken_id = whole->images[0];
+  const auto pick = FindFocus(field, store, Frame(), ray, pool);
+  ASSERT_TRUE(pick) << pick.error().message;
+  EXPECT_EQ(pick->images.size(), whole->images.size() - 1);
+  for (const LfImageId id : pick->images) EXPECT_LE(distance(pick->images[0]), distance(id));
+  EXPECT_NEAR(pick->point_world.z(), kFar_w, 0.01 * kFar_w);
 }
 
 TEST(FocusPick, SaysWhyThereIsNone) {
