@@ -24,17 +24,21 @@ bool TakeSigned(std::string_view* code, int64_t* number) {
   return true;
 }
 
-Error Damaged(const char* what) {
+Error Damaged(const std::string& what) {
   return InputError(fmt::format("is a damaged encoded LF image: {}", what));
 }
 
-// Reads the next number and removes it from `code`. Returns false if it is not in [low, high].
+// Reads the next number and removes it from `code`. kInput if it is not in [low, high].
+//   name  what messages call the number
 template <class T>
-bool Take(std::string_view* code, uint64_t low, uint64_t high, T* value) {
+Result<void> Take(std::string_view* code, const char* name, uint64_t low, uint64_t high, T* value) {
   uint64_t number = 0;
-  if (!TakeNumber(code, high, &number) || number < low) return false;
+  if (!TakeNumber(code, UINT64_MAX, &number))
+    return Damaged(fmt::format("its {} cannot be read", name));
+  if (number < low || number > high)
+    return Damaged(fmt::format("its {} is {}, expected {} to {}", name, number, low, high));
   *value = static_cast<T>(number);
-  return true;
+  return {};
 }
 
 }  // namespace
@@ -86,8 +90,8 @@ Result<CodeHead> TakeHead(std::string_view* code) {
   if (!TakeBytes(code, kMagic.size(), &magic) || magic != kMagic)
     return InputError("is no encoded LF image: it does not begin with LFIM");
   uint64_t version = 0;
-  if (!TakeNumber(code, UINT64_MAX, &version) || version == 0)
-    return Damaged("its version is invalid");
+  LF_RETURN_IF_ERROR(Take(code, "version", 0, UINT64_MAX, &version));
+  if (version == 0) return Damaged(fmt::format("its version is 0, expected {}", kVersion));
   if (version > kVersion)
     return InputError(
         fmt::format("is an encoded LF image of version {}, which a newer lfrendertools has "
@@ -95,33 +99,40 @@ Result<CodeHead> TakeHead(std::string_view* code) {
                     version, kVersion));
   CodeHead head;
   CodeInfo& info = head.info;
-  if (!Take(code, 0, 2, &info.profile)) return Damaged("its profile is invalid");
-  if (!Take(code, 0, 2, &info.layout)) return Damaged("its layout is invalid");
-  if (!Take(code, 8, 16, &info.bits) || info.bits % 8 != 0) return Damaged("its depth is invalid");
-  if (!Take(code, 1, kMostPixels, &info.width) || !Take(code, 1, kMostPixels, &info.height) ||
-      static_cast<long long>(info.width) * info.height > kMostPixels)
-    return Damaged("its size is not between 1 and 2^30 pixels");
-  if (!Take(code, 1, kMostLevels, &info.levels)) return Damaged("its number of levels is invalid");
-  if (!Take(code, kLeastTileBits, kMostTileBits, &head.tile_bits))
-    return Damaged("the size of its tiles is invalid");
+  LF_RETURN_IF_ERROR(Take(code, "profile", 0, 2, &info.profile));
+  LF_RETURN_IF_ERROR(Take(code, "layout", 0, 2, &info.layout));
+  LF_RETURN_IF_ERROR(Take(code, "depth in bits", 8, 16, &info.bits));
+  if (info.bits % 8 != 0)
+    return Damaged(fmt::format("its depth in bits is {}, expected 8 or 16", info.bits));
+  LF_RETURN_IF_ERROR(Take(code, "width", 1, kMostPixels, &info.width));
+  LF_RETURN_IF_ERROR(Take(code, "height", 1, kMostPixels, &info.height));
+  if (static_cast<long long>(info.width) * info.height > kMostPixels)
+    return Damaged(fmt::format("its size of {} x {} is not between 1 and 2^30 pixels", info.width,
+                               info.height));
+  LF_RETURN_IF_ERROR(Take(code, "number of levels", 1, kMostLevels, &info.levels));
+  LF_RETURN_IF_ERROR(Take(code, "binary logarithm of the side of a tile", kLeastTileBits,
+                          kMostTileBits, &head.tile_bits));
   if (info.profile == CodecProfile::kThesis) {
-    if (!Take(code, 2, 65536, &head.quantizer)) return Damaged("its quantizer is invalid");
+    LF_RETURN_IF_ERROR(Take(code, "quantizer", 2, 65536, &head.quantizer));
     constexpr int64_t kLimit = int64_t{1} << 26;  // largest coefficient: 16 bits of a pixel, and
                                                   // kHaarBits; sums of several fit 32 bits
-    if (!TakeSigned(code, &head.low) || !TakeSigned(code, &head.high) || head.low < -kLimit ||
-        head.high > kLimit || head.low > head.high)
-      return Damaged("the range of its coefficients is invalid");
+    if (!TakeSigned(code, &head.low) || !TakeSigned(code, &head.high))
+      return Damaged("its range of coefficients cannot be read");
+    if (head.low < -kLimit || head.high > kLimit || head.low > head.high)
+      return Damaged(
+          fmt::format("its range of coefficients is {} to {}, expected it within {} to {}",
+                      head.low, head.high, -kLimit, kLimit));
     return head;
   }
-  if (!Take(code, 2, 4, &head.coefficient_bytes) || head.coefficient_bytes % 2 != 0 ||
-      (info.bits == 16 && head.coefficient_bytes == 2))
-    return Damaged("the size of its coefficients is invalid");
-  if (!Take(code, 0, 4, &head.fraction_bits))
-    return Damaged("its number of fraction bits is invalid");
+  LF_RETURN_IF_ERROR(Take(code, "size of a coefficient in bytes", 2, 4, &head.coefficient_bytes));
+  if (head.coefficient_bytes % 2 != 0 || (info.bits == 16 && head.coefficient_bytes == 2))
+    return Damaged(fmt::format("its size of a coefficient in bytes is {}, expected {}",
+                               head.coefficient_bytes, info.bits == 16 ? "4" : "2 or 4"));
+  LF_RETURN_IF_ERROR(Take(code, "number of fraction bits", 0, 4, &head.fraction_bits));
   head.steps.resize(head.StepCount());
+  const uint64_t largest_step = head.coefficient_bytes == 2 ? INT16_MAX : 1 << 24;
   for (int32_t& step : head.steps)
-    if (!Take(code, 1, head.coefficient_bytes == 2 ? INT16_MAX : 1 << 24, &step))
-      return Damaged("a step of its quantisers is invalid");
+    LF_RETURN_IF_ERROR(Take(code, "step of a quantiser", 1, largest_step, &step));
   return head;
 }
 

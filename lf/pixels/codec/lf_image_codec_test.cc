@@ -346,7 +346,23 @@ TEST(LfImageCodec, ABlobThatClaimsTooMuchIsRefused) {
   const Result<CodeInfo> info = ReadCodeInfo(code);
   ASSERT_FALSE(info);
   EXPECT_EQ(info.error().message,
-            "is a damaged encoded LF image: its size is not between 1 and 2^30 pixels");
+            "is a damaged encoded LF image: its size of 1048576 x 2048 is not between 1 and 2^30 "
+            "pixels");
+}
+
+TEST(LfImageCodec, AWrongHeadIsNamedWithItsValue) {
+  const auto expect = [](std::string_view head, const std::string& part) {
+    const Result<CodeInfo> info = ReadCodeInfo("LFIM" + std::string(head));
+    ASSERT_FALSE(info) << part;
+    EXPECT_EQ(info.error().message, "is a damaged encoded LF image: " + part);
+  };
+  using namespace std::string_view_literals;
+  expect("\0"sv, "its version is 0, expected 1");
+  expect("\x01"sv, "its profile cannot be read");
+  expect("\x01\x07"sv, "its profile is 7, expected 0 to 2");
+  expect("\x01\x02\x00\x0c"sv, "its depth in bits is 12, expected 8 or 16");
+  expect("\x01\x02\x00\x10\x01\x01\x03\x0a\x02"sv,
+         "its size of a coefficient in bytes is 2, expected 4");
 }
 
 }  // namespace
