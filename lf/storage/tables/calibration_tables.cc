@@ -50,7 +50,10 @@ Result<Intrinsics> ReadIntrinsicsRow(const Settings& settings, const Statement& 
   std::copy(numbers->begin(), rest, k.distortion.parameters.begin());
   std::copy(rest, numbers->end(), k.vignetting.v.begin());
   if (!IsCamera(k) || !IsStoredDistortion(k.distortion) || !IsFalloff(k))
-    return settings.Damaged("intrinsics are out of range");
+    return settings.Damaged(fmt::format(
+        "intrinsics are out of range: {} x {} pixels, focal lengths {} and {}, principal point {} "
+        "{}, skew {}, lens distortion '{} {}'",
+        k.width_px, k.height_px, k.fx_px, k.fy_px, k.cx_px, k.cy_px, k.skew_px, model, parameters));
   return k;
 }
 
@@ -197,10 +200,12 @@ Result<ChannelGains> ReadGains(const Settings& settings, const Statement& row, i
                                const std::string& name) {
   ChannelGains gains;
   std::vector<double> numbers;
+  std::string text;
   if (const Result<double> one = row.Real(column)) {
     numbers.assign(3, *one);
+    text = fmt::format("{}", *one);
   } else {
-    LF_ASSIGN_OR_RETURN(const std::string text, row.Text(column));
+    LF_ASSIGN_OR_RETURN(text, row.Text(column));
     numbers = ParseNumbers(text).value_or(std::vector<double>());
   }
   const bool are_gains =
@@ -209,7 +214,7 @@ Result<ChannelGains> ReadGains(const Settings& settings, const Statement& row, i
   if (!are_gains)
     return settings.Damaged(fmt::format(
         "LF image '{}' has the gain '{}', expected one or three numbers from 1e-6 to 1e6", name,
-        fmt::join(numbers, " ")));
+        text));
   for (size_t c = 0; c < 3; ++c) gains[c] = static_cast<float>(numbers[c]);
   return gains;
 }

@@ -28,11 +28,10 @@ class CalibrationTablesTest : public ::testing::Test {
     return ReadIntrinsics(Settings::Read(*database_, "test file").value(), &*database_);
   }
   // Inserts a row of intrinsics as a file may contain it.
-  void Insert(const std::string& distortion, const std::string& parameters) {
-    ASSERT_TRUE(
-        database_->Execute(("insert into intrinsics values (0, 640, 480, 500, 501, 320, 240, 0, '" +
-                            distortion + "', '" + parameters + "')")
-                               .c_str()));
+  void Insert(const std::string& distortion, const std::string& parameters, double fx_px = 500) {
+    ASSERT_TRUE(database_->Execute(
+        fmt::format("insert into intrinsics values (0, 640, 480, {}, 501, 320, 240, 0, '{}', '{}')",
+                    fx_px, distortion, parameters)));
   }
 
   const std::filesystem::path path_ = std::filesystem::temp_directory_path() /
@@ -109,6 +108,31 @@ TEST_F(CalibrationTablesTest, ALensOfAnOlderModelIsWrittenWithEightParameters) {
                            return {};
                          }));
   EXPECT_EQ(text, "1 2 3 4 0 0 0 0");
+}
+
+TEST_F(CalibrationTablesTest, IntrinsicsOutOfRangeAreNamed) {
+  Insert("fisheye", "1 2 3 4 0 0 0 0", 0);
+  const std::string message = Read().error().message;
+  EXPECT_NE(message.find("intrinsics are out of range: 640 x 480 pixels, focal lengths 0 and "
+                         "501, principal point 320 240, skew 0, lens distortion 'fisheye 1 2 3 4 "
+                         "0 0 0 0'"),
+            std::string::npos)
+      << message;
+}
+
+TEST_F(CalibrationTablesTest, AGainIsNamedAsItWasFound) {
+  const Settings settings = Settings::Read(*database_, "test file").value();
+  for (const auto& [value, text] : {std::pair("'bright'", "bright"), std::pair("'1 2'", "1 2"),
+                                    std::pair("'1 2 -3'", "1 2 -3"), std::pair("-0.5", "-0.5")}) {
+    Statement row = database_->Prepare(fmt::format("select 0, {}, x'00'", value)).value();
+    ASSERT_TRUE(row.Step().value());
+    const Result<LfCamera> camera = ReadCamera(settings, row, 0, "a.png", 1);
+    ASSERT_FALSE(camera);
+    EXPECT_NE(camera.error().message.find(
+                  fmt::format("LF image 'a.png' has the gain '{}', expected", text)),
+              std::string::npos)
+        << camera.error().message;
+  }
 }
 
 TEST_F(CalibrationTablesTest, AWrongNumberOfParametersIsDamage) {

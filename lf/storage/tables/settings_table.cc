@@ -1,6 +1,7 @@
 #include "lf/storage/tables/settings_table.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <charconv>
 #include <string_view>
@@ -72,7 +73,7 @@ Result<uint64_t> Settings::Whole(const std::string& key) const {
 Result<int> Settings::Word(const std::string& key, std::span<const char* const> words) const {
   for (size_t i = 0; i < words.size(); ++i)
     if (Text(key) == words[i]) return static_cast<int>(i);
-  return Wrong(key, "a word that this version knows");
+  return Wrong(key, fmt::format("{}", fmt::join(words, " or ")));
 }
 
 }  // namespace lf

@@ -35,6 +35,10 @@ TEST(Settings, AreReadAsWhatTheyShouldBe) {
   }
   EXPECT_NE(settings.Number("big", 0, 1).error().message.find("setting big is '1844"),
             std::string::npos);
+  EXPECT_NE(settings.Word("three", kWords)
+                .error()
+                .message.find("setting three is '1 2.5 -3', expected a or b"),
+            std::string::npos);
   std::filesystem::remove(path);
 }
 
