@@ -18,15 +18,17 @@ constexpr double kExact = 1e-12;         // a scale that differs less from 1 cou
 }  // namespace
 
 Result<RigidTransform> CamFromWorldOfOpenGl(const Mat34& world_from_opengl_camera) {
-  if (!world_from_opengl_camera.allFinite() ||
-      world_from_opengl_camera.cwiseAbs().maxCoeff() > kLargest)
-    return InputError(fmt::format("holds a number beyond {:g}", kLargest));
+  for (const double number : world_from_opengl_camera.reshaped<Eigen::RowMajor>())
+    if (!(std::abs(number) <= kLargest))
+      return InputError(fmt::format("holds {:g}, expected numbers from {:g} to {:g}", number,
+                                    -kLargest, kLargest));
   Mat3 axes = world_from_opengl_camera.leftCols<3>();
   const double determinant = axes.determinant();
   const double scale = std::cbrt(std::abs(determinant));
   if (!(scale >= kSmallestScale))
     return InputError(
-        fmt::format("has the determinant {:g}: expected a rotation, of any scale", determinant));
+        fmt::format("has the determinant {:g}: expected a rotation, times a scale of at least {:g}",
+                    determinant, kSmallestScale));
   if (std::abs(scale - 1) > kExact) axes /= scale;
   LF_ASSIGN_OR_RETURN(axes, NearestRotation(axes, kSkewTolerance));
   RigidTransform cam_from_world;
