@@ -154,6 +154,7 @@ std::optional<Vec3> AxesMeetingPoint(const LightField& light_field) {
 }
 
 Reach CaptureReach(const LightField& light_field, const PinholeCamera& camera, size_t count) {
+  LF_CHECK(light_field.size() > 0 && count > 0);
   std::vector<Vec3> offsets = Centres(light_field);
   for (Vec3& offset : offsets) offset -= camera.CentreWorld();
   count = std::min(count, offsets.size());

@@ -47,7 +47,8 @@ std::optional<Vec3> PointNearestToAxes(const LightField& light_field);
 std::optional<Vec3> AxesMeetingPoint(const LightField& light_field);
 
 // Distances from `camera` to the `count` LF cameras nearest to it, along the right and along the up
-// axis of `camera`: the 80th percentile of each, in world units.
+// axis of `camera`: the 80th percentile of each, in world units. `count` must exceed 0, and the
+// light field must have LF cameras.
 struct Reach {
   double right_w = 0;
   double up_w = 0;
