@@ -37,8 +37,7 @@ void ReadResolution(YamlMap* file, PathDescription* path) {
   if (!entry) return;
   const YamlNode& node = *entry->value;
   if (node.kind != YamlNode::Kind::kSequence || node.items.size() != 2) {
-    file->errors()->Add(node.place,
-                        "resolution: expected [width, height] in sensor plate elements");
+    AddExpected(node, "resolution", "[width, height] in sensor plate elements", file->errors());
     return;
   }
   const auto read = [&](size_t i, const char* label) {

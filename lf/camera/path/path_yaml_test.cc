@@ -118,6 +118,11 @@ TEST(PathYaml, CountsAreWholeAndBounded) {
     EXPECT_TRUE(path.Error().starts_with("4:1")) << path.Error();
     EXPECT_NE(path.Error().find(": resolution"), std::string::npos) << path.Error();
   }
+  path.clock = "fps: 30\nframes: 3\nresolution: [1]\n";
+  EXPECT_NE(path.Error().find("expected [width, height] in sensor plate elements, found a list of "
+                              "1"),
+            std::string::npos)
+      << path.Error();
   path = {};
   for (const std::string blades : {"1", "2", "-3", "65", "3.5"}) {
     path.aperture = "f_number: 2, blades: " + blades;

@@ -30,13 +30,13 @@ std::string Describe(const YamlNode& node) {
   return {};
 }
 
+}  // namespace
+
 void AddExpected(const YamlNode& node, std::string_view label, std::string_view expected,
                  YamlErrors* errors) {
   errors->Add(node.place,
               fmt::format("{}: expected {}, found {}", label, expected, Describe(node)));
 }
-
-}  // namespace
 
 void YamlErrors::Add(const YamlPlace& place, std::string message) {
   if (!full()) errors_.push_back({place, std::move(message)});

@@ -110,6 +110,10 @@ std::optional<int> ReadInteger(const YamlNode& node, std::string_view label, int
 std::optional<bool> ReadBool(const YamlNode& node, std::string_view label, YamlErrors* errors);
 std::optional<std::string> ReadWord(const YamlNode& node, std::string_view label,
                                     const std::vector<std::string>& allowed, YamlErrors* errors);
+// Adds the error that `expected` was expected, and what was found instead: the kind or the text of
+// the node.
+void AddExpected(const YamlNode& node, std::string_view label, std::string_view expected,
+                 YamlErrors* errors);
 // Returns a list of exactly `count` numbers; none, with an error, if the node is no such list.
 std::optional<std::vector<double>> ReadNumbers(const YamlNode& node, std::string_view label,
                                                size_t count, const NumberRange& range,
