@@ -94,7 +94,7 @@ export class ImagePanel {
     const help =
       kind === undefined || USES[kind] === "used"
         ? null
-        : element("p", { class: "muted" }, `Not taken: it ${style.help.replace(/^no /, "has no ")}.`);
+        : element("p", { class: "muted" }, `Not taken: it ${style.help}.`);
     this.facts.replaceChildren(element("dl", { style: "margin-top:8px" }, ...rows));
     if (help) this.facts.append(help);
     if (!scene.server) return;
