@@ -262,11 +262,7 @@ Result<void> Preprocessor::ForecastFrames() {
   report_.density_s = SecondsSince(density_start);
   if (std::all_of(report_.frames.begin(), report_.frames.end(),
                   [](const FrameForecast& frame) { return frame.image_count == 0; }))
-    return InputError(fmt::format(
-        "no LF image contributes to frames {}-{}: no recorded ray comes from the region that they "
-        "show and passes through their lens (is the aperture smaller than the spacing of the LF "
-        "cameras, or the render camera outside of the capture?)",
-        frames_.front().value, frames_.back().value));
+    return NoneContributes(frames_);
   return {};
 }
 

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "lf/camera/render_camera.h"
@@ -79,5 +80,9 @@ FrameNeeds NeedsOf(const ImageIndex& index, const RenderCamera& frame, const Nee
 //          is bilinear
 Result<void> CheckKept(const LfImageStore& store, const LightField& light_field, FrameId frame,
                        const FrameNeeds& needs);
+
+// Returns the error (kInput) for frames that no LF image contributes to.
+//   frames  ascending
+Error NoneContributes(std::span<const FrameId> frames);
 
 }  // namespace lf

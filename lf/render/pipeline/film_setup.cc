@@ -106,12 +106,4 @@ Result<void> FilmSetup::PlanSlabs() {
   return {};
 }
 
-Error NoneContributes(std::span<const FrameId> frames) {
-  return InputError(fmt::format(
-      "no LF image contributes to frames {}-{}: no recorded ray passes through both their lens and "
-      "the region that they see (is the aperture smaller than the distance between LF cameras, or "
-      "the render camera far from them?)",
-      frames.front().value, frames.back().value));
-}
-
 }  // namespace lf

@@ -79,8 +79,4 @@ class FilmSetup {
   std::optional<FilmSlabs> slabs_;
 };
 
-// Returns the error (kInput) for frames that no LF image contributes to.
-//   frames  ascending
-Error NoneContributes(std::span<const FrameId> frames);
-
 }  // namespace lf

@@ -14,6 +14,7 @@
 #include "lf/core/file.h"
 #include "lf/core/log.h"
 #include "lf/film/develop/video.h"
+#include "lf/render/needs/frame_needs.h"
 #include "lf/render/pipeline/film_setup.h"
 #include "lf/render/pipeline/frame_output.h"
 #include "lf/render/pipeline/render_pass.h"
