@@ -292,7 +292,6 @@ DistortionMap::DistortionMap(const Distortion& distortion)
     case DistortionModel::kDivision:
       // At this rd, r = rd / (1 + k rd^2) has its maximum (k > 0) or a pole (k < 0).
       distorted_limit_ = p[0] == 0 ? kNoLimit : 1 / std::sqrt(std::abs(p[0]));
-      if (p[0] > 0) limit_ = 0.5 * distorted_limit_;
       return;
     case DistortionModel::kUnified: {
       // rd approaches 1 / far as r goes to infinity.
