@@ -12,6 +12,10 @@ namespace lf {
 
 class ChannelFill {
  public:
+  // Number of calls of At() between two calls of is_interrupted(). One call of At() takes up to 0.1
+  // ms.
+  static constexpr int kFillsPerQuestion = 64;
+
   //   mean, ray_count  mean value and number of the rays of each element
   //                    [height][width][channels]; must outlive this object
   //   rays_needed      number of rays that averaged neighbours must have together; at least 1

@@ -13,9 +13,6 @@ namespace lf {
 namespace {
 
 constexpr int kChannels = SensorPlate::kChannels;
-// Number of values (one channel of one element) that a thread fills between two calls of
-// is_interrupted(). Filling one value takes up to 0.1 ms.
-constexpr int kFilledPerQuestion = 64;
 
 // Returns the weight of the completion (the interpolated part of the frame) in a channel that has
 // `count` collected rays: 1 if it has none. 0 if there is no completion.
@@ -119,7 +116,7 @@ DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, 
           camera_rgb[c] = mean.at(x, y, c);
           continue;
         }
-        if (++filled % kFilledPerQuestion == 0 && ends()) return;
+        if (++filled % ChannelFill::kFillsPerQuestion == 0 && ends()) return;
         camera_rgb[c] = fills[c]->At(x, y, scratch);
       }
       const Vec3 srgb = srgb_from_camera * camera_rgb;

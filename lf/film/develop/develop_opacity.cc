@@ -13,9 +13,6 @@ namespace lf {
 Image<float> DevelopOpacity(const SensorPlate& plate, const DevelopOptions& options,
                             const std::function<bool()>& is_interrupted, ThreadPool& pool) {
   LF_CHECK(plate.has_opacity() && options.opaque > options.transparent);
-  // Number of elements that a thread fills between two calls of is_interrupted(). Filling one takes
-  // up to 0.1 ms.
-  constexpr int kFillsPerQuestion = 64;
   constexpr uint64_t kMostCount = std::numeric_limits<uint32_t>::max();
   const int width = plate.width(), height = plate.height();
   const uint32_t rays_needed = std::max(options.smooth_below, 1u);
@@ -44,7 +41,7 @@ Image<float> DevelopOpacity(const SensorPlate& plate, const DevelopOptions& opti
       if (is_interrupted()) return;
       for (int x = 0; x < width; ++x) {
         if (count.at(x, y) >= rays_needed) continue;
-        if (++filled % kFillsPerQuestion == 0 && is_interrupted()) return;
+        if (++filled % ChannelFill::kFillsPerQuestion == 0 && is_interrupted()) return;
         opacity.at(x, y) = fill.At(x, y, scratch);
       }
     });
