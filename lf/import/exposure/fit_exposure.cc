@@ -22,10 +22,11 @@ constexpr double kLeastFactor = 0.2;     // lower bound of Fit::factor_
 constexpr double kUnit = 0.01;           // deviation of a sample whose weight is 1
 constexpr double kLeastFalloff = 0.05;   // lower bound of the share F of a falloff, while fitting
 constexpr double kPriorDeviation = 1;    // prior standard deviation of falloff coefficients
-constexpr size_t kLeastPerImage = 12;    // an LF image with fewer agreeing log ratios is kAlone
 constexpr double kAgrees = 0.1;          // a log ratio agrees if its robust weight is larger
 constexpr double kMostDeviation = 0.02;  // largest standard deviation of a log gain that is used
 constexpr double kCommonShare = 0.25;    // share of a pair's spread that more samples do not reduce
+// An LF image with fewer agreeing log ratios is kAlone. A sample has up to three: of R, G and B.
+constexpr size_t kLeastLogRatios = 12;
 // The spread of all pairs counts as much as the spread of this number of places of one pair.
 constexpr double kBelievedSamples = 8;
 
@@ -267,7 +268,7 @@ class Fit {
       return i;
     };
     const auto is_tied = [&](uint32_t image) {
-      return counts[image] >= kLeastPerImage &&
+      return counts[image] >= kLeastLogRatios &&
              certainties[image] >= 1 / (kMostDeviation * kMostDeviation);
     };
     for (size_t i = 0; i < samples_.size(); ++i) {
