@@ -86,9 +86,9 @@ class Database {
   // keeps its contents. Committed batches ("begin" and "commit" by Execute()) are on the disk and
   // survive however the program ends: the next OpenToAppend() finds all committed batches, and
   // nothing of an uncommitted one. During a batch a file FILE-journal may exist beside the file.
-  // After a crash it must stay there until the file has been opened and closed again. One program
-  // at a time may open the file. kOutput: the file cannot be written. kInput: it is of another kind
-  // or version.
+  // After a crash it must stay there until the next OpenToAppend(), which undoes the uncommitted
+  // batch and removes it. One program at a time may open the file. kOutput: the file cannot be
+  // written. kInput: it is of another kind or version.
   static Result<Database> OpenToAppend(const std::filesystem::path& path,
                                        const DatabaseFormat& format);
 
