@@ -45,8 +45,8 @@ class Image {
     pixels_.assign(static_cast<size_t>(width) * height * channels, fill);
   }
 
-  // Changes the size, in the same memory if that is large enough. The pixels are unspecified
-  // afterwards.
+  // Changes the size, in the same memory if that is large enough. If the image has no more values
+  // than before, it keeps the first ones in their order in memory; otherwise all are unspecified.
   void Resize(int width, int height, int channels) {
     LF_CHECK(width >= 0 && height >= 0 && channels >= 1);
     const size_t count = static_cast<size_t>(width) * height * channels;

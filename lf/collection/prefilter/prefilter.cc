@@ -1,31 +1,27 @@
 #include "lf/collection/prefilter/prefilter.h"
 
 #include <algorithm>
-#include <cstring>
 #include <vector>
 
 #include "lf/collection/prefilter/prefilter_rows.h"
 #include "lf/core/check.h"
 
 namespace lf {
+namespace {
 
-void FilterPixels(const Prefilter& filter, const LfPixels& pixels, LfPixels* out) {
-  LF_CHECK(pixels.bayer == BayerPattern::kNone && out != &pixels);
-  constexpr int kLanes = LfPixels::kRgbLanes;
-  out->Reset(KnotsOf(filter, pixels.rect), BayerPattern::kNone);
-  out->recorded = pixels.recorded;
-  out->any_masked = pixels.any_masked;
-  if (out->rect.empty()) return;
-  const int width = pixels.rect.width(), height = pixels.rect.height();
+// Writes the knots of pixels to `knots`, row by row. `knots` may be `pixels`: a row of knots is
+// written after all rows of pixels up to it were read.
+//   width, height  of the pixels
+//   to             rectangle of the knots
+void FilterRows(const Prefilter& filter, const uint16_t* pixels, int width, int height,
+                bool any_masked, const PixelRect& to, uint16_t* knots) {
+  constexpr size_t kLanes = LfPixels::kRgbLanes;
   // The pixels from -before to +after of a row or a column make the value of knot 0.
   const int before = filter.count - 1, after = filter.is_even ? filter.count : before;
   const auto row_values = static_cast<size_t>(width) * kLanes;
-  const auto margin = static_cast<size_t>(after) * kLanes;
-  thread_local std::vector<uint16_t> padded;
-  thread_local std::vector<int32_t> filtered;
-  padded.assign(row_values + 2 * margin, 0);
   // A ring of the filtered rows that are still needed, and a row of zeros for missing rows.
   const auto ring = static_cast<size_t>(before + 1 + after);
+  thread_local std::vector<int32_t> filtered;
   filtered.assign((ring + 1) * row_values, 0);
   const auto at = [&](int y) {
     const size_t row = y < 0 || y >= height ? ring : static_cast<size_t>(y) % ring;
@@ -33,17 +29,38 @@ void FilterPixels(const Prefilter& filter, const LfPixels& pixels, LfPixels* out
   };
   std::vector<const int32_t*> rows(ring);
   int next = 0;
-  for (int y = 0; y < out->rect.height(); ++y) {
-    for (; next < std::min(height, y + after + 1); ++next) {
-      std::memcpy(padded.data() + margin, pixels.radiance.row(next), row_values * sizeof(uint16_t));
-      FilterAlongRow(filter, padded.data() + margin, pixels.any_masked, out->rect.width(),
-                     at(next));
-    }
+  for (int y = 0; y < to.height(); ++y) {
+    for (; next < std::min(height, y + after + 1); ++next)
+      FilterAlongRow(filter, pixels + static_cast<size_t>(next) * row_values, width, any_masked,
+                     to.width(), at(next));
     for (int k = -before; k <= after; ++k) rows[static_cast<size_t>(k + before)] = at(y + k);
-    const bool any_missing = pixels.any_masked || y < before || y + after >= height;
-    FilterAlongColumns(filter, rows.data() + before, any_missing, out->rect.width(),
-                       out->radiance.row(y));
+    const bool any_missing = any_masked || y < before || y + after >= height;
+    FilterAlongColumns(filter, rows.data() + before, any_missing, to.width(),
+                       knots + static_cast<size_t>(y) * to.width() * kLanes);
   }
+}
+
+}  // namespace
+
+void FilterPixels(const Prefilter& filter, const LfPixels& pixels, LfPixels* out) {
+  LF_CHECK(pixels.bayer == BayerPattern::kNone && out != &pixels);
+  out->Reset(KnotsOf(filter, pixels.rect), BayerPattern::kNone);
+  out->recorded = pixels.recorded;
+  out->any_masked = pixels.any_masked;
+  if (out->rect.empty()) return;
+  FilterRows(filter, pixels.radiance.row(0), pixels.rect.width(), pixels.rect.height(),
+             pixels.any_masked, out->rect, out->radiance.row(0));
+}
+
+void FilterInPlace(const Prefilter& filter, LfPixels* pixels) {
+  LF_CHECK(pixels->bayer == BayerPattern::kNone);
+  const PixelRect knots = KnotsOf(filter, pixels->rect);
+  Image<uint16_t>& radiance = pixels->radiance;
+  if (!knots.empty())
+    FilterRows(filter, radiance.row(0), radiance.width(), radiance.height(), pixels->any_masked,
+               knots, radiance.row(0));
+  radiance.Resize(knots.width(), knots.height(), LfPixels::kRgbLanes);
+  pixels->rect = knots;
 }
 
 }  // namespace lf

@@ -63,6 +63,10 @@ inline constexpr double kFinerAtMost = 1.25;
 //   pixels  RGB
 void FilterPixels(const Prefilter& filter, const LfPixels& pixels, LfPixels* out);
 
+// Replaces the pixels by what FilterPixels() makes of them. They must not have opacities of their
+// own (LfPixels::TakeOpacity()).
+void FilterInPlace(const Prefilter& filter, LfPixels* pixels);
+
 // Computes the values of FilterPixels() literally, one at a time.
 void FilterPixelsReference(const Prefilter& filter, const LfPixels& pixels, LfPixels* out);
 

@@ -2,7 +2,9 @@
 // that results are bit-identical. A vector holds one to four pixels of four lanes.
 #include "lf/collection/prefilter/prefilter_rows.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <vector>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE \
@@ -39,12 +41,12 @@ int64_t Filtered(const Prefilter& filter, const At& at, int64_t one, int lane) {
   return sum_of(lane) + missing * middle;
 }
 
-void FilterAlongRow(const Prefilter& filter, const uint16_t* row, bool /*any_masked*/, int count,
-                    int32_t* out) {
+void FilterAlongRow(const Prefilter& filter, const uint16_t* row, int width, bool /*any_masked*/,
+                    int count, int32_t* out) {
   for (int x = 0; x < count; ++x)
     for (int lane = 0; lane < kLanes; ++lane) {
       const auto at = [&](int k, int of_lane) -> int64_t {
-        return row[(x + k) * kLanes + of_lane];
+        return x + k < 0 || x + k >= width ? 0 : row[(x + k) * kLanes + of_lane];
       };
       out[x * kLanes + lane] = static_cast<int32_t>(
           (Filtered(filter, at, 1, lane) + (1 << (kRowShift - 1))) >> kRowShift);
@@ -124,7 +126,7 @@ HWY_ATTR HWY_INLINE void ForEachVector(int begin, int end, const Body& body) {
   for (; i < last; i += kLanes) body(d_pixel, i);
 }
 
-// Filters the pixels [begin, end) of a row.
+// Computes knots [begin, end) of a row. All pixels within their reach must be in memory.
 template <class Form, bool kAnyMissing>
 HWY_ATTR HWY_INLINE void FilterInRow(const Prefilter& filter, const uint16_t* HWY_RESTRICT row,
                                      int begin, int end, int32_t* HWY_RESTRICT out) {
@@ -136,6 +138,20 @@ HWY_ATTR HWY_INLINE void FilterInRow(const Prefilter& filter, const uint16_t* HW
     const auto half = hn::Set(d, 1 << (kRowShift - 1));
     hn::StoreU(hn::ShiftRight<kRowShift>(hn::Add(sum, half)), d, out + i);
   });
+}
+
+// Computes knots [begin, end) of a row, some of whose pixels may be masked or missing.
+template <class Form>
+HWY_ATTR HWY_INLINE void FilterBorder(const Prefilter& filter, const uint16_t* row, int width,
+                                      int begin, int end, int32_t* HWY_RESTRICT out) {
+  // A copy of the pixels within reach, with masked ones in place of those that do not exist.
+  const int reach = filter.count, first = begin - reach, last = end + reach;
+  thread_local std::vector<uint16_t> copy;
+  copy.assign(static_cast<size_t>(last - first) * kLanes, 0);
+  const int from = std::max(first, 0), to = std::min(last, width);
+  std::copy(row + from * kLanes, row + to * kLanes, copy.begin() + (from - first) * kLanes);
+  FilterInRow<Form, true>(filter, copy.data() + reach * kLanes, 0, end - begin,
+                          out + begin * kLanes);
 }
 
 template <class Form, bool kAnyMissing>
@@ -150,17 +166,17 @@ HWY_ATTR HWY_INLINE void FilterInColumns(const Prefilter& filter, const int32_t*
   });
 }
 
-HWY_ATTR void FilterAlongRow(const Prefilter& original, const uint16_t* row, bool any_masked,
-                             int count, int32_t* out) {
+HWY_ATTR void FilterAlongRow(const Prefilter& original, const uint16_t* row, int width,
+                             bool any_masked, int count, int32_t* out) {
   const Prefilter filter = original;  // a copy: it cannot change while `out` is written
   WithForm(filter, [&](auto form) HWY_ATTR {
     using Form = decltype(form);
     const int border = filter.count;  // knots that may lack pixels
     if (any_masked || count <= 2 * border)
-      return FilterInRow<Form, true>(filter, row, 0, count, out);
-    FilterInRow<Form, true>(filter, row, 0, border, out);
+      return FilterBorder<Form>(filter, row, width, 0, count, out);
+    FilterBorder<Form>(filter, row, width, 0, border, out);
     FilterInRow<Form, false>(filter, row, border, count - border, out);
-    FilterInRow<Form, true>(filter, row, count - border, count, out);
+    FilterBorder<Form>(filter, row, width, count - border, count, out);
   });
 }
 
@@ -185,9 +201,9 @@ namespace lf {
 HWY_EXPORT(FilterAlongRow);
 HWY_EXPORT(FilterAlongColumns);
 
-void FilterAlongRow(const Prefilter& filter, const uint16_t* row, bool any_masked, int count,
-                    int32_t* out) {
-  HWY_DYNAMIC_DISPATCH(FilterAlongRow)(filter, row, any_masked, count, out);
+void FilterAlongRow(const Prefilter& filter, const uint16_t* row, int width, bool any_masked,
+                    int count, int32_t* out) {
+  HWY_DYNAMIC_DISPATCH(FilterAlongRow)(filter, row, width, any_masked, count, out);
 }
 void FilterAlongColumns(const Prefilter& filter, const int32_t* const* rows, bool any_missing,
                         int count, uint16_t* out) {

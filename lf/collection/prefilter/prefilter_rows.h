@@ -12,11 +12,12 @@ inline constexpr int kPrefilterFraction = 2;
 
 // Filters a row of pixels along the row. A value of the result is 2^kPrefilterFraction times the
 // filtered value; lane kRayLane is 2^kPrefilterFraction, or 0 if the pixel is masked.
-//   row         pixels of the row, with filter.count masked pixels before and behind them
-//   any_masked  true if a pixel of the row itself is masked
+//   row         pixels of the row; the pixels before and behind them count as masked
+//   width       number of pixels
+//   any_masked  true if a pixel of the row is masked
 //   count       number of knots
-void FilterAlongRow(const Prefilter& filter, const uint16_t* row, bool any_masked, int count,
-                    int32_t* out);
+void FilterAlongRow(const Prefilter& filter, const uint16_t* row, int width, bool any_masked,
+                    int count, int32_t* out);
 
 // Filters a row of knots along the columns.
 //   rows         rows[k] is the result of FilterAlongRow() for the row of pixels k below the knots;

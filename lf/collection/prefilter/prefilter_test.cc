@@ -93,6 +93,11 @@ TEST(FilterPixels, HasTheBitsOfTheReference) {
           EXPECT_EQ(fast.radiance.pixels(), literal.radiance.pixels()) << width << " " << masked;
           EXPECT_EQ(fast.any_masked, pixels.any_masked);
           EXPECT_EQ(fast.rect, literal.rect);
+          LfPixels in_place = pixels;
+          FilterInPlace(filter, &in_place);
+          EXPECT_EQ(in_place.radiance.pixels(), literal.radiance.pixels())
+              << width << " " << masked;
+          EXPECT_EQ(in_place.rect, literal.rect);
         }
       }
 }

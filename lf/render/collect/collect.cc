@@ -137,7 +137,7 @@ Result<bool> FrameCollector::State::Step() {
       AnnounceUpTo(BatchFrom(next_.end).end);
   };
   collector_.Add(batch_.images, takers, {1 + next_.loading.size(), load_or_announce},
-                 options_.interrupted);
+                 ConsumerWants(batch_.place_end), options_.interrupted);
 
   bool all_done = true;
   for (const BatchFrame& taker : takers) {

@@ -81,7 +81,8 @@ BatchCollector::BatchCollector(const LightField& light_field,
 BatchCollector::~BatchCollector() = default;
 
 void BatchCollector::Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>& frames,
-                         const OtherItems& other_items, const std::atomic<bool>* interrupted) {
+                         const OtherItems& other_items, bool keep_pixels,
+                         const std::atomic<bool>* interrupted) {
   UndoDistortion(batch);
   filtered_->Clear();
   const auto is_interrupted = [&] { return interrupted != nullptr && *interrupted; };
@@ -106,8 +107,9 @@ void BatchCollector::Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>
   for (size_t begin = 0, count = 0; begin < takers.size(); begin += count) {
     if (is_interrupted()) return;
     count = CountTogether(batch, takers.subspan(begin, std::min(takers.size() - begin, most)));
+    const bool is_last = begin + count == takers.size();
     AddToFrames(batch, takers.subspan(begin, count), begin == 0 ? other_items : OtherItems{},
-                interrupted);
+                keep_pixels || !is_last, interrupted);
   }
 }
 
@@ -134,8 +136,8 @@ size_t BatchCollector::CountTogether(const std::vector<BatchImage>& batch,
 }
 
 PixelRect BatchCollector::RectOf(const BatchImage& image, const RenderCamera& frame) const {
-  if (whole_images_) return image.pixels.rect;
-  return Intersection(image.overlap->Rect(frame), image.pixels.rect);
+  if (whole_images_) return image.loaded;
+  return Intersection(image.overlap->Rect(frame), image.loaded);
 }
 
 PixelRect BatchCollector::RectOf(LfImageId id, std::span<const size_t> frames) const {
@@ -168,6 +170,7 @@ void BatchCollector::UndoDistortion(std::vector<BatchImage>& batch) {
           light_field_.intrinsics[index].has_distortion()
               ? MakeIdealCells(light_field_.intrinsics[index])
               : std::vector<IdealCell>());
+    if (!image.filtered_by) image.loaded = image.pixels.rect;
     image.cells = shared;
     image.ideal_pixels = ideal_pixels_.Of(index);
     image.overlap.emplace(light_field_.Camera(image.id), *image.cells, ReachOf(reading_));
@@ -189,8 +192,8 @@ std::span<BatchFrame> BatchCollector::FramesThatMayTake(const std::vector<BatchI
   return frames.first(static_cast<size_t>(rest - frames.begin()));
 }
 
-void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span<BatchFrame> frames,
-                                 const OtherItems& other_items,
+void BatchCollector::AddToFrames(std::vector<BatchImage>& batch, std::span<BatchFrame> frames,
+                                 const OtherItems& other_items, bool keep_pixels,
                                  const std::atomic<bool>* interrupted) {
   // First plans the segments (pieces of scanlines) of every pair of frame and LF image, then adds
   // the rays of every pair of frame and tile.
@@ -218,7 +221,7 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
                                          image.ideal_pixels.get(), std::move(contribution.scatter));
   });
 
-  FilterImages(batch, frames.size());
+  FilterImages(batch, frames.size(), keep_pixels);
 
   struct Task {
     size_t taker;
@@ -277,7 +280,8 @@ void BatchCollector::AddToFrames(const std::vector<BatchImage>& batch, std::span
 
 // Filters the LF images of the batch for the planned contributions to `frame_count` frames, and
 // sets the pixels and the opacity of these contributions.
-void BatchCollector::FilterImages(const std::vector<BatchImage>& batch, size_t frame_count) {
+void BatchCollector::FilterImages(std::vector<BatchImage>& batch, size_t frame_count,
+                                  bool keep_pixels) {
   std::vector<std::vector<Prefilter>> filters(batch.size());
   const auto for_each_planned = [&](const auto& body) {
     for (size_t f = 0; f < frame_count; ++f)
@@ -293,7 +297,7 @@ void BatchCollector::FilterImages(const std::vector<BatchImage>& batch, size_t f
   for_each_planned([&](size_t k, const Contribution& contribution) {
     filters[k].push_back(filter_of(contribution));
   });
-  filtered_->Filter(batch, std::move(filters),
+  filtered_->Filter(batch, std::move(filters), keep_pixels,
                     [&](size_t count, const auto& body) { ForEachTimed(count, body); });
   for_each_planned([&](size_t k, Contribution& contribution) {
     contribution.pixels = &filtered_->Pixels(batch, k, filter_of(contribution));

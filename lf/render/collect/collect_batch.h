@@ -71,6 +71,9 @@ struct BatchImage {
   std::shared_ptr<const std::vector<IdealCell>> cells = nullptr;
   std::shared_ptr<const IdealPixels> ideal_pixels = nullptr;
   std::optional<ImageOverlap> overlap = std::nullopt;
+  PixelRect loaded = {};  // rectangle of the pixels before they were filtered
+  // The prefilter whose result has replaced `pixels` and `opacity`; unset if they are as loaded.
+  std::optional<Prefilter> filtered_by = std::nullopt;
 };
 
 // A frame that takes those LF images of a batch whose places are in `places`.
@@ -115,8 +118,10 @@ class BatchCollector {
   // Adds the rays of the LF images to the plates of `frames`, and runs `other_items`. May change
   // the order of `frames`. Once *interrupted is true, no further frame is begun, and the frames
   // that are begun are finished. Items of `other_items` may then be left out.
+  //   keep_pixels  true: the LF images stay as loaded; false: an LF image that needs only one
+  //                prefilter is filtered in its own memory
   void Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>& frames,
-           const OtherItems& other_items, const std::atomic<bool>* interrupted);
+           const OtherItems& other_items, bool keep_pixels, const std::atomic<bool>* interrupted);
 
   // Returns the bounds of the pixels of an LF image that at least one of `frames` needs. A frame in
   // which the LF image has no weight needs no pixels.
@@ -149,9 +154,10 @@ class BatchCollector {
                                           std::span<BatchFrame> frames);
   size_t CountTogether(const std::vector<BatchImage>& batch,
                        std::span<const BatchFrame> frames) const;
-  void FilterImages(const std::vector<BatchImage>& batch, size_t frame_count);
-  void AddToFrames(const std::vector<BatchImage>& batch, std::span<BatchFrame> frames,
-                   const OtherItems& other_items, const std::atomic<bool>* interrupted);
+  void FilterImages(std::vector<BatchImage>& batch, size_t frame_count, bool keep_pixels);
+  void AddToFrames(std::vector<BatchImage>& batch, std::span<BatchFrame> frames,
+                   const OtherItems& other_items, bool keep_pixels,
+                   const std::atomic<bool>* interrupted);
   uint64_t AddToTile(const Contribution& contribution, size_t tile, const LfPixels& pixels,
                      TileSums* sums) const;
   void AddByReference(const std::vector<BatchImage>& batch, BatchFrame* frame);

@@ -6,24 +6,40 @@
 #include "lf/core/check.h"
 
 namespace lf {
+namespace {
+
+// Returns true if the pixels of the image itself are the result of the filter.
+bool HasOwn(const BatchImage& image, const Prefilter& filter) {
+  return image.filtered_by ? *image.filtered_by == filter : filter.changes_nothing();
+}
+
+}  // namespace
 
 void FilteredImages::Clear() {
   for (std::list<Filtered>& of_image : filtered_) spare_.splice(spare_.end(), of_image);
   filtered_.clear();
 }
 
-void FilteredImages::Filter(const std::vector<BatchImage>& batch,
-                            std::vector<std::vector<Prefilter>> filters, const ForEach& for_each) {
+void FilteredImages::Filter(std::vector<BatchImage>& batch,
+                            std::vector<std::vector<Prefilter>> filters, bool keep_pixels,
+                            const ForEach& for_each) {
   struct Item {
-    const BatchImage* image;
-    Filtered* filtered;
+    BatchImage* image;
+    Filtered* filtered;  // null: the result replaces the pixels of the image
   };
   std::vector<Item> items;
   filtered_.resize(batch.size());
   for (size_t k = 0; k < batch.size(); ++k) {
-    std::list<Filtered> kept;
     std::sort(filters[k].begin(), filters[k].end());
     filters[k].erase(std::unique(filters[k].begin(), filters[k].end()), filters[k].end());
+    if (batch[k].filtered_by) continue;
+    if (!keep_pixels && filters[k].size() == 1 && filtered_[k].empty() &&
+        !filters[k][0].changes_nothing()) {
+      batch[k].filtered_by = filters[k][0];
+      items.push_back({&batch[k], nullptr});
+      continue;
+    }
+    std::list<Filtered> kept;
     for (const Prefilter& filter : filters[k]) {
       if (filter.changes_nothing()) continue;
       const auto done = std::find_if(filtered_[k].begin(), filtered_[k].end(),
@@ -41,22 +57,27 @@ void FilteredImages::Filter(const std::vector<BatchImage>& batch,
     filtered_[k] = std::move(kept);
   }
   for_each(items.size(), [&](size_t i) {
-    const BatchImage& image = *items[i].image;
+    BatchImage& image = *items[i].image;
+    const bool has_opacity = !image.opacity.radiance.empty();
+    if (items[i].filtered == nullptr) {
+      FilterInPlace(*image.filtered_by, &image.pixels);
+      if (has_opacity) FilterInPlace(*image.filtered_by, &image.opacity);
+      return;
+    }
     Filtered& filtered = *items[i].filtered;
     FilterPixels(filtered.filter, image.pixels, &filtered.pixels);
-    if (!image.opacity.radiance.empty())
-      FilterPixels(filtered.filter, image.opacity, &filtered.opacity);
+    if (has_opacity) FilterPixels(filtered.filter, image.opacity, &filtered.opacity);
   });
 }
 
 const LfPixels& FilteredImages::Pixels(const std::vector<BatchImage>& batch, size_t k,
                                        const Prefilter& filter) const {
-  return filter.changes_nothing() ? batch[k].pixels : Of(k, filter).pixels;
+  return HasOwn(batch[k], filter) ? batch[k].pixels : Of(k, filter).pixels;
 }
 
 const LfPixels& FilteredImages::Opacity(const std::vector<BatchImage>& batch, size_t k,
                                         const Prefilter& filter) const {
-  return filter.changes_nothing() ? batch[k].opacity : Of(k, filter).opacity;
+  return HasOwn(batch[k], filter) ? batch[k].opacity : Of(k, filter).opacity;
 }
 
 const FilteredImages::Filtered& FilteredImages::Of(size_t k, const Prefilter& filter) const {

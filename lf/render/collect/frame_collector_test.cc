@@ -16,11 +16,25 @@ namespace {
 // applied twice: at places 64 and 128.
 constexpr uint32_t kSide = 14;
 
+// Returns a reading that filters LF images before it interpolates between their pixels.
+RayReading Prefiltered() {
+  RayReading reading = Estimator::kBilinear;
+  reading.filter = PixelFilter::kPrefiltered;
+  return reading;
+}
+
 struct Job {
+  explicit Job(const RayReading& reading = Estimator::kNearest) {
+    options.reading = reading;
+    SelectOptions select;
+    select.reach = ReachOf(reading);
+    order = SelectImages(ImageIndex(field, 3), frames, select, pool);
+  }
+
   const LightField field = testing::NoiseField(kSide);
   const std::vector<RenderCamera> frames = testing::NoiseFrames();
   ThreadPool pool{2};
-  const std::vector<SelectedImage> order = SelectImages(ImageIndex(field, 3), frames, {}, pool);
+  std::vector<SelectedImage> order;
   testing::NoiseStore store;
   CollectOptions options;
   std::vector<SensorPlate> plates = EmptyPlates();
@@ -217,12 +231,12 @@ TEST(FrameCollector, AStoppedFrameTakesNoMore) {
   ExpectRays(job, collector.frames());
 }
 
-TEST(FrameCollector, InterruptedAnywhereEveryFrameIsConsistent) {
-  Job whole;
+void ExpectConsistentIfInterrupted(const RayReading& reading) {
+  Job whole(reading);
   FrameCollector of_all = whole.Collector();
   while (*of_all.Step()) continue;
   for (int delay_us = 0; delay_us < 30000; delay_us += 1500) {
-    Job job;
+    Job job(reading);
     std::atomic<bool> interrupted = false;
     job.options.interrupted = &interrupted;
     FrameCollector collector = job.Collector();
@@ -256,6 +270,15 @@ TEST(FrameCollector, InterruptedAnywhereEveryFrameIsConsistent) {
     }
     EXPECT_EQ(job.plates, whole.plates);
   }
+}
+
+TEST(FrameCollector, InterruptedAnywhereEveryFrameIsConsistent) {
+  ExpectConsistentIfInterrupted(Estimator::kNearest);
+}
+
+// The LF images of an interrupted batch may have been filtered in place already.
+TEST(FrameCollector, InterruptedBetweenPrefiltersEveryFrameIsConsistent) {
+  ExpectConsistentIfInterrupted(Prefiltered());
 }
 
 TEST(FrameCollector, BrokenImagesArePlaces) {
