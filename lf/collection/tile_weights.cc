@@ -68,7 +68,7 @@ void TileWeights::Fill(const RayWeights& weights, const PixelRect& tile, int pit
 }
 
 // Sets the weights and the feather of the row of blocks that contains row y of elements. Returns
-// true if the feather of some corner is not whole.
+// true if there are feathered blocks.
 bool TileWeights::FillBlocks(const RayWeights& weights, const PixelRect& tile, int y) {
   const int count = static_cast<int>(of_blocks_.size());
   weights.OfRow(tile.x_begin, y, count, of_blocks_.data());
@@ -85,11 +85,19 @@ bool TileWeights::FillBlocks(const RayWeights& weights, const PixelRect& tile, i
     weights.FeatherOfRow(begin_x, begin_y, count + 1, above_.data());
   below_y_ = begin_y + kWeightBlock;
   weights.FeatherOfRow(begin_x, below_y_, count + 1, below_.data());
-  const auto is_less = [](uint16_t feather) { return feather < kWholeFeather; };
-  const bool is_feathered = std::any_of(above_.begin(), above_.end(), is_less) ||
-                            std::any_of(below_.begin(), below_.end(), is_less);
-  if (is_feathered) least_ = 0;
-  return is_feathered;
+  feathered_.clear();
+  uint32_t common = kWholeFeather;  // all bits of kWholeFeather only if the feather is whole
+  for (size_t k = 0; k < of_blocks_.size(); ++k) {
+    const uint32_t of_all = above_[k] & above_[k + 1] & below_[k] & below_[k + 1];
+    common &= of_all;
+    if (of_blocks_[k] == 0 || of_all == kWholeFeather) continue;
+    if ((above_[k] | above_[k + 1] | below_[k] | below_[k + 1]) == 0)
+      of_blocks_[k] = 1;  // the weight of all its elements: the least that FeatheredWeight() gives
+    else
+      feathered_.push_back(static_cast<int>(k));
+  }
+  if (common != kWholeFeather) least_ = 0;
+  return !feathered_.empty();
 }
 
 // Writes a row of weights without feather.
@@ -105,21 +113,22 @@ void TileWeights::FillRow(const WeightBlocks& blocks, const PixelRect& tile, uin
   }
 }
 
-// Writes the weights of row y in the blocks whose feather is not whole.
+// Writes the weights of row y in the feathered blocks.
 void TileWeights::Feather(const WeightBlocks& blocks, const PixelRect& tile, int y,
                           uint8_t* row) const {
   const int j = y - (blocks.EndY(y) - kWeightBlock);
-  for (size_t k = 0; k < of_blocks_.size(); ++k) {
-    const uint32_t weight = of_blocks_[k];
-    if (weight == 0 || (above_[k] & above_[k + 1] & below_[k] & below_[k + 1]) == kWholeFeather)
-      continue;
+  const int first_x = blocks.EndX(tile.x_begin) - kWeightBlock;
+  for (const int k : feathered_) {
     uint8_t of_block[kWeightBlock];
-    FillFeathered(weight, &above_[k], &below_[k], j, of_block);
-    const int block_end = blocks.EndX(tile.x_begin) + static_cast<int>(k) * kWeightBlock;
-    const int begin = std::max(tile.x_begin, block_end - kWeightBlock);
-    const int end = std::min(tile.x_end, block_end);
-    std::copy_n(of_block + (begin - (block_end - kWeightBlock)), end - begin,
-                row + (begin - tile.x_begin));
+    FillFeathered(of_blocks_[static_cast<size_t>(k)], &above_[static_cast<size_t>(k)],
+                  &below_[static_cast<size_t>(k)], j, of_block);
+    const int x = first_x + k * kWeightBlock;
+    const int begin = std::max(tile.x_begin, x), end = std::min(tile.x_end, x + kWeightBlock);
+    uint8_t* const to = row + (begin - tile.x_begin);
+    if (end - begin == kWeightBlock)  // a constant size needs one store and no call
+      std::memcpy(to, of_block, kWeightBlock);
+    else
+      std::memcpy(to, of_block + (begin - x), static_cast<size_t>(end - begin));
   }
 }
 

@@ -42,8 +42,9 @@ class TileWeights {
   std::vector<uint8_t> of_blocks_;
   std::vector<uint16_t> above_;
   std::vector<uint16_t> below_;
-  int below_y_ = 0;            // y of the corners that below_ holds
-  bool is_feathered_ = false;  // true if above_ and below_ are used, because feather is not whole
+  std::vector<int> feathered_;  // blocks of the row whose feather is neither whole nor 0
+  int below_y_ = 0;             // y of the corners that below_ holds
+  bool is_feathered_ = false;   // true if above_ and below_ are used, because feather is not whole
 };
 
 }  // namespace lf
