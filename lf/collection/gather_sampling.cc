@@ -38,7 +38,8 @@ GatherSampling SamplingOf(const PinholeCamera& lf_camera, const RenderCamera& re
   // A value just above a whole number counts as that number.
   constexpr double kRounding = 1e-3;
   if (width_px > kFinerAtMost)
-    sampling.samples = std::min(kMostSamples, static_cast<int>(std::ceil(width_px - kRounding)));
+    sampling.samples =
+        static_cast<int>(std::ceil(std::min<double>(width_px - kRounding, kMostSamples)));
   sampling.is_cubic = sampling.filter == PixelFilter::kBicubic ||
                       (sampling.filter == PixelFilter::kMosaic && sampling.samples < kBilinearFrom);
   if (sampling.is_cubic && MayLackRays(lf_camera.intrinsics)) {

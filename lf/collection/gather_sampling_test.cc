@@ -78,6 +78,17 @@ TEST(GatherSampling, APrefilterReplacesSamples) {
   }
 }
 
+// Elements may be wider than any integer, in LF pixels, because a frame may show the light field
+// from very far away or from its side.
+TEST(GatherSampling, TheNumberOfSamplesIsBounded) {
+  for (const double magnification : {1e-2, 1e-7, 1e-12}) {
+    const testing::CameraPair pair = PairOf(magnification);
+    EXPECT_EQ(SamplingOf(pair.lf_camera, pair.render_camera, PixelFilter::kBicubic).samples,
+              kMostSamples)
+        << magnification;
+  }
+}
+
 // Noise of LF pixels that are much finer than elements averages out. If an element had one sample,
 // all of the noise would be left.
 TEST(GatherSampling, FinePixelsAverage) {

@@ -10,7 +10,7 @@
 namespace lf {
 
 // Returns the instruction sets that this program was compiled for and that this processor has, best
-// first: "AVX3", "AVX2", ..., "SCALAR".
+// first: "AVX3", "AVX2", ..., "SCALAR" (with clang "EMU128", which also needs no vectors).
 std::vector<std::string> SimdTargets();
 
 // Makes the kernels use the instruction set `name` from now on; "" means the best one. Must not be

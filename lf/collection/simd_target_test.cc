@@ -49,7 +49,8 @@ std::vector<SensorPlate> Collect(const testing::CameraPair& pair, uint64_t seed)
 TEST(SimdTarget, EveryTargetGivesTheSameBits) {
   const std::vector<std::string> targets = SimdTargets();
   ASSERT_GE(targets.size(), 2u);
-  EXPECT_EQ(targets.back(), "SCALAR");
+  // The kernels without vectors: EMU128 where the compiler knows vectors of any width (clang).
+  EXPECT_TRUE(targets.back() == "SCALAR" || targets.back() == "EMU128") << targets.back();
   for (uint64_t seed = 0; seed < 120; ++seed) {
     testing::CameraPair pair =
         seed % 3 == 0 ? testing::RandomDistortedPair(seed) : testing::RandomCameraPair(seed);
