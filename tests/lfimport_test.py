@@ -161,6 +161,28 @@ class ImportTest(unittest.TestCase):
         self.assertRegex(text, r"(?m)^depth range +0.5 to 1.5$")
         self.assertNotIn("warning", text)
 
+    def test_pixels_show_areas_or_points(self):
+        def squares(index):
+            lights = np.random.default_rng(index).integers(0, 2, (HEIGHT, WIDTH, 1), dtype=np.uint8) * 200 + 20
+            return lights.repeat(29, axis=0).repeat(29, axis=1).repeat(3, axis=2)[:4 * HEIGHT, :4 * WIDTH]
+
+        def areas(index):
+            return squares(index).reshape(HEIGHT, 4, WIDTH, 4, 3).mean(axis=(1, 3)).astype(np.uint8)
+
+        def written(name, *options):
+            out = self.folder / f"{name} written"
+            report = self.report(self.folder / name, "-o", out, *options)
+            return report["pixels"], json.loads((out / "transforms.json").read_text()).get("lf_pixels")
+
+        write_field(self.folder / "points", lambda index: squares(index)[::4, ::4])
+        self.assertEqual(written("points"), ({"show": "points", "from": "images"}, "points"))
+        self.assertEqual(written("points", "--check", "none"), (None, None))
+        write_field(self.folder / "areas", areas)
+        self.assertEqual(written("areas"), ({"show": "areas", "from": "images"}, None))
+        write_field(self.folder / "stated", areas, lf_pixels="points")
+        self.assertEqual(written("stated"), ({"show": "points", "from": "lf_pixels"}, "points"))
+        self.assertRegex(self.run_tool(IMPORT, self.folder / "points").stdout, "(?m)^pixels +show the light of points")
+
     def test_missing_and_broken_images_are_counted_and_named(self):
         field = write_field(self.folder / "field")
         for index in range(6):

@@ -108,6 +108,17 @@ std::string ImagesText(const ImportReport& report) {
                             report.faults->broken.size());
 }
 
+std::string PixelsText(const FootprintFacts& pixels) {
+  return fmt::format("show {} ({})",
+                     pixels.footprint == PixelFootprint::kArea
+                         ? "the mean light of their areas, as photographs do"
+                         : "the light of points, as renders without anti-aliasing do",
+                     pixels.is_stated ? "stated by lf_pixels" : "measured in three images");
+}
+
+Json JsonOf(const FootprintFacts& pixels) {
+  return {{"show", NameOf(pixels.footprint)}, {"from", pixels.is_stated ? "lf_pixels" : "images"}};
+}
 Json JsonOf(const Spread& spread) {
   return {{"min", spread.min}, {"median", spread.median}, {"max", spread.max}};
 }
@@ -161,6 +172,7 @@ std::string ReportText(const ImportReport& report) {
   AddLine("light field", report.light_field, &lines);
   AddLine("first image", report.first_image, &lines);
   AddLine("images", ImagesText(report), &lines);
+  if (report.pixels) AddLine("pixels", PixelsText(*report.pixels), &lines);
   AddCameras(capture.groups, &lines);
   AddLine("positions",
           fmt::format("from {} to {}", Brief(capture.box_min_w), Brief(capture.box_max_w)), &lines);
@@ -215,6 +227,7 @@ std::string ReportJson(const ImportReport& report) {
     json["missing"] = report.faults->missing.size();
     json["broken"] = report.faults->broken.size();
   }
+  json["pixels"] = OrNull(report.pixels);
   json["cameras"] = Json::array();
   for (const CameraGroup& group : capture.groups) json["cameras"].push_back(JsonOf(group));
   json["positions_w"] = {{"min", JsonOf(capture.box_min_w)}, {"max", JsonOf(capture.box_max_w)}};

@@ -8,8 +8,15 @@
 #include "lf/import/check/check_images.h"
 #include "lf/import/check/exif_gains.h"
 #include "lf/import/exposure/match_exposure.h"
+#include "lf/light_field/model/radiance.h"
 
 namespace lf {
+
+// What LF pixels show, and who says so.
+struct FootprintFacts {
+  PixelFootprint footprint = PixelFootprint::kArea;
+  bool is_stated = false;  // true: by the calibration (lf_pixels); false: measured in three images
+};
 
 struct ImportReport {
   std::string light_field;  // LIGHTFIELD as the user typed it
@@ -17,6 +24,7 @@ struct ImportReport {
   CaptureReport capture;
   std::optional<ImageFaults> faults;  // nullopt: the files were not checked
   size_t excluded_count = 0;
+  std::optional<FootprintFacts> pixels;     // nullopt: the files were not checked
   std::optional<ExifGains> exif_gains;      // nullopt without --gain-from-exif
   std::optional<MatchedExposure> exposure;  // nullopt: exposures were not matched
   std::string written;                      // path of the transforms.json; "": nothing was written

@@ -1,6 +1,7 @@
 // lfimport LIGHTFIELD [-o DIR]: converts any calibration to a transforms.json, and reports on the
 // capture.
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,8 @@
 #include "lf/import/check/exclude_images.h"
 #include "lf/import/check/native_folder.h"
 #include "lf/import/check/similarity.h"
+#include "lf/storage/load/measure_footprint.h"
+#include "lf/storage/load/open_store.h"
 
 namespace {
 
@@ -174,6 +177,18 @@ lf::Result<lf::LightField> OpenChanged(const Arguments& a, size_t* excluded_coun
   return light_field;
 }
 
+// Returns what LF pixels show. If they were found to show points, the light field states it then.
+// Areas need no statement, because programs assume them.
+lf::Result<lf::FootprintFacts> FindFootprint(lf::LightField* light_field) {
+  if (light_field->encoding.footprint)
+    return lf::FootprintFacts{*light_field->encoding.footprint, true};
+  LF_ASSIGN_OR_RETURN(const std::unique_ptr<lf::LfImageStore> store,
+                      lf::OpenStore(*light_field, lf::Mosaics::kToRgb));
+  LF_ASSIGN_OR_RETURN(const lf::PixelFootprint found, lf::MeasureFootprint(*light_field, *store));
+  if (found == lf::PixelFootprint::kPoint) light_field->encoding.footprint = found;
+  return lf::FootprintFacts{found, false};
+}
+
 lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
   const std::atomic<bool>& interrupted = lf::CatchInterrupts();
   LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, a.allow_missing.Limit());
@@ -209,6 +224,9 @@ lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
                                                            &light_field, &report.capture));
   }
   lf::WarnOfBracketOptions(a.exposure, report.exif_gains, &light_field, &report.capture);
+  if (report.faults && !refuses) {
+    LF_ASSIGN_OR_RETURN(report.pixels, FindFootprint(&light_field));
+  }
   if (!a.output.empty() && !refuses) {
     LF_ASSIGN_OR_RETURN(report.written, lf::WriteNativeFolder(a.output, &light_field));
   }
