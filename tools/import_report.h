@@ -12,7 +12,7 @@
 
 namespace lf {
 
-// What LF pixels show, and who says so.
+// The footprint of LF pixels, and who says so.
 struct FootprintFacts {
   PixelFootprint footprint = PixelFootprint::kArea;
   bool is_stated = false;  // true: by the calibration (lf_pixels); false: measured in three images
