@@ -97,7 +97,7 @@ class AlphaTest(ProgramTestCase):
         self.succeeds(COMPRESSOR, field, "-o", store, "--profile", "lossless")
         for options in ([], ["--background", "white"], ["--mode", "rebin"], ["--mode", "hybrid"]):
             np.testing.assert_array_equal(self.frame(store, *options)[0], self.frame(field, *options)[0])
-        self.fails(2, ["--image-alpha mask", "stored as light", "compress"], RENDERER, store,
+        self.fails(2, ["--image-alpha mask", "stored as opacity", "compress"], RENDERER, store,
                    self.folder / "path.yaml", "-o", self.folder / "refused", "--image-alpha", "mask")
 
     def test_packages_keep_the_background_that_they_were_made_with(self):
@@ -135,7 +135,7 @@ class AlphaTest(ProgramTestCase):
             Image.fromarray((light * 255).astype(np.uint8)).save(file.with_suffix(".png"))
         field = self.field(opaque)
         for words, options in [
-                (["--background", "no light can shine through"], ["--background", "white"]),
+                (["--background", "has no effect on"], ["--background", "white"]),
                 (["--background", "expected black"], ["--background", "1,2"]),
                 (["--background"], ["--background", ""]),
                 (["--background", "expected black"], ["--background", "blue"]),

@@ -111,7 +111,7 @@ class LfImagesTest(unittest.TestCase):
         self.assertEqual(result.returncode, 6, result.stderr)
         skipped = json.loads((out / "report.json").read_text())["skipped_lf_images"]
         self.assertEqual(len(skipped), 1)
-        self.assertIn("its mosaic is GRBG, but that of the light field is RGGB", str(skipped))
+        self.assertIn("has the Bayer pattern GRBG, but the light field has RGGB", str(skipped))
 
     def test_a_pattern_that_the_files_do_not_tell_is_stated_on_import(self):
         def write(index, folder):

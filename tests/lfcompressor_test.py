@@ -95,7 +95,7 @@ class CompressorTest(StoreTest):
             if coarser:
                 self.assertGreater(report["ratio"], coarser)
             coarser = report["ratio"]
-        self.fails(2, ["--target-psnr 80", "the best quality of these settings"], COMPRESSOR, field, "-o",
+        self.fails(2, ["--target-psnr 80", "these options give at most"], COMPRESSOR, field, "-o",
                    self.store, "--target-psnr", 80, "--profile", "thesis", "--overwrite")
 
     def test_the_same_store_whatever_the_threads(self):
@@ -158,7 +158,7 @@ class CompressorTest(StoreTest):
     def test_usage(self):
         field = write_field(self.folder / "field", smooth)
         for words, options in ((["--quantizer", "thesis"], ["--quantizer", "512"]),
-                               (["lossless drops no details"], ["--profile", "lossless", "--threshold", "2"]),
+                               (["lossless, which drops no details"], ["--profile", "lossless", "--threshold", "2"]),
                                (["--quantizer 9x"], ["--profile", "thesis", "--quantizer", "9x"]),
                                (["--needed-pixels", "packages"], ["--needed-pixels"]),
                                (["--levels"], ["--levels", "6"])):
@@ -167,9 +167,9 @@ class CompressorTest(StoreTest):
         self.assertEqual(self.names(), [])
         self.compress(field, "-o", self.store)
         self.fails(2, ["exists already", "--overwrite"], COMPRESSOR, field, "-o", self.store)
-        self.fails(2, ["packed store already"], COMPRESSOR, self.store, "-o", self.folder / "b.lfs")
+        self.fails(2, ["cannot be compressed again"], COMPRESSOR, self.store, "-o", self.folder / "b.lfs")
         self.assertTrue(self.report(field, "-o", self.store, "--resume")["was_there"])
-        self.fails(3, ["made with the settings"], COMPRESSOR, field, "-o", self.store, "--verify",
+        self.fails(3, ["made with the encoding"], COMPRESSOR, field, "-o", self.store, "--verify",
                    "--threshold", 5)
 
     def test_an_image_that_is_broken_is_skipped_and_named(self):
@@ -196,7 +196,7 @@ class CompressorTest(StoreTest):
         self.assertEqual([skipped["name"] for skipped in report["skipped_lf_images"]], ["image_12.png"])
         self.fails(3, ["a.lfs", "image_12.png"], RENDERER, self.store, path, "-o",
                    self.folder / "strict", "--strict")
-        self.fails(3, ["a.lfs: 1 of 25 encoded images are wrong", "image_12.png"], COMPRESSOR, field, "-o",
+        self.fails(3, ["a.lfs: 1 of 25 LF images are wrong", "image_12.png"], COMPRESSOR, field, "-o",
                    self.store, "--verify")
 
     def test_a_full_disk_keeps_what_is_done(self):

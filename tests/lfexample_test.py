@@ -83,7 +83,7 @@ class ExampleTest(unittest.TestCase):
     def test_says_where_it_is_not_sure_and_keeps_the_picture_sharp(self):
         self.field = write_field(self.folder / "noise")  # every image is different
         path, words = self.example("--move", "static")
-        self.assertIn("warning: not sure what to focus on", words)
+        self.assertIn("warning: the program is not sure what to focus on", words)
         self.assertIn("--focus", words)
         self.assertLess(self.aperture(path), 0.1 * PITCH)
 
@@ -91,7 +91,7 @@ class ExampleTest(unittest.TestCase):
         self.field = write_field(self.folder / "no two alike")
         path, words = self.example("--move", "static", "--camera", "7")
         warning = next(line for line in words.splitlines() if "not sure" in line)
-        self.assertRegex(warning, r"an aperture of \S+, which holds one LF camera, so that the first frame "
+        self.assertRegex(warning, r"the aperture \S+, which holds one LF camera, so that the first frame "
                                   r"is sharp at any distance")
         distances = re.search(r"The best focus distances? found: ([^ ]+(, [^ ]+)*)\. ", warning).group(1)
         self.assertIn(len(distances.split(", ")), (1, 2, 3))
@@ -177,7 +177,7 @@ class ExampleTest(unittest.TestCase):
     def test_points_anywhere_tell_no_focus(self):
         self.colmap(1 / np.random.default_rng(2).uniform(0.2, 2, 300))
         _, words = self.example("--move", "static")
-        self.assertIn("warning: not sure what to focus on", words)
+        self.assertIn("warning: the program is not sure what to focus on", words)
         self.assertRegex(words, r"and \d+ of the \d+ points of the reconstruction that it shows lie at")
 
     def test_the_frame_shows_nothing_that_its_lf_image_does_not(self):

@@ -225,7 +225,7 @@ class ResumeTest(unittest.TestCase):
         self.fails(2, ["--finish", "--resume"], "early", *options, "--overwrite")
         self.fails(2, ["--finish", "--shard"], "early", *options, "--resume", "--shard", "1/2")
         self.fails(2, ["made with no mode", "hybrid"], "early", *options, "--resume", "--mode", "hybrid")
-        self.fails(2, ["--finish '21'", "1-20"], "early", "--resume", "--finish", "21")
+        self.fails(2, ["--finish '21'", "from 1 to 20"], "early", "--resume", "--finish", "21")
         self.begun("early again")
         finished = self.finish("early again", *options, "--resume")
         early = {path.name, path.with_suffix(".plate").name}

@@ -136,7 +136,7 @@ class RendererTest(unittest.TestCase):
         flat = lambda index: np.full((HEIGHT, WIDTH), 120, np.uint8)
         field = write_field(self.folder / "mosaics", flat, lf_bayer="RGGB", lf_transfer="sRGB")
         path, rule = write_path(self.folder), ["--require", "samples>=1"]
-        self.fails(2, "--filter mosaic: rays count up to 8 times", field, path, "-o",
+        self.fails(2, "--filter mosaic: a ray counts up to 8 times", field, path, "-o",
                    self.folder / "out", "--filter", "mosaic", *rule)
         _, report = self.render(field, path, "counted", *rule)
         self.assertEqual(report["inputs"]["filter"], "prefiltered")
@@ -155,7 +155,7 @@ class RendererTest(unittest.TestCase):
         self.assertIn("fewer than 4 LF images", few.stderr)
         huge = self.run_renderer(field, write_path(self.folder, aperture=0.3), "-o",
                                  self.folder / "huge")
-        self.assertIn("beyond the capture", huge.stderr)
+        self.assertIn("beyond the LF cameras", huge.stderr)
         counted = self.run_renderer(field, write_path(self.folder), "-o", self.folder / "counted",
                                     "--stop-when", "samples>=2")
         self.assertIn("auto means none", counted.stderr)

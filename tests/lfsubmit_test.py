@@ -161,7 +161,7 @@ class LocalJobTest(ClusterTestCase):
         (self.folder / "a").rename(self.folder / "b")
         self.unlucky_renderer("")
         self.fails(3, ["package-0001", "no such file"], submit, "--resume", self.film)
-        self.fails(2, ["none of the job's packages"], submit, "--resume", self.film, "other.lfp")
+        self.fails(2, ["not a package of this job"], submit, "--resume", self.film, "other.lfp")
         self.fails(2, ["after --", "--nonsense"], submit, "--resume", self.film, *files, "--",
                    "--nonsense")
         self.succeeds(submit, "--resume", self.film, *(self.folder / "b").glob("*.lfp"), "--",
@@ -199,11 +199,11 @@ class LocalJobTest(ClusterTestCase):
         self.fails(2, ["new jobs"], submit, "--resume", self.film, "-o", self.folder)
         self.submit("--", "--help", code=2, words=["--help"])
         (self.film / "cluster" / "job.json").write_text("")
-        self.submit(code=3, words=["job.json", "remove it to submit anew"])
+        self.submit(code=3, words=["job.json", "remove the file to submit a new job"])
 
     def test_a_folder_has_one_job(self):
         self.submit()
-        self.submit(code=2, words=["a job was submitted there", "--resume", "--overwrite"])
+        self.submit(code=2, words=["contains a job already", "--resume", "--overwrite"])
         before = (self.film / "frame_0001.exr").stat().st_mtime_ns
         self.submit("--overwrite")
         self.assertNotEqual((self.film / "frame_0001.exr").stat().st_mtime_ns, before)
@@ -213,12 +213,12 @@ class LocalJobTest(ClusterTestCase):
         for options, code, words in (
                 (["--", "--format", "jpeg"], 2, ["after --", "jpeg"]),
                 (["--", "--no-such-option"], 2, ["after --", "no-such-option"]),
-                (["--", "--shard", "1/2"], 2, ["--shard", "lfsubmit sets it"]),
-                (["--", "--frames=1"], 2, ["--frames=1", "lfsubmit sets it"]),
+                (["--", "--shard", "1/2"], 2, ["--shard", "lfsubmit itself sets"]),
+                (["--", "--frames=1"], 2, ["--frames=1", "lfsubmit itself sets"]),
                 (["--", "--mode", "rebin", "--stop-when", "samples>=2"], 2, ["--mode rebin"]),
                 (["--time-limit", "1h"], 2, ["--engine slurm"]),
                 (["--frames", "12"], 2, ["12"]),
-                (["--video", self.folder / "no" / "film.mp4"], 4, ["no folder"]),
+                (["--video", self.folder / "no" / "film.mp4"], 4, ["does not exist"]),
                 (["--lfrenderer", self.folder / "no"], 2, ["--lfrenderer"])):
             self.submit(*options, code=code, words=words)
             self.assertFalse((self.film / "cluster").exists(), options)
@@ -232,7 +232,7 @@ class LocalJobTest(ClusterTestCase):
         self.fails(2, ["-o DIR is missing"], submit, *self.package_files)
         self.fails(2, ["only one of"], submit, "--status", self.film, "--cancel", self.film)
         self.fails(2, ["need only DIR"], submit, *self.package_files, "--status", self.film)
-        self.fails(2, ["is no package", "lfpreprocessor"], submit, self.field, self.path, "-o",
+        self.fails(2, ["is not a package", "lfpreprocessor"], submit, self.field, self.path, "-o",
                    self.film)
 
     def test_damaged_states_are_named(self):
@@ -242,7 +242,7 @@ class LocalJobTest(ClusterTestCase):
         self.assertIn("package-0001.json", self.status()["packages"][1]["message"])
         job = self.film / "cluster" / "job.json"
         job.write_text("[]")
-        self.fails(3, ["job.json", "remove it"], cluster_test_case.SUBMIT, "--status", self.film)
+        self.fails(3, ["job.json", "remove the file"], cluster_test_case.SUBMIT, "--status", self.film)
 
 
 class LongLocalJobTest(ClusterTestCase):

@@ -134,7 +134,7 @@ class NeededPixelsTest(ProgramTestCase):
                    "hybrid", "-o", self.folder / "none")
         packages = self.packages(path, name="with-neighbours")
         store = self.store(packages, "neighbours")
-        self.fails(3, ["needs pixels of", "not in this packed store", "--mode",
+        self.fails(3, ["lacks pixels that frame", "this packed store", "--mode",
                        "--needed-pixels"],
                    RENDERER, *packages, "--lightfield", store, "--mode", "rebin", "-o",
                    self.folder / "none")
@@ -142,7 +142,7 @@ class NeededPixelsTest(ProgramTestCase):
         # lfpreprocessor writes no package if the packed store lacks pixels that the package needs.
         wide = self.folder / "wide.yaml"
         wide.write_text(path.read_text().replace("deg: 15", "deg: 45"))
-        self.fails(3, ["needs pixels of", "not in this packed store"],
+        self.fails(3, ["lacks pixels that frame", "this packed store"],
                    PREPROCESSOR, store, wide, "-o", self.folder / "made")
         self.assertFalse(list((self.folder / "made").glob("*.lfp")))
 

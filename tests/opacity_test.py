@@ -135,7 +135,7 @@ class OpacityTest(ProgramTestCase):
         self.succeeds(SUBMITTER, *files, "-o", self.folder / "job", "--lfrenderer", RENDERER, "--",
                       "--format", "exr-float")
         self.expect_same_bits(self.folder / "job")
-        self.fails(2, ["--mode hybrid", "need opacity", "--background black"], RENDERER, *files, "-o",
+        self.fails(2, ["--mode hybrid", "with an alpha channel", "--background black"], RENDERER, *files, "-o",
                    self.folder / "refused", "--mode", "hybrid")
 
     def test_killed_and_resumed_it_has_the_same_bits(self):
@@ -215,7 +215,7 @@ class OpacityTest(ProgramTestCase):
     def test_what_cannot_have_opacity_is_refused_with_a_way_out(self):
         refused = self.folder / "refused"
         for mode in ("rebin", "hybrid"):
-            words = [f"--mode {mode}", "need opacity", "--mode collect", "--background black"]
+            words = [f"--mode {mode}", "with an alpha channel", "--mode collect", "--background black"]
             self.fails(2, words, RENDERER, self.field, self.path, "-o", refused, "--mode", mode,
                        *NOTHING)
             self.fails(2, words, PREPROCESSOR, self.field, self.path, "-o", refused, "--mode", mode,
@@ -226,7 +226,7 @@ class OpacityTest(ProgramTestCase):
                    refused, *NOTHING)
         self.fails(2, ["--bayer and --alpha"], SYNTH, "chart", "-o", refused, "--bayer", "--alpha",
                    "straight")
-        self.fails(2, ["lights", "needs surfaces"], SYNTH, "lights", "-o", refused, "--alpha", "straight")
+        self.fails(2, ["lights", "has no surfaces"], SYNTH, "lights", "-o", refused, "--alpha", "straight")
         self.assertFalse(refused.exists())
         calibration = self.folder / "wrong" / "transforms.json"
         shutil.copytree(self.field, calibration.parent)

@@ -84,7 +84,7 @@ class PackedStoreTest(ProgramTestCase):
         right = self.packages(field, write_path(self.folder, 2, aperture=0.012, x=0.02), "right")
         store = self.pack(field, packages=left)
         self.frames("codes", *left, "--lightfield", store)
-        self.fails(3, ["package-0000.lfp", "LF images are not in the packed store", "the first: ",
+        self.fails(3, ["package-0000.lfp", "lacks the image or some of its pixels", "the first: ",
                        "make the store again"],
                    RENDERER, *right, "--lightfield", store, "-o", self.folder / "none")
 
@@ -102,7 +102,7 @@ class PackedStoreTest(ProgramTestCase):
                     (name,)).fetchone(), (size,))
         moved = self.folder / "moved.lfs"
         store.rename(moved)
-        self.fails(3, ["package-0000.lfp: its LF images are not at", "a store.lfs: no such file",
+        self.fails(3, ["package-0000.lfp: its light field is not at", "a store.lfs: no such file",
                        "--lightfield"], RENDERER, packages[0], "-o",
                    self.folder / "gone")
         self.assertEqual(self.frames("again", *packages, "--lightfield", moved), expected)
@@ -132,7 +132,7 @@ class PackedStoreTest(ProgramTestCase):
         self.fails(3, ["two.lfs", "no such file"], RENDERER, store.parent / "two.lfs", path, "-o",
                    self.folder / "a")
         (store.parent / "two.lfs").write_bytes(store.read_bytes())
-        self.fails(3, ["holds a store.lfs and two.lfs"], RENDERER, store.parent, path, "-o",
+        self.fails(3, ["such as a store.lfs and two.lfs"], RENDERER, store.parent, path, "-o",
                    self.folder / "a")
         (store.parent / "two.lfs").write_text("x" * 5000)
         self.fails(3, ["two.lfs: is no packed store"], RENDERER, store.parent / "two.lfs", path,

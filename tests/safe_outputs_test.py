@@ -43,14 +43,14 @@ class SafeOutputsTest(ProgramTestCase):
         self.succeeds(PROGRAMS / "lfsynth", *again, "--overwrite")
 
     def test_a_path_replaces_paths_alone(self):
-        self.keeps(self.calibration, 2, ["is no camera path"], "lfexample", self.field, "-o", self.calibration)
+        self.keeps(self.calibration, 2, ["is not a camera path"], "lfexample", self.field, "-o", self.calibration)
         picture = next(self.field.rglob("*.png"))
-        self.keeps(picture, 2, ["is no camera path"], "lfexample", self.field, "-o", picture)
+        self.keeps(picture, 2, ["is not a camera path"], "lfexample", self.field, "-o", picture)
         self.succeeds(PROGRAMS / "lfexample", self.field, "-o", self.path, "--focus", "4", "-q")
 
     def test_a_video_replaces_videos_alone(self):
         for there in (self.path, self.calibration, next(self.field.rglob("*.png"))):
-            self.keeps(there, 4, ["--video", there.name, "is no video"], "lfrenderer", self.field, self.path,
+            self.keeps(there, 4, ["--video", there.name, "is not an mp4 video"], "lfrenderer", self.field, self.path,
                        "-o", self.folder / "film", "--video", there)
             self.assertFalse(list(self.folder.glob("film/frame_*")))
 
@@ -112,13 +112,13 @@ class SafeOutputsTest(ProgramTestCase):
         self.succeeds(PROGRAMS / "lfcompressor", self.field, "-o", store, "-q")
         link.symlink_to(store)
         for output in (store, link):
-            self.keeps(store, 2, ["is a packed store already"], "lfcompressor", store, "-o", output, "--overwrite")
+            self.keeps(store, 2, ["cannot be compressed again"], "lfcompressor", store, "-o", output, "--overwrite")
         picture = next(self.field.rglob("*.png"))
         for output in (picture, self.calibration, self.path):
             self.keeps(output, 2, [], "lfcompressor", self.field, "-o", output, "--overwrite")
         named = self.field / "image.lfs"
         picture.rename(named)
-        self.keeps(named, 2, ["is no packed store"], "lfcompressor", self.field, "-o", named, "--overwrite")
+        self.keeps(named, 2, ["is not a packed store"], "lfcompressor", self.field, "-o", named, "--overwrite")
 
     def test_help_that_cannot_be_written_is_an_error(self):
         for program in ("lfrenderer", "lfimport"):

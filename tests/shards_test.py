@@ -122,12 +122,12 @@ class ShardsTest(ProgramTestCase):
 
     def test_what_is_missing_double_or_of_another_render_is_named(self):
         plates = self.shards("out", 3, of=(1, 3))
-        self.fails(3, ["frame 1", "of 3 shards, 2 are given", "missing: 2"], MERGE, plates, "-o",
+        self.fails(3, ["frame 1", "3 shards are expected, but 2 are given", "missing are 2"], MERGE, plates, "-o",
                    self.folder / "no")
         self.assertFalse((self.folder / "no").exists())
         self.shards("out", 3, of=(2,))
         for there, missing in (((1, 2), 3), ((2, 3), 1)):  # the last one and the first one are missing
-            self.fails(3, ["frame 1", "of 3 shards, 2 are given", f"missing: {missing} "], MERGE,
+            self.fails(3, ["frame 1", "3 shards are expected, but 2 are given", f"missing are {missing}:"], MERGE,
                        *(plates / f"shard_{k}_of_3" for k in there), "-o", self.folder / "no")
         self.shards("twice", 3, of=(2,))
         self.fails(3, ["frame 1", "shard 2/3", "give each shard once"], MERGE, plates,

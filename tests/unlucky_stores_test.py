@@ -48,10 +48,10 @@ class UnluckyStoresTest(StoreTest):
     def test_nothing_but_a_store_is_replaced(self):
         self.store.write_text("precious")
         for more in ([], ["--overwrite"], ["--resume"], ["--verify"]):
-            self.fails(2, ["a.lfs", "is no packed store"], self.compressor, self.field, "-o", self.store, *more)
+            self.fails(2, ["a.lfs", "is not a packed store"], self.compressor, self.field, "-o", self.store, *more)
         self.assertEqual(self.store.read_text(), "precious")
         (self.folder / "folder.lfs").mkdir()
-        self.fails(2, ["folder.lfs", "is no packed store"], self.compressor, self.field, "-o",
+        self.fails(2, ["folder.lfs", "is not a packed store"], self.compressor, self.field, "-o",
                    self.folder / "folder.lfs", "--overwrite")
         shard = self.folder / "b-0001.lfs"
         shard.write_text("precious")
@@ -86,14 +86,16 @@ class UnluckyStoresTest(StoreTest):
         self.assertEqual(self.interrupt(field, "-o", self.store, how=signal.SIGTERM)[0], 5)
         shutil.rmtree(self.folder / "field")
         other = self.many(noisy)
-        self.fails(3, ["link_", "was changed", "--overwrite"], self.compressor, other, "-o", self.store, "--resume")
+        self.fails(3, ["link_", "restore the file", "--overwrite"], self.compressor, other, "-o", self.store,
+                   "--resume")
 
     def test_complete_is_what_was_asked_for(self):
         self.compress(self.field, "-o", self.store, "--shard-size", "20k")
         again = self.report(self.field, "-o", self.store, "--shard-size", "20k", "--resume")
         self.assertTrue(again["was_there"])
         self.assertNotIn("ratio", again)
-        self.fails(3, ["a.lfs: was made with shard_bytes"], self.compressor, self.field, "-o", self.store, "--resume")
+        self.fails(3, ["a.lfs: this packed store was made with shard_bytes"], self.compressor, self.field, "-o",
+                   self.store, "--resume")
         (self.folder / "a-0002.lfs").unlink()
         for more in (["--resume"], ["--verify"]):
             self.fails(3, ["a-0002.lfs: no such file"], self.compressor, self.field, "-o", self.store,

@@ -58,14 +58,14 @@ class WideLensTest(ProgramTestCase):
             frame, messages, report = self.frame(field, diameter)
             truth, _ = lens_picture(covered_lens(diameter))
             self.assertGreater(psnr_db(frame, truth), LEAST_PSNR_DB)
-            self.assertIn("beyond the capture", messages)
+            self.assertIn("beyond the LF cameras", messages)
             self.assertAlmostEqual(report["fitting_aperture_w"], 2 * (COVERED - 0.002), delta=1e-6)
             self.assertIn("An aperture of at most 0.074 ", messages)
 
     def test_a_lens_within_the_capture_is_not_told_of(self):
         field = write_field(self.folder / "field", png16, lf_transfer="linear")
         _, messages, report = self.frame(field, 1.8 * COVERED)
-        self.assertNotIn("beyond the capture", messages)
+        self.assertNotIn("beyond the LF cameras", messages)
         self.assertLess(report["uncovered_share"], 0.01)
 
     def test_the_advised_aperture_is_not_warned_of(self):
@@ -73,7 +73,7 @@ class WideLensTest(ProgramTestCase):
         _, messages, _ = self.frame(field, 4 * COVERED)
         advised = float(re.search(r"An aperture of at most (\S+) world units", messages).group(1))
         _, messages, _ = self.frame(field, advised)
-        self.assertNotIn("beyond the capture", messages)
+        self.assertNotIn("beyond the LF cameras", messages)
 
     def test_bokeh_are_even_to_their_rim(self):
         scene = {"scene": lamp, "depths": (3,)}
@@ -89,7 +89,7 @@ class WideLensTest(ProgramTestCase):
         field = write_field(self.folder / "field", png16, lf_transfer="linear")
         result = self.call(PREPROCESSOR, field, write_path(self.folder, 4 * COVERED), "--plan")
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertIn("beyond the capture", result.stdout + result.stderr)
+        self.assertIn("beyond the LF cameras", result.stdout + result.stderr)
         self.assertIn("an aperture of at most 74", result.stdout + result.stderr)
 
 

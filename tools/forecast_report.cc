@@ -129,20 +129,19 @@ std::vector<std::string> DensityWarnings(const PreprocessReport& report, const C
     const RenderCamera& camera = path.Camera(sparse.frame);
     const FrameDensity& density = sparse.density;
     const Intrinsics& plate = camera.pinhole.intrinsics;
-    warnings.push_back(fmt::format(
-        "frame {}: expect double edges of {:.0f} px at {}{}; LF cameras are {} apart in the lens, "
-        "{} "
-        "needed. What would work: {}a scene that lies {}; frames of {} x {} elements instead of {} "
-        "x "
-        "{}; or a capture {:.0f} times as dense along each axis",
-        sparse.frame.value, most_px, LengthText(density.DepthOfMost_w(), path.unit_m),
-        DepthsText(facts), LengthText(density.camera_distance_w, path.unit_m),
-        LengthText(density.camera_distance_w / most_px, path.unit_m),
-        advice.focus ? fmt::format("a focus distance {} in every frame; ",
-                                   RangeText(*advice.focus, path.unit_m))
-                     : "",
-        RangeText(advice.depths, path.unit_m), advice.width_px, advice.height_px, plate.width_px,
-        plate.height_px, std::ceil(most_px / kDoubleEdge_px)));
+    warnings.push_back(
+        fmt::format("frame {}: expect double edges, {:.0f} px apart, at {}{}, because LF cameras "
+                    "are {} apart in the lens; {} or less would be needed. What would help: {}a "
+                    "scene that lies {}; frames of {} x {} elements instead of {} x {}; or a "
+                    "capture {:.0f} times as dense along each axis",
+                    sparse.frame.value, most_px, LengthText(density.DepthOfMost_w(), path.unit_m),
+                    DepthsText(facts), LengthText(density.camera_distance_w, path.unit_m),
+                    LengthText(density.camera_distance_w / most_px, path.unit_m),
+                    advice.focus ? fmt::format("a focus distance {} in every frame; ",
+                                               RangeText(*advice.focus, path.unit_m))
+                                 : "",
+                    RangeText(advice.depths, path.unit_m), advice.width_px, advice.height_px,
+                    plate.width_px, plate.height_px, std::ceil(most_px / kDoubleEdge_px)));
   }
   size_t black_count = 0;
   const FrameForecast* black = nullptr;
@@ -153,22 +152,23 @@ std::vector<std::string> DensityWarnings(const PreprocessReport& report, const C
   }
   if (black != nullptr)
     warnings.push_back(fmt::format(
-        "{} of {} frames will be black, because no LF image contributes to them; the first is "
-        "frame {}: its lens would collect rays with an aperture of at least {}, but has {}",
+        "{} of {} frames will be black, because no LF image has a ray for them; the first is frame "
+        "{}: its lens needs an aperture of at least {} to collect rays, but has {}",
         black_count, report.frames.size(), black->frame.value,
         LengthText(black->density.least_aperture_w, path.unit_m),
         LengthText(2 * path.Camera(black->frame).aperture.radius_w, path.unit_m)));
   const FrameForecast& uncovered = Worst(
       report, [](const FrameForecast& frame) { return frame.density.coverage.uncovered_share; });
   if (uncovered.density.coverage.uncovered_share > kMuchUncovered)
-    warnings.push_back(fmt::format(
-        "frame {}: {:.0f} % of its lens are beyond the capture: this part stays empty, and bokeh "
-        "are cut off there. What would work: {}a path nearer to the middle of the capture",
-        uncovered.frame.value, 100 * uncovered.density.coverage.uncovered_share,
-        advice.largest_aperture_w > 0
-            ? fmt::format("an aperture of at most {}, or ",
-                          AtMostText(advice.largest_aperture_w, path.unit_m))
-            : ""));
+    warnings.push_back(
+        fmt::format("frame {}: {:.0f} % of its lens are beyond the LF cameras: this part gets no "
+                    "rays, and the bokeh (blur disks) are cut off there. What would help: {}a path "
+                    "nearer to the middle of the capture",
+                    uncovered.frame.value, 100 * uncovered.density.coverage.uncovered_share,
+                    advice.largest_aperture_w > 0
+                        ? fmt::format("an aperture of at most {}, or ",
+                                      AtMostText(advice.largest_aperture_w, path.unit_m))
+                        : ""));
   return warnings;
 }
 

@@ -82,17 +82,17 @@ std::string StopsText(const std::vector<double>& stops) {
 
 void ExposureArguments::AddTo(CLI::App& app) {
   OptionGroup picture(app, kPictureGroup);
-  CLI::Option* const option =
-      picture.AddFlag("--match-exposure", match,
-                      "Make the LF images equally bright\n"
-                      "Estimates lf_gain of each image and channel from places that neighbouring "
-                      "images both show. The result replaces lf_gain in the written "
-                      "transforms.json; without -o it is only reported. See doc/inputs.md.");
+  CLI::Option* const option = picture.AddFlag(
+      "--match-exposure", match,
+      "Make the LF images equally bright\n"
+      "Estimates a brightness factor (lf_gain) for each image and colour channel, from parts of "
+      "the scene that neighbouring images both show. The factors replace lf_gain in the "
+      "transforms.json that -o writes; without -o they are only reported. See doc/inputs.md.");
   picture
-      .AddFlag(
-          "--vignetting", vignetting,
-          "Correct the darkening towards the corners\n"
-          "Also estimates lf_vignetting of each lens: how its light falls off towards the corners.")
+      .AddFlag("--vignetting", vignetting,
+               "Correct the darkening towards the corners\n"
+               "In addition to lf_gain, estimates lf_vignetting of each lens: how much darker it "
+               "images the corners than the centre.")
       ->needs(option);
   picture
       .AddFlag("--gain-from-exif", gain_from_exif,
@@ -104,8 +104,9 @@ void ExposureArguments::AddTo(CLI::App& app) {
   picture.AddFlag(
       "--mask-clipped", mask_clipped,
       "Merge images of one pose with different exposures\n"
-      "Writes lf_clipped \"mask\". Of images with the same pose and different exposures (lf_gain), "
-      "each pixel is then taken from the brightest image that does not clip it.");
+      "Writes \"lf_clipped\": \"mask\" into transforms.json. Renders then take each pixel from the "
+      "brightest image of the pose in which it is not clipped (overexposed). Needs the exposures "
+      "(lf_gain) of the images, for example by --gain-from-exif.");
 }
 
 Result<std::optional<ExifGains>> StateBrackets(const ExposureArguments& arguments, ThreadPool& pool,
@@ -115,8 +116,9 @@ Result<std::optional<ExifGains>> StateBrackets(const ExposureArguments& argument
   if (HoldsPackedStore(*light_field)) {
     if (!arguments.gain_from_exif && !arguments.mask_clipped) return std::optional<ExifGains>();
     return UsageError(fmt::format(
-        "{} cannot be used with {}: a packed store contains no Exif data, and its masks cannot be "
-        "changed: import the image files with this option, and compress them again",
+        "{} cannot be used with {}, because a packed store contains no Exif data, and its masks "
+        "cannot be changed: give this option to lfimport for the image files, and compress them "
+        "again",
         arguments.gain_from_exif ? "--gain-from-exif" : "--mask-clipped",
         light_field->folder.string()));
   }

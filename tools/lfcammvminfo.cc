@@ -37,9 +37,8 @@ struct Arguments {
 lf::Result<std::vector<lf::FrameId>> ChooseFrames(const Arguments& arguments,
                                                   const lf::CameraPath& path) {
   if (arguments.frame > path.frame_count())
-    return lf::UsageError(
-        fmt::format("--frame {}: expected a frame of {}, which has frames 1 to {}", arguments.frame,
-                    arguments.path, path.frame_count()));
+    return lf::UsageError(fmt::format("--frame {}: {} has no such frame; expected 1 to {}",
+                                      arguments.frame, arguments.path, path.frame_count()));
   if (arguments.frame > 0) return std::vector<lf::FrameId>{{arguments.frame}};
   std::vector<lf::FrameId> frames;
   for (uint32_t frame = 1; frame <= path.frame_count(); ++frame) frames.push_back({frame});
@@ -67,12 +66,13 @@ int main(int argc, char** argv) {
            "Camera path\n"
            "doc/formats/path.md describes the file.")
       ->required();
-  input.Add("--unit-m METRES", arguments.unit_m, "Metres per world unit, if not in PATH")
+  input
+      .Add("--unit-m METRES", arguments.unit_m, "Metres per world unit, if PATH does not state it")
       ->check(CLI::Range(1e-9, 1e9));
-  output.Add("--frame N", arguments.frame, "Only this frame, counted from 1 (all)")
+  output.Add("--frame N", arguments.frame, "Print only frame N, counted from 1 (all)")
       ->check(CLI::PositiveNumber);
-  CLI::Option* const csv =
-      output.AddFlag("--csv", arguments.csv, "Print a comma-separated table with all digits");
+  CLI::Option* const csv = output.AddFlag(
+      "--csv", arguments.csv, "Print a comma-separated table, with all digits of numbers");
   program.AddCommonOptions({.json = "Print JSON with all digits\n"
                                     "Infinite numbers are null."});
   csv->excludes("--json");

@@ -70,7 +70,8 @@ void AddInput(CLI::App& app, Arguments& a) {
   input.AddFlag(
       "--needed-pixels", a.needed_pixels,
       "Store only the pixels that the packages need\n"
-      "Of each LF image, only the smallest rectangle is stored that contains these pixels.");
+      "For each LF image, the smallest rectangle that contains these pixels is stored. Frames "
+      "of other packages may need pixels that the store lacks.");
   a.light_field.AddOptionsTo(app);
   a.allow_missing.AddTo(app, "the LF images to be encoded");
 }
@@ -84,7 +85,7 @@ void AddOutput(CLI::App& app, Arguments& a) {
       .Add("--shard-size SIZE", a.shard_size,
            "Split the store into files of about this size\n"
            "The encoded images are written into files beside STORE.lfs, each of about SIZE, such "
-           "as 4G. STORE.lfs itself is then small.")
+           "as 4G. STORE.lfs itself is then small, and needs these files beside it.")
       ->check(lf::NotEmpty());
 }
 
@@ -93,49 +94,51 @@ void AddQuality(CLI::App& app, Arguments& a) {
   quality.AddChoice(
       "--profile", a.profile, {"default", "thesis", "lossless"},
       "How LF images are encoded\n"
-      "default: wavelets with a dead-zone quantiser for each subband\n"
-      "thesis: Haar wavelets with one threshold and one range of values for all subbands\n"
-      "lossless: the decoded LF images are bit-identical");
+      "default: lossy, wavelets with a dead-zone quantiser for each subband\n"
+      "thesis: lossy, Haar wavelets with one threshold and one range of values for all subbands\n"
+      "lossless: the decoded pixels equal those of the image files bit by bit");
   quality
       .Add("--levels N", a.levels,
-           "Levels of the wavelet transform (depends on the profile)\n"
-           "0: 4 levels; 1 level with --profile thesis.")
+           "Levels of the wavelet transform (4, thesis: 1)\n"
+           "Each level halves the resolution of the approximation. 0: 4 levels, or 1 level with "
+           "--profile thesis.")
       ->check(CLI::Range(0, 5));
-  auto* threshold =
-      quality
-          .Add("--threshold X", a.threshold,
-               "Drop details below this (depends on the profile)\n"
-               "Wavelet coefficients smaller than X become 0. The unit of X is 1/255 of the range "
-               "from black to white. If the option is not given, X is 3, or 8 with --profile "
-               "thesis.")
-          ->check(CLI::Range(0., 255.));
+  auto* threshold = quality
+                        .Add("--threshold X", a.threshold,
+                             "Drop details below this (3, thesis: 8)\n"
+                             "Wavelet coefficients smaller than X become 0. The unit of X is 1/255 "
+                             "of the range from black to white. If the option is not given, X is "
+                             "3, or 8 with --profile thesis. Not for --profile lossless.")
+                        ->check(CLI::Range(0., 255.));
   quality
       .Add("--target-psnr DB", a.target_psnr,
            "Find the threshold for this quality (off)\n"
-           "The threshold is chosen so that the decoded LF images have this peak signal-to-noise "
-           "ratio, in dB.")
+           "The value of --threshold is chosen so that the decoded LF images have this peak "
+           "signal-to-noise ratio (PSNR), in dB. Not for --profile lossless.")
       ->check(CLI::Range(10., 90.))
       ->excludes(threshold);
   quality.Add("--quantizer N", a.quantizer,
               "Values per coefficient, for --profile thesis\n"
-              "8bit: 256 values, one byte per coefficient. More than 256 values take two bytes.");
+              "Wavelet coefficients are rounded to N values, 2 to 65536. 8bit: 256 values, which "
+              "take one byte per coefficient. More than 256 values take two bytes.");
 }
 
 void AddRunning(CLI::App& app, Arguments& a) {
   lf::OptionGroup running(app, lf::kRunningGroup);
-  auto* resume = running.AddFlag(
-      "--resume", a.resume,
-      "Continue an unfinished store\n"
-      "The LF images, their files and the options must be those that the store was begun with.");
+  auto* resume = running.AddFlag("--resume", a.resume,
+                                 "Continue an unfinished store\n"
+                                 "Give the same inputs and options as when the store was begun. "
+                                 "The image files must be unchanged.");
   running
       .AddFlag("--overwrite", a.overwrite,
                "Replace an existing store\n"
-               "A file that is no packed store is never replaced.")
+               "A file that is not a packed store is never replaced.")
       ->excludes(resume);
-  running.AddFlag("--verify", a.verify,
-                  "Check the store after writing it\n"
-                  "Compares the calibration, reads all encoded images back, compares and decodes "
-                  "them. If the store exists already, it is only checked.");
+  running.AddFlag(
+      "--verify", a.verify,
+      "Check the store after writing it\n"
+      "Compares the calibration, encodes each LF image again, compares it with the encoded image "
+      "in the store, and decodes that. If the store exists already, it is only checked.");
 }
 
 void AddOptions(CLI::App& app, Arguments& a) {
@@ -154,7 +157,7 @@ lf::Result<lf::CompressOptions> MakeOptions(const Arguments& a, const lf::Common
   options.store = a.output;
   if (options.store.extension() != lf::kStoreExtension)
     return lf::UsageError(
-        fmt::format("-o {}: expected a name that ends in {}", a.output, lf::kStoreExtension));
+        fmt::format("-o {}: expected a file name that ends in {}", a.output, lf::kStoreExtension));
   const bool is_thesis = a.profile == "thesis", is_lossless = a.profile == "lossless";
   options.codec.profile = is_thesis     ? lf::CodecProfile::kThesis
                           : is_lossless ? lf::CodecProfile::kLossless
@@ -163,12 +166,16 @@ lf::Result<lf::CompressOptions> MakeOptions(const Arguments& a, const lf::Common
   options.codec.threshold = a.threshold >= 0 ? a.threshold : is_thesis ? 8 : 3;
   if (is_lossless && (a.threshold >= 0 || a.target_psnr > 0))
     return lf::UsageError(
-        "--profile lossless drops no details: leave out --threshold and --target-psnr");
+        "--threshold and --target-psnr cannot be used with --profile lossless, which drops no "
+        "details: leave them out");
   if (a.quantizer != "8bit") {
-    if (!is_thesis) return lf::UsageError("--quantizer can only be used with --profile thesis");
-    if (!CLI::detail::lexical_cast(a.quantizer, options.codec.quantizer))
+    if (!is_thesis)
       return lf::UsageError(
-          fmt::format("--quantizer {}: expected 8bit, or 2 to 65536", a.quantizer));
+          "--quantizer can only be used with --profile thesis: leave it out, or add --profile "
+          "thesis");
+    if (!CLI::detail::lexical_cast(a.quantizer, options.codec.quantizer))
+      return lf::UsageError(fmt::format(
+          "--quantizer {}: expected 8bit, or a whole number from 2 to 65536", a.quantizer));
   }
   if (a.target_psnr > 0) options.target_psnr_db = a.target_psnr;
   if (!a.shard_size.empty()) {
@@ -186,9 +193,13 @@ lf::Result<lf::CompressOptions> MakeOptions(const Arguments& a, const lf::Common
 lf::Result<lf::CompressSource> OpenSource(const Arguments& a) {
   if (!HasPackages(a)) {
     if (a.inputs.size() > 1)
-      return lf::UsageError("expected one LIGHTFIELD, or only packages (files that end in .lfp)");
+      return lf::UsageError(
+          "a light field and other inputs are given: expected one LIGHTFIELD, or only packages "
+          "(files that end in .lfp)");
     if (a.needed_pixels || !a.light_field.path.empty())
-      return lf::UsageError("--needed-pixels and --lightfield can only be used with packages");
+      return lf::UsageError(
+          "--needed-pixels and --lightfield can only be used with packages (files that end in "
+          ".lfp): leave them out");
     lf::LightFieldArgument argument = a.light_field;
     argument.path = a.inputs.front();
     LF_ASSIGN_OR_RETURN(lf::LightField light_field, argument.Open());

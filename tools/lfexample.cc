@@ -70,17 +70,16 @@ lf::Result<lf::LfImageId> FindCamera(const lf::LightField& light_field,
     if (matches(light_field.image_names[i])) found.push_back(i);
   if (found.size() > 1)
     return lf::UsageError(fmt::format(
-        "--camera {}: {} LF images have this name, such as {} and {}: give more of its path, or "
-        "its number",
+        "--camera {}: {} LF images have this name, such as {} and {}: give the image's whole path, "
+        "or the number of the camera",
         text, found.size(), light_field.image_names[found[0]], light_field.image_names[found[1]]));
   if (found.size() == 1) return lf::LfImageId{found[0]};
   uint32_t number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error == std::errc() && end == text.data() + text.size()) return lf::LfImageId{number};
-  return lf::UsageError(
-      fmt::format("--camera {}: is no number, and no LF image has this name: give a name such as "
-                  "{}, or a number",
-                  text, light_field.image_names[0]));
+  return lf::UsageError(fmt::format(
+      "--camera {}: no LF image has this name: give a name such as {}, or the number of the camera",
+      text, light_field.image_names[0]));
 }
 
 // Warns that the focus is uncertain: states where it is, why it is uncertain, and how to choose
@@ -96,9 +95,9 @@ void WarnOfDoubt(const lf::ExamplePath& example, const std::string& light_field,
   command += fmt::format(" -o {} --move {}", lf::ShellWord(output), move);
   if (camera != "-1") command += " --camera " + lf::ShellWord(camera);
   lf::LogWarning(
-      "not sure what to focus on ({}): focused at {:.4g}, {}, with an aperture of {:.4g}, {}. The "
-      "best focus distance{} found: {}. For a wider aperture, choose the right one: {} --focus "
-      "{:.4g}",
+      "the program is not sure what to focus on ({}). It chose the focus distance {:.4g}, {}, and "
+      "the aperture {:.4g}, {} (in world units). The best focus distance{} found: {}. To get a "
+      "wider aperture, choose a focus distance: {} --focus {:.4g}",
       example.doubt, example.focus_distance_w, example.focus_reason, example.aperture_diameter_w,
       example.aperture_reason, example.candidates_w.size() == 1 ? "" : "s", distances, command,
       example.candidates_w.front());
@@ -113,7 +112,7 @@ lf::Result<void> CheckMayWrite(const std::string& output) {
   if (!text) return text.error();
   if (text->empty() || text->find("format: lfpath") != std::string::npos) return {};
   return lf::UsageError(fmt::format(
-      "{}: exists and is no camera path; give another name, or remove the file", output));
+      "{}: exists, and is not a camera path: give another name, or remove the file", output));
 }
 
 }  // namespace
@@ -127,16 +126,21 @@ int main(int argc, char** argv) {
   input.AddTo(app);
   lf::OptionGroup output_group(app, lf::kOutputGroup), picture(app, lf::kPictureGroup);
   output_group.Add("-o,--output PATH.yaml", output, "Camera path to write")->required();
-  picture.Add("--camera NUMBER|NAME", camera,
-              "LF camera to start at (near the middle)\n"
-              "NUMBER counts from 0; NAME is the name of its image. -1: the LF camera nearest to "
-              "the middle of the capture that is level and whose image can be read.");
+  picture.Add(
+      "--camera NUMBER|NAME", camera,
+      "LF camera at which the path begins (near the middle)\n"
+      "NUMBER counts from 0; NAME is the name of the camera's image. -1: among the LF cameras that "
+      "are level and whose image can be read, the one nearest to the middle of the capture.");
   picture.AddChoice("--move", move, {"static", "orbit", "dolly", "focus-pull"},
-                    "Movement of the camera");
+                    "Movement of the camera\n"
+                    "static: the camera stands still; the path has one frame\n"
+                    "orbit: the camera moves once around an ellipse between the LF cameras\n"
+                    "dolly: the camera moves straight ahead\n"
+                    "focus-pull: the camera stands still, and the focus moves from near to far");
   picture
       .Add("--focus X", focus,
            "Focus distance in world units (automatic)\n"
-           "0: the program finds the distance in the LF images.")
+           "0: the program estimates the distance of the subject from the LF images.")
       ->check(CLI::NonNegativeNumber);
   program.AddCommonOptions({.threads = true, .verbose = true, .quiet = true});
 

@@ -63,14 +63,14 @@ void AddInput(CLI::App& app, Arguments& a) {
   input
       .Add("--exclude NAMES", a.exclude,
            "LF images to leave out: 'IMG_01*,x.jpg' or @FILE\n"
-           "NAMES: names or patterns (* ? [a-z]) separated by commas, or @FILE, a file with one "
-           "name or pattern per line. The option may be repeated.")
+           "NAMES: names of LF images, or patterns (* ? [a-z]), separated by commas; or @FILE, a "
+           "file with one name or pattern per line. The option may be repeated.")
       ->expected(1)
       ->take_all();
   input.AddChoice("--bayer", a.bayer, {"RGGB", "BGGR", "GRBG", "GBRG"},
                   "The images are mosaics with this Bayer pattern\n"
-                  "The pattern of the upper left 2x2 pixels, row by row. It overrides the "
-                  "calibration and the camera raw files.");
+                  "The letters are the colours of the upper left 2x2 pixels, row by row. The "
+                  "option overrides what the calibration and camera raw files say.");
   input.AddChoice("--check", a.check, {"none", "headers", "pixels"},
                   "How the image files are checked\n"
                   "none: not at all\n"
@@ -82,13 +82,17 @@ void AddInput(CLI::App& app, Arguments& a) {
 void AddOutput(CLI::App& app, Arguments& a) {
   lf::OptionGroup output(app, lf::kOutputGroup);
   output.Add("-o,--output DIR", a.output, "Folder of the transforms.json to write");
-  output.AddFlag("--force", a.force, "Replace a transforms.json not written by lfimport");
+  output.AddFlag(
+      "--force", a.force,
+      "Replace a transforms.json not written by lfimport\n"
+      "Needed if lfimport did not write the transforms.json in DIR, or if it was changed since.");
   output.Add(
       "--transform FILE|MATRIX", a.transform,
       "Rotate, scale and move the world\n"
-      "FILE contains a 4x4 matrix M; MATRIX is its 16 numbers, quoted as one argument. M, which "
-      "consists of a rotation, one scale and a translation, maps old to new world coordinates.");
-  output.Add("--scale X", a.scale, "Multiply all lengths, after --transform")
+      "M is a 4x4 matrix that maps old to new world coordinates: a rotation, one scale and a "
+      "translation. FILE contains M; MATRIX is the 16 numbers of M, row by row, quoted as one "
+      "argument.");
+  output.Add("--scale X", a.scale, "Multiply all lengths by X, after --transform")
       ->check(CLI::Range(1e-9, 1e9));
   output
       .Add("--unit-m METRES", a.unit_m,
@@ -97,22 +101,27 @@ void AddOutput(CLI::App& app, Arguments& a) {
       ->check(CLI::Range(0., 1e9));
   output
       .Add("--distance X", a.distance,
-           "Distance to the scene, to judge the density (as recorded)\n"
-           "In world units. 0: the distance is taken from the calibration.")
+           "Distance to the scene, for the density report (as recorded)\n"
+           "In world units. The report tells whether the LF cameras are close enough to each other "
+           "for this distance. 0: the distance is taken from the calibration.")
       ->check(CLI::NonNegativeNumber);
 }
 
 void AddNamedImages(CLI::App& app, Arguments& a) {
   lf::OptionGroup named(app, "Images named by row and column (doc/formats/stanford.md)");
-  named.Add("--pitch P|PX,PY", a.pitch, "Distance between columns and rows, in world units");
+  named.Add(
+      "--pitch P|PX,PY", a.pitch,
+      "Distance between LF cameras, in world units\n"
+      "P: distance between neighbouring columns and rows; PX,PY: between columns, between rows");
   named
       .Add("--plane-distance X", a.plane_distance,
            "Depth of the plane without parallax (none)\n"
-           "In world units, for a rectified slab: one plane of the scene is at the same pixels in "
-           "all images. 0: the images are not rectified; the cameras look in parallel directions.")
+           "In world units. Needed for rectified images, in which the points of one plane of the "
+           "scene are at the same pixels in all images. 0: the images are not rectified; the "
+           "cameras look in parallel directions.")
       ->check(CLI::NonNegativeNumber);
-  named.AddFlag("--flip-x", a.flip_x, "Columns are counted from right to left");
-  named.AddFlag("--flip-y", a.flip_y, "Rows are counted from bottom to top");
+  named.AddFlag("--flip-x", a.flip_x, "Image names count columns from right to left");
+  named.AddFlag("--flip-y", a.flip_y, "Image names count rows from bottom to top");
 }
 
 void AddOptions(CLI::App& app, Arguments& a) {
@@ -130,7 +139,8 @@ lf::Result<lf::Vec2> ParsePitch(const std::string& text) {
   const int size = static_cast<int>(text.size());
   if (end_of_one == size) return lf::Vec2(pitch.x(), pitch.x());
   if (end_of_two == size) return pitch;
-  return lf::UsageError(fmt::format("--pitch {}: expected P or PX,PY, in world units", text));
+  return lf::UsageError(fmt::format(
+      "--pitch {}: expected P or PX,PY, numbers in world units, such as 0.5 or 0.5,0.4", text));
 }
 
 // Returns true if lfimport reads and writes the same folder, which holds both a transforms.json

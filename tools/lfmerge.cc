@@ -69,7 +69,8 @@ void AddOptions(CLI::App& app, Arguments& a, lf::MergeOptions& options) {
   lf::AddFilmFiles(output, a.video, a.no_contact_sheet);
   running.AddFlag("--resume", options.resume,
                   "Keep the frames that are in DIR, and write the others");
-  running.AddFlag("--overwrite", options.overwrite, "Write all frames anew")->excludes("--resume");
+  running.AddFlag("--overwrite", options.overwrite, "Replace the frames in DIR")
+      ->excludes("--resume");
 }
 
 }  // namespace

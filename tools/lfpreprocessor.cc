@@ -61,24 +61,27 @@ void AddInputAndOutput(CLI::App& app, Arguments& a) {
            "doc/formats/path.md describes the file.")
       ->required();
   a.allow_missing.AddTo(app, "the LF images that packages need");
-  auto* plan = output.AddFlag("--plan", a.plan, "Print the forecast and write nothing");
+  auto* plan = output.AddFlag("--plan", a.plan,
+                              "Print the forecast of the render, write no packages\n"
+                              "The forecast tells the time and memory of the render, and whether "
+                              "the capture is dense enough for the camera path.");
   output.Add("-o,--output DIR", a.output, "Folder of the packages")
       ->check(lf::NotEmpty())
       ->excludes(plan);
   output.AddFlag("--overwrite", a.overwrite, "Replace the packages in DIR");
   lf::AddFrameRange(output, a.frames);
   auto* packages =
-      output.Add("--packages N", a.packages, "Number of packages (chosen to fit --memory)")
+      output.Add("--packages N", a.packages, "Number of packages (as few as --memory allows)")
           ->check(CLI::Range(0, 1'000'000));
   output
       .Add("--frames-per-package N", a.frames_per_package,
-           "Frames per package (chosen to fit --memory)")
+           "Frames per package (as many as --memory allows)")
       ->check(CLI::Range(0, 1'000'000))
       ->excludes(packages);
   output.AddChoice(
       "--balance", a.balance, {"rays", "frames"},
       "Quantity that is equal in all packages\n"
-      "rays: packages have about the same number of rays, and take about the same time\n"
+      "rays: packages have about the same number of rays, and take about the same time to render\n"
       "frames: packages have the same number of frames");
 }
 
@@ -87,17 +90,18 @@ void AddRender(CLI::App& app, Arguments& a) {
   picture.AddChoice(
       "--mode", a.mode, {"collect", "rebin", "hybrid"},
       "Mode of the later render\n"
-      "Means the same as --mode of lfrenderer. It affects which LF images and pixels the packages "
-      "contain, the forecast, and the pixels that lfcompressor --needed-pixels keeps.");
+      "Give the value that lfrenderer --mode will have. It affects which LF images and pixels the "
+      "packages contain, the forecast, and the pixels that lfcompressor --needed-pixels keeps.");
   picture.AddChoice("--lens-weights", a.lens_weights, {"auto", "none", "area", "hat"},
                     "Lens weights of the later render\n"
-                    "Means the same as --lens-weights of lfrenderer.\n"
-                    "none, with --mode collect: packages lack the LF cameras beside the lens, and "
-                    "can only be rendered with --lens-weights none.");
-  picture.AddChoice("--estimator", a.estimator, {"auto", "nearest", "bilinear"},
-                    "Estimator of the later render\n"
-                    "Means the same as --estimator of lfrenderer. The forecast and the pixels that "
-                    "lfcompressor --needed-pixels keeps depend on it.");
+                    "Give the value that lfrenderer --lens-weights will have.\n"
+                    "none, with --mode collect: packages do not contain the LF cameras beside the "
+                    "lens, and can only be rendered with --lens-weights none");
+  picture.AddChoice(
+      "--estimator", a.estimator, {"auto", "nearest", "bilinear"},
+      "Estimator of the later render\n"
+      "Give the value that lfrenderer --estimator will have. The forecast and the pixels that "
+      "lfcompressor --needed-pixels keeps depend on it.");
 }
 
 void AddQuality(CLI::App& app, Arguments& a) {
@@ -105,7 +109,7 @@ void AddQuality(CLI::App& app, Arguments& a) {
   quality
       .Add("--max-images N", a.max_images,
            "Maximum number of LF images per frame (all)\n"
-           "A frame uses the first N LF images of --order.")
+           "A frame uses the first N LF images in the order of --order.")
       ->check(lf::WholeNumber());
   quality
       .Add("--max-angle DEGREES", a.max_angle_deg,
@@ -120,9 +124,11 @@ void AddQuality(CLI::App& app, Arguments& a) {
                     "area: LF images with the most rays first");
   quality
       .Add("--depths NEAR FAR", a.depths,
-           "Depths of the scene, for the density report\n"
-           "Distances from the LF cameras, in world units. If the option is not given, the depths "
-           "are taken from the calibration, or, if it has none, estimated from LF images.")
+           "Nearest and farthest depth of the scene, for the forecast\n"
+           "Distances from the LF cameras, in world units. The forecast tells whether the LF "
+           "cameras are close enough to each other for these depths. If the option is not given, "
+           "the depths are taken from the calibration, or, if it has none, estimated from LF "
+           "images.")
       ->expected(2)
       ->check(CLI::Range(1e-9, 1e12));
   running.Add("--memory SIZE", a.memory,
@@ -142,7 +148,9 @@ lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::Comm
                                               const lf::RadianceEncoding& encoding) {
   lf::PreprocessOptions options;
   if (!a.plan) {
-    if (a.output.empty()) return lf::UsageError("expected -o DIR, or --plan");
+    if (a.output.empty())
+      return lf::UsageError(
+          "-o DIR is missing: give the folder of the packages, or --plan for the forecast alone");
     options.output_folder = a.output;
   }
   options.overwrite = a.overwrite;
@@ -169,7 +177,8 @@ lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::Comm
   if (!a.depths.empty()) {
     if (!(a.depths[0] < a.depths[1]))
       return lf::UsageError(
-          fmt::format("--depths {} {}: expected NEAR less than FAR", a.depths[0], a.depths[1]));
+          fmt::format("--depths {} {}: expected a near depth that is less than the far depth",
+                      a.depths[0], a.depths[1]));
     options.depths = lf::DepthRange{a.depths[0], a.depths[1]};
   }
   options.strict = common.strict;

@@ -132,7 +132,9 @@ int main(int argc, char** argv) {
                      : "contact_sheet.png";
     lf::SummariseRender(report, look_at.string());
     if (common.json && !(std::cout << lf::ToJson(report) << std::flush))
-      return lf::OutputError("--json: the report cannot be written to stdout");
+      return lf::OutputError(
+          "--json: the report cannot be written to stdout: is the disk full, or was the pipe "
+          "closed?");
     lf::Result<void> required = lf::CheckRequired(report, rendered.options.film.require_samples);
     if (required) required = lf::CheckRequiredNoise(report, rendered.options.film.require_noise);
     LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, arguments.allow_missing.Limit());

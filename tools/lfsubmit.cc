@@ -120,8 +120,9 @@ Result<void> Act(const lf::SubmitArguments& arguments, const lf::CommonOptions& 
     LF_RETURN_IF_ERROR(lf::CheckMayRun(job));
     const size_t number = std::strtoull(arguments.run_package[0].c_str(), nullptr, 10);
     if (number >= job.packages.size())
-      return lf::UsageError(fmt::format("--run-package {}: the job has packages 0 to {}",
-                                        arguments.run_package[0], job.packages.size() - 1));
+      return lf::UsageError(
+          fmt::format("--run-package {}: expected the number of a package, 0 to {}",
+                      arguments.run_package[0], job.packages.size() - 1));
     LF_ASSIGN_OR_RETURN(const lf::TaskState state,
                         lf::RunPackage(job, number, lf::NodeName(), lf::CatchInterrupts()));
     const Result<void> outcome = lf::OutcomeOf(job.packages[number].name, state);

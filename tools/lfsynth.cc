@@ -58,17 +58,18 @@ void AddOutput(CLI::App& app, Arguments& a) {
   output.Add("-o,--output DIR", a.output, "Folder of the light field")->required();
   output.AddChoice("--format", a.format, {"exr", "png", "png16"},
                    "File format of the LF images\n"
+                   "exr: linear light as 16-bit floating-point numbers\n"
                    "png: 8-bit sRGB\n"
-                   "png16: 16-bit, linear");
+                   "png16: 16-bit, linear light");
   output.AddFlag("--calibration-only", a.calibration_only, "Write transforms.json without images");
   output.Add("--truth PATH.yaml", a.truth,
-             "Also write the frames that a real lens films\n"
-             "The frames in DIR/truth are the ground truth of this camera path: what a real thin "
-             "lens films of the scene itself.");
+             "Also write ground truth frames of this camera path\n"
+             "DIR/truth gets the frames that a real thin lens would film of the scene itself, to "
+             "compare them with frames that are rendered from the LF images.");
   output.AddFlag(
       "--overwrite", a.overwrite,
-      "Replace a light field not written by lfsynth in DIR\n"
-      "Needed if lfsynth did not write the light field in DIR, or if it was changed since.");
+      "Replace a light field in DIR not written by lfsynth\n"
+      "Needed if another program wrote the transforms.json in DIR, or if it was changed since.");
 }
 
 void AddRig(CLI::App& app, Arguments& a) {
@@ -85,30 +86,33 @@ void AddRig(CLI::App& app, Arguments& a) {
       ->check(CLI::Range(1, 32768));
   picture.Add("--spacing X", a.spacing, "Distance between neighbouring LF cameras, in metres");
   picture.Add("--distance X", a.distance,
-              "Distance from the rig to the scene, in metres\n"
-              "Measured from the middle of the rig to the middle of the scene.");
+              "Distance from the LF cameras to the scene, in metres\n"
+              "Measured from the middle of the LF cameras to the middle of the scene.");
   picture.Add("--jitter X", a.jitter,
-              "Largest random change of the poses\n"
-              "Positions change by up to X times the spacing along each axis, directions by up to "
-              "X degrees.");
+              "Largest random change of the LF cameras' poses\n"
+              "Positions change by up to X times --spacing along each axis, directions by up to X "
+              "degrees.");
 }
 
 void AddLens(CLI::App& app, Arguments& a) {
   lf::OptionGroup lens(app, "Lens of the LF cameras");
   lens.Add("--distortion K1,K2,...", a.distortion,
-           "Lens distortion of OpenCV's model\n"
-           "The parameters are k1,k2,p1,p2,k3,k4,k5,k6, or only the first few of them.")
+           "Lens distortion by OpenCV's model (none)\n"
+           "The parameters are k1,k2,p1,p2,k3,k4,k5,k6 of OpenCV; those that are not given are 0.")
       ->delimiter(',')
       ->expected(1, 8)
       ->check(CLI::Range(-1e6, 1e6));
   lens.Add("--fisheye K1,K2,...", a.fisheye,
-           "Fish-eye lens of OpenCV's model\n"
-           "The parameters are k1,k2,k3,k4, or only the first few of them.")
+           "Fish-eye lens by OpenCV's model (none)\n"
+           "The parameters are k1,k2,k3,k4 of OpenCV's fisheye model; those that are not given are "
+           "0.")
       ->delimiter(',')
       ->expected(1, 4)
       ->check(CLI::Range(-1e6, 1e6))
       ->excludes("--distortion");
-  lens.Add("--fov RADIANS", a.fov, "Fish-eye lens of the FOV model with this omega (none)")
+  lens.Add("--fov RADIANS", a.fov,
+           "Fish-eye lens by COLMAP's FOV model (none)\n"
+           "RADIANS is the parameter omega of the model: the field of view.")
       ->check(CLI::Range(1e-3, 3.14))
       ->excludes("--distortion")
       ->excludes("--fisheye");
@@ -121,12 +125,25 @@ void AddQuality(CLI::App& app, Arguments& a) {
                     "straight, premultiplied: only the surfaces of the scene, on a transparent "
                     "background. The frames of --truth have premultiplied alpha.\n"
                     "none: the whole scene, without alpha");
-  picture.AddFlag("--bayer", a.bayer, "Write raw-like 16-bit RGGB mosaics instead");
-  quality.Add("--noise X", a.noise, "Standard deviation of noise at radiance 1, for --bayer")
+  picture.AddFlag(
+      "--bayer", a.bayer,
+      "Write mosaics, as camera sensors record them\n"
+      "Each pixel has one colour of the Bayer pattern RGGB. The images are 16-bit PNG files.");
+  quality
+      .Add("--noise X", a.noise,
+           "Standard deviation of noise at radiance 1, for --bayer\n"
+           "White has radiance 1. At radiance L the standard deviation is about X times the square "
+           "root of L.")
       ->check(CLI::Range(0.0, 10.0));
-  quality.Add("--samples N", a.samples, "Rays per pixel at edges (depends on the scene)")
+  quality
+      .Add("--samples N", a.samples,
+           "Rays per pixel at edges (depends on the scene)\n"
+           "More rays make edges in the LF images smoother. 0: the default of the scene.")
       ->check(CLI::Range(0, 4096));
-  quality.Add("--truth-samples N", a.truth_samples, "Rays per element of the ground truth")
+  quality
+      .Add("--truth-samples N", a.truth_samples,
+           "Rays per pixel of the frames of --truth\n"
+           "More rays give less noise and take more time.")
       ->check(CLI::Range(1, 1'000'000));
 }
 
@@ -179,9 +196,11 @@ lf::Result<lf::LfImageFormat> FormatOf(const Arguments& a) {
         "--bayer and --alpha cannot be combined, because mosaics have no alpha: leave one out");
   if (a.alpha != "none" && a.scene == "lights")
     return lf::UsageError(
-        "--alpha needs surfaces, but the scene lights has none: use another scene");
+        "--alpha cannot be used with the scene lights, which has no surfaces: use another scene, "
+        "or leave --alpha out");
   if (a.noise > 0 && !a.bayer)
-    return lf::UsageError("--noise can only be used with mosaics: add --bayer");
+    return lf::UsageError(
+        "--noise can only be used with mosaics: add --bayer, or leave --noise out");
   if (a.bayer) return lf::LfImageFormat::kBayer;
   if (a.format == "png") return lf::LfImageFormat::kPng;
   return a.format == "png16" ? lf::LfImageFormat::kPng16 : lf::LfImageFormat::kExr;
@@ -204,10 +223,10 @@ lf::Result<void> CheckMayWrite(const Arguments& a) {
   if (a.overwrite || !std::filesystem::exists(CalibrationIn(a), error)) return {};
   LF_ASSIGN_OR_RETURN(const bool is_ours, lf::IsAsWritten(CalibrationIn(a), lf::kSynthProgram));
   if (is_ours) return {};
-  return lf::UsageError(
-      fmt::format("{} was not written by lfsynth, or was changed since: give another folder, or "
-                  "replace that light field with --overwrite",
-                  CalibrationIn(a).string()));
+  return lf::UsageError(fmt::format(
+      "{}: was not written by lfsynth, or was changed since: give another folder, or replace this "
+      "light field with --overwrite",
+      CalibrationIn(a).string()));
 }
 
 }  // namespace

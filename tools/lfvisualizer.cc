@@ -74,13 +74,13 @@ void AddOutput(CLI::App& app, Arguments& a) {
       output.AddFlag("--text", a.text, "Print cameras, and which LF cameras each frame uses")
           ->excludes(serve)
           ->excludes(watch);
-  output.Add("--frames RANGE", a.frames, "Only these frames, such as 1-100x2, 7 or 3-5,9 (all)")
+  output.Add("--frames RANGE", a.frames, "Frames to print, such as 1-100x2, 7 or 3-5,9 (all)")
       ->needs(text)
       ->check(lf::NotEmpty());
   auto* to_files = output
                        .Add("--export DIR", a.export_folder,
                             "Write the page and its data into a new folder\n"
-                            "No page is served then.")
+                            "The program then ends, and serves no page.")
                        ->excludes(text)
                        ->excludes(serve)
                        ->excludes(watch)
@@ -88,7 +88,7 @@ void AddOutput(CLI::App& app, Arguments& a) {
   output
       .Add("--export-images N", a.export_images,
            "Maximum number of LF images in the export\n"
-           "They are chosen from the LF images that the frames use.")
+           "They are chosen from the LF images that the frames of PATH use.")
       ->needs(to_files);
   a.allow_missing.AddTo(app, "the LF images in the export")->needs(to_files);
 }
@@ -97,19 +97,22 @@ void AddQuality(CLI::App& app, Arguments& a) {
   lf::OptionGroup picture(app, lf::kPictureGroup), quality(app, lf::kQualityGroup);
   picture.AddChoice("--estimator", a.page.estimator, {"bilinear", "nearest"},
                     "Estimator of the render\n"
-                    "Means the same as --estimator of lfrenderer.");
+                    "Give the value that lfrenderer --estimator will have. Which pixels the page "
+                    "shows as used depends on it.");
   picture.AddChoice("--lens-weights", a.page.lens_weights, {"auto", "none", "area", "hat"},
                     "Lens weights of the render\n"
-                    "Means the same as --lens-weights of lfrenderer.");
+                    "Give the value that lfrenderer --lens-weights will have. Which LF cameras the "
+                    "page shows as used depends on it.");
   quality
       .Add("--max-images N", a.max_images,
            "Maximum number of LF images per frame (all)\n"
-           "Means the same as --max-images of lfrenderer.")
+           "A frame uses the first N LF images of a random order, as with lfrenderer --max-images.")
       ->check(lf::WholeNumber());
   quality
       .Add("--max-angle DEGREES", a.page.max_angle_deg,
            "Largest angle between LF camera and frame axes (no limit)\n"
-           "Means the same as --max-angle of lfrenderer.")
+           "A frame uses only LF cameras whose optical axis is within DEGREES of its own optical "
+           "axis, as with lfrenderer --max-angle.")
       ->check(CLI::Range(0.0, 180.0));
 }
 
@@ -152,8 +155,8 @@ lf::MissingImages MissingOf(const lf::ExportFacts& facts) {
 lf::Result<void> Run(Arguments& a, const lf::CommonOptions& common) {
   if (a.text && !a.page.packages.empty())
     return lf::UsageError(
-        "--text prints what a path needs of a light field, and cannot be used with packages: leave "
-        "them out");
+        "--text cannot be used with packages: leave the packages out, or leave --text out to show "
+        "them on the page");
   if (a.text) return PrintText(a, common);
   LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, a.allow_missing.Limit());
   const std::atomic<bool>& interrupted = lf::CatchInterrupts();

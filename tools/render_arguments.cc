@@ -60,9 +60,9 @@ void AddOutput(CLI::App& app, RenderArguments& a) {
   AddFrameFormat(output, a.format);
   AddFilmFiles(output, a.video, a.no_contact_sheet);
   output.AddFlag("--keep-plates", a.keep_plates,
-                 "Also write the sums and counts of each frame\n"
-                 "They are written beside the frame, as frame_0001.plate. lfmerge makes frames "
-                 "from them again.");
+                 "Also write the ray sums and counts of each frame\n"
+                 "They are written into a file beside the frame, such as frame_0001.plate. lfmerge "
+                 "can make the frame from this file again.");
 }
 
 void AddPicture(CLI::App& app, RenderArguments& a) {
@@ -76,18 +76,20 @@ void AddPicture(CLI::App& app, RenderArguments& a) {
   picture.AddChoice(
       "--estimator", a.estimator, {"auto", "nearest", "bilinear"},
       "How LF pixels contribute to elements\n"
-      "bilinear (auto): every element reads each LF image at the point that it sees, by --filter\n"
+      "An element is a pixel of the frame before it is developed.\n"
+      "bilinear (auto): every element reads each LF image at the point that it sees, interpolated "
+      "as --filter says\n"
       "nearest: every LF pixel is added to one element; mosaics are not interpolated");
-  picture.AddChoice("--filter", a.filter,
-                    {"auto", "nearest", "bilinear", "bicubic", "mosaic", "prefiltered"},
-                    "Interpolation between LF pixels\n"
-                    "Used by --estimator bilinear.\n"
-                    "auto: mosaic for mosaics, bicubic for brackets, otherwise prefiltered\n"
-                    "prefiltered: each LF image is first filtered for the size of elements, then "
-                    "interpolated linearly; sharper than bicubic and faster\n"
-                    "mosaic: bicubic, or bilinear where an element is as large as nine LF pixels "
-                    "or more; colours that the sensor recorded count 8 times as much as "
-                    "interpolated colours");
+  picture.AddChoice(
+      "--filter", a.filter, {"auto", "nearest", "bilinear", "bicubic", "mosaic", "prefiltered"},
+      "Interpolation between LF pixels\n"
+      "Used by --estimator bilinear.\n"
+      "auto: mosaic for mosaics, bicubic for brackets (LF images of one pose with different "
+      "exposures), otherwise prefiltered\n"
+      "prefiltered: each LF image is first filtered for the size of elements, then interpolated "
+      "linearly; sharper than bicubic and faster\n"
+      "mosaic: bicubic, or bilinear where an element is as large as nine LF pixels or more; "
+      "colours that the sensor recorded count 8 times as much as interpolated colours");
   picture.AddChoice("--lf-pixels", a.lf_pixels, {"auto", "areas", "points"},
                     "What LF pixels show, for --filter prefiltered\n"
                     "areas: the mean light of their area, as in photographs\n"
@@ -97,7 +99,8 @@ void AddPicture(CLI::App& app, RenderArguments& a) {
       "--lens-weights", a.lens_weights, {"auto", "none", "area", "hat"},
       "Weight of each LF image in a frame\n"
       "none: all LF images have the same weight\n"
-      "area: the weight is the area of the lens that is nearest to the LF camera\n"
+      "area: the weight of an LF image is the area of the lens that is nearer to its LF camera "
+      "than to any other\n"
       "hat: interpolation between the nearest LF images, for small lenses and pinholes\n"
       "auto: area for large lenses, hat for small ones, a mix of both in between");
   picture
@@ -115,9 +118,10 @@ void AddPicture(CLI::App& app, RenderArguments& a) {
 void AddQuality(CLI::App& app, RenderArguments& a) {
   OptionGroup quality(app, kQualityGroup);
   quality
-      .Add("--max-images N", a.max_images,
-           "Maximum number of LF images per frame (all)\n"
-           "A frame uses the first N LF images of --order, which is random by default.")
+      .Add(
+          "--max-images N", a.max_images,
+          "Maximum number of LF images per frame (all)\n"
+          "A frame uses the first N LF images in the order of --order, which is random by default.")
       ->check(WholeNumber());
   quality
       .Add("--max-angle DEGREES", a.max_angle_deg,
@@ -139,20 +143,23 @@ void AddQuality(CLI::App& app, RenderArguments& a) {
            "in linear light where white is 1; 0.002 is half an 8-bit level in a mid-grey. Works "
            "with every --mode and all --lens-weights. With --mode rebin it needs 24 bytes of "
            "memory for each element of every frame.\n"
-           "samples>=N: the frame is finished when at least 99 % of these elements have N rays in "
-           "every channel. --lens-weights auto then means none.")
+           "samples>=N: the frame is finished when at least 99 % of the elements that LF images "
+           "see have N rays in every colour channel. --lens-weights auto then means none.")
       ->check(NotEmpty());
   quality
       .Add("--require RULE", a.require,
            "Exit with code 6 unless noise<=X or samples>=N\n"
-           "The rules are those of --stop-when. The exit code is 6 if a frame has more noise or "
-           "fewer rays at its end.")
+           "The rules are those of --stop-when. The exit code is 6 if a finished frame has more "
+           "noise or fewer rays than the rule says.")
       ->check(NotEmpty());
 }
 
 void AddRunning(CLI::App& app, RenderArguments& a) {
   OptionGroup running(app, kRunningGroup);
-  running.Add("--memory SIZE", a.memory, "Upper limit of the memory that is used");
+  running.Add(
+      "--memory SIZE", a.memory,
+      "Upper limit of the memory that is used\n"
+      "SIZE: such as 8G or 512M. With less memory, the frames are rendered in more passes.");
   CLI::Option* const resume = running.AddFlag(
       "--resume", a.resume,
       "Continue the unfinished render in DIR\n"
@@ -163,12 +170,14 @@ void AddRunning(CLI::App& app, RenderArguments& a) {
       .Add("--finish RANGE", a.finish,
            "Frames to finish with their rays so far, for --resume\n"
            "RANGE: frames, such as 1-10,20. The other frames are continued. The report states "
-           "which LF images the finished frames contain.")
+           "which LF images these frames contain.")
       ->check(NotEmpty());
   running.Add("--dump-every TIME", a.dump_every,
               "Time between checkpoints\n"
-              "TIME: such as 30s, 10m or 1h. Checkpoints are rarer if writing them would take more "
-              "than 5 % of the time. 0: checkpoints are only written at signals.");
+              "A render that is killed loses the work since its last checkpoint. TIME is a number "
+              "with a unit, such as 30s, 10m or 1h. The time between checkpoints is longer if "
+              "writing them would otherwise take more than 5 % of the time. 0: checkpoints are "
+              "only written at signals, such as Ctrl-C.");
   running
       .Add("--shard k/K", a.shard,
            "Render part k of K of the LF images, for lfmerge\n"
@@ -234,29 +243,32 @@ Result<void> RenderArguments::Check(bool seed_given) const {
   if (HasPackages()) {
     if (seed_given)
       return UsageError(
-          "--seed cannot be used with packages, which contain the order and the seed that they "
-          "were made with: leave it out");
+          "--seed cannot be used with packages, which contain the seed that lfpreprocessor was "
+          "given: leave it out, or make the packages again with lfpreprocessor --seed");
     if (order != "shuffle")
       return UsageError(
-          "--order cannot be used with packages, which contain the order that they were made with: "
-          "leave it out, or make the packages again with lfpreprocessor --order");
+          "--order cannot be used with packages, which contain the order that lfpreprocessor was "
+          "given: leave it out, or make the packages again with lfpreprocessor --order");
     if (max_angle_deg > 0)
       return UsageError(
-          "--max-angle cannot be used with packages, whose LF cameras were selected when they were "
-          "made: leave it out, or make the packages again with lfpreprocessor --max-angle");
+          "--max-angle cannot be used with packages, because lfpreprocessor has already selected "
+          "their LF cameras: leave it out, or make the packages again with lfpreprocessor "
+          "--max-angle");
     return light_field.CheckWithPackages();
   }
   if (std::any_of(inputs.begin(), inputs.end(), IsPackageName))
-    return UsageError("expected LIGHTFIELD PATH.yaml, or only packages: PACKAGE...");
-  if (inputs.size() != 2)
     return UsageError(
-        fmt::format("expected LIGHTFIELD PATH.yaml, or PACKAGE... (files that end in .lfp, such as "
-                    "packages/package-0000.lfp); found {} {}",
-                    inputs.size(), inputs.size() == 1 ? "word" : "words"));
+        "packages and other inputs are given: expected LIGHTFIELD PATH.yaml, or only packages "
+        "(files that end in .lfp)");
+  if (inputs.size() != 2)
+    return UsageError(fmt::format(
+        "{} {} given, expected LIGHTFIELD PATH.yaml, or packages (files that end in .lfp, such as "
+        "packages/package-0000.lfp)",
+        inputs.size(), inputs.size() == 1 ? "input is" : "inputs are"));
   if (!light_field.path.empty())
     return UsageError(
-        "--lightfield can only be used with packages: give the light field as first argument "
-        "instead");
+        "--lightfield can only be used with packages: give the light field as the first argument "
+        "instead, before PATH.yaml");
   return {};
 }
 
@@ -286,7 +298,7 @@ Result<FilmOptions> RenderArguments::MakeFilm(uint64_t seed) const {
     film.shard = ShardOf(shard);
     if (!film.shard)
       return UsageError(
-          fmt::format("--shard \"{}\": expected k/K, such as 2/5: the second of five", shard));
+          fmt::format("--shard \"{}\": expected k/K, such as 2/5 for part 2 of 5", shard));
   }
   return film;
 }

@@ -19,7 +19,7 @@ namespace {
 std::string CauseOfEmptyElements(const RenderReport& report, const FrameReport& frame) {
   if (!report.skipped.empty()) return "LF images are missing or broken (see below)";
   if (frame.weighed && frame.weighed->coverage.uncovered_share > kMuchUncovered)
-    return "the lens is beyond the capture (see below)";
+    return "a part of the lens is beyond the LF cameras (see below)";
   if (report.has_masks)
     return "masks, or alpha that is used as a mask (--image-alpha), exclude the pixels that show "
            "them";
@@ -40,10 +40,11 @@ void WarnOfEmptyElements(const RenderReport& report) {
       worst = &frame;
   }
   if (thin_count > 0)
-    LogWarning("{} of {} frames have elements without rays, most of all frame {} ({:.0f} %): {}",
-               thin_count, report.frames.size(), worst->frame.value,
-               100 * worst->empty_element_count[1] / element_count,
-               CauseOfEmptyElements(report, *worst));
+    LogWarning(
+        "{} of {} frames have elements (pixels of the frame) without rays, most of all frame {} "
+        "({:.0f} %): {}",
+        thin_count, report.frames.size(), worst->frame.value,
+        100 * worst->empty_element_count[1] / element_count, CauseOfEmptyElements(report, *worst));
 }
 
 // Reports how much of the pictures is interpolated, and from how many rebinned rays.
@@ -137,9 +138,9 @@ void WarnOfLenses(const RenderReport& report) {
           if (frame.weighed)
             fitting_w = std::min(fitting_w, frame.weighed->coverage.fitting_diameter_w);
         LogWarning(
-            "in {} of {} frames a part of the lens is beyond the capture, most of all in frame {}: "
-            "{:.0f} %. This part stays empty, and bokeh are cut off there. {}a camera nearer to "
-            "the middle of the capture would help",
+            "in {} of {} frames a part of the lens is beyond the LF cameras, most of all in frame "
+            "{}: {:.0f} %. This part gets no rays, and the bokeh (blur disks) are cut off there. "
+            "{}a camera nearer to the middle of the capture would help",
             count, report.frames.size(), worst.frame.value, 100 * coverage.uncovered_share,
             fitting_w > 0 ? fmt::format("An aperture of at most {:.4g} world units, or ", fitting_w)
                           : "Only ");
@@ -154,9 +155,9 @@ void WarnOfLenses(const RenderReport& report) {
       },
       [&](size_t count, const FrameReport& worst) {
         LogWarning(
-            "{} of {} frames are made of fewer than {:.0f} LF images, counted by their weights, "
-            "fewest of all frame {}: {:.1f}. Expect noise, and double edges out of focus; a wider "
-            "aperture contains more LF images",
+            "{} of {} frames are made of fewer than {:.0f} LF images (an LF image of little weight "
+            "counts less), fewest in frame {}: {:.1f}. Expect noise, and double edges out of "
+            "focus; a wider aperture collects more LF images",
             count, report.frames.size(), kFewImages, worst.frame.value,
             worst.weighed->effective_count);
       });

@@ -52,7 +52,7 @@ Result<fs::path> FindRenderer(const std::string& asked_for) {
   const fs::path renderer = asked_for.empty() ? folder / "lfrenderer" : fs::absolute(asked_for);
   if (::access(renderer.c_str(), X_OK) != 0)
     return UsageError(fmt::format(
-        "{}: is no program: expected lfrenderer beside lfsubmit; give its path with --lfrenderer",
+        "{}: cannot be executed; expected the program lfrenderer: give its path with --lfrenderer",
         renderer.string()));
   return renderer;
 }
@@ -70,7 +70,7 @@ Result<Words> SplitWords(const std::vector<std::string>& words) {
   for (auto word = words.begin(); word != arguments; ++word) {
     if (!IsPackageName(*word))
       return UsageError(
-          fmt::format("{}: is no package (a file that ends in .lfp): make packages with "
+          fmt::format("{}: is not a package (a file that ends in .lfp): make packages with "
                       "lfpreprocessor LIGHTFIELD PATH.yaml -o packages --packages 8",
                       *word));
     split.files.push_back(fs::absolute(*word).lexically_normal());
@@ -80,8 +80,9 @@ Result<Words> SplitWords(const std::vector<std::string>& words) {
     for (const std::string word : kOfTheJob)
       if (argument == word || argument.starts_with(word + "="))
         return UsageError(fmt::format(
-            "{}: cannot be given to lfrenderer (after --), because lfsubmit sets it{}", argument,
-            word.starts_with("--") ? ", and has some of these options itself" : ""));
+            "{}: cannot be given after --, because lfsubmit itself sets this option of lfrenderer: "
+            "leave it out, or give it to lfsubmit (before --), if lfsubmit has it",
+            argument));
   return split;
 }
 
@@ -104,7 +105,7 @@ Result<RenderOptions> TryArguments(const std::vector<fs::path>& packages, const 
     renderer.app().parse(static_cast<int>(argv.size()), argv.data());
   } catch (const CLI::ParseError& error) {
     return UsageError(
-        fmt::format("lfrenderer would refuse its arguments (after --): {}", error.what()));
+        fmt::format("lfrenderer would refuse the options after --: {}", error.what()));
   }
   LF_RETURN_IF_ERROR(render.Check(renderer.app().count("--seed") > 0));
   std::optional<LightFieldPlace> place;
@@ -130,7 +131,7 @@ void AddNewJob(CLI::App& app, SubmitArguments& a) {
   AddFrameRange(output, a.frames);
   AddFilmFiles(output, a.video, a.no_contact_sheet);
   output.AddFlag("--overwrite", a.overwrite,
-                 "Remove the job and the frames of these packages in DIR");
+                 "Remove an earlier job in DIR and the frames of PACKAGES");
 }
 
 void AddExistingJob(CLI::App& app, SubmitArguments& a) {
@@ -147,26 +148,27 @@ void AddExistingJob(CLI::App& app, SubmitArguments& a) {
   running
       .Add("--finish DIR FRAMES", a.finish,
            "Finish frames with the rays that they have so far\n"
-           "FRAMES: a range, such as 1-10,20. The other frames continue.")
+           "FRAMES: a range, such as 1-10,20. These frames are written without waiting for their "
+           "other LF images; the other frames are rendered as before.")
       ->expected(2);
 }
 
 void AddResources(CLI::App& app, SubmitArguments& a) {
   OptionGroup running(app, kRunningGroup);
   running.AddChoice("--engine", a.engine, {"local", "slurm"},
-                    "System that starts the processes (local)\n"
+                    "System that starts the lfrenderer processes (local)\n"
                     "local: processes on this machine; lfsubmit runs until the film is done\n"
                     "slurm: tasks of Slurm; lfsubmit ends when they are submitted (see --wait)");
   running
-      .Add(
-          "--jobs N", a.at_once,
-          "Packages rendered at the same time\n"
-          "If the option is not given: 1 with --engine local; with slurm, as many as Slurm starts.")
+      .Add("--jobs N", a.at_once,
+           "Packages rendered at the same time\n"
+           "If the option is not given: 1 with --engine local; with --engine slurm, as many as "
+           "Slurm starts.")
       ->check(WholeNumber());
   running.Add("--memory SIZE", a.memory,
               "Upper limit of the memory of each lfrenderer (8G)\n"
-              "If the option is not given, the processes of this machine together take at most 80 "
-              "% of its memory.");
+              "With --engine local, the default is less than 8G if the processes of --jobs would "
+              "otherwise take more than 80 % of the memory of this machine.");
   running
       .Add("--time-limit TIME", a.time_limit,
            "Time limit of each Slurm task, such as 2h\n"
@@ -175,16 +177,17 @@ void AddResources(CLI::App& app, SubmitArguments& a) {
   running
       .Add("--sbatch OPTION", a.sbatch_options,
            "Option for Slurm's sbatch: --sbatch=--partition=long\n"
-           "May be given several times.")
+           "The option may be given several times.")
       ->allow_extra_args(false);
   running.AddFlag("--wait", a.wait,
                   "Wait until the film is done, for --engine slurm\n"
-                  "The exit code then is the one described below.");
+                  "The exit code is then that of the whole film, as described at the end of this "
+                  "help. Without --wait, lfsubmit ends when Slurm has accepted the job.");
   running.Add(
       "--crashes N", a.most_crashes,
       "Most crashes of a package before it fails (10)\n"
       "A package fails if lfrenderer, or the node that runs it, crashes more often than this.");
-  running.Add("--lfrenderer FILE", a.renderer, "Program that renders (beside lfsubmit)");
+  running.Add("--lfrenderer FILE", a.renderer, "Path of lfrenderer (the one beside lfsubmit)");
 }
 
 }  // namespace
@@ -201,20 +204,24 @@ void SubmitArguments::AddTo(CLI::App& app) {
 Result<void> SubmitArguments::Check() const {
   const int asked = !status.empty() + !cancel.empty() + !resume.empty() + !finish.empty() +
                     !run_package.empty() + !run_finish.empty();
-  if (asked > 1) return UsageError("give only one of --status, --cancel, --resume and --finish");
-  if (asked == 1 && resume.empty() && !words.empty())
+  if (asked > 1)
     return UsageError(
-        fmt::format("{}: packages can only be given for new jobs and --resume; --status, --cancel "
-                    "and --finish need only DIR",
-                    words.front()));
+        "several of --status, --cancel, --resume and --finish are given: give only one of them");
+  if (asked == 1 && resume.empty() && !words.empty())
+    return UsageError(fmt::format(
+        "{}: packages cannot be given with --status, --cancel and --finish, which need only "
+        "DIR: leave them out",
+        words.front()));
   if (asked == 1 && (!output.empty() || !frames.empty() || overwrite))
-    return UsageError("-o, --frames and --overwrite can only be used for new jobs: leave them out");
+    return UsageError(
+        "-o, --frames and --overwrite can only be used for new jobs, not with --status, --cancel, "
+        "--resume and --finish: leave them out");
   if (asked == 1) return {};
   if (words.empty() || words.front().starts_with('-'))
     return UsageError(
-        "expected PACKAGES... -o DIR (files of lfpreprocessor), or --status, --cancel, --resume or "
-        "--finish DIR");
-  if (output.empty()) return UsageError("-o DIR is missing: the folder of the frames");
+        "no packages are given: expected PACKAGES... -o DIR (files of lfpreprocessor), or one of "
+        "--status, --cancel, --resume and --finish with DIR");
+  if (output.empty()) return UsageError("-o DIR is missing: give the folder of the frames");
   return {};
 }
 
@@ -230,9 +237,12 @@ Result<void> SubmitArguments::TakeResources(ClusterJob* job, const CommonOptions
   for (const std::string& option : sbatch_options)
     if (!option.starts_with('-') || OneLine(option) != option)
       return UsageError(fmt::format(
-          "--sbatch={}: expected an option of sbatch, such as --partition=long", option));
+          "--sbatch={}: expected an option of sbatch in one line, such as --partition=long",
+          option));
   if (is_local && (!time_limit.empty() || !sbatch_options.empty()))
-    return UsageError("--time-limit and --sbatch can only be used with --engine slurm");
+    return UsageError(
+        "--time-limit and --sbatch can only be used with --engine slurm: leave them out, or add "
+        "--engine slurm");
   const bool is_anew = is_new || engine || at_once;
   if (is_anew) {
     job->at_once = at_once.value_or(0);
@@ -266,10 +276,10 @@ Result<void> SubmitArguments::Change(ClusterJob* job, const CommonOptions& commo
     // have no tasks of the job.
     const auto queue = AskSlurm(*job);
     if (queue && !queue->empty())
-      return UsageError(
-          fmt::format("--engine local: Slurm still has {} tasks of the job: end them with lfsubmit "
-                      "--cancel {} first",
-                      queue->size(), ShellWord(job->output_folder.string())));
+      return UsageError(fmt::format(
+          "--engine local: {} tasks of the job are still in Slurm's queue: end them with "
+          "lfsubmit --cancel {} first",
+          queue->size(), ShellWord(job->output_folder.string())));
   }
   LF_ASSIGN_OR_RETURN(const Words split, SplitWords(words));
   for (const fs::path& file : split.files) {
@@ -278,7 +288,8 @@ Result<void> SubmitArguments::Change(ClusterJob* job, const CommonOptions& commo
                      [&](const JobPackage& known) { return known.name == file.stem().string(); });
     if (package == job->packages.end())
       return UsageError(fmt::format(
-          "{}: is none of the job's packages: give the files of the same packages", file.string()));
+          "{}: is not a package of this job: give files with the names of the job's packages",
+          file.string()));
     package->file = file;
   }
   if (!split.arguments.empty()) {

@@ -11,10 +11,11 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Result<double> ImageDistance(double focal_length_w, double focus_distance_w) {
   if (!(focal_length_w > 0))
-    return InputError(fmt::format("focal length {} is not positive", focal_length_w));
+    return InputError(fmt::format("the focal length is {}, expected more than 0", focal_length_w));
   if (!(focus_distance_w > focal_length_w))
     return InputError(fmt::format(
-        "focus distance {} must exceed the focal length {}: the lens forms no real image closer",
+        "the focus distance is {}, expected more than the focal length {}, because a lens forms no "
+        "real image of nearer points",
         focus_distance_w, focal_length_w));
   if (std::isinf(focus_distance_w)) return focal_length_w;
   return focal_length_w * focus_distance_w / (focus_distance_w - focal_length_w);

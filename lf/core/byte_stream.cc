@@ -25,7 +25,7 @@ Result<ByteStream> ByteStream::Open(const fs::path& path) {
   struct stat status = {};
   if (::fstat(fd, &status) != 0 || !S_ISREG(status.st_mode)) {
     ::close(fd);
-    return InputError(fmt::format("{}: is not a regular file", path.string()));
+    return InputError(fmt::format("{}: is a folder or a device, expected a file", path.string()));
   }
   return ByteStream(fd, static_cast<uint64_t>(status.st_size), path);
 }

@@ -142,8 +142,9 @@ Result<std::unique_ptr<ChildProcess>> ChildProcess::Start(const Options& options
   std::error_code ignored;
   if (!options.working_folder.empty() &&
       !std::filesystem::is_directory(options.working_folder, ignored))
-    return OutputError(fmt::format("{}: cannot be run in {}: this folder does not exist any more",
-                                   name, options.working_folder.string()));
+    return OutputError(
+        fmt::format("{}: cannot be run in {}: this folder does not exist any more; make it again",
+                    name, options.working_folder.string()));
   std::vector<char*> argv;
   for (const std::string& word : options.words) argv.push_back(const_cast<char*>(word.c_str()));
   argv.push_back(nullptr);
@@ -249,7 +250,7 @@ Result<void> ChildProcess::Finish(double patience_s) {
   }
   if (lost_reason_ != 0)
     return Failure(fmt::format("cannot be waited for: {}", std::strerror(lost_reason_)));
-  if (end_->signal != 0) return Failure(fmt::format("died of signal {}", end_->signal));
+  if (end_->signal != 0) return Failure(fmt::format("was killed by signal {}", end_->signal));
   if (end_->exit_code != 0)
     return Failure(fmt::format("failed with exit code {}", end_->exit_code));
   return {};
@@ -267,16 +268,16 @@ Result<CommandAnswer> RunCommand(const std::vector<std::string>& words, double p
   while (true) {
     if (const auto end = child->Poll()) {
       if (end->signal != 0)
-        return OutputError(fmt::format("{}: died of signal {}", words.front(), end->signal));
+        return OutputError(fmt::format("{}: was killed by signal {} ({})", words.front(),
+                                       end->signal, ::strsignal(end->signal)));
       return CommandAnswer{end->exit_code, TextOf(output.fd()), TextOf(complaints.fd())};
     }
     for (const OwnedFile* file : {&output, &complaints})
       if (::lseek(file->fd(), 0, SEEK_END) > kMostBytes)
-        return OutputError(
-            fmt::format("{}: prints more than {} MiB", words.front(), kMostBytes >> 20));
+        return OutputError(fmt::format("{}: prints more than the {} MiB that are expected",
+                                       words.front(), kMostBytes >> 20));
     if (Clock::now() > give_up)
-      return OutputError(
-          fmt::format("{}: has not answered within {} s", words.front(), patience_s));
+      return OutputError(fmt::format("{}: has not ended within {} s", words.front(), patience_s));
     std::this_thread::sleep_for(kTick);
   }
 }

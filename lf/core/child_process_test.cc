@@ -210,14 +210,14 @@ TEST(RunCommand, SaysWhyItCannot) {
   EXPECT_NE(missing.error().message.find("No such file"), std::string::npos);
   const Result<CommandAnswer> slow = RunCommand({"sleep", "60"}, 0.05);
   ASSERT_FALSE(slow.has_value());
-  EXPECT_NE(slow.error().message.find("has not answered"), std::string::npos);
+  EXPECT_NE(slow.error().message.find("has not ended"), std::string::npos);
 }
 
 TEST(RunCommand, EndsOneThatPrintsWithoutEnd) {
   for (const char* command : {"exec yes", "exec yes >&2"}) {
     const Result<CommandAnswer> endless = RunCommand({"sh", "-c", command}, 60);
     ASSERT_FALSE(endless.has_value());
-    EXPECT_EQ(endless.error().message, "sh: prints more than 256 MiB");
+    EXPECT_EQ(endless.error().message, "sh: prints more than the 256 MiB that are expected");
   }
 }
 

@@ -48,11 +48,14 @@ Result<fs::path> WriteTarget(const fs::path& path) {
     target = fs::canonical(path, error);
     if (error)
       return OutputError(
-          fmt::format("{}: is a link to a missing file: {}", path.string(), error.message()));
+          fmt::format("{}: is a link to a file that cannot be found ({}): remove the link, or give "
+                      "another name",
+                      path.string(), error.message()));
   }
   if (fs::exists(target, error) && !fs::is_regular_file(target, error))
-    return OutputError(
-        fmt::format("{}: exists and is no regular file; give another name", path.string()));
+    return OutputError(fmt::format(
+        "{}: is a folder or a device, and cannot be replaced by a file: give another name",
+        path.string()));
   return target;
 }
 
@@ -94,11 +97,12 @@ Result<std::string> ReadFile(const fs::path& path, size_t limit_bytes) {
                  fmt::format("{}: cannot be read: {}{}", path.string(), std::strerror(code),
                              is_missing ? FilesNearby(path) : "")};
   }
-  if (!S_ISREG(status.st_mode)) return InputError(fmt::format("{}: is not a file", path.string()));
+  if (!S_ISREG(status.st_mode))
+    return InputError(fmt::format("{}: is a folder or a device, expected a file", path.string()));
   if (static_cast<uint64_t>(status.st_size) > limit_bytes)
-    return InputError(
-        fmt::format("{}: has {} bytes, more than the {} allowed for this kind of file",
-                    path.string(), status.st_size, limit_bytes));
+    return InputError(fmt::format(
+        "{}: has {} bytes, but a file of this kind has at most {}: is it the right file?",
+        path.string(), status.st_size, limit_bytes));
   std::string bytes(static_cast<size_t>(status.st_size), '\0');
   size_t done = 0;
   while (done < bytes.size()) {
@@ -148,7 +152,8 @@ Result<void> WriteAtomically(const fs::path& path,
 Result<void> FlushToDisk(const fs::path& path) {
   const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.get() < 0 || ::fsync(file.get()) != 0)
-    return OutputError(fmt::format("{}: cannot flush to disk: {}", path.string(), SystemReason()));
+    return OutputError(
+        fmt::format("{}: cannot be flushed to the disk: {}", path.string(), SystemReason()));
   return {};
 }
 
@@ -208,9 +213,10 @@ Result<void> CreateFolder(const fs::path& folder) {
     LF_ASSIGN_OR_RETURN(const bool is_created, TryToCreateFolder(folder));
     if (is_created) return {};
   }
-  return OutputError(
-      fmt::format("{}: cannot be created as a folder: another program removes it again and again",
-                  folder.string()));
+  return OutputError(fmt::format(
+      "{}: cannot be created as a folder, because another program removes it again and again: end "
+      "that program, or give another name",
+      folder.string()));
 }
 
 }  // namespace lf

@@ -118,9 +118,9 @@ Result<std::optional<FileLock>> FileLock::TakeOpenFile(const std::filesystem::pa
       return OutputError(
           fmt::format("{}: cannot be locked: {}", path.string(), std::strerror(errno)));
     const std::string number = OwnerNumber(fd);
-    return OutputError(
-        fmt::format("{}: is locked: another program{} is at work here; wait for it to end",
-                    path.string(), number.empty() ? "" : fmt::format(" (process {})", number)));
+    return OutputError(fmt::format(
+        "{}: is locked, because another program{} works in this folder: wait for it to end",
+        path.string(), number.empty() ? "" : fmt::format(" (process {})", number)));
   }
   if (!IsStill(fd, path)) return std::optional<FileLock>();
   // The process number is for people and messages only. The lock does not depend on it.

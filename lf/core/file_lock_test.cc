@@ -104,7 +104,7 @@ TEST(FileLock, WaitsForTheNumberOfItsOwner) {
   });
   const Result<FileLock> lock = FileLock::Take(path);
   ASSERT_FALSE(lock);
-  EXPECT_NE(lock.error().message.find("another program (process 123) is"), std::string::npos)
+  EXPECT_NE(lock.error().message.find("another program (process 123) works"), std::string::npos)
       << lock.error().message;
   std::filesystem::remove(path);
 }
@@ -126,7 +126,7 @@ TEST(FileLock, AnOwnerWithoutANumberLocksToo) {
   const LockedEmptyFile owner(path, LOCK_EX);
   const Result<FileLock> lock = FileLock::Take(path);
   ASSERT_FALSE(lock);
-  EXPECT_NE(lock.error().message.find("another program is at work"), std::string::npos)
+  EXPECT_NE(lock.error().message.find("another program works"), std::string::npos)
       << lock.error().message;
   std::filesystem::remove(path);
 }

@@ -147,19 +147,20 @@ std::optional<ExampleMove> ParseExampleMove(std::string_view name) {
 Result<ExamplePath> MakeExamplePath(const LightField& light_field, const LfImageStore& store,
                                     const ExampleOptions& options, ThreadPool& pool) {
   if (light_field.size() < 2)
-    return InputError(fmt::format(
-        "a light field of {} LF camera cannot fill a lens: two or more LF cameras are needed",
-        light_field.size()));
+    return InputError(
+        fmt::format("the light field has {} LF image(s): expected two or more, because the lens of "
+                    "an example path spans several LF cameras",
+                    light_field.size()));
   if (options.camera.value >= light_field.size())
-    return InputError(fmt::format("there is no LF camera {}: the light field has 0 to {}",
+    return InputError(fmt::format("LF camera {} does not exist: expected a number from 0 to {}",
                                   options.camera.value, light_field.size() - 1));
   const PinholeCamera camera = light_field.Camera(options.camera);
   const double spacing_w = MedianSpacing(light_field);
   if (!(spacing_w > 0))
-    return InputError(
-        fmt::format("most of the {} LF cameras are at the position of another one: were the images "
-                    "listed twice, or are the positions missing? lfimport names them",
-                    light_field.size()));
+    return InputError(fmt::format(
+        "most of the {} LF cameras have the same position as another one: were the images listed "
+        "twice, or are the positions missing? Run lfimport to list these LF cameras",
+        light_field.size()));
   const Reach reach = CaptureReach(light_field, camera, 400);
   LF_ASSIGN_OR_RETURN(const ExampleFocus focus,
                       ChooseFocus(light_field, store, options, spacing_w, pool));

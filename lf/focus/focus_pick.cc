@@ -248,7 +248,9 @@ Result<void> LoadViews(const LightField& field, const LfImageStore& store, const
   if (views->size() > kLeastViews) return {};
   for (const auto& error : errors)
     if (error) return *error;
-  return InputError("fewer than four LF cameras see this point: its distance cannot be measured");
+  return InputError(
+      "the distance of this point cannot be measured, because fewer than four LF images show it. "
+      "Click on another point");
 }
 
 }  // namespace
@@ -268,7 +270,8 @@ Result<FocusPick> FindFocus(const LightField& light_field, const LfImageStore& s
   std::vector<View> views = ChooseViews(light_field, search, frame.aperture.radius_w);
   if (views.size() <= kLeastViews)
     return InputError(
-        "fewer than four LF cameras look in this direction: the distance cannot be measured");
+        "the distance cannot be measured here, because fewer than four LF cameras look in this "
+        "direction. Click on another point");
   const DepthSweep sweep = MakeSweep(views);
   LF_RETURN_IF_ERROR(LoadViews(light_field, store, search, sweep, pool, &views));
 
@@ -287,13 +290,13 @@ Result<FocusPick> FindFocus(const LightField& light_field, const LfImageStore& s
   }
   if (texture < kLeastTexture || agreements.empty())
     return InputError(
-        "nothing to focus on: the LF images look the same here at all distances. Click on an edge "
-        "or a texture");
+        "the distance cannot be measured here, because the LF images show no texture. Click on an "
+        "edge or a texture");
   const double score = agreements[best].score;
   if (score < kLeastAgreement || agreements[best].texture < kLeastTexture)
     return InputError(
-        "the LF images do not agree on a distance here. Click on an edge or a texture, away from "
-        "outlines of things in front");
+        "the distance cannot be measured here, because the LF images do not agree on one. Click on "
+        "an edge or a texture, away from the outlines of nearer objects");
   // The rival is the best of the other peaks. A rival that is almost as good lowers the certainty.
   constexpr size_t kPeakWidth = 4;
   std::vector<double> scores;

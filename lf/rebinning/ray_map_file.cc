@@ -94,10 +94,10 @@ Result<Head> ReadHead(const entry_file::Source& source, const std::string& bytes
   Head head;
   std::memcpy(&head, bytes.data(), sizeof(head));
   if (head.shard_count != RayMap::kShards || head.is_too_coarse > 1)
-    return InputError(
-        fmt::format("{}: is damaged: it states {} shards, expected {}, and {} as 'cells are too "
-                    "coarse', expected 0 or 1; the rays in it cannot be used",
-                    source.name(), head.shard_count, RayMap::kShards, head.is_too_coarse));
+    return InputError(fmt::format(
+        "{}: is damaged: it states {} shards, expected {}, and {} as the mark of cells that "
+        "are too wide, expected 0 or 1; the rays in the file cannot be used",
+        source.name(), head.shard_count, RayMap::kShards, head.is_too_coarse));
   constexpr uint64_t kLeast = RayMap::kShards * sizeof(ShardHead);
   if (source.left() < kLeast || head.cell_count > (source.left() - kLeast) / sizeof(BinnedCell))
     return InputError(
@@ -107,10 +107,10 @@ Result<Head> ReadHead(const entry_file::Source& source, const std::string& bytes
   if (source.left() > size_bytes)
     return source.Damaged(fmt::format("{} bytes follow its end", source.left() - size_bytes));
   if (head.cell_count > max_cells)
-    return InputError(
-        fmt::format("{}: contains {} cells, but {} are allowed: --max-rays or --memory differs "
-                    "from when it was written",
-                    source.name(), head.cell_count, max_cells));
+    return InputError(fmt::format(
+        "{}: contains {} cells, but --max-rays and --memory allow only {}, because they are "
+        "smaller than when the file was written",
+        source.name(), head.cell_count, max_cells));
   return head;
 }
 

@@ -197,7 +197,8 @@ TEST_F(RayMapFile, MoreCellsThanAllowedAreRefused) {
   const std::string bytes = FileOf(map);
   EXPECT_EQ(ErrorOf(bytes, 100), "");
   const std::string message = ErrorOf(bytes, 99);
-  EXPECT_NE(message.find("a.rays: contains 100 cells, but 99 are allowed"), std::string::npos)
+  EXPECT_NE(message.find("a.rays: contains 100 cells, but --max-rays and --memory allow only 99"),
+            std::string::npos)
       << message;
 }
 
@@ -205,7 +206,7 @@ TEST_F(RayMapFile, TruncatedAnywhereItIsRefused) {
   const std::string bytes = FileOf(MapOf(RandomRays(100, UINT64_MAX, 1)));
   EXPECT_EQ(ErrorOf(bytes), "");
   for (size_t size = 0; size < bytes.size(); size += size < 200 ? 1 : 97)
-    ExpectError(bytes.substr(0, size), size < 40 ? "is no file of rays" : "is truncated");
+    ExpectError(bytes.substr(0, size), size < 40 ? "is not a file of rays" : "is truncated");
   ExpectError(bytes.substr(0, bytes.size() - 1), "is truncated");
   ExpectError(bytes + "x", "1 bytes follow its end");
 }
@@ -224,7 +225,7 @@ TEST_F(RayMapFile, WhatItSaysIsCheckedBeforeAnythingIsAllocated) {
   ExpectError(WithHead(bytes, [](Head* head) { head->version = 7; }), "version 7");
   ExpectError(WithHead(bytes, [](Head* head) { head->shard_count = 16; }), "16 shards");
   ExpectError(WithHead(bytes, [](Head* head) { head->is_too_coarse = 2; }),
-              "2 as 'cells are too coarse'");
+              "2 as the mark of cells that are too wide");
   ExpectError(WithHead(bytes, [](Head* head) { head->cell_count = 51; }), "51 cells need more");
   ExpectError(WithHead(bytes, [](Head* head) { head->cell_count = UINT64_MAX; }), "need more");
   ExpectError(WithHead(bytes, [](Head* head) { head->cell_count = 49; }), "24 bytes follow");
@@ -277,7 +278,7 @@ TEST_F(RayMapFile, CellsThatNoMapHoldsAreRefused) {
 TEST_F(RayMapFile, FilesThatAreNoneAreErrors) {
   ThreadPool pool(1);
   EXPECT_EQ(ReadRays(folder_ / "none", 10, pool).error().kind, ErrorKind::kInput);
-  EXPECT_NE(ReadRays(folder_, 10, pool).error().message.find("is not a file"), std::string::npos);
+  EXPECT_NE(ReadRays(folder_, 10, pool).error().message.find("expected a file"), std::string::npos);
   EXPECT_EQ(WriteRays(folder_ / "no" / "x", {}, RayMap(1), pool).error().kind, ErrorKind::kOutput);
 }
 

@@ -64,8 +64,8 @@ CLI::Option* AllowMissing::AddTo(CLI::App& app, const std::string& asked) {
   return input.Add(
       "--allow-missing N|PERCENT", text,
       fmt::format("Accept this many missing or broken LF images (none)\n"
-                  "Such LF images are left out. Up to N of them are accepted, or a percentage such "
-                  "as 2% of {}. If there are more, the program ends with exit code 6.",
+                  "Such LF images are left out. Up to N of them are accepted, or up to PERCENT of "
+                  "{}, such as 2%. If there are more, the program ends with exit code 6.",
                   asked));
 }
 

@@ -9,7 +9,8 @@ namespace lf {
 
 Result<double> ParseDuration(const std::string& text, const std::string& option) {
   const auto error = [&] {
-    return UsageError(fmt::format("{} '{}': expected a time such as 30s, 10m or 1h", option, text));
+    return UsageError(fmt::format("{} '{}': expected a time such as 30s, 10m or 1h, at most 1e9 s",
+                                  option, text));
   };
   if (text.empty() || std::isdigit(static_cast<unsigned char>(text[0])) == 0) return error();
   const size_t digits = std::min(text.find_first_not_of("0123456789."), text.size());

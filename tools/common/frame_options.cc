@@ -19,9 +19,11 @@ void AddFrameFormat(OptionGroup& output, std::string& format) {
 }
 
 void AddFilmFiles(OptionGroup& output, std::string& video, bool& no_contact_sheet) {
-  output.Add("--video FILE", video, "Also write the frames as this mp4; needs ffmpeg")
+  output.Add("--video FILE", video, "Also write the frames as this mp4 file; needs ffmpeg")
       ->check(NotEmpty());
-  output.AddFlag("--no-contact-sheet", no_contact_sheet, "Do not write contact_sheet.png");
+  output.AddFlag("--no-contact-sheet", no_contact_sheet,
+                 "Do not write contact_sheet.png\n"
+                 "The contact sheet shows a dozen frames on one page.");
 }
 
 }  // namespace lf

@@ -22,8 +22,8 @@ Result<std::array<double, 3>> ParseBackground(const std::string& text) {
     const bool is_followed = c == 2 ? rest == end : rest != end && *rest == ',';
     if (error != std::errc() || !is_followed || !(rgb[c] >= 0 && rgb[c] <= 1e6))
       return UsageError(
-          fmt::format("--background {}: expected black, white, none, or three radiances of at "
-                      "least 0, such as 0.2,0.2,0.3",
+          fmt::format("--background {}: expected black, white, none, or R,G,B as three numbers "
+                      "from 0 to 1e6 in linear light, such as 0.2,0.2,0.3",
                       text));
     at = rest + 1;
   }
@@ -35,13 +35,15 @@ void AddUnusualOptions(CLI::App& app, LightFieldArgument& argument) {
   unusual
       .Add("--focal-px PIXELS", argument.focal_px,
            "Focal length of the LF cameras (as recorded)\n"
-           "Needed for images with Stanford names, if the names do not contain the focal length.")
+           "In pixels of the LF images. Needed if LIGHTFIELD is a folder of images with Stanford "
+           "names (doc/formats/stanford.md) that do not contain the focal length.")
       ->check(CLI::NonNegativeNumber);
   unusual
       .Add("--fov-deg DEGREES", argument.fov_deg,
            "Field of view of the LF cameras (as recorded)\n"
-           "Across the width and the height, because AOS images are square. Needed for poses of "
-           "Airborne Optical Sectioning (AOS), which do not contain it.")
+           "Needed for Airborne Optical Sectioning (AOS), whose pose files do not contain it. AOS "
+           "images are square, so that one angle is the field of view of the width and of the "
+           "height.")
       ->check(CLI::Range(0., 179.));
   unusual.Add("--image-scale FACTOR", argument.image_scale,
               "Size of the image files relative to calibration\n"
@@ -52,7 +54,7 @@ void AddUnusualOptions(CLI::App& app, LightFieldArgument& argument) {
       "--image-alpha", argument.image_alpha, {"auto", "mask", "straight", "premultiplied"},
       "Meaning of the alpha channel\n"
       "auto: as recorded; if nothing is recorded, found from pixels of the images\n"
-      "mask: pixels with an alpha below one half are ignored\n"
+      "mask: pixels with an alpha below one half are left out\n"
       "straight, premultiplied: alpha is opacity, and the light of --background shines through");
 }
 
@@ -75,14 +77,16 @@ void LightFieldArgument::AddOptionsTo(CLI::App& app) {
   input.Add("--images DIR", images,
             "Folder of the LF images, if they were moved\n"
             "Needed if the image files are not where the calibration says. Each image file is "
-            "searched by its name in DIR and all folders below it. Its suffix may differ.");
+            "searched by its name in DIR and all folders below it. The extension of the name, "
+            "such as .png, may differ.");
   input
       .Add("--background COLOUR", background,
            "Light behind transparent LF images\n"
-           "Used if alpha is opacity (--image-alpha straight or premultiplied). As recorded: what "
-           "the calibration states, or the colour of the transparent pixels.\n"
+           "Used if the alpha channel of the LF images is opacity (--image-alpha straight or "
+           "premultiplied). If the option is not given, the background is the one that the "
+           "calibration states, or the colour of the transparent pixels.\n"
            "COLOUR: black, white, or R,G,B in linear light, where 1 is display white\n"
-           "none: frames have an alpha channel, and their colours are those in front of black")
+           "none: frames get an alpha channel; their colours are those in front of black")
       ->check(NotEmpty())
       ->default_str("as recorded, else black");
   AddUnusualOptions(app, *this);
@@ -105,14 +109,14 @@ Result<OpenOptions> LightFieldArgument::Options() const {
 Result<void> LightFieldArgument::CheckWithPackages() const {
   if (image_alpha != "auto" || !background.empty())
     return UsageError(
-        "--image-alpha and --background cannot be used with packages, which contain the values "
-        "that they were made with: leave them out, or make the packages again with lfpreprocessor "
-        "and these options");
+        "--image-alpha and --background cannot be used with packages, which contain the values of "
+        "these options that lfpreprocessor was given: leave the options out, or give them to "
+        "lfpreprocessor and make the packages again");
   if (!path.empty() || Words().empty()) return {};
-  return UsageError(
-      fmt::format("{} cannot be used with packages, which contain their calibration: leave it out; "
-                  "if the images were moved, give their light field with --lightfield",
-                  Words()[0]));
+  return UsageError(fmt::format(
+      "{} cannot be used with packages, which contain the calibration: leave it out; if the LF "
+      "images were moved, give their light field with --lightfield",
+      Words()[0]));
 }
 
 Result<LightField> LightFieldArgument::Open() const {

@@ -20,7 +20,9 @@ Result<void> PrintReport(const std::string& text) {
   if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0 &&
       std::cout.good())
     return {};
-  return OutputError("cannot write the report to the standard output: is the disk full?");
+  return OutputError(
+      "the report cannot be written to the standard output: is the disk full, or was the "
+      "pipe closed?");
 }
 
 const char* Version() { return LF_VERSION; }
@@ -64,7 +66,7 @@ void Program::AddCommonOptions(const OfferedOptions& offered) {
   if (offered.json) output.AddFlag("--json", common_.json, offered.json);
   if (offered.seed) running.Add("--seed N", common_.seed, offered.seed)->check(WholeNumber());
   if (offered.threads)
-    running.Add("--threads N", common_.threads, "Number of threads (all of the machine)")
+    running.Add("--threads N", common_.threads, "Number of threads (as many as the machine has)")
         ->check(CLI::Range(0, 512));
   if (offered.progress)
     running.AddChoice("--progress", common_.progress, {"auto", "bar", "plain", "json", "none"},
@@ -75,7 +77,7 @@ void Program::AddCommonOptions(const OfferedOptions& offered) {
                       "json: a line with a JSON object about every second\n"
                       "none: no progress");
   if (offered.verbose)
-    running.AddFlag("-v,--verbose", verbosity_, "Also print messages for debugging");
+    running.AddFlag("-v,--verbose", verbosity_, "Also print details, to find out what went wrong");
   if (offered.quiet) running.AddFlag("-q,--quiet", quiet_, "Print only warnings and errors");
 }
 

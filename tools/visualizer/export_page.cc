@@ -67,7 +67,8 @@ Result<ExportFacts> ExportPage(PageScene& scene, const fs::path& folder, size_t 
                                   folder.string()));
   if (PageFiles().empty())
     return OutputError(
-        "this lfvisualizer was built without its page: Node.js and npm were missing");
+        "this lfvisualizer was built without its page, because Node.js and npm were missing: "
+        "install them, and build it again");
   Exporter exporter(scene, folder);
   PathDraft& draft = *scene.first_draft();
   const std::string base = fmt::format("path/{}/", draft.id);

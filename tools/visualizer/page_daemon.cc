@@ -240,8 +240,8 @@ Result<void> PageDaemon::Start(int socket) {
     parts_->news = std::thread([this] { parts_->streams.Run(); });
   } catch (const std::exception&) {
     return OutputError(
-        "the page cannot be served: the system starts no more threads: end "
-        "other programs, or raise the limit of processes (ulimit -u)");
+        "the page cannot be served, because the system starts no more threads: end other programs, "
+        "or raise the limit of processes (ulimit -u)");
   }
   parts_->daemon =
       MHD_start_daemon(kMode, 0, nullptr, nullptr, Parts::OnRequest, parts_.get(),       //
@@ -254,7 +254,9 @@ Result<void> PageDaemon::Start(int socket) {
                        MHD_OPTION_NOTIFY_CONNECTION, Parts::OnConnection, parts_.get(),  //
                        MHD_OPTION_END);
   if (parts_->daemon == nullptr)
-    return OutputError("the page cannot be served: the machine has no thread or memory left");
+    return OutputError(
+        "the page cannot be served, because the machine has no thread or memory left: end other "
+        "programs");
   return {};
 }
 
@@ -262,8 +264,9 @@ void PageDaemon::HangUpLate() { parts_->waiting.HangUpLate(); }
 
 void PageDaemon::Stop() {
   parts_->is_ending = true;
-  // libmicrohttpd must not be stopped while a connection is suspended. Each thread resumes its own
-  // connection when it ends; streams are no longer suspended, because their board is closed.
+  // libmicrohttpd must not be stopped while a connection is suspended. Each thread that makes an
+  // answer resumes its connection when it ends. The connections of event streams are no longer
+  // suspended after `news` has ended, which it does because the event board is closed.
   parts_->threads.Stop();
   if (parts_->news.joinable()) parts_->news.join();
   if (parts_->daemon != nullptr) MHD_stop_daemon(std::exchange(parts_->daemon, nullptr));

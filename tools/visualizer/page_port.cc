@@ -31,8 +31,8 @@ Result<PagePort> ListenOnThisMachine(int port) {
       ::getsockname(opened.socket, reinterpret_cast<sockaddr*>(&address), &size) != 0) {
     if (opened.socket >= 0) ::close(opened.socket);
     return OutputError(
-        fmt::format("--serve {}: the port cannot be opened; another program may use it. --serve 0 "
-                    "uses any free port",
+        fmt::format("--serve {}: the port cannot be opened, perhaps because another program uses "
+                    "it: give another port, or --serve 0 for any free port",
                     port));
   }
   opened.port = ntohs(address.sin_port);

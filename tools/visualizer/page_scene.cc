@@ -43,9 +43,10 @@ Result<void> PageScene::OpenPackages() {
   for (const std::string& name : arguments_.packages) {
     LF_ASSIGN_OR_RETURN(Package read, ReadPackage(name));
     if (read.whole.image_count != light_field_.size())
-      return InputError(fmt::format("{}: belongs to a light field of {} LF images, but {} has {}",
-                                    name, read.whole.image_count, arguments_.light_field,
-                                    light_field_.size()));
+      return InputError(fmt::format(
+          "{}: was made from a light field of {} LF images, but {} has {}: give the light field "
+          "of the package",
+          name, read.whole.image_count, arguments_.light_field, light_field_.size()));
     if (HashOfCameras(read.path) != first_draft_->cameras_hash) {
       packages_note_ = fmt::format(
           "{} was made for another path than {}: packages are ignored. Make new ones with "

@@ -28,7 +28,9 @@ constexpr milliseconds kBetweenLooks(400);
 Result<std::string> MakeToken() {
   std::array<unsigned char, 16> bytes;
   if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
-    return OutputError("the system provides no random numbers for the secret in the address");
+    return OutputError(
+        "the page cannot be served, because the system provides no random numbers for the secret "
+        "in its address");
   std::string token;
   for (const unsigned char byte : bytes) token += fmt::format("{:02x}", byte);
   return token;
@@ -89,8 +91,8 @@ PageServer::~PageServer() = default;
 Result<std::unique_ptr<PageServer>> PageServer::Open(PageScene& scene, int port) {
   if (FindPageFile("index.html") == nullptr)
     return OutputError(
-        "this lfvisualizer was built without its page: Node.js and npm were missing. "
-        "--text works");
+        "this lfvisualizer was built without its page, because Node.js and npm were missing: "
+        "install them, and build it again, or use --text");
   LF_ASSIGN_OR_RETURN(std::string token, MakeToken());
   LF_ASSIGN_OR_RETURN(const PagePort listening, ListenOnThisMachine(port));
   auto parts = std::make_unique<Parts>(scene, PageDoor{listening.port, token}, listening.socket);

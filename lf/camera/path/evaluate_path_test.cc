@@ -220,8 +220,10 @@ TEST(Path, TheFocusPointLiesInFrontOfTheLens) {
 TEST(Path, ABreathingLensFocusesBeyondItsFocalLength) {
   TestPath path;
   path.focus = "focus_distance_mm: 100, focus_distance_speed_mm: -50, breathing: true";
-  EXPECT_NE(path.Error().find("frame 11 (1 s): focus distance 0.05 must exceed the focal length"),
-            std::string::npos)
+  EXPECT_NE(
+      path.Error().find("frame 11 (1 s): the focus distance is 0.05, expected more than the focal "
+                        "length"),
+      std::string::npos)
       << path.Error();
 }
 

@@ -138,16 +138,16 @@ Error ErrorAt(std::string_view name, const YAML::Exception& error, std::string_v
 // comment.
 Result<void> CheckBounds(std::string_view text, std::string_view name) {
   if (text.size() > kMaxYamlBytes)
-    return InputError(
-        fmt::format("{}: {} bytes; a camera path has at most {}: split it, or give fewer keyframes",
-                    name, text.size(), kMaxYamlBytes));
+    return InputError(fmt::format(
+        "{}: has {} bytes, but a camera path has at most {}: split it, or give fewer keyframes",
+        name, text.size(), kMaxYamlBytes));
   const auto mark_count = static_cast<size_t>(std::count_if(text.begin(), text.end(), [](char c) {
     return std::string_view("[]{},:-?&*!|>%\"'").find(c) != std::string_view::npos;
   }));
   if (mark_count > kMaxYamlMarks)
     return InputError(
-        fmt::format("{}: {} brackets, commas and other marks of YAML; a camera path has at most "
-                    "{}: split it, or give fewer keyframes",
+        fmt::format("{}: has {} brackets, commas and other marks of YAML, but a camera path has at "
+                    "most {}: split it, or give fewer keyframes",
                     name, mark_count, kMaxYamlMarks));
   return {};
 }
@@ -163,7 +163,8 @@ Result<YamlNodePtr> ParseYaml(std::string_view text, std::string_view name) {
     while (parser.HandleNextDocument(builder)) {
     }
     if (YamlNodePtr root = builder.TakeRoot()) return root;
-    return InputError(fmt::format("{}:1:1: the file is empty", name));
+    return InputError(fmt::format(
+        "{}:1:1: the file is empty: expected a camera path (doc/formats/path.md)", name));
   } catch (const Rejected& error) {
     return ErrorAt(name, error, error.msg);
   } catch (const YAML::Exception& error) {

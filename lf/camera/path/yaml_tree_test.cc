@@ -42,7 +42,8 @@ TEST(YamlTree, AnAliasIsItsAnchorsValue) {
 TEST(YamlTree, SaysWhereAnErrorIs) {
   EXPECT_TRUE(ErrorOf("a: [1, 2\nb: 3\n").starts_with("p.yaml:2:2: not YAML: "));
   EXPECT_TRUE(ErrorOf("a: 1\n\tb: 3\n").starts_with("p.yaml:2:"));
-  EXPECT_EQ(ErrorOf(""), "p.yaml:1:1: the file is empty");
+  EXPECT_EQ(ErrorOf(""),
+            "p.yaml:1:1: the file is empty: expected a camera path (doc/formats/path.md)");
   EXPECT_EQ(ErrorOf("a: 1\n---\nb: 1\n"),
             "p.yaml:2:1: a second document starts here; a path is one document");
   EXPECT_EQ(ErrorOf("[a]: 1\n"), "p.yaml:1:1: expected a word as key");

@@ -30,7 +30,8 @@ Result<std::vector<FrameId>> ReadAll(const fs::path& path, size_t last_frame) {
     fault = parsed.error().message;
   }
   return InputError(
-      fmt::format("{}: {}; remove it, and call lfsubmit --finish again", path.string(), fault));
+      fmt::format("{}: is damaged: {}; remove the file, and call lfsubmit --finish again",
+                  path.string(), fault));
 }
 
 size_t LastFrame(const ClusterJob& job) {
@@ -73,14 +74,14 @@ Result<size_t> AskToFinish(const ClusterJob& job, const std::string& frames_text
                      [&](const JobPackage& one) { return Has(one.frames, frame); });
     if (package == job.packages.end())
       return UsageError(fmt::format(
-          "--finish: frame {} is in none of the job's packages: give only frames of the job",
+          "--finish: frame {} is not in any package of the job: give only frames of the job",
           frame.value));
     if (IsFinished(job, frame)) continue;
     ++unfinished_count;
     if (!HasRays(job, *package, frame))
       return UsageError(fmt::format(
-          "--finish: frame {} has no rays yet: {} was not begun, or has written no checkpoint of "
-          "the frame; wait for {}/partial/{}/frame_{:04}.plate",
+          "--finish: frame {} cannot be finished yet, because {} has not written a checkpoint with "
+          "rays of this frame: try again when {}/partial/{}/frame_{:04}.plate exists",
           frame.value, package->name, job.output_folder.string(), package->name, frame.value));
   }
   if (unfinished_count == 0) return unfinished_count;

@@ -190,8 +190,8 @@ Result<ClusterJob> ParseJob(std::string_view text, const std::string& name) {
     if (fault.empty()) fault = FaultOf(job);
   }
   if (!fault.empty())
-    return InputError(
-        fmt::format("{}: is no job of lfsubmit: {}; remove it to submit anew", name, fault));
+    return InputError(fmt::format(
+        "{}: is not a job file of lfsubmit: {}; remove the file to submit a new job", name, fault));
   job.output_folder = output;
   job.working_folder = working;
   job.renderer = renderer;
@@ -211,11 +211,10 @@ Result<void> CheckMayRun(const ClusterJob& job) {
     return InputError(
         fmt::format("{}: cannot be read: {}", job.File().string(), std::strerror(errno)));
   if (status.st_uid == ::geteuid() || status.st_uid == 0) return {};
-  return UsageError(
-      fmt::format("{}: belongs to another user (id {}), and the program and options that it "
-                  "names would run "
-                  "as you: submit the packages anew, into a folder of your own",
-                  job.File().string(), status.st_uid));
+  return UsageError(fmt::format(
+      "{}: belongs to the user with id {}; the program that this file names would run with "
+      "your rights: submit the packages again, into a folder of your own",
+      job.File().string(), status.st_uid));
 }
 
 Result<ClusterJob> ReadJob(const fs::path& output_folder) {
@@ -223,8 +222,8 @@ Result<ClusterJob> ReadJob(const fs::path& output_folder) {
   std::error_code ignored;
   if (!fs::exists(file, ignored))
     return InputError(fmt::format(
-        "{}: no job was submitted into this folder (there is no cluster/job.json): expected the "
-        "DIR of lfsubmit PACKAGES... -o DIR",
+        "{}: contains no job (there is no cluster/job.json): give the DIR of an earlier lfsubmit "
+        "PACKAGES... -o DIR",
         output_folder.string()));
   LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(file, kJobLimit_bytes));
   LF_ASSIGN_OR_RETURN(ClusterJob job, ParseJob(text, file.string()));

@@ -63,8 +63,8 @@ Result<FileLock> TakeJob(const ClusterJob& job) {
   LF_RETURN_IF_ERROR(CreateFolder(job.Folder()));
   Result<FileLock> lock = FileLock::Take(job.EngineLock());
   if (lock || !FileLock::IsHeld(job.EngineLock())) return lock;
-  return OutputError(fmt::format("{}, or lfsubmit --cancel {}", lock.error().message,
-                                 ShellWord(job.output_folder.string())));
+  return OutputError(fmt::format("{}, or end its job with lfsubmit --cancel {}",
+                                 lock.error().message, ShellWord(job.output_folder.string())));
 }
 
 Result<void> MakeRoomForJob(const ClusterJob& job, bool overwrite) {
@@ -74,14 +74,15 @@ Result<void> MakeRoomForJob(const ClusterJob& job, bool overwrite) {
   const Result<ClusterJob> before = ReadJob(job.output_folder);
   if (!overwrite && !before) return before.error();
   if (!overwrite)
-    return UsageError(
-        fmt::format("{}: a job was submitted there already: continue it with lfsubmit --resume {}, "
-                    "show its progress with --status, or remove it and its frames with --overwrite "
-                    "(to submit anew and keep the frames, remove {}/cluster)",
-                    job.output_folder.string(), folder, folder));
+    return UsageError(fmt::format(
+        "{}: contains a job already: continue it with lfsubmit --resume {}, or remove it and "
+        "its frames with --overwrite (to remove the job and keep its frames, remove "
+        "{}/cluster)",
+        job.output_folder.string(), folder, folder));
   if (before && HasTasksAtWork(LookAtJob(*before)))
-    return UsageError(fmt::format("{}: is still running: end it with lfsubmit --cancel {} first",
-                                  job.output_folder.string(), folder));
+    return UsageError(fmt::format(
+        "{}: the job in this folder is still running: end it with lfsubmit --cancel {} first",
+        job.output_folder.string(), folder));
   for (const JobPackage& package : job.packages) RemoveFrames(job, package);
   RemoveJob(job);
   return {};
@@ -142,10 +143,10 @@ Result<void> CancelJob(const ClusterJob& job, const std::atomic<bool>& stop) {
   const std::string again =
       fmt::format("continue with lfsubmit --resume {}", ShellWord(job.output_folder.string()));
   if (IsAtWork(status))
-    return OutputError(
-        fmt::format("{} packages are still running: they end as soon as they see {}; lfsubmit "
-                    "--status shows whether they have ended",
-                    status.Count(TaskPhase::kRunning), job.CancelFile().string()));
+    return OutputError(fmt::format(
+        "{} packages are still running: they end when they notice the file {}; lfsubmit "
+        "--status shows whether they have ended",
+        status.Count(TaskPhase::kRunning), job.CancelFile().string()));
   LogInfo("cancelled: {} of {} frames are done, and the state of the others is kept; {}",
           status.frames_done(), status.frame_total(), again);
   return {};

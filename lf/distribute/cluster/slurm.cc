@@ -31,8 +31,8 @@ Result<std::string> Ask(const std::vector<std::string>& words) {
   const Result<CommandAnswer> answer = RunCommand(words, kPatience_s);
   if (!answer)
     return OutputError(answer.error().message +
-                       "; the engine slurm needs Slurm's programs (Debian: apt-get install "
-                       "slurm-client), on a machine that may submit");
+                       "; --engine slurm needs Slurm's programs (Debian: apt-get install "
+                       "slurm-client), on a machine from which jobs may be submitted");
   if (answer->exit_code != 0)
     return OutputError(fmt::format("{} failed with exit code {}: {}", words.front(),
                                    answer->exit_code, Complaints(*answer)));
@@ -74,8 +74,9 @@ Result<std::string> JobId(const std::string& answer) {
   constexpr size_t kMostDigits = 10, kShown = 80;  // Slurm's job ids have 32 bits
   const std::string id = answer.substr(0, answer.find_first_not_of("0123456789"));
   if (id.empty() || id.size() > kMostDigits)
-    return OutputError(fmt::format("sbatch: expected the number of a job, found \"{}\"",
-                                   answer.substr(0, kShown)));
+    return OutputError(
+        fmt::format("sbatch: printed \"{}\", expected the number of the submitted job",
+                    answer.substr(0, kShown)));
   return id;
 }
 
@@ -164,10 +165,10 @@ Result<void> SubmitToSlurm(ClusterJob* job, const std::vector<size_t>& numbers) 
   // A line break in a path would end a comment or #SBATCH line, even inside quotes.
   for (const fs::path& path : {job->output_folder, job->submitter})
     if (const std::string text = path.string(); OneLine(text) != text)
-      return UsageError(
-          fmt::format("{}: a batch script cannot hold a name with line breaks or other control "
-                      "characters: give the folder another name",
-                      text));
+      return UsageError(fmt::format(
+          "{}: contains a line break or another control character, which batch scripts of "
+          "Slurm cannot contain: give the folder another name",
+          text));
   LF_RETURN_IF_ERROR(WriteFileAtomically(packages, PackagesScript(*job)));
   LF_RETURN_IF_ERROR(WriteFileAtomically(finish, FinishingScript(*job)));
   if (!numbers.empty()) {
@@ -179,13 +180,14 @@ Result<void> SubmitToSlurm(ClusterJob* job, const std::vector<size_t>& numbers) 
     if (!answer && job->slurm_array_ids.empty()) fs::remove(job->File(), ignored);
     if (!answer && answer.error().message.find("array") != std::string::npos)
       return OutputError(fmt::format(
-          "{} (the array is {}; scontrol show config | grep MaxArraySize tells the largest number "
-          "allowed, plus one: make fewer packages)",
+          "{} (the packages are the tasks {} of a job array; their numbers must be less than "
+          "MaxArraySize, which scontrol show config prints: make fewer packages)",
           answer.error().message, array));
     if (!answer)
-      return OutputError(answer.error().message +
-                         " (--threads, --memory, --time-limit and --sbatch say what each task asks "
-                         "for)");
+      return OutputError(
+          answer.error().message +
+          " (if a task asks for too much, change --threads, --memory, --time-limit or "
+          "--sbatch)");
     LF_ASSIGN_OR_RETURN(std::string id, JobId(*answer));
     job->slurm_array_ids.push_back(std::move(id));
     LF_RETURN_IF_ERROR(WriteJob(*job));

@@ -97,11 +97,12 @@ Result<TaskState> ParseTaskState(std::string_view text, const std::string& name)
                            TaskPhase::kDone, TaskPhase::kFailed});
     if (known) state.phase = *known;
     if (fault.empty() && !known)
-      fault = fmt::format("\"phase\": expected the name of a phase, found \"{}\"", phase);
+      fault = fmt::format(
+          "\"phase\": expected waiting, running, interrupted, done or failed, found \"{}\"", phase);
   }
   if (!fault.empty())
-    return InputError(fmt::format(
-        "{}: is no state of a task: {}; remove it (rendered frames are kept)", name, fault));
+    return InputError(
+        fmt::format("{}: is damaged: {}; remove the file (rendered frames are kept)", name, fault));
   return state;
 }
 

@@ -29,9 +29,9 @@ Result<bool> IsThere(const fs::path& path) {
   std::error_code error;
   if (!fs::exists(fs::symlink_status(path, error))) return false;
   if (IsPackedStore(path)) return true;
-  return UsageError(
-      fmt::format("{}: exists already, and is no packed store: give another name, or remove it",
-                  path.string()));
+  return UsageError(fmt::format(
+      "{}: exists already, and is not a packed store: give another name, or remove the file",
+      path.string()));
 }
 
 PackedStorePlan PlanOf(const CompressSource& source, const CompressOptions& options,
@@ -182,8 +182,8 @@ Result<void> Compressor::CheckFiles(const PackedStoreWriter& writer) {
     const std::lock_guard lock(mutex_);
     if (!error_)
       error_ = InputError(fmt::format(
-          "{}: has {} bytes, but had {} when it was encoded for the unfinished {}: it was changed, "
-          "or belongs to another light field; --overwrite starts the store again",
+          "{}: has {} bytes, but had {} when it was encoded into the unfinished {}: restore the "
+          "file, or start the store again with --overwrite",
           light_field.ImagePath(id).string(), now, then, options_.store.string()));
   });
   if (error_) return *error_;
@@ -219,8 +219,9 @@ Result<void> Compressor::Write(FileLock lock) {
   }
   if (report_.skipped.size() == source_.light_field.size()) {
     writer.Abandon();
-    return InputError(fmt::format("none of the {} LF images can be read; the first: {}",
-                                  report_.skipped.size(), report_.skipped.front().reason));
+    return InputError(fmt::format(
+        "none of the {} LF images can be read, so that no store was written; the first: {}",
+        report_.skipped.size(), report_.skipped.front().reason));
   }
   return writer.Finish();
 }
@@ -265,13 +266,14 @@ Result<void> Compressor::CheckTarget() {
   report_.was_there = is_there && options_.verify;
   if (report_.was_there) return {};
   if (is_there)
-    return UsageError(fmt::format("{}: exists already: --overwrite replaces it, --verify checks it",
-                                  store.string()));
-  if (is_unfinished)
     return UsageError(
-        fmt::format("{}: an unfinished store of this name exists: --resume continues it, "
-                    "--overwrite starts it again",
+        fmt::format("{}: exists already: replace it with --overwrite, or check it with --verify",
                     store.string()));
+  if (is_unfinished)
+    return UsageError(fmt::format(
+        "{}: exists already as an unfinished store: continue it with --resume, or start "
+        "it again with --overwrite",
+        store.string()));
   return {};
 }
 

@@ -28,9 +28,10 @@ struct Needed {
 // Refuses packed stores, because lossy compression would be applied twice.
 Result<void> CheckNotPacked(const LightField& light_field) {
   if (!HoldsPackedStore(light_field)) return {};
-  return UsageError(
-      fmt::format("{}: is a packed store already: compress the light field from which it was made",
-                  light_field.folder.string()));
+  return UsageError(fmt::format(
+      "{}: is a packed store, which cannot be compressed again: give the light field that it was "
+      "made from",
+      light_field.folder.string()));
 }
 
 }  // namespace
@@ -50,9 +51,10 @@ Result<CompressSource> SourceOfPackages(std::span<const Package> packages, bool 
   for (size_t p = 0; p < packages.size(); ++p) {
     const Package& package = packages[p];
     if (package.whole != packages.front().whole)
-      return UsageError(
-          fmt::format("{} and {} are of different light fields: compress them into two stores",
-                      packages.front().name, package.name));
+      return UsageError(fmt::format(
+          "packages {} and {} were made from different light fields: compress them into two "
+          "stores",
+          packages.front().name, package.name));
     for (size_t i = 0; i < package.images.size(); ++i) {
       const PackageImage& image = package.images[i];
       if (image.ray_count == 0) continue;  // a neighbour, of which no pixel is read
@@ -61,7 +63,9 @@ Result<CompressSource> SourceOfPackages(std::span<const Package> packages, bool 
     }
   }
   if (needed.empty())
-    return UsageError("no frame of the packages uses an LF image: there is nothing to compress");
+    return UsageError(
+        "the packages need no LF image, so that there is nothing to compress: give packages whose "
+        "frames see LF images");
 
   LF_RETURN_IF_ERROR(CheckNotPacked(packages.front().light_field));
   CompressSource source;

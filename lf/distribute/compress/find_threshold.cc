@@ -28,7 +28,7 @@ Result<double> FindThreshold(const CompressSource& source, const CodecSettings& 
                              "interrupted during the search for the threshold of --target-psnr"};
   if (settings.profile == CodecProfile::kLossless)
     return UsageError(
-        "--target-psnr cannot be used with --profile lossless, which loses nothing: leave one of "
+        "--target-psnr cannot be used with --profile lossless, which has no loss: leave one of "
         "them out");
   const LightField& light_field = source.light_field;
   std::vector<Result<RecordedImage>> images(std::min(kLookedAt, light_field.size()),
@@ -54,15 +54,16 @@ Result<double> FindThreshold(const CompressSource& source, const CodecSettings& 
   };
   if (is_interrupted()) return interrupted;
   if (std::none_of(images.begin(), images.end(), [](const auto& image) { return bool(image); }))
-    return InputError(fmt::format("none of {} LF images can be read; the first: {}", images.size(),
-                                  images.front().error().message));
+    return InputError(fmt::format(
+        "--target-psnr: none of the {} LF images that were tried can be read; the first: {}",
+        images.size(), images.front().error().message));
   const double best = psnr_at(ThresholdOf(0));
   if (is_interrupted()) return interrupted;
   if (best < psnr_db)
-    return UsageError(
-        fmt::format("--target-psnr {}: the best quality of these settings is {:.1f} dB: give a "
-                    "lower PSNR, or --profile lossless",
-                    psnr_db, best));
+    return UsageError(fmt::format(
+        "--target-psnr {}: cannot be reached, because these options give at most {:.1f} "
+        "dB: give a lower PSNR, or --profile lossless",
+        psnr_db, best));
   int good = 0, bad = kSteps;
   while (bad - good > 1) {
     const int middle = (good + bad) / 2;

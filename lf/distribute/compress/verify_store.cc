@@ -23,10 +23,10 @@ Result<void> CheckStoreFacts(const CompressSource& source, const VerifyOptions& 
         "{}: is a packed store of another light field: give the light field that it was made from",
         options.store.string()));
   if (const std::string asked = NameOf(options.settings); facts.codec != asked)
-    return InputError(
-        fmt::format("{}: was made with the settings {}, but the options say {}: give the options "
-                    "that it was made with",
-                    options.store.string(), facts.codec, asked));
+    return InputError(fmt::format(
+        "{}: was made with the encoding \"{}\", but the options ask for \"{}\": give the "
+        "options that the store was made with",
+        options.store.string(), facts.codec, asked));
   return CheckIsOfPlan(options.store, source.light_field, options.plan, options.any_shards);
 }
 
@@ -60,7 +60,7 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
     const PixelRect rect = RectToRecord(light_field, id, source.rects[i]);
     const Result<RecordedImage> image = ReadRecordedImage(light_field, id, rect);
     if (codes[i].bytes == 0) {
-      if (image) return InputError("is not in the store, but its file can be read");
+      if (image) return InputError("the image can be read, but is not in the store");
       return {};
     }
     LF_RETURN_IF_ERROR(image);
@@ -72,7 +72,7 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
     LF_RETURN_IF_ERROR(DecodeImage(bytes->code, &decoded));
     if (codes[i].rect != again.rect || codes[i].values != again.values ||
         bytes->code != again.code || bytes->mask != again.mask)
-      return InputError("differs in the store from what its file encodes to");
+      return InputError("the encoded image in the store differs from the image file");
     const std::lock_guard lock(mutex);
     readers.push_back(std::move(reader));
     ++verified;
@@ -101,9 +101,11 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
   const auto first = static_cast<size_t>(
       std::find_if(faults.begin(), faults.end(), [](const auto& f) { return f.has_value(); }) -
       faults.begin());
-  return InputError(fmt::format("{}: {} of {} encoded images are wrong; the first: {}: {}",
-                                options.store.string(), count, light_field.size(),
-                                light_field.image_names[first], *faults[first]));
+  return InputError(fmt::format(
+      "{}: {} of {} LF images are wrong in the store; the first is {}: {}; make the store again "
+      "with --overwrite",
+      options.store.string(), count, light_field.size(), light_field.image_names[first],
+      *faults[first]));
 }
 
 uint64_t StoreBytes(const fs::path& store) {

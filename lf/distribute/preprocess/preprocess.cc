@@ -197,12 +197,13 @@ Result<void> Preprocessor::CheckOptions() const {
   LF_RETURN_IF_ERROR(CheckOpacity(light_field_.encoding, options_.mode));
   if (Rebins(options_.mode) && options_.max_image_count)
     return UsageError(
-        "--max-images cannot be used with rebinned rays, because frames share the rays of all LF "
-        "images: leave it out, or use --mode collect");
+        "--max-images cannot be used with --mode rebin or hybrid, in which all frames share the "
+        "rebinned rays of all LF images: leave it out, or use --mode collect");
   if (!Collects(options_.mode) && options_.lens_weights != LensWeights::kNone)
-    return UsageError(fmt::format(
-        "--lens-weights {}: --mode rebin collects no rays that could be weighted: leave it out",
-        NameOf(options_.lens_weights)));
+    return UsageError(
+        fmt::format("--lens-weights {} cannot be used with --mode rebin, which collects no rays to "
+                    "be weighted: leave it out",
+                    NameOf(options_.lens_weights)));
   if (options_.lens_weights == LensWeights::kArea)
     for (const FrameId frame : frames_)
       LF_RETURN_IF_ERROR(CheckHasArea(path_.Camera(frame), frame));
@@ -364,9 +365,10 @@ Result<void> Preprocessor::CountMissing(const Package& package, PackageForecast*
       report_.first_missing =
           package.light_field.ImagePath(LfImageId{static_cast<uint32_t>(i)}).string();
     if (is_missing && options_.strict)
-      return InputError(fmt::format(
-          "--strict: {}: does not exist, or is empty: restore it, or leave --strict out",
-          report_.first_missing));
+      return InputError(
+          fmt::format("--strict: {}: the file of this LF image does not exist, or is empty: "
+                      "restore it, or leave --strict out",
+                      report_.first_missing));
   }
   return {};
 }

@@ -53,8 +53,9 @@ Result<RenderRate> MeasureRate(const ImageIndex& index, const RenderCamera& fram
   if (sample.empty())
     return InputError(
         needs.images.empty()
-            ? "the frame needs no LF image"
-            : fmt::format("{}: does not exist, nor does any other of the LF images that were tried",
+            ? "the render time cannot be measured, because the frame needs no LF image"
+            : fmt::format("{}: does not exist, and neither does any other LF image that was tried: "
+                          "make the images accessible",
                           light_field.ImagePath(needs.images.front().id).string()));
   // Nothing else runs in this process, so its CPU time is the time that the pool's threads work.
   const std::clock_t lens_start = std::clock();

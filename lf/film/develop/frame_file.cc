@@ -157,7 +157,7 @@ Result<Image<uint8_t>> ReadDisplayImage(const std::filesystem::path& path) {
   return std::visit(
       [&](const auto& image) -> Result<Image<uint8_t>> {
         if (image.channels() < 3)
-          return InputError(fmt::format("{}: has {} channels, a frame has R, G and B",
+          return InputError(fmt::format("{}: has {} channels, expected at least R, G and B",
                                         path.string(), image.channels()));
         return Picture(image);
       },

@@ -89,12 +89,15 @@ Result<void> CheckVideoTarget(const fs::path& path) {
   // The video's folder must exist, because a render makes no folder but that of its frames.
   if (!fs::is_directory(folder, error))
     return OutputError(
-        fmt::format("--video {}: there is no folder {}", path.string(), folder.string()));
+        fmt::format("--video {}: the folder {} does not exist: make it, or give another name",
+                    path.string(), folder.string()));
   if (fs::exists(path, error) && !fs::is_regular_file(path, error))
-    return OutputError(fmt::format("--video {}: exists and is no file", path.string()));
+    return OutputError(
+        fmt::format("--video {}: is a folder or a device: give the name of a file", path.string()));
   if (fs::exists(path, error) && !IsEmptyOrVideo(path))
     return OutputError(fmt::format(
-        "--video {}: exists and is no video; give another name, or remove it", path.string()));
+        "--video {}: exists, and is not an mp4 video: give another name, or remove the file",
+        path.string()));
   return {};
 }
 
@@ -124,8 +127,10 @@ VideoWriter::~VideoWriter() {
 Result<std::unique_ptr<VideoWriter>> VideoWriter::Open(const fs::path& path, int width, int height,
                                                        double fps, double patience_s) {
   if (width < 2 || height < 2 || !(fps > 0 && std::isfinite(fps)))
-    return OutputError(fmt::format("{}: a video cannot have {} x {} pixels at {} frames per second",
-                                   path.string(), width, height, fps));
+    return OutputError(fmt::format(
+        "{}: a video of {} x {} pixels at {} frames per second cannot be written: expected at "
+        "least 2 x 2 pixels and more than 0 frames per second",
+        path.string(), width, height, fps));
   auto state = std::make_unique<State>();
   state->path = path;
   const fs::path unfinished =
@@ -158,7 +163,7 @@ Result<void> VideoWriter::Add(const Image<uint8_t>& picture) {
 Result<void> VideoWriter::Close() {
   if (const auto end = state_->ffmpeg->Finish(state_->patience_s); !end)
     return state_->Failure(end.error());
-  if (state_->picture_count == 0) return state_->Failure(OutputError("no picture was added"));
+  if (state_->picture_count == 0) return state_->Failure(OutputError("it has no frames"));
   return WriteAtomically(state_->path, [&](const fs::path& temporary) -> Result<void> {
     if (::rename(state_->unfinished.c_str(), temporary.c_str()) == 0) return {};
     return OutputError(fmt::format("{}: cannot be renamed: {}", state_->unfinished.string(),

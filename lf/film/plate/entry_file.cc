@@ -63,7 +63,8 @@ Result<std::unique_ptr<Source>> Source::OfFile(const fs::path& path, const Kind&
   struct stat status {};
   if (source->fd_ < 0 || ::fstat(source->fd_, &status) != 0)
     return InputError(fmt::format("{}: cannot be read: {}", source->name_, std::strerror(errno)));
-  if (!S_ISREG(status.st_mode)) return InputError(fmt::format("{}: is not a file", source->name_));
+  if (!S_ISREG(status.st_mode))
+    return InputError(fmt::format("{}: is a folder or a device, expected a file", source->name_));
   source->left_ = static_cast<uint64_t>(status.st_size);
   return source;
 }
@@ -95,8 +96,9 @@ Result<void> Source::Read(void* to, size_t size) {
     const ssize_t n = ::read(fd_, static_cast<char*>(to) + done, size - done);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0)
-      return InputError(fmt::format("{}: cannot be read: {}", name_,
-                                    n == 0 ? "became shorter" : std::strerror(errno)));
+      return InputError(
+          fmt::format("{}: cannot be read: {}", name_,
+                      n == 0 ? "the file became shorter while it was read" : std::strerror(errno)));
     done += static_cast<size_t>(n);
   }
   return {};
@@ -109,21 +111,23 @@ Error Source::Damaged(const std::string& reason) const {
 Result<Front> ReadFront(Source& source, size_t head_bytes) {
   const Kind& kind = source.kind();
   if (source.left() < head_bytes)
-    return InputError(fmt::format("{}: is no {}: {} bytes are less than its head of {}",
+    return InputError(fmt::format("{}: is not a {}: it has {} bytes, expected at least {}",
                                   source.name(), kind.noun, source.left(), head_bytes));
   Front front = {std::string(head_bytes, '\0'), {}};
   LF_RETURN_IF_ERROR(source.Read(front.head.data(), head_bytes));
   HeadBegin begin;
   std::memcpy(&begin, front.head.data(), sizeof(begin));
   if (std::string_view(begin.magic, sizeof(begin.magic)) != kind.magic)
-    return InputError(fmt::format("{}: is no {}: it does not begin with \"{}\"", source.name(),
+    return InputError(fmt::format("{}: is not a {}: it does not begin with \"{}\"", source.name(),
                                   kind.noun, kind.magic.substr(0, kind.magic.size() - 1)));
   if (begin.version != kind.version)
-    return InputError(fmt::format("{}: is a {} of version {}, this program reads version {}",
-                                  source.name(), kind.noun, begin.version, kind.version));
+    return InputError(fmt::format(
+        "{}: is a {} of version {}, but this program reads version {}: use the program that "
+        "wrote it, or render again",
+        source.name(), kind.noun, begin.version, kind.version));
   if (begin.text_bytes > PlateReader::kMaxTextBytes)
-    return source.Damaged(fmt::format("{} bytes of text, {} are allowed", begin.text_bytes,
-                                      PlateReader::kMaxTextBytes));
+    return source.Damaged(fmt::format("its head states {} bytes of text, expected at most {}",
+                                      begin.text_bytes, PlateReader::kMaxTextBytes));
   std::string text(begin.text_bytes, '\0');
   LF_RETURN_IF_ERROR(source.Read(text.data(), text.size()));
   uint64_t hash = 0;
@@ -133,8 +137,8 @@ Result<Front> ReadFront(Source& source, size_t head_bytes) {
   // The checksum is right, so that any fault from here on was in the file when it was written.
   std::optional<PlateEntries> entries = ParseEntries(text);
   if (!entries)
-    return InputError(
-        fmt::format("{}: its text is not made of lines \"key: value\"", source.name()));
+    return InputError(fmt::format("{}: the text in its head has lines that are not \"key: value\"",
+                                  source.name()));
   front.entries = *std::move(entries);
   return front;
 }

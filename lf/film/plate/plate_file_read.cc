@@ -46,24 +46,24 @@ Result<void> PlateReader::ReadHead() {
   std::memcpy(&head, front.head.data(), sizeof(head));
   if (head.width < 1 || head.width > kMaxSide || head.height < 1 || head.height > kMaxSide ||
       (head.channels != SensorPlate::kChannels && head.channels != SensorPlate::kChannels + 1))
-    return InputError(
-        fmt::format("{}: {} x {} elements of {} channels; expected 3 or 4 channels and sides up to "
-                    "{}",
-                    source_->name(), head.width, head.height, head.channels, kMaxSide));
+    return InputError(fmt::format(
+        "{}: states {} x {} elements with {} channels, expected 3 or 4 channels, and width and "
+        "height from 1 to {}",
+        source_->name(), head.width, head.height, head.channels, kMaxSide));
   const uint64_t most_rows = 1 + kChunkWords / (uint64_t{head.width} * head.channels);
   if (head.rows_per_chunk < 1 || head.rows_per_chunk > most_rows)
-    return InputError(fmt::format("{}: chunks of {} rows; expected 1 to {}", source_->name(),
+    return InputError(fmt::format("{}: states chunks of {} rows, expected 1 to {}", source_->name(),
                                   head.rows_per_chunk, most_rows));
   // Refuses a file that is too short for the size of plate that its head states, before anybody
   // allocates a plate of this size.
   const uint64_t least = uint64_t{(head.height - 1) / head.rows_per_chunk + 1} * sizeof(ChunkHead);
   if (head.wide_count > source_->left() / sizeof(WideWord) ||
       least + head.wide_count * sizeof(WideWord) > source_->left())
-    return InputError(
-        fmt::format("{}: is truncated: {} bytes follow its head, {} x {} elements and {} wide "
-                    "words need more; {}",
-                    source_->name(), source_->left(), head.width, head.height, head.wide_count,
-                    kKind.if_broken));
+    return InputError(fmt::format(
+        "{}: is truncated: {} bytes follow its head, but {} x {} elements and {} large sums "
+        "need more; {}",
+        source_->name(), source_->left(), head.width, head.height, head.wide_count,
+        kKind.if_broken));
   entries_ = std::move(front.entries);
   width_ = static_cast<int>(head.width);
   height_ = static_cast<int>(head.height);

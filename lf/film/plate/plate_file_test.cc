@@ -151,7 +151,7 @@ TEST_F(PlateFile, TruncatedAnywhereItIsRefused) {
   const std::string bytes = BytesOf(testing::NoisePlate(40, 30, 7, SensorPlate::kMaxCount, true));
   EXPECT_EQ(ErrorOf(bytes), "");
   for (size_t size = 0; size < bytes.size(); size += size < 200 ? 1 : 97)
-    ExpectError(bytes.substr(0, size), size < 40 ? "is no plate" : "is truncated");
+    ExpectError(bytes.substr(0, size), size < 40 ? "is not a plate" : "is truncated");
   ExpectError(bytes.substr(0, bytes.size() - 1), "is truncated");
   ExpectError(bytes + "x", "1 bytes follow its end");
 }
@@ -170,7 +170,8 @@ TEST_F(PlateFile, WhatItSaysIsCheckedBeforeAnythingIsAllocated) {
   const std::string bytes = BytesOf(testing::NoisePlate(20, 15, 7, SensorPlate::kMaxCount, true));
   ExpectError(WithHead(bytes, [](Head* head) { head->version = 7; }), "version 7");
   ExpectError(WithHead(bytes, [](Head* head) { head->width = 0; }), "0 x 15");
-  ExpectError(WithHead(bytes, [](Head* head) { head->height = 65537; }), "sides up to 65536");
+  ExpectError(WithHead(bytes, [](Head* head) { head->height = 65537; }),
+              "width and height from 1 to 65536");
   ExpectError(WithHead(bytes, [](Head* head) { head->height = 65536, head->rows_per_chunk = 1; }),
               "20 x 65536");
   ExpectError(WithHead(bytes, [](Head* head) { head->width = 65536; }), "chunks of 1092 rows");
@@ -178,7 +179,7 @@ TEST_F(PlateFile, WhatItSaysIsCheckedBeforeAnythingIsAllocated) {
   ExpectError(WithHead(bytes, [](Head* head) { head->rows_per_chunk = 0; }), "chunks of 0 rows");
   ExpectError(WithHead(bytes, [](Head* head) { head->rows_per_chunk = 1u << 31; }), "rows");
   ExpectError(WithHead(bytes, [](Head* head) { head->wide_count = uint64_t{1} << 60; }),
-              "wide words");
+              "large sums");
   std::string long_text = bytes;
   const uint32_t text_bytes = 1u << 31;
   std::memcpy(long_text.data() + 12, &text_bytes, sizeof(text_bytes));
@@ -230,7 +231,7 @@ TEST_F(PlateFile, EntriesOfAnotherFormAreRefused) {
 
 TEST_F(PlateFile, FilesThatAreNoneAreErrors) {
   EXPECT_EQ(PlateReader::Open(folder_ / "none").error().kind, ErrorKind::kInput);
-  EXPECT_NE(PlateReader::Open(folder_).error().message.find("is not a file"), std::string::npos);
+  EXPECT_NE(PlateReader::Open(folder_).error().message.find("expected a file"), std::string::npos);
   ThreadPool pool(1);
   EXPECT_EQ(WritePlate(folder_ / "no" / "x", {}, SensorPlate(1, 1), pool).error().kind,
             ErrorKind::kOutput);

@@ -91,11 +91,13 @@ Result<size_t> ExcludeImages(std::span<const std::string> patterns, LightField* 
     if (!set.Matches(light_field->image_names[i])) kept.push_back(i);
   if (const std::string* unused = set.FirstUnused())
     return InputError(
-        fmt::format("--exclude: \"{}\" names none of the {} images; the first is called {}",
+        fmt::format("--exclude: \"{}\" matches none of the {} image names, of which the first is "
+                    "{}: correct the name or pattern",
                     *unused, light_field->size(), light_field->image_names[0]));
   if (kept.empty())
     return InputError(
-        fmt::format("--exclude: all {} images are excluded: a light field needs at least one",
+        fmt::format("--exclude: the names and patterns match all {} images: exclude fewer, because "
+                    "a light field needs at least one",
                     light_field->size()));
   const size_t removed = light_field->size() - kept.size();
   const bool has_masks = !light_field->mask_names.empty();

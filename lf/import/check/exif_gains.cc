@@ -38,14 +38,14 @@ Result<void> CheckAllAreStated(std::span<const StatedExposure> stated,
   if (!first) return {};
   if (!first->fault.empty())
     return InputError(
-        fmt::format("--gain-from-exif: {}; {} of {} images do not state their exposure: leave them "
-                    "out with --exclude",
+        fmt::format("--gain-from-exif: {}; {} of {} images do not state their exposure: leave "
+                    "these images out (--exclude)",
                     first->fault, fault_count, stated.size()));
   return InputError(fmt::format(
-      "--gain-from-exif: {}: states no {}; expected exposure time, f-number and ISO sensitivity as "
-      "Exif data of a JPEG, TIFF or PNG file, or in a camera raw file ({} of {} images lack some): "
-      "copy them from the original photographs, state lf_gain in transforms.json, or estimate it "
-      "with --match-exposure",
+      "--gain-from-exif: {}: states no {} ({} of {} images lack such values); expected exposure "
+      "time, f-number and ISO sensitivity in the Exif data of a JPEG, TIFF or PNG file, or in a "
+      "camera raw file: copy the Exif data from the original photographs, state lf_gain in "
+      "transforms.json, or estimate it with --match-exposure",
       light_field.ImagePath(first->id).string(), MissingOf(first->facts, wants_f_number),
       fault_count, stated.size()));
 }
@@ -91,11 +91,11 @@ Result<ExifGains> GainFromExif(std::span<const StatedExposure> stated, LightFiel
   for (uint32_t i = 0; i < stated.size(); ++i) {
     const auto gain = static_cast<float>(reference / LightOf(stated[i].facts));
     if (!(gain >= kLeastGain && gain <= kMostGain))
-      return InputError(
-          fmt::format("--gain-from-exif: {}: its exposure is {:.3g} times that of {}; expected a "
-                      "factor from 1e-6 to 1e6: leave it out with --exclude",
-                      light_field->ImagePath(LfImageId{i}).string(), 1 / gain,
-                      light_field->ImagePath(found.reference).string()));
+      return InputError(fmt::format(
+          "--gain-from-exif: {}: its exposure is {:.3g} times that of {}; expected a factor from "
+          "1e-6 to 1e6: leave the first of these two images out (--exclude)",
+          light_field->ImagePath(LfImageId{i}).string(), 1 / gain,
+          light_field->ImagePath(found.reference).string()));
     gains.push_back(gain);
   }
   for (size_t i = 0; i < gains.size(); ++i) light_field->cameras[i].gain = gains[i];

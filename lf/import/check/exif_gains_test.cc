@@ -68,13 +68,13 @@ TEST(ExifGains, ALensThatTellsNoFNumberIsTakenToKeepIt) {
   EXPECT_FALSE(found.has_f_numbers);
   EXPECT_EQ(Gains(field), (std::vector<float>{0.25F, 1}));
   ExpectError(Stated({{0.04, {}, 100}, {0.01, 4, 100}}),
-              {"capture/0.jpg", "states no f-number;", "1 of 2"});
+              {"capture/0.jpg", "states no f-number (", "1 of 2"});
 }
 
 TEST(ExifGains, AnImageWithoutExposureIsNamed) {
   ExpectError(
       Stated({{0.04, 4, 100}, {0.04, 4, {}}, {}}),
-      {"capture/1.jpg", "states no ISO sensitivity;", "2 of 3", "Exif", "--match-exposure"});
+      {"capture/1.jpg", "states no ISO sensitivity (", "2 of 3", "Exif", "--match-exposure"});
   ExpectError(Stated({{0.04, 4, 100}, {}}),
               {"capture/1.jpg", "no exposure time and no f-number and no ISO sensitivity"});
   std::vector<StatedExposure> stated = Stated({{0.04, 4, 100}, {0.04, 4, 100}});

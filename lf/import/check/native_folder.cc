@@ -57,25 +57,25 @@ Result<void> CheckMayWrite(const fs::path& source, const fs::path& folder, bool 
   const fs::path read = fs::is_directory(source, error) ? source / kCalibrationName : source;
   if (fs::exists(read, error) && fs::equivalent(read, path, error))
     return UsageError(
-        fmt::format("{} is the calibration that is read, and would be replaced: write to another "
-                    "folder, or replace it (--force)",
+        fmt::format("{}: this file is the calibration that is read, and the output would replace "
+                    "it: write to another folder, or allow this with --force",
                     path.string()));
   LF_ASSIGN_OR_RETURN(const bool is_ours, IsAsWritten(path, kImportProgram));
   if (is_ours) return {};
   return UsageError(
-      fmt::format("{} was not written by lfimport, or was changed since: write to another folder, "
-                  "or replace it "
-                  "(--force)",
+      fmt::format("{}: this file was not written by lfimport, or was changed since, and the output "
+                  "would replace it: write to another folder, or allow this with --force",
                   path.string()));
 }
 
 Result<std::string> WriteNativeFolder(const fs::path& folder, LightField* light_field) {
   if (HoldsPackedStore(*light_field))
-    return UsageError(fmt::format(
-        "{}: a packed store cannot be converted, because it contains its LF images and a "
-        "transforms.json can only refer to image files: use the store as LIGHTFIELD of any "
-        "program; to change the light field, import it from its image files and compress it again",
-        light_field->folder.string()));
+    return UsageError(
+        fmt::format("{}: a packed store cannot be converted, because it contains its LF images and "
+                    "a transforms.json can only refer to image files: give the store itself to the "
+                    "other programs (as LIGHTFIELD), or import the original image files with "
+                    "lfimport and compress them again with lfcompressor",
+                    light_field->folder.string()));
   LF_RETURN_IF_ERROR(CreateFolder(folder));
   LF_RETURN_IF_ERROR(MoveToFolder(folder, light_field));
   const fs::path path = folder / kCalibrationName;

@@ -31,7 +31,8 @@ Result<std::vector<double>> ParseNumbers(std::string_view text) {
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
     if (error != std::errc() || end != digits.data() + digits.size() ||
         !(std::abs(number) <= kLargest_w))
-      return InputError(fmt::format("\"{}\" is no number within +-1e12", word.substr(0, 40)));
+      return InputError(fmt::format(
+          "the transform holds \"{}\": expected a number from -1e12 to 1e12", word.substr(0, 40)));
     numbers.push_back(number);
     if (numbers.size() > 16) return numbers;
   }
@@ -43,21 +44,26 @@ Result<Similarity> ParseSimilarity(std::string_view text) {
   LF_ASSIGN_OR_RETURN(const std::vector<double> numbers, ParseNumbers(text));
   if (numbers.size() != 16)
     return InputError(
-        fmt::format("found {} numbers: expected 16, the rows of a 4x4 matrix",
+        fmt::format("the transform holds {} numbers: expected 16, the rows of a 4x4 matrix",
                     numbers.size() > 16 ? "more than 16" : fmt::to_string(numbers.size())));
   const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> m(numbers.data());
   if (m.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
-    return InputError(fmt::format("the last row is {}, {}, {}, {}: expected 0, 0, 0, 1", m(3, 0),
-                                  m(3, 1), m(3, 2), m(3, 3)));
+    return InputError(
+        fmt::format("the last row of the transform is {}, {}, {}, {}: expected 0, 0, 0, 1", m(3, 0),
+                    m(3, 1), m(3, 2), m(3, 3)));
   const Mat3 scaled = m.topLeftCorner<3, 3>();
   const double determinant = scaled.determinant();
   if (!(determinant > 0))
-    return InputError(fmt::format(
-        "the determinant is {}: expected above 0; a mirrored world is another scene", determinant));
+    return InputError(
+        fmt::format("the upper left 3x3 block of the transform has the determinant {}: expected "
+                    "above 0, because any other would flatten or mirror the scene",
+                    determinant));
   Similarity similarity;
   similarity.scale = std::cbrt(determinant);
   if (!(similarity.scale >= 1e-9 && similarity.scale <= 1e9))
-    return InputError(fmt::format("the scale is {}: expected 1e-9 to 1e9", similarity.scale));
+    return InputError(
+        fmt::format("the transform scales lengths by {}: expected a factor from 1e-9 to 1e9",
+                    similarity.scale));
   similarity.rotation = scaled / similarity.scale;
   similarity.translation = m.topRightCorner<3, 1>();
   const double off = (similarity.rotation.transpose() * similarity.rotation - Mat3::Identity())
@@ -65,9 +71,9 @@ Result<Similarity> ParseSimilarity(std::string_view text) {
                          .maxCoeff();
   if (!(off <= kTolerance))
     return InputError(fmt::format(
-        "the axes deviate from right angles or equal lengths by {:.2g}: expected a rotation times "
-        "one scale",
-        off));
+        "the axes in the upper left 3x3 block of the transform deviate from right angles or equal "
+        "lengths by {:.2g}: expected a rotation times one scale factor (deviation of at most {:g})",
+        off, kTolerance));
   if (off > 1e-12) {
     const Eigen::JacobiSVD<Mat3> svd(similarity.rotation,
                                      Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -97,8 +103,10 @@ Result<void> Transform(const Similarity& b_from_a, LightField* light_field) {
     pose.rotation = pose.rotation * b_from_a.rotation.transpose();
     pose.translation = b_from_a.scale * pose.translation - pose.rotation * b_from_a.translation;
     if (!(pose.translation.cwiseAbs().maxCoeff() <= kLargest_w))
-      return InputError(fmt::format("{}: its position would lie beyond 1e12 world units",
-                                    light_field->image_names[i]));
+      return InputError(
+          fmt::format("{}: the transform would move this LF camera beyond +-1e12 world units: "
+                      "reduce the translation or the scale",
+                      light_field->image_names[i]));
   }
   if (light_field->depth_range) {
     light_field->depth_range->near_w *= b_from_a.scale;

@@ -257,8 +257,8 @@ Result<MatchedExposure> MatchExposure(const LightField& light_field, const LfIma
     load.progress = [&](size_t done, size_t total) { options.progress(done, 2 * total); };
   if (load.width_px == 0)
     return InputError(fmt::format(
-        "--match-exposure: small copies of {} LF images do not fit into {} MiB: match parts of the "
-        "light field (--exclude)",
+        "--match-exposure: even small copies of all {} LF images would exceed the limit of {} MiB "
+        "of memory: match one part of the light field at a time (--exclude)",
         plain.size(), options.memory_bytes >> 20));
   LF_ASSIGN_OR_RETURN(const std::vector<ExposureView> views,
                       LoadExposureViews(plain, store, load, pool));
@@ -282,13 +282,14 @@ Result<MatchedExposure> MatchExposure(const LightField& light_field, const LfIma
   if (tied == 0 || 2 * tied < readable)
     return InputError(fmt::format(
         "--match-exposure: the gains of only {} of {} LF images can be estimated, from {} places "
-        "that two of them show{}: LF images must overlap, the scene must have texture, and its "
+        "that two LF images show{}. LF images must overlap, the scene must have texture, and its "
         "light must not move relative to the scene (as it does on a turntable). Import without "
         "--match-exposure, or state lf_gain (doc/formats/transforms_json.md)",
         tied, readable, samples.size(),
-        fit.spread > 0 ? fmt::format(" and whose light differs by {:.0f} % from place to place",
-                                     100 * fit.spread)
-                       : ""));
+        fit.spread > 0
+            ? fmt::format(" (the ratio of their brightness varies by {:.0f} % from place to place)",
+                          100 * fit.spread)
+            : ""));
   matched.sample_count = fit.sample_count;
   matched.component_count = fit.component_count;
   matched.step_after = fit.step;

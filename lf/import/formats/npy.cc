@@ -67,7 +67,7 @@ class HeaderReader {
   Error Fault() const {
     return InputError(
         fmt::format("has the .npy header \"{}\": expected {{'descr': ..., 'fortran_order': ..., "
-                    "'shape': ...}}, as numpy.save writes it of an array of floats",
+                    "'shape': ...}}, as numpy.save writes it for an array of floats",
                     Shown(all_)));
   }
   void SkipBlanks() {
@@ -137,20 +137,25 @@ Result<Parts> Cut(std::string_view bytes) {
   constexpr std::string_view kMagic = "\x93NUMPY";
   constexpr size_t kVersionEnd = kMagic.size() + 2;
   if (!bytes.starts_with(kMagic) || bytes.size() < kVersionEnd)
-    return InputError("is no .npy file: expected \\x93NUMPY as its first bytes");
+    return InputError(
+        "is no .npy file: expected \\x93NUMPY as its first bytes, as numpy.save writes them");
   const int version = static_cast<uint8_t>(bytes[kMagic.size()]);
   if (version != 1 && version != 2)
-    return InputError(fmt::format(
-        "is a .npy file of format {}: expected 1 or 2, as numpy.save writes plain arrays",
-        version));
+    return InputError(
+        fmt::format("is a .npy file of format version {}: expected 1 or 2, as numpy.save writes "
+                    "them for arrays of numbers",
+                    version));
   const size_t length_size = version == 1 ? 2 : 4;
   const size_t begin = kVersionEnd + length_size;
-  if (bytes.size() < begin) return InputError("ends in its .npy header: truncated");
+  if (bytes.size() < begin)
+    return InputError("is truncated: it ends within its .npy header; copy or save it again");
   const uint64_t length = LittleEndian(bytes.substr(kVersionEnd, length_size));
   if (length > kMaxHeaderSize)
-    return InputError(
-        fmt::format("has a .npy header of {} bytes: expected at most {}", length, kMaxHeaderSize));
-  if (length > bytes.size() - begin) return InputError("ends in its .npy header: truncated");
+    return InputError(fmt::format(
+        "has a .npy header of {} bytes: expected at most {}; save the array again with numpy.save",
+        length, kMaxHeaderSize));
+  if (length > bytes.size() - begin)
+    return InputError("is truncated: it ends within its .npy header; copy or save it again");
   return Parts{bytes.substr(begin, length), bytes.substr(begin + length)};
 }
 
@@ -160,7 +165,8 @@ Result<size_t> CountOf(const std::vector<size_t>& shape) {
   for (const size_t size : shape) {
     if (size == 0 || size > kMaxValues / count)
       return InputError(
-          fmt::format("has the shape ({}): expected 1 to 2^32 numbers", fmt::join(shape, ", ")));
+          fmt::format("holds an array of the shape ({}): expected 1 to 2^32 numbers in total",
+                      fmt::join(shape, ", ")));
     count *= size;
   }
   return count;
@@ -189,13 +195,15 @@ Result<NpyArray> ParseNpy(std::string_view bytes) {
         Shown(*header.descr)));
   if (*header.fortran_order)
     return InputError(
-        "is in Fortran order: expected C order (convert it with numpy.ascontiguousarray)");
+        "holds an array in Fortran order (column by column): expected C order (convert it with "
+        "numpy.ascontiguousarray)");
   LF_ASSIGN_OR_RETURN(const size_t count, CountOf(*header.shape));
   const size_t value_size = *header.descr == "<f8" ? 8 : 4;
   if (parts.values.size() != count * value_size)
-    return InputError(fmt::format("holds {} bytes of numbers: expected {} for the shape ({})",
-                                  parts.values.size(), count * value_size,
-                                  fmt::join(*header.shape, ", ")));
+    return InputError(
+        fmt::format("holds {} bytes of numbers: expected {} bytes for the shape ({}); copy or save "
+                    "the file again",
+                    parts.values.size(), count * value_size, fmt::join(*header.shape, ", ")));
   return NpyArray{*header.shape,
                   value_size == 8 ? Values<double>(parts.values) : Values<float>(parts.values)};
 }

@@ -71,7 +71,7 @@ TEST(Npy, OtherTypesAndOrdersAreErrorsThatNameThem) {
   ExpectNpyError(Npy(header("[('x', '<f8')]", "False"), kValues), "has the .npy header");
   ExpectNpyError(Npy(header("'<f8'", "True"), kValues), "Fortran order");
   ExpectNpyError(Npy(header("'<f8'", "1"), kValues), "has the .npy header");
-  ExpectNpyError(Npy(kTwo, kValues, 3), "format 3");
+  ExpectNpyError(Npy(kTwo, kValues, 3), "format version 3");
 }
 
 TEST(Npy, BrokenFilesAreErrors) {
@@ -100,8 +100,8 @@ TEST(Npy, ShapesBeyondTheFileAreErrors) {
     return Npy("{'descr': '<f8', 'fortran_order': False, 'shape': " + size + "}", kValues);
   };
   EXPECT_TRUE(ParseNpy(shape("(2, 1, 1, 1)")));
-  ExpectNpyError(shape("(0,)"), "has the shape (0)");
-  ExpectNpyError(shape("(3, 0)"), "has the shape (3, 0)");
+  ExpectNpyError(shape("(0,)"), "holds an array of the shape (0)");
+  ExpectNpyError(shape("(3, 0)"), "holds an array of the shape (3, 0)");
   ExpectNpyError(shape("(4294967295, 4294967295)"), "1 to 2^32 numbers");
   ExpectNpyError(shape("(99999999999999999999,)"), "has the .npy header");
   ExpectNpyError(shape("(-2,)"), "has the .npy header");

@@ -377,7 +377,7 @@ TEST_F(ReadColmapTest, BrokenPointsAreAnError) {
   fs::remove(folder_ / "points3D.bin");
   EXPECT_EQ(ReadColmapModel(folder_, folder_)->depth_range, std::nullopt);
   fs::create_directory(folder_ / "points3D.bin");
-  EXPECT_HAS(ErrorOf(ReadColmapModel(folder_, folder_)), "is not a regular file");
+  EXPECT_HAS(ErrorOf(ReadColmapModel(folder_, folder_)), "expected a file");
 }
 
 }  // namespace

@@ -43,7 +43,8 @@ std::string OtherCalibrations(const fs::path& folder) {
   }
   if (names.empty()) return "";
   std::sort(names.begin(), names.end());
-  return fmt::format("; it holds {}: name the file itself to read it", fmt::join(names, ", "));
+  return fmt::format("; it holds {}: give the path of such a file to read it",
+                     fmt::join(names, ", "));
 }
 
 // Returns the first option in `options` that only folders with Stanford names accept, as messages
@@ -130,9 +131,9 @@ Result<std::optional<fs::path>> OtherCalibrationIn(const fs::path& folder) {
   std::error_code error;
   const std::vector<fs::path> middlebury = MiddleburyFiles(folder);
   if (middlebury.size() > 1)
-    return InputError(fmt::format("{}: holds {} and {}: name the file itself to read it",
-                                  folder.string(), middlebury[0].filename().string(),
-                                  middlebury[1].filename().string()));
+    return InputError(fmt::format(
+        "{}: holds several calibrations, such as {} and {}: give the path of one of these files",
+        folder.string(), middlebury[0].filename().string(), middlebury[1].filename().string()));
   if (!middlebury.empty()) return std::optional(middlebury[0]);
   if (fs::exists(folder / kLlffName, error)) return std::optional(folder / kLlffName);
   if (IsHciFile(folder / kHciName)) return std::optional(folder / kHciName);
@@ -199,8 +200,8 @@ Result<void> FindImages(const OpenOptions& options, const fs::path& path, LightF
   // its images are there.
   if (found_count == 0 && options.images_folder && light_field->folder != *options.images_folder)
     return InputError(
-        fmt::format("--images {}: contains no image, in any folder below it, with the name of an "
-                    "LF image of {}, such as {}: give the folder of its images",
+        fmt::format("--images {}: neither this folder nor one below it contains an image that {} "
+                    "names, such as {}: give the folder of these images",
                     options.images_folder->string(), path.string(), name));
   const Intrinsics before = light_field->intrinsics[0];
   LF_ASSIGN_OR_RETURN(const double factor, FitToImageFiles(options.image_scale, light_field));
@@ -222,9 +223,9 @@ Result<void> CompleteAlpha(const OpenOptions& options, const fs::path& path,
   if (options.alpha && HoldsPackedStore(*light_field) &&
       was_light != (*options.alpha != AlphaMeaning::kMask))
     return UsageError(
-        fmt::format("--image-alpha {}: {} is a packed store, in which alpha is stored as {}: "
-                    "compress its image files again with this option",
-                    NameOf(*options.alpha), path.string(), was_light ? "light" : "a mask"));
+        fmt::format("--image-alpha {}: {} is a packed store, whose alpha was stored as {} and "
+                    "cannot be changed: compress the original image files again with this option",
+                    NameOf(*options.alpha), path.string(), was_light ? "opacity" : "a mask"));
   if (options.alpha) encoding.alpha = options.alpha;
   if (options.background) {
     encoding.background = options.background;
@@ -243,14 +244,15 @@ Result<void> CompleteAlpha(const OpenOptions& options, const fs::path& path,
   }
   if (!encoding.background) return {};
   if (encoding.keeps_opacity && encoding.bayer != BayerPattern::kNone)
-    return UsageError(fmt::format(
-        "--background {}: the LF images of {} are mosaics, which have no alpha: leave it out",
-        kNoBackground, path.string()));
-  if (!encoding.AlphaIsLight())
     return UsageError(
-        fmt::format("--background: no light can shine through the LF images of {}, because their "
-                    "alpha is {}: give --image-alpha straight or premultiplied",
-                    path.string(), encoding.alpha ? "a mask" : "unknown or absent"));
+        fmt::format("--background {}: the LF images of {} are mosaics, which have no alpha: leave "
+                    "the option out",
+                    kNoBackground, path.string()));
+  if (!encoding.AlphaIsLight())
+    return UsageError(fmt::format(
+        "--background: a background has no effect on the LF images of {}, because their alpha is "
+        "{}: leave the option out, or add --image-alpha straight or premultiplied",
+        path.string(), encoding.alpha ? "a mask" : "unknown or absent"));
   const auto& behind = *encoding.background;
   if (*std::max_element(behind.begin(), behind.end()) > encoding.max_radiance)
     return UsageError(
@@ -343,9 +345,9 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
   const std::vector<fs::path> stores = PackedStoresIn(path);
   if (stores.size() == 1) return OpenPackedStore(stores[0], options);
   if (stores.size() > 1)
-    return InputError(fmt::format("{}: holds {} and {}: name the file itself to read it",
-                                  path.string(), stores[0].filename().string(),
-                                  stores[1].filename().string()));
+    return InputError(fmt::format(
+        "{}: holds several packed stores, such as {} and {}: give the path of one of them",
+        path.string(), stores[0].filename().string(), stores[1].filename().string()));
   return InputError(fmt::format(
       "{}: holds no light field: looked for {}, a COLMAP model in it or in sparse/0, NAME_par.txt, "
       "{}, {}, {} (AOS), one packed store NAME.lfs, and for images named "

@@ -113,7 +113,7 @@ TEST_F(OpenLightFieldTest, TakesMiddleburysFileOrTheFolderOfOne) {
   ASSERT_TRUE(WriteFileAtomically(folder_ / "y_par.txt", text));
   const Result<LightField> two = OpenLightField(folder_);
   ASSERT_FALSE(two);
-  EXPECT_NE(two.error().message.find("holds x_par.txt and y_par.txt"), std::string::npos);
+  EXPECT_NE(two.error().message.find("such as x_par.txt and y_par.txt"), std::string::npos);
 }
 
 TEST_F(OpenLightFieldTest, TakesLlffsFileOrItsFolder) {

@@ -57,7 +57,8 @@ std::optional<Mat34> MatrixOf(const json& entry) {
 Result<std::string> NameOf(const json& entry) {
   const auto name = entry.find("imagefile");
   if (name == entry.end() || !name->is_string() || name->get_ref<const std::string&>().empty())
-    return InputError("\"imagefile\" is missing: expected the name of an image file");
+    return InputError(
+        "\"imagefile\" is missing, empty or not a text: expected the name of an image file");
   if (name->get_ref<const std::string&>().find('\0') != std::string::npos)
     return InputError("\"imagefile\" holds a NUL character: expected the name of an image file");
   return name->get<std::string>();
@@ -67,9 +68,11 @@ Result<RigidTransform> PoseOf(const json& entry) {
   const std::optional<Mat34> matrix = MatrixOf(entry);
   if (!matrix)
     return InputError(fmt::format(
-        "\"{}\" is missing or of another form: expected 3 lists of 4 numbers", kMatrixKey));
+        "\"{}\" is missing or not a 3x4 matrix: expected 3 lists of 4 numbers", kMatrixKey));
   if (!(matrix->col(3).cwiseAbs().maxCoeff() <= kLargest_w))
-    return InputError(fmt::format("\"{}\" holds a position beyond {:g}", kMatrixKey, kLargest_w));
+    return InputError(fmt::format(
+        "\"{}\" holds the position ({:g}, {:g}, {:g}): expected coordinates within +-{:g}",
+        kMatrixKey, (*matrix)(0, 3), (*matrix)(1, 3), (*matrix)(2, 3), kLargest_w));
   const Result<Mat3> rotation = NearestRotation(matrix->leftCols<3>(), kAosRotationTolerance);
   if (!rotation) return InputError(fmt::format("\"{}\" {}", kMatrixKey, rotation.error().message));
   return RigidTransform{*rotation, matrix->col(3)};
@@ -78,13 +81,17 @@ Result<RigidTransform> PoseOf(const json& entry) {
 Result<LightField> PosesOf(const json& top, const fs::path& path) {
   const auto images = top.is_object() ? top.find("images") : top.end();
   if (!top.is_object() || images == top.end() || !images->is_array() || images->empty())
-    return InputError(fmt::format(
-        "{}: expected an object {{...}} with a list \"images\" that is not empty", path.string()));
+    return InputError(
+        fmt::format("{}: is not a poses.json of AOS: expected an object {{...}} with a list "
+                    "\"images\" that is not empty",
+                    path.string()));
   LightField light_field;
   light_field.folder = path.parent_path();
   for (const json& entry : *images) {
     const std::string place = fmt::format("{}: images[{}]", path.string(), light_field.size());
-    if (!entry.is_object()) return InputError(place + ": expected an object {...}");
+    if (!entry.is_object())
+      return InputError(fmt::format(
+          "{}: is not an object: expected {{\"imagefile\": ..., \"{}\": ...}}", place, kMatrixKey));
     Result<std::string> name = NameOf(entry);
     if (!name) return InputError(fmt::format("{}: {}", place, name.error().message));
     const Result<RigidTransform> pose = PoseOf(entry);
@@ -125,8 +132,8 @@ Result<void> FindImages(const AosOptions& options, const fs::path& path, LightFi
   std::vector<std::string> tried;
   for (const fs::path& folder : folders) tried.push_back(folder.string());
   return InputError(
-      fmt::format("{}: the first image, {}, is in none of the folders {}: name the "
-                  "folder of the images (--images)",
+      fmt::format("{}: the first image, {}, is in none of the folders {}: give the folder of the "
+                  "images (--images)",
                   path.string(), first, fmt::join(tried, ", ")));
 }
 

@@ -67,7 +67,7 @@ TEST(Aos, WhatIsOfAnotherFormIsAnError) {
   ExpectAosError("{}", {"a list \"images\""});
   ExpectAosError(R"({"images": []})", {"a list \"images\""});
   ExpectAosError(R"({"images": 7})", {"a list \"images\""});
-  ExpectAosError(R"({"images": [7]})", {"images[0]: expected an object"});
+  ExpectAosError(R"({"images": [7]})", {"images[0]: is not an object"});
   ExpectAosError(R"({"images": [{}]})", {"images[0]: \"imagefile\" is missing"});
   ExpectAosError(R"({"images": [{"imagefile": 3}]})", {"images[0]: \"imagefile\" is missing"});
   ExpectAosError(R"({"images": [{"imagefile": "a\u0000"}]})", {"NUL"});
@@ -89,7 +89,7 @@ TEST(Aos, BrokenMatricesAreErrorsThatNameTheImage) {
   expect("[[-1,0,0,1],[0,1,0,2],[0,0,1,3]]", "mirrored");
   expect("[[1,0.01,0,1],[0,1,0,2],[0,0,1,3]]", "sheared");
   expect("[[2,0,0,1],[0,2,0,2],[0,0,2,3]]", "unit length");
-  expect("[[1,0,0,1e13],[0,1,0,2],[0,0,1,3]]", "beyond 1e+12");
+  expect("[[1,0,0,1e13],[0,1,0,2],[0,0,1,3]]", "(1e+13, 2, 3)");
 }
 
 class AosFolderTest : public FolderTest {
@@ -154,7 +154,7 @@ TEST_F(AosFolderTest, ImagesAreSearchedBesideAndMayBePngInsteadOfTiff) {
 
   const std::string error = ErrorOf({.fov_deg = 50, .images_folder = folder_ / "elsewhere"});
   EXPECT_NE(error.find("a.tiff, is in none of the folders"), std::string::npos) << error;
-  EXPECT_NE(error.find("elsewhere: name the folder of the images (--images)"), std::string::npos);
+  EXPECT_NE(error.find("elsewhere: give the folder of the images (--images)"), std::string::npos);
   WriteImageFile(folder_ / "elsewhere" / "a.tiff", 6, 6);
   const Result<LightField> elsewhere =
       ReadAos(path_, {.fov_deg = 50, .images_folder = folder_ / "elsewhere"});

@@ -51,27 +51,28 @@ class Parameters {
   Result<double> Number(const char* key, double low, double high) const {
     const auto found = keys_.find(key);
     if (found == keys_.end())
-      return InputError(
-          fmt::format("{}: {} is missing: expected the parameters.cfg of the 4D Light "
-                      "Field Benchmark",
-                      path_.string(), key));
+      return InputError(fmt::format(
+          "{}: the key {} is missing: expected the parameters.cfg of the 4D Light Field Benchmark",
+          path_.string(), key));
     const std::optional<double> number = ParseNumber(found->second);
     if (!number || !(*number >= low && *number <= high))
-      return Wrong(found->second, key, low, high);
+      return Wrong(found->second, key, "a number", low, high);
     return *number;
   }
   Result<int> Whole(const char* key, double high) const {
     LF_ASSIGN_OR_RETURN(const double number, Number(key, 1, high));
-    if (number != std::floor(number)) return Wrong(keys_.find(key)->second, key, 1, high);
+    if (number != std::floor(number))
+      return Wrong(keys_.find(key)->second, key, "a whole number", 1, high);
     return static_cast<int>(number);
   }
   bool Has(const char* key) const { return keys_.find(key) != keys_.end(); }
 
  private:
-  Error Wrong(const std::string& value, const char* key, double low, double high) const {
+  Error Wrong(const std::string& value, const char* key, const char* kind, double low,
+              double high) const {
     constexpr size_t kLongest = 80;
-    return InputError(fmt::format("{}: {} is \"{}\": expected {:g} to {:g}", path_.string(), key,
-                                  value.substr(0, kLongest), low, high));
+    return InputError(fmt::format("{}: {} is \"{}\": expected {} from {:g} to {:g}", path_.string(),
+                                  key, value.substr(0, kLongest), kind, low, high));
   }
 
   std::map<std::string, std::string, std::less<>> keys_;
@@ -116,8 +117,9 @@ Result<LightField> ParseHci(std::string_view text, const fs::path& path) {
   const double farthest_px = focal_px * pitch_m * plane_per_m * std::max(columns, rows);
   if (!(focal_px >= 1e-3 && focal_px <= 1e7 && farthest_px <= 1e7))
     return InputError(fmt::format(
-        "{}: the focal length comes to {:g} px, and principal points are up to "
-        "{:g} px apart: expected a focal length from 0.001 to 1e7 px, and at most 1e7 px",
+        "{}: the focal length comes to {:g} px, and principal points are up to {:g} px apart: "
+        "expected a focal length from 0.001 to 1e7 px, and principal points at most 1e7 px apart: "
+        "correct focal_length_mm, sensor_size_mm, baseline_mm or focus_distance_m",
         path.string(), focal_px, farthest_px));
 
   LightField light_field;

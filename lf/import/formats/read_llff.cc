@@ -27,15 +27,19 @@ class Row {
   // The kInput messages of this class do not name the file and the row; the caller adds them.
   Result<RigidTransform> CamFromWorld() const {
     if (!matrix_.allFinite() || !(Centre().cwiseAbs().maxCoeff() <= kLargest_w))
-      return InputError(fmt::format(
-          "the pose holds a number that is not finite, or a position beyond {:g}", kLargest_w));
+      return InputError(
+          fmt::format("the pose holds a number that is not finite, or a camera position beyond "
+                      "+-{:g} world units",
+                      kLargest_w));
     Mat3 axes;  // camera axes right, down and forward, as rows
     axes.row(0) = matrix_.col(1);
     axes.row(1) = matrix_.col(0);
     axes.row(2) = -matrix_.col(2);
     const Result<Mat3> rotation = NearestRotation(axes, kLlffRotationTolerance);
     if (!rotation)
-      return InputError("the pose " + rotation.error().message + " [down, right, backwards]");
+      return InputError(
+          fmt::format("the pose, whose columns are the axes down, right and backwards, {}",
+                      rotation.error().message));
     return RigidTransform{*rotation, Vec3::Zero() - *rotation * Centre()};
   }
 
@@ -48,7 +52,7 @@ class Row {
           height, width));
     if (!(focal >= 0.001 && focal <= 1e7))
       return InputError(
-          fmt::format("the focal length is {}: expected pixels from 0.001 to 1e7", focal));
+          fmt::format("the focal length is {} pixels: expected 0.001 to 1e7 pixels", focal));
     return Intrinsics{
         focal, focal, width / 2, height / 2, 0, static_cast<int>(width), static_cast<int>(height)};
   }
@@ -56,9 +60,9 @@ class Row {
   Result<DepthRange> Depths() const {
     const DepthRange depths{near_far_[0], near_far_[1]};
     if (!(depths.near_w > 0 && depths.near_w < depths.far_w && depths.far_w <= kLargest_w))
-      return InputError(
-          fmt::format("the near and far bounds are {} and {}: expected 0 < near < far <= {:g}",
-                      depths.near_w, depths.far_w, kLargest_w));
+      return InputError(fmt::format(
+          "the near and far bounds are {} and {}: expected world units with 0 < near < far <= {:g}",
+          depths.near_w, depths.far_w, kLargest_w));
     return depths;
   }
 
@@ -88,8 +92,8 @@ Result<void> CheckShape(const NpyArray& array, size_t image_count, const fs::pat
   const std::vector<size_t>& shape = array.shape;
   if (shape.size() != 2 || shape[1] != kRowSize || shape[0] > kMaxImageCount)
     return InputError(
-        fmt::format("{}: holds an array of the shape ({}): expected (N, {}), at most "
-                    "{} rows",
+        fmt::format("{}: holds an array of the shape ({}): expected (N, {}), one row for each of "
+                    "at most {} images",
                     path.string(), fmt::join(shape, ", "), kRowSize, kMaxImageCount));
   if (shape[0] != image_count)
     return InputError(fmt::format(
@@ -104,11 +108,12 @@ Result<void> CheckShape(const NpyArray& array, size_t image_count, const fs::pat
 Result<void> CheckSize(const Intrinsics& k, const std::array<int, 2>& size, const fs::path& image,
                        const fs::path& path) {
   if (k.width_px == size[0] && k.height_px == size[1]) return {};
-  return InputError(fmt::format(
-      "{}: is for images of {} x {} pixels, but {} has {} x {}: put the images of the stated size "
-      "into {}, or scale height, width and focal length (columns 4, 9 and 14, from 0)",
-      path.string(), k.width_px, k.height_px, image.string(), size[0], size[1],
-      image.parent_path().string()));
+  return InputError(
+      fmt::format("{}: is for images of {} x {} pixels, but {} has {} x {}: put the images of the "
+                  "stated size into {}, or scale height, width and focal length (columns 4, 9 and "
+                  "14 of each row, counted from 0)",
+                  path.string(), k.width_px, k.height_px, image.string(), size[0], size[1],
+                  image.parent_path().string()));
 }
 
 }  // namespace

@@ -116,9 +116,9 @@ TEST(Llff, BrokenRowsAreErrorsThatNameTheRow) {
     ExpectLlffError(Parse({kUnturned, row}), all);
   };
   expect(0, std::numeric_limits<double>::quiet_NaN(), {"not finite"});
-  expect(3, 1e13, {"beyond 1e+12"});
-  expect(0, 0.01, {"the pose is sheared", "[down, right, backwards]"});
-  expect(12, 1, {"the pose is mirrored"});
+  expect(3, 1e13, {"beyond +-1e+12"});
+  expect(0, 0.01, {"the pose, whose columns are the axes down, right and backwards, is sheared"});
+  expect(12, 1, {"backwards, is mirrored"});
   expect(4, 480.5, {"height and width are 480.5 and 640"});
   expect(9, 0, {"480 and 0"});
   expect(9, 1e9, {"1 to 65536"});

@@ -91,8 +91,8 @@ Result<Line> ParseLine(std::string_view text, const Lines& lines) {
   }
   const std::string_view surplus = NextWord(&text);
   if (!surplus.empty())
-    return lines.Fault(
-        fmt::format("\"{}\" behind the last number: expected {}", ShownWord(surplus), kLineForm));
+    return lines.Fault(fmt::format("the last number is followed by \"{}\": expected only {}",
+                                   ShownWord(surplus), kLineForm));
   line.k = Eigen::Map<const Rows>(numbers.data());
   line.r = Eigen::Map<const Rows>(numbers.data() + 9);
   line.t = Eigen::Map<const Vec3>(numbers.data() + 18);
@@ -104,17 +104,22 @@ Result<Line> ParseLine(std::string_view text, const Lines& lines) {
 Result<Intrinsics> IntrinsicsOf(Mat3 k) {
   if (!(std::abs(k(2, 2)) > 1e-9))
     return InputError(fmt::format(
-        "k33 is {}: expected 1, or the factor by which all of K was multiplied", k(2, 2)));
+        "k33 is {}, too close to 0: expected 1, or the factor by which all of K was multiplied",
+        k(2, 2)));
   k /= k(2, 2);
   if (k(1, 0) != 0 || k(2, 0) != 0 || k(2, 1) != 0)
-    return InputError("K has numbers below its diagonal: expected k21 = k31 = k32 = 0");
+    return InputError(fmt::format(
+        "k21, k31 and k32 are {}, {} and {}: expected 0, because they lie below the diagonal of K",
+        k(1, 0), k(2, 0), k(2, 1)));
   const auto is_focal = [](double x) { return x >= 0.001 && x <= 1e7; };
   if (!is_focal(k(0, 0)) || !is_focal(k(1, 1)))
     return InputError(fmt::format(
-        "the focal lengths k11 and k22 are {} and {}: expected pixels from 0.001 to 1e7", k(0, 0),
+        "the focal lengths k11 and k22 are {} and {} pixels: expected 0.001 to 1e7 pixels", k(0, 0),
         k(1, 1)));
   if (!(k.cwiseAbs().maxCoeff() <= 1e7))
-    return InputError("k12, k13 or k23 is beyond +-1e7 pixels");
+    return InputError(
+        fmt::format("k12, k13 and k23 are {}, {} and {} pixels: expected -1e7 to 1e7 pixels",
+                    k(0, 1), k(0, 2), k(1, 2)));
   Intrinsics intrinsics;
   intrinsics.fx_px = k(0, 0);
   intrinsics.fy_px = k(1, 1);
@@ -163,7 +168,10 @@ Result<LightField> ParseMiddlebury(std::string_view text, const fs::path& path,
   std::array<int, 2> size = {};
   while (const std::optional<std::string_view> text_line = lines.Next()) {
     if (light_field.size() == count)
-      return lines.Fault(fmt::format("more lines than the {} that the first line states", count));
+      return lines.Fault(
+          fmt::format("the file holds more lines of images than the {} that the first line states: "
+                      "correct this number, or remove lines",
+                      count));
     LF_ASSIGN_OR_RETURN(Line line, ParseLine(*text_line, lines));
     const auto fault = [&](const std::string& message) {
       return lines.Fault(fmt::format("{}: {}", ShownWord(line.name), message));
@@ -173,7 +181,8 @@ Result<LightField> ParseMiddlebury(std::string_view text, const fs::path& path,
     const Result<Mat3> rotation = NearestRotation(line.r, kMiddleburyRotationTolerance);
     if (!rotation) return fault("R " + rotation.error().message);
     if (!(line.t.cwiseAbs().maxCoeff() <= kLargest_w))
-      return fault(fmt::format("t holds a number beyond +-{:g}", kLargest_w));
+      return fault(fmt::format("t is ({:g}, {:g}, {:g}): expected numbers within +-{:g}",
+                               line.t.x(), line.t.y(), line.t.z(), kLargest_w));
     if (light_field.size() == 0) {
       LF_ASSIGN_OR_RETURN(size, image_size(light_field.folder / line.name));
     }
@@ -186,8 +195,10 @@ Result<LightField> ParseMiddlebury(std::string_view text, const fs::path& path,
     light_field.image_names.push_back(std::move(line.name));
   }
   if (light_field.size() != count)
-    return InputError(fmt::format("{}: holds {} lines of images, but the first line says {}",
-                                  path.string(), light_field.size(), count));
+    return InputError(
+        fmt::format("{}: holds {} lines of images, but its first line states {}: correct this "
+                    "number, or copy the file again if it is truncated",
+                    path.string(), light_field.size(), count));
   light_field.intrinsics = distinct.Take();
   light_field.encoding.max_radiance = DefaultMaxRadiance(light_field.image_names);
   return light_field;

@@ -75,8 +75,9 @@ TEST(Middlebury, CountsThatDisagreeAreErrors) {
   ExpectMiddleburyError("1.5\n" + kLine, {"\"1.5\""});
   ExpectMiddleburyError("0\n", {"the number of images is 0"});
   ExpectMiddleburyError("99999999999\n" + kLine, {"expected 1 to 16777216"});
-  ExpectMiddleburyError("2\n" + kLine, {"holds 1 lines of images, but the first line says 2"});
-  ExpectMiddleburyError("1\n" + kLine + kLine, {"line 3: more lines than the 1"});
+  ExpectMiddleburyError("2\n" + kLine, {"holds 1 lines of images, but its first line states 2"});
+  ExpectMiddleburyError("1\n" + kLine + kLine,
+                        {"line 3: the file holds more lines of images than the 1"});
 }
 
 TEST(Middlebury, BrokenLinesAreErrorsThatNameTheLine) {
@@ -86,18 +87,18 @@ TEST(Middlebury, BrokenLinesAreErrorsThatNameTheLine) {
     ExpectMiddleburyError("2\n" + kLine + line + "\n", all);
   };
   expect("b.png 1 2 3", {"4 of 21 is missing", "NAME k11 k12"});
-  expect("b.png" + kK + kR + " 1 2 3 4", {"\"4\" behind the last number"});
+  expect("b.png" + kK + kR + " 1 2 3 4", {"the last number is followed by \"4\""});
   expect("my b.png" + kK + kR + " 1 2 3", {"1 of 21 is \"b.png\""});
   expect("b.png" + kK + kR + " 1 nan 3", {"20 of 21 is \"nan\""});
   expect(std::string("b\0.png", 6) + kK + kR + " 1 2 3", {"NUL"});
   expect("b.png 500 0 320 0 510 240 0 0 0" + kR + " 1 2 3", {"b.png: k33 is 0"});
-  expect("b.png 500 0 320 1 510 240 0 0 1" + kR + " 1 2 3", {"below its diagonal"});
+  expect("b.png 500 0 320 1 510 240 0 0 1" + kR + " 1 2 3", {"below the diagonal of K"});
   expect("b.png -500 0 320 0 510 240 0 0 1" + kR + " 1 2 3", {"focal lengths", "-500 and 510"});
-  expect("b.png 500 0 1e9 0 510 240 0 0 1" + kR + " 1 2 3", {"beyond +-1e7"});
+  expect("b.png 500 0 1e9 0 510 240 0 0 1" + kR + " 1 2 3", {"expected -1e7 to 1e7"});
   expect("b.png" + kK + " 1 0 0 0 1 0 0 0 -1 1 2 3", {"b.png: R is mirrored"});
   expect("b.png" + kK + " 1 0.001 0 0 1 0 0 0 1 1 2 3", {"R is sheared"});
   expect("b.png" + kK + " 2 0 0 0 2 0 0 0 2 1 2 3", {"R is sheared or scaled"});
-  expect("b.png" + kK + kR + " 1 2 1e13", {"t holds a number beyond"});
+  expect("b.png" + kK + kR + " 1 2 1e13", {"t is (1, 2, 1"});
 }
 
 class MiddleburyFolderTest : public FolderTest {};

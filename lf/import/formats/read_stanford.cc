@@ -91,14 +91,16 @@ std::string ImportCommand(const fs::path& folder, const StanfordOptions& options
 
 Result<void> CheckPlaces(const fs::path& folder, const std::vector<StanfordImage>& images) {
   if (images.empty())
-    return InputError(fmt::format("{}: holds no image named {}", folder.string(), kNameForm));
+    return InputError(
+        fmt::format("{}: holds no image whose name has the form {}", folder.string(), kNameForm));
   for (size_t i = 0; i + 1 < images.size(); ++i)
     if (images[i].name.row == images[i + 1].name.row &&
         images[i].name.column == images[i + 1].name.column)
-      return InputError(fmt::format(
-          "{}: row {}, column {} is there twice, as {} and {}: keep one image per camera",
-          folder.string(), images[i].name.row, images[i].name.column, images[i].file_name,
-          images[i + 1].file_name));
+      return InputError(
+          fmt::format("{}: two images have the row {} and column {} in their names, {} and {}: "
+                      "keep one image per camera",
+                      folder.string(), images[i].name.row, images[i].name.column,
+                      images[i].file_name, images[i + 1].file_name));
   return {};
 }
 
@@ -106,11 +108,13 @@ Result<void> CheckOptions(const StanfordOptions& options) {
   const auto is_length = [](double length_w) { return length_w > 0 && length_w <= 1e9; };
   const Vec2 pitch_w = options.pitch_w.value_or(Vec2(1, 1));
   if (!is_length(pitch_w.x()) || !is_length(pitch_w.y()))
-    return UsageError(fmt::format("the pitch is {}, {}: expected above 0 and at most 1e9",
-                                  pitch_w.x(), pitch_w.y()));
+    return UsageError(
+        fmt::format("the pitch (--pitch) is {}, {} world units: expected above 0 and at most 1e9",
+                    pitch_w.x(), pitch_w.y()));
   if (!is_length(options.plane_distance_w.value_or(1)))
-    return UsageError(fmt::format("the plane distance is {}: expected above 0 and at most 1e9",
-                                  *options.plane_distance_w));
+    return UsageError(fmt::format(
+        "the plane distance (--plane-distance) is {} world units: expected above 0 and at most 1e9",
+        *options.plane_distance_w));
   return {};
 }
 
@@ -173,7 +177,9 @@ Result<Intrinsics> IntrinsicsOf(const StanfordName& name, const ImageFileInfo& i
                              : name.lens->focal_mm / name.lens->sensor_width_mm * info.width;
   if (!(k.fx_px >= 0.001 && k.fx_px <= 1e7))
     return InputError(
-        fmt::format("the computed focal length is {} px: expected 0.001 to 1e7", k.fx_px));
+        fmt::format("the computed focal length is {} px: expected 0.001 to 1e7 px: correct "
+                    "--focal-px, or the focal length and sensor width in the file name",
+                    k.fx_px));
   k.fy_px = k.fx_px;
   const Vec2 shift_px =
       options.plane_distance_w ? offset_w * k.fx_px / *options.plane_distance_w : Vec2(0, 0);
@@ -181,8 +187,8 @@ Result<Intrinsics> IntrinsicsOf(const StanfordName& name, const ImageFileInfo& i
   k.cy_px = info.height / 2.0 + shift_px.y();
   if (!(shift_px.cwiseAbs().maxCoeff() <= kLargestPrincipal_px / 2))
     return InputError(fmt::format(
-        "the computed principal point is ({}, {}) px from the middle of the image: "
-        "expected within +-{}; is the plane distance {} in the units of the positions?",
+        "the computed principal point is ({}, {}) px from the middle of the image: expected within "
+        "+-{} px; is the plane distance {} in the units of the positions?",
         shift_px.x(), shift_px.y(), kLargestPrincipal_px / 2, *options.plane_distance_w));
   return k;
 }
@@ -218,7 +224,8 @@ Result<LightField> ReadStanfordFolder(const fs::path& folder, const StanfordOpti
     const Vec2 centre = positions[i] - origin;
     if (!(centre.cwiseAbs().maxCoeff() <= kLargest_w))
       return InputError(
-          fmt::format("{}: its camera is at ({}, {}): expected positions within 1e12 world units",
+          fmt::format("{}: its camera is at ({}, {}): expected positions within +-1e12 world "
+                      "units: correct --pitch, or the position in the file name",
                       (folder / image.file_name).string(), centre.x(), centre.y()));
     LfCamera camera;
     camera.intrinsics_index = distinct.IndexOf(*k);

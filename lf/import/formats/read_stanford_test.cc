@@ -160,10 +160,11 @@ TEST_F(StanfordFolderTest, LengthsAreAboveZero) {
 }
 
 TEST_F(StanfordFolderTest, UnclearFoldersAreErrors) {
-  EXPECT_NE(Error().find("holds no image named NAME_ROW_COL_Y_X"), std::string::npos);
+  EXPECT_NE(Error().find("holds no image whose name has the form NAME_ROW_COL_Y_X"),
+            std::string::npos);
   AddImage("a_01_10_-5.0_-25.0_30_36.png");
   AddImage("b_1_10_-5.0_-25.0_30_36.png");
-  EXPECT_NE(Error().find("row 1, column 10 is there twice"), std::string::npos);
+  EXPECT_NE(Error().find("two images have the row 1 and column 10"), std::string::npos);
 }
 
 TEST_F(StanfordFolderTest, ABrokenFirstImageIsNamed) {

@@ -48,13 +48,14 @@ Result<uint64_t> TakeCount(ByteStream* stream, const Place& place, const char* t
   uint64_t count = 0;
   if (!stream->Take(&count)) {
     LF_RETURN_IF_ERROR(stream->Status());
-    return place.Fault(fmt::format("has {} bytes: expected at least 8, which hold the number of {}",
-                                   stream->remaining(), things));
+    return place.Fault(
+        fmt::format("has {} bytes: expected at least 8, which hold the number of {}; copy it again",
+                    stream->remaining(), things));
   }
   if (count > stream->remaining() / min_entry_size)
     return place.Fault(
         fmt::format("says that it holds {} {}, but has only {} bytes for them: it is cut off, or "
-                    "no binary file of COLMAP",
+                    "not a binary file of COLMAP; copy it again",
                     count, things, stream->remaining()));
   return count;
 }
@@ -63,8 +64,8 @@ Result<void> CheckEnd(const ByteStream& stream, const Place& place, const char* 
                       uint64_t count) {
   if (stream.remaining() == 0) return {};
   return place.Fault(fmt::format(
-      "has {} bytes behind its {} {}: it is broken, or of a form that is not known here; try the "
-      "text form (colmap model_converter --output_type TXT)",
+      "has {} bytes after the last of its {} {}: it is damaged, or of an unsupported version; copy "
+      "it again, or convert the model to text (colmap model_converter --output_type TXT)",
       stream.remaining(), count, things));
 }
 

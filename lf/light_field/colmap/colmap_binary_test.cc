@@ -72,8 +72,8 @@ TEST(ColmapBinary, NoPointsIsNoRange) {
 TEST(ColmapBinary, BrokenImagesAreNamed) {
   EXPECT_HAS(ErrorOfImagesBin({}), "m/images.bin: holds no images");
   EXPECT_HAS(ErrorOfImagesBin({{.id = 5, .camera_id = 2}}),
-             "m/images.bin: image 5 was taken by "
-             "camera 2, which is not among the 1");
+             "m/images.bin: image 5 has the camera "
+             "ID 2, which none of the 1 cameras");
   EXPECT_HAS(ErrorOfImagesBin({{.quaternion = {0, 0, 0, 0}}}),
              "image 1 has the quaternion 0 0 0 0");
   EXPECT_HAS(ErrorOfImagesBin({{.quaternion = {1.002, 0, 0, 0}}}),
@@ -85,8 +85,9 @@ TEST(ColmapBinary, BrokenImagesAreNamed) {
   EXPECT_HAS(ErrorOfImagesBin({{.name = ""}}), "has no name");
   EXPECT_HAS(ErrorOfImagesBin({{.name = "a\nb"}}), "control characters");
   EXPECT_HAS(ErrorOfImagesBin({{.name = std::string(5000, 'x')}}), "more than 4096 bytes");
-  EXPECT_HAS(ErrorOfImagesBin({{.id = 1}, {.id = 1, .name = "b"}}), "image 1 is there twice");
-  EXPECT_HAS(ErrorOfImagesBin({{.id = 8}, {.id = 3}}), "images 3 and 8 are both named a.png");
+  EXPECT_HAS(ErrorOfImagesBin({{.id = 1}, {.id = 1, .name = "b"}}), "two images have the ID 1");
+  EXPECT_HAS(ErrorOfImagesBin({{.id = 8}, {.id = 3}}),
+             "the images with the IDs 3 and 8 have the same name a.png");
 }
 
 TEST(ColmapBinary, BrokenCamerasAreNamed) {
@@ -99,7 +100,7 @@ TEST(ColmapBinary, BrokenCamerasAreNamed) {
   EXPECT_HAS(error({{.model = 77}}), "camera 1 has the camera model number 77");
   EXPECT_HAS(error({{.width = 0}}), "camera 1 has images of 0 x 6 pixels");
   EXPECT_HAS(error({{.parameters = {10, kNan, 4, 3}}}), "10 nan 4 3");
-  EXPECT_HAS(error({TestCamera(), TestCamera()}), "m/cameras.bin: camera 1 is there twice");
+  EXPECT_HAS(error({TestCamera(), TestCamera()}), "m/cameras.bin: two cameras have the ID 1");
 }
 
 TEST(ColmapBinary, BrokenPointsAreNamed) {
@@ -107,8 +108,9 @@ TEST(ColmapBinary, BrokenPointsAreNamed) {
     return ErrorOf(ParseColmap(true, CamerasBin({TestCamera()}), ImagesBin({TestImage()}), points));
   };
   EXPECT_HAS(error(PointsBin({{.id = 9, .xyz = {0, kNan, 1}}})), "point 9 lies at 0 nan 1");
-  EXPECT_HAS(error(PointsBin({{.id = 9, .track = {1, 2}}})),
-             "m/points3D.bin: point 9 is seen by image 2, which is not in the images file");
+  EXPECT_HAS(
+      error(PointsBin({{.id = 9, .track = {1, 2}}})),
+      "m/points3D.bin: point 9 is seen by the image with ID 2, which the images file does not");
   std::string long_track = PointsBin({TestPoint()});
   long_track[long_track.size() - 8] = 1;
   EXPECT_HAS(error(long_track), "point 1 says that 1 images see it, but only 0 bytes are left");
@@ -157,9 +159,12 @@ TEST(ColmapBinary, AFileThatIsCutOffAnywhereIsAnError) {
     starts(ErrorOf(ParseColmap(true, cameras, images.substr(0, size))), "m/images.bin: ");
   for (size_t size = 0; size < points.size(); ++size)
     starts(ErrorOf(ParseColmap(true, cameras, images, points.substr(0, size))), "m/points3D.bin: ");
-  EXPECT_HAS(ErrorOf(ParseColmap(true, cameras + "x", images)), "1 bytes behind its 2 cameras");
-  EXPECT_HAS(ErrorOf(ParseColmap(true, cameras, images + "x")), "1 bytes behind its 2 images");
-  EXPECT_HAS(ErrorOf(ParseColmap(true, cameras, images, points + "x")), "behind its 2 points");
+  EXPECT_HAS(ErrorOf(ParseColmap(true, cameras + "x", images)),
+             "1 bytes after the last of its 2 cameras");
+  EXPECT_HAS(ErrorOf(ParseColmap(true, cameras, images + "x")),
+             "1 bytes after the last of its 2 images");
+  EXPECT_HAS(ErrorOf(ParseColmap(true, cameras, images, points + "x")),
+             "after the last of its 2 points");
 }
 
 }  // namespace

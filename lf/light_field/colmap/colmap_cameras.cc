@@ -87,20 +87,22 @@ Result<Distortion> DistortionOf(std::string_view model, std::span<const double> 
   distortion.model = DistortionModelOf(model);
   for (const double k : coefficients)
     if (!(std::abs(k) <= kMaxDistortion))
-      return InputError(fmt::format("has the distortion parameter {}: expected within +-{:g}", k,
-                                    kMaxDistortion));
+      return InputError(fmt::format(
+          "has the distortion parameter {}: expected a number within +-{:g}", k, kMaxDistortion));
   std::copy(coefficients.begin(), coefficients.end(), distortion.parameters.begin());
   if (distortion.model == DistortionModel::kFov) {
     // Both signs of omega give the same distortion; COLMAP's optimizer may find either.
     double& omega = distortion.parameters[0];
     omega = std::abs(omega);
     if (!(omega < kMaxOmega))
-      return InputError(fmt::format("has omega {}: expected an angle below pi", omega));
+      return InputError(
+          fmt::format("has the distortion parameter omega {}: expected radians below pi", omega));
     if (omega < kMinOmega) return Distortion{};
   }
   if (!IsDistortion(distortion))
     return InputError(
-        fmt::format("has alpha {} and beta {}: expected alpha from 0 to 1 and beta above 0",
+        fmt::format("has the distortion parameters alpha {} and beta {}: expected alpha from 0 to "
+                    "1 and beta above 0",
                     distortion.parameters[0], distortion.parameters[1]));
   if (distortion.model == DistortionModel::kUnified && distortion.parameters[0] == 0)
     return Distortion{};
@@ -128,15 +130,17 @@ Result<Intrinsics> IntrinsicsOfColmap(const ColmapCameraModel& model, uint64_t w
                                       uint64_t height, std::span<const double> parameters) {
   LF_CHECK(model.is_supported() && parameters.size() == static_cast<size_t>(model.parameter_count));
   if (width < 1 || height < 1 || width > kMaxSize_px || height > kMaxSize_px)
-    return InputError(fmt::format("has images of {} x {} pixels: expected 1 to {} each", width,
-                                  height, kMaxSize_px));
-  if (width * height > kMaxPixelCount)
     return InputError(
-        fmt::format("images of {} x {} pixels exceed the limit of 2^30 pixels", width, height));
+        fmt::format("has images of {} x {} pixels: expected a width and a height from 1 to {}",
+                    width, height, kMaxSize_px));
+  if (width * height > kMaxPixelCount)
+    return InputError(fmt::format(
+        "has images of {} x {} pixels: expected at most 2^30 pixels in total", width, height));
   for (const double parameter : parameters)
     if (!std::isfinite(parameter))
-      return InputError(fmt::format("has the parameters {} of {}: expected finite numbers",
-                                    fmt::join(parameters, " "), model.name));
+      return InputError(
+          fmt::format("has the parameters {} of the camera model {}: expected finite numbers",
+                      fmt::join(parameters, " "), model.name));
 
   Intrinsics k;
   k.width_px = static_cast<int>(width);
@@ -148,12 +152,13 @@ Result<Intrinsics> IntrinsicsOfColmap(const ColmapCameraModel& model, uint64_t w
   k.cy_px = parameters[focal_count + 1];
   for (const double focal_px : {k.fx_px, k.fy_px})
     if (!(focal_px >= kMinFocal_px && focal_px <= kMaxFocal_px))
-      return InputError(fmt::format("has a focal length of {} px: expected {} to {:g}", focal_px,
+      return InputError(fmt::format("has a focal length of {} px: expected {} to {:g} px", focal_px,
                                     kMinFocal_px, kMaxFocal_px));
   for (const double principal_px : {k.cx_px, k.cy_px})
     if (!(std::abs(principal_px) <= kMaxPrincipal_px))
-      return InputError(fmt::format("has its principal point at {} px: expected within +-{:g}",
-                                    principal_px, kMaxPrincipal_px));
+      return InputError(
+          fmt::format("has a coordinate of the principal point at {} px: expected within +-{:g} px",
+                      principal_px, kMaxPrincipal_px));
   LF_ASSIGN_OR_RETURN(k.distortion, DistortionOf(model.name, parameters.subspan(focal_count + 2)));
   return k;
 }

@@ -82,15 +82,16 @@ TEST(ColmapCameras, WhatBendsNothingIsAPinhole) {
   EXPECT_EQ(*Read("FOV", {500, 500, 320, 240, 5e-324}), pinhole);
   EXPECT_EQ(*Read("DIVISION", {500, 500, 320, 240, 0}), pinhole);
   EXPECT_EQ(*Read("EUCM", {500, 500, 320, 240, 0, 1}), pinhole);
-  EXPECT_NE(IntrinsicsErrorOf(Read("EUCM", {500, 500, 320, 240, 1.2, 1})).find("has alpha 1.2"),
-            std::string::npos);
+  EXPECT_NE(
+      IntrinsicsErrorOf(Read("EUCM", {500, 500, 320, 240, 1.2, 1})).find("parameters alpha 1.2"),
+      std::string::npos);
   // A fish-eye lens without coefficients still bends rays: rd = theta.
   EXPECT_TRUE(Read("OPENCV_FISHEYE", {500, 500, 320, 240, 0, 0, 0, 0})->has_distortion());
 }
 
 TEST(ColmapCameras, TheSignOfOmegaDoesNotMatter) {
   EXPECT_EQ(*Read("FOV", {500, 500, 320, 240, -0.9}), *Read("FOV", {500, 500, 320, 240, 0.9}));
-  EXPECT_NE(IntrinsicsErrorOf(Read("FOV", {500, 500, 320, 240, 3.2})).find("has omega 3.2"),
+  EXPECT_NE(IntrinsicsErrorOf(Read("FOV", {500, 500, 320, 240, 3.2})).find("parameter omega 3.2"),
             std::string::npos);
 }
 

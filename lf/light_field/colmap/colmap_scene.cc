@@ -19,27 +19,30 @@ Result<RigidTransform> PoseOf(const ColmapImage& image) {
   const auto& [w, x, y, z] = image.quaternion;
   const Eigen::Quaterniond quaternion(w, x, y, z);
   if (!(std::abs(quaternion.norm() - 1) <= kNormTolerance))
-    return InputError(fmt::format(
-        "has the quaternion {} {} {} {} (w x y z): expected a rotation, of norm 1 +- {:g}", w, x, y,
-        z, kNormTolerance));
+    return InputError(
+        fmt::format("has the quaternion {} {} {} {} (w x y z) of norm {:g}: expected a rotation, "
+                    "of norm 1 +- {:g}",
+                    w, x, y, z, quaternion.norm(), kNormTolerance));
   RigidTransform cam_from_world;
   cam_from_world.rotation = quaternion.normalized().toRotationMatrix();
   cam_from_world.translation = Vec3(image.translation.data());
   if (!(cam_from_world.translation.cwiseAbs().maxCoeff() <= kLargest_w) ||
       !cam_from_world.translation.allFinite())
-    return InputError(fmt::format("has the translation {}: expected numbers within +-{:g}",
+    return InputError(fmt::format("has the translation {}: expected finite numbers within +-{:g}",
                                   fmt::join(image.translation, " "), kLargest_w));
   return cam_from_world;
 }
 
 Result<void> CheckName(const std::string& name) {
-  if (name.empty()) return InputError("has no name: expected the name of its file");
+  if (name.empty()) return InputError("has no name: expected the name of its image file");
   if (name.size() > kMaxColmapNameSize)
-    return InputError(
-        fmt::format("has a name of more than {} bytes: is the file broken?", kMaxColmapNameSize));
+    return InputError(fmt::format(
+        "has a name of more than {} bytes: copy the file again, because it is probably damaged",
+        kMaxColmapNameSize));
   if (std::any_of(name.begin(), name.end(),
                   [](char c) { return static_cast<unsigned char>(c) < 0x20; }))
-    return InputError("has a name with control characters: is the file broken?");
+    return InputError(
+        "has a name with control characters: copy the file again, because it is probably damaged");
   return {};
 }
 
@@ -97,7 +100,8 @@ void ColmapScene::ReserveImages(size_t count) {
 Result<void> ColmapScene::AddCamera(uint32_t id, const ColmapCameraModel& model, uint64_t width,
                                     uint64_t height, std::span<const double> parameters) {
   if (cameras_.size() == kMaxColmapEntryCount)
-    return InputError(fmt::format("is beyond the limit of {} cameras", kMaxColmapEntryCount));
+    return InputError(
+        fmt::format("is one camera too many: expected at most {} cameras", kMaxColmapEntryCount));
   LF_ASSIGN_OR_RETURN(const Intrinsics intrinsics,
                       IntrinsicsOfColmap(model, width, height, parameters));
   camera_ids_.Add(id, static_cast<uint32_t>(cameras_.size()));
@@ -107,20 +111,25 @@ Result<void> ColmapScene::AddCamera(uint32_t id, const ColmapCameraModel& model,
 
 Result<void> ColmapScene::EndCameras() {
   if (const std::optional<uint32_t> twice = camera_ids_.Sort())
-    return InputError(fmt::format("camera {} is there twice", *twice));
+    return InputError(
+        fmt::format("two cameras have the ID {}: expected a different ID for each camera; export "
+                    "the model from COLMAP again",
+                    *twice));
   return {};
 }
 
 Result<void> ColmapScene::AddImage(ColmapImage&& image) {
   if (image_count() == kMaxColmapEntryCount)
-    return InputError(fmt::format("is beyond the limit of {} images", kMaxColmapEntryCount));
+    return InputError(
+        fmt::format("is one image too many: expected at most {} images", kMaxColmapEntryCount));
   LF_RETURN_IF_ERROR(CheckName(image.name));
   LfCamera camera;
   LF_ASSIGN_OR_RETURN(camera.cam_from_world, PoseOf(image));
   const std::optional<uint32_t> camera_position = camera_ids_.Find(image.camera_id);
   if (!camera_position)
     return InputError(
-        fmt::format("was taken by camera {}, which is not among the {} of the cameras file",
+        fmt::format("has the camera ID {}, which none of the {} cameras in the cameras file has: "
+                    "copy both files from the same model",
                     image.camera_id, cameras_.size()));
   camera.intrinsics_index = *camera_position;
   light_field_.cameras.push_back(camera);
@@ -143,17 +152,23 @@ void ColmapScene::SortImages() {
 
 Result<void> ColmapScene::EndImages() {
   if (image_count() == 0)
-    return InputError("holds no images: a light field needs registered images");
+    return InputError("holds no images: expected at least one registered image");
   SortImages();
   image_positions_.Reserve(image_count());
   for (uint32_t i = 0; i < image_count(); ++i) image_positions_.Add(image_ids_[i], i);
   if (const std::optional<uint32_t> twice = image_positions_.Sort())
-    return InputError(fmt::format("image {} is there twice", *twice));
+    return InputError(
+        fmt::format("two images have the ID {}: expected a different ID for each image; export the "
+                    "model from COLMAP again",
+                    *twice));
   const std::vector<std::string>& names = light_field_.image_names;
   if (const auto twice = std::adjacent_find(names.begin(), names.end()); twice != names.end()) {
     const auto [first, second] =
         std::minmax(image_ids_[twice - names.begin()], image_ids_[twice - names.begin() + 1]);
-    return InputError(fmt::format("images {} and {} are both named {}", first, second, *twice));
+    return InputError(
+        fmt::format("the images with the IDs {} and {} have the same name {}: expected a different "
+                    "file name for each image",
+                    first, second, *twice));
   }
   image_ids_ = {};
   return {};
@@ -163,10 +178,11 @@ Result<void> ColmapScene::AddObservation(uint64_t point_id, const Vec3& point_wo
                                          uint32_t image_id) {
   const std::optional<uint32_t> position = image_positions_.Find(image_id);
   if (!position)
-    return InputError(fmt::format(
-        "is seen by image {}, which is not in the images file: remove the points file to read the "
-        "model without a range of depths",
-        image_id));
+    return InputError(
+        fmt::format("is seen by the image with ID {}, which the images file does not contain: copy "
+                    "both files from the same model, or remove the points file to read the model "
+                    "without a range of depths",
+                    image_id));
   if (!depths_.MayKeep(point_id, image_id))
     return {};  // saves reading the pose, which is slow: poses are scattered in memory
   const RigidTransform& pose = light_field_.cameras[*position].cam_from_world;

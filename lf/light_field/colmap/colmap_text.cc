@@ -63,8 +63,8 @@ Result<void> SkipPoints2D(TextWords* words, uint32_t image_id) {
   const std::optional<uint64_t> count = words->SkipNumbers();
   if (!count || *count % 3 != 0)
     return words->Fault(
-        fmt::format("expected the 2D points of image {} (X Y POINT3D_ID, three numbers each), or "
-                    "an empty line if it has none",
+        fmt::format("expected the 2D points of the image with ID {} (three numbers X Y POINT3D_ID "
+                    "for each point), or an empty line if it has none",
                     image_id));
   return {};
 }
@@ -115,8 +115,10 @@ Result<void> ReadColmapImagesText(ByteStream* stream, ColmapScene* scene) {
     return InputError(fmt::format("{}: {}", stream->path().string(), ended.error().message));
   // If a file was cut off between two images, only the number of images at its start reveals it.
   if (words.announced_count().value_or(scene->image_count()) != scene->image_count())
-    LogWarning("{}: holds {} images, but says {} at its start: was it edited, or is it cut off?",
-               stream->path().string(), scene->image_count(), *words.announced_count());
+    LogWarning(
+        "{}: holds {} images, but the comment at its start states {}: was it edited, or is it cut "
+        "off?",
+        stream->path().string(), scene->image_count(), *words.announced_count());
   return {};
 }
 

@@ -86,7 +86,7 @@ TEST(ColmapText, BrokenCamerasAreNamedWithTheirLine) {
   EXPECT_HAS(ErrorOfCameras("3 PINHOLE 8 6 10 nan 4 3"), "PARAMS[1] of 4 PINHOLE is \"nan\"");
   EXPECT_HAS(ErrorOfCameras("3 PINHOLE 8 6 10 11 4 3 2"), "more parameters than the 4 of PINHOLE");
   EXPECT_HAS(ErrorOfCameras("1 PINHOLE 8 6 10 11 4 3\n1 PINHOLE 8 6 10 11 4 3"),
-             "m/cameras.txt: camera 1 is there twice");
+             "m/cameras.txt: two cameras have the ID 1");
 }
 
 TEST(ColmapText, BrokenImagesAreNamedWithTheirLine) {
@@ -97,12 +97,13 @@ TEST(ColmapText, BrokenImagesAreNamedWithTheirLine) {
   EXPECT_HAS(ErrorOfImages("1 1 0 0 0 0 0"), "TZ is missing");
   EXPECT_HAS(ErrorOfImages("1 1 0 0 0 0 0 0 1.5 a.png"), "CAMERA_ID is \"1.5\"");
   EXPECT_HAS(ErrorOfImages("1 1 0 0 0 0 0 0 1"), "m/images.txt:1: image 1 has no name");
-  EXPECT_HAS(ErrorOfImages("1 1 0 0 0 0 0 0 2 a.png"), "image 1 was taken by camera 2");
+  EXPECT_HAS(ErrorOfImages("1 1 0 0 0 0 0 0 2 a.png"), "image 1 has the camera ID 2");
   EXPECT_HAS(ErrorOfImages("1 2 0 0 0 0 0 0 1 a.png"), "image 1 has the quaternion 2 0 0 0");
   EXPECT_HAS(ErrorOfImages("1 1 0 0 0 0 0 0 1 " + std::string(5000, 'x')), "more than 4096 bytes");
-  EXPECT_HAS(ErrorOfImages("1 1 0 0 0 0 0 0 1 a\n\n1 1 0 0 0 0 0 0 1 b\n"), "is there twice");
+  EXPECT_HAS(ErrorOfImages("1 1 0 0 0 0 0 0 1 a\n\n1 1 0 0 0 0 0 0 1 b\n"),
+             "two images have the ID 1");
   EXPECT_HAS(ErrorOfImages("1 1 0 0 0 0 0 0 1 a\n\n2 1 0 0 0 0 0 0 1 a\n"),
-             "m/images.txt: images 1 and 2 are both named a");
+             "m/images.txt: the images with the IDs 1 and 2 have the same name a");
 }
 
 TEST(ColmapText, AnotherNumberOfImagesThanAnnouncedIsAWarning) {
@@ -112,7 +113,7 @@ TEST(ColmapText, AnotherNumberOfImagesThanAnnouncedIsAWarning) {
     return testing::internal::GetCapturedStderr();
   };
   EXPECT_HAS(messages("# Number of images: 2, mean observations per image: 5\n"),
-             "m/images.txt: holds 1 images, but says 2 at its start");
+             "m/images.txt: holds 1 images, but the comment at its start states 2");
   EXPECT_EQ(messages("# Number of images: 1, mean observations per image: 5\n"), "");
   EXPECT_EQ(messages("# Number of things\n"), "");
 }
@@ -120,7 +121,8 @@ TEST(ColmapText, AnotherNumberOfImagesThanAnnouncedIsAWarning) {
 // The second line of an image without 2D points is blank. If a file that lacks such lines were
 // accepted, every second image would be lost.
 TEST(ColmapText, AnImageInThePlaceOfPointsIsAnError) {
-  const char* expected = "m/images.txt:2: expected the 2D points of image 1 (X Y POINT3D_ID";
+  const char* expected =
+      "m/images.txt:2: expected the 2D points of the image with ID 1 (three numbers X Y POINT3D_ID";
   EXPECT_HAS(ErrorOfImages("1 1 0 0 0 0 0 0 1 a.png\n2 1 0 0 0 0 0 0 1 b.png\n"), expected);
   EXPECT_HAS(ErrorOfImages("1 1 0 0 0 0 0 0 1 a.png\n2 1 0 0 0 0 0 0 1 b c d.png\n"), expected);
   EXPECT_HAS(ErrorOfImages("1 1 0 0 0 0 0 0 1 10\n2 1 0 0 0 0 0 0 1 20\n"), expected);
@@ -132,8 +134,9 @@ TEST(ColmapText, BrokenPointsAreNamedWithTheirLine) {
   EXPECT_HAS(ErrorOfPoints("1 0 0 1 0 256 0 0"), "G is \"256\": expected a whole number from 0 to");
   EXPECT_HAS(ErrorOfPoints("1 0 0 1 0 0 0"), "ERROR is missing");
   EXPECT_HAS(ErrorOfPoints("1 0 0 1 0 0 0 0 1"), "POINT2D_IDX of a track is missing");
-  EXPECT_HAS(ErrorOfPoints("1 0 0 1 0 0 0 0 3 0"),
-             "m/points3D.txt:1: point 1 is seen by image 3, which is not in the images file");
+  EXPECT_HAS(
+      ErrorOfPoints("1 0 0 1 0 0 0 0 3 0"),
+      "m/points3D.txt:1: point 1 is seen by the image with ID 3, which the images file does not");
 }
 
 TEST(ColmapText, WhatIsNoTextIsShownShort) {

@@ -46,10 +46,10 @@ Result<std::optional<std::string>> ModelExtension(const fs::path& folder) {
     const bool has_cameras = IsFile(cameras), has_images = IsFile(images);
     if (has_cameras && has_images) return std::optional<std::string>(extension);
     if (has_cameras != has_images && !incomplete)
-      incomplete =
-          InputError(fmt::format("{}: exists, but the {} of the same COLMAP model is missing",
-                                 (has_cameras ? cameras : images).string(),
-                                 (has_cameras ? images : cameras).filename().string()));
+      incomplete = InputError(fmt::format(
+          "{}: exists, but the {} of the same COLMAP model is missing: put it into the same folder",
+          (has_cameras ? cameras : images).string(),
+          (has_cameras ? images : cameras).filename().string()));
   }
   if (incomplete) return *incomplete;
   return std::optional<std::string>();
@@ -156,8 +156,8 @@ Result<fs::path> FindImages(const fs::path& model_folder, std::span<const std::s
     tried += fmt::format("{}{}", tried.empty() ? "" : ", ", folder.string());
   }
   return InputError(fmt::format(
-      "{}: its image {} is not found: looked for it in {}{}; put the images there, or "
-      "name their folder (--images)",
+      "{}: its image {} is not found: looked for it in {}{}; put the images there, or give their "
+      "folder (--images)",
       model_folder.string(), names.front(), tried, NearbyIn(model_folder, names.front())));
 }
 

@@ -244,8 +244,8 @@ Result<size_t> FindImageFiles(const std::optional<fs::path>& images_folder,
   }
   if (ambiguous_count > 0)
     return InputError(
-        fmt::format("{}: for {} of {} LF images, several files have the same name, such as {}: "
-                    "give the folder of the right files (--images)",
+        fmt::format("{}: contains several files of the same name for {} of {} LF images, such as "
+                    "{}: give the folder of the right files (--images)",
                     folder.string(), ambiguous_count, light_field->size(), example));
   if (found_count == 0) return 0;
   // A mask must not match a file with the same name in another folder, such as a photograph.
@@ -269,8 +269,8 @@ Result<ImageScale> ParseImageScale(const std::string& text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), factor);
   if (error != std::errc() || end != text.data() + text.size() || !(factor > 0 && factor <= 100))
     return UsageError(
-        fmt::format("--image-scale {}: expected auto, off, or a factor such as 0.25: the size of "
-                    "the image files divided by the calibrated size",
+        fmt::format("--image-scale {}: expected auto, off, or a factor above 0 and up to 100, such "
+                    "as 0.25 (the size of the image files divided by the calibrated size)",
                     text));
   return ImageScale{ImageScale::Kind::kFactor, factor};
 }

@@ -25,7 +25,7 @@ bool IsRawName(const std::string& file_name) {
 
 Result<std::optional<RawFacts>> RawFactsOfFirstImage(const LightField& light_field) {
   constexpr const char* kAdvice =
-      "mend or leave out this image, or state lf_bayer, lf_black_level, lf_white_level, "
+      "repair or remove this image, or state lf_bayer, lf_black_level, lf_white_level, "
       "lf_white_balance and lf_camera_to_srgb in a transforms.json";
   if (light_field.image_names.empty() || !IsRawName(light_field.image_names[0]))
     return std::optional<RawFacts>();
@@ -35,12 +35,14 @@ Result<std::optional<RawFacts>> RawFactsOfFirstImage(const LightField& light_fie
     info = image ? Result<ImageFileInfo>(std::move(image->info)) : image.error();
   }
   if (!info)
-    return InputError(fmt::format(
-        "{}; this first camera raw file must state the pattern, levels and colours of all: {}",
-        info.error().message, kAdvice));
+    return InputError(
+        fmt::format("{}; the first camera raw file must state the Bayer pattern, levels and "
+                    "colours of all LF images: {}",
+                    info.error().message, kAdvice));
   if (!info->raw)
-    return InputError(fmt::format("{}: is named like a camera raw file, but is none; {}",
-                                  light_field.ImagePath({0}).string(), kAdvice));
+    return InputError(
+        fmt::format("{}: has the name of a camera raw file, but is another kind of file: {}",
+                    light_field.ImagePath({0}).string(), kAdvice));
   return info->raw;
 }
 
@@ -73,14 +75,14 @@ void WarnOfUnknown(const LightField& light_field, const RawFacts& facts, bool le
   if (!levels_stated && !(facts.black_level && facts.white_level))
     LogWarning(
         "{}: this camera raw file does not state its {}; assumed to be {}: if this is wrong, state "
-        "lf_black_level and lf_white_level",
+        "lf_black_level and lf_white_level in transforms.json",
         name, facts.black_level ? "white level" : "black and white level",
         facts.black_level ? "65535" : "0 and 65535");
   if (!colours_stated && !facts.is_monochrome &&
       !(facts.white_balance && facts.linear_srgb_from_camera))
     LogWarning(
         "{}: this camera raw file does not state its {}; colours stay those of the sensor: to "
-        "correct them, state lf_white_balance and lf_camera_to_srgb",
+        "correct them, state lf_white_balance and lf_camera_to_srgb in transforms.json",
         name, facts.white_balance ? "colour matrix" : "white balance or colour matrix");
 }
 

@@ -18,7 +18,8 @@ double Skew(const Mat3& axes) {
 
 Result<Mat3> NearestRotation(const Mat3& matrix, double tolerance) {
   LF_CHECK(tolerance <= 1e-2);
-  if (!matrix.allFinite()) return InputError("holds a number that is not finite");
+  if (!matrix.allFinite())
+    return InputError("holds a number that is not finite: expected a rotation");
   const double determinant = matrix.determinant();
   if (determinant < 0)
     return InputError(
@@ -26,8 +27,9 @@ Result<Mat3> NearestRotation(const Mat3& matrix, double tolerance) {
   const double skew = Skew(matrix);
   if (!(skew <= tolerance))
     return InputError(
-        fmt::format("is sheared or scaled unevenly: its axes deviate from right angles and unit "
-                    "length by {:.2g}, more than {:g}",
+        fmt::format("is sheared or scaled, not a rotation: its axes deviate from right angles and "
+                    "unit length by "
+                    "{:.2g}; expected at most {:g}",
                     skew, tolerance));
   if (skew <= kExact) return matrix;
   // The orthogonal factor of the polar decomposition, by Newton's iteration (Higham 1986). For a

@@ -99,15 +99,18 @@ Result<void> CheckOptions(const RigOptions& options) {
     return UsageError("a rig of 0 cameras takes no picture; give 1 or more (--count)");
   const bool pitched = options.shape != RigShape::kHemisphere;
   if (pitched && !(options.spacing_w > 0 && std::isfinite(options.spacing_w)))
-    return UsageError(fmt::format("camera spacing {}: expected a positive length in world units",
-                                  options.spacing_w));
+    return UsageError(
+        fmt::format("camera spacing {} (--spacing): expected a positive length in world units",
+                    options.spacing_w));
   if (!(options.distance_w > 0 && std::isfinite(options.distance_w)))
     return UsageError(
-        fmt::format("distance {} from the scene: expected a positive length in world units",
+        fmt::format("distance {} of the cameras from the scene (--distance): expected a positive "
+                    "length in world units",
                     options.distance_w));
   if (!(options.jitter >= 0 && options.jitter <= 1))
     return UsageError(
-        fmt::format("jitter {}: expected 0 to 1 (a share of the camera spacing)", options.jitter));
+        fmt::format("jitter {} (--jitter): expected a share of the camera spacing from 0 to 1",
+                    options.jitter));
   if (!LookAlong(Vec3::Zero(), options.view_world, options.up_world))
     return UsageError(fmt::format(
         "view direction {} {} {}: expected a direction that is not 0 and not parallel to the up "
@@ -117,8 +120,8 @@ Result<void> CheckOptions(const RigOptions& options) {
   const double arc_rad = options.spacing_w / options.distance_w * GridOf(options).columns;
   if (options.shape == RigShape::kBand && arc_rad > 2 * kPi)
     return UsageError(fmt::format(
-        "a band of {} columns {} apart is longer than its circle of radius {}; lower the count or "
-        "the spacing, or raise the distance",
+        "a band of {} columns of cameras {} world units apart is longer than its circle of radius "
+        "{} world units: lower --count or --spacing, or raise --distance",
         GridOf(options).columns, options.spacing_w, options.distance_w));
   return {};
 }

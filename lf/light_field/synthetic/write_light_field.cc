@@ -159,7 +159,7 @@ Result<void> WriteLightField(const Scene& scene, const LightField& light_field,
   LF_RETURN_IF_ERROR(CreateFolder(light_field.folder / "images"));
   std::error_code error;
   if (!std::filesystem::remove(calibration, error) && error)
-    return OutputError(fmt::format("{}: cannot replace the older calibration: {}",
+    return OutputError(fmt::format("{}: the older calibration cannot be removed: {}",
                                    calibration.string(), error.message()));
   std::mutex mutex;  // guards failure and images_done
   std::optional<Error> failure;

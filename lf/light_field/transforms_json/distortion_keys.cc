@@ -79,10 +79,10 @@ Result<CameraModelName> ResolveModel(const DistortionKeys& frame, const Distorti
                              model.model == DistortionModel::kThinPrism ||
                              model.model == DistortionModel::kRadialTangentialThinPrism;
   if (is_fisheye && *is_fisheye != is_of_fisheye)
-    return fields.Fault(fmt::format(
-        "\"is_fisheye\" is {}, \"camera_model\" is \"{}\": they contradict each other, remove "
-        "is_fisheye",
-        *is_fisheye, model.name));
+    return fields.Fault(
+        fmt::format("\"is_fisheye\" is {}, \"camera_model\" is \"{}\": they contradict each other, "
+                    "remove is_fisheye, or correct camera_model",
+                    *is_fisheye, model.name));
   return model;
 }
 
@@ -90,14 +90,15 @@ Error SurplusParameter(const CameraModelName& model, std::string_view key, doubl
                        const JsonFields& fields) {
   const bool is_open_cv = std::string_view(model.name) == "OPENCV";
   if (is_open_cv && key == "k4")
-    return fields.Fault(fmt::format(
-        "\"k4\" is {}, which is ambiguous with OPENCV: nerfstudio means a factor of r^8, OpenCV a "
-        "denominator: state \"camera_model\": \"FULL_OPENCV\" if it is OpenCV's (or "
-        "OPENCV_FISHEYE for a fish-eye), else undistort the images first",
-        value));
+    return fields.Fault(
+        fmt::format("\"k4\" is {}, which is ambiguous with the camera model OPENCV: nerfstudio "
+                    "uses k4 as the coefficient of r^8, OpenCV as a coefficient of the "
+                    "denominator. For OpenCV's k4, state \"camera_model\": \"FULL_OPENCV\" (for a "
+                    "fish-eye lens OPENCV_FISHEYE); for any other, undistort the images first",
+                    value));
   return fields.Fault(
-      fmt::format("\"{}\" is {}, but \"camera_model\": \"{}\" has no such "
-                  "parameter: expected 0{}",
+      fmt::format("\"{}\" is {}, but \"camera_model\": \"{}\" has no such parameter: expected 0, "
+                  "or remove the key{}",
                   key, value, model.name, is_open_cv ? " (FULL_OPENCV has k1 to k6, p1, p2)" : ""));
 }
 
@@ -186,8 +187,8 @@ Result<Distortion> ResolveDistortion(const DistortionKeys& frame, const Distorti
   }
   if (model.model == DistortionModel::kFov && distortion.parameters[0] == 0)
     return fields.Fault(
-        fmt::format("\"camera_model\" is \"FOV\", but \"{}\" is missing: expected {}", kOmegaKey,
-                    kOmega.expected));
+        fmt::format("\"camera_model\" is \"FOV\", but \"{}\" is missing or 0: expected {}",
+                    kOmegaKey, kOmega.expected));
   if (!IsDistortion(distortion))
     return fields.Fault(
         fmt::format("\"camera_model\" is \"{}\" with lf_eucm_alpha {} and lf_eucm_beta {}: "

@@ -106,8 +106,8 @@ Result<Intrinsics> ResolveIntrinsics(const IntrinsicsKeys& frame, const Intrinsi
     if (!height) height = size[1];
   }
   if (*width * *height > kMaxPixelCount)
-    return fields.Fault(
-        fmt::format("images of {} x {} pixels exceed the limit of 2^30 pixels", *width, *height));
+    return fields.Fault(fmt::format(
+        "the images have {} x {} pixels: expected at most 2^30 pixels in total", *width, *height));
 
   const std::optional<double> fx =
       Focal(frame, top, &IntrinsicsKeys::fl_x, &IntrinsicsKeys::camera_angle_x, *width);
@@ -131,12 +131,12 @@ Result<Intrinsics> ResolveIntrinsics(const IntrinsicsKeys& frame, const Intrinsi
   if (vignetting) intrinsics.vignetting.v = *vignetting;
   if (!IsFalloff(intrinsics)) {
     const FalloffRange range = FalloffRangeOf(intrinsics);
-    return fields.Fault(fmt::format(
-        "\"lf_vignetting\" is [{}], which leaves {:.3g} to {:.3g} of the light in images of {} x "
-        "{} pixels: expected from 1/64 to 64 everywhere in the image; r is 1 half of the diagonal "
-        "from the principal point",
-        fmt::join(intrinsics.vignetting.v, ", "), range.min, range.max, intrinsics.width_px,
-        intrinsics.height_px));
+    return fields.Fault(
+        fmt::format("\"lf_vignetting\" is [{}], which multiplies the light by {:.3g} to {:.3g} in "
+                    "images of {} x {} pixels: expected factors from 1/64 to 64 everywhere in the "
+                    "image (r is the distance from the principal point, in halves of the diagonal)",
+                    fmt::join(intrinsics.vignetting.v, ", "), range.min, range.max,
+                    intrinsics.width_px, intrinsics.height_px));
   }
   return intrinsics;
 }

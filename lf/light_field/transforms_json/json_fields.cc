@@ -170,12 +170,11 @@ Result<void> JsonFields::CheckLfKeys(std::span<const char* const> known,
   for (const auto [key, value] : object_.object()) {
     if (!key.starts_with("lf_") || is_in(known, key)) continue;
     if (is_in(known_elsewhere, key))
-      return Fault(
-          fmt::format("\"{}\" is in the wrong place: it belongs {}", key, elsewhere_place));
+      return Fault(fmt::format("\"{}\" is in the wrong place: move it {}", key, elsewhere_place));
     constexpr size_t kLongest = 64;
     const std::string_view shown = key.substr(0, kLongest);
-    return Fault(
-        fmt::format("\"{}\" is not known: did you mean \"{}\"?", shown, Nearest(shown, known)));
+    return Fault(fmt::format("\"{}\" is not a known key: did you mean \"{}\"?", shown,
+                             Nearest(shown, known)));
   }
   return {};
 }

@@ -58,7 +58,7 @@ class JsonFields {
                                                     const NumberRule& rule) const;
 
   // Returns kInput if a key that starts with lf_ is not in `known`. If the key is in
-  // `known_elsewhere`, the message says that it belongs `elsewhere_place`, such as "to the top
+  // `known_elsewhere`, the message says to move it `elsewhere_place`, such as "to the top
   // level"; otherwise the message names the nearest known key.
   Result<void> CheckLfKeys(std::span<const char* const> known,
                            std::span<const char* const> known_elsewhere,

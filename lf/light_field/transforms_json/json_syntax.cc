@@ -71,7 +71,9 @@ Error JsonSyntaxError(ByteStream* stream) {
   }
   if (Result<void> status = stream->Status(); !status) return status.error();
   if (error) return *error;
-  return InputError(fmt::format("{}: changed while it was read", stream->path().string()));
+  return InputError(
+      fmt::format("{}: changed while it was read; try again when no other program writes it",
+                  stream->path().string()));
 }
 
 }  // namespace lf

@@ -39,7 +39,8 @@ TEST(JsonSyntax, NestingTakesNoMemory) {
 }
 
 TEST(JsonSyntax, AFileThatIsJsonNowHasChanged) {
-  EXPECT_EQ(SyntaxErrorOf("{}"), "a.json: changed while it was read");
+  EXPECT_EQ(SyntaxErrorOf("{}"),
+            "a.json: changed while it was read; try again when no other program writes it");
 }
 
 }  // namespace

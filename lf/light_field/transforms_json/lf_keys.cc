@@ -63,8 +63,9 @@ Result<void> ReadLevels(const JsonFields& top, RadianceEncoding* encoding) {
   if (black) encoding->black_level = *black;
   if (white) encoding->white_level = white;
   if (!LevelsFit(*encoding, 16))
-    return top.Fault(fmt::format("\"lf_black_level\" is {}: expected less than lf_white_level, {}",
-                                 encoding->black_level, encoding->white_level.value_or(65535)));
+    return top.Fault(
+        fmt::format("\"lf_black_level\" is {}: expected less than lf_white_level, which is {}",
+                    encoding->black_level, encoding->white_level.value_or(65535)));
   return {};
 }
 
@@ -90,8 +91,8 @@ Result<void> ReadAlpha(const JsonFields& top, RadianceEncoding* encoding) {
   if (!top.Has("lf_background")) return {};
   if (encoding->alpha == AlphaMeaning::kMask)
     return top.Fault(
-        "\"lf_background\" needs lf_alpha \"straight\" or \"premultiplied\": a mask "
-        "has nothing behind it");
+        "\"lf_background\" cannot be used with lf_alpha \"mask\", whose pixels are either used or "
+        "left out: remove lf_background, or state lf_alpha \"straight\" or \"premultiplied\"");
   encoding->background.emplace();
   if (!top.HasList("lf_background")) {
     const Result<std::optional<std::string>> word = top.Text("lf_background");

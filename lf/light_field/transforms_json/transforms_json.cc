@@ -68,7 +68,7 @@ class Reader {
     JsonObject top;
     const JsonFields fields(top, path_);
     if (!top.Parse(top_text))
-      return fields.Fault("expected an object {...} with a list \"frames\"");
+      return fields.Fault("the file holds no object: expected {...} with a list \"frames\"");
     if (error_) return *error_;
     return Finish(fields);
   }
@@ -89,14 +89,16 @@ class Reader {
         const std::string& key = value.get_ref<const std::string&>();
         in_frames = key == "frames";
         if (!seen_keys.insert(key).second)
-          *error = InputError(fmt::format("{}: \"{}\" is given twice", path_.string(), key));
+          *error = InputError(fmt::format("{}: the key \"{}\" occurs twice: remove one of the two",
+                                          path_.string(), key));
       }
       if (!in_frames) return true;
       if (depth == 1 && event == Event::array_start) in_frames_list = true;
       if (depth == 1 && event == Event::array_end) in_frames_list = false;
       if (depth != 2 || !in_frames_list) return true;
       if (event == Event::value || event == Event::array_start)
-        *error = JsonFields(JsonObject(), path_, entry_count, "").Fault("expected an object {...}");
+        *error = JsonFields(JsonObject(), path_, entry_count, "")
+                     .Fault("is not an object: expected {...} with file_path and transform_matrix");
       if (event == Event::object_end) ++entry_count;
       return event != Event::object_end;
     });
@@ -104,7 +106,9 @@ class Reader {
 
   Result<LightField> Finish(const JsonFields& top) {
     if (!top.HasList("frames")) return top.Wrong("frames", "a list of objects");
-    if (frame_count() == 0) return top.Fault("\"frames\" is empty: a light field needs images");
+    if (frame_count() == 0)
+      return top.Fault(
+          "\"frames\" is empty: expected at least one frame, because a light field needs images");
     LF_RETURN_IF_ERROR(top.CheckLfKeys(kTopLevelLfKeys, kFrameLfKeys, "into each frame"));
     LF_RETURN_IF_ERROR(ResolveAllIntrinsics(top));
     LF_ASSIGN_OR_RETURN(light_field_.encoding, ReadEncoding(top, light_field_, raw_facts_));
@@ -119,7 +123,8 @@ class Reader {
     const size_t index = frame_count();
     const JsonFields unnamed(frame_, path_, index, "");
     if (index == kMaxFrameCount)
-      return unnamed.Fault(fmt::format("more than {} frames", kMaxFrameCount));
+      return unnamed.Fault(
+          fmt::format("this frame is one too many: expected at most {} frames", kMaxFrameCount));
     LF_ASSIGN_OR_RETURN(std::optional<std::string> name, unnamed.Text("file_path"));
     if (!name || name->empty()) return unnamed.Wrong("file_path", "the name of the image file");
 
@@ -153,7 +158,9 @@ class Reader {
     if (!matrix) return fields.Wrong("transform_matrix", "the 4x4 camera-to-world matrix");
     const double* last_row = matrix->size() == 16 ? matrix->data() + 12 : nullptr;
     if (last_row && Eigen::RowVector4d(last_row) != Eigen::RowVector4d(0, 0, 0, 1))
-      return fields.Fault("\"transform_matrix\": expected the last row 0, 0, 0, 1");
+      return fields.Fault(
+          fmt::format("\"transform_matrix\" has the last row {}, {}, {}, {}: expected 0, 0, 0, 1",
+                      last_row[0], last_row[1], last_row[2], last_row[3]));
     const Result<RigidTransform> pose = CamFromWorldOfOpenGl(
         Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(matrix->data()));
     if (!pose) return fields.Fault("\"transform_matrix\" " + pose.error().message);
@@ -298,8 +305,8 @@ Result<LightField> Read(const fs::path& path, const StreamSource& open,
     stream.Skip(piece.size());
     if (cutter.held_bytes() > kMaxHeldBytes)
       return InputError(
-          fmt::format("{}: holds more than {} bytes beside its frames, or in one of them: is it a "
-                      "transforms.json?",
+          fmt::format("{}: holds more than {} bytes in one frame or outside of all frames: "
+                      "expected a transforms.json; is it another file?",
                       path.string(), kMaxHeldBytes));
   }
   LF_RETURN_IF_ERROR(stream.Status());

@@ -146,7 +146,7 @@ TEST(TransformsJson, BrokenMatricesAreErrorsThatNameTheFrame) {
   };
   expect("[[-1,0,0,1],[0,1,0,2],[0,0,1,3]]", "mirrored");
   expect("[[1,0.5,0,1],[0,1,0,2],[0,0,1,3]]", "sheared");
-  expect("[[1,0,0,1],[0,1,0,2],[0,0,2,3]]", "unevenly");
+  expect("[[1,0,0,1],[0,1,0,2],[0,0,2,3]]", "scaled");
   expect("[[0,0,0,1],[0,0,0,2],[0,0,0,3]]", "determinant");
   expect("[[1,0,0,1],[0,1,0,2],[0,0,1,3],[0,0,1,1]]", "last row");
   expect("[[1,0,0,1],[0,1,0,2],[0,0,1,1e300]]", "1e+12");
@@ -223,20 +223,20 @@ TEST(TransformsJson, WhatIsNoTransformsJsonIsAnError) {
   ExpectError("{\"fl_x\": NaN}", {"is not JSON"});
   ExpectError("{\"fl_x\": 1e999}", {"is not JSON"});
   ExpectError("{\"a\": \"\xff\"}", {"is not JSON", "UTF-8"});
-  ExpectError("[1, 2]", {"expected an object"});
-  ExpectError("7", {"expected an object"});
+  ExpectError("[1, 2]", {"holds no object"});
+  ExpectError("7", {"holds no object"});
   ExpectError("{}", {"\"frames\" is missing"});
   ExpectError("{\"frames\": {\"a\": {}}}", {"\"frames\" is an object"});
   ExpectError("{\"frames\": []}", {"is empty"});
-  ExpectError("{\"frames\": [3]}", {"frames[0]: expected an object"});
-  ExpectError("{\"frames\": [[{}]]}", {"frames[0]: expected an object"});
+  ExpectError("{\"frames\": [3]}", {"frames[0]: is not an object"});
+  ExpectError("{\"frames\": [[{}]]}", {"frames[0]: is not an object"});
   ExpectError("{\"frames\": [{}]}", {"frames[0]: \"file_path\" is missing"});
   ExpectError("{\"frames\": [{\"file_path\": \"\"}]}", {"\"file_path\" is \"\""});
   ExpectError("{\"frames\": [{\"file_path\": \"a\\u0000\"}]}", {"NUL"});
   ExpectError("{\"frames\": [{\"file_path\": \"" + std::string(5000, 'a') + "\"}]}",
               {"aaa", "expected text of at most 4096 bytes"});
   ExpectError("{\"frames\": [{\"file_path\": \"a\"}]}", {"(a): \"transform_matrix\" is missing"});
-  ExpectError(OneFrame(kIntrinsics + R"("w": 3, )"), {"\"w\" is given twice"});
+  ExpectError(OneFrame(kIntrinsics + R"("w": 3, )"), {"\"w\" occurs twice"});
   ExpectError(std::string(100'000, '['), {"is not JSON"});
 }
 
@@ -257,7 +257,7 @@ TEST(TransformsJson, AFaultIsFoundWhereverItStands) {
   // A syntax error is reported before any other error.
   ExpectError(text("{}", "]"), {"is not JSON", "line 4"});
   ExpectError(text("{}", "]}"), {"frames[1]: \"file_path\" is missing"});
-  ExpectError(text("7", R"(,{}]})"), {"frames[1]: expected an object"});
+  ExpectError(text("7", R"(,{}]})"), {"frames[1]: is not an object"});
 }
 
 TEST(TransformsJson, WhatNobodyReadsMayBeAnything) {
@@ -383,7 +383,7 @@ TEST(TransformsJson, AVignettingLeavesLightEverywhere) {
     ExpectError(OneFrame(kIntrinsics + R"("lf_vignetting": )" + wrong + ", "),
                 {"lf_vignetting", "a list of 3 numbers"});
   ExpectError(OneFrame(kIntrinsics + R"("lf_vignetting": [-1.1, 0, 0], )"),
-              {"lf_vignetting", "[-1.1, 0, 0]", "leaves -0.1 to 1 of the light", "1/64"});
+              {"lf_vignetting", "[-1.1, 0, 0]", "multiplies the light by -0.1 to 1", "1/64"});
 }
 
 TEST(TransformsJson, EncodingHasTheDocumentedDefaults) {
@@ -439,7 +439,7 @@ TEST(TransformsJson, WrongLfValuesAreErrors) {
   expect(R"("lf_pixels": "dots", )", "\"areas\" or \"points\"");
   expect(R"("lf_background": [1, 1], )", "a list of 3 numbers");
   expect(R"("lf_background": [1, -1, 1], )", "radiances from 0");
-  expect(R"("lf_background": [1, 1, 1], "lf_alpha": "mask", )", "nothing behind it");
+  expect(R"("lf_background": [1, 1, 1], "lf_alpha": "mask", )", "cannot be used with lf_alpha");
   expect(R"("lf_clipped": "drop", )", "\"mask\" or \"keep\"");
   expect(R"("lf_clipped": true, )", "lf_clipped");
   expect(R"("lf_unit_m": 0, )", "lf_unit_m");
@@ -449,10 +449,10 @@ TEST(TransformsJson, WrongLfValuesAreErrors) {
 
 TEST(TransformsJson, UnknownLfKeysNameTheNearestKnownOne) {
   ExpectError(OneFrame(kIntrinsics + R"("lf_blacklevel": 3, )"),
-              {"\"lf_blacklevel\" is not known", "\"lf_black_level\""});
+              {"\"lf_blacklevel\" is not a known key", "\"lf_black_level\""});
   ExpectError(OneFrame(kIntrinsics, R"("lf_gian": 3, )"), {"frames[0]", "\"lf_gain\""});
-  ExpectError(OneFrame(kIntrinsics + R"("lf_gain": 3, )"), {"belongs into each frame"});
-  ExpectError(OneFrame(kIntrinsics, R"("lf_bayer": "RGGB", )"), {"belongs to the top level"});
+  ExpectError(OneFrame(kIntrinsics + R"("lf_gain": 3, )"), {"move it into each frame"});
+  ExpectError(OneFrame(kIntrinsics, R"("lf_bayer": "RGGB", )"), {"move it to the top level"});
 }
 
 TEST(TransformsJson, MasksAreListedOnceAnyFrameHasOne) {

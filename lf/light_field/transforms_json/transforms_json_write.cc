@@ -182,8 +182,10 @@ void AddGains(const LfCamera& camera, JsonText* out) {
 Result<void> AddFrame(const LightField& light_field, size_t index, JsonText* out) {
   const std::string& name = light_field.image_names[index];
   if (!fs::path(name).has_extension())
-    return OutputError(fmt::format(
-        "the image name \"{}\" has no extension: it would be read back as \"{}.png\"", name, name));
+    return OutputError(
+        fmt::format("the image name \"{}\" has no extension, so that \"{}.png\" would be read "
+                    "instead: rename the file",
+                    name, name));
   const LfCamera& camera = light_field.cameras[index];
   out->Add("{{\"file_path\": ");
   LF_RETURN_IF_ERROR(out->AddString(name));

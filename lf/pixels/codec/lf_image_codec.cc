@@ -72,6 +72,11 @@ struct Contents {
   std::vector<std::string_view> sections;  // index: resolution * tile_count() + tile
 };
 
+Error DamagedCode(std::string_view fault) {
+  return InputError(
+      fmt::format("is a damaged encoded LF image: {}; copy or make the packed store again", fault));
+}
+
 // Reads head and table of contents from the front of `code`, and divides the rest into sections.
 Result<Contents> TakeContents(std::string_view code) {
   Contents contents;
@@ -79,20 +84,19 @@ Result<Contents> TakeContents(std::string_view code) {
   const size_t count = contents.head.tile_count() * (contents.head.info.levels + 1);
   // The table has at least one byte for each section.
   if (count > code.size())
-    return InputError(fmt::format(
-        "is a damaged encoded LF image: {} bytes are too few for {} sections", code.size(), count));
+    return DamagedCode(fmt::format("{} bytes are too few for {} packets", code.size(), count));
   std::vector<uint64_t> sizes(count);
   for (uint64_t& size : sizes)
     if (!TakeNumber(&code, code.size(), &size))
-      return InputError("is a damaged encoded LF image: its table of contents is invalid");
+      return DamagedCode(fmt::format(
+          "its table of contents states a packet of more than the {} bytes that are left",
+          code.size()));
   contents.sections.resize(count);
   for (size_t i = 0; i < count; ++i)
     if (!TakeBytes(&code, sizes[i], &contents.sections[i]))
-      return InputError(
-          "is a damaged encoded LF image: it is shorter than its table of "
-          "contents states (truncated?)");
+      return DamagedCode("it is shorter than the packets in its table of contents");
   if (!code.empty())
-    return InputError("is a damaged encoded LF image: there are bytes behind its end");
+    return DamagedCode(fmt::format("{} bytes follow its last packet", code.size()));
   return contents;
 }
 
@@ -124,9 +128,8 @@ Result<void> Decode(Transform transform, const Contents& contents, const PixelRe
                               ? DecodeHaarTile(transform, head, sections, part)
                               : DecodeWaveletTile(transform, head, sections, part);
     if (!is_whole)
-      return InputError(
-          fmt::format("is a damaged encoded LF image: the tile at pixel ({}, {}) cannot be decoded",
-                      head.TileRect(tile).x_begin, head.TileRect(tile).y_begin));
+      return DamagedCode(fmt::format("the tile at pixel ({}, {}) cannot be decoded",
+                                     head.TileRect(tile).x_begin, head.TileRect(tile).y_begin));
   }
   return {};
 }
@@ -139,8 +142,8 @@ Result<void> CheckSettings(const CodecSettings& settings) {
   if (!(settings.threshold >= 0 && settings.threshold <= 65535))
     return UsageError(fmt::format("--threshold {}: expected 0 to 65535", settings.threshold));
   if (settings.quantizer < 2 || settings.quantizer > 65536)
-    return UsageError(
-        fmt::format("--quantizer {}: expected 8bit, or 2 to 65536", settings.quantizer));
+    return UsageError(fmt::format(
+        "--quantizer {}: expected 8bit, or 2 to 65536 values per coefficient", settings.quantizer));
   return {};
 }
 
@@ -163,7 +166,7 @@ std::string EncodeImage(const CodecPixels& pixels, PixelLayout layout,
 Result<CodeInfo> ReadCodeInfo(std::string_view code) {
   LF_ASSIGN_OR_RETURN(const CodeHead head, TakeHead(&code));
   if (head.tile_count() * (head.info.levels + 1) > code.size())
-    return InputError("is a damaged encoded LF image: it is shorter than its table of contents");
+    return DamagedCode("it is shorter than its table of contents");
   return head.info;
 }
 

@@ -23,7 +23,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr size_t kBlock = 2048;
 constexpr size_t kRoom = kBlock + 4 * kSlack;  // StoreInterleaved4() may write beyond the block
 
-// Unpacks `size` bytes of kTwo or kFour into one byte for each number.
+// Unpacks `size` bytes into one byte for each number. Each byte holds two numbers (kTwo) or four
+// (kFour).
 void Spread(Packing packing, const uint8_t* HWY_RESTRICT bytes, size_t size,
             uint8_t* HWY_RESTRICT out) {
   const hn::ScalableTag<uint8_t> d;

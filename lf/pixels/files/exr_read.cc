@@ -107,7 +107,9 @@ class ExrDecoder : public PictureDecoder {
     LF_RETURN_IF_ERROR(Run(name_, [&] { file_.emplace(stream_, kNoThreads, kReconstructs); }));
     const Imf::Header& header = file_->header(0);
     if (Imf::isNonImage(file_->version()) || (header.hasType() && Imf::isDeepData(header.type())))
-      return InputError(fmt::format("{}: holds deep data, not a picture", name_));
+      return InputError(fmt::format(
+          "{}: holds deep data, which is not supported; convert the file to a flat picture",
+          name_));
     const Imath::Box2i& window = header.dataWindow();
     const int64_t width = int64_t{window.max.x} - window.min.x + 1;
     const int64_t height = int64_t{window.max.y} - window.min.y + 1;

@@ -120,7 +120,7 @@ auto FromFile(const fs::path& path, const Read& read)
   };
   std::error_code error;
   if (fs::exists(path, error) && !fs::is_regular_file(path, error))
-    return InputError(fmt::format("{}: is not a file", name));
+    return InputError(fmt::format("{}: is a folder or a device, expected an image file", name));
   DiskFile disk(path);
   if (disk.error() != 0) return failure(disk.error());
   const FileBytes file = {

@@ -100,8 +100,8 @@ TEST_F(ReadImageTest, DamageWithinAPngIsAnError) {
 TEST_F(ReadImageTest, WhatIsNoImageFileIsNamed) {
   ExpectInputError(ReadImage(folder_ / "none.png").error(), "none.png", "No such file");
   ExpectInputError(ReadImageInfo(folder_ / "none.png").error(), "none.png", "No such file");
-  ExpectInputError(ReadImage(folder_).error(), folder_.string(), "is not a file");
-  ExpectInputError(ReadImageInfo(folder_).error(), folder_.string(), "is not a file");
+  ExpectInputError(ReadImage(folder_).error(), folder_.string(), "is a folder");
+  ExpectInputError(ReadImageInfo(folder_).error(), folder_.string(), "is a folder");
   Save("empty.png", "");
   ExpectInputError(ReadImage(folder_ / "empty.png").error(), "empty.png", "empty");
   ExpectInputError(ReadImageInfo(folder_ / "empty.png").error(), "empty.png", "empty");

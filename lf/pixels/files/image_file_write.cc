@@ -49,7 +49,7 @@ Result<void> CheckHolds(const fs::path& path, ImageFormat format, PixelType type
                                    path.string(), NameOf(format), channels));
   if (holds) return {};
   constexpr const char* kTypes[] = {"8-bit integers", "16-bit integers", "half floats", "floats"};
-  return OutputError(fmt::format("{}: {} files with {} cannot be written; choose another extension",
+  return OutputError(fmt::format("{}: {} files cannot hold {}; choose another extension",
                                  path.string(), NameOf(format), kTypes[static_cast<int>(type)]));
 }
 
@@ -114,8 +114,9 @@ T IntegerOf(float value) {
 
 Result<void> CheckShape(const fs::path& path, int width, int height) {
   if (width > 0 && height > 0) return {};
-  return OutputError(fmt::format("{}: a picture of {} x {} pixels cannot be written", path.string(),
-                                 width, height));
+  return OutputError(
+      fmt::format("{}: a picture of {} x {} pixels cannot be written: expected at least 1 x 1",
+                  path.string(), width, height));
 }
 
 template <class T>

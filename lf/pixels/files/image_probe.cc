@@ -56,9 +56,10 @@ Result<void> CheckPngChunks(const ByteSource& source, const std::string& name) {
   while (const auto chunk = PngChunkAt(source, offset)) {
     if (chunk->type == kPngPixels || chunk->type == kPngEnd) break;
     if (!chunk->is_whole)
-      return InputError(fmt::format(
-          "{}: claims a chunk of {} bytes, for which the file is too short: truncated or damaged",
-          name, chunk->end - offset - 12));
+      return InputError(
+          fmt::format("{}: claims a PNG chunk of {} bytes, for which the file is too short: "
+                      "truncated or damaged",
+                      name, chunk->end - offset - 12));
     offset = chunk->end;
   }
   return {};
@@ -105,7 +106,9 @@ Result<void> CheckJpeg(const ByteSource& source, const std::string& name) {
     offset += std::max<uint64_t>(*length, 2);
   }
   return InputError(
-      fmt::format("{}: JPEG file without a frame header: truncated or damaged", name));
+      fmt::format("{}: JPEG file without a frame header, which states the size of the picture: "
+                  "truncated or damaged",
+                  name));
 }
 
 // Returns true for the first bytes of a camera raw file that is not a TIFF file.
@@ -143,8 +146,9 @@ const char* NameOf(ImageFormat format) {
 Result<void> CheckPixelCount(uint64_t width, uint64_t height, const std::string& name) {
   // Width and height are below 2^32, so the product does not wrap.
   if (width * height <= kMaxImagePixels) return {};
-  return InputError(fmt::format("{}: claims {} x {} pixels, more than the limit of {}", name, width,
-                                height, kMaxImagePixels));
+  return InputError(
+      fmt::format("{}: claims {} x {} pixels, more than the limit of {} pixels in total", name,
+                  width, height, kMaxImagePixels));
 }
 
 Result<ImageFormat> ProbeImage(const ByteSource& source, const std::string& name) {
@@ -167,7 +171,9 @@ Result<ImageFormat> ProbeImage(const ByteSource& source, const std::string& name
   }
   if (IsOtherRaw(start)) return ImageFormat::kRaw;
   return InputError(
-      fmt::format("{}: is not a PNG, JPEG, TIFF, EXR or camera raw file that is read here", name));
+      fmt::format("{}: is not a PNG, JPEG, TIFF, EXR or supported camera raw file: convert it to "
+                  "one of these formats",
+                  name));
 }
 
 Result<void> CheckPngIsComplete(const ByteSource& source, const std::string& name) {

@@ -36,7 +36,7 @@ std::string MessageOf(const Result<ImageFormat>& result) {
 }
 
 TEST(ImageProbe, RefusesMorePixelsThanAreRead) {
-  const std::string limit = "more than the limit of 1073741824";
+  const std::string limit = "more than the limit of 1073741824 pixels in total";
   EXPECT_EQ(MessageOf(Probe(PngHeader("\0\0\x80\0"s, "\0\0\x80\1"s))),
             "a: claims 32768 x 32769 pixels, " + limit);
   EXPECT_EQ(MessageOf(Probe(PngHeader("\xff\xff\xff\xff", "\xff\xff\xff\xff"))),
@@ -53,9 +53,10 @@ TEST(ImageProbe, RefusesChunksOfAPngThatAreLongerThanTheFile) {
   const std::string head = PngHeader("\0\0\0\1"s, "\0\0\0\1"s);
   const std::string text = "\0\0\0\4tEXta\0bccsum"s, end = "\0\0\0\0IENDcsum"s;
   EXPECT_TRUE(Probe(head + text + end));
-  EXPECT_EQ(MessageOf(Probe(head + text + "\x7f\xff\xff\xfftEXta\0b"s + end)),
-            "a: claims a chunk of 2147483647 bytes, for which the file is too short: truncated or "
-            "damaged");
+  EXPECT_EQ(
+      MessageOf(Probe(head + text + "\x7f\xff\xff\xfftEXta\0b"s + end)),
+      "a: claims a PNG chunk of 2147483647 bytes, for which the file is too short: truncated or "
+      "damaged");
   // A chunk of pixels may claim any length, because it is read in parts. The size of the picture in
   // a truncated file can therefore be read.
   EXPECT_TRUE(Probe(head + "\x7f\xff\xff\xffIDAT..."s));

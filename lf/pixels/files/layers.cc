@@ -40,8 +40,8 @@ Result<std::vector<int>> ColoursFirst(const std::vector<std::string>& channel_na
   if (std::none_of(channel_names.begin(), channel_names.end(), is_plain)) {
     if (layers.size() > 1)
       return InputError(
-          fmt::format("{}: has colours in the layers {} and {}, and none outside of layers: name "
-                      "the channels of the right layer R, G, B",
+          fmt::format("{}: has colours in the layers {} and {}, but none outside of layers: rename "
+                      "the channels of the layer to be read to R, G and B",
                       name, layers[0].substr(0, layers[0].size() - 1),
                       layers[1].substr(0, layers[1].size() - 1)));
     if (!layers.empty()) chosen = layers[0];

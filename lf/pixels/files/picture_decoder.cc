@@ -16,9 +16,9 @@ Result<void> CheckPictureSize(int64_t width, int64_t height, int64_t channels,
   LF_RETURN_IF_ERROR(
       CheckPixelCount(static_cast<uint64_t>(width), static_cast<uint64_t>(height), name));
   if (channels > kMaxValues / (width * height))
-    return InputError(
-        fmt::format("{}: claims {} x {} pixels of {} channels, more than the limit of {} values",
-                    name, width, height, channels, kMaxValues));
+    return InputError(fmt::format(
+        "{}: claims {} x {} pixels of {} channels, more than the limit of {} values in total", name,
+        width, height, channels, kMaxValues));
   return {};
 }
 

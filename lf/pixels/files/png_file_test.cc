@@ -185,7 +185,7 @@ TEST(PngFile, PalettesBecomeColours) {
 
 TEST(PngFile, AColourThatThePaletteLacksIsNotGuessed) {
   const Png png{2, 2, 8, 3, "\0\0\1\0\1\2"s, kPalette};
-  ExpectDamaged(png.Bytes(), "row 1 has colour 2, but the palette has only 2");
+  ExpectDamaged(png.Bytes(), "row 1 uses colour 2 of the palette, which has only 2");
 }
 
 TEST(PngFile, TheTransparentColourBecomesAlpha) {

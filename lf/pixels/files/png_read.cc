@@ -237,7 +237,8 @@ Result<void> PngDecoder::ReplaceAllIndices(Image<uint8_t>* image) const {
     const int missing = ReplaceIndices(palette_, info_.width, info_.channels, image->row(y));
     if (missing >= 0)
       return InputError(
-          fmt::format("{}: truncated or damaged: row {} has colour {}, but the palette has only {}",
+          fmt::format("{}: truncated or damaged: row {} uses colour {} of the palette, which has "
+                      "only {} colours",
                       file_.name, y, missing, palette_.size));
   }
   return {};

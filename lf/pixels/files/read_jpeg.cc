@@ -139,9 +139,9 @@ Result<JpegReader> JpegReader::Open(const ByteSource& source, const std::string&
   }));
   const int channels = decompress.num_components;
   if (channels != 1 && channels != 3)
-    return InputError(
-        fmt::format("{}: is a JPEG of {} components{}; convert it to colour (RGB) or grey", name,
-                    channels, channels == 4 ? " (CMYK)" : ""));
+    return InputError(fmt::format(
+        "{}: is a JPEG of {} components{}: expected 1 or 3; convert it to colour (RGB) or grey",
+        name, channels, channels == 4 ? " (CMYK)" : ""));
   decompress.out_color_space = channels == 1 ? JCS_GRAYSCALE : JCS_RGB;
   // Smoothing would invent the details that are missing if a progressive file lacks its last scans.
   decompress.do_block_smoothing = FALSE;

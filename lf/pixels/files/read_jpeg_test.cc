@@ -141,7 +141,8 @@ TEST(ReadJpeg, CmykIsRefused) {
   const auto reader = JpegReader::Open(source, "a.jpg");
   ASSERT_FALSE(reader);
   EXPECT_EQ(reader.error().message,
-            "a.jpg: is a JPEG of 4 components (CMYK); convert it to colour (RGB) or grey");
+            "a.jpg: is a JPEG of 4 components (CMYK): expected 1 or 3; convert it to colour (RGB) "
+            "or grey");
 }
 
 TEST(ReadJpeg, StuffingBetweenSegmentsIsHarmless) {

@@ -144,10 +144,10 @@ Result<void> CheckSensor(QuietLibRaw& raw, const std::string& name) {
         "its colour filter (X-Trans) repeats every 6 x 6 pixels; only Bayer mosaics, "
         "which repeat every 2 x 2, are read");
   if (kind.filters == 0 && kind.colors != 1)
-    return InputError(fmt::format(
-        "{}: is a linear DNG or a reduced raw file, without a mosaic (its {} colours are already "
-        "interpolated), which is not read; convert it to 16-bit TIFF",
-        name, kind.colors));
+    return InputError(
+        fmt::format("{}: is a linear DNG or a reduced raw file, whose {} colours are already "
+                    "interpolated: expected a mosaic; convert the file to 16-bit TIFF",
+                    name, kind.colors));
   if (raw.internals().unpacker_data.tiff_samples > 1 && kind.dng_version != 0)
     return refuse(fmt::format("its mosaic has {} channels; expected one",
                               raw.internals().unpacker_data.tiff_samples));
@@ -166,20 +166,19 @@ Result<void> CheckSizes(QuietLibRaw& raw, uint64_t size_bytes, const std::string
   const PixelRect area = raw.VisibleArea();
   if (area.x_begin < 0 || area.y_begin < 0 || area.empty() || area.x_end > width ||
       area.y_end > height)
-    return InputError(fmt::format(
-        "{}: its active area, {} to {} in x and {} to {} in y, is no part of its {} x {} pixels: "
-        "damaged",
-        name, area.x_begin, area.x_end, area.y_begin, area.y_end, width, height));
+    return InputError(
+        fmt::format("{}: its active area, {} to {} in x and {} to {} in y, does not lie within its "
+                    "{} x {} pixels: truncated or damaged",
+                    name, area.x_begin, area.x_end, area.y_begin, area.y_end, width, height));
   if (raw.imgdata.idata.dng_version != 0 && raw.internals().unpacker_data.data_offset <= 0)
     return InputError(
         fmt::format("{}: does not say where its pixels are: truncated or damaged", name));
   const bool is_packed = raw.IsDecodedBy("packed_dng_load_raw()");
   if (is_packed && !raw.LiesInOnePiece())
-    return InputError(
-        fmt::format("{}: its mosaic is in uncompressed tiles, or in strips with gaps, which LibRaw "
-                    "does not read; write the DNG again, with lossless compression or in strips "
-                    "without gaps",
-                    name));
+    return InputError(fmt::format(
+        "{}: its mosaic is in uncompressed tiles, or in strips with gaps, which LibRaw does not "
+        "read; write the DNG again with lossless compression or in strips without gaps",
+        name));
   // The Huffman code of a pixel has at least one bit, but a run of equal pixels may share it. No
   // file is expected to hold more pixels per byte than this.
   constexpr double kMostPixelsPerByte = 512;

@@ -32,8 +32,8 @@ uint16_t PhotometricOf(TIFF* tiff, int samples) {
 }
 
 Error NotRead(const std::string& name, const std::string& kind, const std::string& remedy) {
-  return InputError(fmt::format("{}: TIFF file with {}, which is not read: convert it to {}", name,
-                                kind, remedy));
+  return InputError(fmt::format(
+      "{}: is a TIFF file with {}, which is not supported: convert it to {}", name, kind, remedy));
 }
 
 Result<void> CheckColours(uint16_t photometric, int compression, bool is_separate,
@@ -140,8 +140,9 @@ Result<void> SetBlocks(TIFF* tiff, const std::string& name, TiffLayout* layout) 
   if (tile_pixels <= std::max(kUsualTile, std::min(kMaxImagePixels, kMostTimesPicture * pixels)))
     return {};
   return InputError(
-      fmt::format("{}: claims tiles of {} x {} pixels, too large for a picture of {} x {}", name,
-                  layout->block_width, layout->block_height, layout->width, layout->height));
+      fmt::format("{}: claims tiles of {} x {} pixels, too large for a picture of {} x {} pixels; "
+                  "write the file again with smaller tiles",
+                  name, layout->block_width, layout->block_height, layout->width, layout->height));
 }
 
 // Checks that libtiff expects blocks of the sizes in `layout`, because libtiff writes whole blocks
@@ -154,8 +155,8 @@ Result<void> CheckSizesAgree(TIFF* tiff, const TiffLayout& layout, const std::st
                               static_cast<uint64_t>(layout.planes());
   if (block_bytes == layout.block_bytes() && blocks == own_blocks) return {};
   return InputError(
-      fmt::format("{}: truncated or damaged: {} blocks of {} bytes do not fit the "
-                  "picture, which needs {} of {}",
+      fmt::format("{}: truncated or damaged: it states {} tiles or strips of {} bytes, but the "
+                  "picture needs {} of {} bytes",
                   name, blocks, block_bytes, own_blocks, layout.block_bytes()));
 }
 
@@ -170,7 +171,10 @@ Result<TiffLayout> TiffLayoutOf(TIFF* tiff, const std::string& name) {
   layout.width = static_cast<int>(width);
   layout.height = static_cast<int>(height);
   if (WideValue(tiff, TIFFTAG_IMAGEDEPTH, 1) > 1 || WideValue(tiff, TIFFTAG_TILEDEPTH, 1) > 1)
-    return InputError(fmt::format("{}: holds volume data, not a picture", name));
+    return InputError(
+        fmt::format("{}: is a TIFF file of a volume (several slices of depth): expected a picture; "
+                    "save one slice",
+                    name));
 
   const uint16_t photometric = PhotometricOf(tiff, layout.samples);
   layout.compression = Value(tiff, TIFFTAG_COMPRESSION, COMPRESSION_NONE);

@@ -132,9 +132,9 @@ Result<void> TiffDecoder::CheckBlocksLieInFile() const {
           fmt::format("{}: truncated or damaged: {} {} of {} lies beyond the end of the file",
                       file_.name, layout_.is_tiled ? "tile" : "strip", index + 1, count));
     if (bytes == 0 || (ratio > 0 && block.bytes / ratio > bytes))
-      return InputError(fmt::format("{}: truncated or damaged: {} {} of {} has only {} bytes",
-                                    file_.name, layout_.is_tiled ? "tile" : "strip", index + 1,
-                                    count, bytes));
+      return InputError(fmt::format(
+          "{}: truncated or damaged: {} {} of {} has only {} bytes, too few for its pixels",
+          file_.name, layout_.is_tiled ? "tile" : "strip", index + 1, count, bytes));
   }
   return {};
 }
@@ -254,8 +254,9 @@ Result<void> TiffDecoder::ReadFax(const Block& block, std::byte* to) {
   std::fill_n(to, block.bytes, std::byte{0});
   LF_RETURN_IF_ERROR(handle_->Check(Decode(block, to)));
   if (HasSamePixels(packed_.data(), to, block.bytes)) return {};
-  return InputError(fmt::format("{}: truncated or damaged: rows are missing in rows {} to {}",
-                                file_.name, block.rect.y_begin, block.rect.y_end - 1));
+  return InputError(
+      fmt::format("{}: truncated or damaged: the compressed data of rows {} to {} end too early",
+                  file_.name, block.rect.y_begin, block.rect.y_end - 1));
 }
 
 }  // namespace

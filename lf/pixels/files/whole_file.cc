@@ -87,7 +87,7 @@ std::optional<ExrHeader> ReadHeader(const ByteSource& source) {
 
 Result<void> CheckExr(const ByteSource& source, uint64_t size_bytes, const std::string& name) {
   const auto damaged = [&](const std::string& what) {
-    return InputError(fmt::format("{}: EXR file is not whole: {}", name, what));
+    return InputError(fmt::format("{}: EXR file is incomplete: {}", name, what));
   };
   const std::optional<ExrHeader> header = ReadHeader(source);
   if (!header)
@@ -117,7 +117,7 @@ Result<void> CheckJpeg(const ByteSource& source, uint64_t size_bytes, const std:
   std::array<uint8_t, 2> end;
   if (size_bytes > 2 && source(size_bytes - 2, end) == 2 && end[0] == 0xff && end[1] == 0xd9)
     return {};
-  return InputError(fmt::format("{}: JPEG file is not whole: it has no end mark", name));
+  return InputError(fmt::format("{}: JPEG file is incomplete: it has no end mark (ff d9)", name));
 }
 
 }  // namespace
@@ -133,12 +133,12 @@ Result<void> CheckIsWhole(const ByteSource& source, uint64_t size_bytes, const s
       return CheckJpeg(source, size_bytes, name);
     case ImageFormat::kTiff:
       if (FirstTiffDirectory(source)) return {};
-      return InputError(fmt::format("{}: TIFF file is not whole: its directory is missing", name));
+      return InputError(fmt::format("{}: TIFF file is incomplete: its directory is missing", name));
     case ImageFormat::kRaw:
       break;
   }
   return InputError(
-      fmt::format("{}: is a camera raw file, which lfrendertools does not write", name));
+      fmt::format("{}: is a camera raw file: expected a PNG, JPEG, TIFF or EXR file", name));
 }
 
 Result<void> CheckFileIsWhole(const std::filesystem::path& path) {

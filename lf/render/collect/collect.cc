@@ -273,8 +273,8 @@ Result<void> FrameCollector::State::FinishLoading(Batch* batch) {
     if (options_.strict || error.kind != ErrorKind::kInput) return error;
     if (whole_ && !store_.IsThere(*whole_))
       return InputError(fmt::format(
-          "the LF images have disappeared: {} was read before, and does not exist any more: make "
-          "its folder accessible again",
+          "{}: was read before, but does not exist any more: make the folder of the LF images "
+          "accessible again",
           light_field_.image_names[whole_->value]));
     Skip(image, error);
   }
@@ -286,9 +286,9 @@ Result<void> FrameCollector::State::FinishLoading(Batch* batch) {
 void FrameCollector::State::Skip(const SelectedImage& image, const Error& error) {
   // Only the first kTold skipped LF images are logged; the report of the render lists all of them.
   constexpr size_t kTold = 10;
-  if (skipped_.size() < kTold) LogWarning("LF image skipped: {}", error.message);
+  if (skipped_.size() < kTold) LogWarning("an LF image is left out: {}", error.message);
   if (skipped_.size() == kTold)
-    LogWarning("more LF images are broken; they are counted and reported at the end");
+    LogWarning("more LF images are left out; the report at the end lists all of them");
   skipped_.push_back({light_field_.image_names[image.id.value], error.message, image.place});
 }
 

@@ -278,7 +278,7 @@ TEST(Collect, WantOfMemoryAndOtherExceptionsAreErrors) {
   store.without_memory = {24};
   const Outcome without_memory = CollectAll(store, 2, {});
   EXPECT_EQ(without_memory.statistics.error().kind, ErrorKind::kOutput);
-  EXPECT_NE(without_memory.statistics.error().message.find("image24: no memory"),
+  EXPECT_NE(without_memory.statistics.error().message.find("image24: too little memory"),
             std::string::npos);
 }
 

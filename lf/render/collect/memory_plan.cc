@@ -100,9 +100,10 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
   const size_t frame_bytes = plan.plate_bytes + bytes_per_frame;
   const size_t least = set_aside + frame_bytes + pair_bytes;
   if (memory_bytes < least)
-    return OutputError(fmt::format(
-        "--memory {} MiB is not enough for one {}x{} plate and two LF images: give at least {} MiB",
-        memory_bytes / kMiB, plate_width, plate_height, least / kMiB + 1));
+    return OutputError(
+        fmt::format("--memory {} MiB is too small: the sums of a frame of {} x {} elements and two "
+                    "LF images need at least {} MiB",
+                    memory_bytes / kMiB, plate_width, plate_height, least / kMiB + 1));
 
   const size_t free_bytes = memory_bytes - set_aside;
   const size_t enough =

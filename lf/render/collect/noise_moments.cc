@@ -136,12 +136,12 @@ Result<NoiseMoments> NoiseMoments::Read(std::string_view text, const SensorPlate
   NoiseMoments read(plate.width(), plate.height());
   HexReader reader(text);
   const auto fault = [&](const std::string& expected) {
-    return InputError(fmt::format("number {}: expected {}", reader.count(), expected));
+    return InputError(fmt::format("its number {} is wrong, expected {}", reader.count(), expected));
   };
   for (const int side : {read.columns_, read.rows_})
     if (reader.Next() != static_cast<UInt128>(side))
-      return fault(fmt::format("{:x}, of {} x {} measured elements on a plate of {} x {}", side,
-                               read.columns_, read.rows_, plate.width(), plate.height()));
+      return fault(fmt::format("{:x}, because {} x {} elements of a plate of {} x {} are measured",
+                               side, read.columns_, read.rows_, plate.width(), plate.height()));
   for (size_t i = 0; i < read.moments_.size(); ++i) {
     UInt128 numbers[kMoments];
     for (UInt128& number : numbers) {
@@ -149,16 +149,16 @@ Result<NoiseMoments> NoiseMoments::Read(std::string_view text, const SensorPlate
       if (!next) return fault("a hexadecimal number below 2^120 after one space");
       number = *next;
     }
-    if (numbers[3] > UINT32_MAX) return fault("a number of LF images");
+    if (numbers[3] > UINT32_MAX) return fault("a number of LF images below 2^32");
     ElementMoments& moments = read.moments_[i];
     moments = {numbers[0], numbers[1], numbers[2], static_cast<uint32_t>(numbers[3])};
     const PlateElement at = read.ElementAt(i / SensorPlate::kChannels);
     const int channel = static_cast<int>(i) % SensorPlate::kChannels;
     if (!CanBe(plate.At(at.x, at.y, channel), moments))
-      return fault(fmt::format("moments of the rays in channel {} of element ({}, {})", channel,
+      return fault(fmt::format("sums that fit the rays in channel {} of element ({}, {})", channel,
                                at.x, at.y));
   }
-  if (!reader.is_at_end()) return fault("the end of the text behind it");
+  if (!reader.is_at_end()) return fault("no further number after it");
   return read;
 }
 

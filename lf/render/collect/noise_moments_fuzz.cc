@@ -36,7 +36,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
   }
   const lf::Result<lf::NoiseMoments> moments = lf::NoiseMoments::Read(text, plate);
   if (!moments) {
-    LF_CHECK(moments.error().message.starts_with("number "));
+    LF_CHECK(moments.error().message.starts_with("its number "));
     return 0;
   }
   LF_CHECK(moments->Text() == text);

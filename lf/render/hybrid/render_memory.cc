@@ -19,8 +19,8 @@ Result<void> SetAsideForRays(size_t memory_bytes, RenderMode mode, size_t max_ce
   if (max_cells >= RebinnedRays::kLeastCells && memory->rebin_bytes <= memory_bytes) return {};
   return OutputError(
       fmt::format("--memory {} MiB is too small for {} rebinned rays, which take {} MiB: increase "
-                  "--memory (without --max-rays only a half of it is for rays, or a quarter with "
-                  "--mode hybrid), or reduce --max-rays",
+                  "--memory, or reduce --max-rays (without --max-rays, half of --memory is for "
+                  "rays, or a quarter with --mode hybrid)",
                   memory_bytes >> 20, std::max(max_cells, RebinnedRays::kLeastCells),
                   memory->rebin_bytes >> 20));
 }

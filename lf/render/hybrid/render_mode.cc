@@ -18,10 +18,9 @@ std::optional<RenderMode> RenderModeOf(std::string_view name) {
 Result<void> CheckOpacity(const RadianceEncoding& encoding, RenderMode mode) {
   if (!Rebins(mode) || !encoding.HasOpacity()) return {};
   return UsageError(
-      fmt::format("--mode {}: rebinned rays contain only colours, but frames without a background "
-                  "(--background none, lf_background) need opacity: use --mode collect, or "
-                  "--background black, which gives the same colours (packages contain the "
-                  "background that was given to lfpreprocessor)",
+      fmt::format("--mode {} cannot make frames with an alpha channel (--background none, or "
+                  "lf_background in the calibration): use --mode collect, or --background black, "
+                  "which gives the same colours (for packages, give it to lfpreprocessor)",
                   NameOf(mode)));
 }
 

@@ -193,10 +193,10 @@ Result<void> CheckKept(const LfImageStore& store, const LightField& light_field,
   for (const FrameNeeds::Image& image : needs.images)
     if (!store.Keeps(image.id, image.rect))
       return InputError(fmt::format(
-          "{}: frame {} needs pixels of {} that are not in this packed store, which was made for "
-          "other frames, or for another --mode, --estimator or --lens-weights: make packages for "
-          "these frames and options from the original light field, and compress them again, or "
-          "compress without --needed-pixels",
+          "{}: this packed store lacks pixels that frame {} needs of {}, because it was made for "
+          "other frames, or for another --mode, --estimator or --lens-weights: compress the "
+          "original light field again, without --needed-pixels or with packages of these frames "
+          "and options",
           light_field.folder.string(), frame.value, light_field.image_names[image.id.value]));
   return {};
 }

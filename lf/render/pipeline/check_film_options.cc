@@ -24,8 +24,8 @@ Result<void> CheckSlab(const Package& package, const FilmOptions& film,
     const double off_deg = std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / kPi;
     if (off_deg > kMost_deg)
       return UsageError(fmt::format(
-          "--slab-forward {} {} {}: frame {} looks {:.0f} degrees away from it; expected a "
-          "direction within {:.0f} degrees of the viewing directions of all frames",
+          "--slab-forward {} {} {}: the viewing direction of frame {} is {:.0f} degrees away; "
+          "expected a direction within {:.0f} degrees of the viewing directions of all frames",
           forward.x(), forward.y(), forward.z(), frame.value, off_deg, kMost_deg));
   }
   return {};
@@ -38,33 +38,33 @@ Result<void> CheckShard(const FilmOptions& film) {
       !film.MeasuresNoise())
     return {};
   return UsageError(
-      "--shard renders only a part of the LF images, but --mode rebin and hybrid, --stop-when and "
-      "--require need all of them: leave out these options");
+      "--shard renders only a part of the LF images, but --mode rebin, --mode hybrid, --stop-when "
+      "and --require need all of them: leave out these options, or --shard");
 }
 
 Result<void> CheckRebinnedRays(const Package& package, const FilmOptions& film,
                                const std::vector<FrameId>& frames) {
   if (film.mode == RenderMode::kRebin && film.CountsRays())
     return UsageError(
-        "--mode rebin collects no rays, so that \"samples>=N\" of --stop-when and --require, and "
-        "--smooth-below, have no rays to count: leave them out, or use --mode hybrid (\"noise<=X\" "
-        "works with every mode)");
+        "--mode rebin collects no rays, which \"samples>=N\" (--stop-when, --require) and "
+        "--smooth-below would count: leave these options out, use \"noise<=X\", or use --mode "
+        "hybrid");
   LF_RETURN_IF_ERROR(CheckOpacity(package.light_field.encoding, film.mode));
   LF_RETURN_IF_ERROR(CheckSlab(package, film, frames));
   if (film.Rebins() && !package.choices.has_neighbours)
-    return UsageError(
-        fmt::format("--mode {}: package {} was made with lfpreprocessor --lens-weights none, and "
-                    "lacks the LF cameras beside the lens: make the package again with --mode {}, "
-                    "or without --lens-weights none",
-                    NameOf(film.mode), package.name, NameOf(film.mode)));
+    return UsageError(fmt::format(
+        "--mode {}: package {} lacks the LF cameras beside the lens, because it was made "
+        "with lfpreprocessor --lens-weights none: make the package again with --mode "
+        "{}, or without --lens-weights none",
+        NameOf(film.mode), package.name, NameOf(film.mode)));
   if (film.Rebins() && film.max_image_count)
     return UsageError(
-        fmt::format("--max-images cannot be used with --mode {}, because frames share the rebinned "
-                    "rays of all LF images: leave it out, or use --mode collect",
+        fmt::format("--max-images cannot be used with --mode {}, in which all frames share the "
+                    "rebinned rays of all LF images: leave it out, or use --mode collect",
                     NameOf(film.mode)));
   if (film.rebin.nearest > 0 && film.back_end != CollectBackEnd::kReference)
     return UsageError(
-        "--nearest needs the k-d tree of --back-end reference, which is far slower: add --back-end "
+        "--nearest can only be used with --back-end reference, which is far slower: add --back-end "
         "reference, or leave --nearest out");
   return {};
 }
@@ -74,15 +74,16 @@ Result<void> CheckLensWeights(const Package& package, const FilmOptions& film,
   if (film.lens_weights == LensWeights::kNone) return {};
   const char* const name = NameOf(film.lens_weights);
   if (!package.choices.has_neighbours)
-    return UsageError(fmt::format(
-        "--lens-weights {}: package {} was made with --lens-weights none, and lacks the LF cameras "
-        "beside the lens: use --lens-weights none, or make the package again without it",
-        name, package.name));
+    return UsageError(
+        fmt::format("--lens-weights {}: package {} lacks the LF cameras beside the lens, because "
+                    "it was made with lfpreprocessor --lens-weights none: make the package again "
+                    "without this option, or give lfrenderer --lens-weights none",
+                    name, package.name));
   if (film.CountsRays())
     return UsageError(
-        fmt::format("--lens-weights {}: counts are sums of weights, so that \"samples>=N\" of "
-                    "--stop-when and --require, and --smooth-below, have no rays to count: leave "
-                    "them out (\"noise<=X\" works with lens weights)",
+        fmt::format("--lens-weights {}: sums of weights replace the ray counts that \"samples>=N\" "
+                    "(--stop-when, --require) and --smooth-below need: leave these options out, "
+                    "use \"noise<=X\", or use --lens-weights none",
                     name));
   if (film.lens_weights == LensWeights::kArea)
     for (const FrameId frame : frames)
@@ -99,17 +100,17 @@ Result<void> CheckFilmOptions(const Package& package, const FilmOptions& options
   LF_RETURN_IF_ERROR(CheckRebinnedRays(package, film, frames));
   const std::optional<size_t>& most = package.choices.max_image_count;
   if (most && *film.max_image_count > *most)
-    return UsageError(
-        fmt::format("{}: was made with --max-images {}, and contains no more LF images of a frame: "
-                    "give at most this --max-images, or make the package again",
-                    package.name, *most));
+    return UsageError(fmt::format(
+        "package {} was made with --max-images {}, and contains no more LF images of any "
+        "frame: give lfrenderer at most this --max-images, or make the package again",
+        package.name, *most));
   LF_RETURN_IF_ERROR(CheckShard(film));
   if (film.CountsRays() && film.reading.estimator == Estimator::kBilinear &&
       film.reading.filter == PixelFilter::kMosaic)
     return UsageError(
-        "--filter mosaic: rays count up to 8 times, so that \"samples>=N\" of --stop-when and "
-        "--require, and --smooth-below, cannot count rays: leave them out, or use --filter "
-        "bilinear (\"noise<=X\" works with every filter)");
+        "--filter mosaic: a ray counts up to 8 times, so that \"samples>=N\" (--stop-when, "
+        "--require) and --smooth-below cannot count rays: leave these options out, use "
+        "\"noise<=X\", or use --filter bilinear");
   return CheckLensWeights(package, film, frames);
 }
 

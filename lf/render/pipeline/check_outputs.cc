@@ -76,8 +76,9 @@ class Replaced {
 };
 
 Error Refusal(const fs::path& output, std::string_view what, const fs::path& input) {
-  return UsageError(fmt::format("{}: is {} ({}), and the render would replace it: give another -o",
-                                output.string(), what, input.string()));
+  return UsageError(
+      fmt::format("{}: would be replaced by the render, but is {} ({}): give another -o",
+                  output.string(), what, input.string()));
 }
 
 // Returns the files that the render may write or remove.

@@ -54,7 +54,9 @@ TEST_F(CheckOutputsTest, LfImagesStay) {
   AddImage("images/frame_0007.png");
   for (const char* const folder : {"field/images", "field/../field/images/."}) {
     options_.folder.output_folder = folder_ / folder;
-    EXPECT_NE(Refusal().find("frame_0007.png: is an LF image"), std::string::npos) << Refusal();
+    EXPECT_NE(Refusal().find("frame_0007.png: would be replaced by the render, but is an LF image"),
+              std::string::npos)
+        << Refusal();
   }
 }
 

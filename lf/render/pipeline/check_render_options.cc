@@ -12,18 +12,18 @@ Result<void> CheckRenderOptions(const Package& package, const RenderOptions& opt
   const FolderOptions& folder = options.folder;
   if (film.mode == RenderMode::kRebin && folder.keep_plates)
     return UsageError(
-        "--mode rebin collects no rays, so that there are no plates for --keep-plates: leave it "
-        "out, or use --mode hybrid");
+        "--keep-plates cannot be used with --mode rebin, which collects no rays and therefore has "
+        "no plates: leave it out, or use --mode hybrid");
   LF_RETURN_IF_ERROR(CheckOutputs(package, options));
   LF_RETURN_IF_ERROR(CheckFilmOptions(package, film, options.frames));
   if (!folder.finish_early.empty() && (film.shard || !folder.resume))
     return UsageError(
-        "--finish finishes frames with the rays of a saved state: add --resume, and leave out "
-        "--shard, because its parts would end at different LF images");
+        "--finish finishes frames with the rays of an unfinished render: add --resume, and leave "
+        "out --shard, because the shards of a frame must use all of its LF images");
   if (film.shard && (folder.keep_plates || folder.video))
     return UsageError(
-        "--shard writes plates for lfmerge, and no frames: leave out --keep-plates and --video "
-        "(lfmerge has --video)");
+        "--keep-plates and --video cannot be used with --shard, which writes no frames: leave them "
+        "out, and give --video to lfmerge");
   return {};
 }
 

@@ -19,10 +19,10 @@ Result<std::unique_ptr<FilmRenderer>> FilmRenderer::Open(Package package, const 
                       FilmSetup::Make(std::move(package), film, work, std::move(frames), pool));
   const size_t fit = setup->plan().frames_per_pass;
   if (fit < setup->frames().size())
-    return OutputError(
-        fmt::format("{} frames cannot be rendered at the same time: {} MiB of memory suffice only "
-                    "for {} frames: allow more memory, or open fewer frames",
-                    setup->frames().size(), work.memory_bytes >> 20, fit));
+    return OutputError(fmt::format(
+        "{} frames cannot be rendered at the same time, because {} MiB of memory are enough "
+        "for only {} frames: allow more memory, or render fewer frames",
+        setup->frames().size(), work.memory_bytes >> 20, fit));
   LF_RETURN_IF_ERROR(setup->PlanSlabs());
   auto renderer = std::make_unique<FilmRenderer>(*setup, setup->frames());
   renderer->own_setup_ = std::move(setup);
@@ -168,11 +168,11 @@ Result<void> FilmRenderer::CheckReach(const LensGaps& gaps, FrameId frame) const
   const double reached_w = gaps.ReachedCamera().aperture.radius_w - camera.aperture.radius_w;
   const double known_w = NeighbourReach_w(camera, *sampling);
   if (reached_w <= known_w * (1 + 1e-9)) return {};
-  return UsageError(
-      fmt::format("--sigma-st, --lens-points: frame {} needs rays up to {:.3g} world units beside "
-                  "its lens, but package {} contains LF cameras only up to {:.3g}: leave these "
-                  "options out, or render from the light field instead of packages",
-                  frame.value, reached_w, setup_.package().name, known_w));
+  return UsageError(fmt::format(
+      "--sigma-st, --lens-points: with these options frame {} needs LF cameras up to {:.3g} world "
+      "units beside its lens, but package {} contains them only up to {:.3g}: leave "
+      "the options out, or render from the light field instead of packages",
+      frame.value, reached_w, setup_.package().name, known_w));
 }
 
 Result<void> FilmRenderer::PrepareRebinning(const EarlierRun* earlier) {
@@ -345,7 +345,8 @@ Result<void> FilmRenderer::CheckAnyContributes() const {
 Result<void> FilmRenderer::CheckNotAllBroken() const {
   if (!AllBroken() || skipped().empty()) return {};
   return InputError(
-      fmt::format("every LF image is missing or broken; the first: {}", skipped().front().reason));
+      fmt::format("every LF image that the frames need is missing or broken; the first: {}",
+                  skipped().front().reason));
 }
 
 bool FilmRenderer::AllBroken() const {

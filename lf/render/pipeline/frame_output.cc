@@ -55,8 +55,8 @@ Result<Image<uint8_t>> FilmFiles::ReadPicture(FrameId frame) const {
   LF_ASSIGN_OR_RETURN(Image<uint8_t> picture, ReadDisplayImage(PathOf(frame)));
   if (picture.width() != width_px || picture.height() != height_px)
     return InputError(fmt::format(
-        "{}: has {} x {} pixels, the frame has {} x {}: remove it, and "
-        "--resume renders it again",
+        "{}: has {} x {} pixels, expected {} x {}: remove the file, and render this frame again "
+        "with --resume",
         PathOf(frame).string(), picture.width(), picture.height(), width_px, height_px));
   return picture;
 }

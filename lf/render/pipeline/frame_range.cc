@@ -47,13 +47,15 @@ Result<std::vector<FrameId>> ParseFrameRange(std::string_view text, size_t frame
           fmt::format("{} \'{}\': the first frame of a range must be at most the last: write {}-{}",
                       option, text, last, first));
     if (step < 1)
-      return UsageError(
-          fmt::format("{} \'{}\': expected a step of at least 1 after x", option, text));
+      return UsageError(fmt::format(
+          "{} \'{}\': the step is 0, expected at least 1 after x, as in 1-100x2", option, text));
     if (first < 1 || last > frame_count)
-      return UsageError(fmt::format("{} \'{}\': expected frames 1-{}", option, text, frame_count));
+      return UsageError(fmt::format("{} \'{}\': expected frames from 1 to {}, the last frame",
+                                    option, text, frame_count));
     if ((last - first) / step >= kMostNamed - frames.size())
-      return UsageError(fmt::format("{}: the list names more than {} frames, counting repeats",
-                                    option, kMostNamed));
+      return UsageError(
+          fmt::format("{}: names more than {} frames, repeated frames included: give fewer frames",
+                      option, kMostNamed));
     for (uint64_t n = first; n <= last; n += step)
       frames.push_back(FrameId{static_cast<uint32_t>(n)});
   } while (TakeCharacter(&rest, ','));

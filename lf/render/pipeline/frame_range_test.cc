@@ -34,7 +34,7 @@ TEST(FrameRange, RefusesWhatItDoesNotUnderstand) {
   const auto says = [](const char* text) { return ParseFrameRange(text, 4).error().message; };
   EXPECT_NE(says("4-1").find("1-4"), std::string::npos);
   EXPECT_NE(says("1-4x0").find("at least 1"), std::string::npos);
-  EXPECT_NE(says("2-7").find("expected frames 1-4"), std::string::npos);
+  EXPECT_NE(says("2-7").find("expected frames from 1 to 4"), std::string::npos);
 }
 
 }  // namespace

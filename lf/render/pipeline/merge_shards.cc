@@ -53,10 +53,10 @@ Result<std::vector<fs::path>> FilesOf(const std::vector<fs::path>& given) {
         files.push_back(entry->path());
     if (error) return InputError(fmt::format("{}: {}", path.string(), error.message()));
     if (files.size() == before)
-      return InputError(fmt::format(
-          "{}: has no plates: expected files that end in .plate, of lfrenderer --shard or "
-          "--keep-plates",
-          path.string()));
+      return InputError(
+          fmt::format("{}: contains no plates: expected files that end in .plate, written by "
+                      "lfrenderer --shard or --keep-plates",
+                      path.string()));
   }
   std::sort(files.begin(), files.end());
   for (size_t i = 1; i < files.size(); ++i)
@@ -78,7 +78,8 @@ Result<ShardPlate> Look(const fs::path& path) {
     const std::optional<Shard> shard = ShardOf(*text);
     if (!shard)
       return InputError(
-          fmt::format("{}: shard is \"{}\", expected k/K, such as 2/5", path.string(), *text));
+          fmt::format("{}: its shard is \"{}\", expected k/K, such as 2/5; render the plate again",
+                      path.string(), *text));
     plate.shard = *shard;
   }
   // Entries that may differ between the shards of a frame: the shard, its rays, and its LF images.
@@ -120,7 +121,7 @@ class Merger {
     LF_ASSIGN_OR_RETURN(const std::vector<fs::path> files, FilesOf(given));
     if (files.empty())
       return InputError(
-          "no plates are named: expected plate files of lfrenderer --shard or --keep-plates, or "
+          "no plates are given: expected plate files of lfrenderer --shard or --keep-plates, or "
           "folders with such files");
     for (const fs::path& file : files) {
       if (IsStopped()) return Interrupted();
@@ -223,10 +224,11 @@ class Merger {
       for (uint32_t k = 1; k <= one.shard.count && missing.size() < 10; ++k)
         if (!there.contains(k)) missing.push_back(k);
       if (!missing.empty())
-        return InputError(fmt::format(
-            "frame {}: of {} shards, {} are given; missing: {}{} (is their render finished?)",
-            id.value, one.shard.count, there.size(), fmt::join(missing, ", "),
-            one.shard.count - there.size() > missing.size() ? ", ..." : ""));
+        return InputError(
+            fmt::format("frame {}: {} shards are expected, but {} are given; missing are {}{}: "
+                        "give their plates, or render them first",
+                        id.value, one.shard.count, there.size(), fmt::join(missing, ", "),
+                        one.shard.count - there.size() > missing.size() ? ", ..." : ""));
     }
     return {};
   }
@@ -260,9 +262,9 @@ class Merger {
     for (auto& [id, frame] : frames_) {
       if (!fs::exists(PathOf(id)) || options_.overwrite) continue;
       if (!options_.resume)
-        return UsageError(
-            fmt::format("{}: exists already: --resume keeps such frames, --overwrite replaces them",
-                        PathOf(id).string()));
+        return UsageError(fmt::format(
+            "{}: exists already: keep such frames with --resume, or replace them with --overwrite",
+            PathOf(id).string()));
       if (!frame.report) continue;
       if (const auto difference = DifferenceFrom(film_before, frame)) {
         LogWarning("{}: {}; the frame is made again", PathOf(id).string(),
@@ -301,8 +303,8 @@ class Merger {
         LF_ASSIGN_OR_RETURN(PlateReader reader, PlateReader::Open(plate.path));
         if (reader.width() != first.width_px || reader.height() != first.height_px ||
             reader.has_opacity() != first.has_opacity)
-          return InputError(
-              fmt::format("{}: was replaced while lfmerge ran: start again", plate.path.string()));
+          return InputError(fmt::format(
+              "{}: was replaced while lfmerge read it: start lfmerge again", plate.path.string()));
         LF_RETURN_IF_ERROR(reader.AddTo(&sum));
       }
       ++now_.plate_count;
@@ -389,8 +391,10 @@ class Merger {
     if (options_.contact_sheet) LF_RETURN_IF_ERROR(film.WriteContactSheet(frames, 2, pool_));
     if (options_.video) LF_RETURN_IF_ERROR(film.WriteVideo(frames, *options_.video));
     if (accepted_count_ == 0)
-      return InputError(fmt::format("{}: every frame is black, because no ray reached them",
-                                    options_.output_folder.string()));
+      return InputError(fmt::format(
+          "{}: all frames are black, because the plates contain no rays: check in lfvisualizer "
+          "that the camera path is within the capture, and check the masks of the LF images",
+          options_.output_folder.string()));
     return report;
   }
 

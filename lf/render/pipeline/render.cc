@@ -191,10 +191,10 @@ Result<void> Renderer::OpenState() {
   // If nothing of the earlier run is kept, the LF images that it skipped are tried again.
   if (!had_plates_ && state_->finished().empty()) totals_.skipped.clear();
   if (setup_->work().strict && !totals_.skipped.empty())
-    return InputError(
-        fmt::format("--strict: the render that --resume would continue has left out {} LF images, "
-                    "the first: {}; leave out --strict, or start anew with --overwrite",
-                    totals_.skipped.size(), totals_.skipped.front().reason));
+    return InputError(fmt::format(
+        "--strict: the unfinished render has left out {} LF images, the first: {}; leave "
+        "out --strict, or start again with --overwrite instead of --resume",
+        totals_.skipped.size(), totals_.skipped.front().reason));
   totals_.inputs = state_options.rays;
   totals_.inputs.insert(totals_.inputs.end(), state_options.picture.begin(),
                         state_options.picture.end());
@@ -311,8 +311,9 @@ std::vector<FrameId> Renderer::EarlyOf(std::span<const FrameId> frames) const {
     if (!setup_->film().Collects() || state_->HasPlate(frame))
       early.push_back(frame);
     else
-      LogWarning("--finish: frame {} has no rays yet, and is rendered from all of its LF images",
-                 frame.value);
+      LogWarning(
+          "--finish: frame {} has no rays yet, and is therefore rendered from all of its LF images",
+          frame.value);
   }
   return early;
 }
@@ -391,13 +392,14 @@ Result<RenderReport> Renderer::End() {
   totals_.peak_memory_bytes = PeakMemoryBytes();
   LF_RETURN_IF_ERROR(state_->Close(totals_));
   if (totals_.IsBlack() && IsWhole())
-    return InputError(
-        fmt::format("{}: every frame is black, because no ray of {} LF images reached them ({})",
-                    folder_.output_folder.string(), totals_.selected_image_count,
-                    setup_->film().mode == RenderMode::kRebin
-                        ? "are the images masked, or are --slab-position, --slab-distance, --r-st "
-                          "or --r-uv wrong for the scene?"
-                        : "are the images masked?"));
+    return InputError(fmt::format(
+        "{}: all frames are black, because no pixel of the {} LF images has a ray for them: "
+        "check {}",
+        folder_.output_folder.string(), totals_.selected_image_count,
+        setup_->film().mode == RenderMode::kRebin
+            ? "the masks of the LF images, --slab-position, --slab-distance, --r-st and "
+              "--r-uv"
+            : "whether masks exclude all pixels"));
   if (video_error) return *video_error;
   return std::move(totals_);
 }

@@ -92,8 +92,10 @@ Result<void> PutInOrder(ImageOrder order, const RenderOptions& options, ThreadPo
 // name only when it is whole. The bits of the frames depend neither on the number of threads, nor
 // on the memory (with one exception, see WorkOptions), nor on how often the render was interrupted,
 // killed and resumed. A kill loses at most the work since the last checkpoint.
-//   kUsage        the options are not compatible; the folder has an unfinished render, or one from
-//                 other inputs (run_state.h)
+//   kUsage        the options are not compatible; the folder has an unfinished render, and neither
+//                 FolderOptions::resume nor overwrite is set; resume is set, but the state has
+//                 other inputs; a report of another package or shard there has other inputs
+//                 (run_state.h)
 //   kInput        no LF image contributes to any frame, or no frame gets a ray (both only for a
 //                 whole film: the package has no name and there is no shard); broken LF images
 //                 (collect.h); a damaged state

@@ -47,9 +47,9 @@ Result<void> CheckCodes(const fs::path& path, const Package& package) {
   const LightField& light_field = package.light_field;
   const auto codes = FindCodes(light_field.folder, light_field.image_names);
   if (!codes)
-    return InputError(fmt::format(
-        "{}: its LF images are not at {} ({}): give their light field with --lightfield",
-        path.string(), light_field.folder.string(), codes.error().message));
+    return InputError(
+        fmt::format("{}: its light field is not at {} ({}): give it with --lightfield",
+                    path.string(), light_field.folder.string(), codes.error().message));
   size_t needed = 0, missing = 0;
   std::string first;
   for (size_t i = 0; i < package.images.size(); ++i) {
@@ -62,8 +62,9 @@ Result<void> CheckCodes(const fs::path& path, const Package& package) {
   }
   if (missing == 0) return {};
   return InputError(fmt::format(
-      "{}: {} of its {} LF images are not in the packed store {}, or not with all needed pixels; "
-      "the first: {}; make the store again with lfcompressor from all packages that are rendered",
+      "{}: for {} of the {} LF images that this package needs, the packed store {} lacks the image "
+      "or some of its pixels; the first: {}; make the store again with lfcompressor, from all "
+      "packages that are rendered",
       path.string(), missing, needed, light_field.folder.string(), first));
 }
 
@@ -87,11 +88,11 @@ Result<void> CheckImageFiles(const fs::path& path, const Package& package) {
                                        "field with --lightfield",
                                        path.string(), package.light_field.folder.string(),
                                        file.string(), error.message()))
-              : InputError(fmt::format(
-                    "{}: was made from another light field than the one at {}: {} has {} bytes, "
-                    "but had {}; make the package again, or give its light field with --lightfield",
-                    path.string(), package.light_field.folder.string(), file.string(), bytes,
-                    package.images[id.value].file_bytes));
+              : InputError(fmt::format("{}: was made from another light field than the one at {}: "
+                                       "{} has {} bytes, but had {} then; give the package's light "
+                                       "field with --lightfield, or make the package again",
+                                       path.string(), package.light_field.folder.string(),
+                                       file.string(), bytes, package.images[id.value].file_bytes));
   }
   if (first) return *first;
   return {};
@@ -115,8 +116,9 @@ RenderReport Joined(RenderReport all, const RenderReport& part) {
 // film. Does not warn for a single package, which is one task of a job.
 void TellOfOthers(size_t given, size_t count) {
   if (given > 1 && given < count)
-    LogWarning("{} of the film's {} packages are given: the frames of the others are not rendered",
-               given, count);
+    LogWarning(
+        "only {} of the film's {} packages are given; the frames of the others are not rendered",
+        given, count);
 }
 
 // Records size and modification time of the file. If the size cannot be read, file_bytes is 0, and
@@ -161,9 +163,9 @@ Result<Package> OpenPackage(const fs::path& path, const std::optional<LightField
   if (place) {
     if (place->identity != package.whole && place->whole != package.whole)
       return InputError(fmt::format(
-          "{}: was made from another light field than {}: the package needs {} LF images with the "
-          "calibration checksum {}, but the light field has {} with {}; give the light field of "
-          "the package",
+          "{}: was made from another light field than {}: the package's light field has {} LF "
+          "images and the calibration checksum {}, but this one has {} and {}; give the light "
+          "field that the package was made from",
           path.string(), place->name, package.whole.image_count, package.whole.calibration,
           place->identity.image_count, place->identity.calibration));
   }
@@ -189,14 +191,15 @@ Result<PackagedFilm> OpenPackages(std::vector<fs::path> paths,
     const Film other(package);
     if (!of_first) of_first = other;
     if (const std::string difference = of_first->DifferenceTo(other); !difference.empty())
-      return InputError(
-          fmt::format("{}: was made for {} than {}: render them into different folders",
-                      path.string(), difference, film.paths.front().string()));
+      return InputError(fmt::format(
+          "{}: was made for {} than {}: render these packages separately, into different "
+          "folders",
+          path.string(), difference, film.paths.front().string()));
     if (const auto [named, is_new] = names.emplace(package.name, path); !is_new)
-      return UsageError(
-          fmt::format("{} and {} have the same name, so that reports and states of both would be "
-                      "called {}: rename one",
-                      named->second.string(), path.string(), package.name));
+      return UsageError(fmt::format(
+          "{} and {} have the same name, so that the files of both in the output folder would "
+          "be called {}: rename one package",
+          named->second.string(), path.string(), package.name));
     for (const PackageFrame& frame : package.frames) {
       if (const auto [owner, is_new] = owners.emplace(frame.id, path); !is_new)
         return UsageError(fmt::format("{} and {} both contain frame {}: give only one of them",
@@ -234,10 +237,10 @@ Result<std::vector<PackagePart>> PartsWith(const PackagedFilm& film,
       if (std::none_of(parts.begin(), parts.end(), [frame](const PackagePart& part) {
             return std::binary_search(part.frames.begin(), part.frames.end(), frame);
           }))
-        return UsageError(
-            fmt::format("--frames: frame {} is in none of the packages: give its package, too, or "
-                        "leave the frame out",
-                        frame.value));
+        return UsageError(fmt::format(
+            "--frames: frame {} is not in any of the given packages: also give its package, or "
+            "leave the frame out",
+            frame.value));
   TellOfOthers(film.paths.size(), film.film_count);
   return parts;
 }
@@ -302,8 +305,10 @@ Result<RenderReport> RenderPackages(PackagedFilm film, const RenderOptions& opti
   if (options.folder.video) LF_RETURN_IF_ERROR(files.WriteVideo(frames, *options.folder.video));
   // Black frames are an error only if all packages were rendered: a missing package may have rays.
   if (report.IsBlack() && !options.film.shard && film.paths.size() == film.film_count)
-    return InputError(fmt::format("{}: every frame is black, because no ray reached them",
-                                  options.folder.output_folder.string()));
+    return InputError(fmt::format(
+        "{}: all frames are black, because no LF image has a ray for them: check in lfvisualizer "
+        "that the camera path is within the capture, and check the masks of the LF images",
+        options.folder.output_folder.string()));
   return report;
 }
 

@@ -102,8 +102,9 @@ Result<void> RenderPass::FinishEarlyFrames() {
     if (renderer_.EndsEarly(f))
       LF_RETURN_IF_ERROR(FinishFrames({&f, 1}));
     else
-      LogWarning("--finish: frame {} has no rays yet, and is rendered from all of its LF images",
-                 renderer_.id(f).value);
+      LogWarning(
+          "--finish: frame {} has no rays yet, and is therefore rendered from all of its LF images",
+          renderer_.id(f).value);
   }
   return {};
 }
@@ -130,8 +131,8 @@ Result<void> RenderPass::Finish() {
   if (renderer_.rebinned() != nullptr) {
     if (renderer_.rebinned()->facts().is_too_coarse)
       LogWarning(
-          "cells of rebinned rays are so wide that some got more LF pixels than they have room "
-          "for: make --r-st or --r-uv smaller");
+          "some cells of rebinned rays are so wide that they got more LF pixels than they can "
+          "hold, so that rays were lost: make --r-st or --r-uv smaller");
     context_.state.RemoveRays();
   }
   const double earlier_s = context_.totals.total_s;
@@ -220,10 +221,14 @@ Result<void> RenderPass::RecordFinished(size_t f, const FrameReport& report) {
     // Only the first kTold black frames are logged; report.json states 0 LF images for all of them.
     constexpr size_t kTold = 10;
     if (++context_.black_count <= kTold)
-      LogWarning("frame {} is black: no LF image contributes to it", frame.value);
+      LogWarning(
+          "frame {} is black, because no LF image has a ray for it: widen its aperture, or move "
+          "its camera nearer to the LF cameras",
+          frame.value);
     if (context_.black_count == kTold + 1)
       LogWarning(
-          "more frames are black; report.json states the number of LF images of every frame");
+          "more frames are black; report.json states for every frame how many LF images it "
+          "contains");
   }
   LF_RETURN_IF_ERROR(context_.state.SaveFinished(report));
   LogDebug("frame {}: written, with {} rays of {} LF images", frame.value,

@@ -94,10 +94,10 @@ class NotesReader {
   std::string Text(const char* key) {
     const std::string* const text = FindEntry(entries_, key);
     if (text == nullptr && !fault_)
-      fault_ = InputError(
-          fmt::format("{}: has no {}: it is the plate of an unfinished frame, or of another "
-                      "version; expected a plate of lfrenderer --shard or --keep-plates",
-                      name_, key));
+      fault_ = InputError(fmt::format(
+          "{}: has no entry {}, because its frame is unfinished, or another version wrote "
+          "it: give a finished plate of lfrenderer --shard or --keep-plates",
+          name_, key));
     return text == nullptr ? "" : *text;
   }
 
@@ -190,20 +190,23 @@ Result<PlateNotes> PlateNotesOf(const PlateEntries& entries, int width_px, int h
   // Another version may keep opacity, which notes do not describe, in another range of values.
   const std::string* const law = FindEntry(entries, "law");
   if (law != nullptr && *law != fmt::format("{}", kRayModelVersion))
-    reader.Fault("law", fmt::format("{}: the plate has rays of another version of the ray model; "
-                                    "use the program that rendered it, or render it again",
-                                    kRayModelVersion));
+    reader.Fault(
+        "law", fmt::format("{}, because this program has another version of the ray model: use the "
+                           "program that rendered the plate, or render it again",
+                           kRayModelVersion));
   notes.frame.value = static_cast<uint32_t>(reader.WholeNumber("sheet.frame", UINT32_MAX));
   const std::vector<double> k = reader.Numbers("sheet.intrinsics", 5);
   Intrinsics& intrinsics = notes.camera.pinhole.intrinsics;
   intrinsics = {k[0], k[1], k[2], k[3], k[4], width_px, height_px};
-  if (!(k[0] != 0 && k[1] != 0)) reader.Fault("sheet.intrinsics", "focal lengths that are not 0");
+  if (!(k[0] != 0 && k[1] != 0))
+    reader.Fault("sheet.intrinsics", "focal lengths other than 0 as the first two numbers");
   const std::vector<double> pose = reader.Numbers("sheet.pose", 12);
   notes.camera.pinhole.cam_from_world.rotation = Mat3Of(pose);
   notes.camera.pinhole.cam_from_world.translation = Vec3Of(std::span(pose).subspan(9));
   const std::vector<double> aperture = reader.Numbers("sheet.aperture", 3);
   if (!(aperture[0] >= 0) || !(aperture[1] == 0 || (aperture[1] >= 3 && aperture[1] <= 1000)))
-    reader.Fault("sheet.aperture", "a radius, 0 or 3 to 1000 blades, and their rotation");
+    reader.Fault("sheet.aperture",
+                 "a radius of at least 0, 0 or 3 to 1000 blades, and the rotation of the blades");
   else
     notes.camera.aperture = {aperture[0], static_cast<int>(aperture[1]), aperture[2]};
   const std::vector<double> focus = reader.Numbers("sheet.focus_plane", 4);
@@ -241,7 +244,8 @@ Result<PlateNotes> PlateNotesOf(const PlateEntries& entries, int width_px, int h
     notes.skipped_count = reader.WholeNumber("sheet.lf_images_skipped", UINT32_MAX);
     notes.skipped = reader.Names("sheet.skipped");
     if (notes.skipped.size() > notes.skipped_count)
-      reader.Fault("sheet.skipped", fmt::format("at most {} names", notes.skipped_count));
+      reader.Fault("sheet.skipped", fmt::format("at most {} names, as sheet.lf_images_skipped says",
+                                                notes.skipped_count));
   }
   if (FindEntry(entries, "sheet.weights") != nullptr) {
     const std::vector<double> weights = reader.Numbers("sheet.weights", 3);
@@ -250,7 +254,8 @@ Result<PlateNotes> PlateNotesOf(const PlateEntries& entries, int width_px, int h
         reader.Numbers("sheet.effective", static_cast<size_t>(columns) * rows);
     notes.weighed = {weights[0], {weights[1], weights[2]}, Image<float>(columns, rows)};
     for (size_t i = 0; i < counts.size(); ++i) {
-      if (!(counts[i] >= 0 && counts[i] <= 1e9)) reader.Fault("sheet.effective", "counts");
+      if (!(counts[i] >= 0 && counts[i] <= 1e9))
+        reader.Fault("sheet.effective", "numbers from 0 to 1e9");
       notes.weighed->effective_counts.pixels()[i] = static_cast<float>(counts[i]);
     }
   }

@@ -120,7 +120,7 @@ TEST(PlateNotes, FaultsAreNamed) {
         "sheet.lens", "sheet.fps", "sheet.estimator", "sheet.version", "sheet.develop",
         "sheet.smooth_below", "sheet.fill_radius", "sheet.lf_images", "sheet.rays_tested",
         "sheet.rays_accepted", "sheet.effective"}) {
-    EXPECT_NE(fault(key, {}).find(std::string("p: has no ") + key), std::string::npos) << key;
+    EXPECT_NE(fault(key, {}).find(std::string("p: has no entry ") + key), std::string::npos) << key;
     if (std::string(key) == "sheet.version") continue;
     for (const char* value : {"", "x", "1 2 nan", "1,2", "-1e999"})
       EXPECT_NE(fault(key, value).find(std::string("p: ") + key + " is \"" + value),

@@ -87,9 +87,10 @@ Result<RenderReport> ParseReport(std::string_view text, const std::string& name)
       report.frames.push_back(FrameFromJson(*item, &fault));
   }
   if (!fault.empty())
-    return InputError(fmt::format(
-        "{}: is no report from which a render could continue: {}; remove it to render anew", name,
-        fault));
+    return InputError(
+        fmt::format("{}: is not a report from which a render can be resumed: {}; remove the file "
+                    "to render these frames again",
+                    name, fault));
   return report;
 }
 

@@ -37,8 +37,8 @@ std::optional<FrameId> FrameOf(const fs::path& path) {
 }
 
 // Advice for a damaged file: only the work that it holds is done again if it is removed.
-constexpr const char* kPlateAdvice = "remove the file to render its frame anew";
-constexpr const char* kRaysAdvice = "remove the file to rebin its rays anew";
+constexpr const char* kPlateAdvice = "remove the file to render its frame again";
+constexpr const char* kRaysAdvice = "remove the file to rebin its rays again";
 
 Error WithAdvice(const Error& error, const char* advice) {
   return {error.kind, fmt::format("{}; {}", error.message, advice)};
@@ -94,9 +94,9 @@ Result<void> NumberOf(const fs::path& path, const PlateEntries& entries, const c
   const char* const end = number.data() + number.size();
   const auto [rest, error] = std::from_chars(number.data(), end, *value);
   if (error == std::errc{} && rest == end) return {};
-  return WithAdvice(
-      InputError(fmt::format("{}: {} is {}, expected a whole number", path.string(), key, number)),
-      advice);
+  return WithAdvice(InputError(fmt::format("{}: its entry {} is \"{}\", expected a whole number",
+                                           path.string(), key, number)),
+                    advice);
 }
 
 RunInputs Joined(RunInputs a, const RunInputs& b) {
@@ -166,17 +166,18 @@ Result<void> RunState::FindEarlierRun() {
   if (options_.overwrite) {
     RemoveAll();
   } else if (HasPlates() || !records_.empty()) {
-    return UsageError(
-        fmt::format("{}: contains an unfinished render ({} frames finished, {} begun): --resume "
-                    "continues it, --overwrite removes it and starts anew",
-                    partial_.string(), records_.size(), plates_.size()));
+    return UsageError(fmt::format(
+        "{}: contains an unfinished render ({} frames finished, {} begun): continue it with "
+        "--resume, or remove it and start again with --overwrite",
+        partial_.string(), records_.size(), plates_.size()));
   }
   // The report and the contact sheet of an earlier render are removed. Otherwise, if this render
   // fails, they would look like its results.
   std::error_code ignored;
   if (fs::exists(ReportPath(), ignored))
-    LogWarning("{}: the finished render in this folder is replaced, frame by frame",
-               options_.folder.string());
+    LogWarning(
+        "{}: the earlier render in this folder is complete, and its frames are replaced one by one",
+        options_.folder.string());
   fs::remove(ReportPath(), ignored);
   if (Name().empty()) fs::remove(options_.folder / "contact_sheet.png", ignored);
   return {};
@@ -194,8 +195,8 @@ Result<void> RunState::CheckOtherPackages() const {
     if (const auto difference =
             FirstDifference(other.inputs, Joined(options_.rays, options_.picture)))
       return UsageError(fmt::format(
-          "{}: is the report of a package or shard that {}: the frames of both would look like one "
-          "film; give another -o, or remove the frames and reports that are there",
+          "{}: is the report of another package or shard, which {}: the frames of both would look "
+          "like one film; give another -o, or remove the frames and reports in this folder",
           file.string(), difference->Text("was rendered with", "this one has")));
   }
   return {};
@@ -278,17 +279,18 @@ Result<void> RunState::CheckPlate(FrameId frame) const {
 Result<void> RunState::Check(const std::string& place, FrameId frame, const RunInputs& recorded,
                              bool has_picture) const {
   constexpr const char* kAdvice =
-      "give the same inputs and options, or another -o, or --overwrite instead of --resume to "
-      "start anew";
+      "give the same inputs and options, or another -o, or start again with --overwrite instead of "
+      "--resume";
   if (frame.value > path_.frame_count())
-    return UsageError(
-        fmt::format("{}: --resume: belongs to frame {}, but the path has {} frames; {}", place,
-                    frame.value, path_.frame_count(), kAdvice));
+    return UsageError(fmt::format(
+        "{}: belongs to frame {}, but the camera path has {} frames, so that --resume cannot "
+        "use the file; {}",
+        place, frame.value, path_.frame_count(), kAdvice));
   RunInputs wanted = options_.rays;
   if (has_picture) wanted = Joined(wanted, options_.picture);
   wanted = Joined(wanted, InputsOfCamera(frame, path_.Camera(frame)));
   if (const auto difference = FirstDifference(recorded, wanted))
-    return UsageError(fmt::format("{}: --resume: {}; {}", place,
+    return UsageError(fmt::format("{}: {}, so that --resume cannot continue; {}", place,
                                   difference->Text("was made with", "this call has"), kAdvice));
   return {};
 }
@@ -332,8 +334,8 @@ Result<FrameProgress> RunState::LoadPlate(FrameId frame, SensorPlate* plate,
   if (moments == nullptr || noise == nullptr) return progress;
   Result<NoiseMoments> read = NoiseMoments::Read(*noise, *plate);
   if (!read)
-    return WithAdvice(InputError(fmt::format("{}: {} is damaged: {}", path.string(), kNoise,
-                                             read.error().message)),
+    return WithAdvice(InputError(fmt::format("{}: its entry {} is damaged: {}", path.string(),
+                                             kNoise, read.error().message)),
                       kPlateAdvice);
   *moments = *std::move(read);
   return progress;
@@ -363,10 +365,10 @@ Result<std::optional<RunState::Rays>> RunState::LoadRays(FrameId first, size_t s
     for (const auto& entry : entries)
       if (!entry.first.starts_with(kProgress)) recorded.push_back(entry);
     if (const auto difference = FirstDifference(recorded, wanted))
-      return UsageError(
-          fmt::format("{}: --resume: {}; give the same inputs and options, or another -o, or "
-                      "--overwrite instead of --resume to start anew",
-                      path.string(), difference->Text("was made with", "this call has")));
+      return UsageError(fmt::format(
+          "{}: {}, so that --resume cannot continue; give the same inputs and options, or another "
+          "-o, or start again with --overwrite instead of --resume",
+          path.string(), difference->Text("was made with", "this call has")));
     return {};
   };
   Result<RaysFile> file = ReadRays(path, max_cells, pool, check);

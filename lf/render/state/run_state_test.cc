@@ -125,7 +125,7 @@ TEST_F(RunStateTest, OtherInputsAreNamed) {
   path_.cameras.pop_back();
   refused = Open(true);
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().message.find("frame 3, but the path has 2"), std::string::npos);
+  EXPECT_NE(refused.error().message.find("frame 3, but the camera path has 2"), std::string::npos);
 }
 
 TEST_F(RunStateTest, AFinishedFrameThatWasRemovedIsRenderedAgain) {
@@ -187,13 +187,13 @@ TEST_F(RunStateTest, AdviceIsAboutTheWorkThatTheFileHolds) {
   const auto other = (*state)->LoadPlate(FrameId{2}, &small);
   ASSERT_FALSE(other);
   EXPECT_TRUE(other.error().message.ends_with(
-      ": has 80 x 60 elements, expected 40 x 30; remove the file to render its frame anew"))
+      ": has 80 x 60 elements, expected 40 x 30; remove the file to render its frame again"))
       << other.error().message;
   const auto too_many = (*state)->LoadRays(FrameId{1}, 0, "1-3", 0, pool_);
   ASSERT_FALSE(too_many);
   EXPECT_TRUE(too_many.error().message.ends_with(
-      "contains 1 cells, but 0 are allowed: --max-rays or --memory differs from when it was "
-      "written; remove the file to rebin its rays anew"))
+      "contains 1 cells, but --max-rays and --memory allow only 0, because they are smaller than "
+      "when the file was written; remove the file to rebin its rays again"))
       << too_many.error().message;
 }
 

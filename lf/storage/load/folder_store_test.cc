@@ -266,7 +266,7 @@ TEST_F(FolderStoreTest, AMosaicOfOneRowIsAnError) {
   LfPixels pixels;
   const Result<void> loaded = FolderStore(light_field, Mosaics::kToRgb).Load({0}, kWhole, &pixels);
   ASSERT_FALSE(loaded);
-  ExpectMentions(loaded.error().message, {"a.png", "x1", "2x2"});
+  ExpectMentions(loaded.error().message, {"a.png", "x 1 pixels", "2 x 2"});
 }
 
 TEST_F(FolderStoreTest, AMosaicWithThreeChannelsIsAnError) {
@@ -306,7 +306,8 @@ TEST_F(FolderStoreTest, ARawFileMustHaveThePatternOfTheLightField) {
   light_field.intrinsics[0].height_px = 23;
   ExpectMentions(ErrorOf(light_field), {"a.dng: is a camera raw file", "lf_bayer"});
   light_field.encoding.bayer = BayerPattern::kRggb;
-  ExpectMentions(ErrorOf(light_field), {"a.dng: its mosaic is GBRG", "light field is RGGB"});
+  ExpectMentions(ErrorOf(light_field),
+                 {"a.dng: has the Bayer pattern GBRG", "light field has RGGB"});
   light_field.image_names = {"untold.dng"};
   EXPECT_EQ(Loaded(light_field).bayer, BayerPattern::kRggb);
 }
@@ -325,10 +326,10 @@ TEST_F(FolderStoreTest, ARawFileWithoutColourFilterIsGreyLight) {
   light_field.image_names = {"a.dng"};
   EXPECT_EQ(Loaded(light_field, {0, 0, 24, 23}).radiance.pixels(), png.radiance.pixels());
   light_field.encoding.bayer = BayerPattern::kRggb;
-  ExpectMentions(ErrorOf(light_field), {"a.dng", "without colour filter", "lf_bayer"});
+  ExpectMentions(ErrorOf(light_field), {"a.dng", "without a colour filter", "lf_bayer"});
   light_field.encoding.bayer = BayerPattern::kNone;
   light_field.encoding.transfer = Transfer::kSrgb;
-  ExpectMentions(ErrorOf(light_field), {"a.dng", "without colour filter", "sRGB"});
+  ExpectMentions(ErrorOf(light_field), {"a.dng", "without a colour filter", "sRGB"});
 }
 
 TEST_F(FolderStoreTest, AlphaBelowOneHalfMasks) {

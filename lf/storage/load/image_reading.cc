@@ -41,19 +41,21 @@ Result<void> CheckRaw(const RawFacts& raw, const RadianceEncoding& encoding, con
   if (raw.is_monochrome) {
     if (encoding.bayer == BayerPattern::kNone && encoding.transfer != Transfer::kSrgb) return {};
     return InputError(fmt::format(
-        "{}: is a camera raw file of a sensor without colour filter, but the light field {}: raw "
-        "files and other images do not go together",
+        "{}: is a camera raw file of a sensor without a colour filter, but the light field {}: use "
+        "images of one kind only",
         path.string(),
-        encoding.bayer == BayerPattern::kNone ? "is of sRGB images" : "states lf_bayer"));
+        encoding.bayer == BayerPattern::kNone ? "consists of sRGB images" : "states lf_bayer"));
   }
   if (encoding.bayer == BayerPattern::kNone)
     return InputError(
-        fmt::format("{}: is a camera raw file, but the light field states no lf_bayer: raw files "
-                    "and other images do not go together",
+        fmt::format("{}: is a camera raw file, but the light field states no lf_bayer: state it, "
+                    "or use images of one kind only",
                     path.string()));
   if (raw.bayer != BayerPattern::kNone && raw.bayer != encoding.bayer)
-    return InputError(fmt::format("{}: its mosaic is {}, but that of the light field is {}",
-                                  path.string(), NameOf(raw.bayer), NameOf(encoding.bayer)));
+    return InputError(
+        fmt::format("{}: has the Bayer pattern {}, but the light field has {}: leave this image "
+                    "out, or correct lf_bayer",
+                    path.string(), NameOf(raw.bayer), NameOf(encoding.bayer)));
   return {};
 }
 
@@ -62,7 +64,8 @@ Result<void> CheckEncoding(const ImagePart& file, const RadianceEncoding& encodi
   if (file.info.raw) LF_RETURN_IF_ERROR(CheckRaw(*file.info.raw, encoding, path));
   if (encoding.bayer != BayerPattern::kNone && file.info.channels != 1)
     return InputError(
-        fmt::format("{}: has {} channels, but lf_bayer says that it is a mosaic of one channel",
+        fmt::format("{}: has {} channels, but lf_bayer says that it is a mosaic: expected one "
+                    "channel; remove lf_bayer, or use the mosaics",
                     path.string(), file.info.channels));
   if (std::holds_alternative<Image<float>>(file.image)) return {};
   return CheckLevels(encoding, std::holds_alternative<Image<uint8_t>>(file.image) ? 8 : 16,
@@ -122,11 +125,12 @@ void ForEachSeenBrighter(const LightField& light_field, LfImageId id, const Pixe
 
 Result<void> CheckLevels(const RadianceEncoding& encoding, int bits, const std::string& path) {
   if (LevelsFit(encoding, bits)) return {};
-  return InputError(
-      fmt::format("{}: contains values of {} bits, to which lf_black_level {} and lf_white_level "
-                  "{} do not fit: correct the levels",
-                  path, bits, encoding.black_level,
-                  encoding.white_level ? fmt::format("{}", *encoding.white_level) : "(none)"));
+  return InputError(fmt::format(
+      "{}: contains values of {} bits, but lf_black_level is {} and lf_white_level is "
+      "{}: expected a black level below the white level, and a white level of at most {}",
+      path, bits, encoding.black_level,
+      encoding.white_level ? fmt::format("{}", *encoding.white_level) : "not stated",
+      (1 << bits) - 1));
 }
 
 }  // namespace lf

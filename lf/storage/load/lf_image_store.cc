@@ -16,8 +16,8 @@ Result<LfPixels> LoadWithoutThrowing(const LfImageStore& store, LfImageId id, co
     LF_RETURN_IF_ERROR(store.Load(id, rect, &pixels));
     return pixels;
   } catch (const std::bad_alloc&) {
-    return OutputError(
-        fmt::format("{}: no memory to load it: lower --memory, or give the machine more", name));
+    return OutputError(fmt::format(
+        "{}: too little memory to load it: lower --memory, or use a machine with more", name));
   } catch (const std::exception& exception) {
     return Error{KindOfReadFailure(exception), fmt::format("{}: {}", name, exception.what())};
   }

@@ -14,8 +14,9 @@ Result<void> LoadMosaicsAs(Mosaics mosaics, const LightField& light_field, LfIma
   if (!is_mosaic || mosaics == Mosaics::kAsRecorded) return load(rect, pixels);
   const Intrinsics& k = light_field.intrinsics[light_field.cameras[id.value].intrinsics_index];
   if (k.width_px < 2 || k.height_px < 2)
-    return InputError(fmt::format("{}: is {}x{}, and a mosaic has at least 2x2 pixels",
-                                  light_field.ImagePath(id).string(), k.width_px, k.height_px));
+    return InputError(
+        fmt::format("{}: has {} x {} pixels: expected a mosaic of at least 2 x 2 pixels",
+                    light_field.ImagePath(id).string(), k.width_px, k.height_px));
   const PixelRect inside = Intersection(rect, {0, 0, k.width_px, k.height_px});
   LF_RETURN_IF_ERROR(load(MosaicRectOf(inside, k.width_px, k.height_px), mosaic));
   Demosaic(*mosaic, k.width_px, k.height_px, light_field.encoding.white_balance, inside, pixels);

@@ -34,11 +34,13 @@ std::string TextOf(const PixelRect& rect) {
 Result<void> CheckListed(const PackedCode& code, const LightField& light_field, LfImageId id) {
   if (!code.is_listed())
     return InputError(
-        fmt::format("{}: is not in the packed store: make the store again with lfcompressor",
+        fmt::format("{}: is not in the packed store: make the store again with lfcompressor, from "
+                    "the whole light field or from all packages that are rendered",
                     light_field.ImagePath(id).string()));
   if (code.bytes == 0)
     return InputError(fmt::format(
-        "{}: is not in the packed store, because it was missing or broken when the store was made",
+        "{}: is not in the packed store, because it was missing or broken when the store was made: "
+        "replace the image file, and make the store again with lfcompressor",
         light_field.ImagePath(id).string()));
   return {};
 }
@@ -51,12 +53,14 @@ Result<void> CheckCode(std::string_view bytes, int bits, PixelLayout layout, boo
   LF_ASSIGN_OR_RETURN(const CodeInfo info, ReadCodeInfo(bytes));
   if (info.width != rect.width() || info.height != rect.height())
     return InputError(
-        fmt::format("is damaged: an encoded image has {} x {} pixels, but the table says {} x {}",
+        fmt::format("is damaged in the packed store: its encoded image has {} x {} pixels, but the "
+                    "table of the store says {} x {}; copy or make the store again",
                     info.width, info.height, rect.width(), rect.height()));
   const bool has_layout = info.layout == layout || (grey_too && info.layout == PixelLayout::kGrey);
   if (info.bits != bits || !has_layout)
     return InputError(
-        "is damaged: an encoded image has another kind of values than the table says");
+        "is damaged in the packed store: its encoded image has another number of bits or channels "
+        "than the table of the store says; copy or make the store again");
   return {};
 }
 
@@ -160,13 +164,13 @@ Result<void> PackedStore::LoadRecorded(Loading* loading, LfImageId id, const Pix
   const PixelRect inside = Intersection(rect, whole);
   if (Intersection(code.rect, whole) != code.rect)
     return InputError(
-        fmt::format("{}: has pixels {} in the packed store, but the calibration says "
-                    "{} x {}",
+        fmt::format("{}: has the pixels {} (x, y) in the packed store, but {} x {} pixels in its "
+                    "calibration: the store is damaged; copy or make it again",
                     name, TextOf(code.rect), k.width_px, k.height_px));
   if (!inside.empty() && Intersection(inside, code.rect) != inside)
     return InputError(
-        fmt::format("{}: of its pixels {}, only {} are in the packed store: make the store again "
-                    "with lfcompressor from all packages that are rendered",
+        fmt::format("{}: its pixels {} (x, y) are needed, but only {} are in the packed store: "
+                    "make the store again with lfcompressor from all packages that are rendered",
                     name, TextOf(inside), TextOf(code.rect)));
   const int bits = code.values == StoredValues::kUint8 ? 8 : 16;
   if (code.values != StoredValues::kHalf) LF_RETURN_IF_ERROR(CheckLevels(encoding, bits, name));
@@ -197,8 +201,8 @@ Result<void> PackedStore::LoadRecorded(Loading* loading, LfImageId id, const Pix
   if (const auto info = ReadCodeInfo(bytes->mask); info && info->bits != mask_bits)
     return InputError(
         fmt::format("{}: alpha is stored in the packed store as {}, but needed as {}: compress the "
-                    "light field again with this --image-alpha",
-                    name, is_light ? "a mask" : "light", is_light ? "light" : "a mask"));
+                    "light field again with the --image-alpha of this run",
+                    name, is_light ? "a mask" : "opacity", is_light ? "opacity" : "a mask"));
   if (const auto ok = CheckCode(bytes->mask, mask_bits, PixelLayout::kGrey, false, code.rect); !ok)
     return named(ok.error());
   if (const auto ok = DecodeImage(bytes->mask, wanted, &loading->mask); !ok)

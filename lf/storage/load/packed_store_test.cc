@@ -230,7 +230,7 @@ TEST_F(PackedStoreTest, AlphaIsNotTakenForWhatItWasNotCodedAs) {
   field_.encoding.alpha = AlphaMeaning::kStraight;
   Pack();
   packed_.encoding.alpha = AlphaMeaning::kMask;
-  EXPECT_NE(ErrorOf(*Opened(), {0}).find("stored in the packed store as light, but needed as"),
+  EXPECT_NE(ErrorOf(*Opened(), {0}).find("stored in the packed store as opacity, but needed as"),
             std::string::npos);
 }
 
@@ -267,7 +267,8 @@ TEST_F(PackedStoreTest, APartServesWhatItWasRecordedFor) {
        {PixelRect{4, 4, 21, 19}, {5, 3, 21, 19}, {5, 4, 22, 19}, {5, 4, 21, 20}})
     EXPECT_FALSE(as_rgb->Keeps({1}, more)) << more.x_begin << " " << more.y_begin;
   const std::string fault = ErrorOf(*Opened(), {1}, {2, 4, 21, 19});
-  EXPECT_NE(fault.find("store.lfs/image1.png: of its pixels [2, 21) x [4, 19), only [3, 23) x [2"),
+  EXPECT_NE(fault.find("store.lfs/image1.png: its pixels [2, 21) x [4, 19) (x, y) are needed, but "
+                       "only [3, 23) x [2"),
             std::string::npos)
       << fault;
 }

@@ -90,9 +90,9 @@ Result<RecordedImage> ReadRecordedImage(const LightField& light_field, LfImageId
   RecordedImage image;
   image.rect = Intersection(rect, WholeOf(light_field, id));
   if (image.rect.empty())
-    return InputError(fmt::format("{}: has none of the pixels [{}, {}) x [{}, {}) that are needed",
-                                  path.string(), rect.x_begin, rect.x_end, rect.y_begin,
-                                  rect.y_end));
+    return InputError(fmt::format(
+        "{}: none of the requested pixels, [{}, {}) in x and [{}, {}) in y, lie in this image",
+        path.string(), rect.x_begin, rect.x_end, rect.y_begin, rect.y_end));
   ImagePart part;
   LF_ASSIGN_OR_RETURN(const ChannelUse use, ReadStoredPixels(light_field, id, image.rect, &part));
   CutStored(part, use.colours, &image);

@@ -73,7 +73,10 @@ Result<Database> OpenShardOf(const fs::path& path, const std::string& store, int
   LF_ASSIGN_OR_RETURN(Database database, OpenShardDatabase(ShardPath(path, number)));
   LF_ASSIGN_OR_RETURN(const Settings settings, Settings::Read(database, kShardFormat.name));
   if (settings.Text("store") != store || settings.Text("number") != fmt::format("{}", number))
-    return database.Fault(fmt::format("belongs to another packed store than {}", path.string()));
+    return database.Fault(
+        fmt::format("is not shard {} of the packed store {}: copy all files of one store together, "
+                    "and keep their names",
+                    number, path.string()));
   return database;
 }
 
@@ -287,7 +290,7 @@ Result<PackedCodeReader::Bytes> PackedCodeReader::Read(const PackedCode& code) {
   state_->last = nullptr;
   if (state_->shard_count > 0 ? code.shard == 0 : code.shard != 0)
     return InputError(
-        fmt::format("{}: is a damaged {}: LF image {} is in no shard; copy or make it again",
+        fmt::format("{}: is a damaged {}: no shard contains LF image {}; copy or make it again",
                     state_->path.string(), kStoreFormat.name, code.id));
   LF_ASSIGN_OR_RETURN(OpenBlobs* const blobs, state_->At(code.shard));
   Statement& select = blobs->select;

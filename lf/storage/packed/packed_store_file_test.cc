@@ -201,7 +201,8 @@ TEST_F(PackedStoreFileTest, ShardsHoldTheCodes) {
     EXPECT_FALSE(bytes);
     return bytes ? "" : bytes.error().message;
   };
-  EXPECT_NE(fault().find("a store-0001.lfs: belongs to another packed store"), std::string::npos);
+  EXPECT_NE(fault().find("a store-0001.lfs: is not shard 1 of the packed store"),
+            std::string::npos);
   fs::remove(first);
   EXPECT_NE(fault().find("a store-0001.lfs: no such file"), std::string::npos);
   // A store without shards replaces the store with shards. The old shards behind the missing first
@@ -348,7 +349,7 @@ TEST_F(PackedStoreFileTest, WhatItReplacesIsGone) {
     ASSERT_TRUE(writer.Commit());
   }
   fs::rename(folder_ / "a store-0001.lfs.unfinished", folder_ / "a store-0001.lfs");
-  EXPECT_NE(Fault().find("belongs to another packed store"), std::string::npos);
+  EXPECT_NE(Fault().find("is not shard 1 of the packed store"), std::string::npos);
   FileLock lock = PackedStoreWriter::Lock(path_).value();
   PackedStoreWriter::RemoveUnfinished(path_, lock);
   lock.Remove();

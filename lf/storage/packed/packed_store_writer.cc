@@ -251,8 +251,8 @@ Result<void> PackedStoreWriter::State::CheckIsFree(const fs::path& shard_path) c
   const std::string of = StoreOfShard(shard_path);
   if (!of.empty() && (of == store || of == replaced)) return {};
   return UsageError(
-      fmt::format("{}: a shard would replace this file, which is no shard of the replaced store: "
-                  "give another name, or remove it",
+      fmt::format("{}: a shard of the new store would replace this file, which belongs to "
+                  "no store of this name: give the store another name (-o), or remove the file",
                   shard_path.string()));
 }
 
@@ -260,7 +260,8 @@ Result<void> PackedStoreWriter::State::CheckIsFree(const fs::path& shard_path) c
 Result<void> PackedStoreWriter::State::OpenShard(int number) {
   if (number > kMostShards)
     return OutputError(
-        fmt::format("{}: has {} shards, and more are not possible: give a larger --shard-size",
+        fmt::format("{}: the store needs more than {} shards, the largest number allowed: give a "
+                    "larger --shard-size",
                     path.string(), kMostShards));
   insert_blob.reset();
   shard.reset();
@@ -277,8 +278,9 @@ Result<void> PackedStoreWriter::State::OpenShard(int number) {
   }
   LF_ASSIGN_OR_RETURN(const Settings settings, Settings::Read(opened, kShardFormat.name));
   if (settings.Text("store") != store)
-    return InputError(fmt::format("{}: belongs to another packed store: remove it",
-                                  UnfinishedPath(shard_path).string()));
+    return InputError(fmt::format(
+        "{}: this shard belongs to another packed store than the unfinished one: remove this file",
+        UnfinishedPath(shard_path).string()));
   shard = std::move(opened);
   shard_count = number;
   return {};
@@ -386,8 +388,8 @@ Result<PackedStoreWriter> PackedStoreWriter::Open(const fs::path& path,
   LF_ASSIGN_OR_RETURN(const Settings settings, Settings::Read(database, kStoreFormat.name));
   if (const auto difference = FirstDifference(settings, light_field, plan, false))
     return UsageError(
-        fmt::format("{}: the unfinished store was made with {}: give the same options, or another "
-                    "name, or start it again with --overwrite",
+        fmt::format("{}: the unfinished store was begun with {}: give the options and files it was "
+                    "begun with, give another name, or start it again with --overwrite",
                     path.string(), *difference));
   state->database = std::move(database);
   LF_RETURN_IF_ERROR(state->Read(settings));
@@ -487,7 +489,10 @@ Result<void> CheckIsOfPlan(const fs::path& path, const LightField& light_field,
   LF_ASSIGN_OR_RETURN(Database database, OpenStoreDatabase(path));
   LF_ASSIGN_OR_RETURN(const Settings settings, Settings::Read(database, kStoreFormat.name));
   if (const auto difference = FirstDifference(settings, light_field, plan, any_shards))
-    return InputError(fmt::format("{}: was made with {}", path.string(), *difference));
+    return InputError(
+        fmt::format("{}: this packed store was made with {}: give the light field and options that "
+                    "it was made with",
+                    path.string(), *difference));
   return {};
 }
 

@@ -144,7 +144,8 @@ Result<bool> Statement::Step() {
   if (code == SQLITE_ROW) return true;
   Error error = code == SQLITE_DONE ? Error() : state_->database->Failed();
   if (state_->is_too_long)
-    error = state_->database->Fault("is damaged: its tables have no end; copy or make it again");
+    error = state_->database->Fault(
+        "is damaged: reading its tables does not end; copy or make it again");
   Reset();
   if (code == SQLITE_DONE) return false;
   return error;
@@ -168,7 +169,7 @@ bool Statement::IsNull(int column) const {
 
 Error Statement::Wrong(int column, std::string_view found, std::string_view expected) const {
   return state_->database->Fault(
-      fmt::format("is damaged: {} in column {}, expected {}; copy or make it again", found,
+      fmt::format("is damaged: found {} in column {}, expected {}; copy or make it again", found,
                   sqlite3_column_name(state_->handle, column), expected));
 }
 
@@ -357,9 +358,10 @@ Result<Database> Database::Open(const fs::path& path, const DatabaseFormat& form
   if (!fs::is_regular_file(path, error)) return state->Fault("is no file");
   const uintmax_t size = fs::file_size(path, error), expected = BytesOfPages(path);
   if (!error && size < expected)
-    return state->Fault(fmt::format(
-        "is damaged: it ends after {} of {} bytes; was it copied in part? Copy or make it again",
-        size, expected));
+    return state->Fault(
+        fmt::format("is damaged: it ends after {} of {} bytes, probably because it was copied in "
+                    "part; copy or make it again",
+                    size, expected));
   constexpr int kFlags = SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX;
   if (sqlite3_open_v2(UriOf(path).c_str(), &state->handle, kFlags, nullptr) != SQLITE_OK)
     return state->Fault(fmt::format("cannot be read: {}", sqlite3_errmsg(state->handle)));

@@ -212,7 +212,7 @@ TEST_F(DatabaseTest, CommandsWithoutEndAreDamage) {
                           .value();
   const Result<bool> step = endless.Step();
   ASSERT_FALSE(step);
-  EXPECT_NE(step.error().message.find("have no end"), std::string::npos) << step.error().message;
+  EXPECT_NE(step.error().message.find("does not end"), std::string::npos) << step.error().message;
   // The step limit applies to each command separately.
   Statement again = database.Prepare("select count(*) from things").value();
   ASSERT_TRUE(again.Step());

@@ -70,13 +70,13 @@ Result<void> CheckSeal(const fs::path& path, const char* what) {
   }
   if (!file || !stored.starts_with(kLetters))
     return InputError(
-        fmt::format("{}: is a damaged {}: its end is missing (was it copied in part?); copy or "
-                    "make it again",
+        fmt::format("{}: is a damaged {}: the checksum at its end is missing, probably because it "
+                    "was copied in part; copy or make it again",
                     path.string(), what));
   if (SealOf(file, size - kSealBytes) != stored)
     return InputError(
-        fmt::format("{}: is a damaged {}: its bytes are not those that were written; copy or make "
-                    "it again",
+        fmt::format("{}: is a damaged {}: its bytes do not match the checksum at its end; copy or "
+                    "make it again",
                     path.string(), what));
   return {};
 }

@@ -111,7 +111,8 @@ export class FramePanel {
         element(
           "p",
           { class: "bad" },
-          `${percent(density.uncovered_share)} of the opening is beyond the capture: bokeh are cut off there. ` +
+          `${percent(density.uncovered_share)} of the lens is beyond the LF cameras: ` +
+            "the bokeh (blur disks) are cut off there. " +
             (density.fitting_aperture > 0
               ? `The largest aperture that fits is ${millimetres(density.fitting_aperture, path.unit_m)}.`
               : "No aperture fits here: move the camera."),
