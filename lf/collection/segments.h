@@ -21,7 +21,7 @@ namespace lf {
 // that the error of single precision is at most 1e-4. Perspective alone leads to cubics; lens
 // distortion needs the higher powers.
 struct Segment {
-  // Largest count, for which the kernels have buffers.
+  // Largest `count`. The buffers of the kernels have this size.
   static constexpr int kMaxCount = 1024;
   static constexpr int kTerms = 6;
 

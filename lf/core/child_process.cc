@@ -61,7 +61,7 @@ std::string TextOf(int file, off_t most_bytes = std::numeric_limits<off_t>::max(
 // All that a new process needs to become a program.
 struct Launch {
   char* const* argv = nullptr;
-  const char* working_folder = nullptr;  // where the program starts; nullptr: the same as ours
+  const char* working_folder = nullptr;  // folder in which it runs; nullptr: that of this process
   int input = -1, output = -1, complaints = -1;
   int kept = -1;  // descriptor that the program inherits; -1: none
   bool ends_with_parent = false;

@@ -55,7 +55,8 @@ struct PointShares {
   AskedSquares Squares(double reach_px) const;
   // Returns the shares of one point alone.
   PointShares OfPoint(size_t point) const;
-  // Returns the mean share of the points of each set, one value for each set.
+  // Returns the mean shares of the points of each set, at each node. The result has one point for
+  // each set.
   PointShares MeansOfSets(const LensPointSets& points) const;
   // True if one of the points [first, first + count) has a share above 0 at a node around the
   // rectangle. If false, no element of the rectangle queries these points.

@@ -12,7 +12,7 @@
 
 namespace lf {
 
-// Largest body of a request: a path of at most 8 MiB, and JSON around it.
+// Largest body of a request: the text of a camera path, at most 8 MiB, and the JSON around it.
 inline constexpr size_t kMostBodyBytes = size_t{9} << 20;
 
 struct RequestHead {

@@ -60,7 +60,10 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
     const PixelRect rect = RectToRecord(light_field, id, source.rects[i]);
     const Result<RecordedImage> image = ReadRecordedImage(light_field, id, rect);
     if (codes[i].bytes == 0) {
-      if (image) return InputError("the image can be read, but is not in the store");
+      if (image)
+        return InputError(
+            "the image can be read, but is not in the store; make the store again with "
+            "--overwrite");
       return {};
     }
     LF_RETURN_IF_ERROR(image);
@@ -72,7 +75,9 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
     LF_RETURN_IF_ERROR(DecodeImage(bytes->code, &decoded));
     if (codes[i].rect != again.rect || codes[i].values != again.values ||
         bytes->code != again.code || bytes->mask != again.mask)
-      return InputError("the encoded image in the store differs from the image file");
+      return InputError(
+          "the encoded image in the store differs from the image file; make the store again with "
+          "--overwrite");
     const std::lock_guard lock(mutex);
     readers.push_back(std::move(reader));
     ++verified;
@@ -102,10 +107,8 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
       std::find_if(faults.begin(), faults.end(), [](const auto& f) { return f.has_value(); }) -
       faults.begin());
   return InputError(fmt::format(
-      "{}: {} of {} LF images are wrong in the store; the first is {}: {}; make the store again "
-      "with --overwrite",
-      options.store.string(), count, light_field.size(), light_field.image_names[first],
-      *faults[first]));
+      "{}: {} of {} LF images are wrong in the store; the first is {}: {}", options.store.string(),
+      count, light_field.size(), light_field.image_names[first], *faults[first]));
 }
 
 uint64_t StoreBytes(const fs::path& store) {

@@ -45,7 +45,7 @@ class ChannelFill {
     int64_t distance2;
   };
 
-  // Returns the distance, in elements, within which element (x, y) takes light from other elements.
+  // Returns the largest distance, in elements, from which element (x, y) may take light.
   int RadiusAt(int x, int y) const;
   bool IsEnough(const Collected& collected) const;
   size_t SumIndex(int x, int y) const { return (static_cast<size_t>(width_) + 1) * y + x; }

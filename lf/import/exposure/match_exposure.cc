@@ -61,9 +61,9 @@ class Sampler {
   Sampler(const LightField& field, const std::vector<ExposureView>& views)
       : field_(field), views_(views), nearby_(field) {}
 
-  // Searches some places of some LF images at all depths. SamplesOf() then searches only beyond
-  // half of the depth below which 2 % of the found depths lie, because a search of all depths takes
-  // several times as long.
+  // Finds the smallest depth at which SamplesOf() searches for the depth of a place. Searching at
+  // all depths takes several times as long, and is therefore done only for some places of some LF
+  // images. 2 % of the depths found there are below a limit; the smallest depth is half of it.
   void FindNearestDepth(ThreadPool& pool) {
     const size_t count = std::min(kProbed, field_.size());
     std::vector<std::vector<double>> depths(count);

@@ -13,16 +13,18 @@
 namespace lf {
 
 struct OpenOptions {
-  // focal_px to flip_y are values that the names in a folder with Stanford names may lack
-  // (StanfordOptions, import/formats/read_stanford.h). kUsage for calibrations of another kind.
-  // focal_px is an option of several programs, the others only of lfimport.
+  // focal_px to flip_y complete or override what the file names in a folder with Stanford names say
+  // (StanfordOptions, import/formats/read_stanford.h). If one of them is set, opening a calibration
+  // of another kind returns kUsage. Several programs have an option for focal_px; only lfimport has
+  // options for the others.
   std::optional<double> focal_px = {};
   std::optional<Vec2> pitch_w = {};
   std::optional<double> plane_distance_w = {};
   bool flip_x = false;
   bool flip_y = false;
   // The field of view of all cameras across both width and height, required for poses of Airborne
-  // Optical Sectioning (import/formats/read_aos.h). kUsage for calibrations of another kind.
+  // Optical Sectioning (import/formats/read_aos.h). If it is set, opening a calibration of another
+  // kind returns kUsage.
   std::optional<double> fov_deg = {};
   // Folder in which image files are searched by name (light_field/model/find_images.h). kUsage for
   // packed stores and folders with Stanford names.

@@ -17,7 +17,7 @@ std::optional<Vec3> Refracted(const Vec3& direction, const Vec3& normal, double 
 
 double Reflectance(double cosine, double refractive_index) {
   const double n2 = refractive_index * refractive_index;
-  const double inside = std::sqrt(n2 - 1 + cosine * cosine);  // n times the cosine of refraction
+  const double inside = std::sqrt(n2 - 1 + cosine * cosine);  // n cos(angle of refraction)
   const double s = (cosine - inside) / (cosine + inside);
   const double p = (n2 * cosine - inside) / (n2 * cosine + inside);
   return 0.5 * (s * s + p * p);

@@ -12,7 +12,7 @@ namespace lf {
 enum class RigShape : uint8_t {
   kPlanar,  // a grid in a plane, all cameras looking along RigOptions::view_world
   kBand,  // at most 3 rows on an arc around the upright line through the target, facing the target
-  kHemisphere,  // spread evenly over the dome above the target, facing the target
+  kHemisphere,  // cameras spread evenly over the dome above the target, facing the target
 };
 
 struct RigOptions {

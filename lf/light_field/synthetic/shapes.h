@@ -22,7 +22,7 @@ inline constexpr double kLeastLambda = 1e-7;
 // sphere. nullopt if there is no such point.
 std::optional<double> Intersect(const Ray& ray, const Sphere& sphere);
 
-// A panel with values that are computed once for the tests of all rays.
+// A panel with values that are computed once for the intersection tests of all rays.
 struct PanelPlane {
   explicit PanelPlane(const Panel& panel);
 

@@ -27,7 +27,7 @@ class JsonObject {
   // correctly.
   bool Parse(const std::string& text);
 
-  // If a key occurs several times, the last one is valid.
+  // If a key occurs several times, the last one counts.
   const simdjson::dom::object& object() const { return *object_; }
 
  private:

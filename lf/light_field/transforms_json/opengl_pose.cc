@@ -11,9 +11,11 @@ namespace lf {
 namespace {
 
 constexpr double kLargest = 1e12;        // largest absolute value of a number in a matrix
-constexpr double kSmallestScale = 1e-6;  // smallest factor of the rotation in a matrix
-constexpr double kSkewTolerance = 1e-3;  // allowed deviation from right angles and equal lengths
-constexpr double kExact = 1e-12;         // a scale that differs less from 1 counts as 1
+constexpr double kSmallestScale = 1e-6;  // smallest scale; a matrix is a rotation times a scale
+// How far the axes of a matrix may deviate from right angles and, relative to the scale, from equal
+// lengths.
+constexpr double kSkewTolerance = 1e-3;
+constexpr double kExact = 1e-12;  // a scale that differs less from 1 counts as 1
 
 }  // namespace
 

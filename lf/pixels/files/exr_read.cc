@@ -115,10 +115,10 @@ class ExrDecoder : public PictureDecoder {
     const int64_t height = int64_t{window.max.y} - window.min.y + 1;
     for (auto i = header.channels().begin(); i != header.channels().end(); ++i) {
       if (i.channel().xSampling != 1 || i.channel().ySampling != 1)
-        return InputError(
-            fmt::format("{}: channel {} has fewer pixels than the picture (luminance and chroma); "
-                        "convert the file to RGB",
-                        name_, i.name()));
+        return InputError(fmt::format(
+            "{}: channel {} has fewer pixels than the picture, as in files of luminance "
+            "and chroma, which are not supported: convert the file to RGB",
+            name_, i.name()));
       names_.emplace_back(i.name());
     }
     LF_RETURN_IF_ERROR(CheckPictureSize(width, height, static_cast<int64_t>(names_.size()), name_));

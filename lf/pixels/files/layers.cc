@@ -40,8 +40,8 @@ Result<std::vector<int>> ColoursFirst(const std::vector<std::string>& channel_na
   if (std::none_of(channel_names.begin(), channel_names.end(), is_plain)) {
     if (layers.size() > 1)
       return InputError(
-          fmt::format("{}: has colours in the layers {} and {}, but none outside of layers: rename "
-                      "the channels of the layer to be read to R, G and B",
+          fmt::format("{}: has colours in the layers {} and {}, but no channels R, G and B outside "
+                      "of layers: choose a layer, and rename its channels to R, G and B",
                       name, layers[0].substr(0, layers[0].size() - 1),
                       layers[1].substr(0, layers[1].size() - 1)));
     if (!layers.empty()) chosen = layers[0];

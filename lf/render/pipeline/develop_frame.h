@@ -15,7 +15,7 @@ namespace lf {
 
 struct RenderedFrame {
   DevelopedFrame picture;
-  FrameReport report;  // lacks `samples` and `noise`, which FilmRenderer::Measure() adds
+  FrameReport report;  // without `samples` and `noise`, which FilmRenderer::Measure() adds
 };
 
 // Returns the notes from which DevelopFrame() makes the picture of the frame. The caller must still

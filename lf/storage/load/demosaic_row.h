@@ -5,9 +5,9 @@
 
 namespace lf {
 
-// Factors of the Laplacians in a row, in units of 1/4096. They multiply integer Laplacians. A row
-// of a mosaic holds G and either R or B, which is called C here; D is the colour that the row
-// lacks.
+// Factors of the Laplacians, for one row of a mosaic, in units of 1/4096. They multiply integer
+// Laplacians. A row of a mosaic holds G and either R or B, which is called C here; D is the colour
+// that the row lacks.
 struct RowGains {
   // For the colours G and D at a pixel of C: factor of 4 C minus the four C that are 2 pixels away.
   int32_t g_at_c = 0;
