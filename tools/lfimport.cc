@@ -190,13 +190,12 @@ lf::Result<lf::LightField> OpenChanged(const Arguments& a, size_t* excluded_coun
 // Returns what LF pixels show. If they were found to show points, the light field states it then.
 // Areas need no statement, because programs assume them.
 lf::Result<lf::FootprintFacts> FindFootprint(lf::LightField* light_field) {
-  if (light_field->encoding.footprint)
-    return lf::FootprintFacts{*light_field->encoding.footprint, true};
   LF_ASSIGN_OR_RETURN(const std::unique_ptr<lf::LfImageStore> store,
                       lf::OpenStore(*light_field, lf::Mosaics::kToRgb));
-  LF_ASSIGN_OR_RETURN(const lf::PixelFootprint found, lf::MeasureFootprint(*light_field, *store));
+  LF_ASSIGN_OR_RETURN(const lf::PixelFootprint found, lf::FootprintOf(*light_field, *store));
+  const bool is_stated = light_field->encoding.footprint.has_value();
   if (found == lf::PixelFootprint::kPoint) light_field->encoding.footprint = found;
-  return lf::FootprintFacts{found, false};
+  return lf::FootprintFacts{found, is_stated};
 }
 
 lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {

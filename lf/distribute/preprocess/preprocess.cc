@@ -187,8 +187,8 @@ Result<void> Preprocessor::Begin() {
   report_.light_field_image_count = light_field_.size();
   whole_ = IdentityOf(light_field_);
   footprint_ = light_field_.encoding.footprint;
-  if (options_.reading.estimator == Estimator::kBilinear && !footprint_) {
-    LF_ASSIGN_OR_RETURN(footprint_, MeasureFootprint(light_field_, *store_));
+  if (options_.reading.estimator == Estimator::kBilinear) {
+    LF_ASSIGN_OR_RETURN(footprint_, FootprintOf(light_field_, *store_));
   }
   return {};
 }

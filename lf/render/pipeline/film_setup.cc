@@ -70,9 +70,7 @@ Result<void> FilmSetup::CheckStore() const {
 // the filter has to know it.
 Result<void> FilmSetup::FindFootprint() {
   if (!film_.reading.Prefilters() || film_.reading.footprint) return {};
-  film_.reading.footprint = light_field().encoding.footprint;
-  if (film_.reading.footprint) return {};
-  LF_ASSIGN_OR_RETURN(film_.reading.footprint, MeasureFootprint(light_field(), *store_));
+  LF_ASSIGN_OR_RETURN(film_.reading.footprint, FootprintOf(light_field(), *store_));
   return {};
 }
 

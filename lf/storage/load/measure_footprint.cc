@@ -78,4 +78,9 @@ Result<PixelFootprint> MeasureFootprint(const LightField& light_field, const LfI
   return shows_points ? PixelFootprint::kPoint : PixelFootprint::kArea;
 }
 
+Result<PixelFootprint> FootprintOf(const LightField& light_field, const LfImageStore& store) {
+  if (light_field.encoding.footprint) return *light_field.encoding.footprint;
+  return MeasureFootprint(light_field, store);
+}
+
 }  // namespace lf

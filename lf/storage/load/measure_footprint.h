@@ -19,4 +19,7 @@ namespace lf {
 //   store  must load mosaics as RGB
 Result<PixelFootprint> MeasureFootprint(const LightField& light_field, const LfImageStore& store);
 
+// Returns the footprint that the light field states, or else what MeasureFootprint() finds.
+Result<PixelFootprint> FootprintOf(const LightField& light_field, const LfImageStore& store);
+
 }  // namespace lf
