@@ -40,7 +40,7 @@ constexpr lf::HelpTexts kHelp = {
         R"(With -o the program writes DIR/transforms.json, which refers to the image files where they are;
 images are not copied. If DIR is LIGHTFIELD itself and already contains a transforms.json written by
 lfimport, the program reads the calibration from which that file was made. A transforms.json that
-lfimport did not write, or that was changed since, is replaced only with --force.
+lfimport did not write, or that was changed afterwards, is replaced only with --force.
 
 Exit code 6: the report and the file are written, but more images are missing or broken than
 --allow-missing accepts. With --strict one such image is an error, and nothing is written.
@@ -82,10 +82,11 @@ void AddInput(CLI::App& app, Arguments& a) {
 void AddOutput(CLI::App& app, Arguments& a) {
   lf::OptionGroup output(app, lf::kOutputGroup);
   output.Add("-o,--output DIR", a.output, "Folder of the transforms.json to write");
-  output.AddFlag(
-      "--force", a.force,
-      "Replace a transforms.json not written by lfimport\n"
-      "Needed if lfimport did not write the transforms.json in DIR, or if it was changed since.");
+  output.AddFlag("--force", a.force,
+                 "Replace a transforms.json not written by lfimport\n"
+                 "Needed if lfimport did not write the transforms.json in DIR, or if it was "
+                 "changed after lfimport "
+                 "wrote it.");
   output.Add(
       "--transform FILE|MATRIX", a.transform,
       "Rotate, scale and move the world\n"

@@ -66,10 +66,11 @@ void AddOutput(CLI::App& app, Arguments& a) {
              "Also write ground truth frames of this camera path\n"
              "DIR/truth gets the frames that a real thin lens would film of the scene itself, to "
              "compare them with frames that are rendered from the LF images.");
-  output.AddFlag(
-      "--overwrite", a.overwrite,
-      "Replace a light field in DIR not written by lfsynth\n"
-      "Needed if another program wrote the transforms.json in DIR, or if it was changed since.");
+  output.AddFlag("--overwrite", a.overwrite,
+                 "Replace a light field in DIR not written by lfsynth\n"
+                 "Needed if another program wrote the transforms.json in DIR, or if it was changed "
+                 "after lfsynth "
+                 "wrote it.");
 }
 
 void AddRig(CLI::App& app, Arguments& a) {
@@ -223,10 +224,11 @@ lf::Result<void> CheckMayWrite(const Arguments& a) {
   if (a.overwrite || !std::filesystem::exists(CalibrationIn(a), error)) return {};
   LF_ASSIGN_OR_RETURN(const bool is_ours, lf::IsAsWritten(CalibrationIn(a), lf::kSynthProgram));
   if (is_ours) return {};
-  return lf::UsageError(fmt::format(
-      "{}: was not written by lfsynth, or was changed since: give another folder, or replace this "
-      "light field with --overwrite",
-      CalibrationIn(a).string()));
+  return lf::UsageError(
+      fmt::format("{}: was not written by lfsynth, or was changed afterwards: give another folder, "
+                  "or replace this "
+                  "light field with --overwrite",
+                  CalibrationIn(a).string()));
 }
 
 }  // namespace

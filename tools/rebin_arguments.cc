@@ -24,11 +24,12 @@ void AddKeptRays(OptionGroup& group, RebinArguments& a) {
            "A rebinned ray is the mean of all rays in one cell of the slab. 0: as many as fit into "
            "half of --memory, or into a quarter of it with --mode hybrid.")
       ->check(WholeNumber());
-  group.AddChoice("--average-others", a.average_others, {"on", "off"},
-                  "Add rays that are not kept to existing cells\n"
-                  "on: a ray for which no cell would be made is still averaged into its cell, if "
-                  "that exists; this gives less noise and takes more time\n"
-                  "off: only kept rays are averaged");
+  group.AddChoice(
+      "--average-others", a.average_others, {"on", "off"},
+      "Average rays that are not kept into existing cells\n"
+      "on: a ray that is not kept is averaged into its cell if a kept ray has made this "
+      "cell already; this gives less noise and takes more time\n"
+      "off: only kept rays are averaged");
   group.AddChoice(
       "--preview", a.preview, {"auto", "on", "off"},
       "Interpolate gaps in unfinished frames of --mode hybrid\n"
@@ -42,7 +43,8 @@ void AddProbabilities(OptionGroup& group, RebinArguments& a) {
   ProbabilityOptions& edges = a.options.rebin.probability;
   group
       .Add("--alpha X", edges.alpha,
-           "Probability per change of the image, for --kept edges\n"
+           "Probability that a ray is kept, per image change\n"
+           "Used with --kept edges. "
            "A ray is kept with the probability X * C + --xi, where C is the change of the LF image "
            "at its pixel: the absolute Laplacian of the stored values, where black is 0 and white "
            "is 1.")
@@ -54,9 +56,11 @@ void AddProbabilities(OptionGroup& group, RebinArguments& a) {
            "describes.")
       ->check(CLI::Range(0.0, 1.0));
   group
-      .Add("--xi X", edges.xi,
-           "Probability of rays where the image does not change\n"
-           "Used with --kept edges. X is added to the probability that --alpha gives.")
+      .Add(
+          "--xi X", edges.xi,
+          "Least probability that a ray is kept\n"
+          "Used with --kept edges. X is added to the probability that --alpha gives, and is the "
+          "whole probability where the image does not change. Rays that --beta drops are not kept.")
       ->check(CLI::Range(0.0, 1.0));
   group
       .Add("--edge-sigma PIXELS", edges.sigma_px,

@@ -86,7 +86,8 @@ class LongFisheyeCurve {
 
 std::array<double, 4> FirstFour(const DistortionParameters& p) { return {p[0], p[1], p[2], p[3]}; }
 
-// Returns the radial part of kThinPrism: the radius theta (1 + k1 theta^2 + ... + k4 theta^8).
+// Returns the radial part of kThinPrism: the radius at angle theta is
+// theta (1 + k1 theta^2 + ... + k4 theta^8).
 FisheyeCurve ThinPrismCurve(const DistortionParameters& p) {
   return FisheyeCurve({p[0], p[1], p[4], p[5]});
 }

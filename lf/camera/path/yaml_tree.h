@@ -40,7 +40,7 @@ struct YamlNode {
 // depth of nesting while it is parsed. No path made by people or programs comes near these limits,
 // and parsing the worst text within them takes about 350 MB and 2 s.
 inline constexpr size_t kMaxYamlBytes = size_t{8} << 20;
-inline constexpr size_t kMaxYamlMarks = 1'000'000;  // number of characters that mark structure
+inline constexpr size_t kMaxYamlMarks = 1'000'000;  // number of characters such as : [ {
 inline constexpr size_t kMaxYamlDepth = 16;
 
 // Returns the only document of the text. Aliases share the node of their anchor.

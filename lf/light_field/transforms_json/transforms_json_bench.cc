@@ -19,7 +19,7 @@ namespace lf {
 namespace {
 namespace fs = std::filesystem;
 
-// Returns a pose whose numbers have 17 digits.
+// Returns random pose i. Most of its numbers have 16 or 17 digits, as programs write doubles.
 Mat34 Pose(uint64_t i) {
   const auto uniform = [i](uint64_t k) { return std::ldexp(RandomBits(0, i, k), -63) - 1; };
   Mat34 pose;

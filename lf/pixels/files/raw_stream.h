@@ -45,7 +45,7 @@ class RawStream final : public LibRaw_abstract_datastream {
   uint64_t size_bytes_;
   std::vector<uint8_t> window_;  // bytes of the file from window_begin_ on
   uint64_t window_begin_ = 0;
-  size_t next_ = 0;  // position of the next byte in window_
+  size_t next_ = 0;  // index in window_ of the next byte to read
   bool sought_beyond_end_ = false;
   bool read_beyond_end_ = false;
   std::function<void()> on_next_seek_;

@@ -9,11 +9,12 @@ namespace lf {
 // Laplacians. A row of a mosaic holds G and either R or B, which is called C here; D is the colour
 // that the row lacks.
 struct RowGains {
-  // For the colours G and D at a pixel of C: factor of 4 C minus the four C that are 2 pixels away.
+  // Factors for the colours G and D at a pixel of C. The Laplacian there is four times this C, less
+  // the four C that are 2 pixels away.
   int32_t g_at_c = 0;
   int32_t d_at_c = 0;
-  // For the colours C and D at a pixel of G: factor of 10 G minus a weighted sum of the G around
-  // it.
+  // Factors for the colours C and D at a pixel of G. The Laplacian there is ten times this G, less
+  // a weighted sum of the G around the pixel.
   int32_t c_at_g = 0;
   int32_t d_at_g = 0;
 };

@@ -24,7 +24,8 @@ uint16_t OpacityOf(T alpha) {
 
 constexpr uint32_t kOpacityRange = LfPixels::kOpaque - LfPixels::kTransparent;
 
-// Stores the opacity a / kMostOpacity in the lanes of a pixel that sends rays.
+// Stores the opacity a / kMostOpacity in the colour lanes of a pixel that is not masked, and 1 in
+// its ray lane.
 void StoreOpacity(uint32_t a, uint16_t* lanes) {
   const uint32_t v = LfPixels::kTransparent + (a * kOpacityRange + kMostOpacity / 2) / kMostOpacity;
   std::fill_n(lanes, LfPixels::kRayLane, static_cast<uint16_t>(v));

@@ -109,8 +109,8 @@ export class PathDocument {
       } else if (base !== undefined && this.isSameTime(time, 0)) {
         this.writeBase(spec, name, value);
       } else {
-        // A quantity that defaults to 0 must start at 0: if it is not given yet and this key is later than time 0, 0 is
-        // written to its section.
+        // A quantity that is 0 by default must keep this value at time 0. If the file does not give the quantity yet,
+        // and this key is later, the value 0 is therefore written to the section of the quantity.
         if (!given && spec.zeroIfNotGiven && !this.isSameTime(time, 0)) this.writeBase(spec, name, zeroOf(spec.shape));
         this.insertKeyframe(spec, { time, value, interpolation: interpolation ?? "smooth" });
       }
