@@ -11,7 +11,8 @@ namespace lf {
 
 // Returns one line for each fact about the camera (such as its position) that is the same in all
 // frames, then a table of the other facts: one line per frame, with aligned columns below two
-// header lines for the names of the facts and of their parts. Numbers have five digits.
+// header lines for the names of the facts and of their parts, such as x, y and z. Numbers have five
+// digits.
 std::string CameraTable(const CameraPath& path, const std::vector<FrameId>& frames);
 
 // Returns the facts about the camera of one frame, one per line.
@@ -22,7 +23,8 @@ std::string CameraBlock(const CameraPath& path, FrameId frame);
 std::string CameraCsv(const CameraPath& path, const std::vector<FrameId>& frames);
 
 // Returns {"fps", "frames", "resolution", "unit_m", "cameras": [{"frame": 1, ...}, ...]} with all
-// digits; infinity is null.
+// digits; infinity is null. "frames" is the number of frames of the path; "cameras" has only the
+// given `frames`.
 std::string CameraJson(const CameraPath& path, const std::vector<FrameId>& frames);
 
 }  // namespace lf

@@ -43,9 +43,9 @@ std::string CompressText(const CompressReport& report, const CompressOptions& op
       ShortNumber(static_cast<double>(report.store_bytes)), NameOf(settings));
   if (report.was_there) text += "existed already: nothing was written\n";
   if (report.resumed_count > 0)
-    text +=
-        fmt::format("{} LF images were encoded before; these figures are those of the other {}\n",
-                    report.resumed_count, report.coded_count);
+    text += fmt::format(
+        "{} LF images were encoded before; the figures below are those of the other {}\n",
+        report.resumed_count, report.coded_count);
   if (report.coded_count > 0) {
     text += fmt::format("pixels    {}B, encoded {}B: {:.2f} : 1\n",
                         ShortNumber(static_cast<double>(report.pixel_bytes)),

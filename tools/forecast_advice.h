@@ -12,8 +12,8 @@ namespace lf {
 // Largest distance, in elements, at which two copies of an edge still look like one edge.
 inline constexpr double kDoubleEdge_px = 2;
 
-// Lengths are in world units. Distances, depths and frame sizes keep 2 % away from the limit, so
-// that they may be rounded.
+// Lengths are in world units. Focus distances, depths and frame sizes are those at which copies of
+// an edge are 0.98 kDoubleEdge_px apart, so that these values may be rounded.
 struct ForecastAdvice {
   // Focus distances for which no frame shows the scene with double edges; far_w may be infinite.
   // nullopt if there are none, or if the depths of the scene are unknown.
@@ -29,7 +29,7 @@ struct ForecastAdvice {
 ForecastAdvice AdviceOf(const PreprocessReport& report, const CameraPath& path,
                         bool are_depths_known);
 
-// Returns a length with its unit, such as "31.2 mm", "2.05 m" or "1.2 km".
+// Returns a length with its unit, such as "31.2 mm", "2.05 m" or "1.2 km"; "-" if it is not finite.
 std::string LengthText(double length_w, double unit_m);
 // Returns a range, such as "between 1.2 m and 3 m" or "farther than 1.2 m", rounded inwards.
 std::string RangeText(const DepthRange& range, double unit_m);

@@ -42,7 +42,8 @@ void Warn(const LightField& light_field, const ExposureArguments& arguments,
   if (exposure.component_count > 1)
     warn("exposure-apart",
          fmt::format("the images form {} groups that do not overlap: each was matched by itself, "
-                     "so that one may be brighter than another",
+                     "so that one may be brighter than another; if so, multiply lf_gain of all "
+                     "images of a group by one factor",
                      exposure.component_count),
          {});
   if (arguments.vignetting && !exposure.falloff)
@@ -87,7 +88,8 @@ void ExposureArguments::AddTo(CLI::App& app) {
       "Make the LF images equally bright\n"
       "Estimates a brightness factor (lf_gain) for each image and colour channel, from parts of "
       "the scene that neighbouring images both show. The factors replace lf_gain in the "
-      "transforms.json that -o writes; without -o they are only reported. See doc/inputs.md.");
+      "transforms.json that -o writes; without -o only their range is reported. See "
+      "doc/inputs.md.");
   picture
       .AddFlag("--vignetting", vignetting,
                "Correct the darkening towards the corners\n"

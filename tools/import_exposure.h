@@ -31,21 +31,24 @@ struct ExposureArguments {
 // Applies --gain-from-exif and --mask-clipped to the light field, if they are given.
 //   lights  set to LightOf() of the file of each LF image, for the report. If --gain-from-exif is
 //           not given, only files of LF images that share their pose are read; the entries of the
-//           others are NaN, and `lights` is empty if no LF images share a pose
-// Returns the gains if --gain-from-exif is given. kUsage for a packed store; kInput as for
-// GainFromExif().
+//           others are NaN. Empty for a packed store, or if no file is read
+// Returns the gains if --gain-from-exif is given. kUsage: one of the two options is given for a
+// packed store. kInput as for GainFromExif().
 Result<std::optional<ExifGains>> StateBrackets(const ExposureArguments& arguments, ThreadPool& pool,
                                                LightField* light_field,
                                                std::vector<double>* lights);
 
 // Adds the warning no-f-number if --gain-from-exif found no f-number, and no-brackets if
-// --mask-clipped masks nothing. With --match-exposure and masks, first updates the report's
-// brackets.
+// --mask-clipped masks nothing. If --match-exposure is given and the light field masks clipped
+// pixels, first finds the report's brackets again, by the matched gains, and removes the warnings
+// that these brackets explain. Calls ApplyBrackets().
 void WarnOfBracketOptions(const ExposureArguments& arguments, const std::optional<ExifGains>& gains,
                           LightField* light_field, CaptureReport* report);
 
 // Estimates the gains of the LF images and, with --vignetting, the falloffs of their lenses, and
-// writes them into the light field. Warns about gains and falloffs that stay unchanged.
+// writes them into the light field. Adds warnings to the report about gains and falloffs that stay
+// unchanged, and about groups of LF images that were matched separately. Errors as for
+// OpenStore() and MatchExposure().
 Result<MatchedExposure> MatchAndApply(const ExposureArguments& arguments,
                                       const CommonOptions& common,
                                       const std::atomic<bool>& interrupted, ThreadPool& pool,

@@ -23,14 +23,16 @@ struct ImportReport {
   std::string first_image;  // path of the first image's file, which shows where images were found
   CaptureReport capture;
   std::optional<ImageFaults> faults;  // nullopt: the files were not checked
-  size_t excluded_count = 0;
-  std::optional<FootprintFacts> pixels;     // nullopt: the files were not checked
+  size_t excluded_count = 0;          // number of LF images that --exclude removed
+  // nullopt: the files were not checked, or faults of the files forbid that anything is written
+  std::optional<FootprintFacts> pixels;
   std::optional<ExifGains> exif_gains;      // nullopt without --gain-from-exif
   std::optional<MatchedExposure> exposure;  // nullopt: exposures were not matched
   std::string written;                      // path of the transforms.json; "": nothing was written
 };
 
-// Adds the warnings missing-images and broken-images if `faults` contains such LF images.
+// Adds the warnings missing-images and broken-images if report->faults, which must be set, contains
+// such LF images.
 void WarnOfFaults(const LightField& light_field, ImportReport* report);
 
 // Returns the report as text: one line per fact, then the warnings.

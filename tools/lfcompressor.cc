@@ -111,10 +111,11 @@ void AddQuality(CLI::App& app, Arguments& a) {
                              "3, or 8 with --profile thesis. Not for --profile lossless.")
                         ->check(CLI::Range(0., 255.));
   quality
-      .Add("--target-psnr DB", a.target_psnr,
-           "Find the threshold for this quality (off)\n"
-           "The value of --threshold is chosen so that the decoded LF images have this peak "
-           "signal-to-noise ratio (PSNR), in dB. Not for --profile lossless.")
+      .Add(
+          "--target-psnr DB", a.target_psnr,
+          "Find the threshold for this quality (off)\n"
+          "The value of --threshold is chosen so that a sample of the LF images, when decoded, has "
+          "at least this peak signal-to-noise ratio (PSNR), in dB. Not for --profile lossless.")
       ->check(CLI::Range(10., 90.))
       ->excludes(threshold);
   quality.Add("--quantizer N", a.quantizer,
@@ -131,14 +132,15 @@ void AddRunning(CLI::App& app, Arguments& a) {
                                  "The image files must be unchanged.");
   running
       .AddFlag("--overwrite", a.overwrite,
-               "Replace an existing store\n"
+               "Replace an existing store, finished or unfinished\n"
                "A file that is not a packed store is never replaced.")
       ->excludes(resume);
   running.AddFlag(
       "--verify", a.verify,
       "Check the store after writing it\n"
       "Compares the calibration, encodes each LF image again, compares it with the encoded image "
-      "in the store, and decodes that. If the store exists already, it is only checked.");
+      "in the store, and decodes that. If a complete store exists already and --overwrite is not "
+      "given, that store is only checked.");
 }
 
 void AddOptions(CLI::App& app, Arguments& a) {

@@ -32,8 +32,9 @@ a COLMAP model. A warning says when the depth is uncertain, and what to try. Ren
 };
 
 // Returns the LF camera nearest to the middle of the capture whose LF image can be read and that is
-// nearly level, because levelling a picture crops it. If there is none, it need not be level.
-// kOutput: the machine lacks memory or open files.
+// level within 3 degrees, because levelling a picture crops it. If no LF camera is both, returns
+// the nearest one whose LF image can be read; if none can be read, the nearest one. kOutput: the
+// machine lacks memory or open files.
 lf::Result<lf::LfImageId> FindMiddleCamera(const lf::LightField& light_field,
                                            const lf::LfImageStore& store) {
   lf::MachineFailure failure;
@@ -57,7 +58,8 @@ lf::Result<lf::LfImageId> FindMiddleCamera(const lf::LightField& light_field,
 }
 
 // Finds an LF camera by its number, or by the name of its image: the whole name, its last part, or
-// the last part without the suffix. "-1" is FindMiddleCamera().
+// the last part without the suffix. "-1" is FindMiddleCamera(). The caller must check that a camera
+// of the number exists.
 lf::Result<lf::LfImageId> FindCamera(const lf::LightField& light_field,
                                      const lf::LfImageStore& store, const std::string& text) {
   if (text == "-1") return FindMiddleCamera(light_field, store);

@@ -43,7 +43,8 @@ lfimport, the program reads the calibration from which that file was made. A tra
 lfimport did not write, or that was changed afterwards, is replaced only with --force.
 
 Exit code 6: the report and the file are written, but more images are missing or broken than
---allow-missing accepts. With --strict one such image is an error, and nothing is written.
+--allow-missing accepts. With --strict one such image is an error: the report is printed, but no
+file is written. The same happens if all images are missing or broken.
 doc/formats/import_report.md describes the report.)",
 };
 
@@ -84,9 +85,8 @@ void AddOutput(CLI::App& app, Arguments& a) {
   output.Add("-o,--output DIR", a.output, "Folder of the transforms.json to write");
   output.AddFlag("--force", a.force,
                  "Replace a transforms.json not written by lfimport\n"
-                 "Needed if lfimport did not write the transforms.json in DIR, or if it was "
-                 "changed after lfimport "
-                 "wrote it.");
+                 "Needed if lfimport did not write the transforms.json in DIR, if the file was "
+                 "changed afterwards, or if it is the calibration that is read.");
   output.Add(
       "--transform FILE|MATRIX", a.transform,
       "Rotate, scale and move the world\n"
@@ -113,7 +113,8 @@ void AddNamedImages(CLI::App& app, Arguments& a) {
   named.Add(
       "--pitch P|PX,PY", a.pitch,
       "Distance between LF cameras, in world units\n"
-      "P: distance between neighbouring columns and rows; PX,PY: between columns, between rows");
+      "P: distance between neighbouring columns and rows; PX,PY: between columns, between rows. "
+      "Needed if the names contain no positions; replaces the positions otherwise.");
   named
       .Add("--plane-distance X", a.plane_distance,
            "Depth of the plane without parallax (none)\n"
@@ -188,8 +189,9 @@ lf::Result<lf::LightField> OpenChanged(const Arguments& a, size_t* excluded_coun
   return light_field;
 }
 
-// Returns what LF pixels show. If they were found to show points, the light field states it then.
-// Areas need no statement, because programs assume them.
+// Returns the footprint of LF pixels: as the calibration states it, otherwise as measured. If it is
+// points, sets encoding.footprint, so that the written transforms.json states it. Measured areas
+// are not stated; programs measure them again.
 lf::Result<lf::FootprintFacts> FindFootprint(lf::LightField* light_field) {
   LF_ASSIGN_OR_RETURN(const std::unique_ptr<lf::LfImageStore> store,
                       lf::OpenStore(*light_field, lf::Mosaics::kToRgb));
@@ -260,8 +262,8 @@ int main(int argc, char** argv) {
   lf::Program program("lfimport", kHelp);
   AddOptions(program.app(), arguments);
   program.AddCommonOptions({.threads = true,
-                            .strict = "Stop at a missing or broken LF image\n"
-                                      "Nothing is written then.",
+                            .strict = "Write no file if an LF image is missing or broken\n"
+                                      "The report is printed; the exit code is 3.",
                             .json = "Print the report to stdout as JSON, with all digits",
                             .progress = true,
                             .verbose = true,

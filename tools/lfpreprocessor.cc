@@ -68,7 +68,10 @@ void AddInputAndOutput(CLI::App& app, Arguments& a) {
   output.Add("-o,--output DIR", a.output, "Folder of the packages")
       ->check(lf::NotEmpty())
       ->excludes(plan);
-  output.AddFlag("--overwrite", a.overwrite, "Replace the packages in DIR");
+  output.AddFlag("--overwrite", a.overwrite,
+                 "Replace the packages in DIR\n"
+                 "All packages in DIR are replaced; with --frames, only those that were made with "
+                 "the same --frames.");
   lf::AddFrameRange(output, a.frames);
   auto* packages =
       output.Add("--packages N", a.packages, "Number of packages (as few as --memory allows)")
@@ -109,7 +112,8 @@ void AddQuality(CLI::App& app, Arguments& a) {
   quality
       .Add("--max-images N", a.max_images,
            "Maximum number of LF images per frame (all)\n"
-           "A frame uses the first N LF images in the order of --order.")
+           "A frame uses the first N of the LF images that contribute to it, in the order of "
+           "--order.")
       ->check(lf::WholeNumber());
   quality
       .Add("--max-angle DEGREES", a.max_angle_deg,
@@ -133,7 +137,8 @@ void AddQuality(CLI::App& app, Arguments& a) {
       ->check(CLI::Range(1e-9, 1e12));
   running.Add("--memory SIZE", a.memory,
               "Memory that the render of a package may use\n"
-              "The program makes as few packages as possible, each with plates that fit into SIZE. "
+              "Unless --packages or --frames-per-package is given, the program makes as few "
+              "packages as possible, each with plates that fit into SIZE. "
               "The forecast assumes that lfrenderer has the same --memory.");
 }
 
@@ -188,7 +193,7 @@ lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::Comm
 }
 
 // Returns the source of the scene's depths, as ForecastFacts::depths_from. LF images are read only
-// if there is no other source; options->depths is then set.
+// if there is no other source; options->depths is set if depths are found in them.
 std::string KnowDepths(const lf::LightField& light_field, const lf::CameraPath& path,
                        lf::ThreadPool& pool, lf::PreprocessOptions* options) {
   if (options->depths) return "--depths";
@@ -245,7 +250,8 @@ int main(int argc, char** argv) {
   AddOptions(program.app(), arguments);
   program.AddCommonOptions({.threads = true,
                             .seed = "Seed of the order of the LF images",
-                            .strict = "Stop if an image file that packages need is missing",
+                            .strict = "Stop if an image file that packages need is missing\n"
+                                      "Without this option, packages are made nevertheless.",
                             .json = "Print the report to stdout as JSON",
                             .progress = true,
                             .verbose = true,

@@ -91,7 +91,8 @@ Result<void> Finish(const std::string& folder, const std::string& frames) {
   LF_ASSIGN_OR_RETURN(const size_t count, lf::AskToFinish(job, frames));
   lf::LogInfo(
       "{} unfinished frames will be finished with the rays that they have, within seconds if their "
-      "packages are running; report-*.json state which LF images they contain",
+      "packages are running; report-*.json state how far each got in the order of the LF images "
+      "(finished_early_before_place)",
       count);
   return {};
 }
@@ -143,7 +144,7 @@ int main(int argc, char** argv) {
   arguments.AddTo(program.app());
   program.AddCommonOptions({.threads = true,
                             .strict =
-                                "Passed to lfrenderer: stop at a broken LF image\n"
+                                "Passed to lfrenderer: stop at a missing or broken LF image\n"
                                 "Without this option a missing or broken LF image is left out.",
                             .json = "Print the status to stdout as JSON",
                             .progress = true,

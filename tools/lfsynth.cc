@@ -82,12 +82,16 @@ void AddRig(CLI::App& app, Arguments& a) {
                     "hemisphere: a dome");
   picture.Add("--count N", a.count, "Approximate number of LF cameras (depends on the scene)")
       ->check(CLI::Range(0, 100'000'000));
-  picture.Add("--size WIDTHxHEIGHT", a.size_px, "Size of the LF images, such as 960x640")
+  picture
+      .Add("--size WIDTHxHEIGHT", a.size_px,
+           "Size of the LF images (depends on the scene)\nSuch as 960x640.")
       ->delimiter('x')
       ->check(CLI::Range(1, 32768));
-  picture.Add("--spacing X", a.spacing, "Distance between neighbouring LF cameras, in metres");
+  picture.Add("--spacing X", a.spacing,
+              "Distance between LF cameras, in metres (depends on the scene)\n"
+              "Measured between neighbouring LF cameras.");
   picture.Add("--distance X", a.distance,
-              "Distance from the LF cameras to the scene, in metres\n"
+              "Distance to the scene, in metres (depends on the scene)\n"
               "Measured from the middle of the LF cameras to the middle of the scene.");
   picture.Add("--jitter X", a.jitter,
               "Largest random change of the LF cameras' poses\n"

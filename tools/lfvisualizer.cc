@@ -74,7 +74,10 @@ void AddOutput(CLI::App& app, Arguments& a) {
       output.AddFlag("--text", a.text, "Print cameras, and which LF cameras each frame uses")
           ->excludes(serve)
           ->excludes(watch);
-  output.Add("--frames RANGE", a.frames, "Frames to print, such as 1-100x2, 7 or 3-5,9 (all)")
+  output
+      .Add("--frames RANGE", a.frames,
+           "Frames to print, such as 1-100x2, 7 or 3-5,9 (all)\n"
+           "1-100x2: every second frame of 1 to 100. Frames are counted from 1.")
       ->needs(text)
       ->check(lf::NotEmpty());
   auto* to_files = output
@@ -97,8 +100,8 @@ void AddQuality(CLI::App& app, Arguments& a) {
   lf::OptionGroup picture(app, lf::kPictureGroup), quality(app, lf::kQualityGroup);
   picture.AddChoice("--estimator", a.page.estimator, {"bilinear", "nearest"},
                     "Estimator of the render\n"
-                    "Give the value that lfrenderer --estimator will have. Which pixels the page "
-                    "shows as used depends on it.");
+                    "Give the value that lfrenderer --estimator will have (its value auto is "
+                    "bilinear). Which pixels the page shows as used depends on it.");
   picture.AddChoice("--lens-weights", a.page.lens_weights, {"auto", "none", "area", "hat"},
                     "Lens weights of the render\n"
                     "Give the value that lfrenderer --lens-weights will have. Which LF cameras the "
@@ -106,7 +109,8 @@ void AddQuality(CLI::App& app, Arguments& a) {
   quality
       .Add("--max-images N", a.max_images,
            "Maximum number of LF images per frame (all)\n"
-           "A frame uses the first N LF images of a random order, as with lfrenderer --max-images.")
+           "A frame uses the first N of the LF images that contribute to it, in a random order, as "
+           "with lfrenderer --max-images.")
       ->check(lf::WholeNumber());
   quality
       .Add("--max-angle DEGREES", a.page.max_angle_deg,

@@ -118,10 +118,10 @@ void AddPicture(CLI::App& app, RenderArguments& a) {
 void AddQuality(CLI::App& app, RenderArguments& a) {
   OptionGroup quality(app, kQualityGroup);
   quality
-      .Add(
-          "--max-images N", a.max_images,
-          "Maximum number of LF images per frame (all)\n"
-          "A frame uses the first N LF images in the order of --order, which is random by default.")
+      .Add("--max-images N", a.max_images,
+           "Maximum number of LF images per frame (all)\n"
+           "A frame uses the first N of the LF images that contribute to it, in the order of "
+           "--order, which is random by default.")
       ->check(WholeNumber());
   quality
       .Add("--max-angle DEGREES", a.max_angle_deg,
@@ -164,13 +164,21 @@ void AddRunning(CLI::App& app, RenderArguments& a) {
       "--resume", a.resume,
       "Continue the unfinished render in DIR\n"
       "The inputs and the options that change frames must be the same. Finished frames are kept.");
-  running.AddFlag("--overwrite", a.overwrite, "Remove an unfinished render in DIR and start anew")
+  running
+      .AddFlag("--overwrite", a.overwrite,
+               "Remove an unfinished render in DIR and start anew\n"
+               "Needed, unless --resume is given, if DIR has an unfinished render. Finished frames "
+               "in DIR are replaced one by one; only --resume keeps them.")
       ->excludes(resume);
   running
-      .Add("--finish RANGE", a.finish,
-           "Frames to finish with their rays so far, for --resume\n"
-           "RANGE: frames, such as 1-10,20. The other frames are continued. The report states "
-           "which LF images these frames contain.")
+      .Add(
+          "--finish RANGE", a.finish,
+          "Finish frames of the resumed render with their rays so far\n"
+          "Needs --resume. RANGE: the frames to finish, such as 1-10,20. They are written with the "
+          "rays that the unfinished render has of them, and get no more; a frame without rays is "
+          "rendered as usual. The other frames are continued. For each frame that is finished in "
+          "this way, the report states how far it got: it contains those of its LF images whose "
+          "rank in the order of the light field, from 0, is below finished_early_before_place.")
       ->check(NotEmpty());
   running.Add("--dump-every TIME", a.dump_every,
               "Time between checkpoints\n"

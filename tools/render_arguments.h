@@ -28,7 +28,7 @@ struct RenderArguments {
               finish, fill = "2";
   RebinArguments rebin;
   AllowMissing allow_missing;
-  int64_t max_images = 0;
+  int64_t max_images = 0;    // 0: no limit
   double max_angle_deg = 0;  // 0: no limit
   uint32_t smooth_below = 0;
   bool no_contact_sheet = false, resume = false, overwrite = false, keep_plates = false;
@@ -39,8 +39,9 @@ struct RenderArguments {
 
   // Returns true if all inputs are packages: files that end in .lfp.
   bool HasPackages() const;
-  // Must be called before MakeOptions(). kUsage if options contradict each other, or cannot be used
-  // with packages.
+  // Must be called before MakeOptions(). kUsage if the inputs are neither LIGHTFIELD PATH.yaml nor
+  // packages, if --allow-missing cannot be parsed, or if an option cannot be used with these
+  // inputs.
   //   seed_given  true if --seed is given; packages contain a seed of their own
   Result<void> Check(bool seed_given) const;
 

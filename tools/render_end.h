@@ -20,7 +20,8 @@ MissingImages MissingOf(const RenderReport& report, const std::string& advice);
 bool Accepts(const MissingLimit& limit, const RenderReport& report);
 
 // Warns about LF images that were left out, if the limit accepts them. kBelowRequired if the limit
-// does not accept them, or if `required` is an error; the message contains both faults.
+// does not accept them. Otherwise returns `required`. If both are faults, the message contains
+// both.
 //   required  the result of CheckRequired() or CheckRequiredNoise()
 Result<void> EndOfRender(const RenderReport& report, const MissingLimit& limit,
                          const Result<void>& required);

@@ -29,7 +29,7 @@ std::string CauseOfEmptyElements(const RenderReport& report, const FrameReport& 
          "camera nearer to the middle of the capture";
 }
 
-// Warns once, for all frames, about the share of elements without a ray.
+// Warns if any frame has more than 1 % of elements without a ray: once, with the worst frame.
 void WarnOfEmptyElements(const RenderReport& report) {
   const double element_count = static_cast<double>(report.width) * report.height;
   size_t thin_count = 0;
@@ -112,8 +112,8 @@ void TellNoise(const RenderReport& report) {
   LogInfo("noise: {} of {} frames have at most the requested noise{}", met, measured, images);
 }
 
-// Counts the frames whose badness exceeds the limit. If there are any, calls `warn` with the count
-// and the worst frame.
+// Counts the frames with lens weights whose badness exceeds the limit. If there are any, calls
+// `warn` with the count and the worst frame.
 template <class Badness>
 void WarnOfFrames(const RenderReport& report, double limit, const Badness& badness,
                   const std::function<void(size_t count, const FrameReport& worst)>& warn) {

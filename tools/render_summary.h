@@ -15,16 +15,19 @@ namespace lf {
 // look at the result. EndOfRender() (render_end.h) reports the LF images that were left out.
 void SummariseRender(const RenderReport& report, const std::string& look_at);
 
-// Adds to the error of an interruption the command that resumes the render.
+// Adds to an error of the kind kInterrupted the command that resumes the render. Returns other
+// errors unchanged.
 Error WithResumeCommand(Error error, int argc, char** argv);
 
 // Returns kBelowRequired if, in any frame, fewer than 99 % of the elements that LF images see have
 // the required number of samples. The message names the first ten such frames.
+//   samples  N of --require "samples>=N"; unset: nothing is required
 Result<void> CheckRequired(const RenderReport& report, std::optional<uint32_t> samples);
 
 // Returns kBelowRequired if, in any frame, more than 10 % of the elements that LF images see have
 // more noise than required, or if the noise could not be measured. The message names the first ten
 // such frames.
+//   noise  X of --require "noise<=X"; unset: nothing is required
 Result<void> CheckRequiredNoise(const RenderReport& report, std::optional<double> noise);
 
 }  // namespace lf

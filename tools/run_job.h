@@ -11,9 +11,10 @@
 
 namespace lf {
 
-// Renders the packages with the indices `numbers` with the engine of the job. Returns when the film
-// is done or, with Slurm and without `waits`, when the tasks are submitted. kBelowRequired if the
-// film is done but LF images were left out, or frames are below what was required.
+// Renders the packages with the indices `numbers` (in ClusterJob::packages) with the engine of the
+// job. Returns when the film is done or, with Slurm and without `waits`, when the tasks are
+// submitted. kBelowRequired if the film is done but LF images were left out, or frames are below
+// what was required.
 //   lock  the lock that TakeJob() returned; it is released when no local process works on the job
 //         any more
 Result<void> RunJob(ClusterJob job, FileLock lock, const std::vector<size_t>& numbers, bool waits,

@@ -24,7 +24,8 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// Options of lfrenderer that the job sets, so that a user must not.
+// Options that are refused after --: options of lfrenderer that the job sets, and options with
+// which lfrenderer would render nothing.
 constexpr std::array kOfTheJob = {
     "-o",         "--output", "--resume", "--overwrite", "--progress",        "--json", "--frames",
     "--video",    "--shard",  "--finish", "--threads",   "--memory",          "--help", "-h",
@@ -86,7 +87,8 @@ Result<Words> SplitWords(const std::vector<std::string>& words) {
   return split;
 }
 
-// Checks the arguments as lfrenderer would, before a task waits in a queue.
+// Checks the arguments as lfrenderer would, before a task waits in a queue. Opens the packages as
+// *film, and returns the options that the arguments mean.
 Result<RenderOptions> TryArguments(const std::vector<fs::path>& packages, const fs::path& output,
                                    const std::string& frames,
                                    const std::vector<std::string>& arguments, PackagedFilm* film) {
@@ -131,7 +133,10 @@ void AddNewJob(CLI::App& app, SubmitArguments& a) {
   AddFrameRange(output, a.frames);
   AddFilmFiles(output, a.video, a.no_contact_sheet);
   output.AddFlag("--overwrite", a.overwrite,
-                 "Remove an earlier job in DIR and the frames of PACKAGES");
+                 "Remove an earlier job and frames of PACKAGES from DIR\n"
+                 "Removed from DIR are the files of the earlier job, and the frames, reports and "
+                 "unfinished states of PACKAGES. The files PACKAGES are kept, and so are frames of "
+                 "other packages in DIR.");
 }
 
 void AddExistingJob(CLI::App& app, SubmitArguments& a) {
@@ -148,8 +153,9 @@ void AddExistingJob(CLI::App& app, SubmitArguments& a) {
   running
       .Add("--finish DIR FRAMES", a.finish,
            "Finish frames with the rays that they have so far\n"
-           "FRAMES: a range, such as 1-10,20. These frames are written without waiting for their "
-           "other LF images; the other frames are rendered as before.")
+           "DIR: the folder of the job; FRAMES: a range, such as 1-10,20. The frames in FRAMES are "
+           "written without waiting for their other LF images. All other frames are rendered as "
+           "before.")
       ->expected(2);
 }
 

@@ -39,15 +39,16 @@ class MissingLimit {
 struct AllowMissing {
   std::string text = "0";
 
-  //   asked  names the LF images that a percentage counts, such as "the LF images to be encoded"
+  //   asked  the LF images of which a percentage is taken, in words for the help, such as "the LF
+  //          images to be encoded"
   CLI::Option* AddTo(CLI::App& app, const std::string& asked);
   Result<MissingLimit> Limit() const { return MissingLimit::Parse(text); }
 };
 
-// LF images that were requested from a program and left out.
+// LF images that a program was to use and has left out.
 struct MissingImages {
-  uint64_t count = 0;
-  uint64_t asked = 0;
+  uint64_t count = 0;  // number of LF images that were left out
+  uint64_t asked = 0;  // number of LF images that the program was to use, including these
   std::string what;    // such as "3 of 25 LF images were left out: ..."
   std::string advice;  // a remedy, other than accepting the loss
 };

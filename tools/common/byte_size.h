@@ -8,7 +8,9 @@
 
 namespace lf {
 
-// Returns the number of bytes. The units are powers of 1024. kUsage: the message names the option.
+// Returns the number of bytes. The units K, M, G and T are powers of 1024. kUsage: the text is no
+// size, or the size is not in [1, 2^60) bytes; the message begins with `option`, such as
+// "--memory".
 Result<size_t> ParseByteSize(const std::string& text, const std::string& option);
 
 }  // namespace lf

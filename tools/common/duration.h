@@ -7,7 +7,9 @@
 
 namespace lf {
 
-// Returns seconds, which are also the unit of a bare number. kUsage: the message names the option.
+// Returns the time in seconds. The text is a number, alone (seconds) or followed by s, m or h.
+// kUsage: the text has another form, or the time exceeds 1e9 s; the message begins with `option`,
+// such as "--dump-every".
 Result<double> ParseDuration(const std::string& text, const std::string& option);
 
 }  // namespace lf

@@ -52,7 +52,8 @@ std::string WithJoinedLines(std::string_view text) {
   return joined;
 }
 
-// Returns the text with each line indented and wrapped at kWidth columns.
+// Returns the text with each line indented. Lines that do not begin with two spaces are wrapped at
+// kWidth columns.
 std::string Wrapped(std::string_view text, size_t indent) {
   std::string wrapped;
   std::istringstream lines{std::string(text)};
@@ -95,14 +96,16 @@ std::string NamesOf(const CLI::Option& option) {
   return names + " " + type_name.substr(0, type_name.find(':'));
 }
 
-// Returns the default of an option as the parser states it; "" if there is none.
+// Returns the default of an option as the parser states it; "empty" for an empty list; "" for a
+// flag, a positional argument, or if there is no default.
 std::string DefaultOf(const CLI::Option& option) {
   if (option.get_type_size() == 0 || option.get_positional()) return "";
   const std::string value = option.get_default_str();
   return value == "[]" ? "empty" : value;
 }
 
-// Returns the summary of an option, with its default.
+// Returns the summary of an option, followed by its default in parentheses, unless the summary ends
+// with words in parentheses or the default is empty.
 std::string SummaryOf(const CLI::Option& option) {
   const std::string& text = option.get_description();
   const std::string summary = text.substr(0, text.find('\n')), value = DefaultOf(option);
@@ -128,8 +131,9 @@ std::string JoinedNames(const std::set<CLI::Option*>& options) {
   return CLI::detail::join(names, ", ");
 }
 
-// Returns the default and the limits of an option that the parser knows, such as
-// "Default: 0 (all); values: 0 to 180; not with --packages".
+// Returns the facts about an option that the parser knows (whether it is required, its default, its
+// values, the options that it needs or excludes), such as "Default: 0 (all); values: 0 to 180; not
+// with --packages".
 std::string FactsOf(const CLI::Option& option) {
   std::vector<std::string> facts;
   if (option.get_required()) facts.push_back("required");

@@ -54,7 +54,8 @@ class OptionGroup {
     return Present(option, end == std::string::npos ? "" : names_and_placeholder.substr(end + 1));
   }
 
-  // Adds an option whose value must be one of `words`. The help shows the words as its placeholder.
+  // Adds an option whose value must be one of `words`. The help shows the words as the placeholder
+  // of an option; for a positional argument, `text` must name them.
   template <typename Value>
   CLI::Option* AddChoice(const std::string& names, Value& value,
                          const std::vector<std::string>& words, const std::string& text) {

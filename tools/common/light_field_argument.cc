@@ -45,11 +45,13 @@ void AddUnusualOptions(CLI::App& app, LightFieldArgument& argument) {
            "images are square, so that one angle is the field of view of the width and of the "
            "height.")
       ->check(CLI::Range(0., 179.));
-  unusual.Add("--image-scale FACTOR", argument.image_scale,
-              "Size of the image files relative to calibration\n"
-              "FACTOR: size of the image files divided by the calibrated size, such as 0.25\n"
-              "auto: 1, or the factor of 1/2, 1/3, ... 1/16 that fits all image files\n"
-              "off: the image files must have the calibrated size");
+  unusual.Add(
+      "--image-scale FACTOR", argument.image_scale,
+      "Size of the image files relative to calibration\n"
+      "FACTOR: size of the image files divided by the calibrated size, such as 0.25\n"
+      "auto: 1, or the factor of 1/2, 1/3, ... 1/16 that fits all files of up to 64 examined "
+      "LF images\n"
+      "off: the image files must have the calibrated size");
   unusual.AddChoice(
       "--image-alpha", argument.image_alpha, {"auto", "mask", "straight", "premultiplied"},
       "Meaning of the alpha channel\n"
@@ -84,7 +86,8 @@ void LightFieldArgument::AddOptionsTo(CLI::App& app) {
            "Light behind transparent LF images\n"
            "Used if the alpha channel of the LF images is opacity (--image-alpha straight or "
            "premultiplied). If the option is not given, the background is the one that the "
-           "calibration states, or the colour of the transparent pixels.\n"
+           "calibration states; if it states none, the colour of the transparent pixels if the "
+           "meaning of alpha was found from them, otherwise black.\n"
            "COLOUR: black, white, or R,G,B in linear light, where 1 is display white\n"
            "none: frames get an alpha channel; their colours are those in front of black")
       ->check(NotEmpty())

@@ -9,8 +9,9 @@
 
 namespace lf {
 
+// The values as the user gave them. 0 and "" mean that an option was not given.
 struct LightFieldArgument {
-  std::string path;
+  std::string path;  // LIGHTFIELD or, if a program has this option, --lightfield
   double focal_px = 0;
   double fov_deg = 0;
   std::string images, image_scale = "auto", image_alpha = "auto", background;
@@ -26,7 +27,7 @@ struct LightFieldArgument {
   // and the meaning of alpha. With --lightfield (`path`), only --image-alpha and --background are
   // refused; the other options apply to the light field that it names.
   Result<void> CheckWithPackages() const;
-  // Returns the given options as words, for the command line of another program.
+  // Returns the given options, without `path`, as words for the command line of another program.
   std::vector<std::string> Words() const;
 };
 

@@ -34,7 +34,8 @@ struct CommonOptions {
 };
 
 // The common options that a program offers, because it obeys them. The other common options are
-// refused as unknown. A text is passed to OptionGroup::Add(); nullptr: the option is not offered.
+// refused as unknown. A text is the help of the option, as for OptionGroup::Add(); nullptr: the
+// option is not offered.
 struct OfferedOptions {
   bool threads = false;
   const char* seed = nullptr;    // help text: what the seed decides

@@ -27,9 +27,9 @@ class ProgressMeter {
   ProgressMeter(ProgressStyle style, std::string unit);
   ~ProgressMeter();
 
-  // Reports `done` of `total` units. `detail` is shown before the numbers; JSON leaves it out.
-  // Cheap: prints at most a few times per second (bar), once per second (json) or every few seconds
-  // (plain).
+  // Reports `done` of `total` units; prints nothing if `total` is 0. `detail` is shown before the
+  // numbers; JSON leaves it out. Cheap: prints at most a few times per second (bar), once per
+  // second (json) or every few seconds (plain).
   void Update(uint64_t done, uint64_t total, const std::string& detail);
   // Reports also what is done of other things: the detail is "LF image 3/10, frame 1/4"; JSON has
   // "counts": {"LF image": [3, 10], "frame": [1, 4]}.
@@ -46,11 +46,13 @@ class ProgressMeter {
   Clock::time_point last_;
 };
 
-// Returns a bar and numbers for a terminal line of `width` characters, or the numbers alone if the
-// line is too short for a bar.
+// Returns a bar and numbers for a terminal line of `width` characters, or the numbers alone, cut to
+// fit, if the line is too short for a bar.
+//   share  the share of the bar that is filled, from 0 to 1
 std::string ProgressLine(double share, const std::string& numbers, size_t width);
 
-// Returns a number with a prefix, such as "1.5 G", "320 M" or "12 k".
+// Returns a number with an SI prefix, such as "1.5 G", "320 M" or "12 k", to which a unit can be
+// appended. A number below 1000 ends in a blank instead: "12 ".
 std::string ShortNumber(double value);
 // Returns a time, such as "3 h 20 min", "2 min 5 s" or "14 s".
 std::string ShortDuration(double seconds);

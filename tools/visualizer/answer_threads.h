@@ -19,8 +19,8 @@ class AnswerThreads {
   AnswerThreads(const AnswerThreads&) = delete;
   AnswerThreads& operator=(const AnswerThreads&) = delete;
 
-  // Queues a task, which must not throw. Returns false, and does not run the task, after Stop() or
-  // if the machine has no thread left.
+  // Queues a task, which must not throw. Returns false, and does not run the task, after Stop(), or
+  // if no thread runs yet and the machine has none left.
   bool Run(std::function<void()> task);
   // Returns when all tasks have ended, including those in the queue.
   void Stop();

@@ -1,4 +1,4 @@
-// Sends news to open pages as server-sent events.
+// Holds the news for open pages, which page_streams.h sends as server-sent events.
 #pragma once
 
 #include <atomic>
@@ -15,11 +15,13 @@ namespace lf {
 class EventBoard {
  public:
   // Posts an event, which replaces the one of the same kind.
+  //   kind  film, watch, preview or path (doc/formats/page_data.md)
   //   data  one line of JSON
   void Post(const std::string& kind, const std::string& data);
 
-  // Returns the events after number `seen` as text of an event stream, and advances `seen`. Returns
-  // "" if `patience` expires or the board is closed.
+  // Waits for events with a number above *seen. Returns the newest one of each kind as text of an
+  // event stream, and sets *seen to the number of the last event. Returns "" if `patience` expires
+  // first, or if the board is closed.
   std::string WaitForNews(uint64_t* seen, std::chrono::milliseconds patience);
 
   // Ends all waits, now and in the future.

@@ -39,7 +39,7 @@ class Exporter {
     LogWarning("{}: {}", name, answer.body);
     return {};
   }
-  // Writes an LF image. An unreadable one is left out and counted.
+  // Writes the large picture of an LF image. An unreadable LF image is left out and counted.
   Result<void> WriteImage(uint32_t id) {
     const std::string name = fmt::format("image/{}/{}.jpg", kLargeSide_px, id);
     const PageAnswer answer = Answer(scene_, name);

@@ -16,14 +16,17 @@ namespace lf {
 struct ExportFacts {
   size_t file_count = 0;
   uint64_t byte_count = 0;
-  size_t image_count = 0;     // number of LF images to be exported
-  size_t missing_count = 0;   // number of these that were left out, because they cannot be read
-  std::string first_missing;  // why the first missing LF image cannot be read
+  size_t image_count = 0;    // number of LF images to be exported
+  size_t missing_count = 0;  // number of these that were left out, because they cannot be read
+  // The reason why the first of them cannot be read, as the body of a Refusal(): {"error": ...}.
+  std::string first_missing;
 };
 
-// Exports everything that the page reads about the path: cameras, frames, what each frame uses, and
-// the LF images that the film uses, at most `most_images`. An exported path cannot be edited.
-//   folder  new or empty
+// Exports the page, and the data that it can show without a server: the LF cameras, the frames of
+// the path, what each frame uses, and the large pictures of LF images that the film uses: at most
+// `most_images`, spread evenly. An exported path cannot be edited.
+//   folder    new or empty
+//   progress  called with numbers of steps: two for each frame, and one for each LF image
 // kUsage: the folder is not empty. kOutput: the disk fails, or the program was built without the
 // page. kInterrupted: `interrupted` is true.
 Result<ExportFacts> ExportPage(PageScene& scene, const std::filesystem::path& folder,

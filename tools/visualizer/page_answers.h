@@ -1,5 +1,5 @@
-// Answers what the page reads, by name: identical from a server and in an exported folder
-// (doc/formats/page_data.md).
+// Answers the requests of the page for data, by name (doc/formats/page_data.md). An export has the
+// same answers as files, except that scene.json says that there is no server.
 #pragma once
 
 #include <string>
@@ -23,15 +23,16 @@ PageAnswer Refusal(const Error& error);  // status 507 for kOutput, otherwise 42
 
 // Functions of the page that need a server.
 struct PageAbilities {
-  bool is_server = true;  // edits, previews, focus picking and news work; false: an export
+  bool is_server = true;  // true: edits, previews, focus picking and news work; false: an export
 };
 
-// Returns scene.json: the contents of the scene, and the names of all other data.
-//   draft  the path that is shown first
+// Returns scene.json: the light field, the head of a path, the options, the packages and their
+// frames, the watched folder, and `abilities`.
+//   draft  the path, which the page shows first
 std::string SceneJson(const PageScene& scene, const PathDraft& draft,
                       const PageAbilities& abilities);
-// Returns {"id": ..., "fault": ...} for a new text of PATH.yaml, which becomes a draft if it has no
-// fault.
+// Returns {"id": IdOfText(), "fault": message of the parser} for a new text of PATH.yaml. If the
+// text has no fault, "fault" is "", and the text becomes a draft.
 std::string PathNewsJson(PageScene& scene, const std::string& text);
 // Returns the head of a path, which says what its frames have in common: {"id": ..., "frames": ...,
 // ...}.
@@ -43,15 +44,17 @@ std::string FilmJson(const FilmUse::Facts& facts);
 std::string DensityJson(PageScene& scene, const PathDraft& draft, FrameId frame);
 // Returns pose and image size of an LF camera: {"id": ..., "name": ..., "centre": [...], ...}.
 std::string CameraJson(const PageScene& scene, LfImageId id);
-// Returns {"rect": [x_begin, y_begin, x_end, y_end], "outlines": [[[x, y], ...]]}; "rect" is left
-// out if no ray of the LF image can contribute.
+// Returns {"rect": [x_begin, y_begin, x_end, y_end], "outlines": [[[x, y], ...]]} in pixels of the
+// LF image. "rect" is the rectangle that the frame reads (its ends are exclusive); left out if the
+// frame does not read the LF image. "outlines" are those of OverlapOutlines().
 std::string OverlapJson(PageScene& scene, const PathDraft& draft, FrameId frame, LfImageId id);
 
 // Longest side, in pixels, of the small and of the large picture of an LF image on the page.
 inline constexpr int kSmallSide_px = 256;
 inline constexpr int kLargeSide_px = 1280;
 
-// Returns the answer for a name, or 404 if it is unknown.
+// Returns the answer for a name, or a refusal: 404 if the name is unknown, 410 if it is that of a
+// forgotten path, 422 or 507 if the picture of an image cannot be made.
 PageAnswer Answer(PageScene& scene, std::string_view name);
 
 }  // namespace lf

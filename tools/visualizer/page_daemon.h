@@ -25,7 +25,8 @@ class PageDaemon {
   using Answerer =
       std::function<PageAnswer(const RequestHead& head, std::string_view name, std::string&& body)>;
 
-  // The daemon itself answers requests for files of the page and for "events", the stream of news.
+  // The daemon itself answers requests for files of the page and for "events", the stream of news
+  // on `events`, which must outlive the daemon.
   PageDaemon(PageDoor door, EventBoard& events, Answerer answerer);
   ~PageDaemon();
 

@@ -67,7 +67,8 @@ PageAnswer Save(PageScene& scene, const Json& json) {
                        " has been changed by another program since it was opened here"},
          {"conflict", true}});
   if (on_disk && ::access(scene.arguments().path.c_str(), W_OK) != 0)
-    return JsonAnswer({{"error", scene.arguments().path.string() + " is write-protected"}});
+    return JsonAnswer({{"error", scene.arguments().path.string() +
+                                     " is write-protected: allow writing to it, then save again"}});
   if (const auto written = WriteFileAtomically(scene.arguments().path, text); !written)
     return Refusal(written.error());
   return JsonAnswer({{"id", (*draft)->id}});

@@ -11,15 +11,20 @@
 namespace lf {
 
 // Answers a POST request by its name; its body is JSON. Mistakes of the user are answered with
-// "error"; HTTP errors are for requests that the page never makes.
-//   check         {"text"} -> the head of the path (PathHeadJson), or "error", "line", "column"
+// status 200 and {"error": message}. Refusals have the status 410 for a path that has been
+// forgotten, 507 or 422 if PATH.yaml cannot be written, and others for requests that the page never
+// makes.
+//   check         {"text"} -> the head of the path (PathHeadJson); for a faulty path {"error"}, and
+//                 "line" and "column" if they are known
 //   save          {"text", "expected": id of PATH.yaml's text as the page knows it, "force"}
-//                 -> {"id"}; "conflict" with "error" if the file was changed meanwhile
-//   preview       {"text", "frame"} -> {}; events report its progress
+//                 -> {"id"}; {"error", "conflict": true} if the file was changed meanwhile and
+//                 "force" is not true
+//   preview       {"text", "frame"} -> {}; events report the progress of the render
 //   preview/stop  {} -> {}
-//   focus         {"path": id, "frame", "x", "y"} in elements of the frame, or, with "camera", in
-//                 pixels of its LF image
-//                 -> {"point", "focus_distance", "certainty", "cameras"}
+//   focus         {"path": id, "frame", "x", "y"}; x and y are in elements of the frame or, if
+//                 "camera" names an LF camera, in pixels of its LF image
+//                 -> {"point": position in the world, "focus_distance": in world units,
+//                 "certainty": from 0 to 1, "cameras": LF cameras that were compared}
 PageAnswer Edit(PageScene& scene, PreviewRender& preview, std::string_view name,
                 const std::string& body);
 

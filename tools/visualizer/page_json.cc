@@ -27,7 +27,7 @@ Json OfPackages(const PageScene& scene) {
 }
 
 // Returns the world directions, at depth 1, of the rays through the four corners of the LF image,
-// without lens distortion.
+// without lens distortion: clockwise from the upper left corner.
 Json CornersOf(const PinholeCamera& camera) {
   PinholeCamera straight = camera;
   straight.intrinsics.distortion = {};

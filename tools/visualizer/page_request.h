@@ -28,13 +28,14 @@ struct PageDoor {
   std::string token;
 };
 
-// Returns the refusal of a request, or nullopt if it may be answered. Checks in this order:
+// Returns the refusal of a request, or nullopt if it may be answered. 403 and 405 are checked
+// first.
 //   403  Host is not 127.0.0.1 or localhost with our port (otherwise the DNS name of another site
 //        could point to this server); the path lacks the token; the path holds "..", "\" or "%",
 //        which no name of ours does; Origin or Sec-Fetch-Site name another site
 //   405  the method is not GET, HEAD or POST
 //   415  Content-Encoding is not "identity": compressed bodies are never accepted
-//   400  GET or HEAD with a body, or lengths that contradict each other
+//   400  GET or HEAD with a body; the length of the body is stated twice, or is no number
 //   501  Transfer-Encoding is not "chunked"
 //   413  Content-Length exceeds kMostBodyBytes
 std::optional<PageAnswer> RefusalOf(const RequestHead& head, const PageDoor& door);

@@ -22,8 +22,8 @@ class ByteBudget {
  public:
   explicit ByteBudget(size_t most_bytes) : most_bytes_(most_bytes) {}
 
-  // Returns false if these bytes and those of other holders would exceed the bound. A single holder
-  // may exceed the bound.
+  // Takes bytes from the budget. Returns false, and takes none, if these bytes and those of other
+  // holders would exceed the bound. A single holder may exceed the bound.
   bool Take(size_t bytes) {
     const size_t held_before = held_bytes_.fetch_add(bytes);
     if (held_before == 0 || held_before + bytes <= most_bytes_) return true;
@@ -37,13 +37,14 @@ class ByteBudget {
   std::atomic<size_t> held_bytes_ = 0;
 };
 
-// Adds headers that forbid showing the page inside another page, caching it, and loading anything
-// from elsewhere.
+// Adds the header of the MIME type `type`, and headers that forbid showing the page inside another
+// page, caching it, and loading anything from elsewhere.
 void AddHeaders(MHD_Response* response, const char* type);
 
-// Returns the response that sends an answer. Its body is not compressed, because compression gains
-// nothing on one machine. The body counts in the budget until it is sent; an answer beyond the
-// budget becomes a refusal with 503.
+// Returns the response that sends an answer, whose body it takes over; nullptr if there is no
+// memory. The body is not compressed, because compression gains nothing on one machine. It counts
+// in the budget until it is sent. An answer beyond the budget becomes a refusal with 503: `answer`
+// itself is changed.
 Response ResponseOf(PageAnswer& answer, ByteBudget& budget);
 Response ResponseOf(const PageFile& file);
 

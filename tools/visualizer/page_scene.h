@@ -50,8 +50,9 @@ struct PathDraft {
 
 class PageScene {
  public:
-  // kInput: the path, a package or a packed store cannot be read. Packages of another film are
-  // ignored with a warning.
+  // kInput: the path, a package or a packed store cannot be read; a package was made from a light
+  // field with another number of LF images. If a package was made for another path, all packages
+  // are ignored, with a warning (packages_note()).
   static Result<std::unique_ptr<PageScene>> Open(LightField light_field, PageArguments arguments);
 
   const PageArguments& arguments() const { return arguments_; }
@@ -61,6 +62,7 @@ class PageScene {
   ThreadPool& pool() { return pool_; }
   EventBoard& events() { return events_; }
   const std::vector<std::unique_ptr<Package>>& packages() const { return packages_; }
+  // Returns why the packages are ignored; "" if they are not.
   const std::string& packages_note() const { return packages_note_; }
 
   // Returns the path in the file as it was when lfvisualizer started.
@@ -74,8 +76,9 @@ class PageScene {
   // Returns which LF images a frame uses, as decided by its package if the draft has the cameras of
   // that package.
   FrameUse UseOf(const PathDraft& draft, FrameId frame);
-  // Starts to examine all frames of the draft in the background. Only the three films that were
-  // started last continue; older films are stopped.
+  // Returns the draft's FilmUse, which examines all frames of the draft in the background. Starts
+  // it if it does not exist. Only the three that were started last continue; older ones are
+  // stopped.
   std::shared_ptr<FilmUse> FilmOf(PathDraft& draft);
 
   // Returns the current content of PATH.yaml.

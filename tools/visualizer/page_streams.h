@@ -18,7 +18,7 @@ class PageStreams {
   PageStreams(EventBoard& events, size_t most_count) : events_(events), most_count_(most_count) {}
 
   // Opens a stream. Returns false if too many streams are open, or if there is no memory.
-  //   response  sends news to this connection until either side closes it
+  //   response  set to the response that sends news to this connection until either side closes it
   bool Open(MHD_Connection* connection, Response* response);
 
   // Wakes the streams for news, and once per second without news. Returns when the board is closed;

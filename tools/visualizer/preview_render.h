@@ -29,7 +29,7 @@ class PreviewRender {
   // Posts "preview" to the scene's board: {"frame": 7, "state": "rendering", "message": "",
   // "changed": "3"}. States are rendering, finished, stopped and failed. The message of a failed
   // render is its error, and of a finished one the LF images that it lacks. "changed" differs for
-  // every picture, and is "" before the first picture.
+  // every picture, and is "" before the first picture of a render.
   explicit PreviewRender(PageScene& scene);
   ~PreviewRender();  // stops the render
   PreviewRender(const PreviewRender&) = delete;
@@ -39,7 +39,8 @@ class PreviewRender {
   void Start(std::shared_ptr<const CameraPath> path, FrameId frame);
   void Stop();
 
-  // Answers the name "7.bin" with the newest picture of frame 7.
+  // Answers the name "7.bin" with the newest picture of frame 7; with 404 if the current or last
+  // render is not of frame 7, or has no picture yet.
   PageAnswer Answer(std::string_view name) const;
 
  private:
