@@ -38,15 +38,15 @@ enum class DistanceSource {
   kMeeting,     // median distance from the cameras to the point where their axes meet
 };
 
-// How densely the cameras sample a scene at the distance z. b is the median spacing, F the median
-// focal length, in pixels, of the largest group of cameras. Between neighbouring images, a point
-// moves by the disparity F b / z pixels. A frame focused at z shows a point at z' as copies that
-// are F b |1/z - 1/z'| pixels of an LF image apart. The copies are visible as ghosts if they are
-// more than about a pixel apart.
+// How densely the cameras sample a scene at the distance z. b is the median spacing
+// (CaptureReport::spacing_w), F the median fx_px of the largest group of cameras. Between
+// neighbouring images, a point moves by the disparity F b / z pixels. A frame focused at z shows a
+// point at z' as copies that are F b |1/z - 1/z'| pixels of an LF image apart. The copies are
+// visible as ghosts if they are more than about a pixel apart.
 struct Density {
   DistanceSource source = DistanceSource::kStated;
   double distance_w = 0;     // the distance z
-  double spacing_rad = 0;    // angle of the spacing b, seen from the distance z
+  double spacing_rad = 0;    // angle under which the spacing b is seen from the distance z
   double disparity_px = 0;   // F b / z
   double near_ghost_px = 0;  // distance between copies of a point at z' = 0.75 z
   double far_ghost_px = 0;   // distance between copies of a point at z' = 1.25 z
@@ -80,7 +80,7 @@ struct CaptureReport {
 };
 
 struct CaptureReportOptions {
-  std::optional<double> distance_w;  // distance to the scene; overrides the other DistanceSources
+  std::optional<double> distance_w;  // distance to the scene; unset: from the other DistanceSources
   std::vector<double> lights = {};   // LightOf() (exif_gains.h) of each LF image; empty: unknown
 };
 

@@ -59,12 +59,12 @@ std::vector<CaptureWarning> WarnOfDirections(const LightField& light_field) {
                  away.size(), axes.size(), point->x(), point->y(), point->z()),
              away.size(),
              {}}};
-  return {
-      WarningAbout(light_field, "facing-away",
-                   fmt::format("{} of {} cameras look away from the point that the others look at. "
-                               "If their calibration has failed, leave them out with --exclude",
-                               away.size(), axes.size()),
-                   away)};
+  return {WarningAbout(
+      light_field, "facing-away",
+      fmt::format("{} of {} cameras look away from the common point or direction of most cameras. "
+                  "If their calibration has failed, leave them out with --exclude",
+                  away.size(), axes.size()),
+      away)};
 }
 
 std::vector<CaptureWarning> WarnOfUpsideDown(const LightField& light_field) {

@@ -18,7 +18,8 @@ std::vector<CaptureWarning> WarnOfDirections(const LightField& light_field);
 std::vector<CaptureWarning> WarnOfUpsideDown(const LightField& light_field);
 
 // Returns the warning "repeated-positions" about cameras whose distance to the nearest neighbour is
-// less than 1e-8 of the median of these distances.
+// at most 1e-8 of the median of these distances. Distances that are only rounding errors do not
+// count in the median.
 //   nearest_w  NearestDistances() of the LF images `ids`
 std::vector<CaptureWarning> WarnOfRepeats(const LightField& light_field,
                                           std::span<const LfImageId> ids,

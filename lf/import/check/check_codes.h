@@ -15,11 +15,13 @@ namespace lf {
 
 class CodeChecker {
  public:
+  // Opens the packed store that the light field was read from. The light field must outlive the
+  // checker. kInput: the store's table cannot be read.
   static Result<std::unique_ptr<CodeChecker>> Open(const LightField& light_field);
 
   // The result of a check. `reason` is a message that names the LF image; "" if there is no fault.
   struct Fault {
-    bool is_missing = false;
+    bool is_missing = false;  // true: the store lacks the LF image
     std::string reason;
   };
   // Checks one LF image. May be called by many threads at the same time.

@@ -28,7 +28,8 @@ struct ImageFault {
 };
 
 struct ImageFaults {
-  std::vector<ImageFault> missing;  // LF images whose file or mask file does not exist
+  // LF images whose file or mask file does not exist, or that the packed store lacks.
+  std::vector<ImageFault> missing;
   // LF images whose header (with kPixels: whose pixels) cannot be read, or whose size differs from
   // the calibration.
   std::vector<ImageFault> broken;

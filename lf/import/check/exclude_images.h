@@ -11,9 +11,9 @@
 
 namespace lf {
 
-// Reads the patterns from options. Each option is a list separated by commas, or @FILE, a file with
-// one pattern per line (for names that contain commas). Empty entries and lines are skipped.
-// kInput: FILE cannot be read.
+// Reads the patterns from the values of --exclude. Each value is a list separated by commas, or
+// @FILE, a file with one pattern per line (for names that contain commas). Empty entries and lines
+// are skipped. kInput: FILE cannot be read.
 Result<std::vector<std::string>> ReadPatterns(std::span<const std::string> options);
 
 // Removes every LF image whose name matches a pattern. Both the name in the calibration and its

@@ -14,8 +14,8 @@ namespace {
 
 constexpr float kLeastGain = 1e-6F, kMostGain = 1e6F;
 
-// Returns text that names the parts of the exposure that a file does not state; "" if there are
-// none.
+// Returns the parts of the exposure that a file does not state, as a text that continues the word
+// "no", such as "exposure time and no f-number"; "" if the file states all parts.
 std::string MissingOf(const ExposureFacts& facts, bool wants_f_number) {
   std::vector<const char*> missing;
   if (!facts.time_s) missing.push_back("exposure time");

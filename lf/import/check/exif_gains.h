@@ -19,7 +19,7 @@ struct StatedExposure {
   std::string fault;  // reason why the file cannot be read; "": the file was read
 };
 
-// Reads the headers of the files of `ids` in parallel.
+// Reads the headers of the files of `ids` in parallel. Returns one entry for each, in their order.
 std::vector<StatedExposure> ReadStatedExposures(const LightField& light_field,
                                                 std::span<const LfImageId> ids, ThreadPool& pool);
 

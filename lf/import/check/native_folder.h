@@ -19,6 +19,7 @@ Result<void> MoveToFolder(const std::filesystem::path& folder, LightField* light
 // `source`. kUsage if that file exists, and either the light field was read from it, or
 // WriteNativeFolder() did not write it, or somebody changed it afterwards. If `force` is true, the
 // file may always be written.
+//   source  calibration file or its folder; empty: the light field was not read from the file
 Result<void> CheckMayWrite(const std::filesystem::path& source, const std::filesystem::path& folder,
                            bool force);
 

@@ -78,7 +78,8 @@ void Gather(const PatchWindow& window_a, const PatchWindow& window_b, const Patc
     }
 }
 
-// Sets the weights and levels of the pixels. `gain` is the factor that makes image b as bright as
+// Sets the level of each pixel, its mean light in both images, and its weight, the inverse variance
+// of the light relative to the level. `gain` is the factor that makes image b as bright as
 // image a. Multiplied by it, image b has as much influence as a. Because the gain also multiplies
 // the noise of b, the geometric mean of both images' noise is used as the absolute noise:
 // kDarkNoise sqrt(gain).

@@ -1,6 +1,6 @@
-// Reduced LF images (views) for the comparison of exposures. A view contains the light in each
-// channel, and a grey image to find depths. The views of a whole light field are in memory at the
-// same time.
+// Reduced LF images (views, ExposureView) for the comparison of exposures. A view contains the
+// light in each channel, and a grey image to find depths. The views of a whole light field are in
+// memory at the same time.
 #pragma once
 
 #include <array>
@@ -22,8 +22,8 @@ namespace lf {
 struct ExposureView {
   std::shared_ptr<const ReducedImage> grey;  // null: the image could not be loaded
   // Light in R, G and B of the pixels of `grey`  [height][width][3], in steps: 1 + kLightSteps *
-  // radiance / (largest radiance that the light field can hold); 0 if one of the LF pixels that
-  // were averaged for the pixel is masked or clipped.
+  // radiance / (largest radiance that the light field can hold); 0 in all channels if one of the
+  // LF pixels that were averaged for the pixel is masked or clipped.
   Image<uint16_t> light;
 
   // Returns the value of `light` at a position in the LF image, interpolated between four pixels; 0

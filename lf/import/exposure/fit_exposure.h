@@ -29,7 +29,8 @@ struct FitOptions {
 };
 
 struct ExposureFit {
-  // ln of the gains of R, G and B of each LF image. In each component and channel, their mean is 0.
+  // ln of the gains of R, G and B of each LF image. In each component and channel, their mean is 0;
+  // 0 for an LF image that is kAlone.
   std::vector<std::array<double, 3>> log_gains;
   std::vector<Vignetting> falloffs;  // falloff of each group of LF images that share one
   // Component of each LF image, numbered from 0: LF images that are connected by samples have the

@@ -53,13 +53,13 @@ struct MatchedExposure {
 // MatchExposure() reads a store of this copy.
 LightField WithoutExposure(const LightField& light_field);
 
-// Finds the depth of the textured places of each LF image, at which the LF images around it agree
-// (focus/place_depth.h). Compares the light of each place with the light that these LF images and
-// the six nearest ones show there. Dark, clipped and masked pixels are not used, and FitExposure()
-// gives outliers no weight. A component is a set of LF images that are connected by overlaps; the
-// geometric mean of its gains is 1 in each channel. Each entry of LightField::intrinsics has its
-// own falloff; if there are fewer than eight LF images per entry on average, all entries with the
-// same image size share a falloff. Each LF image is loaded once.
+// For each LF image, finds the depths of its textured places, at which the LF images around it
+// agree (focus/place_depth.h). Compares the light of each place with the light that these LF
+// images, and the six whose LF cameras are nearest, show there. Dark, clipped and masked pixels are
+// not used, and FitExposure() gives outliers no weight. A component is a set of LF images that are
+// connected by overlaps; the geometric mean of its gains is 1 in each channel. Each entry of
+// LightField::intrinsics has its own falloff; if there are fewer than eight LF images per entry on
+// average, all entries with the same image size share a falloff. Each LF image is loaded once.
 //   store  the store of WithoutExposure(light_field), with Mosaics::kToRgb
 // kInput: there are too many images for the memory; or the gains of fewer than half of the readable
 // LF images can be estimated, because they do not overlap enough, or because the light on the scene

@@ -17,7 +17,7 @@ constexpr size_t kMostRings = 9;
 constexpr int kViewsPerRing = 6;
 constexpr double kInnerRing = 2;   // radius of the innermost ring, in spacings of LF cameras
 constexpr double kRingFactor = 2;  // radius of a ring, relative to the next smaller ring
-constexpr size_t kNearest = 6;  // number of nearest LF images, compared besides those of the rings
+constexpr size_t kNearest = 6;  // number of nearest LF cameras, compared besides those of the rings
 
 }  // namespace
 

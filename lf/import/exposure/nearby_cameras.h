@@ -29,7 +29,8 @@ class NearbyCameras {
   Rings DepthRings(LfImageId camera) const;
 
   // Returns the views whose light is compared with the light of `camera`: the views of the rings
-  // and the six nearest ones, each once. Images are not loaded.
+  // (of DepthRings()) and of the six LF cameras nearest to `camera`, each once. Images are not
+  // loaded.
   std::vector<View> ComparedViews(LfImageId camera, const Rings& rings) const;
 
  private:

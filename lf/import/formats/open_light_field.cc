@@ -125,8 +125,8 @@ std::optional<Result<LightField>> OpenFile(const fs::path& path, const OpenOptio
   return read(path);
 }
 
-// Returns the file in a folder, other than transforms.json, that describes its light field; nullopt
-// if there is none.
+// Returns the calibration file in a folder: NAME_par.txt, or the poses_bounds.npy, parameters.cfg
+// or poses.json; nullopt if there is none of these.
 Result<std::optional<fs::path>> OtherCalibrationIn(const fs::path& folder) {
   std::error_code error;
   const std::vector<fs::path> middlebury = MiddleburyFiles(folder);

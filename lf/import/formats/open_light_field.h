@@ -42,6 +42,7 @@ struct OpenOptions {
   // lfimport sets this, when it writes that file again.
   bool passes_over_own = false;
   // Bayer pattern of the images; overrides the calibration and the files. Only lfimport offers it.
+  // kUsage for packed stores.
   std::optional<BayerPattern> bayer = {};
 };
 
@@ -59,8 +60,8 @@ bool HoldsOwnAndItsSource(const std::filesystem::path& folder);
 // - poses.json, or any .json file with M3x4 matrices: import/formats/read_aos.h
 // - images with Stanford names, in the folder or its images/: import/formats/read_stanford.h
 // - STORE.lfs: storage/packed/packed_store_file.h
-// A file of a kind named after "or any" is opened only if `path` is the file itself. Two
-// NAME_par.txt or two STORE.lfs in a folder are an error.
+// A file of a kind named after "or any" is opened only if `path` is the file itself. If the first
+// kind that is found in a folder is NAME_par.txt or STORE.lfs, two such files are an error.
 //
 // If image files are not where the calibration says, they are searched by name in its folder or in
 // OpenOptions::images_folder; not every file is checked for existence. If the headers of up to 64

@@ -19,8 +19,8 @@ struct AosOptions {
   // Field of view across both the width and the height of the image, because AOS renders square
   // images. kInput if it is missing.
   std::optional<double> fov_deg = {};
-  // Folder of the image files. Default: the folder of the JSON file, its images/, or images/ or
-  // images_ldr/ beside it: the first one that contains the first image.
+  // Folder of the image files. Unset: the first of these folders that contains the first image: the
+  // folder of the JSON file; images/ in it; images/ or images_ldr/ in its parent folder.
   std::optional<std::filesystem::path> images_folder = {};
 };
 

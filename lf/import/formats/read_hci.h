@@ -17,8 +17,9 @@ inline constexpr const char* kHciName = "parameters.cfg";
 // the middle of the grid. The focal length is F = focal_length_mm / sensor_size_mm * max(w, h), for
 // images of w x h pixels. Z0 is the focus distance, at which the disparity is 0: the principal
 // point of the camera at (x, y) is (w / 2 + F x / Z0, h / 2 + F y / Z0), or the image centre if Z0
-// = 0. The depth range is computed from disp_min and disp_max, which are rounded to a tenth of a
-// pixel; it is not set if one of them is missing or corresponds to no finite depth.
+// = 0. The depth range is computed from disp_min - 0.05 and disp_max + 0.05, because the file has
+// disparities rounded to a tenth of a pixel; it is not set if one of the two keys is missing or
+// corresponds to no finite depth.
 //   text  the file's content
 //   path  the file's path for messages; its folder becomes LightField::folder
 // kInput names the file, the key, the value found and what was expected.

@@ -28,7 +28,7 @@ inline constexpr const char* kLlffName = "poses_bounds.npy";
 // The principal point is the image centre; depth_range extends from the smallest near bound to the
 // largest far bound.
 // kInput: another type or shape; different numbers of rows and images; a first image of another
-// size than the rows state (the format has no place for copies of other sizes, such as images_8);
+// size than the rows state (the smaller copies that LLFF makes in images_4 or images_8 do not fit);
 // an axis that is mirrored or sheared. The message names the file and the row, the value found and
 // what was expected.
 Result<LightField> ParseLlff(std::string_view bytes, const std::filesystem::path& path,

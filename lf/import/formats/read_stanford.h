@@ -5,8 +5,9 @@
 //   NAME_ROW_COL.ext                             a grid, placed by StanfordOptions::pitch_w
 //
 // The cameras look straight ahead (their rotation is the identity) in a world with x right, y down
-// and z into the scene. Their centres are (X, Y, 0) / 1000 metres. If pitch_w is given, they are
-// (pitch_w.x COL, pitch_w.y ROW, 0) instead, with the middle of the grid as origin.
+// and z into the scene. The camera centres are (X, Y, 0) / 1000 world units, which are then metres.
+// If pitch_w is given, they are (pitch_w.x COL, pitch_w.y ROW, 0) instead, with the middle of the
+// grid as origin.
 #pragma once
 
 #include <filesystem>
@@ -32,8 +33,8 @@ struct StanfordOptions {
   //   (w/2 + F x / Z0,  h/2 + F y / Z0)
   // of an image of w x h pixels. Unset: the principal point is the image centre.
   std::optional<double> plane_distance_w = {};
-  // True negates the x or y of all positions, for light fields whose columns or rows are counted in
-  // the opposite direction.
+  // True negates the x (flip_x) or y (flip_y) of all positions, for light fields whose columns or
+  // rows are counted in the opposite direction.
   bool flip_x = false;
   bool flip_y = false;
   // LIGHTFIELD as the user typed it, for the command in messages; empty: the folder.
