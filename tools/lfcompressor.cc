@@ -36,7 +36,8 @@ constexpr lf::HelpTexts kHelp = {
     .details =
         R"(STORE.lfs contains the LF images, encoded one by one, and their calibration. It is one file that
 every program accepts as LIGHTFIELD (doc/formats/packed_store.md). Until it is complete its name is
-STORE.lfs.unfinished. Ctrl-C, kill -9 or a crash lose two seconds of work; --resume continues.
+STORE.lfs.unfinished. Ctrl-C, kill -9 or a crash lose about two seconds of work at most; --resume
+continues.
 
 LF images that are missing or broken are left out of the store, and the exit code is then 6. While
 the store is unfinished, --resume tries to read them again. To add them to a finished store, make it

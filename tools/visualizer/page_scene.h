@@ -44,7 +44,7 @@ struct PathDraft {
   std::string text;
   std::shared_ptr<const CameraPath> path;
   std::string cameras_hash;       // hash of the cameras, in the form that packages store
-  std::shared_ptr<FilmUse> film;  // null until FilmOf() is called
+  std::shared_ptr<FilmUse> film;  // null before FilmOf(), and after newer films have stopped it
   uint64_t film_number = 0;       // number of the film in the order in which films were started
 };
 
