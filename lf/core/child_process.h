@@ -22,9 +22,9 @@ struct ProcessEnd {
 };
 
 // A program that runs as a child process. It has a process group of its own, so that a Ctrl-C in
-// our terminal does not reach it. It inherits none of our open files except Options::kept, and no
-// blocked signals. Of the signals that we ignore, it ignores only SIGXFSZ. It leaves no zombie. An
-// object may be used by one thread at a time.
+// our terminal does not reach it. It inherits none of our open files except its three standard
+// files and Options::kept, and no blocked signals. Of the signals that we ignore, it ignores only
+// SIGXFSZ. It leaves no zombie. An object may be used by one thread at a time.
 class ChildProcess {
  public:
   struct Options {
@@ -36,22 +36,23 @@ class ChildProcess {
     bool has_input = false;  // true: standard input is fed by Write(); false: /dev/null
   };
   // Starts the program. kOutput if it cannot be run. A program without an input gets SIGTERM if the
-  // thread that started it ends for any reason. A program with an input sees the end of its input
-  // instead.
+  // thread that started it ends for any reason. A program with an input gets no signal, but sees
+  // the end of its input when this process ends.
   static Result<std::unique_ptr<ChildProcess>> Start(const Options& options);
   ~ChildProcess();  // kills the program and its process group if it still runs
 
   pid_t process() const { return pid_; }
-  // Returns nullopt while the program runs.
+  // Returns how the program ended; nullopt while it runs.
   std::optional<ProcessEnd> Poll();
   void Signal(int signal);
 
   // Writes to the program's input, and raises no SIGPIPE. kOutput if the program has closed its
-  // input, or if it has read nothing for patience_s; in the second case the program is killed.
+  // input, or if it has read nothing for patience_s. The program is killed in the
+  // second case, and in the first if it still runs after patience_s.
   Result<void> Write(std::span<const uint8_t> bytes, double patience_s);
 
   // Closes the input and waits for the program, which is killed if it still runs after patience_s.
-  // kOutput unless the program exits with code 0.
+  // kOutput unless the program exits with code 0; also if Poll() has returned its end before.
   Result<void> Finish(double patience_s);
 
  private:

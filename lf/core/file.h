@@ -1,5 +1,5 @@
-// Reads and writes whole files. All files of this project get their final names through these
-// functions.
+// Reads and writes whole files. The results that our programs write get their final names through
+// these functions.
 #pragma once
 
 #include <cstddef>
@@ -39,7 +39,7 @@ void AnnounceRead(const std::filesystem::path& path);
 // the temporary one is gone. If the program is killed, the next write of the same file removes the
 // temporary one (temporary_file.h). If `path` is a link, the file that it leads to is replaced. The
 // new file gets the permissions of the old one. kOutput with the system's reason (disk full, no
-// permission), or if `path` exists and is no regular file.
+// permission), or if `path` exists and is no regular file, or is a link to a missing file.
 Result<void> WriteFileAtomically(const std::filesystem::path& path, std::string_view bytes);
 
 // As WriteFileAtomically(), for a writer that needs a path: `write` gets the temporary name, which
@@ -56,11 +56,11 @@ Result<void> FlushToDisk(const std::filesystem::path& path);
 // failure: the file then has its old name, or its new one if only the folder could not be flushed.
 Result<void> RenameFlushed(const std::filesystem::path& from, const std::filesystem::path& to);
 
-// Gives many files their final names. All of them are flushed to the disk before the first is
-// renamed. After a failure some may already have their final names.
 struct Renaming {
   std::filesystem::path from, to;
 };
+// Gives many files their final names. All of them are flushed to the disk before the first is
+// renamed. After a failure some may already have their final names.
 Result<void> RenameFlushed(std::span<const Renaming> files);
 
 // Creates the folder and its parents, even if other processes create them or remove empty parents

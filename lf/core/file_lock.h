@@ -37,7 +37,8 @@ class FileLock {
 
  private:
   FileLock(std::filesystem::path path, int fd);
-  // Locks the file that is open as `fd`. Returns nothing if the file was removed in the meantime.
+  // Locks the file that is open as `fd`, and takes over `fd`. Returns nullopt if the file was
+  // removed in the meantime.
   static Result<std::optional<FileLock>> TakeOpenFile(const std::filesystem::path& path, int fd);
   std::filesystem::path path_;
   int fd_ = -1;

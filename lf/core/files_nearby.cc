@@ -72,7 +72,7 @@ std::string FirstOf(const std::vector<std::string>& names) {
                      names.size() > count ? ", ..." : "");
 }
 
-// Describes the first folder on the path that does not exist.
+// Describes the first folder on the path `gone` that does not exist.
 std::string FolderNearby(fs::path gone) {
   std::error_code error;
   while (gone.has_parent_path() && gone.parent_path() != gone &&

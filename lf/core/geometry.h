@@ -20,7 +20,8 @@ using Vec2 = Eigen::Vector2d;
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 
-// Returns twice the area of the triangle (0, a, b), positive if it is counter-clockwise.
+// Returns twice the area of the triangle (0, a, b), positive if a turns to b in the same sense as
+// the x axis turns to the y axis.
 inline double Cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 // A linear form on homogeneous pixel positions: form * (x, y, 1)^T.
