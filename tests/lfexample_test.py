@@ -178,7 +178,7 @@ class ExampleTest(unittest.TestCase):
         self.colmap(1 / np.random.default_rng(2).uniform(0.2, 2, 300))
         _, words = self.example("--move", "static")
         self.assertIn("warning: the program is not sure what to focus on", words)
-        self.assertRegex(words, r"and \d+ of the \d+ points of the reconstruction that it shows lie at")
+        self.assertRegex(words, r"and \d+ of the \d+ reconstructed points that the LF image shows lie at")
 
     def test_the_frame_shows_nothing_that_its_lf_image_does_not(self):
         calibration = json.loads(self.field.read_text())

@@ -15,8 +15,9 @@ double ShareAt(double distance_w, const FoundDepth& found) {
   return std::abs(off) < 3 ? std::exp(-0.5 * off * off) : 0;
 }
 
-// Returns the depth that most found depths support, refined to the mean of the found depths near
-// it.
+// Returns the found depth with the most support, refined to the weighted mean (of 1 / depth) of the
+// found depths near it.
+//   total_weight  sum of the weights of all found depths, also of those that `found` no longer has
 SubjectDepth BestDepth(std::span<const FoundDepth> found, double total_weight) {
   double best_weight = -1, best_w = 0;
   for (const FoundDepth& at : found) {

@@ -9,8 +9,8 @@
 namespace lf {
 
 // Returns at most three depths, the best first; each is clearly different from the better ones.
-// Each depth in `found` supports the depths around it by a Gaussian in the logarithm of depth,
-// whose standard deviation is FoundDepth::error, but at least 3 %.
+// Each depth in `found` supports the depths around it by its weight times a Gaussian in the
+// logarithm of depth, whose standard deviation is FoundDepth::error, but at least 3 %.
 std::vector<SubjectDepth> BestDepths(std::vector<FoundDepth> found);
 
 }  // namespace lf

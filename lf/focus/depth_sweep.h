@@ -28,7 +28,8 @@ inline double MeanOfLargest(std::vector<double>* values, size_t count) {
 }
 
 // Returns the largest local maximum of `scores` that lies more than `width` indices before `first`
-// or after `last`. Returns `none` if no such maximum is larger than `none`.
+// or after `last`. Returns `none` if no such maximum is larger than `none`. The first and the last
+// score do not count as maxima.
 inline double PeakElsewhere(std::span<const double> scores, size_t first, size_t last, size_t width,
                             double none) {
   double rival = none;

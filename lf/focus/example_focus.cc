@@ -14,7 +14,7 @@
 namespace lf {
 namespace {
 
-constexpr double kMostSpacings = 8, kLeastSpacings = 2.5;  // limits of ExampleAperture::spacings
+constexpr double kMostSpacings = 8, kLeastSpacings = 2.5;  // limits, except for kSharpSpacings
 // An aperture of this diameter contains only the LF camera at its middle. A wider one could contain
 // others, because in captures shaped like rings the hat weights of other LF cameras reach far into
 // the lens.
@@ -39,7 +39,7 @@ std::string WhyNotSure(const Subject& subject, const Subject& points) {
   std::string why;
   if (points.place_count > 0)
     why = fmt::format(
-        ", and {} of the {} points of the reconstruction that it shows lie at one depth",
+        ", and {} of the {} reconstructed points that the LF image shows lie at one depth",
         points.depths[0].place_count, points.place_count);
   if (subject.textured_count == 0) return "the LF image has no texture" + why;
   return fmt::format("the neighbouring LF images agree on a depth at {} of {} textured places{}",
@@ -105,8 +105,8 @@ Result<ExampleFocus> ChooseFocus(const LightField& light_field, const LfImageSto
   std::string why = WhyNotSure(subject, is_sure(points) ? Subject() : points);
   if (is_contradicted)
     why = fmt::format(
-        "the LF images agree on the distance {:.4g}, but almost none of the {} points of the "
-        "reconstruction that the first of them shows lie there",
+        "the LF images agree on the distance {:.4g}, but almost none of the {} reconstructed "
+        "points that the LF image at the start of the path shows lie there",
         subject.depths[0].distance_w, points.place_count);
   else if (subject.is_sure)
     why = fmt::format(

@@ -113,7 +113,8 @@ Movement MakeMovement(ExampleMove move, const PinholeCamera& camera, const Reach
                  (reach.up_w - aperture_diameter_w / 2) * 2 * k.fy_px / k.height_px);
     const double step_w = std::clamp(room_w, 0.0, 0.05 * focus_distance_w);
     movement.keyframes += fmt::format(
-        "  # Straight ahead, as far as the captured positions fill the picture.\n"
+        "  # Straight ahead, by up to 5 % of the focus distance, as far as the captured positions "
+        "fill the picture.\n"
         "  position: [{{time: 0, value: {}}}, {{time: {:.6g}, value: {}}}]\n",
         Text(centre), kDuration_s, Text(centre + step_w * camera.ForwardWorld()));
     return movement;
@@ -194,7 +195,7 @@ Result<ExamplePath> MakeExamplePath(const LightField& light_field, const LfImage
       "frames: {}\n"
       "resolution: [{}, {}]            # pixels; the frame lies within the LF image\n"
       "camera:\n"
-      "  field_of_view_deg: {:.7g}     # horizontal, that of the LF camera\n"
+      "  field_of_view_deg: {:.7g}     # horizontal, at most that of the LF camera\n"
       "  focal_length_mm: {:.5g}         # if the sensor is {} mm wide; f-numbers refer to this "
       "length\n"
       "  position: {}\n"

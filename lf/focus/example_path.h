@@ -43,20 +43,22 @@ struct ExamplePath {
 };
 
 // Returns a path that shows something of the scene: one frame if nothing moves, otherwise 50.
-// - Focus: on the subject (focus/find_subject.h). If the subject is not sure, or the points of a
-//   reconstruction contradict it, the focus is at the depth of most points (focus/point_subject.h).
-//   If that depth is not sure either, `doubt` is set, and the focus is the first of these that is
-//   known: the point where the optical axes meet, the middle of the depth range, the best depth
-//   found, the depth at which the disparity of neighbouring LF images is one pixel.
+// - Focus: at options.focus_distance_w if it is set, otherwise on the subject
+//   (focus/find_subject.h). If the subject is not sure, or the points of a reconstruction
+//   contradict it, the focus is at the depth of most points (focus/point_subject.h). If that depth
+//   is not sure either, `doubt` is set, and the focus is the first of these that is known: the
+//   point where the optical axes meet, the middle of the depth range, the best depth found, the
+//   depth at which the disparity of neighbouring LF images is one pixel.
 // - Lens: its diameter is eight spacings of the LF cameras, or less, down to 2.5 spacings, if
 //   ghosts would otherwise be visible. It is never wider than the capture or 2.2 spacings,
-//   whichever is larger. If the ghosts would still be too far apart, or the focus is not sure, the
+//   whichever is larger. If the ghosts are more than 16 pixels apart, or the focus is not sure, the
 //   lens is almost a pinhole, and the first frame is the view of one LF camera.
 // - Picture: the largest rectangle within the view of the LF camera, in the proportions of the LF
 //   image. Its horizon is level if the LF camera is rolled by at most 30 degrees against the mean
 //   up direction of all LF cameras.
-// kInput: the light field has fewer than two LF cameras, or most of them share a position; the LF
-// image options.camera does not exist, or is broken.
+// kInput: the light field has fewer than two LF cameras, or most of them share their position with
+// another; the LF image options.camera does not exist. If the focus has to be found, also errors of
+// options.points_world() and FindSubject().
 Result<ExamplePath> MakeExamplePath(const LightField& light_field, const LfImageStore& store,
                                     const ExampleOptions& options, ThreadPool& pool);
 

@@ -15,7 +15,7 @@
 namespace lf {
 namespace {
 
-constexpr size_t kMostAtOnce = 4;  // largest number of LF images in memory before they are reduced
+constexpr size_t kMostAtOnce = 4;  // largest number of LF images in memory in full size
 
 // Loads the images of all views. Removes views whose image cannot be loaded, and rings that then
 // have too few views. kOutput: the machine lacks memory or open files.

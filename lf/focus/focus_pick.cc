@@ -25,13 +25,15 @@ constexpr double kStep_px = 0.5;
 constexpr double kMostDisplaced = 0.45;  // largest disparity tested, in widths of the LF image
 // Least standard deviation in a patch with texture, of the square root of light (ValueAt()).
 constexpr double kLeastTexture = 0.004;
-constexpr double kLeastAgreement = 0.6;  // least score of a depth that is found
-constexpr size_t kLeastViews = 3;        // least number of views that are compared with the first
+constexpr double kLeastAgreement = 0.6;  // least Agreement::score of a depth that is found
+constexpr size_t kLeastViews = 3;        // least number of other views to compare with the first
 constexpr double kAgreeing = 0.6;        // share of views that must agree on a depth
-constexpr double kLeastCosine = 0.5;     // least cosine of the angle between optical axis and ray
+// Least cosine of the angle between the ray and the optical axis of an LF camera that is used.
+constexpr double kLeastCosine = 0.5;
 
 using Patch = std::array<float, kPatchSize>;
 
+// An LF image that is compared.
 struct View {
   LfImageId id;
   RayThrough rays;
@@ -167,7 +169,9 @@ std::optional<double> ReadPatch(const View& view, const SearchRay& search, doubl
 }
 
 struct Agreement {
-  double score = -1;   // mean of the largest 60 % of the views' correlations; -1: unknown
+  // Mean of the largest 60 % of the other views' correlations with the first view; -1 if too few
+  // views show the patch.
+  double score = -1;
   double texture = 0;  // standard deviation of the first view's patch
 };
 
@@ -193,7 +197,8 @@ Agreement AgreementAt(std::span<const View> views, const SearchRay& search, doub
   return {MeanOfLargest(&correlations, static_cast<size_t>(count)), *texture};
 }
 
-// Returns the depths that are tested, from the nearest depth that all views can show.
+// Returns the depths that are tested. At the nearest one, the largest disparity between the first
+// view and another is kMostDisplaced; it falls by kStep_px from depth to depth.
 DepthSweep MakeSweep(std::span<const View> views) {
   double baseline_w = 0;
   for (const View& view : views) baseline_w = std::max(baseline_w, view.offset_w);
@@ -225,9 +230,9 @@ PixelRect PartOf(const View& view, const SearchRay& search, const DepthSweep& sw
   return Intersection(part, {0, 0, k.width_px, k.height_px});
 }
 
-// Reads the rectangle PartOf() of each view. Removes views that cannot be read. Errors: kOutput if
-// the machine lacks something, such as memory; the error of a view, or kInput, if too few views are
-// left.
+// Reads the rectangle PartOf() of each view. Removes views that cannot be read, and views whose
+// rectangle is empty. Errors: kOutput if the machine lacks something, such as memory; the error of
+// a view, or kInput, if too few views are left.
 Result<void> LoadViews(const LightField& field, const LfImageStore& store, const SearchRay& search,
                        const DepthSweep& sweep, ThreadPool& pool, std::vector<View>* views) {
   std::vector<std::optional<Error>> errors(views->size());

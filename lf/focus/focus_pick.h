@@ -22,7 +22,7 @@ struct FocusPick {
   // depths.
   double certainty = 0;
   // The compared LF images, by ascending distances of their LF cameras from the ray's origin. LF
-  // images that cannot be read are left out.
+  // images that cannot be read, or show no tested point of the ray, are left out.
   std::vector<LfImageId> images;
 };
 
@@ -35,11 +35,12 @@ std::optional<Ray> RayOfLfPixel(const PinholeCamera& lf_camera, double x_px, dou
 
 // Returns the point of the scene that the ray meets. The compared LF cameras are around the ray's
 // origin, within about the radius of the frame's lens, because the disparity between such cameras
-// equals the blur of the lens.
+// equals the blur of the lens. If fewer than nine are that near, farther ones are compared too.
 //   ray    starts at the lens centre of `frame`, or at an LF camera
 //   store  a store with Mosaics::kToRgb
 // kInput, in words for the person who clicked: too few LF cameras see the point, it has no texture,
-// or the LF images agree on no depth. Errors of store.Load() if too few LF images can be read.
+// or the LF images agree on no depth. Errors of store.Load() if too few LF images can be read, or
+// if the machine lacks something (kOutput).
 Result<FocusPick> FindFocus(const LightField& light_field, const LfImageStore& store,
                             const RenderCamera& frame, const Ray& ray, ThreadPool& pool);
 

@@ -16,7 +16,7 @@ constexpr int kColumns = 16, kRows = 11;  // cells of the image; each has at mos
 constexpr double kLeastTexture = 0.006;   // least TextureAt() of a place
 // Smaller standard deviations of a patch count as this one, so that mere noise does not correlate.
 constexpr double kLeastDeviation = 0.002;
-constexpr double kLeastAgreement = 0.65;  // least score of a depth that is found
+constexpr double kLeastAgreement = 0.65;  // least Peak::score of a depth that is found
 // Share of views that must agree on a depth. The other views may be unable to see the place.
 constexpr double kAgreeing = 0.6;
 constexpr size_t kLeastViews = 2;
@@ -188,7 +188,7 @@ struct Peak {
   // maximum elsewhere; -1 if there is none.
   double score = -1, rival = -1;
   double per_w = 0;                     // 1 / depth, interpolated between the depths of the sweep
-  double from_per_w = 0, to_per_w = 0;  // range of 1 / depth around it that is almost as good
+  double from_per_w = 0, to_per_w = 0;  // range of 1 / depth around per_w that is almost as good
 };
 
 Peak FindPeak(const DepthSweep& sweep, std::span<const View> views, const Place& place) {
@@ -273,8 +273,8 @@ double TextureAt(const Image<float>& light, int x, int y) {
   return std::sqrt(std::max(0.0, least) / kPatchSize) / 2;  // NaN becomes 0
 }
 
-// Returns the place with the most texture in one cell of the image; none if its texture is too
-// weak.
+// Returns the place with the most texture in one cell of the image; none if its texture is too weak
+// or the image too small.
 std::optional<Place> PlaceIn(const LightField& field, LfImageId camera, const ReducedImage& image,
                              int column, int row) {
   const int border = kHalfPatch + 1, width = image.light.width() - 2 * border,

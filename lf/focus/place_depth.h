@@ -26,16 +26,16 @@ using Patch = std::array<float, kPatchSize>;
 struct View {
   LfImageId id;
   RayThrough rays;
-  double offset_w = 0;  // distance from the camera of the place, normal to that camera's axis
-  std::shared_ptr<const ReducedImage> image = nullptr;
+  double offset_w = 0;  // distance from the camera of the place (Place), normal to its axis
+  std::shared_ptr<const ReducedImage> image = nullptr;  // nullptr: not loaded
 };
 
 using Rings = std::vector<std::vector<View>>;   // the innermost ring first
 inline constexpr size_t kLeastViewsOfRing = 2;  // least number of views of a ring that is used
 
 // Returns LF cameras around `camera` in up to five rings; each ring is four times as wide as the
-// one before. A ring contains the LF cameras nearest to six evenly spread positions. Images are not
-// loaded.
+// one before. A ring contains the LF cameras nearest to six evenly spread positions. Other rings
+// than the innermost have at least two views. Images are not loaded.
 Rings ChooseRings(const LightField& field, LfImageId camera);
 
 // A place in the image of one LF camera (the camera of the place): the ray of the place, the
@@ -56,6 +56,7 @@ struct Place {
 };
 
 // Returns up to 176 places with texture, evenly spread over the image of `camera`.
+//   image  the reduced image of `camera`
 std::vector<Place> TexturedPlaces(const LightField& field, LfImageId camera,
                                   const ReducedImage& image);
 
@@ -70,11 +71,12 @@ struct PatchGrid {
            (index / kPatchSide - kHalfPatch) * step_y;
   }
 };
-// Returns the grid of a place at a depth in a view; none if the view records no ray from there.
+// Returns the grid of a place at a depth in a view, which may lie outside the view's image. None if
+// the view's lens has no image of the place at this depth.
 std::optional<PatchGrid> PatchSeenBy(const View& view, const Place& place, double depth_w);
 
 // Returns the correlation of the place's patch with the view's pixels at a depth, in [-1, 1]; -1 if
-// the view does not show the place.
+// the view does not show the whole patch.
 double CorrelationAt(const View& view, const Place& place, double depth_w);
 
 struct FoundDepth {
@@ -82,14 +84,14 @@ struct FoundDepth {
   double error = 0;  // standard deviation of the depth, relative to distance_w
 };
 
-// Returns the depth on which most views agree. None if no depth is clearly better than the others;
-// if the place does not move from view to view, like a watermark; or if it is so far away that it
-// moves by less than a reduced pixel.
+// Returns the depth on which most views agree. None if they agree on no depth, or almost as well on
+// another one; if the place does not move from view to view, like a watermark; or if it is so far
+// away that it moves by less than a reduced pixel.
 //   rings      rings of views whose images are loaded; at least one ring, each with at least two
 //              views
 //   k          intrinsics of the camera of the place
 //   divisor    divisor of the reduced images (ReducedImage::divisor)
-//   nearest_w  least depth that is tested; 0: tests from the least depth that the images of the
+//   nearest_w  no nearer depth is tested; 0: tests from the least depth that the images of the
 //              innermost ring can show
 std::optional<FoundDepth> DepthOf(const Rings& rings, const Place& place, const Intrinsics& k,
                                   int divisor, double nearest_w = 0);

@@ -12,8 +12,8 @@ namespace lf {
 
 // Runs FindSubject() for the LF camera nearest to a position. Returns the range of depths, along
 // the camera's optical axis, that contains four fifths of the depths found in its image, widened by
-// 5 % at either end. None if the subject is not sure, if its LF image cannot be read, or if there
-// are fewer than three LF images.
+// 5 % at either end. None if the subject is not sure, if FindSubject() fails, or if there are fewer
+// than three LF images.
 //   store  a store with Mosaics::kToRgb
 std::optional<DepthRange> SweptDepths(const LightField& light_field, const LfImageStore& store,
                                       const Vec3& position_world, ThreadPool& pool);
