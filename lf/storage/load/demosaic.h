@@ -31,9 +31,9 @@ namespace lf {
 // on each side, clipped to the image.
 PixelRect MosaicRectOf(const PixelRect& rect, int image_width_px, int image_height_px);
 
-// Computes the RGB pixels `rect` of an LF image of at least 2 x 2 pixels. A pixel is masked if a
-// mosaic pixel at an offset (dx, dy) with |dx| + |dy| <= 2 is masked. A pixel's value does not
-// depend on `rect`.
+// Computes the RGB pixels `rect`, which lies in an LF image of at least 2 x 2 pixels. A pixel is
+// masked if a mosaic pixel at an offset (dx, dy) with |dx| + |dy| <= 2 is masked. A pixel's value
+// does not depend on `rect`.
 //   mosaic         holds at least the pixels MosaicRectOf(rect)
 //   white_balance  factors of R, G and B that make grey surfaces grey; above 0
 //   rgb            the result, whose memory is reused; must be another object than `mosaic`

@@ -21,7 +21,8 @@ namespace lf {
 //     which counts for all colours.
 //   - RadianceEncoding::alpha decides whether pixels with an alpha below one half are masked, or
 //     all pixels are composed with the background (opacities.h). Pixels that are 0 in the first
-//     channel of the image's mask file are masked. Further channels are ignored.
+//     channel of the image's mask file are masked; its further channels are ignored. Brackets mask
+//     more pixels (light_field/model/brackets.h).
 //   - Pictures and masks are taken as stored, or rotated by 90 degrees as their orientation tag
 //     says if the calibration belongs to the rotated picture (light_field/model/image_fit.h).
 // While one image loads, the file, its stored values and the result are in memory together. The
@@ -33,7 +34,7 @@ class FolderStore : public LfImageStore {
 
   // Loads the pixels of `rect`, clipped to the image. kInput as LfImageStore says, and if the
   // levels (lf_black_level, lf_white_level) exceed the file's bits, a mask file has another size
-  // than the image, or a camera raw file has another Bayer pattern.
+  // than the image, or the file's channels or its kind (camera raw) contradict lf_bayer.
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override;
   bool IsThere(LfImageId id) const override;
   uint64_t StoredBytes(LfImageId id) const override;

@@ -34,9 +34,9 @@ Result<void> ReadFitting(const fs::path& path, bool is_mosaic, const Intrinsics&
   return {};
 }
 
-// Returns kInput for a camera raw file in a light field whose encoding is not that of raw files.
-// Without this check, the mosaic of the raw file would be shown as a grey picture, or its linear
-// light would be taken for sRGB.
+// Returns kInput for a camera raw file in a light field whose encoding is not that of raw files, or
+// states another Bayer pattern. Without this check, the mosaic of the raw file would be shown as a
+// grey picture or with wrong colours, or its linear light would be taken for sRGB.
 Result<void> CheckRaw(const RawFacts& raw, const RadianceEncoding& encoding, const fs::path& path) {
   if (raw.is_monochrome) {
     if (encoding.bayer == BayerPattern::kNone && encoding.transfer != Transfer::kSrgb) return {};

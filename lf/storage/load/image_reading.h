@@ -19,10 +19,11 @@
 
 namespace lf {
 
-// Reads at least the pixels `wanted` of an LF image from its file. The file may be rotated against
-// the picture that the calibration describes; `wanted` and part->rect, the rectangle that was read,
-// count pixels of that picture. `wanted` must contain a pixel of the picture. kInput, naming the
-// file: it cannot be read, or does not fit the calibration or the encoding.
+// Reads at least the pixels `wanted` of an LF image from its file, and returns what the channels of
+// the file hold. The file may be rotated against the picture that the calibration describes;
+// `wanted` and part->rect, the rectangle that was read, count pixels of that picture. `wanted` must
+// contain a pixel of the picture. kInput, naming the file: it cannot be read, or does not fit the
+// calibration or the encoding.
 Result<ChannelUse> ReadStoredPixels(const LightField& light_field, LfImageId id,
                                     const PixelRect& wanted, ImagePart* part);
 
@@ -78,10 +79,10 @@ void ForEachClipped(const ImagePart& part, int colours, const RadianceEncoding& 
 }
 
 // Returns the reach of the darker one of two LF images in a bracket (light_field/model/brackets.h),
-// in pixels: it sends rays only within this distance of the pixels that the brighter one clips. The
-// distance covers the four pixels that an interpolation reads and, for mosaics, the mosaic pixels
-// from which these are computed. Within it, a pixel that the brighter LF image does not clip sends
-// two rays, one from each LF image.
+// in pixels along x and y: the darker one sends rays only within this distance of pixels that the
+// brighter one clips. The distance covers the four pixels that an interpolation reads and, for
+// mosaics, the mosaic pixels from which these are computed. Within it, a pixel that the brighter LF
+// image does not clip sends two rays, one from each LF image.
 inline int ReachOfDarker(BayerPattern bayer) { return bayer == BayerPattern::kNone ? 1 : 4; }
 
 // Calls mask(x, y) for the pixels of `rect` that the next brighter LF image of the same pose shows,

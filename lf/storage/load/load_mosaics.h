@@ -15,7 +15,7 @@ namespace lf {
 
 // Loads the pixels of `rect`, clipped to the image. Calls load(part, pixels), which must load
 // pixels as recorded. `part` is MosaicRectOf(rect) if a mosaic is to be converted to RGB, otherwise
-// `rect`.
+// `rect` itself, which load() must clip to the image.
 //   mosaic  memory for the mosaic that is converted
 // kInput: a mosaic to convert is smaller than 2 x 2 pixels. Passes on errors of load().
 Result<void> LoadMosaicsAs(Mosaics mosaics, const LightField& light_field, LfImageId id,

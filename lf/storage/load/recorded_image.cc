@@ -108,7 +108,7 @@ Result<RecordedImage> ReadRecordedImage(const LightField& light_field, LfImageId
     return image;
   }
   // If alpha is light in this light field, an LF image without alpha is opaque except where its
-  // mask file masks it.
+  // mask file or a bracket masks it.
   if (light_field.encoding.AlphaIsLight() && image.layout != PixelLayout::kMosaic)
     return ReadMaskAsOpacities(light_field, id, part, use, std::move(image));
   LF_RETURN_IF_ERROR(ForEachMasked(light_field, id, part, use, image.rect, [&image](int x, int y) {

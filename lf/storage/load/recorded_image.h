@@ -24,18 +24,18 @@ struct RecordedImage {
   PixelRect rect;
   Image<uint8_t> mask;  // [height][width]: 0 masked, 255 not masked; empty: no pixel is masked
   // Opacity of each pixel (opacities.h), which replaces the mask if alpha is light. Empty: every
-  // pixel is opaque.
+  // pixel is opaque, or alpha is not light.
   Image<uint16_t> opacities;
   bool is_rounded = false;  // true if a float was no half float and was rounded to the nearest one
   uint64_t source_bytes = 0;  // size of the LF image's file and its mask file
 };
 
-// Reads the pixels of `rect`, clipped to the image, rotated upright as in the calibration, and not
-// composed with a background. Pixels that are masked by alpha, the mask file (folder_store.h) or
-// brackets (light_field/model/brackets.h) are 0 in the mask or the opacities. Floats become the
-// nearest half floats, NaN becomes 0. When half floats are loaded, they are quantised as floats of
-// image files are.
-// kInput as FolderStore::Load(), and if `rect` lies outside the image.
+// Reads the pixels of `rect`, clipped to the image, rotated if the calibration belongs to the
+// rotated picture (light_field/model/image_fit.h), and not composed with a background. Pixels that
+// are masked by alpha, the mask file (folder_store.h) or brackets (light_field/model/brackets.h)
+// are 0 in the mask or the opacities. Floats become the nearest half floats, NaN becomes 0. When
+// half floats are loaded, they are quantised as floats of image files are. kInput as
+// FolderStore::Load(), and if `rect` lies outside the image.
 Result<RecordedImage> ReadRecordedImage(const LightField& light_field, LfImageId id,
                                         const PixelRect& rect);
 

@@ -1,6 +1,7 @@
 // Reads the file of a packed store: the encoded LF images of a light field with their calibration,
-// in one SQLite file (doc/formats/packed_store.md). packed_store_writer.h writes it. Here, encoded
-// images are bytes in any format; storage/load/packed_store.h decodes them.
+// in one SQLite file (doc/formats/packed_store.md). A large store may keep its encoded images in
+// further files, its shards. packed_store_writer.h writes all of them. Here, encoded images are
+// bytes in any format; storage/load/packed_store.h decodes them.
 #pragma once
 
 #include <cstdint>
@@ -50,8 +51,8 @@ struct PackedStoreFacts {
   LightField light_field;    // LF cameras of the store; `folder` is the store's file; no mask
                              // files, because masks are stored with the encoded images
   LightFieldIdentity whole;  // identity of the light field that the LF images are from
-  std::vector<uint32_t> whole_ids;  // id of each LF image in that light field
-  std::string source;               // argument LIGHTFIELD of the program that wrote the store
+  std::vector<uint32_t> whole_ids;  // id of each LF image in `whole`
+  std::string source;               // LIGHTFIELD or packages that the store was made from
   std::string codec;                // settings of the codec, in words
   std::string written_by;
   size_t shard_count = 0;  // number of shards; 0: the encoded images are in the store's file itself
@@ -84,7 +85,7 @@ inline constexpr std::string_view kLosslessCodec = "lossless";
 // Returns PackedStoreFacts::whole without reading the other facts.
 Result<LightFieldIdentity> ReadWholeIdentity(const std::filesystem::path& path);
 
-// Position and type of one encoded LF image. Takes 32 bytes.
+// Tells in which file of a store one encoded LF image is, and what it holds. Takes 32 bytes.
 struct PackedCode {
   static constexpr uint32_t kNotListed = UINT32_MAX;
 

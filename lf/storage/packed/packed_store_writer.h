@@ -56,7 +56,8 @@ class PackedStoreWriter {
 
   // Begins a new store of the LF images of `light_field`, which has at least one LF image and need
   // not outlive the call. Takes the lock if `lock` is not given. kUsage: there is an unfinished
-  // store, or a file with the name of a shard that does not belong to the store that is replaced.
+  // store, or a file with the name of the first shard that does not belong to the store that is
+  // replaced.
   // kOutput: the disk fails, or another writer holds the lock.
   static Result<PackedStoreWriter> Create(const std::filesystem::path& path,
                                           const LightField& light_field,
@@ -64,19 +65,21 @@ class PackedStoreWriter {
                                           std::optional<FileLock> lock = {});
   // Resumes an unfinished store. If there is none, or it has no tables yet, begins a new one.
   // kUsage: the unfinished store was begun for other LF images or settings (the message names the
-  // first difference). kInput: its file is no packed store, or is damaged. kOutput as Create().
+  // first difference). kInput: its file is no packed store, is damaged, or lacks a shard. kOutput
+  // as Create().
   static Result<PackedStoreWriter> Resume(const std::filesystem::path& path,
                                           const LightField& light_field,
                                           const PackedStorePlan& plan,
                                           std::optional<FileLock> lock = {});
   static bool IsUnfinished(const std::filesystem::path& path);
-  // Removes an unfinished store if there is one.
+  // Removes an unfinished store and its shards, if there is one.
   static void RemoveUnfinished(const std::filesystem::path& path, const FileLock& lock);
 
   PackedStoreWriter(PackedStoreWriter&&) noexcept;
   PackedStoreWriter& operator=(PackedStoreWriter&&) noexcept;
   ~PackedStoreWriter();  // drops LF images that are not committed
 
+  // Returns true if the LF image was added in this run or an earlier one.
   bool Has(LfImageId id) const;
   // Returns CodedImage::source_bytes of an LF image that the store had when it was opened; 0 for
   // other LF images.
@@ -84,7 +87,8 @@ class PackedStoreWriter {
 
   // Adds an LF image that the store does not have. Commits if 64 LF images were added since the
   // last commit, or if the first of these was added at least 2 s ago. May be called by many threads
-  // at the same time. kOutput: the disk fails; no LF image can be added afterwards.
+  // at the same time. kOutput: the disk fails; no LF image can be added afterwards. kUsage: a file
+  // that does not belong to the store has the name of the next shard.
   Result<void> Add(LfImageId id, const CodedImage& image);
   // Commits the LF images that were added, so that they are on the disk permanently.
   Result<void> Commit();

@@ -26,7 +26,7 @@ struct DatabaseFormat {
   int page_bytes = 65536;   // size of SQLite's pages, a power of 2; should be small for small files
 };
 
-// One prepared SQL command, which is run step by step. The database must outlive it. Columns and
+// One prepared SQL command, which is run step by step. It keeps its database open. Columns and
 // parameters are counted from 0.
 class Statement {
  public:
@@ -52,8 +52,9 @@ class Statement {
   void Reset();
 
   bool IsNull(int column) const;
-  // These functions return a value of the current row. kInput if the column has another type, the
-  // number is outside of [low, high], or a blob's checksum is wrong.
+  // These functions return a value of the current row. An error of the same kind as from Step() if
+  // the column has another type, the number is outside of [low, high], or a blob's checksum is
+  // wrong.
   Result<int64_t> Integer(int column) const;
   Result<int64_t> Integer(int column, int64_t low, int64_t high) const;
   Result<double> Real(int column) const;  // the number is finite
@@ -116,7 +117,7 @@ class Database {
 };
 
 // Calls row(statement), which returns a Result<void>, for every row that an SQL command without
-// parameters returns.
+// parameters returns. Ends at the first error.
 template <class Row>
 Result<void> ForEachRow(Database& database, const std::string& sql, const Row& row) {
   LF_ASSIGN_OR_RETURN(Statement select, database.Prepare(sql));

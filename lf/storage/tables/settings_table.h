@@ -32,8 +32,10 @@ class Settings {
 
   // Returns the text of a setting; "" if the key does not exist.
   std::string Text(const std::string& key) const;
+  // Returns finite numbers, at least count_min and at most count_max.
   Result<std::vector<double>> Numbers(const std::string& key, size_t count_min,
                                       size_t count_max) const;
+  // Returns a number in [low, high].
   Result<double> Number(const std::string& key, double low, double high) const;
   // Returns a whole number of up to 2^64 - 1.
   Result<uint64_t> Whole(const std::string& key) const;
@@ -44,6 +46,7 @@ class Settings {
   // Returns the error "package-0000.lfp: is a damaged package: WHAT; copy or make it again", with
   // `what` in place of WHAT.
   Error Damaged(const std::string& what) const;
+  // Returns Damaged() with the setting's text and the text that was expected.
   Error Wrong(const std::string& key, std::string_view expected) const;
 
  private:

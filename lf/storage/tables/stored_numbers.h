@@ -38,10 +38,12 @@ inline constexpr size_t kPoseNumbers = 12;
 std::array<double, kPoseNumbers> NumbersOfPose(const RigidTransform& pose);
 RigidTransform PoseOfNumbers(std::span<const double, kPoseNumbers> numbers);
 
-// Returns the numbers of a text, separated by single spaces; nullopt if a word is not a finite
-// number.
+// Returns the numbers of a text, separated by single spaces; none for an empty text; nullopt if a
+// word is not a finite number.
 std::optional<std::vector<double>> ParseNumbers(const std::string& text);
 
+// Limits, all inclusive: width and height of an LF image, its number of pixels, the number of LF
+// images, and the absolute value of other numbers.
 inline constexpr int64_t kMostSide_px = 65536;
 inline constexpr int64_t kMostPixels = int64_t{1} << 30;
 inline constexpr int64_t kMostImages = int64_t{1} << 24;
