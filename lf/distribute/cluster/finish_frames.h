@@ -12,9 +12,10 @@
 
 namespace lf {
 
-// Adds frames ("10-20", "7") to the list, unless all of them are finished. Returns how many of
-// these frames are not finished yet. kUsage: the text has another form; a frame is not in the job,
-// or has no rays yet because it was not started or has no checkpoint.
+// Adds frames ("10-20", "7") to the list, unless the files of all of them exist. Returns how many
+// of these frames have no file yet. kUsage: the text has another form; a frame is not in the job,
+// or has no rays yet because it was not started or has no checkpoint. kInput: the file of the list
+// is damaged. kOutput: the list cannot be locked or written.
 Result<size_t> AskToFinish(const ClusterJob& job, const std::string& frames_text);
 
 // Returns the frames of a package that are on the list, ascending. kInput: the file of the list is

@@ -35,8 +35,9 @@ bool IsNumber(std::string_view text) {
          std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-// Checks the fields that are written into batch scripts and commands of Slurm, and the frame
-// extension. Returns a description of the first fault; empty if there is none.
+// Checks the options of sbatch and the job ids, which are written into batch scripts and commands
+// of Slurm, and the frame extension. Returns a description of the first fault; empty if there is
+// none.
 std::string FaultOf(const ClusterJob& job) {
   for (const std::string& option : job.sbatch_options)
     if (HasControls(option) || !option.starts_with('-'))

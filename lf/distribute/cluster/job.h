@@ -7,7 +7,8 @@
 //   DIR/cluster/packages/NAME.lock       locked while the package is rendered
 //   DIR/cluster/finish.json .log .lock   the same for the finishing task, which makes the video and
 //                                        the contact sheet
-//   DIR/cluster/finish_frames.json       frames to finish early
+//   DIR/cluster/report.json              report of the finishing task
+//   DIR/cluster/finish_frames.json .lock frames to finish early, and the lock of this list
 //   DIR/cluster/lock                     locked while the job is submitted, resumed or run locally
 //   DIR/cluster/cancelled                exists if the job is cancelled
 //   DIR/cluster/*.sbatch, slurm-*.out    batch scripts and their output (engine slurm)
@@ -59,7 +60,7 @@ struct ClusterJob {
 
   // The job ids that sbatch returned for arrays of packages, oldest first.
   std::vector<std::string> slurm_array_ids;
-  std::string slurm_finishing_id;
+  std::string slurm_finishing_id;  // job id of the finishing task; empty: not submitted
 
   std::filesystem::path Folder() const { return output_folder / "cluster"; }
   std::filesystem::path File() const { return Folder() / "job.json"; }
@@ -76,6 +77,7 @@ struct ClusterTask {
   std::string name;  // name of the package, or "finish"; used in messages
   std::filesystem::path state, log, lock;
 };
+// Returns the task that renders job.packages[number].
 ClusterTask PackageTask(const ClusterJob& job, size_t number);
 ClusterTask FinishingTask(const ClusterJob& job);
 
@@ -88,7 +90,8 @@ std::string ToJson(const ClusterJob& job);
 Result<ClusterJob> ParseJob(std::string_view text, const std::string& name);
 
 Result<void> WriteJob(const ClusterJob& job);
-// Reads the job in the folder DIR. kInput: there is no job, or it is damaged.
+// Reads the job in the folder DIR, which may have been moved since WriteJob(). kInput: there is no
+// job, or it is damaged.
 Result<ClusterJob> ReadJob(const std::filesystem::path& output_folder);
 
 // Returns kUsage if job.json belongs to another user (except root), because the commands in it

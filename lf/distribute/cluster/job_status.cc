@@ -44,8 +44,8 @@ TaskStatus LookAtTask(const ClusterTask& task) {
   status.image_done = progress.image_done;
   status.image_total = progress.image_total;
   if (state->phase != TaskPhase::kRunning) return status;
-  // lfrenderer reports its progress every second. If it is silent for longer, its node may be dead,
-  // which a batch system notices only later.
+  // lfrenderer reports its progress every second. If it is silent for kLongQuiet_s, its node may be
+  // dead, which a batch system notices only later.
   if (progress.quiet_s > kLongQuiet_s) {
     status.message = fmt::format("has not reported progress for {:.0f} s", progress.quiet_s);
     return status;

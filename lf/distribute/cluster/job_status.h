@@ -18,12 +18,12 @@ struct TaskStatus {
   std::string message;  // latest message of the task
   size_t frames_done = 0;
   size_t frame_total = 0;
-  std::optional<uint64_t> rays_left;  // number of rays left, by lfrenderer's last report, if any
+  std::optional<uint64_t> rays_left;  // number of rays left, by lfrenderer's last progress, if any
   uint64_t rays_done = 0;             // how many of the forecast ray_total rays are done
   uint64_t ray_total = 0;
   uint64_t image_done = 0;  // number of LF images read since the last start
   uint64_t image_total = 0;
-  double rate = 0;  // in `unit` per second; 0 if the task does not run
+  double rate = 0;  // in `unit` per second; 0 if the task does not run, or reports nothing
   std::string unit;
   std::optional<double> seconds_left;
 
@@ -54,7 +54,7 @@ struct JobStatus {
   size_t frame_total() const;
   uint64_t rays_done() const;
   uint64_t ray_total() const;
-  // Returns an estimate from the rates of running tasks; nullopt if no task has a rate.
+  // Returns an estimate from the rates of running packages; nullopt if none has a rate.
   std::optional<double> seconds_left() const;
 };
 

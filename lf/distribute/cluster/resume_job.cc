@@ -110,9 +110,9 @@ Result<std::vector<size_t>> PrepareResume(const ClusterJob& job) {
     state.crash_count = 0;
     LF_RETURN_IF_ERROR(WriteTaskState(state, PackageTask(job, i).state));
   }
-  // If the film was finished before, a frame or another part of it is missing now. The state of the
-  // finishing task is removed, so that the job is not reported as done until the task has run
-  // again.
+  // If the film was finished before, a part of it is missing now or is asked for with new options.
+  // The state of the finishing task is removed, so that the job is not reported as done until the
+  // task has run again.
   if (status.finishing.state.phase == TaskPhase::kDone && !status.finishing.IsQueued()) {
     std::error_code error;
     fs::remove(FinishingTask(job).state, error);

@@ -18,19 +18,22 @@ namespace lf {
 Result<FileLock> TakeJob(const ClusterJob& job);
 
 // Makes sure that the folder contains no other job. If `overwrite` is true, removes the old job,
-// and the states and frames of the packages of `job`. The caller must hold the lock of TakeJob().
-// kUsage: there is a job and `overwrite` is false, or its tasks run or are queued.
+// and the frames, reports and checkpoints of the packages of `job`. The caller must hold the lock
+// of TakeJob(). kUsage: there is a job and `overwrite` is false, or its tasks run or are queued.
+// kInput: `overwrite` is false, and the file of the old job is damaged.
 Result<void> MakeRoomForJob(const ClusterJob& job, bool overwrite);
 
-// Removes the request to cancel the job, and returns the packages to start: those that are neither
-// done nor queued. Resets the crash counts of these packages, except of those that run. If the film
-// was finished, but packages must be rendered again, removes the state of the finishing task. The
-// caller must hold the lock of TakeJob(). kOutput: the batch system does not answer, or a file
-// cannot be written or removed.
+// Removes the request to cancel the job, and returns the packages to start, as indices in
+// job.packages: those that are neither done nor queued. Resets the crash counts of these packages,
+// except of those that run. If the finishing task is done and not queued, removes its state, so
+// that it runs again. With Slurm, lets requeued packages start at once. The caller must hold the
+// lock of TakeJob(). kOutput: the batch system does not answer, or a file cannot be written or
+// removed.
 Result<std::vector<size_t>> PrepareResume(const ClusterJob& job);
 
-// Requests all packages to write a checkpoint and end, and waits until they have ended. kOutput:
-// some packages still run after three minutes, or when `stop` becomes true; they end later.
+// Requests all packages to write a checkpoint and end, and waits until they have ended. Does
+// nothing if the job is done. kOutput: some packages still run after about three minutes, or when
+// `stop` becomes true (they end later); the request cannot be written, or Slurm does not answer.
 Result<void> CancelJob(const ClusterJob& job, const std::atomic<bool>& stop);
 
 // Waits until no task of the job runs or is queued, and returns the outcome of the finishing task

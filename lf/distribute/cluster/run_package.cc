@@ -56,7 +56,8 @@ class TaskRun {
   Result<void> End(TaskPhase phase, int exit_code, const std::string& message);
 
   // Runs lfrenderer once. If `output` is not empty, standard output is written to this file.
-  // `wants_restart` is called about once a second; once it returns true, lfrenderer gets SIGTERM.
+  // `wants_restart` is called about once a second; once it or IsAskedToEnd() returns true,
+  // lfrenderer gets SIGTERM.
   Result<ProcessEnd> Run(const std::vector<std::string>& words, const fs::path& output,
                          const std::function<bool()>& wants_restart);
   // Returns the last message of lfrenderer in the log.

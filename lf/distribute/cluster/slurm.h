@@ -21,8 +21,8 @@ struct QueuedTask {
   std::string reason;  // why the task waits, in Slurm's words
 };
 
-// Return the batch scripts DIR/cluster/packages.sbatch and finish.sbatch. People may edit them and
-// submit them with sbatch by hand.
+// These functions return the texts of the batch scripts DIR/cluster/packages.sbatch and
+// finish.sbatch. People may edit these files and submit them with sbatch by hand.
 std::string PackagesScript(const ClusterJob& job);
 std::string FinishingScript(const ClusterJob& job);
 
@@ -31,7 +31,7 @@ std::string FinishingScript(const ClusterJob& job);
 std::string ArrayText(const std::vector<size_t>& numbers);
 
 // Writes the scripts, and submits some packages (`numbers`: indices in job->packages) and then the
-// finishing task. A finishing task that already waits in the queue is replaced. The finishing task
+// finishing task. An earlier finishing task that waits or runs is cancelled. The finishing task
 // depends on the packages with afterany, because afterok would wait for ever if a task was
 // requeued. Stores the ids of the submissions in the job and writes job.json. kUsage: a path
 // contains control characters. kOutput: sbatch fails, or the disk.

@@ -28,10 +28,11 @@ struct TaskState {
   int64_t process = 0;       // process id of lfrenderer on `node`
   uint32_t start_count = 0;  // number of starts of lfrenderer
   uint32_t crash_count = 0;  // number of crashes of lfrenderer or its node
-  int exit_code = 0;         // exit code of the last lfrenderer; 0 or 6 if `phase` is kDone
+  int exit_code = 0;         // exit code of lfrenderer, or of lfsubmit if lfrenderer has none; 0
+                             // after a crash; 0 or 6 if `phase` is kDone
   std::string message;       // why the task does not run, or why its exit code is not 0
   double begin_s = 0;        // time of the last start, in seconds since 1970
-  double end_s = 0;
+  double end_s = 0;          // time of the last end, in seconds since 1970
 
   uint32_t restart_count() const { return start_count > 0 ? start_count - 1 : 0; }
 };
@@ -60,7 +61,8 @@ struct TaskProgress {
 // done and total are those of the previous start. The log may be any bytes: lines that begin with
 // '{' but are no progress are skipped; all other lines are messages.
 TaskProgress ParseProgress(std::string_view log);
-// Returns ParseProgress() of the last 16 KiB of a log file; an empty progress if there is no file.
+// Returns ParseProgress() of the last 16 KiB of a log file, with quiet_s; an empty progress if
+// there is no file.
 TaskProgress ReadProgress(const std::filesystem::path& log);
 
 // Returns the messages since the last start, as far as they are in the last 16 KiB of the log.

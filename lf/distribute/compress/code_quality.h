@@ -28,8 +28,9 @@ struct CodeError {
 
 // Returns the size of a grey step in stored values: the range from black to white has 255 steps. A
 // step is 1 for 8 bits and 257 for 16 bits, unless the encoding states other levels of black and
-// white. Half floats are measured as integers with the same bits, because 1024 such integers are a
-// factor of two in radiance; their step is 16, which is about 1 % of the radiance.
+// white; it is 1 if these levels do not fit into the number of bits. Half floats are measured as
+// integers with the same bits, because 1024 such integers are a factor of two in radiance; their
+// step is 16, which is about 1 % of the radiance.
 double GreyStep(const RadianceEncoding& encoding, StoredValues values);
 
 // Returns the error of one image: the difference of `decoded`, which must be the whole image, from

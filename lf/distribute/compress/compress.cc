@@ -171,7 +171,7 @@ void Compressor::Count(const RecordedImage& image, const CodedImage& coded, cons
 }
 
 // Checks that the file of each LF image in the unfinished store still has the size that it had when
-// it was encoded, because it may have been replaced.
+// it was encoded, because it may have been replaced. Files that no longer exist are not checked.
 Result<void> Compressor::CheckFiles(const PackedStoreWriter& writer) {
   const LightField& light_field = source_.light_field;
   pool_.ForEach(light_field.size(), [&](size_t i) {

@@ -26,7 +26,8 @@ struct CompressOptions {
   // least this PSNR.
   std::optional<double> target_psnr_db;
   uint64_t shard_bytes = 0;  // approximate size of each file of encoded images; 0: one file
-  // True: resumes an unfinished store. If the store is complete, it must match the options.
+  // True: resumes an unfinished store, or begins a new one if there is none. If the store is
+  // complete, it must match the options, and is kept.
   bool resume = false;
   bool overwrite = false;  // true: replaces an existing store, unfinished or complete
   bool strict = false;     // true: an LF image that cannot be read is an error
@@ -40,7 +41,9 @@ struct CompressOptions {
 };
 
 struct CompressProgress {
-  size_t done = 0;  // number of LF images that are encoded, or verified if is_verifying
+  // Number of LF images that are done: encoded, by this call or an earlier one, or found
+  // unreadable; or verified if is_verifying.
+  size_t done = 0;
   size_t total = 0;
   // Size of the pixels of the LF images that this call encoded, in the number type of their files.
   uint64_t pixel_bytes = 0;
@@ -71,6 +74,7 @@ struct CompressReport {
   double encode_cpu_s = 0;
   double total_s = 0;
 
+  // Number of encoded images that were read back; unset without CompressOptions::verify.
   std::optional<size_t> verified_count;
   uint64_t store_bytes = 0;  // size of all files of the store
 };
@@ -79,11 +83,12 @@ struct CompressReport {
 // equal words.
 std::string NameOf(const CodecSettings& settings);
 
-// Compresses the LF images of `source` into options.store. kUsage: wrong settings, the store
-// exists, or its name belongs to another file. kInput: no LF image can be read, or `strict` is true
-// and one cannot be read; the files are not those that an unfinished store was made from; or the
-// store differs from the result of encoding its LF images (`verify`). kOutput: the disk or the
-// memory fails. kInterrupted: finished work is kept.
+// Compresses the LF images of `source` into options.store. kUsage: wrong settings, the store exists
+// and no option says what to do with it, its name belongs to another file, or no threshold reaches
+// target_psnr_db. kInput: no LF image can be read, or `strict` is true and one cannot be read; the
+// files are not those that an unfinished store was made from; or the store differs from the result
+// of encoding its LF images (`verify`). kOutput: the disk or the memory fails. kInterrupted:
+// finished work is kept.
 Result<CompressReport> Compress(const CompressSource& source, const CompressOptions& options,
                                 ThreadPool& pool,
                                 const std::function<void(const CompressProgress&)>& progress);

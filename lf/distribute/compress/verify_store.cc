@@ -98,8 +98,10 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
   if (interrupted)
     return Error{
         ErrorKind::kInterrupted,
-        fmt::format("interrupted after {} of {} LF images were verified: the store is complete",
-                    done, light_field.size())};
+        fmt::format(
+            "interrupted after {} of {} LF images were verified: the store is complete; call "
+            "lfcompressor with --verify and without --overwrite to check all of it",
+            done, light_field.size())};
   const auto count = std::count_if(faults.begin(), faults.end(),
                                    [](const auto& fault) { return fault.has_value(); });
   if (count == 0) return verified;

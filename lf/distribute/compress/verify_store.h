@@ -23,7 +23,7 @@ struct VerifyOptions {
 };
 
 // Checks what the store states about itself, without reading encoded images. kInput: the store is
-// of other LF images, another calibration or other settings, or there is no store.
+// of other LF images, another calibration or other settings, or is missing, unfinished or damaged.
 Result<void> CheckStoreFacts(const CompressSource& source, const VerifyOptions& options);
 
 // Reads all encoded images back. Each must equal the result of encoding its LF image, and be
@@ -31,6 +31,7 @@ Result<void> CheckStoreFacts(const CompressSource& source, const VerifyOptions& 
 // Returns the number of encoded images that were read. kInput: an encoded image differs or is
 // damaged (the message states the first and the count), or the store is of another light field or
 // other settings. kInterrupted: is_interrupted() returned true.
+//   progress  called with the number of LF images that have been checked
 Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& options,
                            ThreadPool& pool, const std::function<void(size_t)>& progress);
 

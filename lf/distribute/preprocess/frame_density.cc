@@ -14,6 +14,7 @@ namespace lf {
 namespace {
 
 constexpr double kBefore = 0.75, kBehind = 1.25;  // assumed depths divided by the focus distance
+// Positions of the elements for FrameDensity::least_aperture_w, as shares of the plate's sides.
 constexpr double kPlaces[] = {1.0 / 6, 0.5, 5.0 / 6};
 
 // The LF cameras around the lens, and their positions.
@@ -49,8 +50,7 @@ DepthRange DepthsOfFrame(const DepthRange& depths, const Around& around,
   for (const Vec3& centre : around.centres_world)
     shift_w += frame.pinhole.ForwardWorld().dot(centre - frame.pinhole.CentreWorld()) /
                static_cast<double>(around.centres_world.size());
-  // The shifted depths are clamped to a tenth of the nearest recorded depth, so that they stay
-  // positive.
+  // The shifted depths are raised to at least a tenth of depths.near_w, so that they stay positive.
   const double least_w = 0.1 * depths.near_w;
   return {std::max(least_w, depths.near_w + shift_w), std::max(least_w, depths.far_w + shift_w)};
 }

@@ -225,7 +225,7 @@ Result<void> Preprocessor::MakeIndex() {
 }
 
 // Stores the sampling of all frames of the film, even if only some frames are packed, because slabs
-// of rebinned rays are planned for the whole film.
+// of rebinned rays are planned for the whole film. Stores nothing for packages without neighbours.
 Result<void> Preprocessor::DescribeSurroundings(const std::map<FrameId, FrameSampling>& sampling) {
   if (!needs_.HasNeighbours()) return {};
   for (uint32_t n = 1; n <= path_.frame_count(); ++n) {

@@ -34,8 +34,8 @@ struct PreprocessOptions {
   std::vector<FrameId> frames;  // frames to pack, ascending; empty: all frames of the path
   ImageOrder order = ImageOrder::kShuffle;
   uint64_t seed = 0;
-  std::optional<size_t> max_image_count;
-  std::optional<double> max_angle_rad;
+  std::optional<size_t> max_image_count;  // largest number of LF images of a frame; unset: no limit
+  std::optional<double> max_angle_rad;    // as SelectOptions::max_angle_rad
 
   // Options of the renders that follow. Packages can be rendered with any estimator and any lens
   // weights. Exception: packages for LensWeights::kNone and RenderMode::kCollect can only be
@@ -78,7 +78,7 @@ struct PackageForecast {
   size_t neighbour_count = 0;  // number of other LF cameras: their images are not read
   uint64_t read_bytes = 0;     // total size of the files that are read
   uint64_t ray_count = 0;
-  size_t memory_bytes = 0;
+  size_t memory_bytes = 0;  // memory that the render needs
   // Number of passes over the LF images; above 1 if the plates do not all fit into the memory at
   // the same time.
   size_t pass_count = 0;
@@ -110,6 +110,8 @@ struct PreprocessReport {
 // fails; another process writes packages into the folder; one frame needs more than memory_bytes.
 // kInterrupted: *options.interrupted is true. After an error, the folder has the previous packages,
 // or none.
+//   progress  called twice for each frame, for the forecast and for its package; `total` is twice
+//             the number of frames
 Result<PreprocessReport> Preprocess(const LightField& light_field, const CameraPath& path,
                                     const PreprocessOptions& options, ThreadPool& pool,
                                     const std::function<void(size_t done, size_t total)>& progress);

@@ -8,7 +8,7 @@
 
 namespace lf {
 
-// Range [begin, end) of indices of frames.
+// Range [begin, end) of indices in the list of frames that are divided.
 struct Section {
   size_t begin = 0;
   size_t end = 0;
