@@ -67,9 +67,9 @@ struct Distortion {
   friend bool operator==(const Distortion&, const Distortion&) = default;
 };
 
-// Number of parameters that files and hashes contain: 12 for kRadialTangentialThinPrism, 8 for
-// every other model. Files and hashes of the other models did not change when
-// kRadialTangentialThinPrism was added.
+// Number of parameters that packages, packed stores and the hashes of ValueHasher contain: 12 for
+// kRadialTangentialThinPrism, 8 for every other model. Files and hashes of the other models did not
+// change when kRadialTangentialThinPrism was added.
 constexpr size_t StoredParameterCount(DistortionModel model) {
   return model == DistortionModel::kRadialTangentialThinPrism ? 12 : 8;
 }
@@ -101,8 +101,8 @@ class DistortionMap {
 
  private:
   Distortion distortion_;
-  // Largest undistorted radius that has an image: r = tan(theta), or theta for fish-eyes. Infinity
-  // if there is no limit. Only polynomial models use this member.
+  // Largest undistorted radius that has an image: r = tan(theta) for kRadialTangential, theta <=
+  // pi for fish-eyes. Other models do not use this member.
   double limit_;
   // Largest distorted radius rd that the radial part of the model reaches; infinity if there is no
   // limit.

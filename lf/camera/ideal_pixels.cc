@@ -15,8 +15,8 @@ constexpr int kControls = IdealPatch::kControls;
 
 using Points = std::array<Vec3, kControls>;
 
-// Returns the control points of the arc that goes through `points` at the parameters kQuinticPlaces
-// (core/quintic.h).
+// Returns the control points of the arc that goes through `points` at t = kQuinticPlaces, where t
+// runs from -1 to 1 along the arc (core/quintic.h).
 Points ControlsThrough(const Points& points) {
   // Control point i is the sum over k of kValues[i][k] / kDivisors[k] times the coefficient of t^k.
   // These factors are values of the blossom (polar form) of t^k.

@@ -42,8 +42,8 @@ struct PinholeCamera {
   Vec3 ForwardWorld() const { return cam_from_world.rotation.row(2).transpose(); }
 };
 
-// Returns the pose of the camera at `centre` that looks along `forward`, with `up` in the upper
-// half of its image. None if forward or up is 0, or if they are parallel.
+// Returns the pose of the camera at `centre` that looks along `forward` and is rolled so that `up`
+// points upwards in its image. None if forward or up is 0, or if they are parallel.
 std::optional<RigidTransform> LookAlong(const Vec3& centre_world, const Vec3& forward_world,
                                         const Vec3& up_world);
 

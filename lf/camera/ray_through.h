@@ -27,7 +27,8 @@ class RayThrough {
   const Vec3& centre_world() const { return centre_; }
 
   // Returns the direction of the line through the LF camera's centre and the point. Its sign is
-  // chosen so that its product with forward_world is not negative. Its length is the distance.
+  // chosen so that its scalar product with forward_world is not negative. Its length is the
+  // distance between centre and point.
   Vec3 DirectionWorld(const Vec3& point_world) const {
     const Vec3 d = point_world - centre_;
     return forward_.dot(d) < 0 ? Vec3(-d) : d;

@@ -58,8 +58,8 @@ class RayWeights {
  public:
   // Gives all elements of the plate the same weight, at most kMaxWeight.
   RayWeights(uint32_t weight = 1) : same_(weight) {}  // NOLINT: implicit on purpose
-  // Writes the weights, at most kMaxWeight, of `count` blocks side by side. (end_x, end_y) is the
-  // exclusive end of the first block.
+  // Writes the weights, at most kMaxWeight, of `count` blocks of a row, from left to right. (end_x,
+  // end_y) is the exclusive end of the first block. Any thread may call it.
   using RowFunction = std::function<void(int end_x, int end_y, int count, uint8_t* weights)>;
   // Writes the feather, at most kWholeFeather, at the positions (x + kWeightBlock i, y) of the
   // plate, i in [0, count), which are corners of blocks. Any thread may call it.
@@ -80,7 +80,8 @@ class RayWeights {
 
   bool are_same() const { return of_row_ == nullptr; }
   uint32_t same() const { return same_; }
-  // True if the weight is 0 on the whole plate, so that the LF image adds nothing to it.
+  // True if all elements have the same weight, 0, so that the LF image adds nothing to the plate.
+  // False if blocks have their own weights, even if all of these are 0.
   bool are_none() const { return are_same() && same_ == 0; }
   bool has_feather() const { return feather_of_row_ != nullptr; }
   const WeightBlocks& blocks() const { return blocks_; }
@@ -97,8 +98,8 @@ class RayWeights {
     feather_of_row_(begin_x, begin_y + kWeightBlock, 2, below);
     return FeatheredWeight(weight, above, below, x - begin_x, y - begin_y);
   }
-  // Writes the weights of `count` blocks side by side, without feather. The first block contains
-  // element (x, y). Must not be called if are_same() is true.
+  // Writes the weights of `count` blocks of a row, from left to right, without feather. The first
+  // block contains element (x, y). Must not be called if are_same() is true.
   void OfRow(int x, int y, int count, uint8_t* weights) const {
     of_row_(blocks_.EndX(x), blocks_.EndY(y), count, weights);
   }

@@ -12,15 +12,15 @@ namespace lf {
 //
 // focal_length_w    f > 0
 // focus_distance_w  g, from the lens to the focus plane; must exceed f
-// Returns b. kInput if g <= f: the lens then forms no real image.
+// Returns b; f if g is infinite. kInput if f <= 0, or if g <= f: the lens then forms no real image.
 Result<double> ImageDistance(double focal_length_w, double focus_distance_w);
 
 // Returns the f-number N = f / d (thesis Eq. 2.11); infinity for a pinhole.
 double FNumber(double focal_length_w, double aperture_diameter_w);
 
 // Returns the diameter of the blur of a point at depth z for a lens of diameter d that is focused
-// at depth g, in world units on the focus plane:  d |z - g| / z. The blur multiplied by the number
-// of elements per world unit at the focus plane (fx / g), it is the circle of confusion in elements
+// at depth g, in world units on the focus plane:  d |z - g| / z. Multiplied by the number of
+// elements per world unit at the focus plane (fx / g), it is the circle of confusion in elements
 // (thesis Eq. 2.9, seen from the object side).
 double BlurOnFocusPlane(double aperture_diameter_w, double focus_distance_w, double depth_w);
 

@@ -11,7 +11,7 @@
 namespace lf {
 
 struct CameraFact {
-  std::string name;                // such as "position_w"; ends in the unit: _w, _mm, _deg, _s
+  std::string name;                // "position_w"; ends in the unit, if any: _w, _mm, _deg, _s
   std::vector<std::string> parts;  // names of the values: "x", "y", "z"; empty for one value
   std::vector<double> values;
 };

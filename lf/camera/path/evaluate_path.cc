@@ -168,7 +168,7 @@ Result<double> ApertureDiameterAt(const Moment& moment, double focal_length_w) {
     return ErrorAt(
         moment, *path.f_number,
         fmt::format(
-            "{:.4g} makes a lens {:.4g} world units wide, more than {:g}; give a larger one",
+            "{:.4g} makes a lens {:.4g} world units wide, more than {:g}; give a larger f-number",
             f_number, diameter_w, NumberRange::kLargest));
   return diameter_w;
 }

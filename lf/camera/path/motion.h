@@ -71,7 +71,7 @@ class KeyframeCurve {
   SmoothCurve curve_;
   std::vector<Key> keys_;
   // Parameters of the smooth curve for each key: its knot (interpolation.h), the slope of the knot
-  // over time, and the slope of the value over the knot.
+  // over time, and the slope of the value over the knot. Empty for kRotation.
   std::vector<double> knots_;
   std::vector<double> knot_slopes_;
   std::vector<MotionValue> slopes_;

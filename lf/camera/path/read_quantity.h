@@ -32,9 +32,10 @@ class QuantityReader {
   QuantityReader(const YamlEntry* keyframes, const YamlEntry* accelerations, double unit_m,
                  YamlErrors* errors);
 
-  // Returns the quantity; none if the file does not state it, or if it states it wrongly (then an
-  // error is added). The quantity's start and speed are keys of `section`. If it has keyframes but
-  // none at time 0, its start, if any, becomes the keyframe at time 0.
+  // Returns the quantity. If the file does not state it, returns a constant 0 if
+  // spec.zero_if_not_given is true, otherwise none. Returns none, and adds an error, if the file
+  // states it wrongly. The quantity's start and speed are keys of `section`. If it has keyframes
+  // but none at time 0, its start, if any, becomes the keyframe at time 0.
   std::optional<Quantity> Read(YamlMap* section, const QuantitySpec& spec);
 
   // Returns a length that does not change over time and is stated in world units or in millimetres;

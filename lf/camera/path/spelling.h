@@ -13,7 +13,7 @@ namespace lf {
 size_t EditDistance(std::string_view a, std::string_view b);
 
 // Returns the nearest of `words`; empty if even the nearest differs in more than a third of the
-// letters of the longer word.
+// letters of the longer word, or if `word` has more than 64 letters.
 std::string NearestWord(std::string_view word, std::span<const std::string> words);
 
 }  // namespace lf

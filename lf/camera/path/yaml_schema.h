@@ -101,8 +101,8 @@ class YamlMap {
 std::string UnknownWord(std::string_view kind, std::string_view word, std::string_view where,
                         const std::vector<std::string>& known);
 
-// These functions return the value of a node; none, with an error that begins with the label, if it
-// is invalid.
+// The next four functions return the value of a node; none, with an error that begins with the
+// label, if it is invalid.
 std::optional<double> ReadNumber(const YamlNode& node, std::string_view label,
                                  const NumberRange& range, YamlErrors* errors);
 std::optional<int> ReadInteger(const YamlNode& node, std::string_view label, int min, int max,
