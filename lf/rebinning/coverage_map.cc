@@ -18,7 +18,7 @@ constexpr double kReachPerCell = 2;
 constexpr double kSpawnStep = 0.9;
 
 // Returns points in lens coordinates, step_w apart, that fill the reach of the lens points that are
-// queried.
+// queried, and a margin of step_w around it.
 //   asked  [point_count of all sets]: true for the lens points that are queried
 std::vector<Vec2> PlacesAround(const FrameQueries& frame, const std::vector<bool>& asked,
                                double step_w) {
@@ -111,8 +111,8 @@ void CoverageMap::Spawn(const Slab& slab, const FrameQueries& frame) {
   const RenderCamera& camera = frame.camera;
   const Intrinsics& plate = camera.pinhole.intrinsics;
   const double margin_px = ReachOf(frame.kernel, frame.points).plate_px;
-  // Rays are spawned at elements that are less than a cell apart on the uv plane, measured at three
-  // places along the plate's diagonal.
+  // Rays are spawned at positions on the plate that are less than a cell apart on the uv plane,
+  // measured at three places along the plate's diagonal.
   const Vec3 centre = camera.pinhole.CentreWorld();
   const auto on_uv = [&](double x, double y) -> std::optional<SlabPoint> {
     const std::optional<Vec3> focus = FocusPointOfElement(camera, x, y);
@@ -130,7 +130,7 @@ void CoverageMap::Spawn(const Slab& slab, const FrameQueries& frame) {
   const double step_px = std::max(kSpawnStep * width_w_[1] / element_uv_w, 0.5);
   const double step_w = kSpawnStep * width_w_[0];
   const size_t point_count = frame.points.point_count();
-  std::map<std::vector<bool>, std::vector<Vec2>> places_of;  // key: which lens points are queried
+  std::map<std::vector<bool>, std::vector<Vec2>> places_of;  // key: `asked` of PlacesAround()
   std::vector<bool> asked(point_count, true);
   const auto steps = [&](int size_px) {
     return static_cast<int>(std::ceil((size_px + 2 * margin_px) / step_px));

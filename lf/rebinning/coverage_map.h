@@ -22,8 +22,9 @@ namespace lf {
 
 struct CoverageOptions {
   size_t most_bytes = size_t{32} << 20;  // cells are widened if the map would be larger
-  // Number of cells of the uv plane across the plate of a frame; fewer if cells would be narrower
-  // than eight LF pixels. A cell of the st plane is half as wide as the reach of a lens point.
+  // Number of cells on the uv plane across the plate of the frame that sees the narrowest part of
+  // the plane; fewer if cells would be narrower than eight LF pixels. A cell on the st plane is
+  // half as wide as the smallest reach (kReach_sigmas * QueryKernel::sigma_st_w) of the frames.
   int cells_across = 64;
 };
 
@@ -60,7 +61,7 @@ class CoverageMap {
 
   SlabPoint low_ = SlabPoint::Zero();
   std::array<double, kCellAxes> per_width_ = {};
-  // Number of cells along each axis; a multiple of kBits along the last one.
+  // Number of cells along each axis; along the last axis, a multiple of kBits.
   std::array<size_t, kCellAxes> count_ = {};
   std::array<double, 2> width_w_ = {};  // width of a cell on the st and on the uv plane
   LargeVector<uint64_t> bits_;

@@ -1,5 +1,6 @@
 // The queries of one frame: the rays that it interpolates between rebinned rays, one for each
-// element and lens point. Parts of the plate may query only some of the lens points.
+// element and each lens point of the element's set (LensPointSets). Parts of the plate may query
+// only some of the lens points.
 #pragma once
 
 #include <optional>
@@ -12,11 +13,12 @@
 
 namespace lf {
 
-// How densely the light field was recorded around one frame.
+// How densely the light field was recorded around the lens of one frame. The LF cameras near the
+// lens are those of ImagesNearLens() (render/hybrid/frame_sampling.h).
 struct LfSampling {
-  double camera_distance_w = 0;      // distance between neighbouring LF cameras
-  double pixel_rad = 0;              // angle that one LF pixel sees
-  Vec3 middle_world = Vec3::Zero();  // mean position of the LF cameras
+  double camera_distance_w = 0;      // distance between neighbouring LF cameras around the lens
+  double pixel_rad = 0;              // angle that one LF pixel sees: median near the lens
+  Vec3 middle_world = Vec3::Zero();  // mean position of the LF cameras near the lens
 };
 
 struct FrameQueries {
@@ -24,7 +26,7 @@ struct FrameQueries {
   LfSampling sampling;
   LensPointSets points;
   QueryKernel kernel;
-  std::optional<PointShares> shares;  // none: every element queries all points
+  std::optional<PointShares> shares;  // none: every element queries all points of its set
 
   // True if an element queries a ray.
   bool AsksForAny() const;

@@ -10,8 +10,9 @@
 //
 //   X = (S (n . U - o) - U (n . S - o)) / (n . (U - S)).
 //
-// `forward` is the frame's viewing direction, and n and o are normal and offset of its focus plane.
-// All these scalar products are linear forms of the four numbers of the cell.
+// `forward` is the frame's viewing direction, n the normal of its focus plane, and o the distance
+// of the focus plane from the lens centre along n. All these scalar products are linear forms of
+// the four numbers of the cell.
 #pragma once
 
 #include <array>
@@ -50,7 +51,8 @@ struct FrameView {
 struct SeenCells {
   static constexpr size_t kAtOnce = 64;
   size_t count = 0;
-  std::array<size_t, kAtOnce> cells;  // ascending indices of the cells that are seen
+  // ascending indices of the seen cells among the `cells` of FindSeenCells()
+  std::array<size_t, kAtOnce> cells;
   std::array<double, kAtOnce> lens_x_w, lens_y_w, x_px, y_px;
 };
 

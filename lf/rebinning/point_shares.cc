@@ -9,7 +9,8 @@
 namespace lf {
 namespace {
 
-// Distances of the additional nodes from the ends, as parts of the distance between nodes.
+// Distances of the additional nodes from the first or last node, as parts of the distance between
+// nodes.
 constexpr double kCloseToEnds[] = {1.0 / 16, 1.0 / 4};
 
 }  // namespace

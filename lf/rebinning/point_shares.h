@@ -19,8 +19,8 @@ class NodeAxis {
   // Makes one node.
   explicit NodeAxis(int size_px) : NodeAxis(size_px, 1) {}
   // Makes `count` nodes at equal distances. If count is 3 or more, adds nodes near both ends,
-  // because the field of view of LF images may end there; added nodes less than an element from the
-  // end are left out. A side of one element has one node.
+  // because the field of view of LF images may end there; leaves out nodes that would be less than
+  // an element from the first or last node. A side of one element has one node.
   NodeAxis(int size_px, int count);
 
   int count() const { return static_cast<int>(nodes_px_.size()); }

@@ -3,7 +3,7 @@
 // A plane has one value for each pixel, or for each 2 x 2 pixels of a mosaic. It continues beyond
 // its borders with its outermost values.
 //
-//   grey     made of stored values                                  [0, 65535]
+//   grey     the values of GreyRows                                 [0, 65535]
 //   across   (sum of taps * grey + 128) >> 8                        in units of 1 / 16
 //   smooth   (sum of taps * across of the rows + 2048) >> 12        in units of 1 / 16
 //   change   min(|left + right + above + below - 4 here| >> 4, 65535), of values of smooth
@@ -48,8 +48,8 @@ inline uint16_t ProbabilityOf(const ProbabilityParameters& parameters, int32_t l
   return static_cast<uint16_t>(std::min((change * parameters.alpha >> 8) + parameters.xi, 65535u));
 }
 
-// The grey plane made of stored values: one value for each pixel, or for each 2 x 2 pixels of a
-// mosaic.
+// The grey plane, in stored values: for each RGB pixel, the stored value of (R + 2 G + B) / 4; for
+// each 2 x 2 pixels of a mosaic, the mean of the stored values of the two greens.
 class GreyRows {
  public:
   // Refers to the pixels and to the table, which must outlive this object; `part` is the part of

@@ -88,7 +88,8 @@ std::string FaultOf(const Part& part, size_t shard, const RayMap& map) {
   return {};
 }
 
-// Reads the head, and checks that the file is as long as the head says, before memory is allocated.
+// Returns the head in `bytes`. Checks, before memory is allocated, that `source` has as many bytes
+// left as the head says, and at most max_cells cells.
 Result<Head> ReadHead(const entry_file::Source& source, const std::string& bytes,
                       size_t max_cells) {
   Head head;

@@ -14,7 +14,8 @@ namespace lf::ray_map_format {
 inline constexpr entry_file::Kind kKind = {"LFCELLS\n", 1, "file of rays",
                                            "the rays in it cannot be used"};
 
-// The file begins with this head. The text of the entries follows, then the hash of head and text.
+// The file begins with this head. The text of the entries follows, then the hash of head and text,
+// then for each shard a ShardHead and the shard's cells.
 struct Head {
   char magic[8];
   uint32_t version;

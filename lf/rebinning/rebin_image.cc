@@ -9,9 +9,9 @@
 namespace lf {
 namespace {
 
-// Computes the colours of pixels of a mosaic whose eight neighbours are all in the image. All
-// pixels take the same steps without a branch, because the processor could not predict branches
-// that depend on a pixel's place in the Bayer pattern.
+// Computes the colours of pixels of a mosaic whose eight neighbours are all in LfPixels and not
+// masked. All pixels take the same steps without a branch, because the processor could not predict
+// branches that depend on a pixel's place in the Bayer pattern.
 class InnerMosaic {
  public:
   explicit InnerMosaic(const LfPixels& pixels) {
@@ -209,7 +209,8 @@ class ImageRebinner {
 constexpr int kBandRows = 64;
 static_assert(kBandRows % RebinCoverage::kBlock == 0);
 
-// Pixels within a band that are covered by the same kind of map: `whole` or `by_edges`.
+// Pixels within a band of kBandRows rows that are covered by the same kind of map of RebinCoverage:
+// `whole` or `by_edges`.
 struct PixelRun {
   PixelRect rect;
   bool is_whole;            // true if RebinCoverage::whole covers them

@@ -1,10 +1,10 @@
 // Sorts the rays of one LF image into the cells of a slab (thesis 4.3.2), and decides which rays
 // are kept.
 //
-// The ray of a pixel is kept if a random number in [0, 1) is below its p (probability_map.h). The
-// random number depends only on seed, LF image and pixel, so the kept rays depend neither on the
-// number of threads, nor on the order of the LF images, nor on the part of an LF image that is
-// read.
+// The ray of a pixel is kept if RebinCoverage::whole covers it, or if a random number in [0, 1) is
+// below the pixel's p (probability_map.h). The random number depends only on seed, LF image and
+// pixel, so the kept rays depend neither on the number of threads, nor on the order of the LF
+// images, nor on the part of an LF image that is read.
 #pragma once
 
 #include <array>
@@ -50,19 +50,21 @@ struct BinnedRays {
 struct RebinCoverage {
   static constexpr int kBlock = 8;
   const CoverageMap* whole = nullptr;  // all rays of the squares that it covers are kept
-  // Rays of the squares that only these maps cover are kept with the probability p of Eq. 4.4.
+  // Rays of the squares that only these maps cover are kept with the probability p of Eq. 4.4. A
+  // null map covers nothing.
   std::array<const CoverageMap*, 2> by_edges = {};
 };
 
-// Adds those rays of the pixels of `rect` that are covered, cut both planes of the slab, and are
-// kept. A ray has the three colours of its pixel. In a mosaic, the two colours that a pixel did not
-// record are the means of its neighbours that did.
+// Adds to rays->kept those rays of the pixels of `rect` that are covered, have a cell of the slab,
+// and are kept. Adds to rays->others those that are not kept, if options.averages_others is true. A
+// ray has the three colours of its pixel. In a mosaic, the two colours that a pixel did not record
+// are the means of its neighbours that did.
 //   pixels         must hold `rect`, and should hold PixelsAround() more pixels on each side that
 //                  is not a border of the LF image; without these, p and the colours near the
 //                  borders of `rect` differ a little
 //   stored_values  StoredValueTable() of the light field
-//   ideal_pixels   the IdealPixels of lf_camera's intrinsics; must be null if lf_camera has no lens
-//                  distortion
+//   ideal_pixels   the IdealPixels of lf_camera's intrinsics; must be null if, and only if,
+//                  lf_camera has no lens distortion
 //   coverage       null: all pixels are covered, and kept with the probability of Eq. 4.4
 //   map            rays for whose cells map.MayHold() is false are left out
 void RebinImage(const Slab& slab, const PinholeCamera& lf_camera, LfImageId id,

@@ -1,4 +1,5 @@
-// Measures how long it takes to sort the rays of one LF image of 2048 x 2048 pixels into cells.
+// Measures how long it takes to compute the probabilities of the pixels of one LF image of 2048 x
+// 2048 pixels, and to sort its rays into cells.
 #include <benchmark/benchmark.h>
 
 #include <cmath>

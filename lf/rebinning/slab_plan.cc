@@ -61,8 +61,8 @@ class SectionPlanner {
     position = choices_.position_world.value_or(position);
     const std::optional<RigidTransform> pose = LookAlong(position, forward, up);
     if (!pose) {
-      // There is no mean direction, because the frames look in opposite directions. A single frame
-      // always has a pose.
+      // There is no mean direction or no mean `up`, because those of the frames are opposite. A
+      // single frame always has a pose: callers test SlabChoices::forward_world against its view.
       section->slab.st.origin_world = position;
       return false;
     }

@@ -44,7 +44,7 @@ struct SlabSection {
   size_t end = 0;
   Slab slab;
   SlabBounds bounds;      // bounds of the rays within reach of the frames' queries
-  double pixel_uv_w = 0;  // width of an LF pixel on the uv plane
+  double pixel_uv_w = 0;  // width of an LF pixel on the uv plane; the smallest of all frames
 };
 
 // Returns one section if all frames look in about the same direction, all their rays cut both

@@ -71,8 +71,8 @@ TileRays SortIntoTiles(std::span<const FrameRay> rays, const TileGrid& grid, dou
   return sorted;
 }
 
-// Divides the lens into squares that are at least as wide as the reach: all rays within reach of a
-// lens point are in its square or the eight around that square.
+// Divides the lens, and reach_w around it, into squares that are at least as wide as the reach: all
+// rays within reach of a lens point are in its square or the eight around that square.
 class LensGrid {
  public:
   LensGrid(const LensPointSets& points, double reach_w) : low_(points.sets[0][0]) {
@@ -103,15 +103,16 @@ class LensGrid {
   std::array<int, 2> count_;
 };
 
-// A lens point. The points of a set are in the order of its groups.
+// A lens point of a GroupedSet.
 struct GroupedPoint {
   Vec2 at;
-  double sigma_st_w;
-  size_t number;  // index of the point in PointShares
+  double sigma_st_w;  // QueryKernel::sigma_st_w times the spread of the point
+  size_t number;      // index of the point in PointShares
 };
 
-// Groups the points of a set into groups of at most eight points near each other: cuts the lens
-// into strips, and the strips into groups. Sorts `points` into the order of the groups.
+// Divides the points of a set into groups of at most eight points near each other: cuts the lens
+// into strips, and the strips into groups. Sorts `points` so that each group is a range of
+// consecutive points, which begins at LensPointGroup::first.
 std::vector<LensPointGroup> GroupsOf(std::vector<GroupedPoint>& points) {
   constexpr size_t kPoints = LensPointGroup::kPoints;
   const size_t groups = (points.size() + kPoints - 1) / kPoints;
@@ -171,7 +172,9 @@ class TileSplatter {
                const PointShares* shares, SplatFrame* frame)
       : kernel_(kernel), sets_(sets), lens_(lens), shares_(shares), frame_(frame) {}
 
-  //   k  LensPointSets::k
+  // Renders the elements of `rect`, one set of lens points after the other.
+  //   of_tile  indices of the rays that reach the tile
+  //   k        LensPointSets::k
   void Run(std::span<const FrameRay> rays, std::span<const uint32_t> of_tile, const PixelRect& rect,
            int k) {
     SortByLens(rays, of_tile);
@@ -213,8 +216,8 @@ class TileSplatter {
     for (size_t i = 0; i < of_tile.size(); ++i) sorted_[next_[cell_of_[i]]++] = rays[of_tile[i]];
   }
 
-  // Finds the shares of a group's lens points at the elements of the grid. Returns false if all are
-  // 0.
+  // Writes the shares of a group's lens points at the elements of the grid to sums_.shares. Returns
+  // false, and writes nothing, if no element of `rect` queries these points.
   bool FindShares(const GroupedSet& set, const LensPointGroup& group, const PixelRect& rect,
                   const SplatGrid& grid) {
     bool is_any = false;

@@ -1,9 +1,9 @@
 // Renders a whole frame from rebinned rays: an element is the mean of one ray for each lens point,
 // interpolated as in ray_query.h (thesis 4.3.2, "Rendering Phase").
 //
-// Queries are not answered one by one. All elements share the lens points, so each rebinned ray
-// near a lens point is added, with its weight, to the elements within its reach. The sums are the
-// same, but no k-d tree is needed (doc/rebinning.md).
+// Queries are not answered one by one. All elements of a set (LensPointSets) share its lens points,
+// so each rebinned ray near a lens point is added, with its weight, to the set's elements within
+// its reach. The sums are the same, but no k-d tree is needed (doc/rebinning.md).
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,8 @@ namespace lf {
 struct SplatFrame {
   Image<float> rgb;  // [height][width][3]: mean of the rays that could be interpolated, linear
   // [height][width]: the sum of the shares of those lens points whose ray could be interpolated
-  // (without PointShares, each share is 1), divided by the number of lens points; 0 to 1
+  // (without PointShares, each share is 1), divided by the number of lens points in the element's
+  // set; 0 to 1
   Image<float> share;
 };
 
@@ -35,7 +36,8 @@ SplatFrame Splat(std::span<const FrameRay> rays, int width_px, int height_px,
                  const LensPointSets& lens_points, const QueryKernel& kernel, ThreadPool& pool,
                  const PointShares* shares = nullptr);
 
-// Returns the reach of the kernel, kReach_sigmas, for the lens point with the largest spread.
+// Returns the reach of the kernel: kReach_sigmas sigmas on the plate and, for the lens point with
+// the largest spread, on the lens.
 FrameReach ReachOf(const QueryKernel& kernel, const LensPointSets& lens_points);
 
 // The reference of Splat(): queries a RayQuery for every element and lens point.

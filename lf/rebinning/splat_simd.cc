@@ -43,8 +43,8 @@ HWY_INLINE V Gaussian(V q) {
   return hn::Mul(fourth, fourth);
 }
 
-// The columns or rows of a tile that a ray reaches, [begin, end), with q = (distance / sigma)^2 and
-// exp(-q / 2) of each.
+// The columns or rows of a SplatGrid that a ray reaches, [begin, end), with q = (distance /
+// sigma)^2 and exp(-q / 2) of each.
 struct Along {
   int begin;
   int end;

@@ -20,10 +20,11 @@ struct LensPointGroup {
   std::array<float, kPoints> per_st2;  // 1 / (spread * sigma_st)^2 of each point
   double reach_w = 0;                  // largest reach of the points
   int count = 0;
-  size_t first = 0;  // index of the first point in the order of the groups
+  size_t first = 0;  // index of the group's first point in GroupedSet::points (splat.cc)
 };
 
-// The elements (x0 + k * column, y0 + k * row) of a tile. All of them use the same lens points.
+// The elements (x0 + k * column, y0 + k * row) of a tile, which use the same set of lens points; k
+// as in LensPointSets.
 struct SplatGrid {
   int x0 = 0;
   int y0 = 0;
