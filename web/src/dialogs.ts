@@ -34,7 +34,7 @@ async function copyText(text: string, button: HTMLElement): Promise<void> {
     await navigator.clipboard.writeText(text);
     button.textContent = "Copied";
   } catch {
-    button.textContent = "The browser refuses: select the text";
+    button.textContent = "The browser refuses to copy: select the text";
   }
 }
 
@@ -80,7 +80,7 @@ const KEYS: [string, string][] = [
   ["[ ]", "previous and next LF image that this frame takes"],
   ["1 … 5", "views: overview, aperture, side, top, through the lens"],
   ["K", "add a key of the focus distance at this frame"],
-  ["P", "preview of this frame"],
+  ["P", "render a small preview of this frame"],
   ["Ctrl+Z, Ctrl+Shift+Z", "undo, redo"],
   ["Ctrl+S", "save the path"],
   ["?", "these keys"],

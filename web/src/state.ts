@@ -138,7 +138,7 @@ export class State {
   // Calls `change`, which edits the document and may throw. Then sends the text to the server, where the parser of the
   // programs checks it.
   //   merge  true: this edit and the previous one with the same label are one undo step
-  // Returns false if `change` threw.
+  // Returns false, and shows the error, if `change` threw.
   edit(label: string, change: (document: PathDocument) => void, merge = false): boolean {
     try {
       change(this.document);
@@ -231,8 +231,8 @@ export class State {
     }
   }
 
-  // Handles an event: another program has changed the path's file. Shows the new text, unless there are unsaved edits;
-  // then only says that the file has changed.
+  // Handles an event: another program has changed the path's file. Shows the new text, unless it has a fault or there
+  // are unsaved edits; then only says that the file has changed.
   async fileHasChanged(news: PathNews): Promise<void> {
     this.news = null;
     if (news.id === this.savedId && this.fileHasFault) this.say("");
@@ -244,7 +244,7 @@ export class State {
       const text = this.isChanged ? "" : await getText(`path/${news.id}/path.yaml`);
       if (this.isChanged) {
         this.news = news;
-        return this.say(`${what}. Here are edits that are not saved.`);
+        return this.say(`${what}. Your edits here are not saved: Save asks before it writes over the file.`);
       }
       this.document = PathDocument.parse(text, this.scene.light_field.unit_m);
       this.history.push(text, "what another program wrote");

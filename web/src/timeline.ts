@@ -114,7 +114,8 @@ export class Timeline {
     ];
   }
 
-  // Returns the camera's speed from a frame to the next one, in world units per second.
+  // Returns the camera's speed from the frame with this index (from 0) to the next one, in world units per second; at
+  // the last frame, the speed from the previous one.
   private speed(index: number): number {
     const { cameras, path } = this.state;
     const a = cameras[Math.max(0, Math.min(index, cameras.length - 2))].centre;

@@ -1,4 +1,5 @@
-// The thin-lens camera of a frame, and the directions of its rays.
+// The thin-lens camera of a frame, and the directions of its rays. Lengths are in world units, angles in radians; fx,
+// fy, cx, cy, width and height are in elements.
 
 import type { Vec3 } from "./scene";
 

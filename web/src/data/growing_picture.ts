@@ -1,10 +1,10 @@
-// The picture of a frame that is still being rendered: linear light and ray counts as half floats. It is shown with a
-// chosen exposure, or as a map of its ray counts.
+// The picture of a frame, finished or still being rendered: linear light and ray counts as half floats. It is shown
+// with a chosen exposure, or as a map of its ray counts.
 
 export interface GrowingPicture {
   width: number;
   height: number;
-  fullWidth: number;
+  fullWidth: number; // width of the frame, of which this may be a smaller picture
   fullHeight: number;
   hasRays: boolean;
   halves: Uint16Array; // R, G, B and ray count of each element, as half floats

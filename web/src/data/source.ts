@@ -70,6 +70,7 @@ export async function post<T>(name: string, body: object): Promise<T> {
 // Receives server-sent events and calls the handler of their kind. If the connection breaks, the browser reconnects by
 // itself. A hidden page closes its connection, because a browser has only six connections to an address for all its
 // pages.
+//   onConnection  called with true after each connect, with false when the connection breaks
 export function listen(
   handlers: Record<string, (data: string) => void>,
   onConnection: (isThere: boolean) => void,

@@ -15,7 +15,8 @@ interface Field {
   // the list.
   names: string[];
   parts: string[]; // labels of a value's components; one for a number
-  // Returns the value at the current frame, for quantities that can be read from the evaluated camera between two keys.
+  // Returns the value at the current frame, for quantities that can be read from the evaluated camera between two keys;
+  // null if this one cannot.
   now?: (state: State, name: string) => PathValue | null;
 }
 
@@ -147,7 +148,7 @@ export class EditPanel {
     if (this.root.hidden || !state.scene.server || state.cameras.length === 0) return;
     this.verdict.textContent = state.invalid ?? "";
     this.verdict.className = state.invalid ? "bad" : "muted";
-    // While text is being typed, or is invalid YAML, the text area is not filled again until the document changes.
+    // The text area keeps text that is being typed, and typed text that is no YAML until the document changes.
     const text = state.document.text();
     if (this.typing === 0 && text !== this.filledWith) {
       this.text.value = text;

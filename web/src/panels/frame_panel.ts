@@ -87,7 +87,7 @@ export class FramePanel {
     const { density, camera, path } = this.state;
     if (!density) return [element("p", { class: "muted" }, "being found …")];
     const rows: Rows = [["LF cameras in the lens", shortNumber(density.cameras_in_lens)]];
-    if (density.camera_distance) rows.push(["From one to the next", millimetres(density.camera_distance, path.unit_m)]);
+    if (density.camera_distance) rows.push(["Camera spacing", millimetres(density.camera_distance, path.unit_m)]);
     const ends: [string, number | null, number | null][] = [
       ["Nearest", density.depths[0], density.near_displacement_px],
       ["Farthest", density.depths[1], density.far_displacement_px],
@@ -126,7 +126,7 @@ export class FramePanel {
           `Some elements have no ray of their own below an aperture of ${millimetres(
             density.least_aperture,
             path.unit_m,
-          )}.`,
+          )}: open the aperture.`,
         ),
       );
     return words;

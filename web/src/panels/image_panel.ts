@@ -140,7 +140,8 @@ export class ImagePanel {
           `The rectangle that is read: ${x1 - x0} × ${y1 - y0} pixels, ${percent(share)} of the image. ` +
             (overlap.outlines.length > 0
               ? "Its pixels within the outline see both the lens and the filmed region."
-              : "The LF camera is beside the lens, and stands for the part of the lens that is nearest to it."),
+              : "It has no outline: the LF camera is beside the lens, and stands for the part of the lens that is " +
+                "nearest to it, or its field of view is too wide for an outline."),
         ),
       );
     } else {

@@ -25,8 +25,8 @@ function setFocus(document: PathDocument, name: string, time: number, value: Pat
   else document.setBase(name, value);
 }
 
-// Sets the focus distance. If the file defines the focus in another way, or by a motion, replaces this definition and
-// returns a text that says so; otherwise returns "".
+// Sets the focus distance. If the file defines the focus in another way, or by speed or accelerations, replaces this
+// definition and returns a text that says so; otherwise returns "".
 function setFocusDistance(document: PathDocument, time: number, distance: number): string {
   const { given, hasAccelerations } = document.quantity("focus_distance");
   if (given) setFocus(document, "focus_distance", time, distance);
@@ -69,7 +69,11 @@ function addToPlane(state: State, picked: PickedFocus, time: number, frame: numb
   if (points.length < 3)
     return state.say(`Point ${points.length} of 3 of the focus plane, at ${length(picked.focus_distance)}`);
   const plane = focusThrough(camera, points);
-  if (!plane) return state.say("These three points lie on a line, or on a plane that the lens cannot focus on.", true);
+  if (!plane)
+    return state.say(
+      "These three points lie on a line, or on a plane that the lens cannot focus on: click three others.",
+      true,
+    );
   const { distance, horizontal_deg, vertical_deg } = plane;
   const isTaken = state.edit("tilt the focus plane", (document) => {
     setFocusDistance(document, time, distance);
@@ -82,8 +86,9 @@ function addToPlane(state: State, picked: PickedFocus, time: number, frame: numb
     );
 }
 
-// Makes a picture clickable: a click marks the position and calls `pick` with it, in the coordinates that size() gives.
-// isOfPlane is true for a click with Shift, which sets one of three points of a focus plane.
+// Makes a picture clickable: a click marks the position and calls `pick` with it, as a position in a picture with the
+// width and height that size() returns. isOfPlane is true for a click with Shift, which sets one of three points of a
+// focus plane.
 export function makePickable(
   frame: HTMLElement,
   size: () => [number, number],

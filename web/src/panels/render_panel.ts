@@ -34,7 +34,7 @@ export class RenderPanel {
   private picture: GrowingPicture | null = null;
   private shownName = "";
   private wantedName = "";
-  private fault = ""; // why the last picture could not be read; empty if it could
+  private fault = ""; // why the last unreadable picture could not be read; "" if all could be read
   private previewed: FrameCamera | null = null;
   private isLoading = false;
   private readonly sources = element("div", { class: "row group" });
@@ -76,7 +76,8 @@ export class RenderPanel {
     this.update();
   }
 
-  // Focuses on a position in the picture, if the picture shows the same view as the current frame.
+  // Focuses on a position in the picture, if the picture shows the same view as the current frame. For
+  // a watched picture, compares only its size with that of the frame.
   private focusAt(x: number, y: number, isOfPlane: boolean): void {
     const { state, picture, previewed } = this;
     const { camera } = state;
@@ -254,7 +255,7 @@ export class RenderPanel {
       // If the server says "no such frame", the file was just being replaced, and an event about its next version
       // follows.
       if (!(error instanceof Error && /no such frame/.test(error.message))) {
-        this.picture = null; // because the old picture shows another frame
+        this.picture = null; // because the old picture may show another frame
         this.shownName = "";
         this.state.fail(error);
         this.fault = this.state.message?.text ?? "";

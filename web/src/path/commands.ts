@@ -73,11 +73,11 @@ export interface FilmRequest {
 
 type Value = string | number | boolean | readonly number[] | undefined;
 
-// An option of a program. It is left out if its value is unset or `initial`.
+// An option of a program. It is left out if its value is unset, "", false or `initial`.
 interface Flag {
   flag: string;
   initial?: Value;
-  isFile?: boolean;
+  isFile?: boolean; // true: the value is a file name (quoteFile())
 }
 
 const kLightField: Record<string, Flag> = {

@@ -31,9 +31,9 @@ export interface FocusPullOptions {
   start?: number; // time of the pull's beginning, seconds; default: `hold`
 }
 
-// Angle between keys. With it, the Catmull-Rom curve through the keys deviates from the circle by at most 0.13 % of the
-// radius (2/27 angle^2, with the angle in radians). The deviation is largest in the first and the last segment, because
-// the curve starts and ends in the direction of the chord there.
+// Largest angle between keys. With it, the Catmull-Rom curve through the keys deviates from the circle by at most
+// 0.13 % of the radius (2/27 angle^2, with the angle in radians). The deviation is largest in the first and the last
+// segment, because the curve starts and ends in the direction of the chord there.
 const kOrbitStep_deg = 7.5;
 const kResolution = 1e-5; // precision with which positions are written, as a share of the movement's size
 

@@ -3,7 +3,7 @@
 interface Entry {
   text: string;
   label: string;
-  open: boolean; // true: the next push() of the same drag replaces the text
+  open: boolean; // true: the next push() with `merge` and the same label replaces the text
 }
 
 export class History {
@@ -40,7 +40,7 @@ export class History {
     this.at = this.entries.length - 1;
   }
 
-  // Ends a drag: the next edit does not replace the current one.
+  // Ends a drag or typing: the next edit does not replace the current one.
   seal(): void {
     this.entries[this.at].open = false;
   }

@@ -142,8 +142,8 @@ export class PathDocument {
     });
   }
 
-  // Moves a key to another time, which may be beyond other keys. Index -1 is the base, if it is a key. Returns the new
-  // index of the key. Throws if another key is at that time.
+  // Moves a key to another time, which may be beyond other keys. Index -1 is the base (Quantity.base), if it is a key.
+  // Returns the new index of the key. Throws if another key is at that time.
   moveKeyframe(name: string, index: number, time: number): number {
     let moved = index;
     this.edit(() => {
@@ -177,8 +177,8 @@ export class PathDocument {
     return moved;
   }
 
-  // Deletes a key; index -1 is the base, if it is a key. If the last listed key is deleted, the quantity keeps the
-  // value of this key; if the base was a key, the value of the base.
+  // Deletes a key; index -1 is the base (Quantity.base), if it is a key. If the only listed key is deleted, the
+  // quantity keeps the value of the base if that was a key, otherwise the value of the deleted key.
   deleteKeyframe(name: string, index: number): void {
     this.edit(() => {
       const spec = quantitySpec(name);
@@ -258,7 +258,7 @@ export class PathDocument {
   }
 
   // Each of the next functions chooses one of several quantities that define the focus, the lens or the direction, and
-  // removes its rivals with their motion. If the path has this quantity already, the function calls setBase().
+  // removes its rivals with their motion. If the path has this quantity already, the function only calls setBase().
   useFocusDistance(distance_w: number): void {
     this.use("focus_distance", distance_w);
   }
@@ -433,7 +433,8 @@ export class PathDocument {
     if (this.yaml.keys(["keyframes"]).length === 0) this.yaml.remove(["keyframes"]);
   }
 
-  // Removes a base that had no effect because of a key at time 0. Without that key, the base would become a key.
+  // Removes a base (Quantity.base) that had no effect because of a key at time 0. Without that key, the base would
+  // become a key.
   //   before  the quantity before the edit that removed or moved the key
   private dropHiddenBase(spec: QuantitySpec, before: Quantity): void {
     if (before.base === undefined || before.baseIsKey) return;

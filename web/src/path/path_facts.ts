@@ -22,7 +22,7 @@ export interface Quantity {
   section: Section;
   unit: Unit;
   shape: Shape;
-  worldPerFile: number; // a number of `key` in the file times this factor is in world units
+  worldPerFile: number; // a number of `key` in the file times this factor is in world units; 1 if it is no length
   given: boolean; // true if the file contains a value, keys, a speed or accelerations
   base?: PathValue; // the value in its section, which holds at time 0; undefined: none
   keyframes: Keyframe[]; // the keys listed in the file, in its order

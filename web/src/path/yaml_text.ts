@@ -13,7 +13,7 @@ interface Change {
   text: string;
 }
 
-// A list in brackets that would become longer than this is converted to one line per item.
+// A list in brackets whose line would become longer than this is converted to one line per item. Unit: characters.
 const kLongestLine = 100;
 
 type Container = YAMLMap<Node, Node | null> | YAMLSeq<Node>;

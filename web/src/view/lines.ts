@@ -1,4 +1,4 @@
-// Lines and faces whose points change often. New points are written into the memory of the old ones.
+// Lines and faces whose points change often. New points are written into the memory of the old ones, if that is large enough.
 
 import * as THREE from "three";
 

@@ -115,7 +115,7 @@ export class SpaceView {
     this.draw();
   }
 
-  // Marks the chosen LF camera, and draws its frustum, 0.6 focus distances long.
+  // Marks the chosen LF camera, and draws its frustum, 0.6 focus distances long; null removes both.
   setChosen(facts: CameraFacts | null): void {
     this.ring.visible = facts !== null;
     this.showChosen();
