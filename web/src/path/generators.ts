@@ -1,5 +1,5 @@
 // Writes whole movements into a path. A movement replaces the previous motion of its quantity, and makes the film
-// longer if necessary. Each function returns the name of the edit.
+// longer if necessary. Each exported function returns the name of the edit.
 import type { PathDocument } from "./path_document";
 import type { Keyframe } from "./path_facts";
 

@@ -1,4 +1,5 @@
-// Lines and faces whose points change often. New points are written into the memory of the old ones, if that is large enough.
+// Lines and faces whose points change often. New points are written into the memory of the old ones, if that is large
+// enough.
 
 import * as THREE from "three";
 
