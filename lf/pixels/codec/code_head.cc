@@ -25,10 +25,12 @@ bool TakeSigned(std::string_view* code, int64_t* number) {
 }
 
 Error Damaged(const std::string& what) {
-  return InputError(fmt::format("is a damaged encoded LF image: {}", what));
+  return InputError(
+      fmt::format("is a damaged encoded LF image: {}; copy or make the packed store again", what));
 }
 
-// Reads the next number and removes it from `code`. kInput if it is not in [low, high].
+// Reads the next number and removes it from `code`. kInput if it cannot be read or is not in
+// [low, high].
 //   name  what messages call the number
 template <class T>
 Result<void> Take(std::string_view* code, const char* name, uint64_t low, uint64_t high, T* value) {
@@ -88,14 +90,15 @@ void AppendHead(const CodeHead& head, std::string* code) {
 Result<CodeHead> TakeHead(std::string_view* code) {
   std::string_view magic;
   if (!TakeBytes(code, kMagic.size(), &magic) || magic != kMagic)
-    return InputError("is no encoded LF image: it does not begin with LFIM");
+    return InputError(
+        "is no encoded LF image: it does not begin with LFIM; copy or make the packed store again");
   uint64_t version = 0;
   LF_RETURN_IF_ERROR(Take(code, "version", 0, UINT64_MAX, &version));
   if (version == 0) return Damaged(fmt::format("its version is 0, expected {}", kVersion));
   if (version > kVersion)
     return InputError(
         fmt::format("is an encoded LF image of version {}, which a newer lfrendertools has "
-                    "written; this one knows version {}",
+                    "written; this one knows version {}: use the newer one",
                     version, kVersion));
   CodeHead head;
   CodeInfo& info = head.info;
@@ -114,8 +117,9 @@ Result<CodeHead> TakeHead(std::string_view* code) {
                           kMostTileBits, &head.tile_bits));
   if (info.profile == CodecProfile::kThesis) {
     LF_RETURN_IF_ERROR(Take(code, "quantizer", 2, 65536, &head.quantizer));
-    constexpr int64_t kLimit = int64_t{1} << 26;  // largest coefficient: 16 bits of a pixel, and
-                                                  // kHaarBits; sums of several fit 32 bits
+    // Largest magnitude of a coefficient: 16 bits of a pixel and kHaarBits fraction bits. The
+    // synthesis adds at most 16 coefficients, so that their sum fits in 32 bits.
+    constexpr int64_t kLimit = int64_t{1} << 26;
     if (!TakeSigned(code, &head.low) || !TakeSigned(code, &head.high))
       return Damaged("its range of coefficients cannot be read");
     if (head.low < -kLimit || head.high > kLimit || head.low > head.high)

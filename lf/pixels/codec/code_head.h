@@ -28,14 +28,14 @@ struct CodeHead {
 
   // The profiles kDefault and kLossless use these fields.
   int coefficient_bytes = 2;  // size of a coefficient, 2 or 4
-  int fraction_bits = 0;      // number of fraction bits in the coefficients of the finest level
+  int fraction_bits = 0;      // fraction bits that pixel values get before the first transform
   // Quantiser steps by component. Each component has one step for its approximation, then two for
   // each level from the coarsest to the finest: the first is for the two subbands that are high in
   // one direction, the second for the subband that is high in both.
   std::vector<int32_t> steps;
 
   // The profile kThesis uses these fields.
-  int quantizer = 256;
+  int quantizer = 256;  // CodecSettings::quantizer
   // Coefficients that the quantiser's first and last value stand for, in units of 2^-kHaarBits
   // (haar.h).
   int64_t low = 0;
@@ -48,7 +48,7 @@ struct CodeHead {
   // Returns the pixels of a tile. Tiles are numbered row by row, from 0 to tile_count() - 1.
   PixelRect TileRect(size_t tile) const;
 
-  // Number of planes that are transformed independently.
+  // Number of planes that are transformed independently: 1 for grey, 3 for RGB, 4 for a mosaic.
   int components() const;
   int StepCount() const { return components() * (1 + 2 * info.levels); }
 };
@@ -56,8 +56,9 @@ struct CodeHead {
 int ChannelsOf(PixelLayout layout);  // number of channels of a pixel
 
 void AppendHead(const CodeHead& head, std::string* code);
-// Reads the head from the front of `code` and removes it there. kInput if the head is damaged or
-// was written by a newer version; the message does not name the file.
+// Reads the head from the front of `code` and removes it there. kInput if `code` is no encoded
+// image, or if its head is damaged or was written by a newer version; the message does not name the
+// file.
 Result<CodeHead> TakeHead(std::string_view* code);
 
 }  // namespace lf

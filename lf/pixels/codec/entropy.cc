@@ -22,8 +22,8 @@ ZSTD_CCtx* Compressor() {
   if (context) return context.get();
   context.reset(ZSTD_createCCtx());
   if (!context) throw std::bad_alloc();
-  // No length and no checksum is written: the reader knows the length, and the store has a
-  // checksum.
+  // No length of the content and no checksum is written: the reader knows the length, and the
+  // packed store has a checksum.
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_contentSizeFlag, 0);
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, kEntropyLevel);
   // Packed coefficients repeat only by chance, except for runs of zeros. The less zstd searches for

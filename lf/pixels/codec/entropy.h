@@ -1,5 +1,6 @@
-// The lossless coder that compresses packed coefficients: zstd. No other file of the folder uses
-// zstd. Internal to this folder.
+// The lossless coder that compresses coefficients, zstd, and the numbers between the compressed
+// bytes (doc/formats/lf_image.md, "Numbers"). No other file of the folder uses zstd. Internal to
+// this folder.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +24,8 @@ void AppendCompressed(std::span<const uint8_t> bytes, std::string* code);
 // The highest bit of a byte is set if more bytes follow.
 void AppendNumber(uint64_t number, std::string* code);
 // Reads a number that AppendNumber() wrote from the front of `code` and removes it there. Returns
-// false if `code` ends within the number or the number exceeds `limit`.
+// false if `code` ends within the number, the number has more than ten bytes, or it exceeds
+// `limit`.
 [[nodiscard]] bool TakeNumber(std::string_view* code, uint64_t limit, uint64_t* number);
 // Removes the first `count` bytes from `code` and sets `bytes` to them. Returns false if `code` has
 // fewer bytes.

@@ -15,7 +15,8 @@ namespace lf {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Computes two rows of 2 * count values each from `count` coefficients of each subband.
+// Computes two rows of 2 * count values each from `count` coefficients of each subband: kLowLow
+// (`low`), kHighLow (`across`), kLowHigh (`down`) and kHighHigh (`both`).
 void MergeHaarRows(const int32_t* low, const int32_t* across, const int32_t* down,
                    const int32_t* both, int count, int32_t* HWY_RESTRICT upper,
                    int32_t* HWY_RESTRICT lower) {

@@ -20,11 +20,12 @@ inline constexpr int kHaarBits = 10;
 
 // Splits a plane into the subbands of one level.
 //   values  [height][width]
-//   bands   indexed by Band (wavelet53.h); a are the low, d the high coefficients
+//   bands   indexed by Band (wavelet53.h); [BandHeight][BandWidth] each; a are the low, d the high
+//           coefficients
 void AnalyzeHaar(const int32_t* values, int width, int height,
                  const std::array<int32_t*, kBands>& bands);
 
-// Restores the plane from its subbands.
+// Restores a plane [height][width] from the subbands of one level.
 void SynthesizeHaar(Transform transform, const std::array<const int32_t*, kBands>& bands, int width,
                     int height, int32_t* values);
 

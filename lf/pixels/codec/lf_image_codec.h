@@ -4,7 +4,8 @@
 //
 // The encoder cuts an image into tiles and each tile into planes. It wavelet transforms the planes,
 // quantises the coefficients, packs them into bytes and compresses these with zstd. The encoded
-// image holds the approximations of all tiles first, then one level of details after the other.
+// image holds the approximations of all tiles first, then one level of details after the other,
+// from the coarsest to the finest.
 // Encoding is deterministic: equal images and settings give equal bytes.
 #pragma once
 
@@ -19,7 +20,7 @@
 
 namespace lf {
 
-// Pixel values as an image file stores them, of 8 or 16 bits: [height][width][1] for grey or a
+// The values that an encoded image stores, of 8 or 16 bits: [height][width][1] for grey or a
 // mosaic, [height][width][3] for R, G, B.
 using CodecPixels = std::variant<Image<uint8_t>, Image<uint16_t>>;
 
@@ -31,20 +32,21 @@ enum class PixelLayout : uint8_t {
 
 enum class CodecProfile : uint8_t {
   // The thesis's profile: planes of equal colour (Figure 4.6), averaging Haar transform, one
-  // threshold for all details, the range of an image's coefficients mapped to `quantizer` values.
+  // threshold for all details, the range of an image's coefficients mapped to
+  // CodecSettings::quantizer values.
   kThesis = 0,
   // 5/3 wavelets; uniform quantisers with a dead zone. The step of each subband is chosen such that
-  // a coefficient causes the same error in the image whatever its subband is.
+  // an error of one step causes the same error in the image whatever the subband is.
   kDefault = 1,
-  // The wavelets of kDefault in integers, without any loss.
+  // The wavelets of kDefault without quantisation: nothing is lost.
   kLossless = 2,
 };
 
 struct CodecSettings {
   CodecProfile profile = CodecProfile::kDefault;
   int levels = 4;  // number of wavelet levels, 1 to 5; the thesis found 1 to be best
-  // Detail coefficients whose magnitude is below this value become 0. It is in units of stored
-  // values. kThesis compares coefficients of the averaging transform. kDefault compares
+  // Detail coefficients whose magnitude is below this value become 0. It is 0 to 65535, in units of
+  // stored values. kThesis compares coefficients of the averaging transform. kDefault compares
   // coefficients of the transform scaled to unit norm, and its quantiser's step is 1.5 times the
   // threshold. kLossless ignores it.
   double threshold = 3;
@@ -73,8 +75,8 @@ struct CodeInfo {
 };
 
 // Reads only the head. Returns kInput, with a message that does not name the file, if `code` is no
-// encoded image, was written by a newer version, is damaged, has more than 2^30 pixels, or is
-// shorter than its own table of contents.
+// encoded image, was written by a newer version, has a damaged head or more than 2^30 pixels, or
+// is too short for its table of contents.
 Result<CodeInfo> ReadCodeInfo(std::string_view code);
 
 struct DecodedPart {
@@ -82,11 +84,11 @@ struct DecodedPart {
   PixelRect rect;  // position of the pixels in the image
 };
 
-// Decodes the tiles that contain `wanted`, which must contain a pixel of the image. Reuses the
+// Decodes the tiles that overlap `wanted`, which must contain a pixel of the image. Reuses the
 // memory of part->pixels if it has the right type. If another program wrote `code`, the result may
 // be any picture or an error, but decoding never needs more memory than a few times the pixels of
 // these tiles. Returns kInput, with a message that does not name the file, if ReadCodeInfo() does,
-// or if the tiles are damaged.
+// or if the table of contents or one of these tiles is damaged.
 Result<void> DecodeImage(std::string_view code, const PixelRect& wanted, DecodedPart* part);
 // Decodes the whole image.
 Result<void> DecodeImage(std::string_view code, DecodedPart* part);

@@ -347,14 +347,15 @@ TEST(LfImageCodec, ABlobThatClaimsTooMuchIsRefused) {
   ASSERT_FALSE(info);
   EXPECT_EQ(info.error().message,
             "is a damaged encoded LF image: its size of 1048576 x 2048 is not between 1 and 2^30 "
-            "pixels");
+            "pixels; copy or make the packed store again");
 }
 
 TEST(LfImageCodec, AWrongHeadIsNamedWithItsValue) {
   const auto expect = [](std::string_view head, const std::string& part) {
     const Result<CodeInfo> info = ReadCodeInfo("LFIM" + std::string(head));
     ASSERT_FALSE(info) << part;
-    EXPECT_EQ(info.error().message, "is a damaged encoded LF image: " + part);
+    EXPECT_EQ(info.error().message,
+              "is a damaged encoded LF image: " + part + "; copy or make the packed store again");
   };
   using namespace std::string_view_literals;
   expect("\0"sv, "its version is 0, expected 1");

@@ -77,8 +77,8 @@ struct Choice {
   double cost = 0;  // estimated size of the encoded stream, in bytes
 };
 
-// Returns the packing that needs the fewest bytes. kOverhead is the fixed size of each stream, in
-// bytes.
+// Returns the packing that needs the fewest bytes by estimate. kOverhead is the fixed size of each
+// stream, in bytes.
 //   escapes_left  number of nested streams of escapes that are still allowed
 Choice BestPacking(std::span<const uint32_t> numbers, int escapes_left) {
   constexpr double kOverhead = 40;
@@ -110,7 +110,8 @@ Choice BestPacking(std::span<const uint32_t> numbers, int escapes_left) {
   return best;
 }
 
-// Returns the best packing for a sample of the numbers: runs that are spread evenly over them.
+// Returns the best packing for the numbers, or, if there are more than kRun * kRuns, for a sample
+// of them: kRuns runs that are spread evenly.
 Packing ChosenPacking(std::span<const uint32_t> numbers, int escapes_left) {
   constexpr size_t kRun = 256, kRuns = 32;
   const uint32_t largest = *std::max_element(numbers.begin(), numbers.end());

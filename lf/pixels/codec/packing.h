@@ -1,11 +1,11 @@
-// Packs coefficients into bytes that zstd compresses well, and unpacks them
-// (doc/formats/lf_image.md, "Streams"). Internal to this folder.
+// Packs coefficients into bytes that zstd compresses well, compresses these, and reverses both
+// steps (doc/formats/lf_image.md, "Streams"). Internal to this folder.
 //
 // Most coefficients are 0, 1 or -1, and small ones have small neighbours. zstd compresses bytes,
-// and spends at least one bit on each; therefore up to four coefficients share a byte. A
-// coefficient that is too large for its share of the byte is an escape: the byte holds the largest
-// value of the share, and the remainder (the coefficient minus this value) is appended to a second
-// stream, which is then packed in the way that makes it shortest.
+// and spends at least one bit on each; therefore up to four coefficients share a byte. Coefficients
+// first become numbers without a sign (Folded()). A number that is too large for its share of the
+// byte is an escape: the byte holds the largest value of the share, and the remainder (the number
+// minus this value) is appended to a second stream, which is packed in the same way.
 #pragma once
 
 #include <cstddef>
@@ -41,8 +41,8 @@ uint32_t Folded(T value) {
   return (static_cast<uint32_t>(int32_t{value}) << 1) ^ static_cast<uint32_t>(int32_t{value} >> 31);
 }
 
-// Appends the coefficients as a stream, packed in the way that makes it shortest. All values must
-// fit into T.
+// Appends the coefficients as a stream, packed in the way that is expected to make it shortest;
+// appends nothing if there are none. All values must fit into T.
 template <class T>
 void AppendCoefficients(std::span<const int32_t> values, std::string* code);
 

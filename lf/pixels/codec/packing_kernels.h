@@ -13,7 +13,8 @@ namespace lf {
 inline int PerByte(Packing packing) { return static_cast<int>(packing); }
 inline bool IsPlanes(Packing packing) { return packing >= Packing::kPlanes2; }
 inline int PlaneCount(Packing packing) { return static_cast<int>(packing) - 16; }
-// Returns the value that marks an escape. Smaller values are the numbers themselves.
+// Returns the value that marks an escape in the packings kOne, kTwo and kFour. Smaller values are
+// the numbers themselves.
 inline uint32_t EscapeOf(Packing packing) { return (1u << (8 / PerByte(packing))) - 1; }
 
 // A stream whose bytes are decompressed and whose escapes are unpacked.

@@ -22,7 +22,8 @@ inline constexpr std::array<double, kRgbComponents> kRgbNorms = {1.7320508, 0.86
 void SeparateColours(int32_t* red_y, int32_t* green_cg, int32_t* blue_co, size_t count);
 
 // Makes pixels of three channels from the components, scaled as PixelScale (wavelet53.h) states.
-// Rows of the components are as wide as rows of the pixels.
+// Rows of the components are as wide as rows of the pixels, and kSlack elements (wavelet53.h) must
+// follow the last row.
 template <class T, class Pixel>
 void MergeColours(Transform transform, const std::array<const T*, kRgbComponents>& components,
                   const PixelScale& scale, ImageView<Pixel> pixels);

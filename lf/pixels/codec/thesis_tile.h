@@ -18,15 +18,15 @@
 
 namespace lf {
 
-// Thresholded coefficients of a tile. streams[r] holds resolution r (0 is the approximation) of one
-// plane after the other.
+// Thresholded coefficients of a tile. streams[r] holds resolution r of one plane after the other.
+// Resolution 0 is the approximation, the others are details from the coarsest level to the finest.
 struct HaarTile {
   std::vector<std::vector<int32_t>> streams;
   int32_t low = std::numeric_limits<int32_t>::max();   // least coefficient of all streams
   int32_t high = std::numeric_limits<int32_t>::min();  // largest coefficient of all streams
 };
 
-// Transforms a tile, and sets detail coefficients below the threshold to 0.
+// Transforms a tile, and sets detail coefficients whose magnitude is below the threshold to 0.
 //   threshold  CodecSettings::threshold
 template <class Pixel>
 HaarTile TransformTile(const CodeHead& head, double threshold, ImageView<const Pixel> pixels);

@@ -6,7 +6,8 @@
 //   high[i] = x[2i + 1] - (x[2i] + x[2i + 2] >> 1)
 //   low[i]  = x[2i]     + (high[i - 1] + high[i] + 2 >> 2)
 //
-// Values beyond the ends are mirrored: x[n] = x[n - 2], high[-1] = high[0]. Rows are transformed
+// Values beyond the ends are mirrored: x[n] = x[n - 2], high[-1] = high[0] and, for odd n,
+// high[n / 2] = high[n / 2 - 1]. A single value is its own low coefficient. Rows are transformed
 // first, then columns. All arithmetic is in the type T of the values, modulo its range, so that the
 // inverse transform (synthesis) restores any x exactly.
 #pragma once

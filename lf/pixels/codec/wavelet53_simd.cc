@@ -141,8 +141,8 @@ struct Half {
   T *high_now, *high_last, *even_now, *even_last, *odd;
 };
 
-// Calls put(y, low, high) for every row y of the plane in turn; `low` and `high` are its halves, as
-// MergeRow() takes them.
+// Calls put(y, low, high) for every row y of the plane in turn; `low` and `high` are the halves of
+// row y, as MergeRow() takes them.
 template <class T, class Put>
 void SynthesizeRows(const CodedBands<T>& bands, const Rows<T>& rows, const Put& put) {
   const int low_rows = LowCount(bands.height), high_rows = HighCount(bands.height);

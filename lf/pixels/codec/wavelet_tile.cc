@@ -19,9 +19,9 @@ namespace {
 constexpr int kFractionBits = 3;
 constexpr int kMostDoublings = 1;
 
-// Returns true if coefficients of level `depth` are doubled before the next level transforms them.
-// They are the low subband, or all four subbands if level `depth` splits a mosaic. Levels are
-// counted from the finest, which is 1; only level 1 can split a mosaic.
+// Returns true if coefficients of level `depth` are doubled before the next level transforms them:
+// the low subband, or all four subbands if level `depth` splits a mosaic. Levels are counted from
+// the finest, which is 1; only level 1 can split a mosaic.
 bool IsDoubled(const CodeHead& head, int depth) {
   return head.info.profile == CodecProfile::kDefault && depth <= kMostDoublings;
 }
@@ -113,7 +113,8 @@ int32_t LargestOf(const std::vector<int32_t>& values, size_t count) {
   return largest;
 }
 
-// Appends for each value (|value| + rounding) / step, rounded down, with the sign of the value.
+// Appends for each of the first `count` values (|value| + rounding) / step, rounded down, with the
+// sign of the value.
 //   rounding  step / 2 rounds to the nearest; step / 3 makes values below two thirds of a step 0
 void AppendQuantized(const std::vector<int32_t>& values, size_t count, int32_t step,
                      int32_t rounding, std::vector<int32_t>* out) {

@@ -16,7 +16,7 @@
 
 namespace lf {
 
-// Sets the fields of the head that belong to the profile: fraction bits and steps.
+// Sets fraction_bits and steps of the head, as its profile and settings.threshold demand.
 void SetSteps(const CodecSettings& settings, CodeHead* head);
 
 // The quantised coefficients of a tile, in one stream for each component and resolution. Resolution

@@ -18,8 +18,8 @@ struct ExposureFacts {
 };
 
 // Reads the header alone: the Exif data of JPEG, TIFF and PNG files; for camera raw files, what
-// LibRaw reads from them. EXR files state no exposure. kInput in the cases that ReadImageInfo()
-// (image_file.h) lists.
+// LibRaw reads from them. EXR files state no exposure. Errors are as for ReadImageInfo()
+// (image_file.h), except that damaged Exif data count as missing.
 Result<ExposureFacts> ReadExposureFacts(const std::filesystem::path& path);
 
 // Reads the exposure from a file that is in memory; messages call the file `name`.

@@ -28,7 +28,7 @@ class InputStream : public Imf::IStream {
  public:
   explicit InputStream(const FileBytes& file) : IStream(file.name.c_str()), file_(file) {}
 
-  // Reads `count` bytes. Returns false if the file ends behind them.
+  // Reads `count` bytes, and throws if fewer are left. Returns false if the file ends behind them.
   bool read(char to[], int count) override {
     const std::span<uint8_t> bytes(reinterpret_cast<uint8_t*>(to), static_cast<size_t>(count));
     if (file_.read(offset_, bytes) != bytes.size())
@@ -134,7 +134,7 @@ class ExrDecoder : public PictureDecoder {
 
   const ImageFileInfo& info() const override { return info_; }
 
-  // OpenEXR converts halves and integers to floats of equal value.
+  // OpenEXR converts halves and integers (exactly up to 2^24) to floats.
   Result<void> Read(StoredImage* image) override {
     Image<float>& floats = Resized<float>(info_.width, info_.height, info_.channels, image);
     const Imath::Box2i& window = file_->header(0).dataWindow();

@@ -23,9 +23,9 @@
 namespace lf {
 
 // Pixels of a file, in the type it stores: integers of up to 8 bits as uint8_t, of up to 16 bits as
-// uint16_t (bit depths in between are scaled to the full range), half and float as float. Wider or
-// signed integers become floats of equal value (exact up to 2^24), and doubles are rounded to
-// float. If one channel becomes float, all channels do.
+// uint16_t (other numbers of bits than 8 and 16 are scaled to the full range, except in camera raw
+// files), half and float as float. Wider or signed integers become floats of equal value (exact up
+// to 2^24), and doubles are rounded to float. If one channel becomes float, all channels do.
 using StoredImage = std::variant<Image<uint8_t>, Image<uint16_t>, Image<float>>;
 
 // Properties of the pixels that a camera raw file states, in the terms of
@@ -46,12 +46,12 @@ struct ImageFileInfo {
   int channels = 0;
   int bits = 0;  // 8, 16 or 32: bits of a value of the StoredImage
   bool is_float = false;
-  std::vector<std::string> channel_names;  // name of each channel in the file's format
+  std::vector<std::string> channel_names;  // name of each channel, such as R, Y or beauty.R
   int orientation = 1;                     // EXIF orientation, 1 to 8; the pixels stay as stored
   std::optional<RawFacts> raw;             // set only for camera raw files: 1 channel, 16 bits
 };
 
-// Reads the header alone. kInput as for ReadImage(), except that truncation behind the header is
+// Reads the header alone. Errors are as for ReadImage(), except that damage behind the header is
 // not detected. For camera raw files other than DNG the black level is missing, because LibRaw
 // measures it on covered pixels of the sensor.
 Result<ImageFileInfo> ReadImageInfo(const std::filesystem::path& path);
@@ -69,10 +69,10 @@ Result<ImageFileInfo> ReadImageInfo(const std::filesystem::path& path);
 //   damage within compressed pixels, and does not accept pictures below 22 pixels in width or
 //   height.
 // kInput, naming the file: it is missing, unreadable, truncated or damaged (JPEG: also if libjpeg
-// had to guess pixels); it has another format, or is a raw file that is neither Bayer nor
-// monochrome; it is a CMYK JPEG; it is larger than 2^30 pixels or 2^32 values, which is checked
-// before pixels are allocated. kOutput: the machine lacks something (KindOfReadFailure() of
-// core/file.h).
+// had to guess pixels); it has another format, or pixels of a kind that is not read, such as CMYK
+// colours, deep data, or a raw mosaic that is not Bayer (the message says which); it is larger than
+// 4 GiB, 2^30 pixels or 2^32 values, which is checked before pixels are allocated. kOutput: the
+// machine lacks something (KindOfReadFailure() of core/file.h).
 Result<StoredImage> ReadImage(const std::filesystem::path& path);
 
 // Reads pixels and header at once.
@@ -110,28 +110,30 @@ Result<void> ReadImagePartBytes(std::string_view bytes, const std::string& name,
 
 enum class PixelType { kUint8, kUint16, kHalf, kFloat };
 
-// Metadata that is written into the file if its format can hold it (EXR: all; PNG, TIFF, JPEG: as
-// text).
+// Keys and values that are written into the file: in EXR with their types, in PNG, TIFF and JPEG as
+// text. PNG cuts keys to 79 characters.
 using ImageMetadata = std::vector<std::pair<std::string, std::variant<std::string, double, int>>>;
 
 // Writes `pixels` atomically (core/file.h); the extension of `path` chooses the format. For integer
-// types, the values are clipped to [0, 1] (NaN becomes 0) and rounded to nearest. They are sRGB
-// values for display, and PNG files state this. Floats are written as they are; a value that is too
-// large for half becomes infinite. Equal pixels give equal bytes, because no date is written.
+// types, the values are sRGB values for display: they are clipped to [0, 1] (NaN becomes 0), scaled
+// to the range of the type and rounded to nearest; PNG files state that they are sRGB. Floats are
+// written as they are; a value that is too large for half becomes infinite. Equal pixels and
+// metadata give equal bytes, because no date is written.
 //   channel_names  one per channel, as EXR shows them; other formats ignore the names
 //   type           kUint8 (PNG, JPEG, TIFF), kUint16 (PNG, TIFF), kHalf (EXR), kFloat (EXR, TIFF)
 //   is_interrupted is called before every 32 rows are encoded, if given; it cannot interrupt the
 //                  writing to the disk
 // JPEG has quality 95 and full chroma resolution. EXR is compressed without loss (zip).
-// kOutput: the folder or the disk fails, or the format cannot hold the type. kInterrupted:
-// is_interrupted returned true; nothing is written.
+// kOutput: the folder or the disk fails, no format has the extension, the picture has no pixel, or
+// the format cannot hold the type or the number of channels (PNG: 1 to 4, JPEG: 1 or 3).
+// kInterrupted: is_interrupted returned true; nothing is written.
 Result<void> WriteImage(const std::filesystem::path& path, ImageView<const float> pixels,
                         const std::vector<std::string>& channel_names, PixelType type,
                         const ImageMetadata& metadata = {},
                         const std::function<bool()>& is_interrupted = {});
 
-// These functions write integers of 8 or 16 bits exactly as they are. The file states no colour
-// space.
+// These functions write integers of 8 or 16 bits without converting them (JPEG holds only 8 bits,
+// and is not exact). The file states no colour space. Otherwise they do as WriteImage() above.
 Result<void> WriteImage(const std::filesystem::path& path, ImageView<const uint8_t> pixels);
 Result<void> WriteImage(const std::filesystem::path& path, ImageView<const uint16_t> pixels);
 

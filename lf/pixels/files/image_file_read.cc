@@ -94,7 +94,8 @@ Result<PixelRect> All(const ImageFileInfo& info) {
   return PixelRect{0, 0, info.width, info.height};
 }
 
-// Turns the exceptions of a decoder into errors, except std::bad_alloc, which main() handles.
+// Turns the exceptions of a decoder into errors, except std::bad_alloc, which callers handle
+// (doc/style.md, "Errors").
 template <class Read>
 auto WithoutThrowing(const std::string& name, const Read& read) -> decltype(read()) {
   try {

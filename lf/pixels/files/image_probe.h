@@ -23,9 +23,9 @@ inline constexpr uint64_t kMaxImagePixels = uint64_t{1} << 30;
 
 // Returns the format, which it detects by the content. kRaw is a camera raw file. A TIFF file is
 // kRaw if it is a DNG or a Canon CR2, or if it begins with a thumbnail, because a TIFF decoder
-// would show the thumbnail. kInput: the format is not read here; a PNG or JPEG claims more than
-// kMaxImagePixels or more than a file of its length can hold; a PNG claims a chunk before its
-// pixels that is longer than the file.
+// would show the thumbnail. kInput: the file is empty, or its format is not read here; a PNG or
+// JPEG ends before its size is stated, or claims more than kMaxImagePixels or more than a file of
+// its length can hold; a PNG claims a chunk before its pixels that is longer than the file.
 Result<ImageFormat> ProbeImage(const ByteSource& source, const std::string& name);
 
 // kInput if an image has more pixels than kMaxImagePixels.

@@ -20,8 +20,9 @@ class LibtiffHandle {
   // Reads the header and the first directory. `file` must outlive the handle. kInput: the file is
   // truncated or damaged.
   static Result<std::unique_ptr<LibtiffHandle>> OpenToRead(const FileBytes& file);
-  // Starts a file whose bytes become `bytes`, which must outlive the handle. It is complete after
-  // Close(). A BigTIFF file can have more than 4 GiB.
+  // Starts a file whose bytes become `bytes`, which must outlive the handle. The file is complete
+  // after Close().
+  //   is_big  makes a BigTIFF file, which can have more than 4 GiB
   static Result<std::unique_ptr<LibtiffHandle>> OpenToWrite(const std::string& name, bool is_big,
                                                             std::string* bytes,
                                                             bool is_big_endian = false);
@@ -34,9 +35,10 @@ class LibtiffHandle {
   // Frees libtiff's memory. A file to write must have been completed by TIFFWriteDirectory().
   void Close();
 
-  // Returns an error if libtiff reported that pixels are missing or guessed: kInput when reading,
-  // kOutput when writing. `succeeded` is the result of the last call. Throws std::bad_alloc if
-  // memory ran out, and rethrows an exception of the ByteSource.
+  // Returns an error if `succeeded`, the result of the last call of libtiff, is false, or if
+  // libtiff has reported in any call that pixels are missing or guessed: kInput when reading,
+  // kOutput when writing. Throws std::bad_alloc if memory ran out, and rethrows an exception of the
+  // ByteSource.
   Result<void> Check(bool succeeded) const;
 
  private:
@@ -52,6 +54,7 @@ class LibtiffHandle {
   static int OnError(TIFF*, void* handle, const char*, const char* format, va_list) noexcept;
   static int OnWarning(TIFF*, void* handle, const char* module, const char* format,
                        va_list) noexcept;
+  // Keeps the first message as fault_, and notes whether a message says that memory ran out.
   void Note(const char* message) noexcept;
 
   std::string name_;

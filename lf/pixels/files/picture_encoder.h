@@ -12,9 +12,9 @@
 
 namespace lf {
 
-// Number of rows that are made and encoded at a time. It is a multiple of the rows in a block of
-// EXR's compression (16), so that the encoded bytes do not depend on this number. Encoding this
-// many rows of 8192 pixels takes about 0.1 s.
+// Number of rows that are made and encoded at a time, and of the rows in a strip of a TIFF file. It
+// is a multiple of the rows in a block of EXR's compression (16), so that the bytes of an EXR file
+// do not depend on this number. Encoding this many rows of 8192 pixels takes about 0.1 s.
 inline constexpr int kBlockRows = 32;
 
 // A picture whose rows are made while it is encoded.
@@ -24,7 +24,7 @@ struct PictureRows {
   int height = 0;
   int channels = 0;
   PixelType type = PixelType::kUint8;  // type of all channels; not kHalf
-  bool is_srgb = false;                // true: the file states that its values are sRGB
+  bool is_srgb = false;                // true: a PNG file states that its values are sRGB
   ImageMetadata metadata = {};
   // Writes the values of row y to `to`, [x][channel] without gaps.
   std::function<void(int y, std::byte* to)> pack_row;

@@ -53,8 +53,8 @@ void OnWarning(png_structp png, png_const_charp warning) {
   if (IsAboutPixels(warning)) png_error(png, warning);
 }
 
-// Returns the bytes of a "raw profile", as ImageMagick stores Exif data in a chunk of text: a line
-// with the kind, a line with the length, and lines of hexadecimal digits.
+// Returns the bytes of a "raw profile", as ImageMagick stores Exif data in a chunk of text: an
+// empty line, a line with the kind, a line with the length, and lines of hexadecimal digits.
 std::vector<uint8_t> BytesOfRawProfile(std::string_view text) {
   for (int line = 0; line < 3; ++line) {
     const size_t end = text.find('\n');

@@ -22,7 +22,7 @@ constexpr int kCompressionLevel = 4;
 // Largest length of a keyword of a text (PNG, third edition, 11.3.3.2).
 constexpr size_t kMostKeyCharacters = 79;
 
-// The entries of the metadata, in the form that libpng reads.
+// The entries of the metadata, in the form that libpng takes.
 class Texts {
  public:
   explicit Texts(const ImageMetadata& metadata) {

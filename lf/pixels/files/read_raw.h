@@ -17,24 +17,25 @@ namespace lf {
 // it. Each reader has its own LibRaw object, which starts no threads.
 class RawReader {
  public:
-  // Reads the header. `source` must outlive the reader. kInput: LibRaw does not know the file; it
-  // holds no Bayer or monochrome pixels as the sensor recorded them (the message says what it
-  // holds, and what to do); it has more pixels than kMaxImagePixels, or than a file of its length
-  // can hold.
+  // Reads the header. `source` must outlive the reader. kInput: LibRaw does not know the file, or
+  // finds it damaged; the file holds no Bayer or monochrome pixels as the sensor recorded them (the
+  // message says what it holds, and what to do); it has more pixels than kMaxImagePixels, or than a
+  // file of its length can hold.
   static Result<RawReader> Open(const ByteSource& source, uint64_t size_bytes,
                                 const std::string& name);
   RawReader(RawReader&&) noexcept;
   ~RawReader();
 
-  // Before Read(), the black level is known only for DNG files. For other files LibRaw measures it
-  // on the pixels of the sensor that are covered from light.
+  // Before Read(), raw->black_level is set only for DNG files. For other files LibRaw measures the
+  // black level on the pixels of the sensor that are covered from light.
   const ImageFileInfo& info() const;
 
   // Returns the exposure that the file states.
   ExposureFacts exposure() const;
 
-  // Decodes the visible pixels into `image`, whose memory is reused. kInput: LibRaw noticed that
-  // the file is truncated or damaged. Throws std::bad_alloc if LibRaw lacks memory.
+  // Decodes the visible pixels into `image`, whose memory is reused. kInput: the file is truncated
+  // or damaged; small damage within compressed pixels may not be noticed. Throws std::bad_alloc if
+  // LibRaw lacks memory.
   Result<void> Read(Image<uint16_t>* image);
 
  private:

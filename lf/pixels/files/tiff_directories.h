@@ -11,7 +11,8 @@
 
 namespace lf {
 
-// One directory (IFD): its tags, and the positions of their values. It has at most 1024 tags.
+// One directory (IFD): its tags, and the positions of their values. Only the first 1024 tags of a
+// directory are read.
 class TiffDirectory {
  public:
   bool Has(int tag) const { return entries_.contains(tag); }

@@ -47,8 +47,8 @@ struct TiffLayout {
   }
 };
 
-// Describes the picture of the current directory. kInput: the picture is larger than ReadImage()
-// allows, or of a kind that is not read.
+// Describes the picture of the current directory of `tiff`. kInput: the picture is damaged, larger
+// than ReadImage() allows, or of a kind that is not read.
 Result<TiffLayout> TiffLayoutOf(TIFF* tiff, const std::string& name);
 
 }  // namespace lf

@@ -83,7 +83,7 @@ class TiffDecoder : public PictureDecoder {
   TiffLayout layout_;
   ImageFileInfo info_;
   std::vector<std::byte> decoded_;  // one decoded block
-  std::vector<std::byte> packed_;   // one block as stored in the file
+  std::vector<std::byte> packed_;   // one block as stored in the file; ReadFax(): decoded again
   ZlibBlock zlib_;
 };
 

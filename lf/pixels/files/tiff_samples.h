@@ -36,7 +36,7 @@ bool IsStoredAs(const TiffSamples& samples) {
 // Samples of other sizes are packed, the most significant bit first. Sample i becomes
 // to[i * to_step]. T must have StoredBitsOf(samples) bits.
 // - Unsigned integers of up to 16 bits are scaled to the full range of T, rounded down.
-// - Other integers keep their value. Doubles are rounded to float.
+// - Other integers and doubles become the nearest float.
 template <class T>
 void ConvertSamples(const TiffSamples& samples, const std::byte* from, size_t count, T* to,
                     size_t to_step);

@@ -39,7 +39,7 @@ std::optional<std::string> Name(const ByteSource& source, uint64_t* offset) {
 }
 
 // Returns the number of rows in a block, for the number that stands for the compression in the file
-// (OpenEXR, "File Layout").
+// (OpenEXR, "File Layout"); none for an unknown number.
 std::optional<int64_t> RowsOfBlock(uint8_t compression) {
   constexpr int64_t kRows[] = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
   if (compression >= std::size(kRows)) return std::nullopt;

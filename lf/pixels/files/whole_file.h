@@ -1,5 +1,5 @@
 // Checks that a picture file is complete. An encoding library may not report that memory ran out,
-// and a frame of an earlier run may have been truncated by a copy or a disk. Both look like
+// and a frame of an earlier run may have been truncated by a copy or a disk. Such files look like
 // pictures until somebody decodes their last rows.
 #pragma once
 
@@ -20,7 +20,7 @@ namespace lf {
 //         file. Only scanlines in one part, as WriteExr() writes them; other kinds are an error
 //   PNG   the chunks reach the end mark
 //   JPEG  the last two bytes are the end mark
-//   TIFF  the first directory lies in the file
+//   TIFF  the first directory begins in the file; a BigTIFF file is an error
 //   raw   an error, because this project writes none
 //   source  copies the bytes from `offset` on into `to`; returns how many it copied
 //   name    name of the file, for messages

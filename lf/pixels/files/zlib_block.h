@@ -11,12 +11,13 @@ namespace lf {
 // Inflates one stream after another, in the same memory.
 class ZlibBlock {
  public:
-  // Inflates the whole stream and verifies its checksum. The first `size` bytes become stored();
-  // more bytes are allowed, because some programs fill up the last strip of a picture. Returns null
-  // if the stream is valid, otherwise what is wrong with it. Throws std::bad_alloc.
+  // Inflates the whole stream and verifies its checksum. The first `size` bytes become stored(); up
+  // to `size` + 1 MiB more are allowed, because some programs fill up the last strip of a picture.
+  // Returns null if the stream is valid, otherwise what is wrong with it. Throws std::bad_alloc if
+  // memory runs out.
   const char* Inflate(std::span<const std::byte> stream, size_t size);
 
-  // The inflated bytes as a zlib stream without compression.
+  // The bytes that the last Inflate() kept, as a zlib stream without compression.
   std::span<uint8_t> stored() { return stored_; }
 
  private:
