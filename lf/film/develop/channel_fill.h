@@ -12,8 +12,8 @@ namespace lf {
 
 class ChannelFill {
  public:
-  // Number of calls of At() between two calls of is_interrupted(). One call of At() takes up to 0.1
-  // ms.
+  // Number of calls of At() after which its caller calls is_interrupted() again. One call of At()
+  // takes up to 0.1 ms.
   static constexpr int kFillsPerQuestion = 64;
 
   //   mean, ray_count  mean value and number of the rays of each element
@@ -29,9 +29,9 @@ class ChannelFill {
   class Scratch;
 
   // Returns the mean of the collected elements around (x, y), weighted by inverse distance, as
-  // Develop() defines it; 0 if no collected element is near. Finds the radius by counts in squares,
-  // each in constant time, and then visits only collected elements, so that empty surroundings cost
-  // almost nothing.
+  // Develop() defines it; 0 if no collected element is within RadiusAt(). Finds the radius by
+  // counts in squares, each in constant time, and then visits only collected elements, so that
+  // empty surroundings cost almost nothing.
   float At(int x, int y, Scratch& scratch) const;
 
  private:

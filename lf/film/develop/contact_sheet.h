@@ -9,8 +9,8 @@
 
 namespace lf {
 
-// Returns the indices of the frames that a contact sheet shows: at most `limit` of `frame_count`.
-// The first and the last are included if `limit` is at least 2.
+// Returns the indices (from 0, ascending) of the frames that a contact sheet shows: at most `limit`
+// of `frame_count`. The first and the last are included if `limit` is at least 2.
 std::vector<size_t> ContactSheetFrames(size_t frame_count, size_t limit = 12);
 
 // A grid of pictures of one size with thin borders, and with about as many columns as rows.
@@ -20,9 +20,9 @@ class ContactSheet {
   // most max_width_px wide.
   ContactSheet(size_t count, int width, int height, int max_width_px = 1920);
 
-  // Puts an 8-bit sRGB picture [height][width][3] into cell i of the grid, counted row by row,
-  // reduced to the size of the cell (area average in linear light). Threads may place different
-  // pictures at the same time.
+  // Puts an 8-bit sRGB picture [height][width][3], of the size given to the constructor, into cell
+  // i of the grid, counted row by row, reduced to the size of the cell (area average in linear
+  // light). Threads may place different pictures at the same time.
   void Place(size_t i, const Image<uint8_t>& picture);
 
   // Writes the page as PNG, atomically. kOutput: the folder or the disk cannot be written.

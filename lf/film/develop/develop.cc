@@ -14,8 +14,9 @@ namespace {
 
 constexpr int kChannels = SensorPlate::kChannels;
 
-// Returns the weight of the completion (the interpolated part of the frame) in a channel that has
-// `count` collected rays: 1 if it has none. 0 if there is no completion.
+// Returns the weight of the completion (the interpolated part of the frame) in a channel of element
+// (x, y) that has `count` collected rays: Completion::share, but 1 if `count` is 0 and the share is
+// not; 0 without completion.
 double ShareOf(const Completion* completion, int x, int y, uint64_t count) {
   if (completion == nullptr) return 0;
   const double share = completion->share.at(x, y);
@@ -23,7 +24,7 @@ double ShareOf(const Completion* completion, int x, int y, uint64_t count) {
 }
 
 // Returns the number of rays that decides whether a channel is filled: `count`, or the largest
-// uint32_t if the element has a completion, because it then needs no fill.
+// uint32_t if the completion has a share in the element, which then needs no fill.
 uint32_t KnownCount(const Completion* completion, int x, int y, uint32_t count) {
   const bool is_completed = completion != nullptr && completion->share.at(x, y) > 0;
   return is_completed ? std::numeric_limits<uint32_t>::max() : count;

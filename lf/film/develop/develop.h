@@ -18,7 +18,7 @@ struct Completion {
   Image<float> rgb;  // [height][width][3], as 16-bit values like those of the plate
   // [height][width] Weight of rgb, in [0, 1], in an element that also has collected rays; the mean
   // of these rays has the weight 1 - share. A channel without collected rays takes rgb alone. Where
-  // share is 0, rgb is unknown.
+  // share is 0, rgb is unknown and not used.
   Image<float> share;
 };
 
@@ -53,8 +53,9 @@ struct DevelopOptions {
   // alone in elements without rays. Must be null for a plate with opacities.
   const Completion* completion = nullptr;
 
-  // If given, any thread calls it, before each row and at least once for every 64 elements that are
-  // filled. Once it returns true, the remaining work is skipped, and the result must not be used.
+  // If given, any thread calls it, before each row and at least once for every 64 values (channels
+  // of elements) that are filled. Once it returns true, the remaining work is skipped, and the
+  // result must not be used.
   std::function<bool()> is_interrupted = {};
 };
 
@@ -65,7 +66,8 @@ struct DevelopedFrame {
   // [height][width] in [0, 1]; empty for a plate without opacities. rgb is multiplied by it.
   Image<float> opacity = {};
   // [height][width] number of LF images of equal weight that would give the same noise; empty
-  // without lens weights. With lens weights, ray_count holds sums of weights.
+  // without lens weights. Develop() leaves it empty: callers fill it. With lens weights, ray_count
+  // holds sums of weights.
   Image<float> effective_count = {};
   // [height][width] share of each element that was interpolated from rebinned rays; empty without
   // completion
@@ -83,10 +85,10 @@ struct DevelopedFrame {
 // over all collected elements within the smallest radius in which there are at least 4 of them,
 // with at least smooth_below rays together. The radius is at most fill_radius_px for an element
 // without a ray, and kSmoothRadius_px otherwise, even if it contains fewer. The element's own
-// value, if it has one, is one of the v_i, with d = 0.5. Then applies white balance and
-// linear_srgb_from_camera. Opacities are averaged and filled like a colour, from the same
-// neighbours, and clipped. Counts above 2^32 - 1 become 2^32 - 1. The bits do not depend on the
-// number of threads.
+// value, if it has one, is one of the v_i, with d = 0.5. Elements with completion count as
+// collected, with enough rays. Then Develop() applies white balance and linear_srgb_from_camera.
+// Opacities are averaged and filled like a colour, from the same neighbours, and clipped. Counts
+// above 2^32 - 1 become 2^32 - 1. The bits do not depend on the number of threads.
 DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, ThreadPool& pool);
 
 }  // namespace lf

@@ -19,8 +19,9 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// Returns the frame rate as text for ffmpeg. Rates of television, such as 29.97, become fractions N
-// * 1000 / 1001 with an integer N.
+// Returns the frame rate as text for ffmpeg. A rate that is no integer, and differs from a rate of
+// television (N * 1000 / 1001 with an integer N) by less than a millionth of it, becomes this
+// fraction: 29.97003 becomes 30000/1001, but 29.97 stays as it is.
 std::string FrameRate(double fps) {
   const double whole = std::round(fps * 1.001);
   if (fps != std::round(fps) && std::abs(fps * 1.001 - whole) < 1e-6 * whole)

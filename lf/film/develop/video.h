@@ -12,8 +12,8 @@ namespace lf {
 // Checks that ffmpeg can be run and encodes H.264. It is called before the render, so that a
 // night's work does not fail at its end. kOutput: the message says what to install.
 Result<void> CheckVideoTool();
-// Checks the file of --video before the render: its folder must exist, and it must not replace a
-// file that is not a video. kOutput otherwise.
+// Checks the file of --video before the render: its folder must exist, and the file must be absent,
+// empty or an mp4 video. kOutput otherwise.
 Result<void> CheckVideoTarget(const std::filesystem::path& path);
 
 // Writes an mp4 (H.264, yuv420p, sRGB tagged as BT.709) of 8-bit sRGB pictures, frame by frame. An

@@ -21,7 +21,8 @@ namespace {
 
 constexpr std::string_view kKeyCharacters = "abcdefghijklmnopqrstuvwxyz0123456789_.";
 
-// Parses "key: value" lines. Returns none if a line is not of this form or a key occurs twice.
+// Parses "key: value" lines, each with a line feed. Returns none if a line is not of this form, or
+// a key occurs twice or has characters other than kKeyCharacters.
 std::optional<PlateEntries> ParseEntries(std::string_view text) {
   PlateEntries entries;
   while (!text.empty()) {
@@ -137,8 +138,9 @@ Result<Front> ReadFront(Source& source, size_t head_bytes) {
   // The checksum is right, so that any fault from here on was in the file when it was written.
   std::optional<PlateEntries> entries = ParseEntries(text);
   if (!entries)
-    return InputError(fmt::format("{}: the text in its head has lines that are not \"key: value\"",
-                                  source.name()));
+    return InputError(fmt::format(
+        "{}: the text in its head has lines that are not \"key: value\", or a key twice",
+        source.name()));
   front.entries = *std::move(entries);
   return front;
 }

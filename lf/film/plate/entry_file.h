@@ -23,7 +23,7 @@ struct Kind {
   uint32_t version;
   // Words for error messages about such a file:
   std::string_view noun;       // the kind of file, such as "plate" in "is no plate"
-  std::string_view if_broken;  // what damage means to the user, and what to do
+  std::string_view if_broken;  // what damage of the file means to the user
 };
 
 // The head of every file, of plates or of rebinned rays, begins with these fields.
@@ -54,7 +54,7 @@ class Source {
 
   // Reads the next `size` bytes. kInput if fewer are left, or if they cannot be read.
   Result<void> Read(void* to, size_t size);
-  // Returns the error (kInput) that says that the file is damaged, why, and what to do.
+  // Returns the error (kInput) that says that the file is damaged, why, and Kind::if_broken.
   Error Damaged(const std::string& reason) const;
 
  private:
@@ -72,7 +72,7 @@ struct Front {
 
 // Reads a head of `head_bytes` bytes, the entries and the checksum of both. kInput if the file is
 // truncated, damaged, or of another kind or version, or if its text is not made of "key: value"
-// lines.
+// lines with different keys.
 Result<Front> ReadFront(Source& source, size_t head_bytes);
 
 // Returns the first bytes of a file: head, text of the entries, and checksum of both. Writes magic,
@@ -89,7 +89,8 @@ class OutputFile {
   void Write(const void* bytes, size_t size);
   void Write(std::string_view bytes) { Write(bytes.data(), bytes.size()); }
 
-  // Flushes the file. kOutput if the file could not be created or written.
+  // Gives all bytes to the system, without waiting for the disk; the destructor closes the file.
+  // kOutput if the file could not be created or written.
   Result<void> Close();
 
  private:

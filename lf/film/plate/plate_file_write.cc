@@ -21,8 +21,9 @@ using namespace plate_format;
 // of the bytes; level 3 takes a third longer and writes 3 % less.
 constexpr int kCompressionLevel = 1;
 
-// Elements of the wide table that a packed word could hold are written packed, because which
-// elements a plate keeps wide depends on how it was filled, and the file must not depend on this.
+// Returns true if a sum is written as a wide word, because its count does not fit in a packed word.
+// Where the plate stores the sum does not matter, because this depends on how the plate was filled,
+// and the file must not depend on it.
 bool IsWide(const ElementSum& rays) { return rays.count > SensorPlate::kMaxCount; }
 
 class Compressor {

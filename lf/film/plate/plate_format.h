@@ -26,7 +26,8 @@ struct Head {
 };
 static_assert(sizeof(Head) == 40);
 
-// Head of a chunk. The packed words of some rows of the plate follow it, compressed.
+// Head of a chunk. The packed words of some rows of the plate follow it, compressed; a word whose
+// content is a WideWord is 0.
 struct ChunkHead {
   uint32_t stored_bytes;
   uint32_t reserved;  // always 0

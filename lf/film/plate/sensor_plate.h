@@ -70,8 +70,8 @@ class SensorPlate {
   void Merge(const SensorPlate& other);
 
   // These functions show how sums and counts are stored, for files. words() are the packed words
-  // [height][width][channels()]. wide() holds sums and counts that do not fit in a packed word, by
-  // the index of the word. AtWord() returns the total of both.
+  // [height][width][channels()]. wide() holds sums and counts that were moved out of packed words
+  // before these could overflow, by the index of the word. AtWord() returns the total of both.
   std::span<const uint64_t> words() const { return packed_; }
   const std::map<size_t, ElementSum>& wide() const { return wide_; }
   ElementSum AtWord(size_t index) const;
@@ -86,7 +86,7 @@ class SensorPlate {
     return (static_cast<size_t>(y) * width_ + x) * channels_ + channel;
   }
   // Moves packed words of `rect` whose count exceeds `count_kept` to the wide table. Returns the
-  // largest count still packed there.
+  // largest count of the words of `rect` that stay packed.
   uint32_t Promote(const PixelRect& rect, uint32_t count_kept);
 
   int width_;

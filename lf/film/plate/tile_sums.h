@@ -31,7 +31,7 @@ class TileSums {
   // For mosaics: packed words like the words of the plate. Along a scanline, green alternates with
   // another colour. If an LF pixel is as large as an element, the colours alternate in the same way
   // along a row of elements. A row of elements has one row of words for each alternation, so that a
-  // scanline adds to adjacent words:
+  // scanline adds to adjacent words (x counts from the left border of the tile):
   //   kRedFirst    R at even x, G at odd x    kBlueFirst                B at even x, G at odd x
   //   kGreenFirst  G at even x, R at odd x    kGreenFirst + kBlueFirst  G at even x, B at odd x
   static constexpr int kRedFirst = 0;
@@ -63,8 +63,10 @@ class TileSums {
     kOpacity,  // R is added to the fourth channel; opacities have R = G = B
   };
 
-  // Makes `tile` the destination of everything that is added until Flush().
-  //   watched  elements of the tile whose sums Added() returns; must outlive the calls of Added()
+  // Makes `tile` the destination of everything that is added until Flush(). The sums of an earlier
+  // tile must have been flushed.
+  //   watched  elements of the tile whose sums Added() returns; must outlive the last call of
+  //            Added() or Flush() for this tile
   //   target   if kOpacity, the plate must have opacity, `watched` must be empty, and only
   //            ReserveRgb() may be called
   void Begin(PlateTile* tile, std::span<const PlateElement> watched = {},
@@ -85,7 +87,7 @@ class TileSums {
   }
 
   // As ReserveRgb(), but returns sums [height][stride()] for rays that count differently in each
-  // colour.
+  // colour. `rays` is the most that may be added to any of CountedElement::counts.
   CountedElement* ReserveCounted(uint32_t rays) {
     if (rays > counted_headroom_) MakeCountedRoom(rays);
     counted_headroom_ -= rays;
