@@ -28,8 +28,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 // The weights of cubic_weights.h for each step, in the layout that the kernels read.
 struct CubicTables {
   HWY_ALIGN int16_t down[kCubicSteps + 1][4];
-  // Each weight is repeated four times, once for each lane of a pixel. The weights of pixel k begin
-  // at kPlaces[k].
+  // In right[step], each weight is repeated four times, once for each lane of a pixel. The weights
+  // of column k begin at kPlaces[k].
   static constexpr int kPlaces[] = {0, 8, 4, 12};
   HWY_ALIGN int32_t right[kCubicSteps + 1][16];
 
@@ -114,6 +114,7 @@ HWY_ATTR HWY_INLINE void MixColumns(D16 d16, const ColumnWeights<V16>& weights,
 }
 
 // Returns the weighted sum of the four mixed columns of the sixteen pixels that begin at `first`.
+// `right` holds the weights of the columns, in the layout of CubicTables::right.
 template <int kShift, class D, class V16>
 HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<int32_t>> MixSixteen(D d, const ColumnWeights<V16>& down,
                                                              const int32_t* right,

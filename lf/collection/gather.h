@@ -1,7 +1,7 @@
 // Ray collection, estimator *bilinear* (doc/ray.md, "What is added"): an element collects one ray
 // from each LF image: the ray through the centre of the element, interpolated between LF pixels. If
-// LF pixels are finer than elements, this ray is the mean of several rays through the element
-// (gather_sampling.h). LF images must be RGB.
+// LF pixels are finer than elements, this ray is the mean of several rays through the element, or
+// is read from an LF image that was filtered before (gather_sampling.h). LF images must be RGB.
 //
 // There are two back ends, which a test compares. The reference intersects planes for every
 // element. The fast back end works in two steps, as in scatter.h:
@@ -48,7 +48,8 @@ struct RgbRay {
 // four pixels are in the image (of `width_px` x `height_px`) and not masked. If sixteen pixels
 // should be used, but one of the other twelve is missing or masked, the four alone are
 // interpolated.
-//   pixels  RGB; must hold those of the four or sixteen pixels that are in the image
+//   pixels  RGB, already filtered by sampling.prefilter; must hold those of the four or sixteen
+//           pixels that are in the image
 std::optional<RgbRay> InterpolatePixels(const LfPixels& pixels, int width_px, int height_px,
                                         double x_px, double y_px,
                                         const GatherSampling& sampling = {});
@@ -58,7 +59,8 @@ std::optional<RgbRay> InterpolatePixels(const LfPixels& pixels, int width_px, in
 bool RaysArriveAround(const Intrinsics& k, const DistortionMap& map, double x_px, double y_px);
 
 // Adds to each element the ray that the LF image recorded for the element, if there is one. Returns
-// the number of rays.
+// the number of rays, including rays of weight 0.
+//   pixels   RGB, not filtered; must hold the pixels that the filter needs around every ray
 //   plate    must have the size of the render camera's plate
 //   weights  weight w multiplies the value and the count that a ray adds
 uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& pixels,
@@ -70,7 +72,7 @@ struct GatherPlan {
   int plate_width = 0;
   int plate_height = 0;
   // The accepted elements of the finer plate, which has sampling.samples times as many rows and
-  // columns as the plate, sorted by y, then x.
+  // columns as the plate, sorted by y, then x. Positions are in LF pixels.
   std::vector<Segment> segments;
   std::vector<size_t> row_begin;  // [plate_height * samples + 1]: index of a row's first segment
 };
@@ -81,8 +83,10 @@ GatherPlan PlanGather(const PinholeCamera& lf_camera, const RenderCamera& render
                       GatherPlan memory = {}, const PixelReading& reading = {});
 
 // Adds the rays of the elements in the tile of `sums` to `sums`. The caller flushes `sums` to the
-// plate. Returns the number of rays.
-//   pixels   RGB; must hold the pixels that the filter needs around every ray
+// plate. Returns the number of rays, including rays of weight 0; 0 if no element of the tile has a
+// weight above 0.
+//   pixels   RGB, already filtered by plan.sampling.prefilter (FilterPixels()); must hold every
+//            pixel that a ray is interpolated between
 //   weights  as for GatherReference(): of the whole plate, not of the tile
 uint64_t GatherTile(const GatherPlan& plan, const LfPixels& pixels, TileSums* sums,
                     const RayWeights& weights = {});

@@ -1,6 +1,7 @@
 // The ray model of the estimator *bilinear* for one ray, applied literally, in double precision
-// (doc/ray.md, "What is added"). The reference applies it to every element, the fast back end
-// applies it to elements at the ends of its spans. Internal to collection.
+// (doc/ray.md, "What is added"). GatherReference() applies it to every element, PlanGather() only
+// to elements about which rounding or the border of the LF image might decide. Internal to
+// collection.
 #pragma once
 
 #include <optional>

@@ -76,7 +76,8 @@ class CoordinateFinder {
     const auto place = PolynomialLanes<kDegree>(polynomial_).At(t);
     const auto whole = hn::BitCast(di, hn::Add(hn::Floor(place), hn::Set(LaneF(), kWhole)));
     const auto found = hn::Add(whole, hn::Set(di, base_));
-    // A position that rounding has moved beyond the outermost knots is moved back to them.
+    // A position beyond the outermost knots is moved back to them. Rounding may put it there, or
+    // knots that stand between pixels and therefore begin 1 px from the border.
     const auto position = hn::Min(hn::Max(found, hn::Zero(di)), hn::Set(di, last_ * kOne));
     const auto pixel = hn::Min(hn::ShiftRight<kWeightBits>(position), hn::Set(di, last_ - 1));
     return {pixel, hn::Sub(position, hn::ShiftLeft<kWeightBits>(pixel))};

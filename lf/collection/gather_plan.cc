@@ -57,7 +57,8 @@ GatherForms MakeForms(const PinholeCamera& lf_camera, const RenderCamera& render
 }
 
 // Returns forms that are at most 0 for every accepted element, among elements whose forward form
-// has the sign `sign`. With lens distortion, there are no forms for the borders of the LF image.
+// has the sign `sign`. There are no forms for the borders of the LF image if it has lens
+// distortion, and none for a lens that is a disk.
 std::vector<PixelForm> HalfPlanes(const GatherForms& forms, const Intrinsics& k,
                                   const Aperture& aperture, int sign) {
   std::vector<PixelForm> half_planes = {-forms.plane, -sign * forms.forward};

@@ -1,7 +1,8 @@
 // The inner loop of the estimator *bilinear*, compiled for every instruction set from one source
 // (Highway). Polynomials are evaluated for a vector of positions at a time. Four or sixteen pixels,
-// each of four lanes of 16 bits, are then mixed in integers and added to the element. There is no
-// fused multiply-add, so that results are bit-identical on every instruction set.
+// each of four lanes of 16 bits, are then mixed in integers (means of several rays and mosaics also
+// in single precision) and added to the element. There is no fused multiply-add, so that results
+// are bit-identical on every instruction set.
 #include <algorithm>
 #include <type_traits>
 #include <vector>
@@ -60,7 +61,7 @@ template <Reading kReading>
 using ElementOf =
     std::conditional_t<IsMosaic(kReading), TileSums::CountedElement, TileSums::Element>;
 
-// Adds rays that are interpolated between the pixels at `places`: ray i to element i.
+// Adds rays that are interpolated between the pixels at `places`: ray i to element i of `sums`.
 template <Reading kReading, class Weights>
 class RayAdder {
  public:
@@ -82,9 +83,9 @@ class RayAdder {
     return values_ + static_cast<ptrdiff_t>(places_.pixel[i]) * LfPixels::kRgbLanes;
   }
 
-  // Prefetches one cache line of a row below ray i. The processor does not prefetch rows by itself,
-  // because they are too far apart. It can have few pending requests at a time; therefore lines are
-  // requested one by one.
+  // Prefetches one cache line of a row of pixels below those of ray i. The processor does not
+  // prefetch rows by itself, because they are too far apart. It can have few pending requests at a
+  // time; therefore lines are requested one by one.
   HWY_INLINE void FetchAhead(int i) const {
     constexpr int kRowsAhead = 2;
     hwy::Prefetch(Upper(i) + (1 + kRowsAhead) * row_values_);
@@ -185,7 +186,7 @@ auto GatherPartOf(const LfPixels& pixels) {
                            : GatherPart<kReading, false, Weights>;
 }
 
-// Adds one ray to each element that has one. Returns the number of rays.
+// Adds to each element of the tile its one ray, if it has one. Returns the number of rays.
 template <Reading kReading, class Weights>
 HWY_ATTR uint64_t GatherRays(const GatherPlan& plan, const LfPixels& pixels, const Weights& weights,
                              const PixelRect& tile, int stride, ElementOf<kReading>* elements) {

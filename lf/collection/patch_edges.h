@@ -16,8 +16,9 @@ namespace lf {
 
 class PatchEdges {
  public:
-  // The accepted pixels of a scanline: pixels outside [begin, end] are not accepted, pixels inside
-  // [sure_begin, sure_end] are accepted, and rounding may decide about pixels between these bounds.
+  // The accepted pixels of a scanline, where pixel x is at x: pixels outside [begin, end] are not
+  // accepted, pixels inside [sure_begin, sure_end] are accepted, and rounding may decide about
+  // pixels between these bounds.
   struct Pixels {
     double begin, end;
     double sure_begin, sure_end;
@@ -35,7 +36,7 @@ class PatchEdges {
   bool AddDisk(const RowSpans::Disk& disk);
 
   // Returns the pixels of scanline y that fulfil all conditions; none if the search fails, because
-  // a form may both rise and fall along the scanline, or changes too slowly where it crosses 0.
+  // a form may both rise and fall along the scanline, or because rounding hides where it crosses 0.
   // Calls are fastest for scanlines from top to bottom, because each search starts at the root on
   // the previous scanline.
   std::optional<Pixels> Find(int y);

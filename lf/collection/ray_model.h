@@ -1,6 +1,6 @@
 // The ray model for one ray, applied literally: doc/ray.md, "Geometry" 1-5, in double precision.
-// The reference applies it to every pixel, the fast kernels apply it to pixels at the ends of their
-// spans.
+// ScatterReference() applies it to every pixel, PlanScatter() only to pixels about which rounding
+// might decide.
 #pragma once
 
 #include <optional>
@@ -17,8 +17,8 @@ namespace lf {
 // the lens plane at one point, the position of the camera (doc/ray.md, Geometry 6).
 bool LiesInLensPlane(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
 
-// True if the LF camera lies so far inside the aperture, which must be a disk, that rounding errors
-// cannot move it out.
+// True if the LF camera, which must lie in the lens plane, is so far inside the aperture, which
+// must be a disk, that rounding errors cannot move it out.
 bool IsSurelyInDisk(const PinholeCamera& lf_camera_in_lens_plane,
                     const RenderCamera& render_camera);
 
@@ -27,9 +27,10 @@ class RayModel {
  public:
   RayModel(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
 
-  // Returns the element of the plate on which the ray of LF pixel (x, y) lands; none if the ray is
-  // not accepted because it runs backward, has no focus point in front of the lens, or misses the
-  // lens or the plate. Lens distortion is undone by iteration.
+  // Returns the element of the plate on which the ray of LF pixel (x, y) lands; none if the pixel
+  // has no ray because it lies beyond the fold of the lens distortion, or if the ray is not
+  // accepted because it runs backward, has no focus point in front of the lens, or misses the lens
+  // or the plate. Lens distortion is undone by iteration.
   std::optional<PlateElement> Collect(int x, int y) const;
 
   // Like Collect(), for the ray of an ideal position (camera/ideal_pixels.h).

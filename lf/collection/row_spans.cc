@@ -9,9 +9,9 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Margins by which candidate intervals reach beyond the exact conditions; the ray model then
-// decides at their ends. kFormMargin is relative to the largest value of a form on the scanline,
-// kDiskMargin to the square of the disk's radius. Both are far above rounding errors and far below
-// a pixel.
+// decides at the ends of these intervals. kFormMargin is relative to the sum of the absolute terms
+// of a form, kDiskMargin to the square of the disk's radius. Both are far above rounding errors and
+// far below a pixel.
 constexpr double kFormMargin = 1e-9;
 constexpr double kDiskMargin = 1e-7;
 constexpr double kSlack = 0.01;  // margin at the ends of intervals, in pixels
@@ -77,8 +77,8 @@ Interval AtMostZero(const LineForm& form, const Interval& range, bool* tie, Inte
 }
 
 // Returns the part of `range` where right^2 + up^2 <= radius^2 forward^2 may hold (with a margin).
-// Since forward >= 0 there, this is the intersection of a line with a convex cone: one interval.
-// The leading coefficient of the quadratic may have either sign.
+// Since `forward` has one sign there, which the half-planes fix, this is the intersection of a line
+// with a convex cone: one interval. The leading coefficient of the quadratic may have either sign.
 Interval WithinDisk(const LineForm& right, const LineForm& up, const LineForm& forward,
                     double radius, const Interval& range) {
   const double r2 = radius * radius * (1 + kDiskMargin);
@@ -100,9 +100,9 @@ Interval WithinDisk(const LineForm& right, const LineForm& up, const LineForm& f
   const double high = std::max(c / t, t / a);
   if (a > 0) return Intersect(range, {low, high});
   // The condition holds to the left of the smaller root and to the right of the larger one. One of
-  // these two branches belongs to the mirror image of the cone, where forward < 0; it is outside
-  // `range`, except for rounding errors. If both branches reach into `range`, all of `range` is
-  // returned.
+  // these two branches belongs to the mirror image of the cone, where `forward` has the other sign;
+  // it is outside `range`, except for rounding errors. If both branches reach into `range`, all of
+  // `range` is returned.
   const Interval left = Intersect(range, {-kInfinity, low});
   const Interval right_branch = Intersect(range, {high, kInfinity});
   if (left.empty()) return right_branch;

@@ -1,5 +1,6 @@
-// Finds the positions of a row that fulfil linear conditions and the condition of a disk
-// (doc/ray.md, "Spans"). Internal to collection.
+// Finds the positions of a row (pixels of a scanline, or elements of a row of the plate) that
+// fulfil linear conditions and the condition of a disk (doc/ray.md, "Spans"). Internal to
+// collection.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +18,8 @@ using RowSpan = std::pair<int, int>;
 
 class RowSpans {
  public:
-  // Real interval of positions, [begin, end]. Empty if end < begin.
+  // Interval [begin, end] of continuous coordinates along a row, in which position x is at x + 0.5.
+  // Empty if end < begin.
   struct Interval {
     double begin = 0;
     double end = 0;
@@ -33,12 +35,13 @@ class RowSpans {
 
   // There are two alternative sets of conditions, called sides, such as n.d < 0 and n.d > 0 for the
   // normal n of the focus plane and the direction d of a ray. A position p fulfils the conditions
-  // of a side if form p <= 0 for all half-planes of the side, and if p is in the disk. No position
-  // may fulfil the conditions of both sides.
+  // of a side if form p <= 0 for all half-planes of the side, and if p is in the disk, unless there
+  // is none. No position may fulfil the conditions of both sides.
   std::vector<PixelForm> half_planes[2];
   std::optional<Disk> disk;
-  // True if the ray model has more conditions than the half-planes and the disk. The ray model then
-  // tests the ends of every span, and a span with accepted ends is accepted as a whole.
+  // True if the ray model (`accepted` of Find()) has more conditions than the half-planes and the
+  // disk. It then tests the ends of every span, and a span with accepted ends is accepted as a
+  // whole.
   bool model_decides = false;
 
   // Removes the conditions that are decided on all of `rect`: half-planes and a disk that hold
@@ -47,10 +50,10 @@ class RowSpans {
   void RestrictTo(const PixelRect& rect);
 
   // Finds the positions of [x_begin, x_end) in row y that fulfil the conditions and that the ray
-  // model accepts. Writes sorted spans. They are exact if the accepted positions of each side have
-  // no gap. They are also exact if a form is 0 along the whole row, because the ray model then
-  // tests every position. The ray model is applied only where rounding may decide, and to all ends
-  // of spans if model_decides is true.
+  // model accepts. Replaces `spans` by the sorted result. It is exact if the accepted positions of
+  // each side have no gap. It is also exact if a form is 0 along the whole row, because the ray
+  // model then tests every position. The ray model is applied only where rounding may decide, and
+  // to all ends of spans if model_decides is true.
   //   accepted(side, x)  returns true if the ray model accepts position x on this side
   template <class Accepted>
   void Find(int y, int x_begin, int x_end, const Accepted& accepted, std::vector<RowSpan>* spans);
@@ -75,7 +78,7 @@ void RowSpans::Find(int y, int x_begin, int x_end, const Accepted& accepted,
   for (const int side : {0, 1}) {
     if (is_shut_[side]) continue;
     auto [begin, end, tie, sure] = FindCandidate(side, y + 0.5, x_begin, x_end);
-    const auto is_accepted = [&, sure = sure](int x) {  // `sure` is copied for clang below 16
+    const auto is_accepted = [&, sure = sure](int x) {  // clang < 16 cannot capture `sure` itself
       const bool is_sure = x + 0.5 > sure.begin && x + 0.5 < sure.end && !model_decides &&
                            (!disk || IsSurelyInDisk(x + 0.5, y + 0.5));
       return is_sure || accepted(side, x);

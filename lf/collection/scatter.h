@@ -36,8 +36,9 @@
 
 namespace lf {
 
-// Adds the rays of pixels `rect` of one LF image. Masked pixels have no ray. A pixel of a mosaic
-// adds to its own channel, an RGB pixel to all three. Returns the number of accepted rays.
+// Adds the accepted rays of the pixels in `rect` of one LF image to the plate. Masked pixels have
+// no ray. A pixel of a mosaic adds to its own channel, an RGB pixel to all three. Returns the
+// number of accepted rays, including rays of weight 0.
 //   pixels   must hold `rect`
 //   plate    must have the size of the render camera's plate
 //   weights  weight w multiplies the value and the count that a ray adds
@@ -64,7 +65,8 @@ ScatterPlan PlanScatter(const PinholeCamera& lf_camera, const RenderCamera& rend
                         const IdealPixels* ideal_pixels = nullptr, ScatterPlan memory = {});
 
 // Adds the rays of `plan` that land in tile `tile` of its grid to `sums`, which must be of this
-// tile. The caller flushes `sums` to the plate. Returns the number of rays.
+// tile. The caller flushes `sums` to the plate. Returns the number of rays, including rays of
+// weight 0; 0 if no element of the tile has a weight above 0.
 //   pixels   must hold the rectangle that was planned
 //   weights  as for ScatterReference(): of the whole plate, not of the tile
 uint64_t ScatterTile(const ScatterPlan& plan, size_t tile, const LfPixels& pixels, TileSums* sums,

@@ -1,5 +1,6 @@
 // Measures the rays per second of both back ends of the estimator *nearest*, for one LF image in
-// one frame that accepts nearly all its rays.
+// one frame that accepts nearly all its rays; also how long PlanScatter() takes, and how many
+// pixels per second IdealPixels prepares.
 #include <benchmark/benchmark.h>
 
 #include "lf/collection/scatter.h"
@@ -51,7 +52,7 @@ void BM_Fast(benchmark::State& state, BayerPattern bayer) {
 BENCHMARK_CAPTURE(BM_Fast, rgb, BayerPattern::kNone);
 BENCHMARK_CAPTURE(BM_Fast, bayer, BayerPattern::kRggb);
 
-// Lens distortions for the benchmarks below. Ideal pixels are computed once, before the
+// Lens distortions for the benchmarks below. BM_Distorted computes ideal pixels once, before the
 // measurement, because a render computes them once for many frames.
 constexpr Distortion kPhone{DistortionModel::kRadialTangential, {0.035}};
 constexpr Distortion kBarrel{DistortionModel::kRadialTangential, {-0.25, 0.07, 0.002, -0.003}};

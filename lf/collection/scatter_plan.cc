@@ -11,7 +11,7 @@ namespace lf {
 namespace {
 
 // Share of the radius by which candidate spans reach beyond the edges of polygonal lenses; the ray
-// model then decides at their ends.
+// model then decides at the ends of these spans.
 constexpr double kLensMargin = 1e-7;
 
 void PlanOnLines(const PinholeCamera& lf_camera, const RenderCamera& render_camera,

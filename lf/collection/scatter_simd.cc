@@ -36,10 +36,10 @@ constexpr float kRareRun = 1.0F / 6;
 constexpr float kTwoTo23 = 8388608;
 
 // Layout of the sums of a tile. The address of an element is row_stride * row + column, both
-// counted from the corner of the tile.
+// counted from the upper left corner of the tile.
 struct TileLayout {
   PixelRect rect;
-  int row_stride;         // difference of the addresses of an element and the one above it; even
+  int row_stride;         // address of an element minus that of the one above; even for mosaics
   bool has_plate_border;  // true if the tile touches the border of the plate
 };
 

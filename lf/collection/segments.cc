@@ -9,7 +9,7 @@
 namespace lf {
 namespace {
 
-// Largest coordinate of a position, in elements (or LF pixels). Larger coordinates are never
+// Largest absolute coordinate of a position, in elements (or LF pixels). Larger ones are never
 // accepted, and could overflow integers.
 constexpr double kFarthest = 1 << 24;
 

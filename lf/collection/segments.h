@@ -39,21 +39,21 @@ struct Segment {
   }
 };
 
-// The coordinates of a position as polynomials of t, the distance from the middle of a piece of a
-// row.
+// The coordinates of a position as polynomials of t, the distance of a pixel's (or element's)
+// centre from the middle of a piece of a row. [k] is the coefficient of t^k.
 struct Polynomials {
   double x[Segment::kTerms] = {};
   double y[Segment::kTerms] = {};
 };
 
 // Makes the segment of pixels (or elements) [x_begin, x_end) of row y, from the polynomials of a
-// piece whose middle is at x = `middle`.
+// piece that contains them and whose middle is at the continuous coordinate x = `middle`.
 Segment MakeSegment(int y, int x_begin, int x_end, double middle, const Polynomials& polynomials);
 
 // True if no coordinate of a position on the piece differs by more than
-// SegmentMaker::kFarthestFromMiddle from the same coordinate of the position of its middle. The
-// piece extends by `half` pixels (or elements) to both sides of its middle. The test adds up
-// absolute values, and may therefore be false although no coordinate differs that much.
+// SegmentMaker::kFarthestFromMiddle from the same coordinate of the position at the middle of the
+// piece. The piece extends by `half` pixels (or elements) to both sides of its middle. The test
+// adds up absolute values, and may therefore be false although no coordinate differs that much.
 bool IsNearMiddle(const Polynomials& polynomials, double half);
 
 // Makes the segments of rows. A pixel with the centre p = (column + 0.5, row + 0.5, 1), or with the
@@ -77,12 +77,13 @@ class SegmentMaker {
   // and x_end.
   void Add(int y, int x_begin, int x_end, std::vector<Segment>* segments) const;
 
-  // Like Add(), but maps the ideal positions of `arc`, the arc of scanline y.
+  // Like Add(), but maps the ideal positions of `arc`, the arc of scanline y, which must contain
+  // [x_begin, x_end). The polynomials are fitted to the arc, or to halves, quarters ... of it.
   void AddOnArc(int y, int x_begin, int x_end, const IdealArc& arc,
                 std::vector<Segment>* segments) const;
 
-  // Like Add(), with any smooth function of the continuous coordinate x along row y. Pixels for
-  // which it returns none are left out.
+  // Like Add(), but `position`, which must be smooth, returns the position for the continuous
+  // coordinate x along row y. Pixels for which it returns none are left out.
   using Function = std::function<std::optional<Vec2>(double x)>;
   static void AddOfFunction(int y, int x_begin, int x_end, const Function& position,
                             std::vector<Segment>* segments);

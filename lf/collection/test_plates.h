@@ -45,7 +45,7 @@ RayWeights WeightsByBlock(const WeightBlocks& blocks, const OfBlock& of_block) {
   });
 }
 
-// Returns the pixels as GatherTile() wants them for this plan.
+// Returns the pixels filtered by the prefilter of the plan, as GatherTile() needs them.
 inline LfPixels PixelsFor(const GatherPlan& plan, const LfPixels& pixels) {
   if (plan.sampling.prefilter.changes_nothing()) return pixels;
   LfPixels filtered;
@@ -66,8 +66,8 @@ inline uint64_t TotalCount(const SensorPlate& plate) {
 }
 
 // Returns the difference of the counts of the two plates, summed over elements and channels.
-// Elements with equal counts but different sums add 1. A ray that lies in different elements of the
-// two plates adds 2 for each of its channels.
+// A channel of an element with equal counts but different sums adds 1. A ray that lies in different
+// elements of the two plates adds 2 for each of its channels.
 inline uint64_t DifferingCount(const SensorPlate& a, const SensorPlate& b) {
   uint64_t count = 0;
   for (int y = 0; y < a.height(); ++y)

@@ -11,9 +11,9 @@
 
 namespace lf {
 
-// Positions [begin, end) of a segment, counted from its first one. All of them land in one tile, if
-// positions outside the plate are clamped to it. At most `crowd` of them land in the same element,
-// not counting clamped positions.
+// Positions [begin, end) of the segment with the index `segment` in Cut(), counted from its first
+// position. All of them land in one tile, if positions outside the plate are clamped to it. At most
+// `crowd` of them land in the same element, not counting clamped positions.
 struct TilePiece {
   uint32_t segment = 0;
   uint16_t begin = 0;

@@ -86,7 +86,7 @@ bool TileWeights::FillBlocks(const RayWeights& weights, const PixelRect& tile, i
   below_y_ = begin_y + kWeightBlock;
   weights.FeatherOfRow(begin_x, below_y_, count + 1, below_.data());
   feathered_.clear();
-  uint32_t common = kWholeFeather;  // all bits of kWholeFeather only if the feather is whole
+  uint32_t common = kWholeFeather;  // AND of all feathers; only the whole one has this bit
   for (size_t k = 0; k < of_blocks_.size(); ++k) {
     const uint32_t of_all = above_[k] & above_[k + 1] & below_[k] & below_[k + 1];
     common &= of_all;
@@ -100,7 +100,7 @@ bool TileWeights::FillBlocks(const RayWeights& weights, const PixelRect& tile, i
   return !feathered_.empty();
 }
 
-// Writes a row of weights without feather.
+// Writes the weights of one row of elements, without feather.
 void TileWeights::FillRow(const WeightBlocks& blocks, const PixelRect& tile, uint8_t* row) const {
   int x = tile.x_begin;
   for (const uint8_t weight : of_blocks_) {

@@ -42,9 +42,9 @@ class TileWeights {
   std::vector<uint8_t> of_blocks_;
   std::vector<uint16_t> above_;
   std::vector<uint16_t> below_;
-  std::vector<int> feathered_;  // blocks of the row whose feather is neither whole nor 0
+  std::vector<int> feathered_;  // indices of blocks whose feather is neither whole nor 0
   int below_y_ = 0;             // y of the corners that below_ holds
-  bool is_feathered_ = false;   // true if above_ and below_ are used, because feather is not whole
+  bool is_feathered_ = false;   // false: feather is whole, and above_ and below_ are not used
 };
 
 }  // namespace lf

@@ -44,9 +44,9 @@ struct Prefilter {
 };
 
 // Returns the filter for elements that are `width_px` LF pixels wide. Rounds the width to
-// sixteenths, so that frames of slightly different scale share filtered images. Elements narrower
-// than kFinerAtMost LF pixels are treated as if they were one LF pixel wide, and elements wider
-// than kWidestElement_px as if they were that wide.
+// sixteenths, so that frames of slightly different scale share filtered images. Elements of at most
+// kFinerAtMost LF pixels are treated as if they were one LF pixel wide, and elements wider than
+// kWidestElement_px as if they were that wide.
 Prefilter PrefilterFor(double width_px, PixelFootprint footprint);
 
 inline constexpr double kFinerAtMost = 1.25;
@@ -56,15 +56,16 @@ inline constexpr double kFinerAtMost = 1.25;
 // is the knot at the centre of pixel (x, y), or the one between (x, y) and (x + 1, y + 1) if
 // filter.is_even; the result then has one column and one row less.
 //
-// A knot is masked if the pixel at it is masked or, if filter.is_even, one of the two pixels beside
-// it along the filtered axis. Other pixels that are masked or not in `pixels` count as the pixel at
-// the knot, or as the mean of the two beside it. If `pixels` is a part of the LF image, values that
-// need pixels beyond this part are only right at the borders of the LF image.
-//   pixels  RGB
+// The second step takes the values of the first as its pixels. In each step, a knot is masked if
+// the pixel at it is masked or, if filter.is_even, one of the two pixels beside it along the
+// filtered axis. Other pixels that are masked or not in `pixels` count as the pixel at the knot, or
+// as the mean of the two beside it. If `pixels` is a part of the LF image, values that need pixels
+// of the LF image beyond this part are wrong.
+//   pixels  RGB; must not be *out. Opacities are left out
 void FilterPixels(const Prefilter& filter, const LfPixels& pixels, LfPixels* out);
 
-// Replaces the pixels by what FilterPixels() makes of them. They must not have opacities of their
-// own (LfPixels::TakeOpacity()).
+// Replaces the pixels by what FilterPixels() makes of them. pixels->opacity must be empty
+// (LfPixels::TakeOpacity()).
 void FilterInPlace(const Prefilter& filter, LfPixels* pixels);
 
 // Computes the values of FilterPixels() literally, one at a time.

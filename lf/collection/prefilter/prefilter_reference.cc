@@ -8,8 +8,8 @@
 namespace lf {
 namespace {
 
-// Returns the value of a knot, times Prefilter::kOne; value(k) is the value of the pixel at k, and
-// there(k) is true if this pixel exists.
+// Returns the value of a knot, times Prefilter::kOne; value(k) is the value of the pixel whose
+// index is that of the knot plus k, and there(k) is true if this pixel exists and is not masked.
 template <class There, class Value>
 int64_t Filtered(const Prefilter& filter, const There& there, const Value& value) {
   const int64_t middle = filter.is_even ? (value(0) + value(1) + 1) >> 1 : value(0);

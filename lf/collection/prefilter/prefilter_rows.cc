@@ -171,7 +171,7 @@ HWY_ATTR void FilterAlongRow(const Prefilter& original, const uint16_t* row, int
   const Prefilter filter = original;  // a copy: it cannot change while `out` is written
   WithForm(filter, [&](auto form) HWY_ATTR {
     using Form = decltype(form);
-    const int border = filter.count;  // knots that may lack pixels
+    const int border = filter.count;  // knots at each end that may lack pixels
     if (any_masked || count <= 2 * border)
       return FilterBorder<Form>(filter, row, width, 0, count, out);
     FilterBorder<Form>(filter, row, width, 0, border, out);

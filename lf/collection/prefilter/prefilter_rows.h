@@ -20,9 +20,10 @@ void FilterAlongRow(const Prefilter& filter, const uint16_t* row, int width, boo
                     int count, int32_t* out);
 
 // Filters a row of knots along the columns.
-//   rows         rows[k] is the result of FilterAlongRow() for the row of pixels k below the knots;
-//                zeros stand for rows that do not exist
+//   rows         rows[k] is the result of FilterAlongRow() for row y + k of pixels, where y is the
+//                row of the knots; zeros stand for rows that do not exist
 //   any_missing  true if a row does not exist or a pixel is masked
+//   count        number of knots
 void FilterAlongColumns(const Prefilter& filter, const int32_t* const* rows, bool any_missing,
                         int count, uint16_t* out);
 
