@@ -31,7 +31,7 @@ double AngleBetween(const Vec3& a, const Vec3& b) {
 }
 
 // Returns the largest angle, in radians, between the optical axis and a ray of the LF image; pi if
-// it is unknown.
+// it is unknown, or a right angle or more.
 double ViewAngle(const Intrinsics& k) {
   const Mat3 to_camera = k.InverseMatrix();
   const auto angle_of = [&](const Vec3& ideal) {

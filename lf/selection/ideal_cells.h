@@ -22,9 +22,9 @@ struct IdealCell {
 
 // Divides the LF image into cells, at most 24 along its longer side. The box of a cell contains the
 // ideal positions of nine points of the cell (its corners, the middles of its sides, its middle),
-// and a margin of twice the largest second difference between these. The ideal positions of other
-// points of the cell are outside of the box of the nine, if the lens is smooth, by at most an
-// eighth of the margin.
+// and a margin of twice the largest second difference between these. has_bounds is false if one of
+// these nine points has no ideal position. The ideal positions of other points of the cell are
+// outside of the box of the nine, if the lens is smooth, by at most an eighth of the margin.
 std::vector<IdealCell> MakeIdealCells(const Intrinsics& k);
 
 }  // namespace lf

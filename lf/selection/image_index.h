@@ -15,7 +15,8 @@ namespace lf {
 // LF camera.
 class ImageIndex {
  public:
-  //   places  places of all LF images of light_field, which may be a part of a larger light field
+  //   places  ranks (image_order.h) of all LF images of light_field, which may be a package: a part
+  //           of a larger light field
   ImageIndex(const LightField& light_field, ImagePlaces places);
   // Makes an index with the random order that ShuffledPlaces() makes from `seed`.
   explicit ImageIndex(const LightField& light_field, uint64_t seed = 0);

@@ -1,9 +1,9 @@
 // The order in which frames take LF images (thesis 4.2.1). The *place* of an LF image is its rank
 // in the order, from 0.
 //
-// An order always contains all LF images of the whole light field. A place (in limits, stop rules,
-// and the progress of an interrupted frame) therefore means the same for any choice of frames, any
-// passes and any packages.
+// An order always contains all LF images of the whole light field, and is made for all frames of a
+// film. A place (in limits, stop rules, and the progress of an interrupted frame) therefore means
+// the same for any choice of frames, any passes and any packages.
 #pragma once
 
 #include <cstddef>
@@ -45,8 +45,9 @@ struct ImageRays {
   uint64_t ray_count = 0;
 };
 
-// Returns the places of all LF images in an order. LF images that no frame takes come last. LF
-// images that the order does not distinguish are in the order of kShuffle.
+// Returns the places of all LF images in an order. Unless the order is kShuffle, LF images that no
+// frame takes come last. LF images that the order does not distinguish are in the order of
+// kShuffle.
 //   frames  for each frame, the LF images that it takes, in any order; unused for kShuffle
 ImagePlaces PlacesInOrder(ImageOrder order, size_t image_count, uint64_t seed,
                           std::span<const std::vector<ImageRays>> frames);

@@ -43,8 +43,8 @@ bool IsBelowZero(const PixelForm& form, const Intrinsics& image) {
   return middle + spread < -kZeroMargin * (spread + std::abs(middle) + std::abs(form[2]));
 }
 
-// A convex polygon that is clipped by half-planes (Sutherland, Hodgman 1974). Each half-plane adds
-// at most one vertex.
+// A convex polygon of pixel positions, at first the whole LF image, that is clipped by half-planes
+// (Sutherland, Hodgman 1974). Each half-plane adds at most one vertex.
 class Clipped {
  public:
   explicit Clipped(const Intrinsics& image) : image_(image) {
@@ -127,9 +127,9 @@ class Clipped {
   size_t count_ = 0;
 };
 
-// Returns true if all rays of the LF image pass through a circle within the lens. It suffices to
-// test the corners of the image, because a projective map takes image positions to the points where
-// their rays meet the lens plane.
+// Returns true if all rays of the LF image pass through the circle of radius inner_w around the
+// lens centre. It suffices to test the corners of the image, because the circle is convex and a
+// projective map takes image positions to the points where their rays meet the lens plane.
 bool LensHolds(const RayForms& forms, double inner_w, const Intrinsics& image) {
   const double w = image.width_px, h = image.height_px;
   for (const Vec2& corner : {Vec2(0, 0), Vec2(w, 0), Vec2(w, h), Vec2(0, h)}) {
@@ -178,7 +178,8 @@ PixelRect BoundsOfCells(std::span<const IdealCell> cells, std::span<const PixelF
   return rect;
 }
 
-// Returns a cell whose box contains the ideal positions of all pixels of the LF image.
+// Returns a cell whose box contains the ideal positions of all pixels of the LF image. has_bounds
+// is false if one of `cells` has no bounds.
 IdealCell BoundImage(const Intrinsics& image, std::span<const IdealCell> cells) {
   IdealCell whole;
   if (!image.has_distortion()) {
@@ -276,8 +277,8 @@ PixelRect ImageOverlap::Rect(const FrameOutline& frame) const {
     rect = Bounds(rect, distorted ? BoundsOfCells(cells_, plate, lens)
                                   : ClippedRect(image, plate, forms, frame, beyond));
   }
-  // The rectangle of a cell contains all pixels of the cell. The neighbours beyond the rectangle
-  // must be added.
+  // ClippedRect() has added the neighbours on each side of a ray. BoundsOfCells() has not, and they
+  // may lie beyond its rectangle.
   if (!distorted || rect.empty()) return rect;
   return Intersection(
       {0, 0, image.width_px, image.height_px},

@@ -23,15 +23,16 @@ enum class PixelReach {
 
 // Returns the smallest pixel rectangle that contains the overlap, as the LF camera sees it, of the
 // lens (for a disk, its circumscribed 16-gon) with the region of the focus plane that the plate
-// sees. Empty if no ray of the LF image can be accepted.
+// sees, and the pixels that rays of the overlap need (`reach`). Empty if nothing of the image is in
+// the overlap; then no ray is accepted.
 //
-// The rectangle contains every accepted ray (doc/ray.md) for any position of the LF camera: in
-// front of, behind or in the lens plane, in the focus plane, or looking away from the lens; also if
-// the plate sees beyond the horizon of a tilted focus plane. The thesis projects the lens and the
-// region into the LF image as rectangles and intersects them. This function clips the LF image by
-// the half-planes that bound them (camera/ray_forms.h). The result is the same region, but no point
-// is projected. Projection would fail for points in the plane through the LF camera's centre and
-// normal to its axis.
+// The rectangle contains the pixel of every accepted ray (doc/ray.md) for any position of the LF
+// camera: in front of, behind or in the lens plane, in the focus plane, or looking away from the
+// lens; also if the plate sees beyond the horizon of a tilted focus plane. The thesis projects the
+// lens and the region into the LF image as rectangles and intersects them. This function clips the
+// LF image by the half-planes that bound them (camera/ray_forms.h). The result is the same region,
+// but no point is projected. Projection would fail for points in the plane through the LF camera's
+// centre and normal to its axis.
 //
 // An LF image with lens distortion cannot be clipped like this. For such an image, the rectangle
 // bounds all cells (ideal_cells.h) that no half-plane excludes.
@@ -60,8 +61,9 @@ class ImageOverlap {
   ImageOverlap(const PinholeCamera& lf_camera, std::span<const IdealCell> cells, PixelReach reach);
 
   // A quick test. If it returns true, Rect() is empty: no ray of the LF image points forward
-  // (doc/ray.md, 2), or a line in the lens plane separates all rays from the lens. It tries only
-  // one such line, so that Rect() may also be empty if it returns false.
+  // (doc/ray.md, 2), or a line in the lens plane separates the points where all rays meet this
+  // plane from the lens. It tries only one such line, so that Rect() may also be empty if it
+  // returns false.
   bool PlainlyMisses(const RenderCamera& render_camera) const;
 
   PixelRect Rect(const RenderCamera& render_camera) const {
@@ -73,10 +75,10 @@ class ImageOverlap {
   PinholeCamera lf_camera_;
   std::span<const IdealCell> cells_;
   PixelReach reach_;
-  // If has_bounds_, the world directions of all rays are middle_world_ + a_0 axes_world_.col(0) +
-  // a_1 axes_world_.col(1) + ... with |a_i| <= 1.
   Vec3 centre_world_;
   Mat3 direction_world_;  // maps an ideal pixel position to the direction of its ray
+  // If has_bounds_, the world directions of all rays are middle_world_ + a_0 axes_world_.col(0) +
+  // a_1 axes_world_.col(1) + a_2 axes_world_.col(2) with |a_i| <= 1.
   Vec3 middle_world_;
   Mat3 axes_world_;
   bool has_bounds_;

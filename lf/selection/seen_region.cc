@@ -31,9 +31,9 @@ SeenRegion::SeenRegion(const RenderCamera& frame)
   const Intrinsics& k = frame.pinhole.intrinsics;
   const Mat3 to_camera = k.InverseMatrix();
   const double height = frame.focus_plane.offset_w - frame.focus_plane.normal.dot(centre_);
-  // t is the direction from the lens centre to a focus point, divided by the depth of this point,
-  // and q is 1 / depth (seen_region.h). Both are linear in the position on the plate, so that their
-  // bounds are at the corners of the plate.
+  // t is the vector (right, up) from the lens centre to a focus point, divided by the depth of this
+  // point, and q is 1 / depth (seen_region.h). Both are linear in the position on the plate, so
+  // that their bounds are at the corners of the plate.
   Vec2 t_low = Vec2::Constant(INFINITY), t_high = -t_low;
   q_low_ = INFINITY;
   q_high_ = -INFINITY;
@@ -53,8 +53,8 @@ SeenRegion::SeenRegion(const RenderCamera& frame)
     ray_angle_rad_ = kPi;
     return;
   }
-  // q = 1 / depth is above 0, because focus points are in front of the lens, up to the horizon of a
-  // tilted focus plane.
+  // Elements with q = 1 / depth <= 0 have no focus point in front of the lens: they see beyond the
+  // horizon of a tilted focus plane.
   is_empty_ = q_high_ <= 0;
   q_low_ = std::max(0.0, q_low_ * (1 - kRounding));
   q_high_ *= 1 + kRounding;

@@ -38,7 +38,8 @@ class SeenRegion {
   // ContributingRect() is not empty.
   explicit SeenRegion(const RenderCamera& frame);
 
-  // Returns true if no LF camera at this position, or in this box, can have a ray for the frame.
+  // Returns true only if no LF camera at this position, or in this box, can have a ray for the
+  // frame.
   bool Misses(const Vec3& centre_world) const;
   bool Misses(const WorldBox& box) const;
 
@@ -46,13 +47,14 @@ class SeenRegion {
   // Misses() is false for every position.
   bool HoldsAll(const WorldBox& box) const;
 
-  // Largest angle between the optical axis and a ray that the frame takes.
+  // Upper bound of the angle between the optical axis of the frame and a ray that the frame takes;
+  // pi if no bound is known.
   double ray_angle_rad() const { return ray_angle_rad_; }
   const Vec3& forward_world() const { return forward_; }
 
  private:
-  // Returns the distance of a position (in lens axes) beyond the bound of a side (right, left,
-  // above, below); negative if it is inside.
+  // Returns the distance of a position (in lens axes) beyond the bound of a side (0 right, 1 left,
+  // 2 above, 3 below); negative if it is inside.
   double Beyond(int side, const Vec3& place) const;
   Vec3 InLensAxes(const Vec3& world) const;
 

@@ -31,8 +31,9 @@ struct PlaceRange {
 struct TakingFrame {
   RenderCamera camera;
   PlaceRange places = {};  // the frame takes only the LF images at these places
-  // Returns false if the frame does not take an LF image, because all its lens weights there are 0.
-  // Empty: no LF image is left out for this reason. Several threads call it at the same time.
+  // Returns false if the frame does not take an LF image, because all lens weights of the image in
+  // this frame are 0. Empty: no LF image is left out for this reason. Several threads call it at
+  // the same time.
   std::function<bool(LfImageId id)> takes = {};
 };
 
@@ -77,8 +78,8 @@ std::vector<SelectedImage> SelectImages(const ImageIndex& index,
                                         const SelectOptions& options, ThreadPool& pool);
 
 // Returns the range [0, end) of places that contains exactly the first `image_count` contributing
-// LF images that the frame takes. If they are fewer, the range is all places. frame.places is not
-// used.
+// LF images that the frame takes. If there are fewer, the range is all places. image_count must be
+// above 0. frame.places and options.whole_images are not used.
 PlaceRange PlacesOfFirst(size_t image_count, const ImageIndex& index, const TakingFrame& frame,
                          const SelectOptions& options);
 

@@ -11,9 +11,9 @@
 namespace lf {
 
 // The convex hull of the points where rays of LF cameras meet the lens plane, extended by a margin.
-// No LF camera represents the part of the lens beyond this region, because the LF cameras at the
-// rim of the capture would then represent all of that part, and out-of-focus areas would show them
-// as bright outlines.
+// No LF camera represents the part of the lens beyond this region, because otherwise the LF cameras
+// at the rim of the capture would represent all of that part, and out-of-focus areas would show
+// them as bright outlines.
 class CoveredRegion {
  public:
   // Makes a region that is the whole lens plane.

@@ -15,10 +15,11 @@ namespace lf {
 namespace {
 
 // Approximate upper bound of how far the lens points of LF cameras move from one node of the grid
-// to the next, as a share of the distance between LF cameras.
+// to the next, as a share of the distance between LF cameras, unless the limits below make the grid
+// coarser.
 constexpr double kStepOfDistance = 1.0 / 3;
 constexpr int kMostNodes = 48;         // largest number of columns or rows of nodes
-constexpr int kLeastNodeStep_px = 32;  // in elements; a finer grid would cost more than the rays
+constexpr int kLeastNodeStep_px = 32;  // elements from node to node; finer costs more than the rays
 // If lens points move by less than this share of the distance between LF cameras, the LF cameras
 // are in the lens plane except for rounding errors.
 constexpr double kAtRest = 1e-6;

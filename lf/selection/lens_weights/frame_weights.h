@@ -40,7 +40,8 @@ std::optional<LensWeights> LensWeightsOf(std::string_view name);  // nullopt for
 
 // AutoHatShare() returns the share of the hats in the weights of kAuto. It is 1 if the lens's
 // diameter is at most kHatsUpTo camera distances, and 0 from kCellsFrom camera distances on. In
-// between it changes smoothly, so that nothing jumps while an aperture opens.
+// between it changes smoothly, so that nothing jumps while an aperture opens. If the camera
+// distance is 0 (unknown), it is 1 for pinholes and 0 for other lenses.
 inline constexpr double kHatsUpTo = 1;
 inline constexpr double kCellsFrom = 1.75;
 double AutoHatShare(double diameter_w, double camera_distance_w);
@@ -71,7 +72,8 @@ class FrameWeights {
   // True if the LF camera has a share above 0 at some node.
   bool TakesPart(size_t camera) const { return nodes_begin_[camera] != kNone; }
 
-  // True if the weights are the same for all elements.
+  // True if the grid has one node, so that the weights of each LF camera are the same for all
+  // elements.
   bool is_constant() const { return columns_ * rows_ == 1; }
 
   // Rays that meet the lens plane farther than this from the lens centre have weight 0.
@@ -80,7 +82,8 @@ class FrameWeights {
   // The share of the hats in the weights: 0 for kArea, 1 for kHat.
   double hat_share() const { return hat_share_; }
 
-  // Coverage of the lens as seen from the middle of the plate (lens_coverage.h).
+  // Coverage of the lens as seen from the middle of the plate (lens_coverage.h); a default
+  // LensCoverage if the middle has no focus point.
   const LensCoverage& coverage() const { return coverage_; }
 
   // Numbers of columns and rows of nodes. The outer ones are on the edges of the plate; a single
@@ -133,7 +136,7 @@ class FrameWeights {
 // lens, in world units. It is computed from the density of the points where the rays of these LF
 // cameras to the middle of the plate meet the lens plane. The density is that of the kCamerasAround
 // points nearest to the lens centre, or of all points within the lens if these are more. 0 if there
-// are no points.
+// are no points, or if the middle of the plate has no focus point.
 inline constexpr size_t kCamerasAround = 12;
 double CameraDistance(const RenderCamera& frame, std::span<const Vec3> centres_world);
 

@@ -60,8 +60,8 @@ void ImageFeather::OfRow(int x, int y, int count, uint16_t* feather) const {
   }
 }
 
-// It suffices to test the corners of `rect`, because a projective map takes a rectangle in front of
-// it to a quadrilateral, which is within any rectangle that contains its corners.
+// It suffices to test the corners of `rect`: if they pass, a projective map takes `rect` to a
+// quadrilateral in the LF image, which is within any rectangle that contains its corners.
 bool ImageFeather::IsWhole(const PixelRect& rect) const {
   if (intrinsics_.has_distortion()) return false;
   double side = 0;

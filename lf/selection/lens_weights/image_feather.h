@@ -29,13 +29,14 @@ class ImageFeather {
   ImageFeather(const PinholeCamera& lf_camera, const RenderCamera& frame);
 
   // Writes the feather, in units of 1/kWholeFeather, at the positions (x + kWeightBlock i, y) of
-  // the plate, i in [0, count); 0 if the LF camera records no ray through the focus point. Several
-  // threads may call this at the same time. Takes about 10 ns for each position, or 50 ns with lens
-  // distortion.
+  // the plate, i in [0, count); 0 if the LF camera records no ray through the focus point of the
+  // position. Several threads may call this at the same time. Takes about 10 ns for each position,
+  // or 50 ns with lens distortion.
   void OfRow(int x, int y, int count, uint16_t* feather) const;
 
   // Returns true only if OfRow() gives kWholeFeather at all positions of the plate in `rect`,
-  // borders included. May be false although it does. Takes about 50 ns.
+  // borders included. May return false although it gives this, always with lens distortion. Takes
+  // about 50 ns.
   bool IsWhole(const PixelRect& rect) const;
 
  private:
@@ -57,7 +58,8 @@ class ImageFeather {
   Vec3 before_lens_;   // times e: > 0 if X is in front of the lens
   Vec3 runs_forward_;  // times e: >= 0 if X - c points forward; otherwise c - X does
   mutable std::once_flag map_is_made_;
-  // Made by the first call of OfRow() that needs it, because making it is slow.
+  // Made by the first call of OfRow() if the LF camera has lens distortion, because making it is
+  // slow.
   mutable std::optional<DistortionMap> map_;
 };
 

@@ -9,9 +9,11 @@
 
 namespace lf {
 
-// Returns the part of `around` that is nearer to `place` than to any of the points. Considers one
-// point after the other. Calls met(i) for every point that cuts off a part of the polygon that the
-// points before it have left, and same(i) for every point that is exactly at `place`.
+// Returns the part of `around` that is nearer to `place` than to any of the points elsewhere.
+// Considers one point after the other. Calls met(i) for every point that cuts off a part of the
+// polygon that the points before it have left, and same(i) for every point that is exactly at
+// `place`.
+//   grid  a grid of the points
 template <class Met, class Same>
 ConvexPolygon CellOf(const Vec2& place, std::span<const Vec2> points, const PointGrid& grid,
                      ConvexPolygon around, const Met& met, const Same& same) {

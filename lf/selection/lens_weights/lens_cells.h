@@ -15,8 +15,8 @@ namespace lf {
 // cell is the part of the opening that is nearer to the point than to any other point, clipped by
 // the covered region. Exact except for rounding (1e-12). If there is at least one point, in the
 // opening or beside it, the shares sum up to the covered share of the opening, because the cells of
-// points beside the opening extend into it. Points at the same place have equal shares. Takes about
-// a microsecond for each point.
+// points beside the opening extend into it. Points at the same place share their cell equally.
+// Takes about a microsecond for each point.
 //   points    the points where rays of the LF cameras meet the lens plane, in lens coordinates;
 //             finite, in any number and arrangement
 //   aperture  its radius_w must be above 0

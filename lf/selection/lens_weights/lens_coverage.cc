@@ -62,7 +62,8 @@ LensCoverage CoverageOf(std::span<const Vec2> points, const Aperture& aperture) 
   const double distance = DistanceOfMost(points);
   if (distance == 0) return {};
   const PointGrid grid(points);
-  // A lens that is narrower than `distance` is weighted by hats, which the region does not clip.
+  // By default (LensWeights::kAuto), a lens that is narrower than `distance` is weighted by hats,
+  // which the region does not clip.
   const bool is_cut = 2 * aperture.radius_w > distance;
   const CoveredRegion region = CoveredBy(points);
   const double far = kFarDistances * distance;

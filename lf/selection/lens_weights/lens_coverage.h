@@ -29,17 +29,17 @@ inline constexpr double kMuchUncovered = 0.1;
 struct LensCoverage {
   // Share of the opening that is farther from every point than kFarDistances * DistanceOfMost() or,
   // if the opening is wider than DistanceOfMost(), outside of CoveredBy(points). For a pinhole,
-  // only its middle is tested: 0 or 1. Exact to about 1 / 256. 1 if there are no two different
-  // points.
+  // only its middle is tested: 0 or 1. Measured at 256 points of the opening. 1 if there are no two
+  // different points.
   double uncovered_share = 1;
-  // Diameter of the largest aperture with the same centre that is within CoveredBy(points); 0 if
-  // there are no two different points.
+  // Diameter of the largest aperture with the same centre that is within CoveredBy(points); 0 if it
+  // does not contain the centre, or if there are no two different points.
   double fitting_diameter_w = 0;
 };
 
 // Returns how well the LF cameras cover the opening of the lens.
-//   points  one for each LF camera, in lens coordinates: the intersection of its ray (through the
-//           focus point of the element, say) with the lens plane
+//   points  one for each LF camera, in lens coordinates: the intersection of the lens plane with a
+//           ray of the LF camera. The rays of all LF cameras pass through one focus point
 LensCoverage CoverageOf(std::span<const Vec2> points, const Aperture& aperture);
 
 }  // namespace lf
