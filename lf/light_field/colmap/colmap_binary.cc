@@ -136,7 +136,7 @@ Result<void> ReadColmapImagesBinary(ByteStream* stream, ColmapScene* scene) {
     if (!stream->Take(&point_count)) return place.CutOff(i, count);
     if (point_count > stream->remaining() / kPoint2DSize)
       return place.EntryFault(id, fmt::format("says that it has {} 2D points, but only {} bytes "
-                                              "are left: the file is cut off or broken",
+                                              "are left: the file is damaged; copy it again",
                                               point_count, stream->remaining()));
     stream->Skip(point_count * kPoint2DSize);
   }
@@ -163,7 +163,7 @@ Result<void> ReadColmapPointsBinary(ByteStream* stream, Sink* sink) {
           id, fmt::format("lies at {}: expected finite numbers", fmt::join(xyz, " ")));
     if (track_length > stream->remaining() / kTrackEntrySize)
       return place.EntryFault(id, fmt::format("says that {} images see it, but only {} bytes are "
-                                              "left: the file is cut off or broken",
+                                              "left: the file is damaged; copy it again",
                                               track_length, stream->remaining()));
     if (Result<void> added = sink->AddPoint(id, point_world, track_length > 0); !added)
       return place.EntryFault(id, added.error().message);

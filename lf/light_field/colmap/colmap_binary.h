@@ -19,9 +19,9 @@
 
 namespace lf {
 
-// Each function reads the whole stream. kInput if ColmapScene refuses an entry, the stream ends
-// before or after the end of its list, or a count is larger than the file allows (checked before
-// memory is allocated). The message names the file and the entry.
+// Each function reads the whole stream. kInput if an entry is not valid or ColmapScene refuses it,
+// the stream ends before or after the end of its list or cannot be read, or a count is larger than
+// the file allows (checked before memory is allocated). The message names the file and the entry.
 Result<void> ReadColmapCamerasBinary(ByteStream* stream, ColmapScene* scene);
 Result<void> ReadColmapImagesBinary(ByteStream* stream, ColmapScene* scene);
 // Sink is ColmapScene or ColmapPointsSeen. It receives each point, followed by the images that
@@ -29,7 +29,8 @@ Result<void> ReadColmapImagesBinary(ByteStream* stream, ColmapScene* scene);
 template <class Sink>
 Result<void> ReadColmapPointsBinary(ByteStream* stream, Sink* sink);
 
-// Returns the number of images that images.bin states at its start.
+// Returns the number of images that images.bin states at its start. kInput if the file is too small
+// for this number, or cannot be read.
 Result<uint64_t> CountColmapImagesBinary(ByteStream* stream);
 
 }  // namespace lf

@@ -14,7 +14,7 @@ constexpr uint64_t kMaxPixelCount = 1 << 30;  // the limit of pixels/files/image
 constexpr double kMinFocal_px = 0.001;
 constexpr double kMaxFocal_px = 1e7;
 constexpr double kMaxPrincipal_px = 1e7;
-// This limit and the limits below are the same as for transforms.json.
+// kMaxDistortion and kMaxOmega equal the limits for transforms.json.
 constexpr double kMaxDistortion = 1e6;
 constexpr double kMaxOmega = 3.1415;  // largest field of view of the FOV model, in radians
 // The FOV model with an omega below this limit bends no ray by more than a rounding error.

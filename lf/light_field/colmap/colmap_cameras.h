@@ -26,7 +26,7 @@ Result<ColmapCameraModel> FindColmapCameraModel(int32_t number);
 Result<ColmapCameraModel> FindColmapCameraModel(std::string_view name);
 
 // Converts the parameters, in COLMAP's order, to focal length, principal point and distortion. A
-// distortion that bends no ray becomes DistortionModel::kNone.
+// distortion whose parameters bend no ray becomes DistortionModel::kNone.
 //   parameters  model.parameter_count numbers
 // kInput: a width or height of 0 or above 65536, more than 2^30 pixels, a number that is not finite
 // or out of range. The message does not name the place in the file; the caller adds it.

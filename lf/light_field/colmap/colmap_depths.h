@@ -21,8 +21,8 @@ class DepthSample {
   // large model are not kept; for these a caller can skip the computation of the depth.
   bool MayKeep(uint64_t point_id, uint32_t image_id) const;
 
-  // Adds the depth of a point in one camera. A depth that is not positive and finite is ignored,
-  // because the point is a mistake of the reconstruction.
+  // Adds the depth of a point along the optical axis of one camera, in world units. A depth that is
+  // not positive and finite is ignored, because the point is a mistake of the reconstruction.
   void Add(uint64_t point_id, uint32_t image_id, double depth_w);
 
   // Returns the range from the 1st to the 99th percentile of the depths; nullopt if there are no

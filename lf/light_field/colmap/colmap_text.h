@@ -16,9 +16,9 @@
 
 namespace lf {
 
-// Each function reads the whole stream. kInput if ColmapScene refuses an entry, a word is missing
-// or not a number, or a line has too many words. The message names the file, the line and the
-// entry.
+// Each function reads the whole stream. kInput if ColmapScene refuses an entry, a camera model is
+// not supported, a number is missing or out of range, a line has too many words, or the stream
+// cannot be read. The message names the file, the line and the entry.
 Result<void> ReadColmapCamerasText(ByteStream* stream, ColmapScene* scene);
 Result<void> ReadColmapImagesText(ByteStream* stream, ColmapScene* scene);
 // Sink is ColmapScene or ColmapPointsSeen. It receives each point, followed by the images that

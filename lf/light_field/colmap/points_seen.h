@@ -54,7 +54,7 @@ class ColmapPointsSeen {
 // points again, block by block.
 //   position  index of the image among all images of the model sorted by name; equals its LfImageId
 //   camera    the camera of this image, with intrinsics for the size of the image file
-// kInput: errors of ReadColmapModel(); a position beyond the last image.
+// kInput: errors of OpenColmapStreams() and ParseColmapModel(); a position beyond the last image.
 Result<std::vector<Vec3>> ReadColmapPointsSeen(const std::filesystem::path& model_folder,
                                                uint32_t position, const PinholeCamera& camera);
 // Reads from streams as ReadColmapPointsSeen() does from files.

@@ -12,11 +12,11 @@
 namespace lf {
 
 // Finds the model of a folder. Searches `path`, path/sparse and path/colmap/sparse, each of them
-// first directly and then in its numbered subfolders 0, 1, .... If several numbered subfolders hold
-// models, logs a warning and returns the one with most images (the first if several have equally
-// many). nullopt if there is no model. kInput: a cameras file without an images file beside it, or
-// the reverse (except for text files in `path` itself, because they may belong to another program);
-// an images file whose images cannot be counted.
+// first directly and then in its numbered subfolders 0, 1, ... (those of `path` only if path/0
+// exists). If several numbered subfolders hold models, logs a warning and returns the one with most
+// images (the first if several have equally many). nullopt if there is no model. kInput: a cameras
+// file without an images file beside it, or the reverse (except for text files in `path` itself,
+// because they may belong to another program); an images file whose images cannot be counted.
 //   warns  false: logs no warning, because the caller already did
 Result<std::optional<std::filesystem::path>> FindColmapModel(const std::filesystem::path& path,
                                                              bool warns = true);

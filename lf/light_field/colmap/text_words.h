@@ -34,7 +34,8 @@ class TextWords {
     SkipBlanks();
     return !Peek();
   }
-  // Returns the next word of this line, or "" if there is none. Valid until the next call.
+  // Returns the next word of this line, or "" if there is none. Valid until another function of
+  // this object is called.
   std::string_view Word();
   // Returns the rest of this line without surrounding blanks. If it is longer than max_size,
   // returns its first max_size + 1 bytes.

@@ -15,7 +15,8 @@ namespace lf {
 namespace {
 
 constexpr size_t kLookedAt = 3;  // number of LF images whose pixels are examined
-// Each of the kLookedAt LF images is the first readable one among this many successive LF images.
+// Each of the kLookedAt LF images is the first one with a readable header among this many
+// successive LF images.
 constexpr size_t kAskedFrom = 5;
 
 // Two images count as having the same transparent pixels if at most this share of these pixels is
@@ -33,7 +34,8 @@ struct ImageEvidence {
   std::array<double, 3> background = {};  // radiance of that colour; valid if is_one_colour
 };
 
-// Returns the radiance, from 0 to max_radiance, of a value that an image file stores.
+// Returns the radiance, from 0 to max_radiance, of a value that an image file stores; 0 if the file
+// has too few bits for the levels of `encoding`.
 template <class T>
 double RadianceOfStored(const RadianceEncoding& encoding, T value) {
   if constexpr (std::is_floating_point_v<T>) {

@@ -20,16 +20,17 @@ struct AlphaEvidence {
 // middle and the end of the light field. Images without fully transparent pixels are ignored.
 //
 // Alpha is a mask if the transparent pixels of one image have different colours, because a picture
-// lies beneath them, or if the same pixels are transparent in all of several images (up to 2 % of
-// them may differ), like the borders of undistorted photographs.
+// lies beneath them, or if two or more images remain and all have the same transparent pixels (up
+// to 2 % of these may differ), like the borders of undistorted photographs.
 //
 // Otherwise alpha is an opacity: in each image, all fully transparent pixels have one colour,
-// because the images show an object alone, and that colour is the background. Alpha is
-// premultiplied if the files hold floats and the colour is black, as renderers write them;
-// otherwise it is straight.
+// because the images show an object alone. The background is this colour of the first image. Alpha
+// is premultiplied if the first image is a float file and its background is black, as renderers
+// write them; otherwise it is straight.
 //
-// Returns nullopt if the images have no alpha or no transparent pixel. If a file cannot be read,
-// the first readable one of the four LF images after it is examined instead.
+// Returns nullopt if no examined image has an alpha channel and a fully transparent pixel. If the
+// header of a file cannot be read, the next LF image with a readable header is examined instead, if
+// it is among the next four.
 std::optional<AlphaEvidence> FindAlphaEvidence(const LightField& light_field);
 
 }  // namespace lf

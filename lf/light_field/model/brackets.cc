@@ -16,7 +16,7 @@ namespace {
 // Positions count as equal up to kSamePlace of the extent of all positions, plus kRounding of the
 // largest distance from the origin.
 constexpr double kSamePlace = 1e-9, kRounding = 1e-14;
-constexpr double kSameRotation = 1e-6;  // largest distance of two equal rotation matrices
+constexpr double kSameRotation = 1e-6;  // largest norm of the difference of two equal rotations
 
 // Assigns points to the cells of a grid. The grid is so coarse that points within the tolerance of
 // each other rarely lie in different cells.
@@ -24,7 +24,7 @@ class PlaceGrid {
  public:
   explicit PlaceGrid(double tolerance_w) : tolerance_w_(tolerance_w), cell_w_(1024 * tolerance_w) {}
 
-  // Calls use(cell) for each cell that may contain a point within the tolerance of `point`.
+  // Calls use(hash) for each cell that may contain a point within the tolerance of `point`.
   template <class Use>
   void ForEachCell(const Vec3& point, const Use& use) const {
     std::array<std::array<double, 2>, 3> ends;
@@ -123,7 +123,8 @@ size_t ApplyToPose(std::vector<uint32_t> images, std::vector<LfCamera>* cameras)
 std::vector<uint32_t> FirstOfPose(const LightField& light_field) {
   const double tolerance_w = ToleranceOf(light_field);
   const PlaceGrid grid(tolerance_w);
-  std::unordered_multimap<uint64_t, uint32_t> firsts;  // the first LF image of each pose, by cell
+  // The first LF image of each pose, by CellAt() of its position.
+  std::unordered_multimap<uint64_t, uint32_t> firsts;
   std::vector<uint32_t> of_images;
   std::vector<Vec3> places;
   for (uint32_t i = 0; i < light_field.size(); ++i) {

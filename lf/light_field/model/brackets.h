@@ -16,8 +16,9 @@
 namespace lf {
 
 // Returns, for each LF image, the number of the first LF image with the same pose and intrinsics.
-// Positions count as equal if they differ by at most 1e-9 of the extent of all positions, rotations
-// if they differ by at most 1e-6. Time and memory are linear in the number of LF images.
+// Positions count as equal if they differ by at most 1e-9 of the extent of all positions (plus a
+// rounding error), rotation matrices if the norm of their difference is at most 1e-6. Time and
+// memory are linear in the number of LF images.
 std::vector<uint32_t> FirstOfPose(const LightField& light_field);
 
 // Returns how much light the LF image recorded, relative to other LF images: 1 / gain, where `gain`
@@ -44,9 +45,9 @@ void MakeRoomForGains(LightField* light_field);
 //
 // All LF images of a pose get the exact pose of the first of them, so that they share lens weights.
 //
-// If encoding.masks_clipped is false, no LF image is masked, and none has a brighter one. Must be
-// called again after LF images were renumbered or gains changed. Returns the number of LF images
-// whose pose has a darker one.
+// If encoding.masks_clipped is false, both members are reset and 0 is returned. Must be called
+// again after LF images were renumbered or gains changed. Returns the number of LF images whose
+// pose has a darker one.
 size_t ApplyBrackets(LightField* light_field);
 
 }  // namespace lf

@@ -29,7 +29,8 @@ Vec3 MeanUpWorld(const LightField& light_field);
 
 // Returns the angle in radians, 0 or more, by which the camera leans to the side: the angle between
 // its up direction and the projection of `up_world` onto its image plane. Returns 0 if the camera
-// looks almost along `up_world`.
+// looks almost along `up_world` or against it. `up_world` must have length 1, or be the zero vector
+// (the result is then 0).
 double RollOf(const PinholeCamera& camera, const Vec3& up_world);
 
 // Returns the ray through the middle of the image, with a direction of length 1. It is the optical
@@ -39,20 +40,22 @@ Ray CentralRay(const PinholeCamera& camera);
 
 // Returns the point that is nearest to the lines of the central rays: a least squares fit, repeated
 // without the tenth of the lines that are farthest from it. Uses fewer than 40,000 cameras, spread
-// over the light field. nullopt if the lines are so nearly parallel that no point can be found.
+// over the light field. nullopt if there are fewer than two cameras, or if the lines are so nearly
+// parallel that no point can be found.
 std::optional<Vec3> PointNearestToAxes(const LightField& light_field);
 
 // Returns PointNearestToAxes(), or nullopt unless this point is in front of nine tenths of the
 // cameras that were left in the fit.
 std::optional<Vec3> AxesMeetingPoint(const LightField& light_field);
 
-// Distances from `camera` to the `count` LF cameras nearest to it, along the right and along the up
-// axis of `camera`: the 80th percentile of each, in world units. `count` must exceed 0, and the
-// light field must have LF cameras.
+// How far LF cameras extend beside a camera, along its right and its up axis, in world units.
 struct Reach {
   double right_w = 0;
   double up_w = 0;
 };
+// Returns, for each axis of `camera`, the 80th percentile of the distances along this axis from
+// `camera` to the `count` LF cameras nearest to it (all if there are fewer). `count` must exceed 0,
+// and the light field must have LF cameras.
 Reach CaptureReach(const LightField& light_field, const PinholeCamera& camera, size_t count);
 
 }  // namespace lf

@@ -189,8 +189,8 @@ const Intrinsics& IntrinsicsOf(const LightField& light_field, LfImageId id) {
   return light_field.intrinsics[light_field.cameras[id.value].intrinsics_index];
 }
 
-// Returns the integer factor by which all images in `sizes` are smaller than calibrated; 1 if there
-// is none.
+// Returns the smallest factor from 2 to kMostDivisor by which all images in `sizes` are smaller
+// than calibrated; 1 if there is none.
 int DivisorOf(const LightField& light_field, const std::vector<SizedImage>& sizes) {
   for (int divisor = 2; divisor <= kMostDivisor; ++divisor)
     if (std::all_of(sizes.begin(), sizes.end(), [&](const SizedImage& image) {

@@ -18,14 +18,15 @@ namespace lf {
 // folders may differ. If several files fit, the best is the one whose path shares most trailing
 // folders with the name; then the one with most pixels (each folder is judged by its first image);
 // then the one nested in the fewest folders. A file in a folder for something other than
-// photographs (masks, depth, normals) fits only if the name contains such a folder. A file fits a
-// mask only if it also lies in a folder with the name of the mask's folder.
+// photographs (masks, depth, normals) fits only if the LF image's name contains such a folder. A
+// file fits a mask only if it also lies in a folder with the name of the mask's folder.
 //
 // Changes the names to paths relative to the searched folder, which becomes light_field->folder. LF
 // images without a file keep their names. Returns the number of LF images with a file, and logs it
 // if the light field has two or more LF images. Returns 0 and changes nothing if nothing is
 // searched or found. No pixels are read.
-//   images_folder  searched with its subfolders; light_field->folder is searched if it is not given
+//   images_folder  folder to search, with the subfolders up to three levels below it, except
+//                  hidden ones; if it is not given, light_field->folder is searched
 // kInput: several files fit an LF image equally well.
 Result<size_t> FindImageFiles(const std::optional<std::filesystem::path>& images_folder,
                               LightField* light_field);
@@ -34,9 +35,9 @@ Result<size_t> FindImageFiles(const std::optional<std::filesystem::path>& images
 struct ImageScale {
   // kOff: the sizes are neither compared nor changed. kAuto: files may be smaller by a whole factor
   // from 2 to 16, with sizes rounded up, down or to the nearest pixel as COLMAP and nerfstudio do.
-  // Up to 64 evenly spread LF images are examined, and all of them must have the same factor.
-  // kFactor: files are `factor` times as large as calibrated, with sizes rounded in one of these
-  // ways.
+  // Up to 64 evenly spread LF images are examined; unless all of them have the same factor, nothing
+  // is scaled. kFactor: files have `factor` times the calibrated width and height, rounded in one
+  // of these ways.
   enum class Kind { kOff, kAuto, kFactor } kind = Kind::kAuto;
   double factor = 1;
 };
@@ -46,7 +47,8 @@ Result<ImageScale> ParseImageScale(const std::string& text);
 
 // Scales the intrinsics to the size of the files. Returns the size of the files divided by the
 // calibrated size; 1 if nothing changed. Lens distortion is defined on directions and needs no
-// change. kInput for kFactor: a file has another size.
+// change. kInput for kFactor, unless the factor is 1: a file does not have `factor` times the
+// calibrated size.
 Result<double> FitToImageFiles(const ImageScale& scale, LightField* light_field);
 
 }  // namespace lf

@@ -20,7 +20,7 @@ struct LfPixels {
   static constexpr uint16_t kOpaque = 49152;
 
   LfPixels() = default;
-  // Creates black pixels without a mask.
+  // Creates pixels with the radiance v = 0 and without a mask.
   LfPixels(const PixelRect& part, BayerPattern pattern)
       : radiance(part.width(), part.height(), pattern == BayerPattern::kNone ? kRgbLanes : 1),
         bayer(pattern),
@@ -30,8 +30,8 @@ struct LfPixels {
         radiance.pixels()[i] = 1;
   }
 
-  // Makes this object hold another part of an LF image, in the same memory and without a mask. The
-  // radiance is unspecified until it is written.
+  // Makes this object hold another part of an LF image, in the same memory, without a mask and
+  // without opacities. All lanes of `radiance` are unspecified until they are written.
   void Reset(const PixelRect& part, BayerPattern pattern) {
     radiance.Resize(part.width(), part.height(), pattern == BayerPattern::kNone ? kRgbLanes : 1);
     bayer = pattern;
@@ -76,8 +76,8 @@ struct LfPixels {
   // kernels collect opacities with the same rays and weights as colours.
   Image<uint16_t> opacity;
 
-  // Moves the opacities into pixels that kernels can collect; the result is empty if there are
-  // none.
+  // Moves the opacities into pixels that kernels can collect. The result is empty if there are no
+  // opacities.
   LfPixels TakeOpacity() {
     LfPixels taken;
     if (opacity.empty()) return taken;

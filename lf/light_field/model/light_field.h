@@ -40,7 +40,8 @@ struct LfCamera {
   ChannelGains gain;              // factors of the radiance (lf_gain)
   // ApplyBrackets() sets `brighter` and `masks_clipped` (light_field/model/brackets.h).
   static constexpr uint32_t kNone = UINT32_MAX;
-  uint32_t brighter = kNone;   // the LF image of the same pose with the next larger exposure
+  // LF image of the same pose with the next larger exposure; kNone if there is none.
+  uint32_t brighter = kNone;
   bool masks_clipped = false;  // clipped pixels send no ray, because the pose has a darker LF image
 };
 

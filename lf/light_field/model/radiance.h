@@ -79,16 +79,16 @@ struct RadianceEncoding {
 // Largest allowed pedestal. It leaves at least half of the 16-bit range to light.
 inline constexpr double kMostPedestal = 32767;
 
-// Raises the pedestal to kUndershootPedestal, which leaves room for a fifteenth of max_radiance
+// Raises a lower pedestal to kUndershootPedestal, which leaves room for a fifteenth of max_radiance
 // below black. Bicubic interpolation and demosaicking undershoot beside bright lights; if the
 // values were clipped at black, dark surroundings of small lights would turn grey.
 inline constexpr double kUndershootPedestal = 4096;
 void MakeRoomForUndershoot(RadianceEncoding* encoding);
 
 // Makes more room than MakeRoomForUndershoot(), also above white, because prefilters undershoot and
-// overshoot more than bicubic interpolation. Raises the pedestal to kRoomPedestal, a quarter of the
-// range. Doubles max_radiance, unless LF images are float files with a max_radiance of at least 4,
-// because these hardly have values near max_radiance.
+// overshoot more than bicubic interpolation. Raises a lower pedestal to kRoomPedestal, a quarter of
+// the range. Doubles max_radiance, unless LF images are float files with a max_radiance of at least
+// 4, because these hardly have values near max_radiance.
 inline constexpr double kRoomPedestal = 16384;
 void MakeRoomBesideEdges(std::span<const std::string> image_names, RadianceEncoding* encoding);
 

@@ -12,7 +12,7 @@
 
 namespace lf {
 
-// Default pedestal, the 16-bit value v of no light, for raw files with a black level. It leaves
+// Default pedestal, the 16-bit value v of no light, for files with a black level above 0. It leaves
 // room for noise below black.
 inline constexpr double kRawPedestal = 1024;
 
@@ -21,14 +21,15 @@ inline constexpr double kRawPedestal = 1024;
 bool IsRawName(const std::string& file_name);
 
 // RawFactsOfFirstImage() returns the raw facts of the first image, which are used for all images,
-// or nullopt if its name is not the name of a raw file. The pixels of this image are decoded only
-// if its header does not state the black level. kInput: the file cannot be read or is no raw file;
-// the message says what the user can state instead.
+// or nullopt if there is no image or IsRawName() is false for its name. The pixels of this image
+// are decoded only if its header does not state the black level. kInput: the file cannot be read or
+// is no raw file; the message says what the user can state instead.
 using RawFactsSource = std::function<Result<std::optional<RawFacts>>(const LightField&)>;
 Result<std::optional<RawFacts>> RawFactsOfFirstImage(const LightField& light_field);
 
 // Returns an encoding for raw files with these facts. It is linear, and has no Bayer pattern if the
-// facts have none. Levels and colours that the facts do not have keep their defaults.
+// facts have none. Levels and colours that the facts do not have keep their defaults. The pedestal
+// is kRawPedestal if the black level is above 0, otherwise 0.
 RadianceEncoding EncodingOfRaw(const RawFacts& facts);
 
 // Completes a light field whose calibration says nothing about pixels: sets the encoding of raw

@@ -1,6 +1,6 @@
-// Finds the few balls near a ray quickly. Eight balls near each other form a block: a ball around
-// the block is tested first, then its eight balls are tested side by side. For about a
-// hundred balls, as in the built-in scenes, blocks are faster than a tree.
+// Finds the few balls near a ray quickly. Up to eight balls near each other form a block: a ball
+// around the block is tested first, then the balls of the block are tested side by side. For about
+// a hundred balls, as in the built-in scenes, blocks are faster than a tree.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +35,7 @@ class BallBlocks {
   BallBlocks() = default;
   explicit BallBlocks(const std::vector<Ball>& balls);
 
-  // Calls visit(i) for the index of every ball that reaches into the cone, and perhaps for some
+  // Calls visit(i) for the index i of every ball that reaches into the cone, and perhaps for some
   // other balls: the test in single precision is so wide that it never misses a ball. Equal
   // arguments give an equal order of calls.
   template <class Visit>

@@ -1,6 +1,7 @@
 // The scenes that come with lfsynth, each with the capture for which it was composed.
 //
-// Lengths are metres. y points down; the origin is the middle of what the cameras look at.
+// Lengths are metres. y points down. The origin is the point that the rig faces; in `still-life`,
+// it is on the table top, 0.085 below this point.
 //
 // `still-life`  Glass, mirrors and marbles on a dark wooden table, with strings of small lights far
 //               behind. Depths in front of the middle camera: marbles 0.43 to 1.2, the clear glass
@@ -17,10 +18,10 @@
 // How dense a capture must be: in a frame that is focused at depth g, a light at depth z is
 // displaced from one camera to the next by
 //     step_px = focal_length_px * spacing_w * |1/g - 1/z|
-// Its bokeh is therefore a sum of dots that are step_px apart. A lamp (Glow) of radius r is a
+// Its bokeh is therefore a sum of dots that are step_px apart. A Glow of radius r is a
 // Gaussian dot of sigma_px = focal_length_px * r / (sqrt(2) z). The sum ripples by
 // 2 exp(-2 (pi sigma_px / step_px)^2): 1.4 % at sigma = step / 2, 8 % at 0.4; larger sigma make the
-// ripple invisible. Recommended for `still-life`: focal length 540 px, spacing 3 mm, lamps of 12.5
+// ripple invisible. Recommended for `still-life`: focal length 540 px, spacing 3 mm, glows of 12.5
 // mm radius. For z = 2.3, step is 2.1 px at g = 0.58 and 1.5 px at g = 0.75; sigma is 2.1 px. The
 // bokeh of a 46 mm lens is then 32 and 22 px wide, in a picture of 480 px. Estimators that round to
 // whole pixels displace the dots by up to half a pixel; sigma is large enough for them.

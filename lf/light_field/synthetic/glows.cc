@@ -15,8 +15,8 @@ Glows::Glows(std::vector<Glow> glows) : glows_(std::move(glows)) {
   balls_ = BallBlocks(balls);
 }
 
-// Returns true if the box around the ray touches the box around the lamps. This test excludes the
-// many rays that end on a table below the lamps.
+// Returns true if the box around the ray touches the box around the glows. This test excludes the
+// many rays that end on a table below the glows.
 bool Glows::MayMeet(const Ray& ray, const Footprint& footprint, double lambda_end) const {
   if (glows_.empty()) return false;
   const double past_all = (bounds_.center() - ray.origin).norm() + bounds_.diagonal().norm();

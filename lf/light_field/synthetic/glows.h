@@ -1,4 +1,4 @@
-// The light of the small lamps (glows) that a ray passes.
+// The light of the glows that a ray passes: soft spots of light in the picture (Glow).
 #pragma once
 
 #include <cstdint>
@@ -11,20 +11,21 @@
 
 namespace lf {
 
-// Number of radii from the centre of a lamp beyond which it counts as dark: exp(-3.2^2) = 4e-5.
+// Number of radii from the centre of a glow beyond which it counts as dark: exp(-3.2^2) = 4e-5.
 inline constexpr double kGlowReach = 3.2;
 
 class Glows {
  public:
   explicit Glows(std::vector<Glow> glows);
 
-  // Returns the light that all lamps at distances below `lambda_end` add to the ray, averaged over
-  // its footprint. The direction must have unit length. `among` lists the lamps that are
-  // considered; null: all lamps are.
+  // Returns the light that all glows at distances from 0 to `lambda_end` along the ray add to it,
+  // averaged over its footprint. The direction must have unit length. `among` has the indices of
+  // the glows that are considered; null: all glows are.
   Rgb Along(const Ray& ray, const Footprint& footprint, double lambda_end,
             const std::vector<uint32_t>* among = nullptr) const;
 
-  // Returns the indices of all lamps that reach into the cone, and perhaps of some others.
+  // Returns the indices of all glows that reach into the cone with kGlowReach radii, and perhaps of
+  // some others.
   std::vector<uint32_t> Near(const Cone& cone) const;
 
  private:

@@ -9,7 +9,8 @@ namespace {
 
 // A sphere farther away than this number of its radii does not hide the room's light.
 constexpr double kReach = 6;
-// A point counts as lying on a sphere if it is at most this share of the sphere's radius away.
+// A point counts as lying on a sphere if it is at most this share of the sphere's radius above the
+// surface of the sphere.
 constexpr double kTouching = 1e-6;
 
 // Returns the share of a lamp's light that passes one sphere on the way to a point. sine_lamp and

@@ -22,11 +22,12 @@ class Lighting {
   Lighting() = default;
   Lighting(std::vector<Lamp> lamps, std::vector<Occluder> occluders, const Rgb& ambient);
 
-  // Returns the light that a white diffuse surface at the point reflects. It is computed by closed
-  // formulas, without random numbers. The share of a lamp that a sphere hides is computed as for
-  // two discs on the sky. The spot in the shadow of glass is a Gaussian with three quarters of the
-  // light that the shadow lacks. A sphere that the point lies on hides nothing, because the cosine
-  // of the light's angle to the normal already accounts for it.
+  // Returns the light that a white diffuse surface at the point reflects. The normal has unit
+  // length. The light is computed by closed formulas, without random numbers. The share of a lamp
+  // that a sphere hides is computed as for two discs on the sky. The spot in the shadow of glass is
+  // a Gaussian with three quarters of the light that the shadow lacks. A sphere that the point lies
+  // on hides nothing, because the cosine of the light's angle to the normal already accounts for
+  // it.
   Rgb DiffuseLight(const Vec3& point_world, const Vec3& normal_world) const;
 
  private:
@@ -40,8 +41,8 @@ class Lighting {
   Rgb ambient_ = Rgb::Zero();
 };
 
-// Returns the share of a disc of radius a on the sky that is hidden by a disc of radius b, whose
-// centre is c away. a, b and c are angles.
+// Returns approximately the share of a disc of radius a on the sky that is hidden by a disc of
+// radius b, whose centre is c away. a, b and c are angles in radians.
 double HiddenShare(double a, double b, double c);
 
 }  // namespace lf

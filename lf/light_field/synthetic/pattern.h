@@ -14,8 +14,8 @@ namespace lf {
 enum class PatternKind : uint8_t {
   kPlain,    // the value 0 everywhere
   kChecker,  // squares of side scale_w
-  kBars,     // rows of upright bars, scale_w wide in the top row, 4/5 as wide in each next row
-  kLetters,  // rows of digits, scale_w high in the top row, 4/5 as high in each next row
+  kBars,     // 12 rows of upright bars, scale_w wide in the top row, 4/5 as wide in each row below
+  kLetters,  // 12 rows of digits, scale_w high in the top row, 4/5 as high in each row below
   kStar,     // Siemens star of 36 periods around (0, 0), sinusoidal, radius scale_w
   kWood,     // planks along y, scale_w wide, with seams and grain
   kSwirl,    // veins as in glass marbles, about scale_w apart

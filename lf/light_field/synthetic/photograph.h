@@ -14,8 +14,8 @@ namespace lf {
 
 // The background that is seen where there is no surface.
 enum class Surroundings : uint8_t {
-  kShown,        // room and lamps; pictures are R, G, B
-  kTransparent,  // nothing, not even lamps; a ray that hits a surface, of glass or not, is opaque.
+  kShown,        // room and glows; pictures are R, G, B
+  kTransparent,  // nothing, not even glows; a ray that hits a surface, of glass or not, is opaque.
                  // Pictures are R, G, B, A: the light of surfaces, premultiplied by A, the share of
                  // rays that hit a surface
 };
@@ -31,7 +31,7 @@ Image<float> Photograph(const Scene& scene, const PinholeCamera& camera, int sam
 
 struct LensSampling {
   // Number of rays per element, each through its own point of the lens and of the element; rounded
-  // up to a square number. Lamps and textures are averaged over the part of lens and element that
+  // up to a square number. Glows and textures are averaged over the part of lens and element that
   // each ray represents.
   int samples = 529;
   uint64_t seed = 0;  // determines the lens points

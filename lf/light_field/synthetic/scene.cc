@@ -10,8 +10,8 @@
 namespace lf {
 namespace {
 
-// A light path ends after kDepthLimit mirrors and glass spheres, or if less than kLeastWeight of
-// its light would reach the camera.
+// A light path ends after kDepthLimit reflections and glass spheres, or if less than kLeastWeight
+// of its light would reach the camera.
 constexpr int kDepthLimit = 4;
 constexpr double kLeastWeight = 0.012;
 
@@ -112,8 +112,9 @@ Rgb Scene::Follow(const Beam& beam, Hit* first) const {
   return glow;
 }
 
-// Returns the light that the surface mirrors. A sphere of radius R spreads the beam: its focal
-// length is -R/2 times the cosine of the angle of incidence.
+// Returns the light that arrives from the mirrored direction. The caller multiplies it by `share`,
+// the share that the surface mirrors. A sphere of radius R spreads the beam: its focal length is
+// -R/2 times the cosine of the angle of incidence.
 Rgb Scene::Reflection(const Beam& beam, const Place& place, double share) const {
   Beam next{{place.point, Reflected(beam.ray.direction, place.normal)},
             place.footprint,

@@ -23,7 +23,7 @@ class Scene {
   // Material indices must exist. Only spheres may have kGlass, only panels may have kLight.
   explicit Scene(SceneDescription description);
 
-  // Returns the radiance as linear RGB. `ray.direction` may have any length but 0. Lamps and
+  // Returns the radiance as linear RGB. `ray.direction` may have any length but 0. Glows and
   // textures are averaged over `footprint`, whose lengths are measured as if the direction had unit
   // length.
   Rgb RadianceAlong(const Ray& ray, const Footprint& footprint = {}) const;
@@ -39,11 +39,11 @@ class Scene {
 
   // The radiance along a ray, and the shape that the ray hits first. Different shapes in
   // neighbouring pixels tell where more rays are needed.
-  //   sector  a sector whose cone contains the ray, or null
   struct Sight {
     Rgb radiance = Rgb::Zero();
     uint32_t shape = Hit::kNothing;
   };
+  // `sector` is a sector whose cone contains the ray, or null.
   Sight SightAlong(const Ray& ray, const Footprint& footprint,
                    const Sector* sector = nullptr) const;
 
@@ -52,7 +52,7 @@ class Scene {
     Ray ray;  // unit direction
     Footprint footprint;
     double weight = 1;  // share of the beam's light that reaches the camera
-    int depth = 0;      // number of mirrors and glass spheres that were passed
+    int depth = 0;      // number of reflections and glass spheres on the way from the camera
     const Sector* sector = nullptr;
   };
   struct Place;  // a point on a surface (scene.cc)

@@ -28,7 +28,7 @@ struct Material {
   Pattern pattern;
   double coat = 0;                // strength of the clear coat: 0 matte, 1 polished
   double refractive_index = 1.5;  // refractive index of glass and of the coat
-  // Angle by which the material spreads the images of glows that it reflects or refracts, like an
+  // Angle by which the material widens the footprint of a ray that it reflects or refracts, like an
   // imperfect polish. It keeps the tiny images of glows in balls from sparkling.
   double haze_rad = 0;
 };
@@ -50,7 +50,7 @@ struct Panel {
   uint32_t material = 0;
 };
 
-// A small lamp in the picture: a soft ball of light that hides nothing. A ray that passes its
+// A soft ball of light that is seen in the picture and hides nothing. A ray that passes its
 // centre at distance b receives colour exp(-(b / radius)^2). The average of this light over a round
 // Gaussian footprint is again a Gaussian, so that a glow far smaller than a pixel loses no light
 // and does not flicker.

@@ -44,8 +44,8 @@ struct PanelPlane {
   uint32_t material = 0;
 };
 
-// Returns the distance along `ray` to a panel, on either of its sides; nullopt if the ray misses
-// it.
+// Returns the distance along `ray`, whose direction has unit length, to a panel beyond
+// kLeastLambda, on either side of the panel; nullopt if the ray misses it.
 std::optional<double> Intersect(const Ray& ray, const PanelPlane& panel);
 
 // The first point where a ray meets a shape; kNothing if it meets none. Shapes are numbered: first
@@ -63,8 +63,9 @@ class Shapes {
  public:
   Shapes(std::vector<Sphere> spheres, const std::vector<Panel>& panels);
 
-  // Returns the first hit of the ray, whose direction must have unit length. `among` lists the
-  // spheres that are considered; null: all spheres are. Panels are always considered.
+  // Returns the first hit of the ray, whose direction must have unit length. `among` has the
+  // indices of the spheres that are considered; null: all spheres are. Panels are always
+  // considered.
   Hit FirstHit(const Ray& ray, const std::vector<uint32_t>* among = nullptr) const;
 
   // Returns the indices of all spheres that reach into the cone, and perhaps of some others.

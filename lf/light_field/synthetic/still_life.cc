@@ -123,7 +123,7 @@ void AddSpheres(Table& table) {
   table.Lay(-0.192, -0.35, 0.014, honey);
 }
 
-// Adds lamps on strings that sag between their nails. More than two thirds of the lamps are golden.
+// Adds glows on strings that sag between their nails. More than two thirds of the glows are golden.
 void AddStringsOfLights(SceneDescription& scene) {
   const Rgb golden[] = {Rgb(1.0, 0.5, 0.14), Rgb(1.0, 0.4, 0.085), Rgb(1.0, 0.6, 0.26)};
   const Rgb rose(1.0, 0.17, 0.13), sea(0.1, 0.6, 0.58);

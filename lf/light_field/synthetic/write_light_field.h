@@ -35,7 +35,7 @@ LightField DescribeLightField(const std::vector<RigidTransform>& poses,
 // Returns one value per pixel, as a sensor with the colour filters of encoding.bayer records the
 // picture [height][width][3]: with black level and before white balance. The standard deviation of
 // the noise is noise * sqrt(radiance + 0.01), in units of radiance (photon noise and some
-// electronic noise). The noise depends only on `seed` and position.
+// electronic noise). Its random numbers depend only on `seed` and position.
 Image<uint16_t> Mosaic(ImageView<const float> picture, const RadianceEncoding& encoding,
                        double noise, uint64_t seed);
 

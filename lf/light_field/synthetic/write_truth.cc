@@ -23,8 +23,10 @@ Result<void> WriteTruth(const Scene& scene, std::span<const RenderCamera> camera
     LF_RETURN_IF_ERROR(WriteImage(folder / fmt::format("frame_{:04}.exr", i + 1), picture.view(),
                                   names, PixelType::kFloat));
     if (keep_going && !keep_going(i + 1) && i + 1 < cameras.size())
-      return Error{ErrorKind::kInterrupted, fmt::format("{}: stopped after {} of {} frames",
-                                                        folder.string(), i + 1, cameras.size())};
+      return Error{
+          ErrorKind::kInterrupted,
+          fmt::format("{}: stopped after {} of {} frames; run the same command again to start anew",
+                      folder.string(), i + 1, cameras.size())};
   }
   return {};
 }

@@ -39,8 +39,8 @@ struct DistortionKeys {
   friend bool operator==(const DistortionKeys&, const DistortionKeys&) = default;
 };
 
-// Reads the keys. kInput: an unknown camera model, a parameter beyond +-1e6, an omega outside [0,
-// pi).
+// Reads the keys. kInput: a value of another type, an unknown camera model, a parameter beyond
+// +-1e6, an omega outside [0, 3.1415).
 Result<DistortionKeys> ReadDistortionKeys(const JsonFields& fields);
 
 // Returns the distortion of a frame. Takes each key from the frame, or from the top level if the

@@ -50,7 +50,8 @@ void FrameCutter::Add(std::string_view piece) {
 }
 
 // AddToString(), AddToFrame() and AddToRest() consume `piece` up to and including the next
-// character of their table, at least one character, and return the number of consumed bytes.
+// character of kOfStrings, kOfFrames or kOfRest, respectively, or all of it if there is none. After
+// a backslash in a string, they consume one character. They return the number of consumed bytes.
 size_t FrameCutter::AddToString(std::string_view piece, std::string* text) {
   size_t size = 0;
   if (is_escaped_) {

@@ -38,8 +38,8 @@ class JsonFields {
 
   bool Has(const char* key) const;      // false if the key is missing or its value is null
   bool HasList(const char* key) const;  // true if the value of the key is a list
-  // Number() and the functions below return nullopt if the key is missing or null, and kInput if
-  // the value has another type or violates the rule.
+  // Number() and the functions below up to Matrix() return nullopt if the key is missing or null,
+  // and kInput if the value has another type or violates the rule.
   Result<std::optional<double>> Number(const char* key, const NumberRule& rule) const;
   // Reads a list of `count` numbers, or one number, which is repeated `count` times.
   Result<std::optional<std::vector<double>>> NumberOrNumbers(const char* key, size_t count,

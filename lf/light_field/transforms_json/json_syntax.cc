@@ -56,7 +56,8 @@ std::string_view AdviceOn(std::string_view what) {
 Error IsNotJson(const std::filesystem::path& file, std::string_view what) {
   what.remove_prefix(std::min(what.size(), what.find("] ") + 2));  // drops "[json.exception...] "
   const std::string_view advice = AdviceOn(what);
-  // Text that is not UTF-8 is left out of the message, because it cannot be shown.
+  // If the first character is already wrong, the text is left out of the message, because it may
+  // not be UTF-8 and then cannot be shown.
   if (advice.find("UTF-8") != advice.npos) what = what.substr(0, what.find("; last read"));
   return InputError(fmt::format("{}: is not JSON: {}{}", file.string(), what, advice));
 }

@@ -13,9 +13,10 @@ namespace lf {
 // nlohmann's parser and, for the usual mistakes, advice.
 Error IsNotJson(const std::filesystem::path& file, std::string_view what);
 
-// Reads the whole stream. Returns kInput with the line and column of the first syntax error, or
-// with the reason why the stream cannot be read. The needed memory does not grow with the text or
-// its nesting.
+// Parses the stream again, after a parser found that it is not JSON. Returns kInput with the line
+// and column of the first syntax error; with the reason why the stream cannot be read; or, if it is
+// JSON now, with the statement that it has changed. The needed memory does not grow with the text
+// or its nesting.
 Error JsonSyntaxError(ByteStream* stream);
 
 }  // namespace lf

@@ -123,8 +123,9 @@ Result<void> ReadFootprint(const JsonFields& top, RadianceEncoding* encoding) {
   return {};
 }
 
-// Returns the encoding to which the keys are then applied: if keys are missing and the first image
-// is a camera raw file, the encoding of this file, otherwise the default encoding.
+// Returns the encoding whose values the keys then replace: if a key of the Bayer pattern, levels or
+// colours is missing and the first image is a camera raw file, the encoding of this file, otherwise
+// the default encoding.
 Result<RadianceEncoding> DefaultEncoding(const JsonFields& top, const LightField& light_field,
                                          const RawFactsSource& raw_facts) {
   const auto stated = [&](const auto&... keys) { return (... && top.Has(keys)); };

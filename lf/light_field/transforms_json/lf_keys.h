@@ -45,10 +45,11 @@ inline constexpr const char* kFrameLfKeys[] = {
     "lf_eucm_beta", "lf_sx1",  "lf_sy1",         "lf_p0",        "lf_p1",        "lf_s0",
     "lf_s1",        "lf_s2",   "lf_s3",          "lf_vignetting"};
 
-// Reads the keys of the top level. If keys that camera raw files can replace are missing, their
-// values are read from these files by `raw_facts`, unless it is null. Other defaults: sRGB without
-// a Bayer pattern, linear with a pattern; pedestal 1024 if the black level is above 0, otherwise 0;
-// max_radiance from DefaultMaxRadiance().
+// Reads the keys of the top level. If lf_bayer, lf_black_level, lf_white_level, lf_white_balance or
+// lf_camera_to_srgb is missing and the first image is a camera raw file, `raw_facts` reads the
+// missing values from this image, unless `raw_facts` is empty; the default transfer is then linear.
+// Other defaults: sRGB without a Bayer pattern, linear with a pattern; pedestal 1024 if the black
+// level is above 0, otherwise 0; max_radiance from DefaultMaxRadiance().
 //   light_field  only its image names and folder are used
 Result<RadianceEncoding> ReadEncoding(const JsonFields& top, const LightField& light_field,
                                       const RawFactsSource& raw_facts);

@@ -14,8 +14,8 @@ using Mat34 = Eigen::Matrix<double, 3, 4>;
 //
 // If s R is a rotation within 1e-12, it is used bit for bit; otherwise the rotation nearest to R is
 // used, because files often have only six digits.
-// kInput: numbers that are not finite or beyond 1e12; a scale below 1e-6; a negative determinant (a
-// mirrored axis); axes that deviate from right angles or equal lengths by more than 1e-3. The
+// kInput: numbers that are not finite or beyond +-1e12; a scale below 1e-6; a negative determinant
+// (a mirrored axis); axes that deviate from right angles or equal lengths by more than 1e-3. The
 // message does not name the place in the file; the caller adds it.
 Result<RigidTransform> CamFromWorldOfOpenGl(const Mat34& world_from_opengl_camera);
 

@@ -77,7 +77,7 @@ class Reader {
   size_t frame_count() const { return light_field_.cameras.size(); }
 
   // Returns the top level without the entries of "frames". Sets *error if one of the entries is no
-  // object, or if a key occurs twice. Throws if the text is not JSON.
+  // object, or if a key of the top level occurs twice. Throws if the text is not JSON.
   json TopLevel(const std::string& text, std::optional<Error>* error) const {
     std::set<std::string> seen_keys;
     bool in_frames = false, in_frames_list = false;

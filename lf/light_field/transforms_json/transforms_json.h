@@ -16,8 +16,9 @@ namespace lf {
 // Parses the content of a file.
 //   text        the file's content
 //   path        the file's name for messages; its folder becomes LightField::folder
-//   image_size  called for up to 15 images if a frame has no "w" or "h", as in Blender's scenes;
-//               the most frequent size is used. If it is empty, a missing size is an error
+//   image_size  called for up to 15 images if "w" or "h" of a frame is stated neither in the
+//               frame nor at the top level, as in Blender's scenes; the most frequent size is used.
+//               If image_size is empty, a missing size is an error
 //   raw_facts   called for facts about camera raw files that the keys do not state; may be empty
 // kInput if the content is wrong. The message names the file, the frame and its key, the value
 // found and what was expected.
