@@ -22,13 +22,14 @@ class FilmUse {
   struct Facts {
     size_t frames_done = 0;              // number of frames counted so far, from the first on
     std::vector<uint32_t> image_counts;  // [frame]: number of LF images; 0 until counted
-    std::vector<uint64_t> ray_counts;    // [frame]: number of rays to be tested; 0 until counted
-    // [LF image]: number of frames that use it, at most 65535
+    // [frame]: sum of FrameNeeds::Image::ray_count; 0 until counted
+    std::vector<uint64_t> ray_counts;
+    // [LF image]: number of the counted frames that use it, at most 65535
     std::vector<uint16_t> frames_of_image;
   };
 
-  // Starts counting at once in its own thread, which calls `on_progress` about four times a second
-  // and after the last frame. `index` and `pool` must outlive this object.
+  // Starts counting at once in its own thread, which calls `on_progress` at most four times a
+  // second, and after the last frame. `index` and `pool` must outlive this object.
   FilmUse(const ImageIndex& index, std::shared_ptr<const CameraPath> path,
           const NeedsOptions& options, ThreadPool& pool, std::function<void()> on_progress);
   ~FilmUse();  // ends the thread, even if frames are left

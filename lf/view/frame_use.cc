@@ -51,8 +51,8 @@ FrameUse UseOfCameras(const ImageIndex& index, const RenderCamera& frame,
   FrameUse use;
   use.camera_distance_w = needs.camera_distance_w();
   use.used = std::move(needs.images);
-  // If the frame has reached the limit --max-images, the limit excludes the LF images after the
-  // last used one.
+  // If the frame has reached the limit --max-images, the limit excludes the LF images that
+  // follow the last used one in the order.
   std::vector<bool> is_late(index.light_field().size(), false);
   if (options.max_image_count && !use.used.empty() && use.used.size() >= *options.max_image_count) {
     const uint32_t last = index.PlaceOf(use.used.back().id);

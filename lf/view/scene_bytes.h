@@ -36,12 +36,12 @@ std::string FramesBytes(const CameraPath& path);
 // share of its pixels that is read (float). Then one byte per LF camera: its CameraUse.
 std::string FrameUseBytes(const LightField& light_field, const FrameUse& use);
 
-// Returns one uint16 per LF camera: the number of frames that use its image.
+// Returns one uint16 per LF camera: FilmUse::Facts::frames_of_image of its image.
 std::string FilmUseBytes(const FilmUse::Facts& facts);
 
 // Returns a head of eight uint32: width and height of the picture; width and height of the full
 // frame; 1 if ray counts are known, otherwise 0; three unused zeros. Then four half floats for each
-// element, row by row: R, G, B and ray count.
+// pixel of the picture, row by row: those of GrowingPicture::elements.
 std::string PictureBytes(const GrowingPicture& picture);
 
 }  // namespace lf

@@ -45,8 +45,8 @@ int64_t ChangedNanoseconds(const fs::path& path) {
   return int64_t{facts.st_mtim.tv_sec} * 1'000'000'000 + facts.st_mtim.tv_nsec;
 }
 
-// Adds the frames in a folder, and those of checkpoints in its subfolders, down to kMostNested
-// levels.
+// Adds the frames in a folder, and those of checkpoints in its subfolders. `nested` is the level of
+// the folder below the output folder (0); only `partial` and its subfolders are searched below it.
 void AddFramesIn(const fs::path& folder, int nested, std::map<uint32_t, WatchedFrame>* frames) {
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;

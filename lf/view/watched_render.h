@@ -15,9 +15,9 @@ namespace lf {
 
 struct WatchedFrame {
   FrameId frame;
-  std::filesystem::path picture;  // the newest picture of the frame
+  std::filesystem::path picture;  // file of the newest finished picture, or else from a checkpoint
   bool is_finished = false;       // false: the picture is from a checkpoint
-  int64_t changed_ns = 0;         // modification time of the file, in nanoseconds since 1970
+  int64_t changed_ns = 0;         // modification time of `picture`, in nanoseconds since 1970
 
   friend bool operator==(const WatchedFrame&, const WatchedFrame&) = default;
 };
@@ -30,10 +30,11 @@ std::vector<WatchedFrame> LookAtRender(const std::filesystem::path& folder);
 struct GrowingPicture {
   int full_width_px = 0;  // width and height of the frame itself
   int full_height_px = 0;
-  bool has_rays = false;
-  // [height][width][4]: R, G, B in linear light, and the number of rays of an element, averaged
-  // over its channels (-1 if has_rays is false). If the longer side of the frame exceeds
-  // max_side_px, each entry is the mean of a square of elements. A frame with alpha is shown over
+  bool has_rays = false;  // true if the numbers of rays are known
+  // [height][width][4]: R, G, B in linear light, and the number of rays of an element (with lens
+  // weights: the sum of their weights), averaged over its channels (-1 if has_rays is false). If
+  // the longer side of the frame exceeds max_side_px of the function that returns this picture,
+  // each entry is the mean of a square of elements. A frame with alpha is shown over
   // black.
   Image<float> elements;
 };
