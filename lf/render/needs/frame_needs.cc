@@ -103,8 +103,8 @@ class NeedsFinder {
   }
 
   // Finds the LF cameras that are needed for lens weights, gaps of the lens, and rebinned rays with
-  // the default options. Includes the LF cameras that any mode or estimator needs, so that a
-  // package serves all of them.
+  // the default QueryOptions. Includes the LF cameras that any mode or estimator needs, so that a
+  // package serves all modes and estimators.
   void FindNeighbours() {
     SelectOptions widest = options_.select;
     widest.reach = kWidestReach;
@@ -203,9 +203,9 @@ Result<void> CheckKept(const LfImageStore& store, const LightField& light_field,
 
 Error NoneContributes(std::span<const FrameId> frames) {
   return InputError(fmt::format(
-      "no LF image contributes to frames {}-{}: no recorded ray passes through both their lens and "
-      "the region that they see (is the aperture smaller than the distance between LF cameras, or "
-      "the render camera far from them?)",
+      "no LF image contributes to any of the frames {} to {}: no recorded ray passes through both "
+      "their lens and the region that they see (is the aperture smaller than the distance between "
+      "LF cameras, or the render camera far from the LF cameras?)",
       frames.front().value, frames.back().value));
 }
 

@@ -28,7 +28,7 @@ namespace lf {
 
 // The options of a render that determine what its frames need.
 struct NeedsOptions {
-  SelectOptions select;  // only reach, max_angle_rad and interrupted are used
+  SelectOptions select;  // whole_images must be false
   // Must be kNone if the mode is kRebin, because it collects no rays that could be weighted.
   LensWeights lens_weights = LensWeights::kAuto;
   std::optional<size_t> max_image_count;  // must be unset unless the mode is kCollect
@@ -52,11 +52,11 @@ struct FrameNeeds {
   std::vector<Image> images;  // the LF images that are read, by ascending ranks
   // Other LF cameras that are needed to compute lens weights and gaps (render/hybrid/lens_gaps.h),
   // by ascending ids. The LF cameras of `images` and `neighbours` alone give the same lens weights,
-  // the same LF images within max_image_count, and the same rebinned rays (for the default options)
-  // as the whole light field. Empty if NeedsOptions::HasNeighbours() is false.
+  // the same LF images within max_image_count, and (for the default QueryOptions) the same rebinned
+  // rays as the whole light field. Empty if NeedsOptions::HasNeighbours() is false.
   std::vector<LfImageId> neighbours;
   // Density of the LF cameras around the lens; set if NeedsOptions::HasNeighbours() is true, or if
-  // it was passed to NeedsOf().
+  // a sampling was passed to NeedsOf().
   std::optional<FrameSampling> sampling;
 
   std::optional<double> camera_distance_w() const;
@@ -65,12 +65,14 @@ struct FrameNeeds {
 
 // Returns a sampling in the form that a package stores.
 FrameSurroundings SurroundingsOf(const FrameSampling& sampling);
-// Returns the sampling of a frame of the film that the package stores; nullopt if it stores none.
+// Returns the sampling that the package stores of a frame of the film; nullopt if the package
+// stores no samplings.
 std::optional<FrameSampling> SamplingOf(const Package& package, FrameId frame);
 
 // Returns the LF images, pixels and LF cameras that a frame needs.
 //   sampling  density of the LF cameras around the lens in the whole light field. Must be set if
-//             `index` covers only a part of the light field; unset: measured in `index`
+//             `index` covers only a part of the light field; unset: measured in `index` if
+//             options.HasNeighbours() is true
 FrameNeeds NeedsOf(const ImageIndex& index, const RenderCamera& frame, const NeedsOptions& options,
                    ThreadPool& pool, const std::optional<FrameSampling>& sampling = {});
 
@@ -81,8 +83,9 @@ FrameNeeds NeedsOf(const ImageIndex& index, const RenderCamera& frame, const Nee
 Result<void> CheckKept(const LfImageStore& store, const LightField& light_field, FrameId frame,
                        const FrameNeeds& needs);
 
-// Returns the error (kInput) for frames that no LF image contributes to.
-//   frames  ascending
+// Returns the error (kInput) for frames that no LF image contributes to. The message names only the
+// first and the last of them.
+//   frames  ascending; at least one
 Error NoneContributes(std::span<const FrameId> frames);
 
 }  // namespace lf
