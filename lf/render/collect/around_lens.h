@@ -15,8 +15,8 @@ namespace lf {
 // Returns the LF cameras whose line to the focus point of the plate's middle passes through the
 // lens, and some LF cameras beside them. If fewer than kCamerasAround
 // (selection/lens_weights/frame_weights.h) of these lines pass through the lens, the lens is
-// widened until enough do. The ids are ascending; there are none if the middle of the plate has no
-// focus point.
+// widened until enough do, but not without limit. The ids are ascending; there are none if the
+// middle of the plate has no focus point.
 std::vector<LfImageId> CamerasAroundLens(const ImageIndex& index, const RenderCamera& frame);
 
 // Returns the approximate distance, in world units, between the lines of neighbouring cameras of

@@ -31,10 +31,11 @@ struct Loading {
 struct Batch {
   size_t begin = 0;
   size_t end = 0;
-  uint32_t place_end = 0;      // when the batch is done, all places before this one are done
-  std::vector<size_t> frames;  // indices of the frames that take the batch; empty: all
+  uint32_t place_end = 0;  // when the batch is done, all places before this one are done
+  // Indices of the frames that take the batch. Empty: all; or none, if only the consumer needs it.
+  std::vector<size_t> frames;
   std::vector<Loading> loading;
-  std::vector<BatchImage> images;  // its LF images that are not broken; set once all are loaded
+  std::vector<BatchImage> images;  // LF images that are not broken; set once all are loaded
   bool is_loaded = false;
 };
 
@@ -121,7 +122,7 @@ Result<bool> FrameCollector::State::Step() {
     batch_ = next_.end > next_.begin ? std::move(next_) : BatchFrom(images_done_);
     next_ = {};
     if (batch_.begin == batch_.end) {
-      spare_.clear();  // frees the memory in which frames are developed next
+      spare_.clear();  // frees memory, because the caller develops frames next
       return false;
     }
     takers = FramesOf(batch_);
@@ -218,8 +219,8 @@ void FrameCollector::State::AnnounceUpTo(size_t end) {
   for (; announced_ < end && !IsInterrupted(); ++announced_) store_.Announce(order_[announced_].id);
 }
 
-// Returns the bounds of the pixels of an LF image that the frames of the batch need. If all frames
-// take the batch, these are the bounds that selection has found.
+// Returns the bounds of the pixels of an LF image that the frames of the batch need. If
+// batch.frames is empty, these are the bounds that selection has found.
 PixelRect FrameCollector::State::RectOf(const Batch& batch, const SelectedImage& image) const {
   if (batch.frames.empty()) return image.rect;
   std::vector<size_t> frames;

@@ -37,9 +37,10 @@ struct CollectOptions {
   // this number of LF images is in memory.
   int batch_image_count = 16;
   // Largest number of rays that a batch of two or more LF images tests. batch_ray_count limits the
-  // rays in all frames to some seconds of work, so that progress is reported and checkpoints are
-  // written between two batches. batch_frame_ray_count limits the rays in one frame to less than a
-  // second of work, because an interruption waits until the frames that are begun are finished.
+  // rays in all frames together to some seconds of work, so that progress is reported and
+  // checkpoints are written between two batches. batch_frame_ray_count limits the rays in a frame
+  // (the mean of the frames that take an LF image) to less than a second of work, because an
+  // interruption waits until each plate that has a part of the batch has all of it.
   uint64_t batch_ray_count = 10'000'000'000;
   uint64_t batch_frame_ray_count = 500'000'000;
   size_t plan_bytes = size_t{64} << 20;  // memory for the plans (PlanBytes()) of a batch's rays
@@ -49,21 +50,21 @@ struct CollectOptions {
   uint32_t decision_places = kDecisionPlaces;
   // True: batches also end at all places of NoiseDecisionAfter() (noise_rule.h).
   bool cuts_for_noise = false;
-  // Receives the LF images of all batches, in addition to the frames. Does not change the plates.
-  // May be null.
+  // Receives the LF images from its places_done() on, in addition to the frames. The plates are the
+  // same with and without a consumer. Null: there is none.
   ImageConsumer* consumer = nullptr;
   bool whole_images = false;  // must be equal to SelectOptions::whole_images of the selection
-  // End (exclusive) of all places in the order. 0: the number of LF images in the light field. A
-  // package must set it, because its places are those of the whole light field.
+  // End (exclusive) of all places in the order. 0: the number of LF images in the light field. Must
+  // be set for a package, because its places are those of the whole light field.
   uint32_t place_end = 0;
   bool strict = false;  // true: a broken LF image is an error; false: it is skipped
-  // Once it is true, Step() returns kInterrupted. Null: nothing interrupts.
+  // Once it is true, Step() returns kInterrupted, unless no work is left. Null: nothing interrupts.
   const std::atomic<bool>* interrupted = nullptr;
 };
 
 struct SkippedImage {
-  std::string name;
-  std::string reason;
+  std::string name;    // name in LightField::image_names
+  std::string reason;  // says why it was skipped, for messages
   uint32_t place = 0;  // rank of the LF image in the order
 };
 
@@ -85,8 +86,9 @@ class FrameCollector {
  public:
   // order   LF images that the frames take, by ascending places, each with the bounds of the pixels
   //         that the frames need: the result of SelectImages(), where TakingFrame::takes must be
-  //         true exactly for the LF images to which CollectedFrame::weights gives a weight above 0
-  // The plates and moments of the frames, and all arguments except `frames` and `options`, must
+  //         true exactly for the LF images to which CollectedFrame::weights gives a weight above 0.
+  //         Also those that only options.consumer needs, with an empty `rect`
+  // All arguments except `frames` and `options`, and all objects that these two point to, must
   // outlive the collector. Only Step() changes plates and moments.
   FrameCollector(const LightField& light_field, const LfImageStore& store,
                  std::vector<CollectedFrame> frames, std::span<const SelectedImage> order,
@@ -95,9 +97,9 @@ class FrameCollector {
   FrameCollector(const FrameCollector&) = delete;
   FrameCollector& operator=(const FrameCollector&) = delete;
 
-  // Collects the next batch into every frame that has not reached its end and is not stopped.
-  // Returns false if nothing was left to do. If frames start at different places, those that are
-  // behind catch up first.
+  // Collects the next batch into every frame that has not reached its places.end and is not
+  // stopped. Returns false if nothing was left to do. If frames start at different places, those
+  // that are behind catch up first.
   // kInterrupted: *options.interrupted became true. Every frame is consistent: it has either all LF
   // images of the batch or none. Step() may be called again to continue.
   // kInput: an LF image is broken and `strict` is set, or an LF image that was read before has
@@ -113,7 +115,7 @@ class FrameCollector {
   std::span<const CollectedFrame> frames() const;
   // Broken LF images that this object skipped, by ascending places.
   std::span<const SkippedImage> skipped() const;
-  // Number of LF images at the beginning of `order` that are done in all frames that take them.
+  // Number of LF images at the beginning of `order` that no frame and no consumer needs any more.
   size_t images_done() const;
   const CollectTimes& times() const;
 
@@ -129,8 +131,8 @@ struct CollectStatistics {
 };
 
 struct CollectProgress {
-  size_t image_count = 0;  // number of LF images of `order` that are done
-  uint64_t tested_count = 0;
+  size_t image_count = 0;     // number of LF images of `order` that are done
+  uint64_t tested_count = 0;  // sum of SelectedImage::ray_count of these LF images
 };
 
 // Makes a FrameCollector and calls Step() until nothing is left to do. Errors are

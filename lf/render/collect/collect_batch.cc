@@ -11,9 +11,9 @@
 namespace lf {
 namespace {
 
-// Decides for one frame whether the batch is collected into it: yes, unless *interrupted is true
-// when the first thread asks. All threads get the same answer, so that the frame gets all of the
-// batch or nothing.
+// Decides for one frame whether the batch is collected into the frame: yes, unless *interrupted is
+// true when the first thread asks. All threads get the same answer, so that the frame gets all of
+// the batch or nothing.
 class FrameGate {
  public:
   bool IsOpen(const std::atomic<bool>* interrupted) {
@@ -156,7 +156,7 @@ PixelRect BatchCollector::RectOf(LfImageId id, std::span<const size_t> frames) c
 
 // Prepares cells, ideal pixels and overlap of the LF images. LF images with the same intrinsics
 // share their ideal pixels, also with the next batch. Only the fast back end of kNearest needs
-// ideal pixels, because only it follows the arcs into which distortion bends scanlines.
+// ideal pixels, because no other code follows the arcs into which distortion bends scanlines.
 void BatchCollector::UndoDistortion(std::vector<BatchImage>& batch) {
   if (reading_.estimator == Estimator::kNearest && back_end_ == CollectBackEnd::kFast)
     ideal_pixels_.Keep(light_field_, batch,

@@ -44,16 +44,16 @@ struct RayReading : PixelReading {  // its member `filter` is used only by kBili
   RayReading() = default;
   RayReading(Estimator the_estimator) : estimator(the_estimator) {}  // NOLINT: implicit on purpose
 
-  // Returns true if LF images are filtered before they are read.
+  // Returns true if LF images may be filtered (Prefilter) before rays are read from them.
   bool Prefilters() const {
     return estimator == Estimator::kBilinear &&
            (filter == PixelFilter::kPrefiltered || filter == PixelFilter::kAuto);
   }
 };
 
-// Returns which pixels the estimator reads for one ray: the pixel of the ray itself, its
-// neighbours, or all pixels in an element around it. Selection (SelectOptions::reach) includes all
-// of them.
+// Returns which pixels of an LF image decide the value of one ray: the pixel of the ray itself, its
+// neighbours, or the pixels that a prefilter reads. Selection must use this as
+// SelectOptions::reach.
 PixelReach ReachOf(const RayReading& reading);
 
 // kReference applies the ray model literally to every pixel, on one thread. It is about 50 times
@@ -66,8 +66,8 @@ struct BatchImage {
   LfPixels pixels;
   // opacity of these pixels (LfPixels::TakeOpacity()); only used by plates with opacity
   LfPixels opacity = {};
-  // BatchCollector sets the members below. If the LF camera has no lens distortion, `cells` is
-  // empty and `ideal_pixels` is null.
+  // BatchCollector sets the members below. If the LF camera has no lens distortion, *cells is
+  // empty. `ideal_pixels` is then null, as it always is with kBilinear or kReference.
   std::shared_ptr<const std::vector<IdealCell>> cells = nullptr;
   std::shared_ptr<const IdealPixels> ideal_pixels = nullptr;
   std::optional<ImageOverlap> overlap = std::nullopt;
@@ -77,7 +77,7 @@ struct BatchImage {
 };
 
 // A frame that takes those LF images of a batch whose places are in `places`.
-// BatchCollector::Add() sets the last two members.
+// BatchCollector::Add() sets `is_done` and `rays`.
 struct BatchFrame {
   size_t frame = 0;  // index in the frames of the BatchCollector
   PlaceRange places;
@@ -116,15 +116,16 @@ class BatchCollector {
   ~BatchCollector();
 
   // Adds the rays of the LF images to the plates of `frames`, and runs `other_items`. May change
-  // the order of `frames`. Once *interrupted is true, no further frame is begun, and the frames
-  // that are begun are finished. Items of `other_items` may then be left out.
+  // the order of `frames`. Once *interrupted is true, no further frame gets rays of the batch, but
+  // the frames that have some of these rays get all of them. Items of `other_items` may then be
+  // left out. `interrupted` may be null.
   //   keep_pixels  true: the LF images stay as loaded; false: an LF image that needs only one
-  //                prefilter is filtered in its own memory
+  //                prefilter may be filtered in its own memory
   void Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>& frames,
            const OtherItems& other_items, bool keep_pixels, const std::atomic<bool>* interrupted);
 
-  // Returns the bounds of the pixels of an LF image that at least one of `frames` needs. A frame in
-  // which the LF image has no weight needs no pixels.
+  // Returns the bounds of the pixels of an LF image that at least one of `frames` (indices) needs.
+  // A frame in which the LF image has no weight needs no pixels.
   PixelRect RectOf(LfImageId id, std::span<const size_t> frames) const;
 
   // Returns the CPU seconds that all threads together have spent on collecting rays so far, without
@@ -176,7 +177,8 @@ class BatchCollector {
   std::vector<std::vector<PlateTile>> tiles_;  // [frame]: the tiles of its plate
   std::deque<Contribution>
       contributions_;  // [frame][LF image] of a batch; the next batch reuses their memory
-  // Ideal pixels of the LF cameras of the last batch, by the index of their intrinsics.
+  // Ideal pixels of the LF cameras of the last batch, by the index of their intrinsics. Empty with
+  // kBilinear or kReference.
   SharedIdealPixels ideal_pixels_;
   std::unique_ptr<FilteredImages> filtered_;
   std::atomic<int64_t> cpu_ns_ = 0;

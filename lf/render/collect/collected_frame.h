@@ -20,9 +20,9 @@ namespace lf {
 using ImageWeights = std::function<RayWeights(LfImageId id)>;
 
 struct FrameRays {
-  uint64_t image_count = 0;   // number of LF images with an accepted ray
-  uint64_t tested_count = 0;  // number of LF pixels in the rectangles that the frame needs
-  uint64_t accepted_count = 0;
+  uint64_t image_count = 0;     // number of LF images with an accepted ray
+  uint64_t tested_count = 0;    // number of LF pixels in the rectangles that the frame needs
+  uint64_t accepted_count = 0;  // number of rays that were added to the plate
 
   FrameRays& operator+=(const FrameRays& more) {
     image_count += more.image_count;
@@ -42,8 +42,8 @@ struct FrameProgress {
 struct CollectedFrame {
   RenderCamera camera;
   SensorPlate* plate = nullptr;  // receives the rays; must not be null
-  // The frame takes the LF images at these places of the order. The plate must already have the
-  // rays of the frame's LF images at places before places.begin.
+  // The frame takes LF images at these places of the order. The plate must already have the rays of
+  // the LF images that the frame takes at places before places.begin.
   PlaceRange places = {};
   ImageWeights weights = {};
   // Moments of the plate, made for its width and height. They are updated with the plate, and

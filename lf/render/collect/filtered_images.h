@@ -24,10 +24,10 @@ class FilteredImages {
   // Filters each LF image of the batch with each of its filters, unless this was done since the
   // last Clear(). Forgets the results of all other filters, so that the memory stays small if every
   // frame needs another filter.
-  //   filters      the prefilters of each LF image; may contain equal ones
-  //   keep_pixels  false: the result replaces the pixels of an LF image that has one filter, and
-  //                BatchImage::filtered_by is set. This touches less memory than a copy. No other
-  //                filter may be asked for that LF image any more
+  //   filters      the prefilters of each LF image of the batch; may contain equal ones
+  //   keep_pixels  false: if an LF image has only one filter and no result that was kept, the
+  //                result replaces its pixels, and BatchImage::filtered_by is set. This touches
+  //                less memory than a copy. No other filter may be asked for that LF image any more
   void Filter(std::vector<BatchImage>& batch, std::vector<std::vector<Prefilter>> filters,
               bool keep_pixels, const ForEach& for_each);
 

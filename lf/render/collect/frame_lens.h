@@ -45,12 +45,12 @@ class FrameLens {
   // rays with a weight pass through.
   const RenderCamera& camera() const { return camera_; }
 
-  // Returns the weights of the LF image's rays, which refer to this object. The weights are 0 if
-  // the LF image has no share of the lens, or if the angle between the axes of LF camera and frame
-  // exceeds SelectOptions::max_angle_rad.
+  // Returns the weights of the LF image's rays. The result refers to this object. The weights are 0
+  // if the LF image has no share of the lens, or if the angle between the axes of LF camera and
+  // frame exceeds SelectOptions::max_angle_rad. Without lens weights, they are otherwise 1.
   RayWeights WeightsOf(LfImageId id) const;
 
-  // Returns false if WeightsOf() is 0 in all elements.
+  // Returns true unless WeightsOf() is 0 in all elements.
   bool Takes(LfImageId id) const;
 
   // near() returns the LF images that may get a share of the lens, by ascending ids.
@@ -87,8 +87,9 @@ class FrameLens {
 int EffectiveStep(const Intrinsics& plate);
 // Returns the numbers of columns and rows of these squares on a plate.
 std::pair<int, int> EffectiveSquares(const Intrinsics& plate);
-// Interpolates effective numbers between the squares, ignoring those that are 0. Returns one number
-// for each element: [height][width].
+// Interpolates the result of EffectiveCounts() between the middles of the squares, ignoring numbers
+// that are 0. Returns one number for each element, [height][width]; 0 if all squares around it have
+// 0.
 Image<float> SpreadOverPlate(const Image<float>& effective_counts, const Intrinsics& plate);
 
 }  // namespace lf

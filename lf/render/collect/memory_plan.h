@@ -10,7 +10,8 @@
 namespace lf {
 
 struct MemoryPlan {
-  // number of plates in memory at the same time; each pass reads the LF images again
+  // number of frames whose plates are in memory at the same time; the frames of each pass read the
+  // LF images again
   size_t frames_per_pass = 1;
   size_t batch_image_count = 1;  // two batches are in memory at the same time (collect.h)
   size_t plan_bytes = 0;         // memory for the plans (PlanBytes()) of a batch's rays
@@ -18,19 +19,20 @@ struct MemoryPlan {
   // its LF images had
   size_t frames_finished_at_once = 1;
   size_t image_bytes = 0;  // size of the largest decoded LF image
-  size_t plate_bytes = 0;
+  size_t plate_bytes = 0;  // size of the plate of one frame
   size_t total_bytes = 0;  // expected memory of the program; includes all of the above
 };
 
-// Divides memory_bytes. First sets memory aside for the program itself, its threads, the contact
-// sheet and a frame that is developed. About a quarter of the rest, at most, is for two batches of
-// LF images and the plans of their rays; more only if one LF image in each batch needs more. The
-// plates get what remains. If not all plates fit, the frames are divided into passes. A batch has
-// at most the largest of these numbers of LF images, because larger batches gain nothing: 16, or as
-// many as take 256 MiB for each frame if these are fewer; two for each thread; as many as have the
-// pixels of eight plates together (at most 64). kOutput if the memory does not suffice for one
-// plate and two LF images; the message names the least memory that suffices. If LF images are
-// prefiltered, the memory of one batch also holds a filtered copy of each of its LF images.
+// Divides memory_bytes. First sets memory aside for the program itself, its threads, the
+// calibration, the contact sheet and a frame that is developed. About a quarter of the rest, at
+// most, is for two batches of LF images and the plans of their rays; more only if one LF image in
+// each batch needs more. The plates get what remains. If not all plates fit, the frames are divided
+// into passes. A batch has at most the largest of these numbers of LF images, because larger
+// batches gain nothing: 16, or as many as take 256 MiB for each frame if these are fewer; two for
+// each thread; as many as have the pixels of eight plates together (at most 64). kOutput if the
+// memory does not suffice for one plate and two LF images; the message names the least memory that
+// suffices. If LF images are prefiltered, the memory of one batch also holds a filtered copy of
+// each of its LF images.
 //   bytes_per_frame  further memory for each frame, such as its moments (noise_moments.h)
 Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field,
                               const RayReading& reading, int plate_width, int plate_height,

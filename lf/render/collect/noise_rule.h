@@ -27,14 +27,16 @@ bool IsNoiseRule(const std::string& text);
 // Returns the rule with X = `noise` as text. ParseNoiseRule() of this text returns exactly `noise`.
 std::string TextOfNoiseRule(double noise);
 
+// Share of the measured reachable elements whose noise is at most that of the frame.
 inline constexpr double kMostNoiseElements = 0.9;
 
 // Returns the first place of the order of LF images, after `place`, at which noise is measured: 16,
 // 18, ..., 32, 36, ..., 64, 72, ...: eight places for each doubling. From one of these places to
-// the next, a frame gets at most an eighth more LF images, whatever share of the light field it
-// takes. When it stops, it therefore has at most 6 % less noise than at the previous place, where
-// the noise was still too high. For a million LF images, noise is measured at most 130 times. Up to
-// 1024, the places include all multiples of 64; above, all multiples of a larger power of two.
+// the next, a frame gets about an eighth more LF images at most, whatever share of the light field
+// it takes. When it stops, it therefore has about 6 % less noise, at most, than at the previous
+// place, where the noise was still too high. For a million LF images, noise is measured at most 130
+// times. Up to 1024, the places include all multiples of 64; above, all multiples of a larger power
+// of two.
 uint32_t NoiseDecisionAfter(uint32_t place);
 
 // Returns the noise of a frame in units of the rays' values v: divide by RadianceEncoding::Scale()

@@ -23,7 +23,8 @@ namespace lf {
 // message names `option`.
 Result<uint32_t> ParseSampleRule(const std::string& text, const std::string& option);
 
-// The rule is met if at least this share of the reachable elements has N rays in every channel.
+// The rule is met if at least this share of the reachable elements has N or more rays in every
+// channel.
 inline constexpr double kMostElements = 0.99;
 
 // The elements that can get rays, because an LF image sees their focus point through the lens. In
@@ -62,8 +63,9 @@ class ReachableElements {
 // this number. For any two frames, the larger number is a multiple of the smaller.
 uint32_t DecisionPlaces(size_t light_field_image_count, size_t frame_image_count);
 
-// Returns true if at least the share kMostElements of the reachable elements has `samples` rays in
-// every channel, or if no element is reachable. Returns quickly if far fewer elements have them.
+// Returns true if at least the share kMostElements of the reachable elements has `samples` or more
+// rays in every channel, or if no element is reachable. Returns quickly if far fewer elements have
+// them.
 bool HasSamples(const SensorPlate& plate, const ReachableElements& reachable, uint32_t samples);
 
 // The result of MeasureSamples().
