@@ -48,14 +48,13 @@ class AskedPixels {
   // Returns true if rays are kept for previews in the phase that begins at place `phase`.
   bool IsPreviewed(uint32_t phase) const { return is_previewed_ && phase < changes_until_; }
 
-  // A camera whose lens and plate contain all rebinned rays that the finished frame needs.
-  // Selection uses it to find the LF images that have such rays.
+  // A camera whose lens and plate contain all rebinned rays that the finished frame needs; the
+  // frame's own camera if it needs none. Selection uses it to find the LF images with such rays.
   const RenderCamera& camera() const { return camera_; }
 
   // Returns the bounds of those pixels of an LF image whose rays may be kept; empty if no ray may
   // be kept.
-  //   overlap, place  overlap of this LF image with frames, and its place in the order of the LF
-  //                   images
+  //   overlap, place  the ImageOverlap of this LF image, and its place in the order
   PixelRect RectOf(const LfCamera& lf_camera, const ImageOverlap& overlap, uint32_t place,
                    const SelectOptions& select) const;
 

@@ -30,7 +30,8 @@ class FilmSlabs {
   // Returns the index of the frame's slab; nullopt if there are no LF cameras around its lens.
   std::optional<size_t> SlabOf(FrameId frame) const { return slab_of_[frame.value - 1]; }
   // Returns the section of the film that has the slab with this index. SlabSection::bounds contain
-  // the rays of all frames of the film that use the slab.
+  // the rays of all frames of the film that use the slab. SlabSection::begin and end count only
+  // frames that have LF cameras around their lenses.
   const SlabSection& section(size_t slab) const { return sections_[slab]; }
 
  private:

@@ -18,7 +18,8 @@ constexpr int kLeastPoints = 8, kMostPoints = 256;
 // Sigma of the kernel of a lens point far from LF cameras, as a share of the distance to the
 // nearest LF camera.
 constexpr double kSigmaPerDistance = 0.5;
-// Largest sigma_uv; must be below the largest that splats support (rebinning/splat_tile.h).
+// Largest sigma of a kernel on the plate, in elements; must be below the largest that splats
+// support (rebinning/splat_tile.h).
 constexpr double kMostSigma_px = 8;
 
 double MiddleOf(std::vector<double> values) {

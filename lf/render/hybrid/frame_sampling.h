@@ -25,8 +25,8 @@ inline constexpr double kFarthestDistances = 8;
 
 struct FrameSampling {
   LfSampling lf;  // lf.camera_distance_w is 0 if there is no LF camera around the lens
-  // Upper bound of the distance, in world units, from a lens point to the nearest point of
-  // SeenThrough(); limited to kFarthestDistances times lf.camera_distance_w.
+  // Upper bound of the distance, in world units, from any point of the lens to the nearest point of
+  // SeenThrough(); but at most kFarthestDistances times lf.camera_distance_w.
   double hole_w = 0;
 };
 
@@ -61,12 +61,13 @@ struct QueryOptions {
   // Least sigma of the kernels (rebinning/ray_query.h) in the lens plane, in distances between LF
   // cameras.
   double sigma_st = 0.5;
-  // Sigma of the kernels on the plate, in elements, or in LF pixels if these are larger.
+  // Sigma of the kernels on the plate, in elements, or in LF pixels if these are larger; at most 8
+  // elements are used.
   double sigma_uv = 0.35;
   // Number of lens points in a set; 0: 8 to 256, chosen so that their kernels overlap.
   int lens_point_count = 0;
   int lens_sets = 1;  // k of LensPointSets (rebinning/lens_points.h): there are k x k sets
-  uint64_t seed = 0;
+  uint64_t seed = 0;  // seed of the positions of the lens points
 };
 
 // Returns the queries of a frame: the rays through all of its lens points.
@@ -80,7 +81,8 @@ FrameQueries QueriesOf(const RenderCamera& frame, const FrameSampling& sampling,
 
 // Returns the distance from the rim of the lens, in world units, up to which a frame depends on LF
 // cameras beside the lens. These are the LF cameras whose rays are rebinned with the default
-// options, and those that limit the lens weights of LF cameras nearer to the lens.
+// QueryOptions, and those that limit the lens weights of LF cameras nearer to the lens. 0 if there
+// are no LF cameras around the lens.
 double NeighbourReach_w(const RenderCamera& frame, const FrameSampling& sampling);
 
 }  // namespace lf

@@ -8,8 +8,8 @@
 // or within the distance between lens points, whichever is larger. A lens point that is not covered
 // is a gap: rebinned rays are used for it. Gaps therefore occur where an aperture is larger than
 // the captured band, and where a small aperture lies between LF cameras. A lens point is no gap if
-// no LF camera within the reach of its kernel sees the element, because no rebinned ray could fill
-// it.
+// no LF camera within the reach of the lens point's kernel (rebinning/ray_query.h) sees the
+// element, because no rebinned ray could then fill the gap.
 #pragma once
 
 #include <cstdint>
@@ -41,8 +41,8 @@ class LensGaps {
   //   collected          empty: the frame collects no rays, and all lens points are gaps
   //   lens_test          true if there are no lens weights, so that only rays through the opening
   //                      of the lens are collected
-  //   places             range of the places (positions in the order) of the LF images that the
-  //                      frame takes
+  //   places             range of the places (ranks in the order) of the LF images that the frame
+  //                      takes
   //   camera_distance_w  CameraDistanceAround() in the whole light field. Must be set if the index
   //                      covers only a part of the light field; unset: measured in `index`
   LensGaps(const ImageIndex& index, const RenderCamera& frame, const CollectedWeights& collected,
@@ -54,14 +54,15 @@ class LensGaps {
   bool can_be_asked() const { return sampling_.lf.camera_distance_w > 0; }
   const FrameSampling& sampling() const { return sampling_; }
   const RenderCamera& camera() const { return all_.camera; }
-  // Number of LF images that have a collected ray at one or more nodes.
+  // Number of LF images that have a collected ray at one or more nodes; 0 if `collected` is empty.
   size_t collected_count() const { return collected_places_.size(); }
   // Takes the first `count` LF images, by ascending places, of those that collected_count() counts
   // (all if they are fewer). Returns the place after the last of these; 0 if there are none.
   uint32_t PlaceAfter(size_t count) const;
 
   // QueriesAt() returns the queries that the frame needs when exactly the LF images at places
-  // before `place` are collected. AsksAt() returns true if any node then needs rebinned rays.
+  // before `place` are collected. AsksAt() returns true if any node then needs rebinned rays;
+  // asks_in_the_end() returns AsksAt(kInTheEnd).
   FrameQueries QueriesAt(uint32_t place) const;
   bool AsksAt(uint32_t place) const;
   bool asks_in_the_end() const { return asks_in_the_end_; }
@@ -87,8 +88,8 @@ class LensGaps {
   NodeAxis columns_{1};  // grid of nodes over the plate
   NodeAxis rows_{1};
   // Place from which on a lens point is covered at a node: one after the place of the first LF
-  // image that covers it. UINT32_MAX: never covered. 0: no LF camera within reach sees the element,
-  // so that the point is no gap.
+  // image that covers it. UINT32_MAX: never covered. 0: no LF camera within the reach of the lens
+  // point sees the focus point of the node, so that the lens point is no gap.
   std::vector<uint32_t> covered_from_;  // [rows][columns][points]
   uint32_t changes_until_ = 0;
   bool asks_in_the_end_ = false;

@@ -79,8 +79,8 @@ RebinnedRays::RebinnedRays(const ImageIndex& index, const FilmSlabs& slabs,
 }
 
 // Makes a section of each group of consecutive frames of asking_ with the same slab. The bounds of
-// a section contain only the rays of its frames in this pass, so that coverage maps are not coarser
-// than necessary.
+// a section (SlabSection::bounds) contain only the rays of its frames in this pass, so that
+// coverage maps are not coarser than necessary.
 void RebinnedRays::MakeSections(const FilmSlabs& slabs) {
   for (size_t begin = 0; begin < asking_.size();) {
     const size_t slab = asking_[begin].slab;
@@ -387,7 +387,7 @@ std::vector<std::string> RebinnedRays::Describe() const {
         (plan.slab.uv.origin_world - plan.slab.st.origin_world).dot(plan.slab.st.Normal());
     lines.push_back(fmt::format(
         "slab {} of {}: {} frames, planes {:.4g} apart, cells {:.3g} wide on the st plane and "
-        "{:.3g} on the uv plane (world units), {:.1f} % of its bounds needed",
+        "{:.3g} on the uv plane (world units), {:.1f} % of the rays in its bounds needed",
         lines.size() + 1, sections_.size(), plan.end - plan.begin, distance_w, plan.slab.r_st_w,
         plan.slab.r_uv_w, 100 * section->in_the_end.share()));
   }

@@ -1,14 +1,15 @@
 // The rebinned rays of the frames of one pass. Keeps the rays that the frames need, LF image after
 // LF image, and interpolates the frames from these rays (thesis 4.3.2, 4.3.3).
 //
-// The rays that a finished frame needs are known from calibrations (lens_gaps.h). All of them are
-// kept if there is room, otherwise only rays at edges in the LF images (thesis Eq. 4.4). A preview
-// (a picture of an unfinished frame, asked_pixels.h) needs more rays: while few LF images are
-// collected, rebinned rays at edges fill the lens points that no collected ray covers yet. The
-// queries of previews (the rays to be interpolated, rebinning/frame_queries.h) are updated before
-// the LF images at places 64, 256, 1024, ... of the order: cells that no query can use any more are
-// dropped, and rebinning stops once no frame needs more rays. All of this depends on places, not on
-// time, so that the kept rays depend neither on the number of threads nor on interruptions.
+// The rays that a finished frame needs are known from calibrations (lens_gaps.h). By default, all
+// of them are kept if there is room, otherwise only rays at edges in the LF images (thesis
+// Eq. 4.4). A preview (a picture of an unfinished frame, asked_pixels.h) needs more rays: while few
+// LF images are collected, rebinned rays at edges fill the lens points that no collected ray covers
+// yet. The queries of previews (the rays to be interpolated, rebinning/frame_queries.h) are updated
+// before the LF images at places 64, 256, 1024, ... of the order: cells that no query can use any
+// more are dropped, and rebinning stops once no frame needs more rays. All of this depends on
+// places, not on time, so that the kept rays depend neither on the number of threads nor on
+// interruptions.
 #pragma once
 
 #include <atomic>
@@ -35,7 +36,7 @@ namespace lf {
 
 // Says which of the rays that finished frames need are kept.
 enum class KeptRays {
-  kAuto,   // kAll if they fit in max_cells, otherwise kEdges
+  kAuto,   // kAll if, by an estimate, these rays fit in max_cells; otherwise kEdges
   kAll,    // all rays that finished frames need
   kEdges,  // rays at edges in the LF images, by thesis Eq. 4.4
 };
@@ -59,8 +60,8 @@ struct RebinPassOptions {
   size_t max_cells = 0;  // largest number of cells in the maps of all sections together
 };
 
-// A frame that may be completed by rebinned rays. These are made from the LF images at all places
-// of the order.
+// A frame that may be completed by rebinned rays. Rebinned rays are made from LF images at all
+// places of the order, even if the frame collects rays from fewer.
 struct RebinnedFrame {
   FrameId id;
   LensGaps gaps;
@@ -81,8 +82,8 @@ class RebinnedRays : public ImageConsumer {
   PixelRect RectOf(LfImageId id, uint32_t place) const override;
   void Take(std::span<const BatchImage> images, uint32_t place_end) override;
 
-  // Returns the camera for which LF images are selected. Its lens and plate contain all rays that
-  // the finished frame needs. Null if the frame needs no rebinned rays at any stage.
+  // Returns the camera for which LF images to rebin are selected (AskedPixels::camera()). Null if
+  // neither the finished frame nor its previews need rebinned rays.
   //   frame  index in the constructor's `frames`
   const RenderCamera* ReachedCamera(size_t frame) const;
 
@@ -91,8 +92,9 @@ class RebinnedRays : public ImageConsumer {
   //   frame  index in the constructor's `frames`
   Completion Complete(size_t frame, uint32_t place);
 
-  // The state from which an interrupted render resumes: a map of rays for each section. Consecutive
-  // frames with the same slab form a section. All sections get equal parts of the memory.
+  // The state from which an interrupted render resumes: a map of rays for each section.
+  // Consecutive frames that need rebinned rays and have the same slab form a section. All sections
+  // get equal parts of the memory.
   size_t section_count() const { return sections_.size(); }
   const RayMap& map(size_t section) const;
   size_t max_cells_per_section() const { return max_cells_per_section_; }
@@ -118,7 +120,7 @@ class RebinnedRays : public ImageConsumer {
     // true: all rays that finished frames need are kept; false: only those at edges in the LF
     // images
     bool keeps_all = false;
-    bool is_full = false;        // true: cells were dropped because a section had too many
+    bool is_full = false;        // true: cells were dropped because a section had too many cells
     bool is_too_coarse = false;  // true: a cell got more rays than it can hold
   };
   Facts facts() const;
@@ -150,7 +152,7 @@ class RebinnedRays : public ImageConsumer {
   const RebinPassOptions options_;
   ThreadPool& pool_;
   const std::vector<uint16_t> stored_values_;
-  std::vector<AskingFrame> asking_;  // frames that need rebinned rays, by ascending ids
+  std::vector<AskingFrame> asking_;  // by ascending ids
   std::vector<std::unique_ptr<Section>> sections_;
   SharedIdealPixels ideal_pixels_;
   bool keeps_all_ = false;

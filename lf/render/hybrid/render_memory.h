@@ -27,7 +27,7 @@ struct RenderMemory {
 //                   if this is above 0.
 // kOutput: the memory does not suffice for max_cells rebinned rays (at least
 // RebinnedRays::kLeastCells), for one frame, or, with kRebin and plates, for all frames. The
-// message names the memory that is needed.
+// message says what takes how much memory.
 Result<RenderMemory> PlanRenderMemory(size_t memory_bytes, RenderMode mode, size_t max_cells,
                                       const LightField& light_field, const RayReading& reading,
                                       int plate_width, int plate_height, size_t frame_count,
