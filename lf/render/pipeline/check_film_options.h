@@ -13,7 +13,7 @@ namespace lf {
 
 // Checks the options. FilmSetup::Make() calls this before it starts. The messages name options as
 // lfrenderer does.
-//   options  not yet resolved: the function calls Resolved()
+//   options  need not be resolved: the function calls Resolved()
 //   frames   numbers of the frames to render; empty: all frames of the package
 // Returns kUsage if the options are not compatible, or if the lens of a frame is a pinhole but lens
 // weights by area need its area.

@@ -81,7 +81,8 @@ Error Refusal(const fs::path& output, std::string_view what, const fs::path& inp
                   output.string(), what, input.string()));
 }
 
-// Returns the files that the render may write or remove.
+// Returns the files that the render may write or remove, except for plates and rebinned rays in its
+// state.
 std::vector<fs::path> OutputsOf(const Package& package, const RenderOptions& options) {
   const fs::path& folder = options.folder.output_folder;
   const fs::path partial = folder / "partial" / package.name;

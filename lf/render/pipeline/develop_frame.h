@@ -27,8 +27,8 @@ PlateNotes MakePlateNotes(FrameId frame, const RenderCamera& camera, const Frame
 // Develops the plate.
 //   completion        the part of the picture that is interpolated from rebinned rays; null if
 //                     there is none
-//   with_effective    true: fills DevelopedFrame::effective_count, which takes time; false: leaves
-//                     it empty
+//   with_effective    true: fills DevelopedFrame::effective_count if there are lens weights, which
+//                     takes time; false: leaves it empty
 //   is_interrupted    called often, by any thread; empty: nothing interrupts. Once it returns true,
 //                     the remaining work is skipped and the result must not be used.
 RenderedFrame DevelopFrame(const PlateNotes& notes, const SensorPlate& plate,

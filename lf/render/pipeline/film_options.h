@@ -43,12 +43,12 @@ struct FilmOptions {
   // with rebinned rays.
   std::optional<Shard> shard;
 
-  // If set, a frame is finished when its elements have this number of rays (sample_rule.h). The
+  // If set, a frame is finished when its elements have this number of rays (HasSamples()). The
   // rule is applied only at places of the order that are multiples of 64 (of 128, 256, ... if a
   // frame takes only a part of the LF images), so that the frame has the same bits in any run.
   std::optional<uint32_t> stop_at_samples;
-  // If set, the report of each frame states the share of its reachable elements that have this
-  // number of rays.
+  // If set, the report of each frame states the share of its reachable elements that have at least
+  // this number of rays in every channel.
   std::optional<uint32_t> require_samples;
   // If set, a frame is finished when its noise is at most this (noise_rule.h), in linear radiance
   // where the light field's white is 1. The rule is applied at the places that NoiseDecisionAfter()

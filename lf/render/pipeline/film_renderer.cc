@@ -72,7 +72,7 @@ Result<void> FilmRenderer::FindLenses() {
 }
 
 // Returns the description of a frame by which selection finds the LF images whose rays have a
-// weight in the frame.
+// weight above 0 in the frame.
 TakingFrame FilmRenderer::Taking(const Frame& frame) const {
   TakingFrame taking = {frame.lens->camera(), frame.places};
   if (film_.lens_weights != LensWeights::kNone)

@@ -6,9 +6,9 @@
 //     Show(renderer->Develop(0).picture);                  // the frame with the rays so far
 //   }
 //
-// Between two steps, every frame has exactly the rays of those LF images that it takes and that
-// come before one place of the order. Frames have the same bits however the work is divided into
-// batches.
+// Between two steps, every frame has exactly the rays of those LF images that it takes and whose
+// ranks in the order are below its FrameProgress::places_done. Frames have the same bits however
+// the work is divided into batches.
 #pragma once
 
 #include <functional>
@@ -52,7 +52,8 @@ class EarlierRun {
   virtual Result<FrameProgress> LoadPlate(FrameId frame, SensorPlate* plate,
                                           std::optional<NoiseMoments>* moments) const = 0;
   // The rebinned rays of a section (RebinnedRays::map()), made from the LF images at places before
-  // places_done. LoadRays() returns nullopt if the earlier run kept none.
+  // places_done. LoadRays() returns nullopt if the earlier run kept none; max_cells is
+  // RebinnedRays::max_cells_per_section().
   struct Rays {
     RayMap map;
     uint32_t places_done = 0;
@@ -79,8 +80,8 @@ class FilmRenderer {
   // Selects the LF images that are still to be collected. Must be called once, before the functions
   // below.
   //   earlier  null: nothing was collected before; only used during the call
-  // kInterrupted: WorkOptions::stop is set. kUsage: the package lacks LF cameras whose rays the
-  // rebinned rays need. Other errors are those of `earlier`.
+  // kInterrupted: WorkOptions::stop is set. kUsage: the package lacks LF cameras from whose LF
+  // images rebinned rays must be made. Other errors are those of `earlier`.
   Result<void> Begin(const EarlierRun* earlier = nullptr);
 
   // Collects the next batch of LF images, and stops the frames whose stop rule is met. Returns
@@ -113,17 +114,17 @@ class FilmRenderer {
 
   // Interpolates a frame from rebinned rays. Returns nullopt if the mode has none.
   std::optional<Completion> Complete(size_t f);
-  // Develops the rays that the frame has so far. The report lacks `samples` and `noise`, which
-  // Measure() adds. Several threads may call the second form at the same time, for different
-  // frames.
+  // Develops the rays that the frame has so far. FrameReport::samples and noise are not set,
+  // because Measure() sets them. Several threads may call the second form at the same time, for
+  // different frames.
   //   completion  result of Complete() for this frame
   // with_effective and is_interrupted are explained at DevelopFrame().
   RenderedFrame Develop(size_t f);
   RenderedFrame Develop(size_t f, const std::optional<Completion>& completion, bool with_effective,
                         const std::function<bool()>& is_interrupted) const;
-  // Measures samples and noise if the options require them, and adds them to the report. Several
-  // threads may call it at the same time, for different frames. kInterrupted: WorkOptions::stop is
-  // set.
+  // Measures samples and noise if the options have a rule for them, stop_at_... or require_..., and
+  // adds them to the report; leaves out the noise if moments(f) is null. Several threads may call
+  // it at the same time, for different frames. kInterrupted: WorkOptions::stop is set.
   Result<void> Measure(size_t f, FrameReport* report);
   // Returns the facts that are needed to develop the frame's plate. The caller adds the skipped LF
   // images and the program's version.

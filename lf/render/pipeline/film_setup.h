@@ -24,15 +24,15 @@ namespace lf {
 class FilmSetup {
  public:
   // Resolves the options, opens the LF images and plans the memory. With kBilinear, also makes room
-  // in the radiance encoding for values below black, and measures the footprint of LF pixels
-  // (MeasureFootprint()) if the filter needs it and neither the options nor the light field state
-  // it. The pool must outlive the object.
+  // in the radiance encoding for values below black (with prefilters also for values above white),
+  // and measures the footprint of LF pixels (MeasureFootprint()) if the filter needs it and neither
+  // the options nor the light field state it. The pool must outlive the object.
   //   frames  some frames of the package, ascending; empty: all of its frames
   // kUsage: the options are not compatible with each other or with the package.
-  // kInput: the packed store lacks pixels that a frame needs (CheckKept() of
+  // kInput: the packed store cannot be opened, or lacks pixels that a frame needs (CheckKept() of
   // render/needs/frame_needs.h).
-  // kOutput: one frame needs more memory than memory_bytes; the message names the least memory that
-  // suffices. Or MeasureFootprint() could not read an LF image because the machine lacks something.
+  // kOutput: memory_bytes does not suffice (PlanRenderMemory()), or MeasureFootprint() could not
+  // read an LF image because the machine lacks something.
   static Result<std::unique_ptr<FilmSetup>> Make(Package package, const FilmOptions& film,
                                                  const WorkOptions& work,
                                                  std::vector<FrameId> frames, ThreadPool& pool);
@@ -57,7 +57,7 @@ class FilmSetup {
   // part of the film. Does nothing if the mode has no rebinned rays, or if the slabs are planned
   // already. kInterrupted: WorkOptions::stop is set.
   Result<void> PlanSlabs();
-  // Must be called only after PlanSlabs().
+  // Must be called only after PlanSlabs(), in a mode with rebinned rays.
   const FilmSlabs& slabs() const { return *slabs_; }
 
  private:

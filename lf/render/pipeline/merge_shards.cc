@@ -172,7 +172,8 @@ class Merger {
     return CheckReplacesNone(outputs, options_.kept_files);
   }
 
-  // A render into the same folder takes the same lock (lf/render/state/run_state.h).
+  // A render into the same folder takes the same lock, unless it renders a package file or a shard
+  // (lf/render/state/run_state.h).
   fs::path PartialFolder() const { return options_.output_folder / "partial"; }
   Result<void> Lock() {
     LF_RETURN_IF_ERROR(CreateFolder(options_.output_folder));
@@ -278,9 +279,9 @@ class Merger {
     return {};
   }
 
-  // Compares the film and the render camera in an earlier report with those of the plates. The two
-  // may differ after an interrupted --overwrite, which leaves frames of the film that it was
-  // replacing.
+  // Compares the film and the render camera in an earlier report with those of the plates. The
+  // report and the plates may differ after an interrupted --overwrite, which leaves frames of the
+  // film that it was replacing.
   std::optional<InputDifference> DifferenceFrom(const RunInputs& film_before,
                                                 const MergedFrame& frame) const {
     if (const auto difference = FirstDifference(film_before, FilmInputs())) return difference;
@@ -360,8 +361,8 @@ class Merger {
     return report;
   }
 
-  // Sets RenderReport::selected_image_count to the largest number of LF images that a frame takes,
-  // and adds the LF images that were skipped when the plates were rendered.
+  // Sets RenderReport::selected_image_count (merge_shards.h), and adds the LF images that were
+  // skipped when the plates were rendered.
   void AddImages(RenderReport* report) const {
     for (const auto& [id, frame] : frames_) {
       uint64_t count = 0;

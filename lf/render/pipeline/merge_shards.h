@@ -19,9 +19,9 @@ struct MergeOptions {
   std::filesystem::path output_folder;
   std::vector<std::filesystem::path> kept_files;  // files that no output may replace
   FrameFormat format = FrameFormat::kExrHalf;
-  std::optional<std::filesystem::path> video;
+  std::optional<std::filesystem::path> video;  // path of an mp4 of the frames to write
   bool contact_sheet = true;
-  bool resume = false;     // true: keeps frames that exist already
+  bool resume = false;     // true: keeps frames of an earlier merge (MergeShards())
   bool overwrite = false;  // true: replaces frames that exist already
   RenderSignals* signals = nullptr;
 };
@@ -37,8 +37,8 @@ struct MergeProgress {
 // plate files. Then makes frames one by one, which needs the memory of one plate and its picture.
 // The file of a frame appears only when the frame is done. The report names the LF images that were
 // skipped when the plates were rendered, as far as the plates name them (plate_notes.h).
-// RenderReport::selected_image_count is the largest number of LF images of a frame, skipped ones
-// included.
+// RenderReport::selected_image_count is the largest number of LF images that have a ray in a frame
+// or were skipped for it.
 // With `resume`, the frame of an earlier merge is kept if its file is whole, the earlier report
 // names it, and the film and the render camera are the same.
 //   plates  plate files and folders, in any order; the files *.plate anywhere below a folder are

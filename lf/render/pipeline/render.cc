@@ -113,8 +113,7 @@ class Renderer {
   Result<RenderReport> Run(Package package);
 
  private:
-  // True if a whole film is rendered. Its frames must not all be black, while the frames of a
-  // section or a shard may all be black.
+  // True if neither a package file nor a shard is rendered. The frames must then not all be black.
   bool IsWhole() const { return setup_->package().name.empty() && !setup_->film().shard; }
   bool IsStopped() const { return setup_->work().IsStopped(); }
   Result<void> Begin(Package package);
@@ -141,8 +140,8 @@ class Renderer {
   RenderReport totals_;
   const double begin_s_ = NowSeconds();
   size_t black_count_ = 0;
-  bool had_plates_ = false;  // true if an earlier run left plates
-  bool all_broken_ = true;   // true if every LF image of every pass so far was broken
+  bool had_plates_ = false;  // true if an earlier run left plates or rebinned rays
+  bool all_broken_ = true;   // true if FilmRenderer::AllBroken() was true of every pass
 };
 
 Result<RenderReport> Renderer::Run(Package package) {
@@ -181,7 +180,8 @@ Result<void> Renderer::Begin(Package package) {
   return {};
 }
 
-// Opens the state in the folder, and sets totals_ to the totals of earlier runs.
+// Opens the state in the folder. Sets totals_ to the totals of earlier runs and the inputs of this
+// run.
 Result<void> Renderer::OpenState() {
   LF_ASSIGN_OR_RETURN(const std::string pixels, PixelsOf(setup_->light_field()));
   const RunStateOptions state_options = StateOptions(*setup_, folder_, pixels);
@@ -301,7 +301,7 @@ Result<void> Renderer::CheckAnyContributes(std::span<const FrameId> frames) cons
 }
 
 // Returns those of `frames` that are to be finished early, with the rays that the state has of
-// them. Warns about each frame of finish_early of which the state has no rays.
+// them. Warns about the frames of finish_early of which the state has no plate.
 std::vector<FrameId> Renderer::EarlyOf(std::span<const FrameId> frames) const {
   std::vector<FrameId> early;
   for (const FrameId frame : folder_.finish_early) {

@@ -70,7 +70,8 @@ struct RenderProgress {
   size_t frame_total = 0;
   uint64_t ray_count = 0;  // number of rays tested so far; ray_total is an estimate
   uint64_t ray_total = 0;
-  size_t image_count = 0;  // LF images read so far, sum of all passes; image_total is an estimate
+  // LF images read so far, sum of all passes over one package; image_total is an estimate.
+  size_t image_count = 0;
   size_t image_total = 0;
 };
 
@@ -96,11 +97,11 @@ Result<void> PutInOrder(ImageOrder order, const RenderOptions& options, ThreadPo
 //                 FolderOptions::resume nor overwrite is set; resume is set, but the state has
 //                 other inputs; a report of another package or shard there has other inputs
 //                 (run_state.h)
-//   kInput        no LF image contributes to any frame, or no frame gets a ray (both only for a
-//                 whole film: the package has no name and there is no shard); broken LF images
-//                 (collect.h); a damaged state
-//   kOutput       the disk or the memory does not suffice; ffmpeg failed, after the frames were
-//                 written. The state on the disk is that of the last checkpoint.
+//   kInput        no LF image contributes to any frame, or no frame gets a ray (both only if the
+//                 package has no name and there is no shard); broken LF images (collect.h); a
+//                 damaged state; the packed store lacks pixels (FilmSetup::Make())
+//   kOutput       the disk or the memory does not suffice: the state on the disk is that of the
+//                 last checkpoint; or ffmpeg is missing, or failed after the frames were written
 //   kInterrupted  finished frames are kept, and the state of the others is written
 Result<RenderReport> Render(Package package, const RenderOptions& options, ThreadPool& pool,
                             const std::function<void(const RenderProgress&)>& progress);

@@ -303,7 +303,7 @@ Result<RenderReport> RenderPackages(PackagedFilm film, const RenderOptions& opti
     LF_RETURN_IF_ERROR(files.WriteContactSheet(frames, static_cast<size_t>(pool.thread_count()),
                                                pool, ContactSheetName(film.paths)));
   if (options.folder.video) LF_RETURN_IF_ERROR(files.WriteVideo(frames, *options.folder.video));
-  // Black frames are an error only if all packages were rendered: a missing package may have rays.
+  // Black frames are an error only if all packages are given: a missing package may have rays.
   if (report.IsBlack() && !options.film.shard && film.paths.size() == film.film_count)
     return InputError(fmt::format(
         "{}: all frames are black, because no LF image has a ray for them: check in lfvisualizer "

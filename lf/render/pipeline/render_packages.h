@@ -35,6 +35,7 @@ Result<LightFieldPlace> PlaceOf(const std::string& name, const LightField& light
 
 // Reads a package, and checks it and a few image files of its light field. If the light field is a
 // packed store, checks instead that the store has all LF images and pixels that the package needs.
+//   place  where the light field is now; unset: where ReadPackage() finds it
 // kInput: the errors of ReadPackage(); the package was made from another light field than `place`;
 // none of the checked files exists with its recorded size; the packed store lacks LF images or
 // pixels that the package needs.
@@ -78,10 +79,12 @@ Result<std::vector<PackagePart>> PartsWith(const PackagedFilm& film,
 std::string ContactSheetName(const std::vector<std::filesystem::path>& paths);
 
 // Renders one package after the other with Render(), each with its own report and state. Each
-// package renders those of options.frames that it contains. Then writes the contact sheet
-// (ContactSheetName()) and the video of the frames of all packages. Returns one report about all
-// packages. If a package file was changed since the film was opened, it is checked again.
-// kInput: every frame of a whole film is black. Other errors are those of Render() and PartsWith().
+// package renders those of options.frames that it contains (all its frames if options.frames is
+// empty). Then writes the contact sheet (ContactSheetName()) and the video of the frames of all
+// packages. Returns one report about all packages. If a package file was changed since the film was
+// opened, it is checked again.
+// kInput: all packages of the film are given, and every rendered frame is black. Other errors are
+// those of Render() and PartsWith().
 Result<RenderReport> RenderPackages(PackagedFilm film, const RenderOptions& options,
                                     ThreadPool& pool,
                                     const std::function<void(const RenderProgress&)>& progress);

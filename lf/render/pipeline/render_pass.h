@@ -32,7 +32,7 @@ struct PassContext {
   // Totals of finished passes and earlier runs; its total_s is that of earlier runs alone.
   RenderReport& totals;
   double begin_s;       // NowSeconds() when this run began
-  size_t& black_count;  // number of frames that no LF image contributes to
+  size_t& black_count;  // number of frames that this run finished without a ray
   std::function<void(const CollectProgress&, size_t finished_count)> progress;
 };
 
@@ -58,7 +58,7 @@ class RenderPass : private EarlierRun {
  private:
   // How much of an unfinished frame is saved in the folder.
   struct Saved {
-    uint32_t places = 0;   // FrameProgress::places_done of the plate on the disk
+    uint32_t places = 0;   // FrameProgress::places_done when the frame was last saved
     double picture_s = 0;  // NowSeconds() when its picture was last written
   };
 

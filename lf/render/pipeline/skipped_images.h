@@ -1,4 +1,5 @@
-// Finds the skipped LF images whose rays a frame lacks. Internal to this folder.
+// Finds the LF images that were skipped (SkippedImage) and whose rays a frame therefore lacks.
+// Internal to this folder.
 #pragma once
 
 #include <optional>
