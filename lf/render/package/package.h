@@ -31,8 +31,8 @@ struct PackageFrame {
 struct FrameSurroundings {
   double camera_distance_w = 0;  // spacing of the LF cameras around the lens; 0 if there are none
   double pixel_rad = 0;          // angle that one LF pixel covers
-  Vec3 middle_world = Vec3::Zero();
-  double hole_w = 0;  // FrameSampling::hole_w: distance from lens points to LF cameras
+  Vec3 middle_world = Vec3::Zero();  // mean position of the LF cameras near the lens
+  double hole_w = 0;                 // FrameSampling::hole_w
 };
 
 // Options of the selection, which a render of the package cannot change.
@@ -44,13 +44,13 @@ struct PackageChoices {
   std::optional<size_t> max_image_count;
   // Largest angle between the axes of LF camera and frame. Unset: no limit.
   std::optional<double> max_angle_rad;
-  // True if the package also has the LF cameras around the lens (neighbours). They bound the part
-  // of the lens that each LF camera gets as its lens weight, and rebinned rays are made from their
-  // LF images.
+  // True if the package also has the LF cameras beside the lenses of its frames (neighbours). They
+  // bound the part of the lens that each LF camera gets as its lens weight, and rebinned rays are
+  // made from their LF images.
   bool has_neighbours = true;
   // Render mode for which `rect`, `frame_count` and `ray_count` of each PackageImage are computed:
   // "collect", "rebin" or "hybrid" (render/hybrid/render_mode.h). A package with neighbours can be
-  // rendered in any mode if the LF images are whole.
+  // rendered in any mode, unless a packed store lacks the pixels that another mode needs.
   std::string mode = "collect";
 };
 
@@ -68,7 +68,7 @@ struct PackageImage {
 };
 
 struct Package {
-  std::string name;   // name of the file without extension; empty for a package in memory
+  std::string name;   // name of the package file without extension; empty if it has no file
   size_t number = 1;  // number of this package, from 1 to `count`
   size_t count = 1;   // number of packages of the film
   LightField light_field;
@@ -78,10 +78,10 @@ struct Package {
   std::vector<PackageFrame> frames;  // the frames to render, by ascending ids
   LightFieldIdentity whole;          // identity of the light field from which the package is made
   PackageChoices choices;
-  // In the order of light_field.cameras. Empty for a package in memory.
+  // In the order of light_field.cameras. Empty if PackageOfAll() made the package.
   std::vector<PackageImage> images;
-  // One for each frame of the film, [frame - 1]. Empty: not measured; measuring needs the whole
-  // light field.
+  // One for each frame of the film, [frame - 1]. Empty: not measured, because
+  // choices.has_neighbours is false, or because PackageOfAll() made the package.
   std::vector<FrameSurroundings> surroundings;
 
   std::vector<FrameId> FrameIds() const;

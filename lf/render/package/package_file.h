@@ -28,8 +28,8 @@ Result<void> WritePackageAs(const std::filesystem::path& as, const std::filesyst
                             const Package& package, const PackageNotes& notes);
 
 struct ReadPackageOptions {
-  // True: checks that the file's checksum footer matches its bytes. False is for tests that damage
-  // the file on purpose, to reach the code behind this check.
+  // True: checks that the file's checksum footer matches its bytes, which reads the whole file.
+  // False is for a file that was checked before, and for tests that damage the file on purpose.
   bool check_seal = true;
 };
 
