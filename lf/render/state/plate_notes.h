@@ -32,7 +32,9 @@ struct PlateNotes {
   // TextOf() writes only the first names, up to 256 KiB.
   uint64_t skipped_count = 0;
   std::vector<std::string> skipped = {};
-  DevelopOptions develop;  // how to develop; without `completion` and `is_interrupted`
+  // How to develop the plate. DevelopFrame() sets the members that are not stored: `transparent`,
+  // `opaque`, `completion` and `is_interrupted`.
+  DevelopOptions develop;
 
   // Facts about lens weights (render/collect/frame_lens.h); unset if there are no lens weights.
   struct Weighed {
@@ -48,7 +50,8 @@ PlateEntries TextOf(const PlateNotes& notes);
 
 // Reads the entries that TextOf() returned. Numbers have the same bits as in the original notes.
 //   width_px, height_px  size of the plate
-// kInput: a key is missing, or its value is invalid. The message begins with `name`.
+// kInput: a key is missing, its value is invalid, or the plate has another kRayModelVersion. The
+// message begins with `name`.
 Result<PlateNotes> PlateNotesOf(const PlateEntries& entries, int width_px, int height_px,
                                 const std::string& name);
 

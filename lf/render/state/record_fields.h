@@ -20,7 +20,8 @@ namespace lf {
 using Json = nlohmann::ordered_json;
 
 // Reads values of a JSON object by their keys. Get() leaves `value` unchanged if the key is missing
-// or the type is wrong. `fault` receives a description of the first wrong type.
+// or the type is wrong; but if an item of a list or object has a wrong type, the items before it
+// are read. `fault` receives a description of the first wrong type.
 class RecordFields {
  public:
   RecordFields(const Json& object, std::string* fault) : object_(object), fault_(*fault) {

@@ -1,5 +1,5 @@
 // The report of a render: the contents of report.json, from which programs also print numbers for
-// people. The state of an interrupted render contains reports, too: one for each finished frame,
+// people. The state of an interrupted render also contains reports: one for each finished frame,
 // and one with the times and the skipped LF images.
 #pragma once
 
@@ -46,7 +46,7 @@ struct FrameReport {
   std::array<uint64_t, 3> empty_element_count{};
   std::array<uint64_t, 3> min_count{};
   std::array<uint64_t, 3> median_count{};
-  double develop_s = 0;
+  double develop_s = 0;                 // elapsed time to develop the plate
   std::optional<FrameSamples> samples;  // set if a rule "samples>=N" was given
   RunInputs camera;                     // result of InputsOfCamera()
   // Facts about lens weights; unset if there are none. With lens weights, counts are sums of
@@ -64,7 +64,9 @@ struct FrameReport {
   std::optional<uint32_t> places_done = std::nullopt;
   // The share of the picture that is interpolated from rebinned rays; unset if the mode has none.
   std::optional<double> interpolated_share = std::nullopt;
-  std::optional<FrameNoise> noise = std::nullopt;  // set if a rule "noise<=X" was given
+  // Set if a rule "noise<=X" was given, unless the frame was finished early from a plate without
+  // noise moments.
+  std::optional<FrameNoise> noise = std::nullopt;
 };
 
 // Facts about rebinned rays (render/hybrid/rebinned_rays.h).
@@ -72,7 +74,7 @@ struct RebinReport {
   size_t slab_count = 0;         // largest number of slabs in a pass
   uint64_t cell_count = 0;       // largest number of cells at the end of a pass
   uint64_t looked_at_count = 0;  // number of LF pixels that the coverage maps cover
-  double cpu_s = 0;              // CPU time to make cells from LF pixels
+  double cpu_s = 0;              // CPU time to make cells from LF pixels, sum of all threads
   // Says which of the rays that finished frames need were kept. "all": all of them; "edges": only
   // rays at edges in the LF images; "some": not even all of these, because there was no room.
   // Unless it is "all", the picture of a frame depends on which other frames are rendered in the
@@ -89,7 +91,7 @@ struct PackageReport {
 
 struct RenderReport {
   std::string version;
-  RunInputs inputs;  // InputsOfRays() and InputsOfPicture(), which all frames have in common
+  RunInputs inputs;  // RunStateOptions::rays and picture, which all frames have in common
   Estimator estimator = Estimator::kNearest;
   int width = 0;
   int height = 0;

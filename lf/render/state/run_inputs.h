@@ -1,5 +1,5 @@
 // The inputs of a frame as readable pairs of key and value. A resumed render compares its inputs
-// with the inputs that it was begun with. If an input differs, the error message names it.
+// with the inputs that it was begun with. The error message names an input that differs.
 #pragma once
 
 #include <optional>
@@ -81,6 +81,7 @@ struct InputDifference {
   // KEY", such as "no order".
   std::string Text(const std::string& one, const std::string& other) const;
 };
+// Returns nullopt if both have the same keys and values, in any order.
 std::optional<InputDifference> FirstDifference(const RunInputs& recorded, const RunInputs& wanted);
 
 }  // namespace lf

@@ -45,8 +45,8 @@ struct RunStateOptions {
   FrameFormat format = FrameFormat::kExrHalf;
   bool resume = false;     // true: continues from the state in the folder
   bool overwrite = false;  // true: removes the state in the folder
-  RunInputs rays;          // result of InputsOfRays()
-  RunInputs picture;       // result of InputsOfPicture()
+  RunInputs rays;          // result of InputsOfRays(), and what only rebinned rays depend on
+  RunInputs picture;       // result of InputsOfPicture(), and kFilmOfPackage if there is a package
   std::optional<Shard> shard = std::nullopt;
 };
 
@@ -100,13 +100,13 @@ class RunState {
                                        size_t max_cells, ThreadPool& pool) const;
   Result<void> SaveRays(FrameId first, size_t section, const std::string& frames, const RayMap& map,
                         uint32_t places_done, ThreadPool& pool);
-  void RemoveRays();
+  void RemoveRays();  // removes the rebinned rays of all passes
 
   Result<void> SaveTotals(const RenderReport& totals);
   // Records that a frame is finished, and removes its plate and picture from the state. Must be
   // called only after the file FinishedPath() is written.
   Result<void> SaveFinished(const FrameReport& frame);
-  // Forgets that a frame is finished, so that it can be rendered again.
+  // Forgets that a frame is finished, so that it can be rendered again. Removes no file.
   void Forget(FrameId frame) { finished_.erase(frame); }
 
   // Returns the entries of the file of a plate, in the state or beside the frames: inputs, progress
@@ -118,9 +118,9 @@ class RunState {
 
   // Removes the files of the state, except for `lock`.
   void RemoveAll();
-  // Ends a finished render: writes report.json (report-NAME.json for a package), and removes the
-  // state. If the state still has plates of unfinished frames, only the reports of finished frames
-  // are removed.
+  // Ends a finished render: writes report.json (report-NAME.json if the state is in
+  // DIR/partial/NAME/), and removes the state. If the state still has plates of unfinished frames,
+  // only the reports of finished frames are removed.
   Result<void> Close(const RenderReport& report);
 
  private:
