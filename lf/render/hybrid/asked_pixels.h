@@ -27,8 +27,8 @@ enum class Previews {
 const char* NameOf(Previews previews);
 inline constexpr size_t kPreviewedFrom = 256;
 // For the previews of a frame, rebinned rays are kept only from the LF images up to the
-// kPreviewImages-th one that the frame collects, in the order in which LF images are taken. These
-// LF images are spread over the whole lens (thesis 4.2.1).
+// kPreviewImages-th one that the frame collects, in the order in which LF images are taken. With
+// ImageOrder::kShuffle, these LF images are spread over the whole lens (thesis 4.2.1).
 inline constexpr size_t kPreviewImages = 64;
 
 // Returns the first place of the phase that contains `place`. A place is a position in the order of

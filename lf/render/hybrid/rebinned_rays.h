@@ -57,7 +57,9 @@ struct RebinPassOptions {
   size_t nearest = 0;
   SlabChoices slab;
   CoverageOptions coverage;
-  size_t max_cells = 0;  // largest number of cells in the maps of all sections together
+  // Largest number of cells in the maps of all sections together; 0 only before PlanRenderMemory()
+  // has chosen a number.
+  size_t max_cells = 0;
 };
 
 // A frame that may be completed by rebinned rays. Rebinned rays are made from LF images at all

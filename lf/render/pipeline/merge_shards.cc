@@ -51,7 +51,10 @@ Result<std::vector<fs::path>> FilesOf(const std::vector<fs::path>& given) {
       if (entry->path().extension() == ".plate" &&
           !entry->path().filename().string().starts_with('.'))
         files.push_back(entry->path());
-    if (error) return InputError(fmt::format("{}: {}", path.string(), error.message()));
+    if (error)
+      return InputError(fmt::format(
+          "{}: cannot be searched for plates ({}): make the folder and the folders in it readable",
+          path.string(), error.message()));
     if (files.size() == before)
       return InputError(
           fmt::format("{}: contains no plates: expected files that end in .plate, written by "
