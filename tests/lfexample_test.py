@@ -158,7 +158,7 @@ class ExampleTest(unittest.TestCase):
         focus, words = self.focus()
         self.assertAlmostEqual(focus, 0.8, delta=0.02 * 0.8)
         self.assertRegex(words, r"because the LF images agree on the distance 0\.2\d+, "
-                                r"but almost none of the \d+ points")
+                                r"but almost none of the \d+ reconstructed points")
 
     def test_points_that_contradict_the_images_and_each_other_are_a_doubt(self):
         random = np.random.default_rng(2)

@@ -48,7 +48,11 @@ std::vector<SensorPlate> Collect(const testing::CameraPair& pair, uint64_t seed)
 
 TEST(SimdTarget, EveryTargetGivesTheSameBits) {
   const std::vector<std::string> targets = SimdTargets();
+#ifdef HWY_COMPILE_ONLY_SCALAR
+  ASSERT_EQ(targets.size(), 1u);
+#else
   ASSERT_GE(targets.size(), 2u);
+#endif
   // The kernels without vectors: EMU128 where the compiler knows vectors of any width (clang).
   EXPECT_TRUE(targets.back() == "SCALAR" || targets.back() == "EMU128") << targets.back();
   for (uint64_t seed = 0; seed < 120; ++seed) {

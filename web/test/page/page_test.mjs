@@ -166,7 +166,7 @@ test("a page shows the file as it is now, and loses no edit to another program",
     await page.click("#undo");
     await until(page, "app.state.cameras[10].focusDistance === 1.2");
     await writeFile(path, CHART_PATH.replace("value: 1.2", "value: 1.5"));
-    await message("edits that are not saved");
+    await message("edits here are not saved");
     assert.equal(await focusThere(), 1.2);
     await page.click("#save");
     await page.click("button:text-is('Write over it')");
