@@ -88,7 +88,7 @@ void AddPicture(CLI::App& app, RenderArguments& a) {
       "exposures), otherwise prefiltered\n"
       "prefiltered: each LF image is first filtered for the size of elements, then interpolated "
       "linearly; sharper than bicubic and faster\n"
-      "mosaic: bicubic, or bilinear where an element is as large as nine LF pixels or more; "
+      "mosaic: bicubic, or bilinear where an element is more than two LF pixels wide; "
       "colours that the sensor recorded count 8 times as much as interpolated colours");
   picture.AddChoice("--lf-pixels", a.lf_pixels, {"auto", "areas", "points"},
                     "What LF pixels show, for --filter prefiltered\n"

@@ -24,11 +24,12 @@ Result<FileLock> TakeJob(const ClusterJob& job);
 Result<void> MakeRoomForJob(const ClusterJob& job, bool overwrite);
 
 // Removes the request to cancel the job, and returns the packages to start, as indices in
-// job.packages: those that are neither done nor queued. Resets the crash counts of these packages,
-// except of those that run. If the finishing task is done and not queued, removes its state, so
-// that it runs again. With Slurm, lets requeued packages start at once. The caller must hold the
-// lock of TakeJob(). kOutput: the batch system does not answer, or a file cannot be written or
-// removed.
+// job.packages: those that are neither done nor queued. A package that still runs may be among
+// them, because its lfsubmit may have died; RunPackage() waits until it has ended. Resets the crash
+// counts of the returned packages that do not run. If the finishing task is done and not queued,
+// removes its state, so that it runs again. With Slurm, lets requeued packages start at once. The
+// caller must hold the lock of TakeJob(). kOutput: Slurm does not answer, or a file cannot be
+// written or removed.
 Result<std::vector<size_t>> PrepareResume(const ClusterJob& job);
 
 // Requests all packages to write a checkpoint and end, and waits until they have ended. Does

@@ -132,7 +132,8 @@ double Wood(const Pattern& pattern, const Vec2& place_w, double width_w) {
   double value = 0.42 + 0.3 * (tone - 0.5) + 0.14 * Contrast(4 * width) * rings +
                  0.45 * Contrast(20 * width) * fibre +
                  0.35 * Contrast(40 * width) * std::max(0.0, pores - 0.72) / 0.28;
-  // The seam is a groove of 1/70 of the plank's width; wider footprints make it fainter.
+  // The seam between planks is a line of the second colour. Half of it is 1/70 of a plank wide; a
+  // wider footprint makes it wider and fainter in proportion.
   const double seam_width = std::max(1.0 / 70, width);
   const double from_seam = std::min(in_plank, 1 - in_plank) / seam_width;
   if (from_seam < 1) value += (1 - value) * (1 - SmoothStep(from_seam)) / (70 * seam_width);

@@ -83,7 +83,8 @@ class TiffDecoder : public PictureDecoder {
   TiffLayout layout_;
   ImageFileInfo info_;
   std::vector<std::byte> decoded_;  // one decoded block
-  std::vector<std::byte> packed_;   // one block as stored in the file; ReadFax(): decoded again
+  // One block as stored in the file. In ReadFax(): the block decoded a second time, to compare.
+  std::vector<std::byte> packed_;
   ZlibBlock zlib_;
 };
 
