@@ -38,21 +38,22 @@ void TileWeights::Fill(const RayWeights& weights, const PixelRect& tile, int pit
     least_ = most_ = weights.same();
     return;
   }
+  const WeightBlocks& blocks = weights.blocks();
+  const int block_count =
+      (blocks.EndX(tile.x_end - 1) - blocks.EndX(tile.x_begin)) / kWeightBlock + 1;
+  of_blocks_.resize(static_cast<size_t>(block_count));
+  is_feathered_ = !weights.FeatherIsWhole(tile);
+  if (!is_feathered_ && HasOneWeight(weights, tile)) return;
   const size_t row_bytes = static_cast<size_t>(pitch);
   const size_t size = row_bytes * static_cast<size_t>(tile.height()) + 2 * kMargin;
   if (bytes_.size() < size) bytes_.resize(size);
   least_ = kMaxWeight;
   most_ = 0;
-  const WeightBlocks& blocks = weights.blocks();
-  const int block_count =
-      (blocks.EndX(tile.x_end - 1) - blocks.EndX(tile.x_begin)) / kWeightBlock + 1;
-  of_blocks_.resize(static_cast<size_t>(block_count));
   above_.resize(of_blocks_.size() + 1);
   below_.resize(of_blocks_.size() + 1);
   // below_ is not filled yet. FillBlocks() knows this because below_y_ differs from the upper y of
   // the first row of blocks.
   below_y_ = blocks.EndY(tile.y_begin);
-  is_feathered_ = !weights.FeatherIsWhole(tile);
   uint8_t* row = bytes_.data() + kMargin;
   for (int y = tile.y_begin; y < tile.y_end;) {
     const bool any_feathered = FillBlocks(weights, tile, y);
@@ -65,6 +66,20 @@ void TileWeights::Fill(const RayWeights& weights, const PixelRect& tile, int pit
       for (int of_block = begin; of_block < end; ++of_block)
         Feather(blocks, tile, of_block, first + static_cast<size_t>(of_block - begin) * row_bytes);
   }
+}
+
+// Returns true, and sets least_ and most_, if all blocks have the same weight.
+bool TileWeights::HasOneWeight(const RayWeights& weights, const PixelRect& tile) {
+  const WeightBlocks& blocks = weights.blocks();
+  for (int y = tile.y_begin; y < tile.y_end; y = blocks.EndY(y)) {
+    weights.OfRow(tile.x_begin, y, static_cast<int>(of_blocks_.size()), of_blocks_.data());
+    if (y == tile.y_begin) least_ = of_blocks_[0];
+    if (std::any_of(of_blocks_.begin(), of_blocks_.end(),
+                    [this](uint8_t weight) { return weight != least_; }))
+      return false;
+  }
+  most_ = least_;
+  return true;
 }
 
 // Sets the weights and the feather of the row of blocks that contains row y of elements. Returns

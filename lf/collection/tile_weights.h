@@ -16,8 +16,7 @@ class TileWeights {
   // belong to no element.
   static constexpr size_t kMargin = 64;
 
-  // Sets least() and most() for a tile. Unless weights.are_same(), also writes the weights to
-  // data().
+  // Sets least() and most() for a tile. If they differ, also writes the weights to data().
   //   pitch  bytes from one row of elements to the next
   void Fill(const RayWeights& weights, const PixelRect& tile, int pitch);
 
@@ -26,10 +25,11 @@ class TileWeights {
   uint32_t most() const { return most_; }
 
   // The weight of element (x, y) is at [y * pitch + x], counted from the corner of the tile. Must
-  // not be read if weights.are_same().
+  // not be read if least() and most() are equal.
   const uint8_t* data() const { return bytes_.data() + kMargin; }
 
  private:
+  bool HasOneWeight(const RayWeights& weights, const PixelRect& tile);
   bool FillBlocks(const RayWeights& weights, const PixelRect& tile, int y);
   void FillRow(const WeightBlocks& blocks, const PixelRect& tile, uint8_t* row) const;
   void Feather(const WeightBlocks& blocks, const PixelRect& tile, int y, uint8_t* row) const;

@@ -40,6 +40,7 @@ FrameLens::FrameLens(const ImageIndex& index, const RenderCamera& frame, LensWei
     near.push_back(light_field_.Camera(LfImageId{id}).CentreWorld());
   }
   weights_.emplace(frame, near, kind, pool, light_field_.encoding.masks_clipped);
+  if (weights_->keeps_opening()) return;
   // The disk that replaces the aperture is made slightly larger, so that rays on its border count
   // as inside.
   camera_.aperture = {weights_->reach_w() * (1 + 1e-6), 0, 0};
@@ -54,10 +55,11 @@ RayWeights FrameLens::WeightsOf(LfImageId id) const {
                                                   uint8_t* weights) {
     weights_->OfRow(camera, end_x, end_y, count, weights);
   };
-  if (weights_->is_constant()) {
-    const auto same = static_cast<uint8_t>(weights_->At(camera, 0, 0));
-    if (same == 0) return 0;
-    of_row = [same](int, int, int count, uint8_t* weights) { std::fill_n(weights, count, same); };
+  if (const std::optional<uint8_t> same = weights_->ConstantOf(camera)) {
+    if (*same == 0) return 0;
+    of_row = [of_all = *same](int, int, int count, uint8_t* weights) {
+      std::fill_n(weights, count, of_all);
+    };
   }
   auto feather = std::make_shared<const ImageFeather>(light_field_.Camera(id), camera_);
   return RayWeights(
@@ -73,7 +75,7 @@ bool FrameLens::Takes(LfImageId id) const {
   const auto found = cameras_.find(id.value);
   if (found == cameras_.end() || !weights_->TakesPart(found->second)) return false;
   // The share of an LF camera may be so small that its weight is rounded to 0.
-  return !weights_->is_constant() || weights_->At(found->second, 0, 0) > 0;
+  return weights_->ConstantOf(found->second) != 0;
 }
 
 std::vector<LfImageId> FrameLens::near() const {
@@ -102,6 +104,7 @@ Image<float> FrameLens::EffectiveCounts() const {
     for (int column = 0; column < sums.width(); ++column)
       focus.push_back(FocusPointOfElement(camera_, element(column, plate.width_px) + 0.5,
                                           element(row, plate.height_px) + 0.5));
+  const ApertureTest opening(camera_.aperture);
   for (const auto& [id, camera] : cameras_) {
     if (!weights_->TakesPart(camera)) continue;
     const RayThrough ray(light_field_.Camera(LfImageId{id}), camera_.pinhole.ForwardWorld());
@@ -110,6 +113,9 @@ Image<float> FrameLens::EffectiveCounts() const {
       for (int column = 0; column < sums.width(); ++column) {
         const std::optional<Vec3>& point = focus[static_cast<size_t>(row) * sums.width() + column];
         if (!point || !IsSeenBy(ray, *point)) continue;
+        if (tests_opening() &&
+            !opening.Contains(LensPointOfLine(camera_, ray.centre_world(), *point)))
+          continue;
         const double weight =
             weights.At(element(column, plate.width_px), element(row, plate.height_px));
         sums.at(column, row, 0) += weight;

@@ -25,6 +25,8 @@ Result<void> CheckHasArea(const RenderCamera& camera, FrameId frame);
 
 // If there are lens weights, they replace the test whether a ray passes through the lens: LF
 // cameras beside the lens may then also have a weight, as described in doc/ray.md, "What is added".
+// Only if very many LF cameras are seen through the lens (FrameWeights::keeps_opening()) are there
+// both weights and the test.
 class FrameLens {
  public:
   // LF images with rays up to this distance beside the lens may get a share of the lens. The unit
@@ -41,9 +43,13 @@ class FrameLens {
             const SelectOptions& select, ThreadPool& pool,
             std::optional<double> camera_distance_w = {});
 
-  // The frame's camera. If there are lens weights, its aperture is replaced by the disk that all
-  // rays with a weight pass through.
+  // The frame's camera. Unless tests_opening(), its aperture is replaced by the disk that all rays
+  // with a weight pass through.
   const RenderCamera& camera() const { return camera_; }
+
+  // True if rays are added only if they pass through the opening of the frame's lens: without lens
+  // weights, or with very many LF cameras.
+  bool tests_opening() const { return !weights_ || weights_->keeps_opening(); }
 
   // Returns the weights of the LF image's rays. The result refers to this object. The weights are 0
   // if the LF image has no share of the lens, or if the angle between the axes of LF camera and

@@ -39,8 +39,8 @@ using CollectedWeights = std::function<RayWeights(LfImageId id)>;
 class LensGaps {
  public:
   //   collected          empty: the frame collects no rays, and all lens points are gaps
-  //   lens_test          true if there are no lens weights, so that only rays through the opening
-  //                      of the lens are collected
+  //   lens_test          true if only rays through the opening of the lens are collected
+  //                      (FrameLens::tests_opening())
   //   places             range of the places (ranks in the order) of the LF images that the frame
   //                      takes
   //   camera_distance_w  CameraDistanceAround() in the whole light field. Must be set if the index

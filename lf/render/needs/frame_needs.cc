@@ -60,8 +60,8 @@ class NeedsFinder {
   void AddRebinned() {
     CollectedWeights collected;
     if (Collects(options_.mode)) collected = [this](LfImageId id) { return lens_.WeightsOf(id); };
-    const LensGaps gaps(index_, frame_, collected, options_.lens_weights == LensWeights::kNone, {},
-                        options_.select, options_.rebin.query, pool_, distance_w_);
+    const LensGaps gaps(index_, frame_, collected, lens_.tests_opening(), {}, options_.select,
+                        options_.rebin.query, pool_, distance_w_);
     const AskedPixels asked(gaps, Collects(options_.mode), options_.rebin.previews);
     if (!asked.AsksForAny()) return;
     std::vector<FrameNeeds::Image> rebinned;

@@ -183,7 +183,7 @@ Result<void> FilmRenderer::PrepareRebinning(const EarlierRun* earlier) {
     if (film_.Collects())
       collected = [&frame](LfImageId image) { return frame.lens->WeightsOf(image); };
     LensGaps gaps(setup_.index(), setup_.path().Camera(frame.id), collected,
-                  film_.lens_weights == LensWeights::kNone, frame.places, select_,
+                  !film_.Collects() || frame.lens->tests_opening(), frame.places, select_,
                   film_.rebin.query, setup_.pool(), setup_.package().CameraDistance(frame.id));
     LF_RETURN_IF_ERROR(CheckReach(gaps, frame.id));
     rebinned.push_back({frame.id, std::move(gaps)});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 
@@ -99,6 +100,16 @@ int NodeCount(double movement, double distance, int size_px) {
   return static_cast<int>(std::min(2 + steps, static_cast<double>(most)));
 }
 
+// Returns true if elements at a corner of the plate have no focus point, because the focus plane is
+// tilted.
+bool HasHorizon(const RenderCamera& frame) {
+  const Intrinsics& plate = frame.pinhole.intrinsics;
+  for (const int x : {0, plate.width_px})
+    for (const int y : {0, plate.height_px})
+      if (!FocusPointOfElement(frame, x, y)) return true;
+  return false;
+}
+
 // Returns the share s for which the smallest shares, up to s, sum up to a tenth of the sum of all
 // shares. Even very many tiny shares, such as those of cameras at almost the same position, do not
 // lower it much.
@@ -162,7 +173,8 @@ Vec2 LensPointOfLine(const RenderCamera& frame, const Vec3& centre_world, const 
 
 FrameWeights::FrameWeights(const RenderCamera& frame, std::span<const Vec3> centres_world,
                            LensWeights kind, ThreadPool& pool, bool are_brackets)
-    : width_px_(frame.pinhole.intrinsics.width_px),
+    : radius_w_(frame.aperture.radius_w),
+      width_px_(frame.pinhole.intrinsics.width_px),
       height_px_(frame.pinhole.intrinsics.height_px),
       nodes_begin_(centres_world.size(), kNone) {
   LF_CHECK(kind != LensWeights::kNone);
@@ -171,27 +183,47 @@ FrameWeights::FrameWeights(const RenderCamera& frame, std::span<const Vec3> cent
                                        : CameraDistance(frame, centres_world);
   if (kind == LensWeights::kHat) hat_share_ = 1;
   if (kind == LensWeights::kAuto) hat_share_ = AutoHatShare(2 * frame.aperture.radius_w, distance);
+  size_t in_opening_count = 0;
   if (const std::optional<Vec3> focus =
-          FocusPointOfElement(frame, 0.5 * width_px_, 0.5 * height_px_))
-    coverage_ = CoverageOf(PointsAt(frame, centres_world, *focus).points, frame.aperture);
-  SetGrid(frame, centres_world, distance);
+          FocusPointOfElement(frame, 0.5 * width_px_, 0.5 * height_px_)) {
+    const std::vector<Vec2> points = PointsAt(frame, centres_world, *focus).points;
+    coverage_ = CoverageOf(points, frame.aperture);
+    const ApertureTest opening(frame.aperture);
+    for (const Vec2& point : points) in_opening_count += opening.Contains(point) ? 1 : 0;
+  }
+  SetGrid(frame, centres_world, distance, in_opening_count);
   std::vector<Node> nodes(static_cast<size_t>(columns_) * rows_);
   pool.ForEach(nodes.size(), [&](size_t n) {
     nodes[n] = MakeNode(frame, centres_world, static_cast<int>(n) % columns_,
                         static_cast<int>(n) / columns_);
   });
   SetWeights(nodes);
+  if (keeps_opening_) SteadyWholeCells();
   SetPlaces();
 }
 
 void FrameWeights::SetGrid(const RenderCamera& frame, std::span<const Vec3> centres_world,
-                           double distance_w) {
+                           double distance_w, size_t in_opening_count) {
   if (distance_w == 0) return;
   const Movement movement = MovementOf(frame, centres_world);
   columns_ = NodeCount(movement.across, distance_w, width_px_);
   rows_ = NodeCount(movement.down, distance_w, height_px_);
+  const size_t most_nodes = kMostShares / centres_world.size();
+  if (static_cast<size_t>(columns_) * rows_ > most_nodes && hat_share_ == 0 &&
+      in_opening_count >= kManyInOpening && !HasHorizon(frame)) {
+    keeps_opening_ = true;
+    CoarsenTo(most_nodes);
+  }
   if (columns_ > 1) step_w_ += movement.across / (columns_ - 1);
   if (rows_ > 1) step_w_ += movement.down / (rows_ - 1);
+}
+
+void FrameWeights::CoarsenTo(size_t node_count) {
+  const auto coarser = [](int count) { return std::min(count, std::max(2, count * 7 / 8)); };
+  while (static_cast<size_t>(columns_) * rows_ > node_count && std::max(columns_, rows_) > 2) {
+    columns_ = coarser(columns_);
+    rows_ = coarser(rows_);
+  }
 }
 
 FrameWeights::Node FrameWeights::MakeNode(const RenderCamera& frame,
@@ -206,8 +238,9 @@ FrameWeights::Node FrameWeights::MakeNode(const RenderCamera& frame,
   const auto mix = [&](const std::vector<double>& part, double by) {
     for (size_t k = 0; k < shares.size(); ++k) shares[k] += by * part[k];
   };
+  const auto cell_shares = keeps_opening_ ? WholeCellShares : CellShares;
   if (hat_share_ < 1)
-    mix(CellShares(seen.points, frame.aperture, CoveredBy(seen.points)), 1 - hat_share_);
+    mix(cell_shares(seen.points, frame.aperture, CoveredBy(seen.points)), 1 - hat_share_);
   if (hat_share_ > 0) mix(HatShares(seen.points, frame.aperture), hat_share_);
   for (size_t k = 0; k < shares.size(); ++k) {
     if (!(shares[k] > kLeastShare)) continue;
@@ -218,12 +251,14 @@ FrameWeights::Node FrameWeights::MakeNode(const RenderCamera& frame,
 
 void FrameWeights::SetWeights(const std::vector<Node>& nodes) {
   std::vector<double> shares;
-  double together = 0;
+  double together = 0;  // largest sum of the shares of an element
+  const double within_w =
+      keeps_opening_ ? radius_w_ + step_w_ : std::numeric_limits<double>::infinity();
   for (const Node& node : nodes) {
     double of_node = 0;
     for (const CameraShare& share : node) {
       shares.push_back(share.share);
-      of_node += share.share;
+      if (share.distance_w <= within_w) of_node += share.share;
     }
     together = std::max(together, of_node);
   }
@@ -242,6 +277,26 @@ void FrameWeights::SetWeights(const std::vector<Node>& nodes) {
       weights_[begin + n] = static_cast<uint16_t>(
           std::min(std::lround(share.share * scale), std::lround(kUnit * kMaxWeight)));
     }
+}
+
+void FrameWeights::SteadyWholeCells() {
+  const size_t node_count = static_cast<size_t>(columns_) * rows_;
+  for (size_t begin = 0; begin < weights_.size(); begin += node_count) {
+    const std::span<uint16_t> weights = std::span(weights_).subspan(begin, node_count);
+    const auto [least, most] = std::minmax_element(weights.begin(), weights.end());
+    if (*most - *least > kSteadyShare * *most) continue;
+    const uint64_t sum = std::accumulate(weights.begin(), weights.end(), uint64_t{0});
+    std::fill(weights.begin(), weights.end(), static_cast<uint16_t>(sum / node_count));
+  }
+}
+
+std::optional<uint8_t> FrameWeights::ConstantOf(size_t camera) const {
+  if (nodes_begin_[camera] == kNone) return 0;
+  const std::span<const uint16_t> weights =
+      std::span(weights_).subspan(nodes_begin_[camera], static_cast<size_t>(columns_) * rows_);
+  if (std::any_of(weights.begin(), weights.end(), [&](uint16_t w) { return w != weights[0]; }))
+    return {};
+  return static_cast<uint8_t>(At(camera, 0, 0));
 }
 
 void FrameWeights::SetPlaces() {

@@ -82,6 +82,20 @@ class HatMaker {
   ConvexPolygon part_;  // a member, so that its memory is reused
 };
 
+// The Voronoi cell of a point, and the number of points at this place, itself included.
+struct SharedCell {
+  ConvexPolygon cell;
+  int sharing = 0;
+};
+
+SharedCell SharedCellOf(const Vec2& point, std::span<const Vec2> points, const PointGrid& grid,
+                        const ConvexPolygon& around) {
+  SharedCell shared;
+  shared.cell = CellOf(
+      point, points, grid, around, [](size_t) {}, [&](size_t) { ++shared.sharing; });
+  return shared;
+}
+
 // For a point outside of the circle around the opening, returns the other point that is nearest to
 // the place on this circle that is closest to `point`. Only the buckets around that place are
 // searched. Returns nullopt if these contain no other point, or if `point` is in the circle.
@@ -124,11 +138,26 @@ std::vector<double> CellShares(std::span<const Vec2> points, const Aperture& ape
         continue;
       }
     }
-    int sharing = 0;  // number of points at this place, this one included
-    const ConvexPolygon cell = CellOf(
-        point, points, grid, around, [](size_t) {}, [&](size_t) { ++sharing; });
+    const auto [cell, sharing] = SharedCellOf(point, points, grid, around);
     const double area = is_disk ? cell.AreaInDisk(aperture.radius_w) : cell.Area();
     shares.push_back(area / Area(aperture) / std::max(1, sharing));
+  }
+  return shares;
+}
+
+std::vector<double> WholeCellShares(std::span<const Vec2> points, const Aperture& aperture,
+                                    const CoveredRegion& covered) {
+  LF_CHECK(aperture.radius_w > 0);
+  double farthest_w = aperture.radius_w;
+  for (const Vec2& point : points) farthest_w = std::max(farthest_w, point.norm());
+  ConvexPolygon plane = ConvexPolygon::SquareAround(Vec2::Zero(), farthest_w);
+  covered.Clip(&plane);
+  const PointGrid grid(points);
+  std::vector<double> shares;
+  shares.reserve(points.size());
+  for (const Vec2& point : points) {
+    const auto [cell, sharing] = SharedCellOf(point, points, grid, plane);
+    shares.push_back(cell.Area() / Area(aperture) / std::max(1, sharing));
   }
   return shares;
 }

@@ -23,6 +23,13 @@ namespace lf {
 std::vector<double> CellShares(std::span<const Vec2> points, const Aperture& aperture,
                                const CoveredRegion& covered = {});
 
+// Returns, for each point, the area of its whole Voronoi cell, which may extend beyond the opening,
+// divided by the area of the opening. Cells are clipped by the covered region, and by a square that
+// contains all points. Otherwise like CellShares(). If there are many points in the opening, the
+// shares of those within it sum up to nearly its covered share.
+std::vector<double> WholeCellShares(std::span<const Vec2> points, const Aperture& aperture,
+                                    const CoveredRegion& covered = {});
+
 // Returns, for each point, its natural-neighbour weight (Sibson 1981), as a mean over
 // `sample_count` sample points of the opening. The weights at a sample point are found as follows:
 // a new Voronoi cell there would take area from the cells of the cameras around it, and each

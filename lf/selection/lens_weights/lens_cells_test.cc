@@ -75,6 +75,28 @@ TEST(CellShares, AreThoseOfTheNearestPoints) {
     }
 }
 
+// Cells that lie within the opening are the same; those of points beside it are not lost.
+TEST(WholeCellShares, AreNotClippedByTheOpening) {
+  for (const Aperture& aperture : kOpenings) {
+    std::vector<Vec2> points = RandomPoints(4000, 1.5, 1);
+    points.push_back(points[7]);
+    const auto whole = WholeCellShares(points, aperture, CoveredRegion(points, 0));
+    const auto clipped = CellShares(points, aperture);
+    const ApertureTest opening(aperture);
+    EXPECT_NEAR(Sum(whole) * Area(aperture), 4 * 1.5 * 1.5, 0.1);
+    EXPECT_EQ(whole[7], whole.back());
+    double inside = 0;
+    for (size_t i = 0; i < points.size(); ++i) {
+      EXPECT_GE(whole[i], clipped[i] - 1e-12);
+      if (points[i].norm() < 0.3) {
+        EXPECT_NEAR(whole[i], clipped[i], 1e-12);
+      }
+      if (opening.Contains(points[i])) inside += whole[i];
+    }
+    EXPECT_NEAR(inside, 1, 0.02);
+  }
+}
+
 TEST(CellShares, InTheMiddleOfAGridTheyAreItsSquares) {
   std::vector<Vec2> points;
   for (int y = -12; y <= 12; ++y)
