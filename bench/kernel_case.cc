@@ -218,6 +218,14 @@ std::vector<CaseSpec> AllCases() {
   gather("mosaic").filter = PixelFilter::kMosaic;
   gather("prefiltered").filter = PixelFilter::kPrefiltered;
   gather("bilinear_0.5").magnification = 0.5;
+  const auto prefiltered = [&](const char* name) -> CaseSpec& {
+    CaseSpec& spec = gather(name);
+    spec.filter = PixelFilter::kPrefiltered;
+    return spec;
+  };
+  prefiltered("prefiltered_phone").distortion = {kRadialTangential, {0.035}};
+  prefiltered("prefiltered_barrel").distortion = {kRadialTangential, {-0.25, 0.07, 0.002, -0.003}};
+  prefiltered("prefiltered_fisheye").distortion = {kFisheye, {-0.02, 0.004, -0.002, 3e-4}};
   CaseSpec& coarse = gather("prefiltered_0.5");
   coarse.filter = PixelFilter::kPrefiltered;
   coarse.magnification = 0.5;

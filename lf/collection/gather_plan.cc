@@ -6,6 +6,7 @@
 
 #include "lf/collection/gather.h"
 #include "lf/collection/gather_model.h"
+#include "lf/collection/position_patches.h"
 #include "lf/collection/ray_model.h"
 #include "lf/collection/row_spans.h"
 
@@ -87,6 +88,9 @@ class GatherPlanner {
         forms_(MakeForms(lf_camera, finer)),
         map_(lf_camera.intrinsics.distortion),
         maker_(forms_.across_x, forms_.across_y, forms_.depth),
+        patches_{
+            PositionPatches([this](double x, double y) { return DistortedPosition(1, x, y); }),
+            PositionPatches([this](double x, double y) { return DistortedPosition(-1, x, y); })},
         plan_(std::move(memory)) {
     for (const int side : {0, 1})
       rows_.half_planes[side] = HalfPlanes(forms_, k_, finer.aperture, side == 0 ? -1 : 1);
@@ -132,18 +136,9 @@ class GatherPlanner {
   // Appends the elements of [x_begin, x_end) in row y whose rays the LF image recorded. The caller
   // has checked that these rays pass through the lens.
   void AddDistorted(int y, int x_begin, int x_end) {
-    const double sign = Value(forms_.forward, x_begin + 0.5, y + 0.5) < 0 ? -1 : 1;
-    const auto position = [&](double x) -> std::optional<Vec2> {
-      const Vec3 e(x, y + 0.5, 1);
-      const std::optional<Vec2> recorded =
-          map_.Distort(sign * Vec3(Value(forms_.across_x, e), Value(forms_.across_y, e),
-                                   Value(forms_.depth, e)));
-      if (!recorded) return std::nullopt;
-      return Vec2(k_.fx_px * recorded->x() + k_.skew_px * recorded->y() + k_.cx_px,
-                  k_.fy_px * recorded->y() + k_.cy_px);
-    };
+    const bool is_reversed = Value(forms_.forward, x_begin + 0.5, y + 0.5) < 0;
     found_.clear();
-    SegmentMaker::AddOfFunction(y, x_begin, x_end, position, &found_);
+    patches_[is_reversed ? 1 : 0].Add(y, x_begin, x_end, &found_);
     for (const Segment& segment : found_) {
       part_end_ = -1;
       AddParts(segment);
@@ -174,6 +169,17 @@ class GatherPlanner {
     AddParts(Part(segment, segment.count / 2, segment.count));
   }
 
+  // Returns the position in the LF image of the ray of the plate's point (x, y).
+  //   sign  -1 if the ray runs from the LF camera away from the focus point, otherwise 1
+  std::optional<Vec2> DistortedPosition(double sign, double x, double y) const {
+    const Vec3 e(x, y, 1);
+    const std::optional<Vec2> recorded = map_.Distort(
+        sign * Vec3(Value(forms_.across_x, e), Value(forms_.across_y, e), Value(forms_.depth, e)));
+    if (!recorded) return std::nullopt;
+    return Vec2(k_.fx_px * recorded->x() + k_.skew_px * recorded->y() + k_.cx_px,
+                k_.fy_px * recorded->y() + k_.cy_px);
+  }
+
   static Segment Part(const Segment& segment, int begin, int end) {
     Segment part = segment;
     part.x_begin += begin;
@@ -197,6 +203,7 @@ class GatherPlanner {
   GatherForms forms_;
   DistortionMap map_;
   SegmentMaker maker_;
+  PositionPatches patches_[2];  // [1]: of rays that run away from the focus point
   RowSpans rows_;
   GatherPlan plan_;
   int width_, height_;          // size of the finer plate, in its elements

@@ -164,16 +164,9 @@ void SegmentMaker::AddOnArc(int y, int x_begin, int x_end, const IdealArc& arc,
   PieceFitter(y, position, segments).Add(x_begin, x_end, arc.x_begin, arc.x_end);
 }
 
-void SegmentMaker::AddOfFunction(int y, int x_begin, int x_end, const Function& position,
-                                 std::vector<Segment>* segments) {
-  PieceFitter fitter(y, position, segments);
-  constexpr int kBlock = Segment::kMaxCount;
-  for (int x = x_begin; x < x_end;) {
-    const int block = x & ~(kBlock - 1);
-    const int end = std::min(x_end, block + kBlock);
-    fitter.Add(x, end, block, block + kBlock);
-    x = end;
-  }
+void SegmentMaker::AddOfFunction(int y, int x_begin, int x_end, int block_begin, int block_end,
+                                 const Function& position, std::vector<Segment>* segments) {
+  PieceFitter(y, position, segments).Add(x_begin, x_end, block_begin, block_end);
 }
 
 // The bounds are computed from the chord between the first and the last position, whose t differ by

@@ -83,10 +83,12 @@ class SegmentMaker {
                 std::vector<Segment>* segments) const;
 
   // Like Add(), but `position`, which must be smooth, returns the position for the continuous
-  // coordinate x along row y. Pixels for which it returns none are left out.
+  // coordinate x along row y. The polynomials are fitted to the block [block_begin, block_end),
+  // which must contain the pixels, or to halves, quarters ... of it. Pixels for which `position`
+  // returns none are left out.
   using Function = std::function<std::optional<Vec2>(double x)>;
-  static void AddOfFunction(int y, int x_begin, int x_end, const Function& position,
-                            std::vector<Segment>* segments);
+  static void AddOfFunction(int y, int x_begin, int x_end, int block_begin, int block_end,
+                            const Function& position, std::vector<Segment>* segments);
 
  private:
   void AddInBlock(int y, int x_begin, int x_end, int block_begin, int block_size,

@@ -44,7 +44,7 @@ struct RunChoices {
 
 // The version of the ray model (doc/ray.md). A change of the code that gives other rays for the
 // same inputs raises it.
-inline constexpr int kRayModelVersion = 4;
+inline constexpr int kRayModelVersion = 5;
 
 // Returns the inputs that decide the rays of all frames: the version of the ray model, the light
 // field (number of LF images, and hashes of calibration, encoding and names), and the choices for
