@@ -19,13 +19,17 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// Returns the frame rate as text for ffmpeg. A rate that is no integer, and differs from a rate of
-// television (N * 1000 / 1001 with an integer N) by less than a millionth of it, becomes this
-// fraction: 29.97003 becomes 30000/1001, but 29.97 stays as it is.
+// Returns the frame rate as text for ffmpeg. A rate of television, N * 1000 / 1001, becomes this
+// fraction even if it is rounded to two decimals or more: 29.97 becomes 30000/1001, and 23.976 and
+// 23.98 become 24000/1001. Other rates, such as 24.97, stay as they are.
 std::string FrameRate(double fps) {
-  const double whole = std::round(fps * 1.001);
-  if (fps != std::round(fps) && std::abs(fps * 1.001 - whole) < 1e-6 * whole)
-    return fmt::format("{:.0f}000/1001", whole);
+  for (const int rate : {24, 30, 48, 60, 120, 240}) {
+    const double exact = rate * 1000.0 / 1001;
+    // Three decimals or more differ by a millionth at most, because 1000 / 1001 is 0.999 + 1e-6.
+    if (std::abs(fps - exact) < 2e-6 * exact ||
+        std::abs(fps - std::round(exact * 100) / 100) < 1e-9)
+      return fmt::format("{}000/1001", rate);
+  }
   return fmt::format("{:.9g}", fps);
 }
 

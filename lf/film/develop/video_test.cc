@@ -103,6 +103,24 @@ TEST_F(VideoTest, TagsNameTheMatrixThatWasUsed) {
   EXPECT_LT(bytes.find("moov"), bytes.find("mdat")) << "players must wait for the whole file";
 }
 
+TEST_F(VideoTest, RoundedRatesOfTelevisionBecomeExact) {
+  SKIP_WITHOUT_FFMPEG();
+  const fs::path path = folder_ / "film.mp4";
+  for (const auto& [fps, rate] :
+       {std::pair(29.97, "30000/1001"), std::pair(23.976, "24000/1001"),
+        std::pair(23.98, "24000/1001"), std::pair(59.94, "60000/1001"),
+        std::pair(29.97003, "30000/1001"), std::pair(24.97, "2497/100"),
+        std::pair(23.97, "2397/100"), std::pair(30.0, "30/1"), std::pair(12.5, "25/2")}) {
+    auto video = VideoWriter::Open(path, 64, 32, fps).value();
+    ASSERT_TRUE(video->Add(Patches(64, 32, 0)));
+    ASSERT_TRUE(video->Close());
+    EXPECT_EQ(Output("ffprobe -v error -show_entries stream=r_frame_rate -of csv=p=0 '" +
+                     path.string() + "'"),
+              std::string(rate) + "\n")
+        << fps;
+  }
+}
+
 TEST_F(VideoTest, OddSizesLoseAColumnAndARow) {
   SKIP_WITHOUT_FFMPEG();
   const fs::path path = folder_ / "a%d film's.mp4";
