@@ -17,6 +17,8 @@ namespace lf {
 // do not depend on this number. Encoding this many rows of 8192 pixels takes about 0.1 s.
 inline constexpr int kBlockRows = 32;
 
+inline constexpr double kLargestClassicTiff_bytes = 4000.0 * 1024 * 1024;
+
 // A picture whose rows are made while it is encoded.
 struct PictureRows {
   std::string name;  // name of the file, for messages
@@ -38,8 +40,10 @@ struct PictureRows {
 // PNG has 1 to 4 channels of kUint8 or kUint16, and one text for each entry of the metadata.
 Result<std::string> EncodePng(const PictureRows& picture);
 // TIFF has any number of channels of kUint8, kUint16 or kFloat. Its description holds one line for
-// each entry of the metadata: "lf.time_s: 0.25".
-Result<std::string> EncodeTiff(const PictureRows& picture);
+// each entry of the metadata: "lf.time_s: 0.25". Pictures of more than `largest_classic_bytes`,
+// before they are compressed, become BigTIFF, because offsets in classic TIFF files have 32 bits.
+Result<std::string> EncodeTiff(const PictureRows& picture,
+                               double largest_classic_bytes = kLargestClassicTiff_bytes);
 // JPEG has 1 or 3 channels of kUint8, quality 95 and full chroma resolution. Its comment holds the
 // same lines as the description of a TIFF file.
 Result<std::string> EncodeJpegRows(const PictureRows& picture);

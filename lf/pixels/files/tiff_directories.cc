@@ -9,7 +9,6 @@ namespace lf {
 namespace {
 
 constexpr size_t kMaxEntryCount = 1024;
-constexpr size_t kEntryBytes = 12;
 
 enum TiffType {
   kByte = 1,
@@ -22,7 +21,10 @@ enum TiffType {
   kSignedRational = 10,
   kFloat = 11,
   kDouble = 12,
-  kDirectory = 13
+  kDirectory = 13,
+  kLong8 = 16,
+  kSignedLong8 = 17,
+  kDirectory8 = 18
 };
 
 // Returns the size of a number of this TIFF type, in bytes; 0 if the type is not a number.
@@ -42,6 +44,9 @@ size_t BytesOf(int type) {
     case kRational:
     case kSignedRational:
     case kDouble:
+    case kLong8:
+    case kSignedLong8:
+    case kDirectory8:
       return 8;
     default:
       return 0;
@@ -66,6 +71,8 @@ double ValueOf(std::span<const uint8_t> bytes, int type, bool little_endian) {
       return static_cast<int16_t>(number(0, 2));
     case kSignedLong:
       return static_cast<int32_t>(number(0, 4));
+    case kSignedLong8:
+      return static_cast<double>(static_cast<int64_t>(number(0, 8)));
     case kRational:
       return static_cast<double>(number(0, 4)) / static_cast<double>(number(4, 4));
     case kSignedRational:
@@ -106,45 +113,57 @@ double TiffDirectory::Number(int tag, double otherwise) const {
 class TiffReader {
  public:
   explicit TiffReader(const ByteSource& source) : source_(source) {
-    std::array<uint8_t, 8> head{};
-    if (source(0, head) != head.size()) return;
+    constexpr uint64_t kClassic = 42, kBig = 43;
+    std::array<uint8_t, 16> head{};
+    const size_t size = source(0, head);
+    if (size < 8) return;
     little_endian_ = head[0] == 'I';
-    if (Unsigned(std::span(head).subspan(2, 2), little_endian_) == 42)
-      first_ = Unsigned(std::span(head).subspan(4, 4), little_endian_);
+    const uint64_t version = Unsigned(std::span(head).subspan(2, 2), little_endian_);
+    is_big_ = version == kBig && size == head.size();
+    if (version == kClassic || is_big_)
+      first_ = Unsigned(std::span(head).subspan(OffsetBytes(), OffsetBytes()), little_endian_);
   }
 
   uint64_t first() const { return first_; }  // offset of the first directory; 0 if there is none
 
   // Returns the directory at `offset`; none if it is beyond the end of the file or has no tag.
   std::optional<TiffDirectory> ReadAt(uint64_t offset) const {
-    std::array<uint8_t, 2> count_bytes{};
+    std::vector<uint8_t> count_bytes(is_big_ ? 8 : 2);
     if (source_(offset, count_bytes) != count_bytes.size()) return std::nullopt;
     const size_t count = Unsigned(count_bytes, little_endian_);
-    std::vector<uint8_t> bytes(std::min(count, kMaxEntryCount) * kEntryBytes);
-    bytes.resize(source_(offset + 2, bytes) / kEntryBytes * kEntryBytes);
+    // An entry is the tag, the type, the number of values, and the values or their offset.
+    const size_t entry_bytes = 4 + 2 * OffsetBytes();
+    const uint64_t begin = offset + count_bytes.size();
+    std::vector<uint8_t> bytes(std::min(count, kMaxEntryCount) * entry_bytes);
+    bytes.resize(source_(begin, bytes) / entry_bytes * entry_bytes);
     if (bytes.empty()) return std::nullopt;
     TiffDirectory directory;
     directory.source_ = &source_;
     directory.little_endian_ = little_endian_;
-    for (size_t at = 0; at < bytes.size(); at += kEntryBytes)
-      AddEntry(std::span(bytes).subspan(at, kEntryBytes), offset + 2 + at, &directory);
+    for (size_t at = 0; at < bytes.size(); at += entry_bytes)
+      AddEntry(std::span(bytes).subspan(at, entry_bytes), begin + at, &directory);
     return directory;
   }
 
  private:
+  // Returns the size of an offset, and of a number of values, in bytes.
+  size_t OffsetBytes() const { return is_big_ ? 8 : 4; }
+
   void AddEntry(std::span<const uint8_t> bytes, uint64_t offset, TiffDirectory* directory) const {
     TiffDirectory::Entry entry;
     entry.type = static_cast<int>(Unsigned(bytes.subspan(2, 2), little_endian_));
-    entry.count = Unsigned(bytes.subspan(4, 4), little_endian_);
-    // Values of up to four bytes are stored in the entry itself.
-    entry.offset = entry.count * BytesOf(entry.type) <= 4
-                       ? offset + 8
-                       : Unsigned(bytes.subspan(8, 4), little_endian_);
+    entry.count = Unsigned(bytes.subspan(4, OffsetBytes()), little_endian_);
+    // Values that take no more bytes than an offset are stored in the entry itself.
+    const size_t value_bytes = std::max<size_t>(1, BytesOf(entry.type));
+    entry.offset = entry.count <= OffsetBytes() / value_bytes
+                       ? offset + 4 + OffsetBytes()
+                       : Unsigned(bytes.last(OffsetBytes()), little_endian_);
     directory->entries_.emplace(Unsigned(bytes.first(2), little_endian_), entry);
   }
 
   const ByteSource& source_;
   bool little_endian_ = true;
+  bool is_big_ = false;  // true: a BigTIFF file, whose offsets have 64 bits instead of 32
   uint64_t first_ = 0;
 };
 

@@ -1,5 +1,5 @@
-// Reads the first directory and the Exif data of a TIFF file without a decoder. The first directory
-// tells whether the file is a camera raw file. Internal to this folder.
+// Reads the first directory and the Exif data of a TIFF or BigTIFF file without a decoder. The
+// first directory tells whether the file is a camera raw file. Internal to this folder.
 #pragma once
 
 #include <cstdint>
@@ -34,8 +34,8 @@ class TiffDirectory {
   std::map<int, Entry> entries_;
 };
 
-// Returns the first directory. Returns none if it cannot be read, has no tags, or is in a BigTIFF
-// file (which no camera writes). `source` must outlive the directory.
+// Returns the first directory. Returns none if it cannot be read or has no tags. `source` must
+// outlive the directory.
 std::optional<TiffDirectory> FirstTiffDirectory(const ByteSource& source);
 
 // Returns the directory of Exif data that the first directory points to; none if it points to none,

@@ -35,6 +35,24 @@ TEST(TiffDirectories, NumbersOfAllTypesAreRead) {
   EXPECT_FALSE(first->Has(6));
 }
 
+TEST(TiffDirectories, BigTiffIsRead) {
+  const std::string file =
+      "MM\0+\0\x08\0\0\0\0\0\0\0\0\0\x10"
+      "\0\0\0\0\0\0\0\4"
+      "\0\1\0\3\0\0\0\0\0\0\0\4\0\1\0\2\0\3\0\4"    // four shorts in place
+      "\0\2\0\3\0\0\0\0\0\0\0\5\0\0\0\0\0\0\0\x68"  // five shorts at 104
+      "\0\3\0\x11\0\0\0\0\0\0\0\1\xff\xff\xff\xff\xff\xff\xff\xfe"
+      "\0\4\0\x10\xff\xff\xff\xff\xff\xff\xff\xff\0\0\0\0\0\0\0\0"
+      "\0\5\0\6\0\7\0\x08\0\x09"s;
+  const ByteSource source = SourceOf(file);
+  const auto first = FirstTiffDirectory(source);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->Numbers(1, 4), (std::vector<double>{1, 2, 3, 4}));
+  EXPECT_EQ(first->Numbers(2, 5), (std::vector<double>{5, 6, 7, 8, 9}));
+  EXPECT_EQ(first->Numbers(3, 1), std::vector<double>{-2});
+  EXPECT_EQ(first->Numbers(4, 9), std::vector<double>{});
+}
+
 TEST(TiffDirectories, WhatLiesBeyondTheEndIsMissing) {
   const std::string file = "II*\0\x08\0\0\0\xff\xff\1\0\3\0\4\0\0\0\xff\xff\xff\xff\2\0\3\0"s;
   const ByteSource source = SourceOf(file);

@@ -68,17 +68,15 @@ Result<void> WriteStrips(const PictureRows& picture, const LibtiffHandle& handle
 
 }  // namespace
 
-Result<std::string> EncodeTiff(const PictureRows& picture) {
+Result<std::string> EncodeTiff(const PictureRows& picture, double largest_classic_bytes) {
   LF_CHECK(picture.width > 0 && picture.height > 0 && picture.channels > 0);
-  // Larger pictures are written as BigTIFF, because offsets in classic TIFF files have 32 bits. The
-  // uncompressed size decides, because the compressed size is not known yet.
-  constexpr double kLargestClassic_bytes = 4000.0 * 1024 * 1024;
+  // The uncompressed size decides, because the compressed size is not known yet.
   const double bytes_of_pixels = static_cast<double>(picture.width) * picture.height *
                                  picture.channels * static_cast<double>(BytesOf(picture.type));
   std::string bytes;
   LF_ASSIGN_OR_RETURN(
       const std::unique_ptr<LibtiffHandle> handle,
-      LibtiffHandle::OpenToWrite(picture.name, bytes_of_pixels > kLargestClassic_bytes, &bytes));
+      LibtiffHandle::OpenToWrite(picture.name, bytes_of_pixels > largest_classic_bytes, &bytes));
   LF_RETURN_IF_ERROR(handle->Check(SetTags(picture, handle->tiff())));
   LF_RETURN_IF_ERROR(WriteStrips(picture, *handle));
   LF_RETURN_IF_ERROR(handle->Check(TIFFWriteDirectory(handle->tiff()) == 1));

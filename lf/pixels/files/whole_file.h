@@ -20,7 +20,7 @@ namespace lf {
 //         file. Only scanlines in one part, as WriteExr() writes them; other kinds are an error
 //   PNG   the chunks reach the end mark
 //   JPEG  the last two bytes are the end mark
-//   TIFF  the first directory begins in the file; a BigTIFF file is an error
+//   TIFF  the first directory begins in the file
 //   raw   an error, because this project writes none
 //   source  copies the bytes from `offset` on into `to`; returns how many it copied
 //   name    name of the file, for messages

@@ -7,6 +7,7 @@
 
 #include "lf/core/file.h"
 #include "lf/pixels/files/image_file.h"
+#include "lf/pixels/files/picture_encoder.h"
 #include "lf/pixels/files/test_folder.h"
 
 namespace lf {
@@ -38,6 +39,23 @@ TEST_F(WholeFileTest, WhatIsWrittenIsWhole) {
     const Result<void> whole = Check(name, Written(name));
     EXPECT_TRUE(whole) << whole.error().message;
   }
+}
+
+// BigTIFF is what pictures of more than 4000 MiB become.
+TEST_F(WholeFileTest, ABigTiffIsWhole) {
+  const auto pixels = NoiseImage<uint8_t>(23, 100, 3);
+  PictureRows picture;
+  picture.width = pixels.width();
+  picture.height = pixels.height();
+  picture.channels = pixels.channels();
+  picture.pack_row = [&](int y, std::byte* to) { std::memcpy(to, pixels.row(y), size_t{23} * 3); };
+  const std::string bytes = EncodeTiff(picture, /*largest_classic_bytes=*/0).value();
+  EXPECT_EQ(bytes.substr(0, 4), std::string("II+\0", 4));
+  const Result<void> whole = Check("a.tif", bytes);
+  EXPECT_TRUE(whole) << whole.error().message;
+  EXPECT_EQ(std::get<Image<uint8_t>>(ReadImage(folder_ / "a.tif").value()).pixels(),
+            pixels.pixels());
+  EXPECT_FALSE(Check("a.tif", bytes.substr(0, 2000)));
 }
 
 TEST_F(WholeFileTest, NoBeginningOfAFileIsWhole) {
