@@ -58,8 +58,7 @@ double MeasureNoise(const SensorPlate& plate, const NoiseMoments& moments,
   }
   if (noise.empty()) return std::numeric_limits<double>::infinity();
   // Number of elements that may be noisier than the result.
-  const auto above =
-      static_cast<ptrdiff_t>((1 - kMostNoiseElements) * static_cast<double>(noise.size()));
+  const auto above = static_cast<ptrdiff_t>(noise.size() / kNoisierOneIn);
   const auto at = noise.end() - 1 - above;
   std::nth_element(noise.begin(), at, noise.end());
   return *at;

@@ -1,7 +1,7 @@
 // The noise of a frame, and the rule "noise<=X" (such as "noise<=0.002"): --stop-when stops a frame
 // by it, --require fails if a frame breaks it.
 //
-// The noise of a frame is a percentile (the 90th, kMostNoiseElements) over those elements that
+// The noise of a frame is a percentile (the 90th, kNoisierOneIn) over those elements that
 // NoiseMoments measures and that are reachable (ReachableElements). Each element contributes the
 // standard error of its noisiest channel. The unit is linear radiance before white balance and
 // colour matrix; 1 is the light field's white (1.0 in an EXR frame). Linear radiance is used,
@@ -27,8 +27,8 @@ bool IsNoiseRule(const std::string& text);
 // Returns the rule with X = `noise` as text. ParseNoiseRule() of this text returns exactly `noise`.
 std::string TextOfNoiseRule(double noise);
 
-// Share of the measured reachable elements whose noise is at most that of the frame.
-inline constexpr double kMostNoiseElements = 0.9;
+// One in this many of the measured reachable elements, rounded down, may be noisier than the frame.
+inline constexpr size_t kNoisierOneIn = 10;
 
 // Returns the first place of the order of LF images, after `place`, at which noise is measured: 16,
 // 18, ..., 32, 36, ..., 64, 72, ...: eight places for each doubling. From one of these places to
