@@ -214,9 +214,12 @@ Error ChildProcess::Failure(const std::string& reason) const {
 
 Result<void> ChildProcess::Write(std::span<const uint8_t> bytes, double patience_s) {
   if (input_ < 0) return Failure("has no open input");
+  constexpr int64_t kMicroseconds = 1'000'000;
+  // A time of 0 would mean that send() waits for ever.
+  const int64_t wait_us = std::max<int64_t>(1, std::llround(kMicroseconds * patience_s));
   timeval patience{};
-  patience.tv_sec = static_cast<time_t>(patience_s);
-  patience.tv_usec = static_cast<suseconds_t>(1e6 * (patience_s - std::floor(patience_s)));
+  patience.tv_sec = wait_us / kMicroseconds;
+  patience.tv_usec = wait_us % kMicroseconds;
   ::setsockopt(input_, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof(patience));
   while (!bytes.empty()) {
     const ssize_t sent = ::send(input_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
@@ -239,7 +242,6 @@ Result<void> ChildProcess::Write(std::span<const uint8_t> bytes, double patience
 
 Result<void> ChildProcess::Finish(double patience_s) {
   if (input_ >= 0) ::close(std::exchange(input_, -1));
-  if (end_) return Failure("has ended already");
   const auto give_up = Clock::now() + std::chrono::duration<double>(patience_s);
   while (!Poll()) {
     if (Clock::now() > give_up) {

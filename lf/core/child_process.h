@@ -52,7 +52,7 @@ class ChildProcess {
   Result<void> Write(std::span<const uint8_t> bytes, double patience_s);
 
   // Closes the input and waits for the program, which is killed if it still runs after patience_s.
-  // kOutput unless the program exits with code 0; also if Poll() has returned its end before.
+  // kOutput unless the program exits with code 0.
   Result<void> Finish(double patience_s);
 
  private:

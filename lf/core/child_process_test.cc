@@ -104,6 +104,21 @@ TEST_F(ChildProcessTest, AStuckProgramIsEnded) {
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
 }
 
+// The time that send() waits is never 0, which would mean that it waits for ever.
+TEST_F(ChildProcessTest, WithoutPatienceNothingWaits) {
+  auto deaf = Shell("sleep 100");
+  EXPECT_NE(FailureOf(deaf->Write(std::vector<uint8_t>(3'000'000), 0)).find("read nothing"),
+            std::string::npos);
+}
+
+TEST_F(ChildProcessTest, FinishTellsAnEndThatPollHasReturned) {
+  for (const int code : {0, 3}) {
+    auto child = Shell("exit " + std::to_string(code));
+    ASSERT_TRUE(EndOf(*child).has_value());
+    EXPECT_EQ(child->Finish(30).has_value(), code == 0);
+  }
+}
+
 TEST_F(ChildProcessTest, ADeathBySignalIsAFailure) {
   EXPECT_NE(FailureOf(Shell("kill -9 $$")->Finish(30)).find("signal 9"), std::string::npos);
 }
