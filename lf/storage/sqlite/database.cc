@@ -168,9 +168,10 @@ bool Statement::IsNull(int column) const {
 }
 
 Error Statement::Wrong(int column, std::string_view found, std::string_view expected) const {
-  return state_->database->Fault(
-      fmt::format("is damaged: found {} in column {}, expected {}; copy or make it again", found,
-                  sqlite3_column_name(state_->handle, column), expected));
+  // A wrong value is kInput even if the database is opened for writing.
+  return InputError(fmt::format(
+      "{}: is damaged: found {} in column {}, expected {}; copy or make it again",
+      state_->database->name, found, sqlite3_column_name(state_->handle, column), expected));
 }
 
 Result<int64_t> Statement::Integer(int column) const {
@@ -289,7 +290,7 @@ Result<void> Database::CheckFormat(const DatabaseFormat& format) {
   if (version > format.version)
     return wrong(
         fmt::format("is a {} of version {}, which a newer lfrendertools has written; this one "
-                    "knows version {}",
+                    "knows version {}: use the newer one",
                     format.name, version, format.version));
   if (version < format.version)
     return wrong(fmt::format("is a {} of version {}, which is too old: make it again", format.name,

@@ -283,6 +283,14 @@ TEST_F(DatabaseTest, BatchesAreAppended) {
   EXPECT_TRUE(Database::Open(path, kFormat, {kBatches}));
 }
 
+TEST_F(DatabaseTest, AWrongValueInAFileToAppendToIsAnInputError) {
+  Database database = Database::OpenToAppend(folder_ / "batches", kFormat).value();
+  ASSERT_TRUE(database.Execute("create table things (word text); insert into things values ('x')"));
+  Statement select = database.Prepare("select word from things").value();
+  ASSERT_TRUE(*select.Step());
+  EXPECT_EQ(select.Integer(0).error().kind, ErrorKind::kInput);
+}
+
 TEST_F(DatabaseTest, WhatWasCommittedSurvivesAKill) {
   const fs::path path = folder_ / "killed";
   int64_t least = 0;
