@@ -100,6 +100,11 @@ Result<LightField> OpenPackedStore(const fs::path& path, const OpenOptions& opti
         "--bayer cannot be used with the packed store {}, whose pixels are already encoded: import "
         "its image files with lfimport --bayer, and compress them again",
         path.string()));
+  if (options.image_scale.kind != ImageScale::Kind::kAuto)
+    return UsageError(
+        fmt::format("--image-scale cannot be used with the packed store {}, whose LF images have "
+                    "the calibrated size: leave the option out",
+                    path.string()));
   LogDebug("{}: opened as a packed store", path.string());
   LF_ASSIGN_OR_RETURN(PackedStoreFacts facts, ReadPackedStore(path));
   return std::move(facts.light_field);

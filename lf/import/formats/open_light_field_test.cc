@@ -31,6 +31,18 @@ TEST_F(OpenLightFieldTest, TakesTheFileOrItsFolder) {
   }
 }
 
+TEST_F(OpenLightFieldTest, PackedStoresRefuseOptionsOfImageFiles) {
+  const auto error = [&](const OpenOptions& options) {
+    return OpenLightField(folder_ / "a.lfs", options).error();
+  };
+  EXPECT_EQ(error({}).kind, ErrorKind::kInput);  // there is no such file
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "a.lfs", "no store"));
+  EXPECT_EQ(error({}).kind, ErrorKind::kInput);
+  const Error refused = error({.image_scale = {ImageScale::Kind::kFactor, 0.5}});
+  EXPECT_EQ(refused.kind, ErrorKind::kUsage);
+  EXPECT_NE(refused.message.find("--image-scale"), std::string::npos) << refused.message;
+}
+
 TEST_F(OpenLightFieldTest, TakesStanfordNamesInTheFolderOrInItsImages) {
   fs::create_directories(folder_ / "images");
   const Image<uint8_t> image(4, 4, 3);
