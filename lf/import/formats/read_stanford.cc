@@ -23,6 +23,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kNameForm = "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext";
+constexpr const char* kGridNameForm = "NAME_ROW_COL.ext";
 constexpr double kLargestPrincipal_px = 1e7;  // limit of principal points in transforms.json
 
 struct StanfordImage {
@@ -72,8 +73,10 @@ void WarnOfOthers(const fs::path& folder, const Listing& listing) {
   constexpr size_t kShown = 3;
   const auto& others = listing.others;
   if (others.empty()) return;
+  const bool has_positions = !listing.images.empty() && listing.images[0].name.position;
+  const char* const form = has_positions ? kNameForm : kGridNameForm;
   LogWarning("{}: {} of {} files are left out, because their names are not of the form {}: {}{}",
-             folder.string(), others.size(), others.size() + listing.images.size(), kNameForm,
+             folder.string(), others.size(), others.size() + listing.images.size(), form,
              fmt::join(others.begin(), others.begin() + std::min(kShown, others.size()), ", "),
              others.size() > kShown ? ", ..." : "");
 }
@@ -91,8 +94,8 @@ std::string ImportCommand(const fs::path& folder, const StanfordOptions& options
 
 Result<void> CheckPlaces(const fs::path& folder, const std::vector<StanfordImage>& images) {
   if (images.empty())
-    return InputError(
-        fmt::format("{}: holds no image whose name has the form {}", folder.string(), kNameForm));
+    return InputError(fmt::format("{}: holds no image whose name has the form {} or {}",
+                                  folder.string(), kNameForm, kGridNameForm));
   for (size_t i = 0; i + 1 < images.size(); ++i)
     if (images[i].name.row == images[i + 1].name.row &&
         images[i].name.column == images[i + 1].name.column)

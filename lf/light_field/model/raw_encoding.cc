@@ -83,7 +83,10 @@ void WarnOfUnknown(const LightField& light_field, const RawFacts& facts, bool le
     LogWarning(
         "{}: this camera raw file does not state its {}; colours stay those of the sensor: to "
         "correct them, state lf_white_balance and lf_camera_to_srgb in transforms.json",
-        name, facts.white_balance ? "colour matrix" : "white balance or colour matrix");
+        name,
+        facts.white_balance             ? "colour matrix"
+        : facts.linear_srgb_from_camera ? "white balance"
+                                        : "white balance and colour matrix");
 }
 
 }  // namespace lf

@@ -156,8 +156,9 @@ Result<std::optional<std::vector<double>>> JsonFields::Matrix(const char* key, s
     for (const element row : rows)
       is_matrix = is_matrix && AppendNumbers(row, columns, columns, rule, &numbers);
   if (!is_matrix)
-    return Wrong(key,
-                 fmt::format("{} lists of {} numbers, each {}", rows_max, columns, rule.expected));
+    return Wrong(key, fmt::format("{}{} lists of {} numbers, each {}",
+                                  rows_min < rows_max ? fmt::format("{} to ", rows_min) : "",
+                                  rows_max, columns, rule.expected));
   return std::optional(std::move(numbers));
 }
 

@@ -150,7 +150,7 @@ TEST(TransformsJson, BrokenMatricesAreErrorsThatNameTheFrame) {
   expect("[[0,0,0,1],[0,0,0,2],[0,0,0,3]]", "determinant");
   expect("[[1,0,0,1],[0,1,0,2],[0,0,1,3],[0,0,1,1]]", "last row");
   expect("[[1,0,0,1],[0,1,0,2],[0,0,1,1e300]]", "1e+12");
-  expect("[[1,0,0,1],[0,1,0,2]]", "4 lists of 4 numbers");
+  expect("[[1,0,0,1],[0,1,0,2]]", "3 to 4 lists of 4 numbers");
   expect("[[1,0,0],[0,1,0],[0,0,1]]", "4 lists of 4 numbers");
   expect("[[1,0,0,1],[0,1,0,2],[0,0,1,\"3\"]]", "4 lists of 4 numbers");
   expect("[]", "[]");
