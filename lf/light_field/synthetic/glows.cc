@@ -54,9 +54,9 @@ Rgb Glows::Along(const Ray& ray, const Footprint& footprint, double lambda_end,
 }
 
 std::vector<uint32_t> Glows::Near(const Cone& cone) const {
-  std::vector<uint32_t> lamps;
-  balls_.ForEachNear(cone, [&lamps](uint32_t i) { lamps.push_back(i); });
-  return lamps;
+  std::vector<uint32_t> near;
+  balls_.ForEachNear(cone, [&near](uint32_t i) { near.push_back(i); });
+  return near;
 }
 
 }  // namespace lf

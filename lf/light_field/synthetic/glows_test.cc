@@ -28,7 +28,7 @@ TEST(Glows, ALampBehindTheEndOfTheRayOrItsStartIsNotSeen) {
   EXPECT_GT(glows.Along({Vec3::Zero(), Vec3::UnitZ()}, {}, 2.01)[0], 0.9);
 }
 
-// The light of a lamp summed over a grid of pixels is the lamp's total light, even if the lamp is
+// The light of a glow summed over a grid of pixels is the glow's total light, even if the glow is
 // much smaller than a pixel.
 TEST(Glows, AFootprintLosesNoLight) {
   for (const double radius_w : {0.2, 0.02, 0.002}) {
@@ -45,12 +45,12 @@ TEST(Glows, AFootprintLosesNoLight) {
 }
 
 TEST(Glows, NoneOfManyIsLost) {
-  std::vector<Glow> lamps;
+  std::vector<Glow> several;
   for (uint64_t i = 0; i < 43; ++i)
-    lamps.push_back({{RandomUnit(1, 0, i), RandomUnit(1, 1, i), 1 + RandomUnit(1, 2, i)},
-                     0.01 + 0.05 * RandomUnit(1, 3, i),
-                     Rgb::Ones()});
-  const Glows glows(lamps);
+    several.push_back({{RandomUnit(1, 0, i), RandomUnit(1, 1, i), 1 + RandomUnit(1, 2, i)},
+                       0.01 + 0.05 * RandomUnit(1, 3, i),
+                       Rgb::Ones()});
+  const Glows glows(several);
   for (uint64_t i = 0; i < 2000; ++i) {
     const Ray ray{
         {RandomUnit(2, 0, i), RandomUnit(2, 1, i), 3 * RandomUnit(2, 2, i)},
@@ -59,7 +59,7 @@ TEST(Glows, NoneOfManyIsLost) {
     const Footprint footprint{0.05 * RandomUnit(2, 6, i), 0.1 * RandomUnit(2, 7, i) - 0.05};
     const double end = 2 * RandomUnit(2, 8, i);
     double expected = 0;
-    for (const Glow& lamp : lamps) expected += Glows({lamp}).Along(ray, footprint, end)[0];
+    for (const Glow& glow : several) expected += Glows({glow}).Along(ray, footprint, end)[0];
     EXPECT_NEAR(glows.Along(ray, footprint, end)[0], expected, 1e-12);
   }
 }

@@ -91,21 +91,21 @@ RenderCamera Lens(const PinholeCamera& pinhole, double radius_w, int blades, dou
   return camera;
 }
 
-Scene OneLamp(const Vec3& place) {
+Scene OneGlow(const Vec3& place) {
   SceneDescription description;
   description.glows = {{place, 0.002, Rgb::Constant(100)}};
   return Scene(description);
 }
 
-// The image of a lamp out of focus has the shape of the lens, with a radius of f r |1/g - 1/z|
-// elements. It is upright for lamps beyond the focus plane, and upside down for lamps in front of
+// The image of a glow out of focus has the shape of the lens, with a radius of f r |1/g - 1/z|
+// elements. It is upright for glows beyond the focus plane, and upside down for glows in front of
 // it.
-TEST(Photograph, OutOfFocusALampTakesTheShapeOfTheLens) {
+TEST(Photograph, OutOfFocusAGlowTakesTheShapeOfTheLens) {
   ThreadPool pool(2);
   for (const double depth_w : {2.0, 0.6}) {
     const RenderCamera camera = Lens(Camera(81, 81, 400), 0.05, 5, 1);
     const Image<float> picture =
-        ThinLensPhotograph(OneLamp({0, 0, depth_w}), camera, {529, 0}, pool);
+        ThinLensPhotograph(OneGlow({0, 0, depth_w}), camera, {529, 0}, pool);
     const double radius_px = 400 * 0.05 * std::abs(1 - 1 / depth_w);
     const double up = depth_w > 1 ? -1 : 1;  // image rows run downwards
     const auto at = [&](double dx, double dy) {
@@ -124,18 +124,18 @@ TEST(Photograph, OutOfFocusALampTakesTheShapeOfTheLens) {
         row += (y + 0.5) * static_cast<double>(picture.at(x, y));
       }
     EXPECT_NEAR(row / sum, 40.5, 0.1);  // the pentagon's centre of mass is the centre of the lens
-    // No light is lost: the lamp's image has the same flux as in focus.
+    // No light is lost: the glow's image has the same flux as in focus.
     const double radius_in_focus_px = 400 * 0.002 / depth_w;
     EXPECT_NEAR(sum, 100 * kPi * radius_in_focus_px * radius_in_focus_px, 0.03 * sum);
   }
 }
 
-TEST(Photograph, InFocusALampIsWhereThePinholeSeesIt) {
+TEST(Photograph, InFocusAGlowIsWhereThePinholeSeesIt) {
   ThreadPool pool(2);
-  const Vec3 lamp(0.05, -0.03, 1);
+  const Vec3 glow(0.05, -0.03, 1);
   const RenderCamera camera = Lens(Camera(81, 81, 400), 0.05, 0, 1);
-  const Image<float> picture = ThinLensPhotograph(OneLamp(lamp), camera, {256, 0}, pool);
-  const Vec2 place = *Project(camera.pinhole, lamp);
+  const Image<float> picture = ThinLensPhotograph(OneGlow(glow), camera, {256, 0}, pool);
+  const Vec2 place = *Project(camera.pinhole, glow);
   double sum = 0;
   Vec2 moment = Vec2::Zero();
   for (int y = 0; y < 81; ++y)
