@@ -12,10 +12,9 @@
 #include "lf/core/check.h"
 #include "lf/core/file.h"
 #include "lf/core/file_lock.h"
-#include "lf/core/hash.h"
 #include "lf/storage/packed/packed_format.h"
+#include "lf/storage/packed/plan_settings.h"
 #include "lf/storage/tables/calibration_tables.h"
-#include "lf/storage/tables/stored_numbers.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -28,44 +27,6 @@ constexpr std::chrono::seconds kBatchAge{2};
 std::string NewStoreId() {
   std::random_device random;
   return fmt::format("{:08x}{:08x}", random(), random());
-}
-
-std::string HashOfIds(const std::vector<uint32_t>& ids) {
-  return ids.empty() ? std::string()
-                     : fmt::format("{:016x}", HashBytes(BytesOf(std::span<const uint32_t>(ids))));
-}
-
-std::string HashOfRects(const std::vector<PixelRect>& rects) {
-  if (rects.empty()) return {};
-  Hasher hasher;
-  for (const PixelRect& rect : rects) {
-    const int32_t sides[] = {rect.x_begin, rect.y_begin, rect.x_end, rect.y_end};
-    hasher.Add(BytesOf(std::span<const int32_t>(sides)));
-  }
-  return fmt::format("{:016x}", hasher.Hash());
-}
-
-std::string TextOf(const std::optional<DisplayLevels>& levels) {
-  return levels ? fmt::format("{} {}", levels->black, levels->white) : std::string();
-}
-
-// Returns the settings that an unfinished store must share with the plan by which it is resumed.
-SettingList SettingsOfPlan(const LightField& light_field, const PackedStorePlan& plan) {
-  const LightFieldIdentity images = IdentityInStore(light_field);
-  SettingList settings = {{"light_field.images", fmt::format("{}", plan.whole.image_count)},
-                          {"light_field.names", plan.whole.names},
-                          {"light_field.calibration", plan.whole.calibration},
-                          {"images", fmt::format("{}", images.image_count)},
-                          {"images.names", images.names},
-                          {"images.calibration", images.calibration},
-                          {"images.whole_ids", HashOfIds(plan.whole_ids)},
-                          {"images.rects", HashOfRects(plan.rects)},
-                          {"codec", plan.codec},
-                          {"display_levels", TextOf(plan.display_levels)},
-                          {"shard_bytes", fmt::format("{}", plan.shard_bytes)}};
-  const SettingList pixels = SettingsOfPixels(light_field);
-  settings.insert(settings.end(), pixels.begin(), pixels.end());
-  return settings;
 }
 
 Result<void> WriteImages(const LightField& light_field, const PackedStorePlan& plan,
@@ -107,17 +68,6 @@ Result<void> MakeTables(const LightField& light_field, const PackedStorePlan& pl
   LF_RETURN_IF_ERROR(WriteIntrinsics(light_field.intrinsics, database));
   LF_RETURN_IF_ERROR(WriteImages(light_field, plan, database));
   return database->Execute("commit");
-}
-
-// Returns the first difference between the settings of a store and a plan, as text: "codec default,
-// levels 4, threshold 3, but now it is ...".
-std::optional<std::string> FirstDifference(const Settings& settings, const LightField& light_field,
-                                           const PackedStorePlan& plan, bool any_shards) {
-  const auto shown = [](const std::string& value) { return value.empty() ? "(none)" : value; };
-  for (const auto& [key, value] : SettingsOfPlan(light_field, plan))
-    if (settings.Text(key) != value && !(any_shards && key == "shard_bytes"))
-      return fmt::format("{} {}, but now it is {}", key, shown(settings.Text(key)), shown(value));
-  return {};
 }
 
 void RemoveWithJournal(const fs::path& path) {
