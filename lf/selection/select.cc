@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "lf/core/check.h"
 #include "lf/selection/overlap.h"
 #include "lf/selection/seen_region.h"
 
@@ -211,6 +212,7 @@ std::vector<SelectedImage> SelectImages(const ImageIndex& index,
 
 PlaceRange PlacesOfFirst(size_t image_count, const ImageIndex& index, const TakingFrame& frame,
                          const SelectOptions& options) {
+  LF_CHECK(image_count > 0);
   const LightField& light_field = index.light_field();
   const SeenRegion region(frame.camera);
   std::vector<std::pair<uint32_t, LfImageId>> places;

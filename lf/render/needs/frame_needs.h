@@ -31,7 +31,8 @@ struct NeedsOptions {
   SelectOptions select;  // whole_images must be false
   // Must be kNone if the mode is kRebin, because it collects no rays that could be weighted.
   LensWeights lens_weights = LensWeights::kAuto;
-  std::optional<size_t> max_image_count;  // must be unset unless the mode is kCollect
+  // Must be above 0. Must be unset unless the mode is kCollect.
+  std::optional<size_t> max_image_count;
   RenderMode mode = RenderMode::kCollect;
   // Only its members query, previews and rebin are used; none if the mode is kCollect.
   RebinPassOptions rebin;

@@ -39,8 +39,8 @@ struct FrameSurroundings {
 struct PackageChoices {
   ImageOrder order = ImageOrder::kShuffle;
   uint64_t seed = 0;
-  // Largest number of LF images for each frame: the first ones in the order are kept. Unset: no
-  // limit.
+  // Largest number of LF images for each frame, above 0: the first ones in the order are kept.
+  // Unset: no limit.
   std::optional<size_t> max_image_count;
   // Largest angle between the axes of LF camera and frame. Unset: no limit.
   std::optional<double> max_angle_rad;

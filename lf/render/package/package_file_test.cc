@@ -221,6 +221,14 @@ TEST_F(PackageFileTest, AFrameThatIsMissingIsAnError) {
   }
 }
 
+TEST_F(PackageFileTest, ALimitOfNoLfImagesIsAnError) {
+  Package package = TestPackage();
+  package.choices.max_image_count = 0;
+  Write(package);
+  EXPECT_NE(Fault(ReadFile(path_).value()).find("max_images is '0', expected 1 or more"),
+            std::string::npos);
+}
+
 TEST_F(PackageFileTest, CutAndForeignFilesAreErrors) {
   Write(TestPackage());
   const std::string whole = *ReadFile(path_);

@@ -95,6 +95,7 @@ Result<void> Reader::ReadChoices() {
   LF_ASSIGN_OR_RETURN(choices.seed, settings_.Whole("seed"));
   if (!settings_.Text("max_images").empty()) {
     LF_ASSIGN_OR_RETURN(choices.max_image_count, settings_.Whole("max_images"));
+    if (choices.max_image_count == 0) return settings_.Wrong("max_images", "1 or more");
   }
   if (!settings_.Text("max_angle_rad").empty()) {
     LF_ASSIGN_OR_RETURN(choices.max_angle_rad, settings_.Number("max_angle_rad", 0, kPi));

@@ -35,8 +35,8 @@ struct FilmOptions {
   CollectBackEnd back_end = CollectBackEnd::kFast;
 
   // If set, a frame takes at most this number of LF images: the first ones in the order that
-  // contribute to it. Must not exceed the limit that the package was made with. Must be unset if
-  // the mode rebins.
+  // contribute to it. Must be above 0, and must not exceed the limit that the package was made
+  // with. Must be unset if the mode rebins.
   std::optional<size_t> max_image_count;
   // If set, frames take only the LF images of this shard. MergeShards() adds their plates to the
   // plates of the other shards. Cannot be combined with rules that count rays or measure noise, nor
