@@ -70,7 +70,7 @@ struct RenderProgress {
   size_t frame_total = 0;
   uint64_t ray_count = 0;  // number of rays tested so far; ray_total is an estimate
   uint64_t ray_total = 0;
-  // LF images read so far, sum of all passes over one package; image_total is an estimate.
+  // LF images read so far, sum of all passes and packages; image_total is an estimate.
   size_t image_count = 0;
   size_t image_total = 0;
 };

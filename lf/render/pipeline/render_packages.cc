@@ -108,6 +108,7 @@ RenderReport Joined(RenderReport all, const RenderReport& part) {
   all.load_cpu_s += part.load_cpu_s;
   all.load_wall_s += part.load_wall_s;
   all.collect_cpu_s += part.collect_cpu_s;
+  if (part.rebinning) all.AddRebinning(*part.rebinning);
   all.peak_memory_bytes = std::max(all.peak_memory_bytes, part.peak_memory_bytes);
   return all;
 }
@@ -207,6 +208,9 @@ Result<PackagedFilm> OpenPackages(std::vector<fs::path> paths,
       part.frames.push_back(frame.id);
       part.ray_count += frame.ray_count;
     }
+    part.image_count = static_cast<size_t>(
+        std::count_if(package.images.begin(), package.images.end(),
+                      [](const PackageImage& image) { return image.frame_count > 0; }));
     if (film.parts.empty()) {
       film.film_count = package.count;
       film.first = std::move(package);
@@ -262,9 +266,11 @@ Result<RenderReport> RenderPackages(PackagedFilm film, const RenderOptions& opti
   }
   RenderProgress before;  // progress of the packages that are done
   uint64_t rays_after = 0;
+  size_t images_after = 0;
   for (const PackagePart& part : parts) {
     before.frame_total += part.frames.size();
     rays_after += part.ray_count;
+    images_after += part.image_count;
   }
   std::vector<FrameId> frames;
   RenderReport report;
@@ -278,6 +284,7 @@ Result<RenderReport> RenderPackages(PackagedFilm film, const RenderOptions& opti
     const std::string name = package.name;
     path = package.path;
     rays_after -= part.ray_count;
+    images_after -= part.image_count;
     RenderProgress now;
     LF_ASSIGN_OR_RETURN(
         const RenderReport done,
@@ -287,10 +294,13 @@ Result<RenderReport> RenderPackages(PackagedFilm film, const RenderOptions& opti
           now.frame_total = before.frame_total;
           now.ray_count += before.ray_count;
           now.ray_total += before.ray_count + rays_after;
+          now.image_count += before.image_count;
+          now.image_total += before.image_count + images_after;
           if (progress) progress(now);
         }));
     before.frame_count += part.frames.size();
     before.ray_count = now.ray_count;
+    before.image_count = now.image_count;
     report = Joined(std::move(report), done);
     report.packages.push_back({name, done.selected_image_count, done.skipped.size()});
     frames.insert(frames.end(), part.frames.begin(), part.frames.end());

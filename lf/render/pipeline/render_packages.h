@@ -48,6 +48,7 @@ struct PackagePart {
   std::vector<FrameId> frames;
   bool is_whole = true;    // true if these are all frames of the package
   uint64_t ray_count = 0;  // approximate number of rays of these frames
+  size_t image_count = 0;  // number of LF images that the frames of the package need
   // Size and modification time of the file when it was checked. A file whose size and time are the
   // same later is taken to be unchanged.
   uint64_t file_bytes = 0;

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
+#include "lf/pixels/files/image_file.h"
 #include "lf/pixels/files/test_folder.h"
 #include "lf/render/collect/test_noise_field.h"
 #include "lf/render/package/package_file.h"
@@ -73,6 +76,54 @@ TEST_F(OpenPackagesTest, EveryChoiceOfTheFilmIsCompared) {
 TEST_F(OpenPackagesTest, FramesHaveOneOwner) {
   const auto is_of_frame_1 = [](Package* p) { p->frames = {{.id = FrameId{1}}}; };
   EXPECT_NE(ErrorOf(is_of_frame_1).find("both contain frame 1"), std::string::npos);
+}
+
+TEST_F(OpenPackagesTest, ReportAndProgressAddUpThePackages) {
+  const auto with_images = [this](Package* package) {
+    LightField& field = package->light_field;
+    package->choices.has_neighbours = true;
+    package->choices.mode = "hybrid";
+    package->surroundings.resize(package->path.cameras.size(), {0.03, 0.01, Vec3::Zero(), 0});
+    for (uint32_t i = 0; i < field.size(); ++i) {
+      field.image_names[i] += ".png";
+      Image<uint8_t> image(testing::kWidth, testing::kHeight, 3);
+      for (size_t k = 0; k < image.pixels().size(); ++k)
+        image.pixels()[k] = static_cast<uint8_t>(RandomBits(7, i, k));
+      ASSERT_TRUE(WriteImage(folder_ / field.image_names[i], image.view()));
+      package->images[i].rect = {0, 0, testing::kWidth, testing::kHeight};
+      package->images[i].frame_count = 1;
+    }
+  };
+  const std::vector<fs::path> paths = {Packed(1, with_images), Packed(3, with_images)};
+  ThreadPool pool(2);
+  RenderOptions options;
+  options.film.mode = RenderMode::kHybrid;
+  options.folder.contact_sheet = false;
+  const auto render = [&](const std::string& name, const std::vector<fs::path>& files,
+                          RenderProgress* last) {
+    options.folder.output_folder = folder_ / name;
+    Result<PackagedFilm> film = OpenPackages(files, {});
+    EXPECT_TRUE(film) << film.error().message;
+    auto report = RenderPackages(*std::move(film), options, pool, [&](const RenderProgress& now) {
+      EXPECT_GE(now.image_count, last->image_count);
+      *last = now;
+    });
+    EXPECT_TRUE(report) << report.error().message;
+    return *std::move(report);
+  };
+  RenderProgress first_last, second_last, last;
+  const RenderReport first = render("first", {paths[0]}, &first_last);
+  const RenderReport second = render("second", {paths[1]}, &second_last);
+  const RenderReport both = render("both", paths, &last);
+  ASSERT_TRUE(first.rebinning && second.rebinning && both.rebinning);
+  EXPECT_GT(second.rebinning->looked_at_count, 0u);
+  EXPECT_EQ(both.rebinning->looked_at_count,
+            first.rebinning->looked_at_count + second.rebinning->looked_at_count);
+  EXPECT_EQ(both.rebinning->cell_count,
+            std::max(first.rebinning->cell_count, second.rebinning->cell_count));
+  EXPECT_GT(second_last.image_count, 0u);
+  EXPECT_EQ(last.image_count, first_last.image_count + second_last.image_count);
+  EXPECT_EQ(last.image_total, last.image_count);
 }
 
 }  // namespace

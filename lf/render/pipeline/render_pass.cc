@@ -248,15 +248,10 @@ RenderReport RenderPass::Totals() const {
   totals.collect_cpu_s += renderer_.times().collect_cpu_s;
   if (renderer_.rebinned() != nullptr) {
     const RebinnedRays::Facts facts = renderer_.rebinned()->facts();
-    RebinReport& rebinning = totals.rebinning ? *totals.rebinning : totals.rebinning.emplace();
-    rebinning.slab_count = std::max(rebinning.slab_count, facts.section_count);
-    rebinning.cell_count = std::max<uint64_t>(rebinning.cell_count, facts.cell_count);
-    rebinning.looked_at_count += facts.looked_at;
-    rebinning.cpu_s += facts.cpu_s;
-    if (facts.is_full)
-      rebinning.kept = "some";
-    else if (!facts.keeps_all && rebinning.kept == "all")
-      rebinning.kept = "edges";
+    totals.AddRebinning({facts.section_count, facts.cell_count, facts.looked_at, facts.cpu_s,
+                         facts.is_full     ? "some"
+                         : facts.keeps_all ? "all"
+                                           : "edges"});
   }
   totals.AddSkipped(renderer_.skipped());
   return totals;

@@ -82,6 +82,19 @@ void RenderReport::AddSkipped(std::span<const SkippedImage> images) {
     if (known.insert(image.name).second) skipped.push_back(image);
 }
 
+void RenderReport::AddRebinning(const RebinReport& other) {
+  if (!rebinning) rebinning.emplace();
+  rebinning->Add(other);
+}
+
+void RebinReport::Add(const RebinReport& other) {
+  slab_count = std::max(slab_count, other.slab_count);
+  cell_count = std::max(cell_count, other.cell_count);
+  looked_at_count += other.looked_at_count;
+  cpu_s += other.cpu_s;
+  if (other.kept == "some" || kept == "all") kept = other.kept;
+}
+
 FrameReport MakeFrameReport(FrameId frame, const FrameRays& rays, const DevelopedFrame& developed) {
   FrameReport report;
   report.frame = frame;

@@ -80,6 +80,9 @@ struct RebinReport {
   // Unless it is "all", the picture of a frame depends on which other frames are rendered in the
   // same pass.
   std::string kept = "all";
+
+  // Adds the facts of other passes: of counts that are the largest of a pass, the larger is kept.
+  void Add(const RebinReport& other);
 };
 
 // Report of one of the packages that one call of RenderPackages() has rendered.
@@ -120,6 +123,7 @@ struct RenderReport {
   double MraysPerSecondPerCore() const;
   // Adds to `skipped` those of `images` whose names are not in it yet.
   void AddSkipped(std::span<const SkippedImage> images);
+  void AddRebinning(const RebinReport& other);  // RebinReport::Add(), even if `rebinning` is unset
 };
 
 // Returns a report with the counts of a developed frame.

@@ -42,6 +42,20 @@ TEST(Report, CountsEveryLfImageThatWasLeftOutOnce) {
   EXPECT_EQ(json["packages"][1]["lf_images_selected"], 20);
 }
 
+TEST(Report, TheWorstOfTheRebinnedRaysCounts) {
+  RenderReport report;
+  report.AddRebinning({2, 50, 100, 1.5, "edges"});
+  report.AddRebinning({1, 70, 10, 0.5, "all"});
+  EXPECT_EQ(report.rebinning->slab_count, 2u);
+  EXPECT_EQ(report.rebinning->cell_count, 70u);
+  EXPECT_EQ(report.rebinning->looked_at_count, 110u);
+  EXPECT_EQ(report.rebinning->cpu_s, 2);
+  EXPECT_EQ(report.rebinning->kept, "edges");
+  report.AddRebinning({0, 0, 0, 0, "some"});
+  report.AddRebinning({0, 0, 0, 0, "edges"});
+  EXPECT_EQ(report.rebinning->kept, "some");
+}
+
 TEST(Report, ReadsBackWhatItWrote) {
   RenderReport report;
   report.inputs = {{"seed", "5"}, {"estimator", "nearest"}};
