@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "lf/render/pipeline/frame_output.h"
+#include "lf/render/state/run_state.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -85,13 +86,12 @@ Error Refusal(const fs::path& output, std::string_view what, const fs::path& inp
 // state.
 std::vector<fs::path> OutputsOf(const Package& package, const RenderOptions& options) {
   const fs::path& folder = options.folder.output_folder;
-  const fs::path partial = folder / "partial" / package.name;
+  const std::string state = NameOfState(package.name, options.film.shard);
+  const fs::path partial = folder / "partial" / state;
   std::vector<fs::path> outputs = {folder / kContactSheet, folder / "report.json",
                                    partial / "run.json"};
-  if (!package.name.empty()) {
-    outputs.push_back(folder / ("contact_sheet-" + package.name + ".png"));
-    outputs.push_back(folder / ("report-" + package.name + ".json"));
-  }
+  if (!package.name.empty()) outputs.push_back(folder / ("contact_sheet-" + package.name + ".png"));
+  if (!state.empty()) outputs.push_back(folder / ("report-" + state + ".json"));
   for (const FrameId frame : options.frames.empty() ? package.FrameIds() : options.frames) {
     outputs.push_back(FramePath(folder, frame, options.folder.format));
     if (options.folder.keep_plates)

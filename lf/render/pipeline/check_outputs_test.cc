@@ -92,5 +92,23 @@ TEST_F(CheckOutputsTest, MasksContactSheetsAndFilesThatAreReadStay) {
   EXPECT_NE(Refusal().find("is an input file"), std::string::npos) << Refusal();
 }
 
+TEST_F(CheckOutputsTest, FilesThatAreReadStayInTheStateOfAShard) {
+  const auto expect_stays = [&](const std::string& name) {
+    const fs::path input = options_.folder.output_folder / name;
+    fs::create_directories(input.parent_path());
+    std::ofstream(input) << "path";
+    options_.folder.inputs = {input};
+    EXPECT_NE(Refusal().find("is an input file"), std::string::npos) << name;
+  };
+  options_.film.shard = Shard{2, 3};
+  expect_stays("partial/shard_2_of_3/run.json");
+  expect_stays("report-shard_2_of_3.json");
+  package_.name = "package-0004";
+  expect_stays("partial/package-0004.shard_2_of_3/frame_0007.json");
+  EXPECT_NE(Refusal(), "");
+  options_.film.shard = Shard{1, 3};
+  EXPECT_EQ(Refusal(), "");
+}
+
 }  // namespace
 }  // namespace lf

@@ -74,16 +74,8 @@ void RemoveTemporaryFiles(const fs::path& folder, const std::vector<FrameId>& fr
   }
 }
 
-// Returns the name of the state's folder below partial/; empty if the render has neither a package
-// name nor a shard.
-std::string NameOf(const RunStateOptions& options) {
-  if (!options.shard) return options.package;
-  return options.package.empty() ? options.shard->Name()
-                                 : options.package + "." + options.shard->Name();
-}
-
 fs::path PartialFolder(const RunStateOptions& options) {
-  return options.folder / "partial" / NameOf(options);
+  return options.folder / "partial" / NameOfState(options.package, options.shard);
 }
 
 template <class Number>
@@ -106,6 +98,11 @@ RunInputs Joined(RunInputs a, const RunInputs& b) {
 
 }  // namespace
 
+std::string NameOfState(const std::string& package, const std::optional<Shard>& shard) {
+  if (!shard) return package;
+  return package.empty() ? shard->Name() : package + "." + shard->Name();
+}
+
 RunState::RunState(const RunStateOptions& options, const CameraPath& path, FileLock lock)
     : options_(options), path_(path), partial_(PartialFolder(options)), lock_(std::move(lock)) {}
 
@@ -116,7 +113,7 @@ RunState::~RunState() {
   if (!Name().empty()) fs::remove(options_.folder / "partial", ignored);
 }
 
-std::string RunState::Name() const { return NameOf(options_); }
+std::string RunState::Name() const { return NameOfState(options_.package, options_.shard); }
 fs::path RunState::FinishedPath(FrameId frame) const {
   if (!options_.shard) return FramePath(options_.folder, frame, options_.format);
   return FramePath(options_.folder / "partial" / "shards" / options_.shard->Name(), frame,

@@ -50,6 +50,10 @@ struct RunStateOptions {
   std::optional<Shard> shard = std::nullopt;
 };
 
+// Returns the name of the state's folder below DIR/partial/, which also is in the name of the
+// report; empty if the render has neither a package name nor a shard.
+std::string NameOfState(const std::string& package, const std::optional<Shard>& shard);
+
 class RunState {
  public:
   // Makes the folder, locks it and, with options.resume, reads the state in it. The camera path
