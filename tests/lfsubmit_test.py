@@ -151,6 +151,20 @@ class LocalJobTest(ClusterTestCase):
         self.fails(2, ["--time-limit", "slurm"], cluster_test_case.SUBMIT, "--resume", self.film,
                    "--time-limit", "1h")
 
+    def test_a_job_may_become_strict_and_lose_its_contact_sheet_when_it_goes_on(self):
+        submit = cluster_test_case.SUBMIT
+        renderer = self.unlucky_renderer("[[ $package == package-0001 ]] && exit 3")
+        self.submit("--lfrenderer", renderer, code=3)
+        self.unlucky_renderer("")
+        self.succeeds(submit, "--resume", self.film, "--no-contact-sheet")
+        self.assertEqual(digests(self.film), self.expected)
+        self.assertFalse((self.film / "contact_sheet.png").exists())
+        self.break_images(5, 10)
+        (self.film / "frame_0001.exr").unlink()
+        self.succeeds(submit, "--resume", self.film, code=6)
+        # When a film is done, --strict judges its LF images again.
+        self.fails(3, ["--strict"], submit, "--resume", self.film, "--strict")
+
     def test_packages_and_light_field_may_move(self):
         renderer = self.unlucky_renderer("[[ $package == package-0001 ]] && exit 3")
         shutil.copytree(self.field.parent, self.folder / "field")

@@ -77,7 +77,7 @@ Result<void> Resume(const lf::SubmitArguments& arguments, const lf::CommonOption
   LF_RETURN_IF_ERROR(lf::CheckMayRun(job));
   LF_RETURN_IF_ERROR(arguments.Change(&job, common));
   const lf::JobStatus status = lf::LookAtJob(job);
-  if (status.phase == lf::TaskPhase::kDone && arguments.video.empty() &&
+  if (status.phase == lf::TaskPhase::kDone && arguments.video.empty() && !common.strict &&
       !arguments.HasRendererArguments()) {
     lf::LogInfo("{}: the film is done", job.output_folder.string());
     return lf::OutcomeOf("the film", status.finishing.state);

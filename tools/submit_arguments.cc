@@ -87,6 +87,13 @@ Result<Words> SplitWords(const std::vector<std::string>& words) {
   return split;
 }
 
+// Adds --strict to the arguments of lfrenderer, unless they contain it.
+void MakeStrict(ClusterJob* job) {
+  std::vector<std::string>& words = job->arguments;
+  if (std::find(words.begin(), words.end(), "--strict") == words.end())
+    words.emplace_back("--strict");
+}
+
 // Checks the arguments as lfrenderer would, before a task waits in a queue. Opens the packages as
 // *film, and returns the options that the arguments mean.
 Result<RenderOptions> TryArguments(const std::vector<fs::path>& packages, const fs::path& output,
@@ -148,7 +155,8 @@ void AddExistingJob(CLI::App& app, SubmitArguments& a) {
            "Continue the job in DIR\n"
            "Packages that are not done are continued. These options may be changed: --engine, "
            "--jobs, --threads, --memory, --crashes, --time-limit, --sbatch, --lfrenderer, --video, "
-           "and the options of lfrenderer. PACKAGES may be given again if the files were moved.")
+           "--no-contact-sheet, --strict, and the options of lfrenderer. PACKAGES may be given "
+           "again if the files were moved.")
       ->check(NotEmpty());
   running
       .Add("--finish DIR FRAMES", a.finish,
@@ -307,6 +315,8 @@ Result<void> SubmitArguments::Change(ClusterJob* job, const CommonOptions& commo
     std::error_code error;
     job->working_folder = fs::current_path(error);
   }
+  if (common.strict) MakeStrict(job);
+  if (no_contact_sheet) job->contact_sheet = false;
   if (!renderer.empty()) {
     LF_ASSIGN_OR_RETURN(job->renderer, FindRenderer(renderer));
   }
@@ -319,7 +329,7 @@ Result<ClusterJob> SubmitArguments::MakeJob(const CommonOptions& common) const {
   LF_ASSIGN_OR_RETURN(const Words split, SplitWords(words));
   const std::vector<fs::path>& files = split.files;
   job.arguments = split.arguments;
-  if (common.strict) job.arguments.emplace_back("--strict");
+  if (common.strict) MakeStrict(&job);
   job.output_folder = fs::absolute(output).lexically_normal();
   if (!job.output_folder.has_filename()) job.output_folder = job.output_folder.parent_path();
   std::error_code error;
