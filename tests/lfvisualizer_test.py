@@ -109,8 +109,8 @@ class VisualizerTest(ProgramTestCase):
     @unittest.skipIf("pageless" in sys.argv, "it has no page")
     def test_an_export_counts_the_lf_images_that_it_lacks(self):
         next(iter(sorted(self.field.parent.glob("*12.png")))).write_text("no picture")
-        self.fails(6, ["1 of ", "LF images are not in the export", "12.png", "--allow-missing 1"],
-                   VISUALIZER, self.field, self.path, "--export", self.folder / "site")
+        self.fails(6, ["1 of ", "LF images are not in the export", "the first: " + str(self.field.parent), "12.png",
+                       "--allow-missing 1"], VISUALIZER, self.field, self.path, "--export", self.folder / "site")
         self.assertTrue((self.folder / "site" / "index.html").exists())
         self.succeeds(VISUALIZER, self.field, self.path, "--export", self.folder / "again",
                       "--allow-missing", 1)

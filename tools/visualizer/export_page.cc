@@ -36,7 +36,7 @@ class Exporter {
   Result<void> WriteAnswer(const std::string& name) {
     const PageAnswer answer = Answer(scene_, name);
     if (answer.status == 200) return Write(name, answer.body);
-    LogWarning("{}: {}", name, answer.body);
+    LogWarning("{}: {}", name, answer.fault);
     return {};
   }
   // Writes the large picture of an LF image. An unreadable LF image is left out and counted.
@@ -45,7 +45,7 @@ class Exporter {
     const PageAnswer answer = Answer(scene_, name);
     ++facts.image_count;
     if (answer.status == 200) return Write(name, answer.body);
-    if (facts.missing_count++ == 0) facts.first_missing = answer.body;
+    if (facts.missing_count++ == 0) facts.first_missing = answer.fault;
     return {};
   }
 

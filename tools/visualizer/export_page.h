@@ -16,10 +16,9 @@ namespace lf {
 struct ExportFacts {
   size_t file_count = 0;
   uint64_t byte_count = 0;
-  size_t image_count = 0;    // number of LF images to be exported
-  size_t missing_count = 0;  // number of these that were left out, because they cannot be read
-  // The reason why the first of them cannot be read, as the body of a Refusal(): {"error": ...}.
-  std::string first_missing;
+  size_t image_count = 0;     // number of LF images to be exported
+  size_t missing_count = 0;   // number of these that were left out, because they cannot be read
+  std::string first_missing;  // reason why the first of them cannot be read
 };
 
 // Exports the page, and the data that it can show without a server: the LF cameras, the frames of

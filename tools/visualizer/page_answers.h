@@ -15,6 +15,7 @@ struct PageAnswer {
   int status = 200;  // HTTP status
   std::string type = "application/json";
   std::string body;
+  std::string fault = {};  // message of a refusal, as plain text; empty if this is none
 };
 
 // Returns a refusal with the body {"error": message}.

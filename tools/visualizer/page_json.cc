@@ -41,7 +41,7 @@ Json CornersOf(const PinholeCamera& camera) {
 }  // namespace
 
 PageAnswer Refusal(int status, const std::string& message) {
-  return {status, "application/json", RecordLine({{"error", message}})};
+  return {status, "application/json", RecordLine({{"error", message}}), message};
 }
 
 PageAnswer Refusal(const Error& error) {
