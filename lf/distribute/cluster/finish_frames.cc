@@ -81,7 +81,8 @@ Result<size_t> AskToFinish(const ClusterJob& job, const std::string& frames_text
     if (!HasRays(job, *package, frame))
       return UsageError(fmt::format(
           "--finish: frame {} cannot be finished yet, because {} has not written a checkpoint with "
-          "rays of this frame: try again when {}/partial/{}/frame_{:04}.plate exists",
+          "rays of this frame: try again when {}/partial/{} contains frame_{:04}.plate, or a file "
+          "of rebinned rays (rays_*.rays)",
           frame.value, package->name, job.output_folder.string(), package->name, frame.value));
   }
   if (unfinished_count == 0) return unfinished_count;
