@@ -249,7 +249,7 @@ Result<TaskState> RunPackage(const ClusterJob& job, size_t number, const std::st
   // The process that wrote kRunning has died, because this process now holds the lock.
   if (state.phase == TaskPhase::kRunning) {
     ++state.crash_count;
-    LF_RETURN_IF_ERROR(run.End(TaskPhase::kInterrupted, 0, "its node died"));
+    LF_RETURN_IF_ERROR(run.End(TaskPhase::kInterrupted, 0, "its process or node died"));
   }
   while (true) {
     if (run.IsAskedToEnd()) {
