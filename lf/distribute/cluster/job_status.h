@@ -18,8 +18,10 @@ struct TaskStatus {
   std::string message;  // latest message of the task
   size_t frames_done = 0;
   size_t frame_total = 0;
-  std::optional<uint64_t> rays_left;  // number of rays left, by lfrenderer's last progress, if any
-  uint64_t rays_done = 0;             // how many of the forecast ray_total rays are done
+  // Number of rays left, by lfrenderer's last progress, if any. The progress counts LF pixels that
+  // are tested, as ray_total does, whether its unit is called "rays" or "px".
+  std::optional<uint64_t> rays_left;
+  uint64_t rays_done = 0;  // how many of the forecast ray_total rays are done
   uint64_t ray_total = 0;
   uint64_t image_done = 0;  // number of LF images read since the last start
   uint64_t image_total = 0;
