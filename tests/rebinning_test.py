@@ -206,8 +206,8 @@ class RebinningTest(ProgramTestCase):
                    *self.command("no", "--mode", "rebin", "--max-rays", "1"))
         self.fails(2, ["--slab-forward"],
                    *self.command("no", "--mode", "rebin", "--slab-forward", "0", "0", "0"))
-        self.fails(2, ["--slab-forward 0 0 1", "frame 1 is 180 degrees away", "within 60 degrees"],
-                   *self.command("no", "--mode", "rebin", "--slab-forward", "0", "0", "1"))
+        self.fails(2, ["--slab-forward 0 0 2.5:", "frame 1 is 180 degrees away", "within 60 degrees"],
+                   *self.command("no", "--mode", "rebin", "--slab-forward", "0", "0", "2.5"))
         self.fails(2, ["--nearest", "--back-end reference"],
                    *self.command("no", "--mode", "rebin", "--nearest", "4"))
 

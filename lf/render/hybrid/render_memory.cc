@@ -17,12 +17,12 @@ Result<void> SetAsideForRays(size_t memory_bytes, RenderMode mode, size_t max_ce
   memory->max_cells = max_cells;
   memory->rebin_bytes = RebinnedRays::BytesOf(max_cells);
   if (max_cells >= RebinnedRays::kLeastCells && memory->rebin_bytes <= memory_bytes) return {};
+  const size_t wanted = std::max(max_cells, RebinnedRays::kLeastCells);
   return OutputError(
       fmt::format("--memory {} MiB is too small for {} rebinned rays, which take {} MiB: increase "
                   "--memory, or reduce --max-rays (without --max-rays, half of --memory is for "
                   "rays, or a quarter with --mode hybrid)",
-                  memory_bytes >> 20, std::max(max_cells, RebinnedRays::kLeastCells),
-                  memory->rebin_bytes >> 20));
+                  memory_bytes >> 20, wanted, RebinnedRays::BytesOf(wanted) >> 20));
 }
 
 }  // namespace

@@ -18,7 +18,8 @@ Result<void> CheckSlab(const Package& package, const FilmOptions& film,
                        const std::vector<FrameId>& frames) {
   constexpr double kMost_deg = 60;
   if (!film.Rebins() || !film.rebin.slab.forward_world) return {};
-  const Vec3 forward = film.rebin.slab.forward_world->normalized();
+  const Vec3& given = *film.rebin.slab.forward_world;
+  const Vec3 forward = given.normalized();
   for (const FrameId frame : frames) {
     const double cosine = forward.dot(package.path.Camera(frame).pinhole.ForwardWorld());
     const double off_deg = std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / kPi;
@@ -26,7 +27,7 @@ Result<void> CheckSlab(const Package& package, const FilmOptions& film,
       return UsageError(fmt::format(
           "--slab-forward {} {} {}: the viewing direction of frame {} is {:.0f} degrees away; "
           "expected a direction within {:.0f} degrees of the viewing directions of all frames",
-          forward.x(), forward.y(), forward.z(), frame.value, off_deg, kMost_deg));
+          given.x(), given.y(), given.z(), frame.value, off_deg, kMost_deg));
   }
   return {};
 }
