@@ -275,7 +275,7 @@ int main(int argc, char** argv) {
       LF_RETURN_IF_ERROR(lf::CreateFolder(a.output));
       LF_RETURN_IF_ERROR(lf::WriteTransformsJson(light_field, CalibrationIn(a), lf::kSynthProgram));
     } else {
-      lf::ProgressMeter meter(style, " images");
+      lf::ProgressMeter meter(style, "images");
       const auto keep_going = [&](size_t done) {
         meter.Update(done, poses.size(), a.scene);
         return !lf::CatchInterrupts();
@@ -286,7 +286,7 @@ int main(int argc, char** argv) {
     }
     lf::LogInfo("{}: {} LF cameras, {:.4g} apart", a.output, poses.size(), lf::RigPitch(rig));
     if (a.truth.empty()) return {};
-    lf::ProgressMeter meter(style, " frames");
+    lf::ProgressMeter meter(style, "frames");
     return lf::WriteTruth(scene, path.cameras, {a.truth_samples, 0}, light_field.folder / "truth",
                           pool, surroundings, [&](size_t done) {
                             meter.Update(done, path.frame_count(), "truth");
