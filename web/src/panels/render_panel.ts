@@ -170,12 +170,12 @@ export class RenderPanel {
     }
     const words = {
       rendering: `Frame ${preview.frame} is being rendered …`,
-      finished: `Frame ${preview.frame}, finished`,
+      finished: `Frame ${preview.frame}, finished${preview.message ? `: ${preview.message}` : ""}`,
       stopped: `Frame ${preview.frame}, stopped`,
       failed: preview.message,
     };
     this.status.textContent = words[preview.state];
-    this.status.className = preview.state === "failed" ? "bad" : "muted";
+    this.status.className = preview.message ? "bad" : "muted"; // a finished preview may lack LF images
     if (preview.changed) void this.load(`preview/${preview.frame}.bin`, preview.changed);
     else if (preview.state === "failed") this.showNothing();
   }
@@ -248,6 +248,7 @@ export class RenderPanel {
       if (this.wantedName.startsWith(`${name}?`)) {
         this.picture = picture;
         if (this.fault && this.state.message?.text === this.fault) this.state.say("");
+        this.fault = "";
         this.shownName = wanted;
         this.drawPicture();
       }

@@ -293,6 +293,14 @@ test("a preview comes in, and a click on it focuses there", async () => {
           return data.reduce((most, value, i) => (i % 4 === 0 ? Math.max(most, value) : most), 0);
         });
       assert.ok((await lightest()) > 200);
+      const status = page.locator("#panels > :has(#start-preview) [role=status]");
+      assert.equal(await status.textContent(), "Frame 1, finished");
+      await page.evaluate(() => {
+        const { state } = window.lfvisualizer;
+        state.preview = { ...state.preview, message: "2 of 81 LF images were left out" };
+        state.emit("preview");
+      });
+      assert.equal(await status.textContent(), "Frame 1, finished: 2 of 81 LF images were left out");
       await page.locator("[aria-label='Exposure, stops']").fill("-6");
       assert.ok((await lightest()) < 60);
       // The star in the middle is at the distance 1.
