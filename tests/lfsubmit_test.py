@@ -211,7 +211,7 @@ class LocalJobTest(ClusterTestCase):
         self.assertEqual(self.status()["state"], "done")
         self.assertTrue((self.folder / "film.mp4").exists())
         self.fails(2, ["new jobs"], submit, "--resume", self.film, "-o", self.folder)
-        self.submit("--", "--help", code=2, words=["--help"])
+        self.submit("--", "--help", code=2, words=["--help", "render nothing"])
         (self.film / "cluster" / "job.json").write_text("")
         self.submit(code=3, words=["job.json", "remove the file to submit a new job"])
 
@@ -227,8 +227,8 @@ class LocalJobTest(ClusterTestCase):
         for options, code, words in (
                 (["--", "--format", "jpeg"], 2, ["after --", "jpeg"]),
                 (["--", "--no-such-option"], 2, ["after --", "no-such-option"]),
-                (["--", "--shard", "1/2"], 2, ["--shard", "lfsubmit itself sets"]),
-                (["--", "--frames=1"], 2, ["--frames=1", "lfsubmit itself sets"]),
+                (["--", "--shard", "1/2"], 2, ["--shard", "lfsubmit itself decides"]),
+                (["--", "--frames=1"], 2, ["--frames=1", "lfsubmit itself decides"]),
                 (["--", "--mode", "rebin", "--stop-when", "samples>=2"], 2, ["--mode rebin"]),
                 (["--time-limit", "1h"], 2, ["--engine slurm"]),
                 (["--frames", "12"], 2, ["12"]),

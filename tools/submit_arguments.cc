@@ -24,12 +24,13 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// Options that are refused after --: options of lfrenderer that the job sets, and options with
-// which lfrenderer would render nothing.
-constexpr std::array kOfTheJob = {
-    "-o",         "--output", "--resume", "--overwrite", "--progress",        "--json", "--frames",
-    "--video",    "--shard",  "--finish", "--threads",   "--memory",          "--help", "-h",
-    "--help-all", "-q",       "--quiet",  "--version",   "--no-contact-sheet"};
+// Options of lfrenderer that are refused after --: those that the job decides on, and those with
+// which lfrenderer would print a text and render nothing.
+constexpr std::array kOfTheJob = {"-o",         "--output", "--resume",          "--overwrite",
+                                  "--progress", "--json",   "--frames",          "--video",
+                                  "--shard",    "--finish", "--threads",         "--memory",
+                                  "-q",         "--quiet",  "--no-contact-sheet"};
+constexpr std::array kRenderNothing = {"--help", "-h", "--help-all", "--version"};
 
 uint64_t MachineMemoryBytes() {
   const long pages = ::sysconf(_SC_PHYS_PAGES), page_bytes = ::sysconf(_SC_PAGESIZE);
@@ -77,13 +78,21 @@ Result<Words> SplitWords(const std::vector<std::string>& words) {
     split.files.push_back(fs::absolute(*word).lexically_normal());
   }
   split.arguments.assign(arguments, words.end());
-  for (const std::string& argument : split.arguments)
-    for (const std::string word : kOfTheJob)
-      if (argument == word || argument.starts_with(word + "="))
-        return UsageError(fmt::format(
-            "{}: cannot be given after --, because lfsubmit itself sets this option of lfrenderer: "
-            "leave it out, or give it to lfsubmit (before --), if lfsubmit has it",
-            argument));
+  for (const std::string& argument : split.arguments) {
+    const auto is = [&](const std::string& word) {
+      return argument == word || argument.starts_with(word + "=");
+    };
+    if (std::any_of(kOfTheJob.begin(), kOfTheJob.end(), is))
+      return UsageError(fmt::format(
+          "{}: cannot be given after --, because lfsubmit itself decides on this option of "
+          "lfrenderer: leave it out, or give it to lfsubmit (before --), if lfsubmit has it",
+          argument));
+    if (std::any_of(kRenderNothing.begin(), kRenderNothing.end(), is))
+      return UsageError(fmt::format(
+          "{}: cannot be given after --, because lfrenderer would only print a text and render "
+          "nothing: leave it out, or call lfrenderer {}",
+          argument, argument));
+  }
   return split;
 }
 

@@ -12,7 +12,8 @@ namespace lf {
 Result<size_t> ParseByteSize(const std::string& text, const std::string& option) {
   const auto error = [&] {
     return UsageError(fmt::format(
-        "{} '{}': expected a size in bytes, at least 1, such as 8G, 512M or 1.5G", option, text));
+        "{} '{}': expected a size from 1 byte to less than 1048576T, such as 8G, 512M or 1.5G",
+        option, text));
   };
   if (text.empty() || std::isdigit(static_cast<unsigned char>(text[0])) == 0) return error();
   const size_t digits = std::min(text.find_first_not_of("0123456789."), text.size());

@@ -24,7 +24,8 @@ TEST(ByteSize, ReadsMemoryAsPeopleWriteIt) {
 }
 
 TEST(ByteSize, RefusesTheRestAndNamesTheOption) {
-  for (const char* text : {"", "G", "-1G", "8 G", "8X", "0", "8GiB", "1e30", "nan", "0x10G"}) {
+  for (const char* text :
+       {"", "G", "-1G", "8 G", "8X", "0", "8GiB", "1e30", "nan", "0x10G", "1048576T"}) {
     const Result<size_t> size = ParseByteSize(text, "--memory");
     ASSERT_FALSE(size) << text;
     EXPECT_EQ(size.error().kind, ErrorKind::kUsage);
