@@ -139,8 +139,8 @@ Result<Front> ReadFront(Source& source, size_t head_bytes) {
   std::optional<PlateEntries> entries = ParseEntries(text);
   if (!entries)
     return InputError(fmt::format(
-        "{}: the text in its head has lines that are not \"key: value\", or a key twice",
-        source.name()));
+        "{}: the text in its head has lines that are not \"key: value\", or a key twice; {}",
+        source.name(), kind.if_broken));
   front.entries = *std::move(entries);
   return front;
 }

@@ -22,8 +22,10 @@ struct Kind {
   std::string_view magic;  // eight characters, the last a line feed
   uint32_t version;
   // Words for error messages about such a file:
-  std::string_view noun;       // the kind of file, such as "plate" in "is no plate"
-  std::string_view if_broken;  // what damage of the file means to the user
+  std::string_view noun;  // the kind of file, such as "plate" in "is no plate"
+  // The consequence of damage. Callers add what the user can do, which depends on whether the file
+  // is a checkpoint, or a plate that lfmerge reads.
+  std::string_view if_broken;
 };
 
 // The head of every file, of plates or of rebinned rays, begins with these fields.

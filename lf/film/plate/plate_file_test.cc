@@ -225,7 +225,7 @@ TEST_F(PlateFile, EntriesOfAnotherFormAreRefused) {
     const size_t at = other.find(from);
     ASSERT_NE(at, std::string::npos);
     other.replace(at, std::strlen(from), to);
-    ExpectError(WithHead(other, [](plate_format::Head*) {}), "key: value");
+    ExpectError(WithHead(other, [](plate_format::Head*) {}), "or a key twice; the plate cannot");
   }
 }
 

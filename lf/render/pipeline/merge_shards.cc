@@ -68,8 +68,19 @@ Result<std::vector<fs::path>> FilesOf(const std::vector<fs::path>& given) {
   return files;
 }
 
+// Adds to the error of a plate that cannot be read what to do.
+Error WithRemedy(const Error& error) {
+  return {error.kind, error.message + "; copy the plate again, or render it again"};
+}
+
+Result<PlateReader> OpenPlate(const fs::path& path) {
+  Result<PlateReader> reader = PlateReader::Open(path);
+  if (!reader) return WithRemedy(reader.error());
+  return reader;
+}
+
 Result<ShardPlate> Look(const fs::path& path) {
-  LF_ASSIGN_OR_RETURN(const PlateReader reader, PlateReader::Open(path));
+  LF_ASSIGN_OR_RETURN(const PlateReader reader, OpenPlate(path));
   ShardPlate plate;
   plate.path = path;
   plate.width_px = reader.width();
@@ -304,12 +315,12 @@ class Merger {
     for (const ShardPlate& plate : plates) {
       if (IsStopped()) return Interrupted();
       if (!frame->is_kept) {
-        LF_ASSIGN_OR_RETURN(PlateReader reader, PlateReader::Open(plate.path));
+        LF_ASSIGN_OR_RETURN(PlateReader reader, OpenPlate(plate.path));
         if (reader.width() != first.width_px || reader.height() != first.height_px ||
             reader.has_opacity() != first.has_opacity)
           return InputError(fmt::format(
               "{}: was replaced while lfmerge read it: start lfmerge again", plate.path.string()));
-        LF_RETURN_IF_ERROR(reader.AddTo(&sum));
+        if (const Result<void> added = reader.AddTo(&sum); !added) return WithRemedy(added.error());
       }
       ++now_.plate_count;
       if (progress_) progress_(now_);
