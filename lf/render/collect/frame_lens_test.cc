@@ -250,5 +250,32 @@ TEST(FrameLens, EffectiveCountsAreThoseOfTheWeights) {
   }
 }
 
+// Rays then need both a weight and the opening of the lens.
+TEST(FrameLens, KeepsTheOpeningIfVeryManyLfImagesShareIt) {
+  ThreadPool pool(2);
+  const LightField field = testing::NoiseField(70);
+  RenderCamera frame;
+  frame.pinhole.intrinsics = {2500, 2500, 500, 500, 0, 1000, 1000};
+  frame.pinhole.cam_from_world = *LookAlong({0, 0, -0.06}, {0, 0, 1}, {0, -1, 0});
+  frame.aperture = {0.03, 5, 0.1};
+  frame.focus_plane = FocusPlane(frame.pinhole, 1, {0, 0});
+  const FrameLens lens(ImageIndex(field), frame, LensWeights::kArea, {}, pool);
+  ASSERT_TRUE(lens.tests_opening());
+  EXPECT_EQ(lens.camera().aperture.radius_w, frame.aperture.radius_w);
+  EXPECT_EQ(lens.camera().aperture.blades, 5);
+  const Image<float> counts = lens.EffectiveCounts();
+  const int step = EffectiveStep(frame.pinhole.intrinsics);
+  const Vec3 focus = *FocusPointOfElement(frame, step / 2 + 0.5, step / 2 + 0.5);
+  const ApertureTest opening(frame.aperture);
+  double in_opening = 0;
+  for (uint32_t i = 0; i < field.size(); ++i) {
+    const Vec3 centre = field.Camera(LfImageId{i}).CentreWorld();
+    in_opening += opening.Contains(LensPointOfLine(frame, centre, focus)) ? 1 : 0;
+  }
+  EXPECT_GT(in_opening, 1024);
+  EXPECT_LT(counts.at(0, 0), in_opening);
+  EXPECT_GT(counts.at(0, 0), 0.5 * in_opening);
+}
+
 }  // namespace
 }  // namespace lf
