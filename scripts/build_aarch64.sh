@@ -1,7 +1,10 @@
 #!/usr/bin/env bash
 # Compiles all programs but lfvisualizer for 64-bit ARM, in build/aarch64. Nothing is run.
 #
-# usage: scripts/build_aarch64.sh      (root, Debian 12; best in a container: adds the architecture arm64 to dpkg)
+# usage: scripts/build_aarch64.sh      (root, Debian 12; best in a container)
+#
+# Adds the architecture arm64 to dpkg. Some libraries for arm64 replace those for this machine; ./test and ./demo then
+# install the latter again.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 if ((EUID != 0)); then

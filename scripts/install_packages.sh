@@ -23,9 +23,11 @@ if ! command -v dpkg-query >/dev/null; then
   exit 0
 fi
 
-# "ii": wanted and installed. dpkg-query exits with 1 if it does not know some of the names.
-installed=" $(dpkg-query -W -f='${db:Status-Abbrev}${Package}\n' "${wanted[@]}" 2>/dev/null |
-  sed -n 's/^ii  *//p' | tr '\n' ' ') " || [[ -n $installed ]]
+# "ii": wanted and installed. Only packages for this machine count, because scripts/build_aarch64.sh installs some of
+# another architecture. dpkg-query exits with 1 if it does not know some of the names.
+installed=" $(dpkg-query -W -f='${db:Status-Abbrev} ${Package} ${Architecture}\n' "${wanted[@]}" 2>/dev/null |
+  awk -v native="$(dpkg --print-architecture)" '$1 == "ii" && ($3 == native || $3 == "all") { print $2 }' |
+  tr '\n' ' ') " || [[ -n $installed ]]
 # Many machines have Node.js from elsewhere, with an npm that conflicts with Debian's.
 is_there() {
   [[ $installed == *" $1 "* ]] || { [[ $1 == npm ]] && command -v npm >/dev/null; } ||

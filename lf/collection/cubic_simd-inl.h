@@ -82,6 +82,9 @@ using SixteenTag = hn::CappedTag<int32_t, 8>;
 // the second.
 template <class V16>
 struct ColumnWeights {
+  // GCC for ARM inlines the constructors of vectors only into functions with the same HWY_ATTR.
+  HWY_ATTR HWY_INLINE ColumnWeights() {}
+
   V16 low[2];
   V16 high[2];
 };
