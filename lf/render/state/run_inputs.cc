@@ -82,6 +82,7 @@ RunInputs InputsOfRays(const LightFieldIdentity& light_field, const RadianceEnco
                        const RunChoices& choices) {
   return {
       {"law", fmt::format("{}", kRayModelVersion)},
+      {"law.distortion", fmt::format("{}", kDistortedPositionsVersion)},
       {"estimator", NameOf(choices.reading.estimator)},
       {"filter",
        choices.reading.estimator == Estimator::kBilinear ? NameOf(choices.reading.filter) : "none"},

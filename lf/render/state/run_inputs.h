@@ -44,9 +44,13 @@ struct RunChoices {
 
 // The version of the ray model (doc/ray.md). A change of the code that gives other rays for the
 // same inputs raises it.
-inline constexpr int kRayModelVersion = 5;
+inline constexpr int kRayModelVersion = 4;
+// The version of the polynomials that give positions in LF images with lens distortion. A change of
+// the code that changes them within their tolerance (SegmentMaker::kTolerance) raises it: frames of
+// such light fields then have other bits, and others do not.
+inline constexpr int kDistortedPositionsVersion = 2;
 
-// Returns the inputs that decide the rays of all frames: the version of the ray model, the light
+// Returns the inputs that decide the rays of all frames: the versions of the ray model, the light
 // field (number of LF images, and hashes of calibration, encoding and names), and the choices for
 // rays. The folder of the light field is no input, because it may move. The contents of its image
 // files are not compared.
