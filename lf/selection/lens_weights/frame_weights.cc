@@ -198,7 +198,6 @@ FrameWeights::FrameWeights(const RenderCamera& frame, std::span<const Vec3> cent
                         static_cast<int>(n) / columns_);
   });
   SetWeights(nodes);
-  if (keeps_opening_) SteadyWholeCells();
   SetPlaces();
 }
 
@@ -277,17 +276,6 @@ void FrameWeights::SetWeights(const std::vector<Node>& nodes) {
       weights_[begin + n] = static_cast<uint16_t>(
           std::min(std::lround(share.share * scale), std::lround(kUnit * kMaxWeight)));
     }
-}
-
-void FrameWeights::SteadyWholeCells() {
-  const size_t node_count = static_cast<size_t>(columns_) * rows_;
-  for (size_t begin = 0; begin < weights_.size(); begin += node_count) {
-    const std::span<uint16_t> weights = std::span(weights_).subspan(begin, node_count);
-    const auto [least, most] = std::minmax_element(weights.begin(), weights.end());
-    if (*most - *least > kSteadyShare * *most) continue;
-    const uint64_t sum = std::accumulate(weights.begin(), weights.end(), uint64_t{0});
-    std::fill(weights.begin(), weights.end(), static_cast<uint16_t>(sum / node_count));
-  }
 }
 
 std::optional<uint8_t> FrameWeights::ConstantOf(size_t camera) const {

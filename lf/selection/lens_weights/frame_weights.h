@@ -111,9 +111,6 @@ class FrameWeights {
   // power of 3/4. A share takes half a microsecond.
   static constexpr size_t kManyInOpening = 1024;
   static constexpr size_t kMostShares = 4'000'000;
-  // With whole cells, the weights of an LF camera that differ by less than this share of the
-  // largest of them are replaced by their mean, because rays of equal weights are added faster.
-  static constexpr double kSteadyShare = 1.0 / 16;
 
  private:
   static constexpr size_t kNone = SIZE_MAX;
@@ -135,7 +132,6 @@ class FrameWeights {
                size_t in_opening_count);
   // Makes the grid coarser until it has at most this many nodes, or four.
   void CoarsenTo(size_t node_count);
-  void SteadyWholeCells();
   Node MakeNode(const RenderCamera& frame, std::span<const Vec3> centres_world, int column,
                 int row) const;
   void SetWeights(const std::vector<Node>& nodes);
