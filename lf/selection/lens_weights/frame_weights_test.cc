@@ -190,41 +190,39 @@ TEST(FrameWeights, BesideTheLensPlaneLieWhereTheCameraIsSeen) {
 TEST(FrameWeights, OfVeryManyCamerasAreWholeCells) {
   RenderCamera frame = Frame(0.5, 0.1);
   std::vector<Vec3> centres = JitteredGrid(60, 0.01, 0.4, 8);
-  std::erase_if(
-      centres, [](const Vec3& centre) {  // uneven: three quarters are missing on the right
-        return centre.x() > 0.05 && RandomBits(1, centre.x() * 1e6, centre.y() * 1e6) % 4 != 0;
-      });
-  for (const int blades : {0, 5}) {
-    frame.aperture.blades = blades;
-    const FrameWeights weights(frame, centres, LensWeights::kAuto, Pool());
-    ASSERT_TRUE(weights.keeps_opening());
-    EXPECT_GT(weights.columns() * weights.rows(), 1);
-    EXPECT_LE(weights.columns() * weights.rows() * centres.size(), FrameWeights::kMostShares);
-    EXPECT_EQ(weights.reach_w(), frame.aperture.radius_w);
-    const ApertureTest opening(frame.aperture);
-    for (const auto& [x, y] : {std::pair(640, 400), std::pair(40, 700), std::pair(1270, 3)}) {
-      const std::vector<double> exact = ExactShares(frame, centres, x + 0.5, y + 0.5);
-      const Vec3 focus = *FocusPointOfElement(frame, x + 0.5, y + 0.5);
-      double sum = 0, exact_sum = 0;
-      Vec2 right_and_above = Vec2::Zero(), exactly = Vec2::Zero();
-      for (size_t i = 0; i < centres.size(); ++i) {
-        const Vec2 through = LensPointOfLine(frame, centres[i], focus);
-        const Vec2 side(through.x() > 0.1 ? 1 : 0, through.y() > -0.2 ? 1 : 0);
-        const double weight = opening.Contains(through) ? weights.At(i, x, y) : 0;
-        sum += weight;
-        right_and_above += weight * side;
-        exact_sum += exact[i];
-        exactly += exact[i] * side;
-      }
-      EXPECT_LE(sum, FrameWeights::kMostTogether);
-      EXPECT_NEAR(right_and_above.x() / sum, exactly.x() / exact_sum, 0.005) << x << " " << y;
-      EXPECT_NEAR(right_and_above.y() / sum, exactly.y() / exact_sum, 0.005) << x << " " << y;
+  RandomSequence random(1);
+  std::erase_if(centres, [&](const Vec3& centre) {  // three quarters are missing on the right
+    return centre.x() > 0.05 && random.Uniform(0, 1) > 0.25;
+  });
+  frame.aperture.blades = 5;
+  const FrameWeights weights(frame, centres, LensWeights::kAuto, Pool());
+  ASSERT_TRUE(weights.keeps_opening());
+  EXPECT_GT(weights.columns() * weights.rows(), 1);
+  EXPECT_LE(weights.columns() * weights.rows() * centres.size(), FrameWeights::kMostShares);
+  EXPECT_EQ(weights.reach_w(), frame.aperture.radius_w);
+  const ApertureTest opening(frame.aperture);
+  for (const auto& [x, y] : {std::pair(640, 400), std::pair(40, 700), std::pair(1270, 3)}) {
+    const std::vector<double> exact = ExactShares(frame, centres, x + 0.5, y + 0.5);
+    const Vec3 focus = *FocusPointOfElement(frame, x + 0.5, y + 0.5);
+    double sum = 0, exact_sum = 0;
+    Vec2 right_and_above = Vec2::Zero(), exactly = Vec2::Zero();
+    for (size_t i = 0; i < centres.size(); ++i) {
+      const Vec2 through = LensPointOfLine(frame, centres[i], focus);
+      const Vec2 side(through.x() > 0.1 ? 1 : 0, through.y() > -0.2 ? 1 : 0);
+      const double weight = opening.Contains(through) ? weights.At(i, x, y) : 0;
+      sum += weight;
+      right_and_above += weight * side;
+      exact_sum += exact[i];
+      exactly += exact[i] * side;
     }
+    EXPECT_LE(sum, FrameWeights::kMostTogether);
+    EXPECT_NEAR(right_and_above.x() / sum, exactly.x() / exact_sum, 0.005) << x << " " << y;
+    EXPECT_NEAR(right_and_above.y() / sum, exactly.y() / exact_sum, 0.005) << x << " " << y;
   }
 }
 
 TEST(FrameWeights, FewerCamerasKeepTheirCells) {
-  const std::vector<Vec3> centres = JitteredGrid(60, 0.01, 0.4, 8);
+  const std::vector<Vec3> centres = JitteredGrid(20, 0.01, 0.4, 8);
   EXPECT_FALSE(FrameWeights(Frame(0.5), centres, LensWeights::kAuto, Pool()).keeps_opening());
   EXPECT_FALSE(FrameWeights(Frame(0.1, 0.1), centres, LensWeights::kAuto, Pool()).keeps_opening());
 }
