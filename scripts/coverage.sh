@@ -4,7 +4,7 @@
 #
 # usage: scripts/coverage.sh [CTEST OPTIONS]      scripts/coverage.sh -L unit  counts unit tests alone
 #
-# Takes two hours and more on two cores, because nothing is optimised; with -LE 'slow|cluster' about 40 minutes.
+# Takes hours on two cores, because nothing is optimised; with -LE 'slow|cluster' about an hour.
 #
 # Installs missing Debian packages first (root or sudo). A failed test does not end this script: its exit code is then
 # 1.
