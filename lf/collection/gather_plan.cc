@@ -111,6 +111,10 @@ class GatherPlanner {
     plan_.row_begin.clear();
   }
 
+  // patches_ calls functions that refer to this object.
+  GatherPlanner(const GatherPlanner&) = delete;
+  GatherPlanner& operator=(const GatherPlanner&) = delete;
+
   GatherPlan Run() {
     for (int y = 0; y < height_; ++y) {
       plan_.row_begin.push_back(plan_.segments.size());

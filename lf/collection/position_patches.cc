@@ -45,8 +45,9 @@ void PositionPatches::AddPatches(int begin, int end, std::vector<Patch>* patches
 std::optional<PositionPatches::Surface> PositionPatches::Fit(int begin, int end) const {
   const double middle = 0.5 * (begin + end), half = 0.5 * (end - begin);
   const double middle_y = kRows * (band_ + 0.5), half_y = 0.5 * kRows;
-  Surface
-      through;  // [column of places].col(power of v), and below, after a second fit, powers of t
+  // [i].col(l): coefficient of v^l along the i-th of six columns. A second fit, across the columns,
+  // makes the powers of t.
+  Surface through;
   for (size_t i = 0; i < through.size(); ++i) {
     std::array<Vec2, Segment::kTerms> down;
     for (size_t j = 0; j < down.size(); ++j) {

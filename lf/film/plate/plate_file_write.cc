@@ -22,8 +22,8 @@ using namespace plate_format;
 constexpr int kCompressionLevel = 1;
 
 // Returns true if a sum is written as a wide word, because its count does not fit in a packed word.
-// Where the plate stores the sum does not matter, because this depends on how the plate was filled,
-// and the file must not depend on it.
+// The plate itself may store a sum in either word, depending on how it was filled; the file must
+// not depend on that.
 bool IsWide(const ElementSum& rays) { return rays.count > SensorPlate::kMaxCount; }
 
 class Compressor {
