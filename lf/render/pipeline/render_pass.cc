@@ -97,24 +97,24 @@ Result<void> RenderPass::Collect() {
 // Finishes the frames of early_ before collection, because they get no more rays than the state
 // has.
 Result<void> RenderPass::FinishEarlyFrames() {
+  std::vector<size_t> early;
   for (size_t f = 0; f < renderer_.frame_count(); ++f) {
     if (renderer_.IsReleased(f) || !EndsEarly(renderer_.id(f))) continue;
     if (renderer_.EndsEarly(f))
-      LF_RETURN_IF_ERROR(FinishFrames({&f, 1}));
+      early.push_back(f);
     else
       LogWarning(
           "--finish: frame {} has no rays yet, and is therefore rendered from all of its LF images",
           renderer_.id(f).value);
   }
-  return {};
+  return FinishFrames(early);
 }
 
 Result<void> RenderPass::FinishStoppedFrames() {
   const std::vector<size_t> stopped = renderer_.StoppedFrames();
   if (stopped.empty()) return {};
   LF_RETURN_IF_ERROR(context_.state.SaveTotals(Totals()));
-  for (const size_t f : stopped) LF_RETURN_IF_ERROR(FinishFrames({&f, 1}));
-  return {};
+  return FinishFrames(stopped);
 }
 
 Result<void> RenderPass::Finish() {
@@ -122,12 +122,7 @@ Result<void> RenderPass::Finish() {
   std::vector<size_t> left;
   for (size_t f = 0; f < renderer_.frame_count(); ++f)
     if (!renderer_.IsReleased(f)) left.push_back(f);
-  const size_t at_once = context_.setup.plan().frames_finished_at_once;
-  for (size_t begin = 0; begin < left.size(); begin += at_once) {
-    if (IsStopped()) return Interrupt();
-    const size_t count = std::min(at_once, left.size() - begin);
-    LF_RETURN_IF_ERROR(FinishFrames(std::span(left).subspan(begin, count)));
-  }
+  LF_RETURN_IF_ERROR(FinishFrames(left));
   if (renderer_.rebinned() != nullptr) {
     if (renderer_.rebinned()->facts().is_too_coarse)
       LogWarning(
@@ -141,25 +136,40 @@ Result<void> RenderPass::Finish() {
   return {};
 }
 
-// Writes several frames at the same time, because an encoder keeps only one thread busy. A frame
-// that was written is kept even if another frame fails.
+// Writes frames and their records. kInterrupted: the state was written.
 Result<void> RenderPass::FinishFrames(std::span<const size_t> frames) {
+  const size_t at_once = context_.setup.plan().frames_finished_at_once;
+  Result<void> finished;
+  for (size_t begin = 0; finished && begin < frames.size(); begin += at_once)
+    finished = FinishAtOnce(frames.subspan(begin, std::min(at_once, frames.size() - begin)));
+  LF_RETURN_IF_ERROR(EndRecords());
+  if (!finished && finished.error().kind == ErrorKind::kInterrupted) return Interrupt();
+  return finished;
+}
+
+// Writes several frames at the same time, because an encoder keeps only one thread busy, and begins
+// to write their records. A frame that was written is kept even if another frame fails.
+// kInterrupted: at least one of the frames is not written.
+Result<void> RenderPass::FinishAtOnce(std::span<const size_t> frames) {
   struct Finishing {
     size_t f;
     std::optional<Completion> completion;
     Result<FrameReport> written;
   };
+  if (IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
   std::vector<Finishing> finishing;
   for (const size_t f : frames) finishing.push_back({f, renderer_.Complete(f), FrameReport()});
   context_.setup.pool().ForEach(finishing.size(), [&](size_t i) {
     finishing[i].written = WriteFiles(finishing[i].f, finishing[i].completion);
   });
-  for (const auto& [f, completion, written] : finishing)
-    if (written) LF_RETURN_IF_ERROR(RecordFinished(f, *written));
+  LF_RETURN_IF_ERROR(EndRecords());
+  for (auto& [f, completion, written] : finishing)
+    if (written) recording_.push_back({f, *std::move(written)});
+  BeginRecords();
   for (const auto& [f, completion, written] : finishing)
     if (!written && written.error().kind != ErrorKind::kInterrupted) return written.error();
   for (const auto& [f, completion, written] : finishing)
-    if (!written) return Interrupt();
+    if (!written) return written.error();
   return {};
 }
 
@@ -214,29 +224,48 @@ Result<FrameReport> RenderPass::WritePicture(size_t f, const std::optional<Compl
   return frame.report;
 }
 
-Result<void> RenderPass::RecordFinished(size_t f, const FrameReport& report) {
-  const FrameId frame = renderer_.id(f);
-  if (!context_.setup.film().shard && report.rays.image_count == 0 &&
-      report.interpolated_share.value_or(0) == 0) {
-    // Only the first kTold black frames are logged; report.json states 0 LF images for all of them.
-    constexpr size_t kTold = 10;
-    if (++context_.black_count <= kTold)
-      LogWarning(
-          "frame {} is black, because no LF image has a ray for it: widen its aperture, or move "
-          "its camera nearer to the LF cameras",
-          frame.value);
-    if (context_.black_count == kTold + 1)
-      LogWarning(
-          "more frames are black; report.json states for every frame how many LF images it "
-          "contains");
+void RenderPass::WarnIfBlack(const FrameReport& report) {
+  if (context_.setup.film().shard || report.rays.image_count != 0 ||
+      report.interpolated_share.value_or(0) != 0)
+    return;
+  // Only the first kTold black frames are logged; report.json states 0 LF images for all of them.
+  constexpr size_t kTold = 10;
+  if (++context_.black_count <= kTold)
+    LogWarning(
+        "frame {} is black, because no LF image has a ray for it: widen its aperture, or move "
+        "its camera nearer to the LF cameras",
+        report.frame.value);
+  if (context_.black_count == kTold + 1)
+    LogWarning(
+        "more frames are black; report.json states for every frame how many LF images it "
+        "contains");
+}
+
+// Begins to write the records of recording_, on a thread that does nothing else: it mostly waits
+// for the disk, and the next frames are developed meanwhile. If the system refuses a thread,
+// EndRecords() writes them.
+void RenderPass::BeginRecords() {
+  for (const Written& frame : recording_) WarnIfBlack(frame.report);
+  records_ = std::async([this]() -> Result<void> {
+    for (const Written& frame : recording_)
+      LF_RETURN_IF_ERROR(context_.state.SaveFinished(frame.report));
+    return {};
+  });
+}
+
+// Waits until the records of recording_ are written, and releases these frames.
+Result<void> RenderPass::EndRecords() {
+  if (!records_.valid()) return {};
+  const Result<void> saved = records_.get();
+  for (const auto& [f, report] : std::exchange(recording_, {})) {
+    if (!IsFinished(report.frame)) continue;
+    LogDebug("frame {}: written, with {} rays of {} LF images", report.frame.value,
+             report.rays.accepted_count, report.rays.image_count);
+    renderer_.Release(f);
+    ++finished_count_;
+    context_.progress(renderer_.progress(), finished_count_);
   }
-  LF_RETURN_IF_ERROR(context_.state.SaveFinished(report));
-  LogDebug("frame {}: written, with {} rays of {} LF images", frame.value,
-           report.rays.accepted_count, report.rays.image_count);
-  renderer_.Release(f);
-  ++finished_count_;
-  context_.progress(renderer_.progress(), finished_count_);
-  return {};
+  return saved;
 }
 
 // Returns the totals of earlier passes and runs, plus the work of this pass so far.

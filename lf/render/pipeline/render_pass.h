@@ -5,6 +5,7 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <future>
 #include <optional>
 #include <span>
 #include <string>
@@ -61,6 +62,11 @@ class RenderPass : private EarlierRun {
     uint32_t places = 0;   // FrameProgress::places_done when the frame was last saved
     double picture_s = 0;  // NowSeconds() when its picture was last written
   };
+  // A frame whose file is written.
+  struct Written {
+    size_t f = 0;
+    FrameReport report;
+  };
 
   bool IsFinished(FrameId frame) const override;
   bool EndsEarly(FrameId frame) const override;
@@ -71,13 +77,16 @@ class RenderPass : private EarlierRun {
   Result<void> FinishEarlyFrames();
   Result<void> FinishStoppedFrames();
   Result<void> FinishFrames(std::span<const size_t> frames);
+  Result<void> FinishAtOnce(std::span<const size_t> frames);
   PlateNotes NotesOf(size_t f) const;
   Result<FrameReport> WriteFiles(size_t f, const std::optional<Completion>& completion);
   Result<void> WriteFinishedPlate(size_t f, std::filesystem::path path) const;
   Result<FrameReport> WritePicture(size_t f, const std::optional<Completion>& completion,
                                    const std::filesystem::path& to,
                                    const std::function<bool()>& is_interrupted) const;
-  Result<void> RecordFinished(size_t f, const FrameReport& report);
+  void WarnIfBlack(const FrameReport& report);
+  void BeginRecords();
+  Result<void> EndRecords();
   RenderReport Totals() const;
 
   Result<void> Save(double picture_budget_s);
@@ -94,6 +103,10 @@ class RenderPass : private EarlierRun {
   std::vector<Saved> saved_;                 // one for each frame of renderer_
   std::vector<uint32_t> saved_rays_places_;  // places_done of each section in the state on the disk
   size_t finished_count_ = 0;
+  // Frames whose records are being written, and the thread that writes them. The thread is declared
+  // last, so that it has ended before anything else is destroyed.
+  std::vector<Written> recording_;
+  std::future<Result<void>> records_;
 };
 
 }  // namespace lf
