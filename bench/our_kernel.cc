@@ -52,7 +52,8 @@ class FastKernel final : public OurKernel {
         grid_(TileSums::GridOf(plate_.width(), plate_.height())),
         tiles_(CutIntoTiles(&plate_, grid_)) {
     for (size_t i = 0; is_weighed && i < weights_.size(); ++i) weights_[i] = SomeWeights(i);
-    if (case_.spec.filter == PixelFilter::kPrefiltered) FilterImages();
+    if (case_.spec.filter == PixelFilter::kPrefiltered || case_.spec.filter == PixelFilter::kMosaic)
+      FilterImages();
   }
 
   void Collect(int image_count) override {

@@ -25,16 +25,19 @@ GatherSampling SamplingOf(const PinholeCamera& lf_camera, const RenderCamera& re
   const double width_px = ElementWidth_px(lf_camera, render_camera);
   GatherSampling sampling;
   sampling.filter = FilterOf(reading.filter, RadianceEncoding(), false);
+  const PixelFootprint footprint = reading.footprint.value_or(PixelFootprint::kArea);
+  const bool may_lack_rays = MayLackRays(lf_camera.intrinsics);
+  // Means of unfiltered pixels keep apart what a mosaic recorded. They are nearer to the truth if
+  // its pixels show points, or are finer than elements.
+  const bool prefilters = sampling.filter == PixelFilter::kPrefiltered ||
+                          (sampling.filter == PixelFilter::kMosaic &&
+                           footprint == PixelFootprint::kArea && width_px <= kFinerAtMost);
   // A prefilter would mix pixels that have no ray into those that have one.
-  if (sampling.filter == PixelFilter::kPrefiltered) {
-    if (MayLackRays(lf_camera.intrinsics)) {
-      sampling.filter = PixelFilter::kBilinear;
-    } else {
-      sampling.prefilter =
-          PrefilterFor(width_px, reading.footprint.value_or(PixelFootprint::kArea));
-      return sampling;
-    }
+  if (prefilters && !may_lack_rays) {
+    sampling.prefilter = PrefilterFor(width_px, footprint);
+    return sampling;
   }
+  if (sampling.filter == PixelFilter::kPrefiltered) sampling.filter = PixelFilter::kBilinear;
   // A value just above a whole number counts as that number.
   constexpr double kRounding = 1e-3;
   if (width_px > kFinerAtMost)
@@ -42,7 +45,7 @@ GatherSampling SamplingOf(const PinholeCamera& lf_camera, const RenderCamera& re
         static_cast<int>(std::ceil(std::min<double>(width_px - kRounding, kMostSamples)));
   sampling.is_cubic = sampling.filter == PixelFilter::kBicubic ||
                       (sampling.filter == PixelFilter::kMosaic && sampling.samples < kBilinearFrom);
-  if (sampling.is_cubic && MayLackRays(lf_camera.intrinsics)) {
+  if (sampling.is_cubic && may_lack_rays) {
     sampling.is_cubic = false;
     if (sampling.filter == PixelFilter::kBicubic) sampling.filter = PixelFilter::kBilinear;
   }

@@ -17,10 +17,12 @@ namespace lf {
 //              of the sharpness that is lost because a camera averages over each pixel, and takes
 //              three times as long as kBilinear. If one of the outer twelve pixels is outside the
 //              image or masked, the ray is bilinear
-//   kMosaic    is for RGB pixels made from a mosaic. It uses sixteen pixels; or four if an element
-//              has kBilinearFrom x kBilinearFrom samples or more, because their mean hides the
-//              difference. A recorded colour counts more than an interpolated one
-//              (mosaic_filter.h), and the ray adds a count from 1 to kRecordedShare to each colour
+//   kMosaic    is for RGB pixels made from a mosaic. A recorded colour counts more than an
+//              interpolated one (mosaic_filter.h), and the ray adds a count from 1 to
+//              kRecordedShare to each colour. If LF pixels show areas and are not finer than
+//              elements, it uses four values of an LF image that was filtered before. Otherwise it
+//              uses sixteen pixels, or four if an element has kBilinearFrom x kBilinearFrom samples
+//              or more, because their mean hides the difference
 //   kPrefiltered  interpolates linearly between four values of an LF image that was filtered before
 //              (prefilter.h), so that an element of any size needs only one sample
 //   kAuto      stands for the filter that FilterOf() returns for the whole light field;

@@ -52,6 +52,7 @@ TEST(GatherSampling, TakesAsManySamplesAsLfPixelsAreSmaller) {
   EXPECT_EQ(of(0.3).filter, PixelFilter::kBicubic);
   EXPECT_TRUE(of(0.3).is_cubic);
   EXPECT_TRUE(of(0.5, PixelFilter::kMosaic).is_cubic);
+  EXPECT_EQ(of(0.5, PixelFilter::kMosaic).prefilter, Prefilter());
   EXPECT_FALSE(of(0.3, PixelFilter::kMosaic).is_cubic);
   EXPECT_EQ(of(2, PixelFilter::kNearest).filter, PixelFilter::kNearest);
 }
@@ -76,6 +77,27 @@ TEST(GatherSampling, APrefilterReplacesSamples) {
     EXPECT_EQ(sampling.samples, 1);
     EXPECT_EQ(sampling.prefilter, PrefilterFor(1 / magnification, PixelFootprint::kArea));
   }
+}
+
+// Shares belong to pixels (mosaic_filter.h): the values of a filtered mosaic must stand at the
+// centres of pixels.
+TEST(GatherSampling, AMosaicIsPrefilteredIfItsPixelsShowAreasAndAreNotFiner) {
+  const auto of = [](double magnification, PixelFootprint footprint) {
+    const testing::CameraPair pair = PairOf(magnification);
+    PixelReading reading = PixelFilter::kMosaic;
+    reading.footprint = footprint;
+    return SamplingOf(pair.lf_camera, pair.render_camera, reading);
+  };
+  for (const double magnification : {3.0, 1.0, 0.81}) {
+    const GatherSampling areas = of(magnification, PixelFootprint::kArea);
+    EXPECT_EQ(areas.prefilter, PrefilterFor(1, PixelFootprint::kArea));
+    EXPECT_FALSE(areas.prefilter.is_even);
+    EXPECT_FALSE(areas.is_cubic);
+    const GatherSampling points = of(magnification, PixelFootprint::kPoint);
+    EXPECT_EQ(points.prefilter, Prefilter());
+    EXPECT_TRUE(points.is_cubic);
+  }
+  EXPECT_EQ(of(0.79, PixelFootprint::kArea).prefilter, Prefilter());
 }
 
 // Elements may be wider than any integer, in LF pixels, because a frame may show the light field

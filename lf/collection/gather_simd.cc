@@ -109,7 +109,7 @@ class RayAdder {
   // of pixels that `kReading` says.
   HWY_ATTR HWY_INLINE void AddOfFour(int i) const {
     if constexpr (IsMosaic(kReading))
-      AddMosaicRay(mosaic_, places_, i, Upper(i), row_values_, weights_, sums_);
+      AddMosaicRay<Weights>(mosaic_, places_, i, values_, row_values_, weights_, sums_);
     else
       AddRay<Weights>(places_, i, values_, row_values_, weights_, sums_);
   }
@@ -130,6 +130,9 @@ class RayAdder {
     if constexpr (kReading == Reading::kFour)
       for (int k = i; k < i + kCount; k += kRaysAtOnce)
         AddRays(places_, k, values_, row_values_, weights_, sums_);
+    else if constexpr (kReading == Reading::kMosaicFour)
+      for (int k = i; k < i + kCount; k += kRaysAtOnce)
+        AddMosaicRays(mosaic_, places_, k, values_, row_values_, weights_, sums_);
     else
       for (int k = i; k < i + kCount; ++k) Add(k);
   }

@@ -1,5 +1,5 @@
-// Adds one ray, interpolated between four or sixteen pixels with the shares of mosaic_filter.h, to
-// its element. Internal to collection. Highway includes this file once for each instruction set.
+// Adds rays, interpolated between four or sixteen pixels with the shares of mosaic_filter.h, to
+// their elements. Internal to collection. Highway includes this file once for each instruction set.
 #if defined(LF_COLLECTION_MOSAIC_SIMD_INL_H_) == \
     defined(HWY_TARGET_TOGGLE)  // NOLINT: Highway's guard
 #ifdef LF_COLLECTION_MOSAIC_SIMD_INL_H_
@@ -86,23 +86,26 @@ inline const MosaicTable& TableOfMosaic(BayerPattern recorded) {
 // upper half of the 32-bit product of 2^kSideShift a_x and 2 a_y s.
 constexpr int kSideShift = 16 - kShareShift - 1;
 
-// AddMosaicRay() and AddCubicMosaicRay() add ray i of `places` to element i of `sums`.
+// AddMosaicRays() adds rays [i, i + kRaysAtOnce) of `places` to the elements with the same indices
+// in `sums`, AddMosaicRay() and AddCubicMosaicRay() add ray i alone.
+//   values  the first pixel of the LF image's loaded rectangle
 #if HWY_TARGET == HWY_SCALAR
 
-//   upper  the upper left one of the four pixels of ray i
 template <class Weights>
-HWY_INLINE void AddMosaicRay(const MosaicTable& table, const Places& places, int i,
-                             const uint16_t* upper, ptrdiff_t row_values, const Weights& weights,
-                             TileSums::CountedElement* sums) {
+HWY_INLINE void AddMosaicRays(const MosaicTable& table, const Places& places, int i,
+                              const uint16_t* values, ptrdiff_t row_values, const Weights& weights,
+                              TileSums::CountedElement* sums) {
+  const uint16_t* const upper =
+      values + static_cast<ptrdiff_t>(places.pixel[i]) * LfPixels::kRgbLanes;
   const uint32_t sides[] = {(places.left_right[i] & 0xFFFF) << kSideShift,
                             (places.left_right[i] >> 16) << kSideShift};
   const uint32_t row_weights[] = {kOne - places.lower[i], places.lower[i]};
-  const auto& shares = table.rows[places.phase[i]];
+  const auto& rows = table.rows[places.phase[i]];
   for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane) {
     uint32_t sum = 0, count = 0;
     for (int row = 0; row < 2; ++row)
       for (int side = 0; side < 2; ++side) {
-        const uint32_t t = (sides[side] * (row_weights[row] * shares[row][2 * lane + side])) >> 16;
+        const uint32_t t = (sides[side] * (row_weights[row] * rows[row][2 * lane + side])) >> 16;
         sum += t * upper[row * row_values + side * LfPixels::kRgbLanes + lane];
         count += t;
       }
@@ -111,6 +114,8 @@ HWY_INLINE void AddMosaicRay(const MosaicTable& table, const Places& places, int
     sums[i].counts[lane] += rays;
   }
 }
+template <class Weights>
+constexpr auto AddMosaicRay = AddMosaicRays<Weights>;
 
 //   first  the upper left one of the sixteen pixels of ray i
 template <class Weights>
@@ -142,59 +147,112 @@ HWY_INLINE void AddCubicMosaicRay(const CubicTables& cubics, const MosaicTable& 
 #else
 
 // Rounds each lane down to an integer. The numbers must be from 0 to 2^22.
-HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<int32_t>> RoundedDown(hn::Vec<hn::Full128<float>> v) {
-  const hn::Full128<int32_t> di;
-  const hn::Full128<float> df;
+template <class VF>
+HWY_ATTR HWY_INLINE hn::Vec<hn::RebindToSigned<hn::DFromV<VF>>> RoundedDown(VF v) {
+  const hn::DFromV<VF> df;
+  const hn::RebindToSigned<decltype(df)> di;
   const auto whole = hn::Add(hn::Floor(v), hn::Set(df, kWhole));
   return hn::Sub(hn::BitCast(di, whole), hn::Set(di, std::bit_cast<int32_t>(kWhole)));
 }
 
-// Adds a ray to element i of `sums`. `value` holds the ray's colours, integers of 16 bits, and
-// `rays` the ray's count in each colour.
-template <class Weights>
-HWY_ATTR HWY_INLINE void AddCounted(hn::Vec<hn::Full128<int32_t>> value,
-                                    hn::Vec<hn::Full128<int32_t>> rays, const Weights& weights,
-                                    int i, TileSums::CountedElement* sums) {
-  const hn::Full128<uint32_t> du;
-  auto counted = hn::BitCast(du, rays);
-  if constexpr (!Weights::kIsOne) counted = hn::Mul(counted, weights.OfPixels(du, i));
-  TileSums::CountedElement& element = sums[i];
-  hn::Store(hn::Add(hn::Load(du, element.rgb), hn::Mul(hn::BitCast(du, value), counted)), du,
-            element.rgb);
-  hn::Store(hn::Add(hn::Load(du, element.counts), counted), du, element.counts);
+// Adds `rgb` and `counts`, a block of 128 bits for each element, to the elements sums[0],
+// sums[1]...
+HWY_ATTR HWY_INLINE void AddToElements(hn::Full128<uint32_t> d, hn::Vec<hn::Full128<uint32_t>> rgb,
+                                       hn::Vec<hn::Full128<uint32_t>> counts,
+                                       TileSums::CountedElement* sums) {
+  hn::Store(hn::Add(hn::Load(d, sums->rgb), rgb), d, sums->rgb);
+  hn::Store(hn::Add(hn::Load(d, sums->counts), counts), d, sums->counts);
+}
+template <class D>
+HWY_ATTR HWY_INLINE void AddToElements(D d, hn::Vec<D> rgb, hn::Vec<D> counts,
+                                       TileSums::CountedElement* sums) {
+  if constexpr (hn::MaxLanes(d) == 8) {
+    // An element is as long as a vector.
+    const auto add = [&](hn::Vec<D> added, TileSums::CountedElement* element) HWY_ATTR {
+      hn::StoreU(hn::Add(hn::LoadU(d, element->rgb), added), d, element->rgb);
+    };
+    add(hn::ConcatLowerLower(d, counts, rgb), sums);
+    add(hn::ConcatUpperUpper(d, counts, rgb), sums + 1);
+  } else {
+    const hn::Half<D> half;
+    AddToElements(half, hn::LowerHalf(half, rgb), hn::LowerHalf(half, counts), sums);
+    AddToElements(half, hn::UpperHalf(half, rgb), hn::UpperHalf(half, counts),
+                  sums + hn::MaxLanes(half) / 4);
+  }
 }
 
-//   upper  the upper left one of the four pixels of ray i
-template <class Weights>
-HWY_ATTR HWY_INLINE void AddMosaicRay(const MosaicTable& table, const Places& places, int i,
-                                      const uint16_t* upper, ptrdiff_t row_values,
-                                      const Weights& weights, TileSums::CountedElement* sums) {
-  const hn::Full128<uint32_t> du;
-  const hn::Full128<int32_t> di;
-  const hn::Full128<float> df;
-  const hn::Full128<uint16_t> d16;
-  const hn::Full128<int16_t> di16;
+// Adds rays to elements i, i + 1 ... of `sums`. `value` holds the rays' colours, integers of 16
+// bits, and `rays` the rays' counts in each colour; a block of 128 bits is a ray.
+template <class VI, class Weights>
+HWY_ATTR HWY_INLINE void AddCounted(VI value, VI rays, const Weights& weights, int i,
+                                    TileSums::CountedElement* sums) {
+  const hn::RebindToUnsigned<hn::DFromV<VI>> du;
+  auto counted = hn::BitCast(du, rays);
+  if constexpr (!Weights::kIsOne) counted = hn::Mul(counted, weights.OfPixels(du, i));
+  AddToElements(du, hn::Mul(hn::BitCast(du, value), counted), counted, sums + i);
+}
+
+// Loads a block of 128 bits for each ray: rows[phase[k]][row] for ray k.
+HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<uint16_t>> LoadShares(hn::Full128<uint16_t> d,
+                                                              const uint16_t (*rows)[2][8],
+                                                              const int32_t* phase, int row) {
+  return hn::Load(d, rows[*phase][row]);
+}
+template <class D>
+HWY_ATTR HWY_INLINE hn::Vec<D> LoadShares(D d, const uint16_t (*rows)[2][8], const int32_t* phase,
+                                          int row) {
+  const hn::Half<D> half;
+  constexpr int kBlocks = static_cast<int>(hn::MaxLanes(half)) * 2 / 16;
+  return hn::Combine(d, LoadShares(half, rows, phase + kBlocks, row),
+                     LoadShares(half, rows, phase, row));
+}
+
+// Adds rays from `i` on: one for each block of 128 bits in a vector of `D`.
+template <class D, class Weights>
+HWY_ATTR HWY_INLINE void AddMosaicRaysOf(D d, const MosaicTable& table, const Places& places, int i,
+                                         const uint16_t* values, ptrdiff_t row_values,
+                                         const Weights& weights, TileSums::CountedElement* sums) {
+  const hn::RebindToSigned<D> di;
+  const hn::RebindToFloat<D> df;
+  const hn::Repartition<uint16_t, D> d16;
+  const hn::RebindToSigned<decltype(d16)> di16;
   const auto middle = hn::Set(d16, kMiddle);
   const auto one = hn::Set(di16, 1);
-  const auto sides = hn::ShiftLeft<kSideShift>(hn::BitCast(d16, hn::Set(du, places.left_right[i])));
-  const auto& shares = table.rows[places.phase[i]];
+  const auto sides =
+      hn::ShiftLeft<kSideShift>(hn::BitCast(d16, LoadWeights(d, places.left_right + i)));
+  const auto lower = LoadWeights(d, places.lower + i);
+  const auto lower_weight = hn::BitCast(d16, hn::Or(lower, hn::ShiftLeft<16>(lower)));
   auto sum = hn::Zero(di), sum_odd = hn::Zero(di), count = hn::Zero(di), count_odd = hn::Zero(di);
-  const auto add = [&](uint32_t row_weight, const uint16_t* share, const uint16_t* row) HWY_ATTR {
-    const auto weight = hn::Set(d16, static_cast<uint16_t>(row_weight));
-    const auto t = hn::BitCast(di16, hn::MulHigh(sides, hn::Mul(weight, hn::Load(d16, share))));
-    const auto values = hn::BitCast(di16, hn::Xor(SideBySide(d16, hn::LoadU(d16, row)), middle));
-    sum = hn::ReorderWidenMulAccumulate(di, values, t, sum, sum_odd);
+  const auto add = [&](hn::Vec<decltype(d16)> weight, int row) HWY_ATTR {
+    const auto share = LoadShares(d16, table.rows, places.phase + i, row);
+    const auto t = hn::BitCast(di16, hn::MulHigh(sides, hn::Mul(weight, share)));
+    const auto pairs = SideBySide(d16, LoadPairs(d16, values + row * row_values, places.pixel + i));
+    sum = hn::ReorderWidenMulAccumulate(di, hn::BitCast(di16, hn::Xor(pairs, middle)), t, sum,
+                                        sum_odd);
     count = hn::ReorderWidenMulAccumulate(di, one, t, count, count_odd);
   };
-  add(kOne - places.lower[i], shares[0], upper);
-  add(places.lower[i], shares[1], upper + row_values);
+  add(hn::Sub(hn::Set(d16, kOne), lower_weight), 0);
+  add(lower_weight, 1);
   const auto all_t = hn::RearrangeToOddPlusEven(count, count_odd);
   const auto all_values =
       hn::Add(hn::RearrangeToOddPlusEven(sum, sum_odd), hn::ShiftLeft<15>(all_t));
   const auto quotient = hn::Div(hn::ConvertTo(df, all_values), hn::ConvertTo(df, all_t));
   const auto half = hn::Set(di, 1 << (kShareBits - 1));
-  AddCounted(RoundedDown(hn::Add(quotient, hn::Set(df, 0.5F))),
-             hn::ShiftRight<kShareBits>(hn::Add(all_t, half)), weights, i, sums);
+  const auto rays = hn::ShiftRight<kShareBits>(hn::Add(all_t, half));
+  AddCounted(RoundedDown(hn::Add(quotient, hn::Set(df, 0.5F))), rays, weights, i, sums);
+}
+
+template <class Weights>
+HWY_ATTR HWY_INLINE void AddMosaicRays(const MosaicTable& table, const Places& places, int i,
+                                       const uint16_t* values, ptrdiff_t row_values,
+                                       const Weights& weights, TileSums::CountedElement* sums) {
+  AddMosaicRaysOf(AllLanes(), table, places, i, values, row_values, weights, sums);
+}
+template <class Weights>
+HWY_ATTR HWY_INLINE void AddMosaicRay(const MosaicTable& table, const Places& places, int i,
+                                      const uint16_t* values, ptrdiff_t row_values,
+                                      const Weights& weights, TileSums::CountedElement* sums) {
+  AddMosaicRaysOf(LanesOfOne(), table, places, i, values, row_values, weights, sums);
 }
 
 //   first  the upper left one of the sixteen pixels of ray i

@@ -36,8 +36,9 @@ std::vector<SensorPlate> Collect(const testing::CameraPair& pair, uint64_t seed)
   std::vector<SensorPlate> plates;
   plates.push_back(std::move(plate));
   if (bayer != BayerPattern::kNone) return plates;
-  const GatherPlan gather =
-      PlanGather(pair.lf_camera, pair.render_camera, {}, static_cast<PixelFilter>(seed / 5 % 6));
+  PixelReading reading = static_cast<PixelFilter>(seed / 5 % 6);
+  if (seed % 2 == 1) reading.footprint = PixelFootprint::kPoint;
+  const GatherPlan gather = PlanGather(pair.lf_camera, pair.render_camera, {}, reading);
   plates.push_back(PlateFor(pair));
   pixels = testing::PixelsFor(gather, pixels);
   testing::InTiles(&plates.back(), grid, [&](size_t /*tile*/, TileSums* sums) {

@@ -47,7 +47,8 @@ struct RayReading : PixelReading {  // its member `filter` is used only by kBili
   // Returns true if LF images may be filtered (Prefilter) before rays are read from them.
   bool Prefilters() const {
     return estimator == Estimator::kBilinear &&
-           (filter == PixelFilter::kPrefiltered || filter == PixelFilter::kAuto);
+           (filter == PixelFilter::kPrefiltered || filter == PixelFilter::kMosaic ||
+            filter == PixelFilter::kAuto);
   }
 };
 

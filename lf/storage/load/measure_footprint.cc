@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 
 namespace lf {
 namespace {
@@ -20,7 +21,8 @@ struct Edges {
   int with_value_between = 0;
 };
 
-// Counts the edge at the middle one of five pixels in a row or column, if there is an edge.
+// Counts the edge at the middle one of five pixels in a row, column or diagonal, if there is an
+// edge.
 void CountEdge(const std::array<double, 5>& value, double least_step, Edges* edges) {
   const double step = value[3] - value[1];
   const double flat = kFlat * std::abs(step);
@@ -37,11 +39,22 @@ void CountEdge(const std::array<double, 5>& value, double least_step, Edges* edg
 void CountEdges(const LfPixels& pixels, double least_step, Edges* edges) {
   constexpr int kLane = 1;  // lane of the green values
   const int width = pixels.rect.width(), height = pixels.rect.height();
+  // In a mosaic, only diagonals have successive pixels that recorded green. Interpolated values
+  // would lie between the two sides of an edge whatever pixels show.
+  const bool is_mosaic = pixels.recorded != BayerPattern::kNone;
+  const auto recorded_green = [&](int x, int y) {
+    return !is_mosaic ||
+           BayerChannel(pixels.recorded, pixels.rect.x_begin + x, pixels.rect.y_begin + y) == kLane;
+  };
   for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
-      for (const bool is_column : {false, true}) {
-        const int dx = is_column ? 0 : 1, dy = is_column ? 1 : 0;
-        if (x < 2 * dx || x + 2 * dx >= width || y < 2 * dy || y + 2 * dy >= height) continue;
+    for (int x = 0; x < width; ++x) {
+      if (!recorded_green(x, y)) continue;
+      for (const bool is_second : {false, true}) {
+        const int dx = is_mosaic || !is_second ? 1 : 0;
+        const int dy = is_second ? 1 : is_mosaic ? -1 : 0;
+        if (x < 2 * dx || x + 2 * dx >= width || y < 2 * std::abs(dy) ||
+            y + 2 * std::abs(dy) >= height)
+          continue;
         std::array<double, 5> value;
         bool any_masked = false;
         for (int k = -2; k <= 2; ++k) {
@@ -50,6 +63,7 @@ void CountEdges(const LfPixels& pixels, double least_step, Edges* edges) {
         }
         if (!any_masked) CountEdge(value, least_step, edges);
       }
+    }
 }
 
 }  // namespace

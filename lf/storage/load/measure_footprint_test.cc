@@ -23,7 +23,10 @@ LightField FieldOf(size_t count) {
 class DiskStore : public LfImageStore {
  public:
   enum class Pixels { kAreas, kPoints, kFlat, kMosaic };
-  explicit DiskStore(Pixels pixels) : shows_(pixels) {}
+  // recorded  pattern of the mosaic that the pixels were made from; colours that a pixel did not
+  //           record are then the mean light of 3 x 3 pixels
+  explicit DiskStore(Pixels pixels, BayerPattern recorded = BayerPattern::kNone)
+      : shows_(pixels), recorded_(recorded) {}
 
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override {
     if (id.value == broken) return InputError("broken");
@@ -31,26 +34,36 @@ class DiskStore : public LfImageStore {
     const bool is_mosaic = shows_ == Pixels::kMosaic;
     *pixels = LfPixels(rect, is_mosaic ? BayerPattern::kRggb : BayerPattern::kNone);
     if (is_mosaic) return {};
-    // A pixel shows the mean of kPoints x kPoints points.
+    pixels->recorded = recorded_;
     const int points = shows_ == Pixels::kAreas ? 8 : 1;
     for (int y = 0; y < rect.height(); ++y)
-      for (int x = 0; x < rect.width(); ++x) {
-        int inside = 0;
-        for (int i = 0; i < points * points; ++i) {
-          const double u = rect.x_begin + x + (i % points + 0.5) / points;
-          const double v = rect.y_begin + y + (i / points + 0.5) / points;
-          inside += std::hypot(u - 100.3 - id.value, v - 99.8) < 70 || shows_ == Pixels::kFlat;
+      for (int x = 0; x < rect.width(); ++x)
+        for (int c = 0; c < 3; ++c) {
+          const double u = rect.x_begin + x + 0.5, v = rect.y_begin + y + 0.5;
+          const bool is_recorded = recorded_ == BayerPattern::kNone ||
+                                   BayerChannel(recorded_, rect.x_begin + x, rect.y_begin + y) == c;
+          const double light = is_recorded ? Light(id, u, v, 1, points) : Light(id, u, v, 3, 4);
+          pixels->radiance.at(x, y, c) = static_cast<uint16_t>(32768 * light);
         }
-        for (int c = 0; c < 3; ++c)
-          pixels->radiance.at(x, y, c) = static_cast<uint16_t>(32768. * inside / (points * points));
-      }
     return {};
   }
 
   uint32_t broken = UINT32_MAX, unreadable = UINT32_MAX;
 
  private:
+  // Returns the mean light of points x points points in a square of `width_px` around (u, v).
+  double Light(LfImageId id, double u, double v, double width_px, int points) const {
+    int inside = 0;
+    for (int i = 0; i < points * points; ++i) {
+      const double x = u + width_px * ((i % points + 0.5) / points - 0.5);
+      const double y = v + width_px * ((i / points + 0.5) / points - 0.5);
+      inside += std::hypot(x - 100.3 - id.value, y - 99.8) < 70 || shows_ == Pixels::kFlat;
+    }
+    return static_cast<double>(inside) / (points * points);
+  }
+
   const Pixels shows_;
+  const BayerPattern recorded_;
 };
 
 TEST(MeasureFootprint, SeesHowEdgesAreRecorded) {
@@ -58,6 +71,17 @@ TEST(MeasureFootprint, SeesHowEdgesAreRecorded) {
   const LightField field = FieldOf(9);
   EXPECT_EQ(MeasureFootprint(field, DiskStore(Pixels::kAreas)).value(), PixelFootprint::kArea);
   EXPECT_EQ(MeasureFootprint(field, DiskStore(Pixels::kPoints)).value(), PixelFootprint::kPoint);
+}
+
+// Interpolated colours lie between the two sides of an edge even if pixels show points.
+TEST(MeasureFootprint, OnlyRecordedColoursOfMosaicsTell) {
+  using Pixels = DiskStore::Pixels;
+  for (const BayerPattern recorded : {BayerPattern::kRggb, BayerPattern::kGbrg}) {
+    EXPECT_EQ(MeasureFootprint(FieldOf(9), DiskStore(Pixels::kAreas, recorded)).value(),
+              PixelFootprint::kArea);
+    EXPECT_EQ(MeasureFootprint(FieldOf(9), DiskStore(Pixels::kPoints, recorded)).value(),
+              PixelFootprint::kPoint);
+  }
 }
 
 TEST(MeasureFootprint, WithoutEdgesPixelsShowAreas) {
