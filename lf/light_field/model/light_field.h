@@ -1,7 +1,8 @@
-// The recorded light field without its pixels: the cameras, the names of the image files, and how
-// stored numbers become light.
+// The light field without its pixels: the cameras, the names of the image files, and how stored
+// numbers become light.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -43,7 +44,11 @@ struct LfCamera {
   // LF image of the same pose with the next larger exposure; kNone if there is none.
   uint32_t brighter = kNone;
   bool masks_clipped = false;  // clipped pixels send no ray, because the pose has a darker LF image
+  // True for a virtual LF image, which was synthesised from recorded ones. Reports, stop rules and
+  // warnings count recorded LF images alone, because a virtual one brings no new measurement.
+  bool is_virtual = false;
 };
+static_assert(sizeof(LfCamera) == 120);
 
 struct LightField {
   std::vector<LfCamera> cameras;       // indexed by LfImageId, like the two lists of names below
@@ -68,5 +73,16 @@ struct LightField {
   // STORE.lfs/name.png
   std::filesystem::path ImagePath(LfImageId id) const { return folder / image_names[id.value]; }
 };
+
+// Returns the number of recorded LF images; all others are virtual.
+inline size_t RecordedCount(const LightField& light_field) {
+  return static_cast<size_t>(
+      std::count_if(light_field.cameras.begin(), light_field.cameras.end(),
+                    [](const LfCamera& camera) { return !camera.is_virtual; }));
+}
+// Returns true if any LF image is virtual.
+inline bool HasVirtual(const LightField& light_field) {
+  return RecordedCount(light_field) < light_field.size();
+}
 
 }  // namespace lf

@@ -15,6 +15,8 @@ LightFieldIdentity IdentityOf(const LightField& light_field) {
     calibration.Add(camera.gain[0]);
     if (!camera.gain.are_equal())
       for (const float gain : camera.gain.of_channels) calibration.Add(gain);
+    // Only the mark is hashed, so that light fields without virtual LF images keep their hash.
+    if (camera.is_virtual) calibration.Add(std::string("virtual"));
   }
   for (const Intrinsics& k : light_field.intrinsics) calibration.Add(k);
   return {light_field.size(), names.Text(), calibration.Text()};

@@ -11,8 +11,9 @@ namespace lf {
 
 struct LightFieldIdentity {
   size_t image_count = 0;
-  std::string names;        // hash of the names of images and masks, without the folder
-  std::string calibration;  // hash of the poses, gains and intrinsics of all cameras
+  std::string names;  // hash of the names of images and masks, without the folder
+  // Hash of the poses, gains and intrinsics of all cameras, and of which of them are virtual.
+  std::string calibration;
 
   friend bool operator==(const LightFieldIdentity&, const LightFieldIdentity&) = default;
 };

@@ -37,5 +37,22 @@ TEST(LightFieldIdentity, EveryParameterOfALensCounts) {
   }
 }
 
+TEST(LightFieldIdentity, MarksOfVirtualImagesCount) {
+  LightField recorded;
+  recorded.cameras.resize(3);
+  recorded.image_names = {"a.png", "b.png", "c.png"};
+  EXPECT_FALSE(HasVirtual(recorded));
+  EXPECT_EQ(RecordedCount(recorded), 3u);
+  LightField second = recorded, third = recorded;
+  second.cameras[1].is_virtual = true;
+  third.cameras[2].is_virtual = true;
+  EXPECT_TRUE(HasVirtual(second));
+  EXPECT_EQ(RecordedCount(second), 2u);
+  EXPECT_NE(IdentityOf(recorded), IdentityOf(second));
+  EXPECT_NE(IdentityOf(recorded), IdentityOf(third));
+  EXPECT_NE(IdentityOf(second), IdentityOf(third));
+  EXPECT_EQ(IdentityOf(recorded).names, IdentityOf(second).names);
+}
+
 }  // namespace
 }  // namespace lf
