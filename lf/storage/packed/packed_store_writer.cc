@@ -14,6 +14,7 @@
 #include "lf/core/file_lock.h"
 #include "lf/storage/packed/packed_format.h"
 #include "lf/storage/packed/plan_settings.h"
+#include "lf/storage/packed/unfinished_files.h"
 #include "lf/storage/tables/calibration_tables.h"
 
 namespace lf {
@@ -68,42 +69,6 @@ Result<void> MakeTables(const LightField& light_field, const PackedStorePlan& pl
   LF_RETURN_IF_ERROR(WriteIntrinsics(light_field.intrinsics, database));
   LF_RETURN_IF_ERROR(WriteImages(light_field, plan, database));
   return database->Execute("commit");
-}
-
-void RemoveWithJournal(const fs::path& path) {
-  std::error_code ignored;
-  fs::remove(path, ignored);
-  fs::remove(fs::path(path) += "-journal", ignored);
-}
-
-// Returns the id that a store states for itself, or a shard for its store; empty if the file cannot
-// be read as `format`.
-std::string StoreIdIn(Result<Database> database, const DatabaseFormat& format) {
-  if (!database) return {};
-  const Result<Settings> settings = Settings::Read(*database, format.name);
-  return settings ? settings->Text("store") : std::string();
-}
-std::string StoreIdOf(const fs::path& path) {
-  return StoreIdIn(OpenStoreDatabase(path), kStoreFormat);
-}
-std::string StoreOfShard(const fs::path& path) {
-  return StoreIdIn(OpenShardDatabase(path), kShardFormat);
-}
-
-// Removes an unfinished store and all its shards, both those with names of unfinished shards and
-// those that already have their final names.
-void RemoveUnfinishedFiles(const fs::path& path) {
-  const std::string store = StoreIdOf(UnfinishedPath(path));
-  RemoveWithJournal(UnfinishedPath(path));
-  std::error_code error;
-  for (int n = 1; n <= kMostShards; ++n) {
-    const fs::path shard = ShardPath(path, n), unfinished = UnfinishedPath(shard);
-    const bool is_unfinished = fs::exists(unfinished, error);
-    const bool is_ours = !store.empty() && StoreOfShard(shard) == store;
-    if (!is_unfinished && !is_ours) return;
-    RemoveWithJournal(unfinished);
-    if (is_ours) fs::remove(shard, error);
-  }
 }
 
 }  // namespace
