@@ -245,7 +245,8 @@ Result<void> Compressor::Verify() {
 // Adds the LF images that an existing store lacks to report_.skipped.
 Result<void> Compressor::FindSkipped() {
   const std::vector<std::string>& names = source_.light_field.image_names;
-  LF_ASSIGN_OR_RETURN(const std::vector<PackedCode> codes, FindCodes(options_.store, names));
+  LF_ASSIGN_OR_RETURN(const std::vector<PackedCode> codes,
+                      FindCodes(options_.store, source_.light_field));
   for (size_t i = 0; i < names.size(); ++i)
     if (codes[i].bytes == 0)
       report_.skipped.push_back({names[i], "it could not be read when the store was made"});

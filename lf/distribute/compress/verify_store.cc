@@ -34,8 +34,7 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
                            ThreadPool& pool, const std::function<void(size_t)>& progress) {
   LF_RETURN_IF_ERROR(CheckStoreFacts(source, options));
   const LightField& light_field = source.light_field;
-  LF_ASSIGN_OR_RETURN(const std::vector<PackedCode> codes,
-                      FindCodes(options.store, light_field.image_names));
+  LF_ASSIGN_OR_RETURN(const std::vector<PackedCode> codes, FindCodes(options.store, light_field));
 
   const ImageCoder coder(light_field.encoding, options.settings);
   std::mutex mutex;

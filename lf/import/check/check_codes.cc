@@ -22,8 +22,7 @@ CodeChecker::CodeChecker(const LightField& light_field, std::vector<PackedCode> 
     : light_field_(light_field), codes_(std::move(codes)) {}
 
 Result<std::unique_ptr<CodeChecker>> CodeChecker::Open(const LightField& light_field) {
-  LF_ASSIGN_OR_RETURN(std::vector<PackedCode> codes,
-                      FindCodes(light_field.folder, light_field.image_names));
+  LF_ASSIGN_OR_RETURN(std::vector<PackedCode> codes, FindCodes(light_field.folder, light_field));
   return std::unique_ptr<CodeChecker>(new CodeChecker(light_field, std::move(codes)));
 }
 

@@ -45,7 +45,7 @@ struct Film {
 // accepted here: it is skipped when it is loaded, like a broken file.
 Result<void> CheckCodes(const fs::path& path, const Package& package) {
   const LightField& light_field = package.light_field;
-  const auto codes = FindCodes(light_field.folder, light_field.image_names);
+  const auto codes = FindCodes(light_field.folder, light_field);
   if (!codes)
     return InputError(
         fmt::format("{}: its light field is not at {} ({}): give it with --lightfield",

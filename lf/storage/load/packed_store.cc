@@ -108,8 +108,7 @@ PackedStore::PackedStore(const LightField& light_field, Mosaics mosaics,
 
 Result<std::unique_ptr<PackedStore>> PackedStore::Open(const LightField& light_field,
                                                        Mosaics mosaics) {
-  LF_ASSIGN_OR_RETURN(std::vector<PackedCode> codes,
-                      FindCodes(light_field.folder, light_field.image_names));
+  LF_ASSIGN_OR_RETURN(std::vector<PackedCode> codes, FindCodes(light_field.folder, light_field));
   std::unique_ptr<PackedStore> store(new PackedStore(light_field, mosaics, std::move(codes)));
   if (std::any_of(store->codes_.begin(), store->codes_.end(),
                   [](const PackedCode& code) { return code.values == StoredValues::kDisplay16; })) {

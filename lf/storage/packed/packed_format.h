@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "lf/light_field/model/light_field.h"
 #include "lf/light_field/model/light_field_identity.h"
@@ -36,14 +37,40 @@ create table codes (id integer primary key, shard integer, kind text, x_begin in
 inline constexpr const char* kBlobsTable =
     "create table blobs (id integer primary key, code blob not null, mask blob);";
 
+// Further tables of a densified store.
+inline constexpr const char* kDensifiedTables = R"(
+create table virtual_images (id integer primary key);
+create table planes (id integer, kind text, plane blob not null, primary key (id, kind));)";
+inline constexpr const char* kVirtualTable = "virtual_images";
+// Setting that only a densified store has.
+inline constexpr const char* kDensifiedKey = "densified";
+
 // Opens the file of a packed store for reading. It has the table of encoded images unless the store
 // has shards.
 inline Result<Database> OpenStoreDatabase(const std::filesystem::path& path) {
   const std::string tables = fmt::format("{}{}{}", kSettingsTable, kIntrinsicsTable, kStoreTables);
-  return Database::Open(path, kStoreFormat, {tables + kBlobsTable, tables});
+  return Database::Open(path, kStoreFormat,
+                        {tables + kBlobsTable, tables, tables + kBlobsTable + kDensifiedTables,
+                         tables + kDensifiedTables});
 }
 inline Result<Database> OpenShardDatabase(const std::filesystem::path& path) {
   return Database::Open(path, kShardFormat, {fmt::format("{}{}", kSettingsTable, kBlobsTable)});
+}
+
+// The file of a complete packed store, and its settings.
+struct OpenedStore {
+  Database database;
+  Settings settings;
+};
+// kInput: the file cannot be read, or is no complete packed store.
+Result<OpenedStore> OpenComplete(const std::filesystem::path& path);
+
+inline Result<bool> HasTable(Database* database, std::string_view name) {
+  LF_ASSIGN_OR_RETURN(
+      Statement select,
+      database->Prepare("select 1 from sqlite_master where name = ? and type = 'table'"));
+  select.Bind(0, name);
+  return select.Step();
 }
 
 // Name of each StoredValues in the column `kind` of the table `codes`, in the order of the

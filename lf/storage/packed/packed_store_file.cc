@@ -11,6 +11,7 @@
 
 #include "lf/light_field/model/value_hasher.h"
 #include "lf/storage/packed/packed_format.h"
+#include "lf/storage/packed/plane_table.h"
 #include "lf/storage/tables/calibration_tables.h"
 #include "lf/storage/tables/stored_numbers.h"
 
@@ -20,25 +21,40 @@ namespace {
 
 constexpr size_t kMostOpenShards = 8;  // most shards that one PackedCodeReader keeps open
 
-// The file of a complete packed store, and its settings.
-struct OpenedStore {
-  Database database;
-  Settings settings;
-};
-
-Result<OpenedStore> OpenComplete(const fs::path& path) {
-  LF_ASSIGN_OR_RETURN(Database database, OpenStoreDatabase(path));
-  LF_ASSIGN_OR_RETURN(Settings settings, Settings::Read(database, kStoreFormat.name));
-  if (settings.Text("state") == kUnfinished)
-    return database.Fault("is an unfinished packed store: finish it with lfcompressor --resume");
-  if (settings.Text("state") != kComplete) return settings.Wrong("state", "complete");
-  return OpenedStore{std::move(database), std::move(settings)};
-}
-
 Result<LightFieldIdentity> WholeIdentity(const Settings& settings) {
   LF_ASSIGN_OR_RETURN(const uint64_t count, settings.Whole("light_field.images"));
   return LightFieldIdentity{count, settings.Text("light_field.names"),
                             settings.Text("light_field.calibration")};
+}
+
+// Returns for each LF image below `image_count` if the store marks it as virtual; empty if the
+// store is not densified.
+Result<std::vector<bool>> ReadVirtual(OpenedStore* store, size_t image_count) {
+  LF_ASSIGN_OR_RETURN(const bool is_densified, HasTable(&store->database, kVirtualTable));
+  std::vector<bool> is_virtual(is_densified ? image_count : 0);
+  if (!is_densified) return is_virtual;
+  LF_RETURN_IF_ERROR(ForEachRow(
+      store->database, "select id from virtual_images", [&](const Statement& row) -> Result<void> {
+        LF_ASSIGN_OR_RETURN(const int64_t id,
+                            row.Integer(0, 0, static_cast<int64_t>(image_count) - 1));
+        is_virtual[static_cast<size_t>(id)] = true;
+        return {};
+      }));
+  return is_virtual;
+}
+
+// Sets LfCamera::is_virtual, and checks that exactly the recorded LF images have a number in the
+// whole light field.
+Result<void> MarkVirtual(OpenedStore* store, PackedStoreFacts* facts) {
+  LightField& light_field = facts->light_field;
+  LF_ASSIGN_OR_RETURN(const std::vector<bool> is_virtual, ReadVirtual(store, light_field.size()));
+  for (size_t i = 0; i < light_field.size(); ++i) {
+    light_field.cameras[i].is_virtual = !is_virtual.empty() && is_virtual[i];
+    if (light_field.cameras[i].is_virtual != (facts->whole_ids[i] == kNoWholeId))
+      return store->settings.Damaged(
+          fmt::format("LF image {} is both recorded and virtual, or neither", i));
+  }
+  return {};
 }
 
 Result<void> ReadImages(OpenedStore* store, PackedStoreFacts* facts) {
@@ -50,7 +66,10 @@ Result<void> ReadImages(OpenedStore* store, PackedStoreFacts* facts) {
         const auto next = static_cast<int64_t>(light_field.size());
         LF_ASSIGN_OR_RETURN(const int64_t id, row.Integer(0, 0, kMostImages));
         if (id != next) return store->settings.Damaged(fmt::format("LF image {} is missing", next));
-        LF_ASSIGN_OR_RETURN(const int64_t whole_id, row.Integer(1, 0, kMostImages));
+        int64_t whole_id = kNoWholeId;
+        if (!row.IsNull(1)) {
+          LF_ASSIGN_OR_RETURN(whole_id, row.Integer(1, 0, kMostImages));
+        }
         LF_ASSIGN_OR_RETURN(std::string name, row.Text(2));
         LF_ASSIGN_OR_RETURN(const LfCamera camera, ReadCamera(store->settings, row, 3, name,
                                                               light_field.intrinsics.size()));
@@ -60,6 +79,7 @@ Result<void> ReadImages(OpenedStore* store, PackedStoreFacts* facts) {
         return {};
       }));
   if (light_field.size() == 0) return store->settings.Damaged("it has no LF image");
+  LF_RETURN_IF_ERROR(MarkVirtual(store, facts));
   const LightFieldIdentity images = IdentityInStore(light_field);
   if (store->settings.Text("images.names") != images.names)
     return store->settings.Damaged("the names of its LF images differ from the recorded checksum");
@@ -113,6 +133,8 @@ Result<std::vector<PackedCode>> ReadCodes(OpenedStore* store) {
         codes[code.id] = code;
         return {};
       }));
+  LF_ASSIGN_OR_RETURN(const std::vector<bool> is_virtual, ReadVirtual(store, codes.size()));
+  for (size_t i = 0; i < is_virtual.size(); ++i) codes[i].is_virtual = is_virtual[i];
   return codes;
 }
 
@@ -131,6 +153,18 @@ Result<OpenBlobs> WithSelect(int shard, Database database) {
 }
 
 }  // namespace
+
+Result<OpenedStore> OpenComplete(const fs::path& path) {
+  LF_ASSIGN_OR_RETURN(Database database, OpenStoreDatabase(path));
+  LF_ASSIGN_OR_RETURN(Settings settings, Settings::Read(database, kStoreFormat.name));
+  if (settings.Text("state") == kUnfinished)
+    return database.Fault(fmt::format("is an unfinished packed store: finish it with {} --resume",
+                                      settings.Text(kDensifiedKey).empty()
+                                          ? "lfcompressor"
+                                          : "the program that densified it, and"));
+  if (settings.Text("state") != kComplete) return settings.Wrong("state", "complete");
+  return OpenedStore{std::move(database), std::move(settings)};
+}
 
 LightFieldIdentity IdentityInStore(const LightField& light_field) {
   LightFieldIdentity identity = IdentityOf(light_field);
@@ -179,6 +213,7 @@ Result<PackedStoreFacts> ReadPackedStore(const fs::path& path) {
   facts.shard_count = static_cast<size_t>(shards);
   LF_ASSIGN_OR_RETURN(light_field.intrinsics, ReadIntrinsics(settings, &store.database));
   LF_RETURN_IF_ERROR(ReadImages(&store, &facts));
+  LF_ASSIGN_OR_RETURN(facts.densified, ReadDensified(&store));
   // Checks all shards now, so that a missing one is found before the first LF image is loaded.
   for (int number = 1; number <= static_cast<int>(facts.shard_count); ++number)
     LF_RETURN_IF_ERROR(OpenShardOf(path, settings.Text("store"), number));
@@ -238,6 +273,13 @@ Result<std::vector<PackedCode>> FindCodes(const fs::path& path,
                                   return {};
                                 }));
   return found;
+}
+
+Result<std::vector<PackedCode>> FindCodes(const fs::path& path, const LightField& light_field) {
+  LF_ASSIGN_OR_RETURN(std::vector<PackedCode> codes, FindCodes(path, light_field.image_names));
+  for (size_t i = 0; i < codes.size(); ++i)
+    if (codes[i].is_virtual != light_field.cameras[i].is_virtual) codes[i] = {};
+  return codes;
 }
 
 struct PackedCodeReader::State {

@@ -18,6 +18,7 @@
 #include "lf/core/result.h"
 #include "lf/light_field/model/light_field.h"
 #include "lf/light_field/model/light_field_identity.h"
+#include "lf/storage/packed/packed_planes.h"
 
 namespace lf {
 
@@ -46,15 +47,19 @@ inline bool HoldsPackedStore(const LightField& light_field) {
 // Returns the paths of the packed stores directly in a folder, sorted.
 std::vector<std::filesystem::path> PackedStoresIn(const std::filesystem::path& folder);
 
+// Stands for the number in the whole light field of a virtual LF image, which has none.
+inline constexpr uint32_t kNoWholeId = UINT32_MAX;
+
 // Everything in a packed store but the encoded images.
 struct PackedStoreFacts {
   LightField light_field;    // LF cameras of the store; `folder` is the store's file; no mask
                              // files, because masks are stored with the encoded images
   LightFieldIdentity whole;  // identity of the light field that the LF images are from
-  std::vector<uint32_t> whole_ids;  // id of each LF image in `whole`
+  std::vector<uint32_t> whole_ids;  // id of each LF image in `whole`; kNoWholeId: it is virtual
   std::string source;               // LIGHTFIELD or packages that the store was made from
   std::string codec;                // settings of the codec, in words
   std::string written_by;
+  std::optional<DensifiedPlan> densified;  // set if the store is densified
   size_t shard_count = 0;  // number of shards; 0: the encoded images are in the store's file itself
 };
 
@@ -92,12 +97,14 @@ struct PackedCode {
   uint32_t id = kNotListed;  // id of the LF image in the store
   uint16_t shard = 0;        // number of the shard that has the image; 0: the store's file
   StoredValues values = StoredValues::kUint8;
-  PixelRect rect;      // pixels of the LF image that are encoded
+  bool is_virtual = false;  // true if the store marks the LF image as virtual
+  PixelRect rect;           // pixels of the LF image that are encoded
   uint64_t bytes = 0;  // size of the encoded pixels and mask; 0: the store lacks them, because the
                        // LF image could not be read
 
   bool is_listed() const { return id != kNotListed; }
 };
+static_assert(sizeof(PackedCode) == 32);
 
 // Returns an entry for each of `names`. Its is_listed() is false if the store has no LF image of
 // this name. If a name occurs twice in `names`, the two entries belong to the first and the second
@@ -105,6 +112,11 @@ struct PackedCode {
 // ReadPackedStore().
 Result<std::vector<PackedCode>> FindCodes(const std::filesystem::path& path,
                                           std::span<const std::string> names);
+// Returns an entry for each LF image of the light field, found by its name. An entry is also not
+// listed if the light field and the store do not agree that the LF image is virtual, so that a
+// virtual LF image is never taken for a recorded one of the same name.
+Result<std::vector<PackedCode>> FindCodes(const std::filesystem::path& path,
+                                          const LightField& light_field);
 
 // Reads encoded images, one at a time, for one thread. Opens shards when they are needed, and keeps
 // a few open.

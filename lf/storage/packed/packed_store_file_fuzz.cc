@@ -1,6 +1,6 @@
 // Reads any bytes as the file of a packed store: the result must be the facts of a store or an
-// error. The LF cameras of a store must be valid, and reading its encoded images must succeed or
-// return an error.
+// error. The LF cameras of a store must be valid, and reading its encoded images and planes must
+// succeed or return an error.
 #include <unistd.h>
 
 #include <cstddef>
@@ -23,6 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size_bytes) {
   if (facts) {
     const lf::LightField& field = facts->light_field;
     LF_CHECK(field.size() > 0 && facts->whole_ids.size() == field.size());
+    LF_CHECK(facts->densified || !lf::HasVirtual(field));
     for (const lf::LfCamera& camera : field.cameras) {
       LF_CHECK(camera.intrinsics_index < field.intrinsics.size());
       LF_CHECK(camera.cam_from_world.translation.allFinite());
@@ -41,6 +42,13 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size_bytes) {
       const auto bytes = reader->Read(code);
       LF_CHECK(bytes || !bytes.error().message.empty());
     }
+  if (auto planes = lf::PackedPlaneReader::Open(path))
+    for (uint32_t i = 0; i < 4; ++i)
+      for (const lf::PlaneKind kind : {lf::PlaneKind::kSwept, lf::PlaneKind::kDisparity}) {
+        const auto has = planes->Has({i}, kind);
+        const auto plane = planes->Read({i}, kind);
+        LF_CHECK(plane ? !has || *has : plane.error().message.starts_with(path.string()));
+      }
   std::error_code ignored;
   std::filesystem::remove(path, ignored);
   return 0;

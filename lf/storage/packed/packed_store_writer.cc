@@ -6,7 +6,9 @@
 #include <mutex>
 #include <optional>
 #include <random>
+#include <string_view>
 #include <system_error>
+#include <unordered_map>
 #include <utility>
 
 #include "lf/core/check.h"
@@ -14,6 +16,7 @@
 #include "lf/core/file_lock.h"
 #include "lf/storage/packed/packed_format.h"
 #include "lf/storage/packed/plan_settings.h"
+#include "lf/storage/packed/plane_table.h"
 #include "lf/storage/packed/unfinished_files.h"
 #include "lf/storage/tables/calibration_tables.h"
 
@@ -32,12 +35,15 @@ std::string NewStoreId() {
 
 Result<void> WriteImages(const LightField& light_field, const PackedStorePlan& plan,
                          Database* database) {
-  LF_CHECK(plan.whole_ids.empty() || plan.whole_ids.size() == light_field.size());
   LF_ASSIGN_OR_RETURN(
       Statement insert,
       database->Prepare("insert into lf_images values (?, ?, ?, ?, ?, ?, ?, ?, ?)"));
   for (uint32_t i = 0; i < light_field.size(); ++i) {
-    insert.Bind(0, int64_t{i}).Bind(1, int64_t{plan.whole_ids.empty() ? i : plan.whole_ids[i]});
+    insert.Bind(0, int64_t{i});
+    if (light_field.cameras[i].is_virtual)
+      insert.BindNull(1);
+    else
+      insert.Bind(1, int64_t{plan.whole_ids.empty() ? i : plan.whole_ids[i]});
     insert.Bind(2, std::string_view(light_field.image_names[i]));
     BindCamera(light_field, LfImageId{i}, 3, &insert);
     LF_RETURN_IF_ERROR(insert.Run());
@@ -45,20 +51,45 @@ Result<void> WriteImages(const LightField& light_field, const PackedStorePlan& p
   return {};
 }
 
-Result<bool> HasTables(Database* database) {
-  LF_ASSIGN_OR_RETURN(
-      Statement select,
-      database->Prepare("select 1 from sqlite_master where name = 'settings' and type = 'table'"));
-  return select.Step();
+// Writes the list of virtual LF images.
+Result<void> WriteVirtual(const LightField& light_field, Database* database) {
+  LF_ASSIGN_OR_RETURN(Statement insert, database->Prepare("insert into virtual_images values (?)"));
+  for (uint32_t i = 0; i < light_field.size(); ++i)
+    if (light_field.cameras[i].is_virtual) LF_RETURN_IF_ERROR(insert.Bind(0, int64_t{i}).Run());
+  return {};
 }
+
+// Checks that only a densified store has virtual LF images. kUsage: one has the name of another LF
+// image, by which packages would confuse the two.
+Result<void> CheckVirtual(const LightField& light_field, const PackedStorePlan& plan) {
+  LF_CHECK(plan.densified || !HasVirtual(light_field));
+  LF_CHECK(!plan.densified || !plan.densified->settings.empty());
+  LF_CHECK(plan.whole_ids.empty() || plan.whole_ids.size() == light_field.size());
+  std::unordered_map<std::string_view, int> uses;
+  for (uint32_t i = 0; i < light_field.size(); ++i) {
+    const bool is_virtual = light_field.cameras[i].is_virtual;
+    if (is_virtual) ++uses[light_field.image_names[i]];
+    LF_CHECK(plan.whole_ids.empty() || is_virtual == (plan.whole_ids[i] == kNoWholeId));
+  }
+  for (uint32_t i = 0; i < light_field.size(); ++i)
+    if (const auto use = uses.find(light_field.image_names[i]);
+        use != uses.end() && use->second > (light_field.cameras[i].is_virtual ? 1 : 0))
+      return UsageError(
+          fmt::format("two LF images, of which one is virtual, have the name '{}': rename the one "
+                      "that is recorded",
+                      use->first));
+  return {};
+}
+
+Result<bool> HasTables(Database* database) { return HasTable(database, "settings"); }
 
 // Makes all tables of a store in one transaction, so that a program that is killed here leaves all
 // tables or none.
 Result<void> MakeTables(const LightField& light_field, const PackedStorePlan& plan,
                         Database* database) {
-  LF_RETURN_IF_ERROR(
-      database->Execute(fmt::format("begin; {}{}{}{}", kSettingsTable, kIntrinsicsTable,
-                                    kStoreTables, plan.shard_bytes > 0 ? "" : kBlobsTable)));
+  LF_RETURN_IF_ERROR(database->Execute(fmt::format(
+      "begin; {}{}{}{}{}", kSettingsTable, kIntrinsicsTable, kStoreTables,
+      plan.shard_bytes > 0 ? "" : kBlobsTable, plan.densified ? kDensifiedTables : "")));
   LF_RETURN_IF_ERROR(WriteSettings({{"written_by", "lfrendertools " + plan.version},
                                     {"light_field", plan.source},
                                     {"state", kUnfinished},
@@ -68,6 +99,7 @@ Result<void> MakeTables(const LightField& light_field, const PackedStorePlan& pl
   LF_RETURN_IF_ERROR(WriteSettings(SettingsOfPlan(light_field, plan), database));
   LF_RETURN_IF_ERROR(WriteIntrinsics(light_field.intrinsics, database));
   LF_RETURN_IF_ERROR(WriteImages(light_field, plan, database));
+  if (plan.densified) LF_RETURN_IF_ERROR(WriteVirtual(light_field, database));
   return database->Execute("commit");
 }
 
@@ -86,6 +118,7 @@ struct PackedStoreWriter::State {
   std::vector<bool> has;
   std::optional<Database> database;
   std::optional<Statement> insert_code;
+  std::optional<PlaneTable> planes;  // set if the store is densified
   int shard_count = 0;
   uint64_t bytes_in_shard = 0;
   std::optional<Database> shard;  // the last shard, to which images are added
@@ -103,6 +136,7 @@ struct PackedStoreWriter::State {
     insert_blob.reset();
     shard.reset();
     insert_code.reset();
+    planes.reset();
     database.reset();
   }
 
@@ -110,12 +144,16 @@ struct PackedStoreWriter::State {
   Result<void> TakeShardsBack() const;
   Result<void> CheckIsFree(const fs::path& shard_path) const;
   Result<void> OpenShard(int number);
+  Result<void> BeginInBatch();
   Result<void> Insert(LfImageId id, const CodedImage& image);
+  Result<void> InsertPlane(LfImageId id, PlaneKind kind, std::string_view code);
+  Result<void> CommitIfDue();
   Result<void> CommitBatch();
   Result<void> FinishFiles();
-  Error Failed(Error error) {
-    failed = error;
-    return error;
+  // Returns `result`, and remembers an error, after which nothing can be added.
+  Result<void> Kept(Result<void> result) {
+    if (!result) failed = result.error();
+    return result;
   }
 };
 
@@ -201,6 +239,15 @@ Result<void> PackedStoreWriter::State::OpenShard(int number) {
   return {};
 }
 
+// Begins a batch unless one is open, and counts one more image or plane in it.
+Result<void> PackedStoreWriter::State::BeginInBatch() {
+  if (batch_size++ > 0) return {};
+  LF_RETURN_IF_ERROR(database->Execute("begin"));
+  if (shard) LF_RETURN_IF_ERROR(shard->Execute("begin"));
+  batch_begin = std::chrono::steady_clock::now();
+  return {};
+}
+
 Result<void> PackedStoreWriter::State::Insert(LfImageId id, const CodedImage& image) {
   const uint64_t bytes = image.code.size() + image.mask.size();
   if (shard_bytes > 0 &&
@@ -209,12 +256,7 @@ Result<void> PackedStoreWriter::State::Insert(LfImageId id, const CodedImage& im
     LF_RETURN_IF_ERROR(OpenShard(shard_count + 1));
     bytes_in_shard = 0;
   }
-  if (batch_size == 0) {
-    LF_RETURN_IF_ERROR(database->Execute("begin"));
-    if (shard) LF_RETURN_IF_ERROR(shard->Execute("begin"));
-    batch_begin = std::chrono::steady_clock::now();
-  }
-  ++batch_size;
+  LF_RETURN_IF_ERROR(BeginInBatch());
   if (!insert_blob) {
     // Uses "or replace", because the row may exist: an earlier program may have committed it to a
     // shard, and ended before it committed the row of the table `codes` to the store.
@@ -237,7 +279,22 @@ Result<void> PackedStoreWriter::State::Insert(LfImageId id, const CodedImage& im
   insert_code->Bind(8, static_cast<int64_t>(image.source_bytes));
   LF_RETURN_IF_ERROR(insert_code->Run());
   bytes_in_shard += bytes;
-  return {};
+  has[id.value] = true;
+  return CommitIfDue();
+}
+
+Result<void> PackedStoreWriter::State::InsertPlane(LfImageId id, PlaneKind kind,
+                                                   std::string_view code) {
+  LF_RETURN_IF_ERROR(BeginInBatch());
+  LF_RETURN_IF_ERROR(planes->Insert(id, kind, code));
+  return CommitIfDue();
+}
+
+// Commits the batch if it is large or old enough.
+Result<void> PackedStoreWriter::State::CommitIfDue() {
+  if (batch_size < kImagesPerBatch && std::chrono::steady_clock::now() - batch_begin < kBatchAge)
+    return {};
+  return CommitBatch();
 }
 
 // Commits the encoded images in the shard before the rows of the store that refer to them.
@@ -280,6 +337,7 @@ Result<PackedStoreWriter> PackedStoreWriter::Open(const fs::path& path,
                                                   const PackedStorePlan& plan,
                                                   std::optional<FileLock> lock) {
   LF_CHECK(light_field.size() > 0);
+  LF_RETURN_IF_ERROR(CheckVirtual(light_field, plan));
   auto state = std::make_unique<State>();
   state->path = path;
   if (lock) {
@@ -311,6 +369,11 @@ Result<PackedStoreWriter> PackedStoreWriter::Open(const fs::path& path,
   LF_ASSIGN_OR_RETURN(
       state->insert_code,
       state->database->Prepare("insert into codes values (?, ?, ?, ?, ?, ?, ?, ?, ?)"));
+  if (plan.densified) {
+    LF_ASSIGN_OR_RETURN(
+        state->planes,
+        PlaneTable::Open(settings, light_field, plan.densified->plane_divisor, &*state->database));
+  }
   if (state->shard_count > 0) {
     LF_RETURN_IF_ERROR(state->TakeShardsBack());
     LF_RETURN_IF_ERROR(state->OpenShard(state->shard_count));
@@ -365,23 +428,44 @@ Result<void> PackedStoreWriter::Add(LfImageId id, const CodedImage& image) {
   if (state.failed) return *state.failed;
   LF_CHECK(id.value < state.has.size() && !state.has[id.value]);
   LF_CHECK(!image.rect.empty() && !image.code.empty());
-  if (const Result<void> inserted = state.Insert(id, image); !inserted)
-    return state.Failed(inserted.error());
-  state.has[id.value] = true;
-  if (state.batch_size < kImagesPerBatch &&
-      std::chrono::steady_clock::now() - state.batch_begin < kBatchAge)
-    return {};
-  if (const Result<void> committed = state.CommitBatch(); !committed)
-    return state.Failed(committed.error());
-  return {};
+  return state.Kept(state.Insert(id, image));
+}
+
+bool PackedStoreWriter::HasPlane(LfImageId id, PlaneKind kind) const {
+  const std::lock_guard lock(state_->mutex);
+  LF_CHECK(state_->planes);
+  return state_->planes->Has(id, kind);
+}
+
+Result<void> PackedStoreWriter::AddPlane(LfImageId id, PlaneKind kind,
+                                         const Image<uint16_t>& plane) {
+  const std::string code = EncodePlane(plane);
+  const std::lock_guard lock(state_->mutex);
+  State& state = *state_;
+  if (state.failed) return *state.failed;
+  LF_CHECK(state.planes && state.planes->Fits(id, {plane.width(), plane.height()}));
+  LF_CHECK(!state.planes->Has(id, kind));
+  return state.Kept(state.InsertPlane(id, kind, code));
+}
+
+Result<Image<uint16_t>> PackedStoreWriter::ReadPlane(LfImageId id, PlaneKind kind) const {
+  std::unique_lock lock(state_->mutex);
+  LF_ASSIGN_OR_RETURN(const StoredPlane plane, state_->planes->Read(id, kind));
+  lock.unlock();
+  return DecodePlane(plane);
+}
+
+Result<void> PackedStoreWriter::DropPlanes(PlaneKind kind) {
+  const std::lock_guard lock(state_->mutex);
+  if (state_->failed) return *state_->failed;
+  LF_RETURN_IF_ERROR(state_->Kept(state_->CommitBatch()));
+  return state_->Kept(state_->planes->Drop(kind));
 }
 
 Result<void> PackedStoreWriter::Commit() {
   const std::lock_guard lock(state_->mutex);
   if (state_->failed) return *state_->failed;
-  if (const Result<void> committed = state_->CommitBatch(); !committed)
-    return state_->Failed(committed.error());
-  return {};
+  return state_->Kept(state_->CommitBatch());
 }
 
 Result<void> PackedStoreWriter::Finish() {

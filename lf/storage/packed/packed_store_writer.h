@@ -21,14 +21,18 @@ namespace lf {
 
 // Everything that determines a store. An unfinished store is resumed only with an equal plan.
 struct PackedStorePlan {
-  LightFieldIdentity whole;         // identity of the light field that the LF images are from
-  std::vector<uint32_t> whole_ids;  // id of each LF image in `whole`; empty: 0, 1, 2, ...
-  std::vector<PixelRect> rects;     // pixels of each LF image that are encoded; empty: all pixels
-  std::string codec;                // all settings of the encoder, in words
+  LightFieldIdentity whole;  // identity of the light field that the LF images are from
+  // Id of each LF image in `whole`; kNoWholeId for virtual ones. Empty: 0, 1, 2, ..., and
+  // kNoWholeId for virtual ones.
+  std::vector<uint32_t> whole_ids;
+  std::vector<PixelRect> rects;  // pixels of each LF image that are encoded; empty: all pixels
+  std::string codec;             // all settings of the encoder, in words
   std::optional<DisplayLevels> display_levels = {};  // set if images are encoded as kDisplay16
   // Size of a shard. If it is not 0, the encoded images are in STORE-0001.lfs, STORE-0002.lfs, ...
   // of about this size, beside STORE.lfs, which has everything else. 0: the store is one file.
   uint64_t shard_bytes = 0;
+  // Makes a densified store. Must be set if an LF image is virtual.
+  std::optional<DensifiedPlan> densified = {};
   // `source` and `version` are for information only. They may differ when an unfinished store is
   // resumed.
   std::string source;   // LIGHTFIELD or packages, as the user gave them
@@ -57,7 +61,7 @@ class PackedStoreWriter {
   // Begins a new store of the LF images of `light_field`, which has at least one LF image and need
   // not outlive the call. Takes the lock if `lock` is not given. kUsage: there is an unfinished
   // store, or a file with the name of the first shard that does not belong to the store that is
-  // replaced.
+  // replaced; or a virtual LF image has the name of another LF image.
   // kOutput: the disk fails, or another writer holds the lock.
   static Result<PackedStoreWriter> Create(const std::filesystem::path& path,
                                           const LightField& light_field,
@@ -90,7 +94,21 @@ class PackedStoreWriter {
   // at the same time. kOutput: the disk fails; no LF image can be added afterwards. kUsage: a file
   // that does not belong to the store has the name of the next shard.
   Result<void> Add(LfImageId id, const CodedImage& image);
-  // Commits the LF images that were added, so that they are on the disk permanently.
+
+  // The functions of planes are for densified stores. They may be called by many threads at the
+  // same time, also together with Add(). Planes are committed in the same batches as LF images.
+  // Returns true if the plane was added in this run or an earlier one.
+  bool HasPlane(LfImageId id, PlaneKind kind) const;
+  // Adds a plane of a recorded LF image, which the store does not have. Its size must be
+  // PlaneSizeOf() of the LF image. Errors as Add().
+  Result<void> AddPlane(LfImageId id, PlaneKind kind, const Image<uint16_t>& plane);
+  // Reads a plane for which HasPlane() is true. kInput: it is damaged. kOutput: the disk fails.
+  Result<Image<uint16_t>> ReadPlane(LfImageId id, PlaneKind kind) const;
+  // Commits, and removes all planes of a kind for good. Later planes and LF images reuse their
+  // space, but the file does not become smaller. kOutput: the disk fails.
+  Result<void> DropPlanes(PlaneKind kind);
+
+  // Commits the LF images and planes that were added, so that they are on the disk permanently.
   Result<void> Commit();
   // Commits, marks the store as complete and gives it its final name, replacing an older store.
   // Shards are renamed first. LF images that were not added are listed without an encoded image.

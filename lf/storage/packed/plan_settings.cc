@@ -9,6 +9,7 @@
 
 #include "lf/core/hash.h"
 #include "lf/storage/packed/packed_format.h"
+#include "lf/storage/packed/plane_table.h"
 #include "lf/storage/tables/stored_numbers.h"
 
 namespace lf {
@@ -44,10 +45,12 @@ constexpr SettingWords kSettingWords[] = {
     {"light_field.calibration", "another calibration (poses, gains or intrinsics)", false},
     {"images", "a number of stored LF images of", true},
     {"images.names", "LF images of other names", false},
-    {"images.calibration", "another calibration (poses, gains or intrinsics)", false},
+    {"images.calibration", "another calibration (poses, gains, intrinsics or virtual LF images)",
+     false},
     {"images.whole_ids", "another part of the light field's LF images", false},
     {"images.rects", "other parts of the LF images' pixels", false},
     {"shard_bytes", "a --shard-size, in bytes, of", true},
+    {kDensifiedKey, "settings of the densifier of", true},
     {"response", "another response curve", false}};
 
 // Returns the difference of a setting, in the words of kSettingWords, or of its key.
@@ -77,6 +80,10 @@ SettingList SettingsOfPlan(const LightField& light_field, const PackedStorePlan&
                           {"codec", plan.codec},
                           {"display_levels", TextOf(plan.display_levels)},
                           {"shard_bytes", fmt::format("{}", plan.shard_bytes)}};
+  if (plan.densified) {
+    const SettingList densified = SettingsOf(*plan.densified);
+    settings.insert(settings.begin(), densified.begin(), densified.end());
+  }
   const SettingList pixels = SettingsOfPixels(light_field);
   settings.insert(settings.end(), pixels.begin(), pixels.end());
   return settings;
@@ -84,6 +91,8 @@ SettingList SettingsOfPlan(const LightField& light_field, const PackedStorePlan&
 
 std::optional<std::string> FirstDifference(const Settings& settings, const LightField& light_field,
                                            const PackedStorePlan& plan, bool any_shards) {
+  if (!plan.densified && !settings.Text(kDensifiedKey).empty())
+    return TextOfDifference(kDensifiedKey, settings.Text(kDensifiedKey), "");
   for (const auto& [key, value] : SettingsOfPlan(light_field, plan))
     if (settings.Text(key) != value && !(any_shards && key == "shard_bytes"))
       return TextOfDifference(key, settings.Text(key), value);
