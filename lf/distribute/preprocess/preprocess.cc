@@ -376,6 +376,7 @@ Result<void> Preprocessor::CountMissing(const Package& package, PackageForecast*
 Package Preprocessor::PackageOf(const Section& section, const Gathering& gathering) const {
   Package package;
   package.whole = whole_;
+  package.whole_virtual_count = light_field_.size() - RecordedCount(light_field_);
   package.choices = {options_.order,         options_.seed,          options_.max_image_count,
                      options_.max_angle_rad, needs_.HasNeighbours(), NameOf(options_.mode)};
   package.path = path_;

@@ -77,6 +77,7 @@ struct Package {
   CameraPath path;                   // camera path of the whole film
   std::vector<PackageFrame> frames;  // the frames to render, by ascending ids
   LightFieldIdentity whole;          // identity of the light field from which the package is made
+  size_t whole_virtual_count = 0;    // number of its virtual LF images
   PackageChoices choices;
   // In the order of light_field.cameras. Empty if PackageOfAll() made the package.
   std::vector<PackageImage> images;

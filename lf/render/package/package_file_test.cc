@@ -99,6 +99,44 @@ class PackageFileTest : public ::testing::Test {
   fs::path path_;
 };
 
+TEST_F(PackageFileTest, KeepsTheMarksOfVirtualImages) {
+  Package package = TestPackage();
+  Write(package);
+  const std::string recorded = *ReadFile(path_);
+  EXPECT_EQ(ReadPackage(path_)->whole_virtual_count, 0u);
+  EXPECT_EQ(recorded.find("virtual"), std::string::npos);
+  package.whole_virtual_count = 500;
+  for (uint32_t i = 3; i < 40; i += 5) package.light_field.cameras[i].is_virtual = true;
+  Write(package);
+  const Result<Package> read = ReadPackage(path_);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->whole_virtual_count, 500u);
+  EXPECT_EQ(IdentityOf(read->light_field), IdentityOf(package.light_field));
+  for (uint32_t i = 0; i < 40; ++i)
+    EXPECT_EQ(read->light_field.cameras[i].is_virtual, i % 5 == 3) << i;
+}
+
+TEST_F(PackageFileTest, WrongMarksOfVirtualImagesAreDamage) {
+  Package package = TestPackage();
+  package.whole_virtual_count = 1;
+  package.light_field.cameras[2].is_virtual = true;
+  for (const auto& [sql, words] :
+       {std::pair("insert into virtual_images values (51)", "LF image 51 is virtual, but missing"),
+        std::pair("insert into virtual_images values (4294967346)", "is virtual, but missing"),
+        std::pair("update settings set value = '1001' where key = 'light_field.virtual'",
+                  "setting light_field.virtual"),
+        std::pair("update settings set value = '0' where key = 'light_field.virtual'",
+                  "setting light_field.virtual"),
+        std::pair("delete from settings where key = 'light_field.virtual'",
+                  "setting light_field.virtual")}) {
+    Write(package);
+    ASSERT_TRUE(Database::OpenToAppend(path_, kPackageFormat).value().Execute(sql)) << sql;
+    const Result<Package> read = ReadPackage(path_, {.check_seal = false});
+    ASSERT_FALSE(read) << sql;
+    EXPECT_NE(read.error().message.find(words), std::string::npos) << read.error().message;
+  }
+}
+
 TEST_F(PackageFileTest, ReadsWhatWasWrittenToTheBit) {
   const Package package = TestPackage();
   Write(package);

@@ -21,6 +21,10 @@ create table frames (frame integer primary key, time_s real, x real, y real, z r
   lf_images integer, rays integer, camera_distance real, surroundings blob);
 )";
 
+// Further table of a package with virtual LF images: their numbers in the whole light field.
+inline constexpr const char* kVirtualTable =
+    "create table virtual_images (id integer primary key);";
+
 // Number of values that describe a frame's camera exactly: fx, fy, cx, cy, skew, width, height;
 // pose; radius, blades and rotation of the aperture; normal and offset of the focus plane; time,
 // focal length, sensor width, focus distance, horizontal and vertical tilt, unit_m.

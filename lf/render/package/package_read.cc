@@ -45,6 +45,7 @@ class Reader {
   Result<void> ReadChoices();
   Result<void> ReadImages();
   Result<void> ReadImage(const Statement& row);
+  Result<void> ReadVirtual();
   Result<void> ReadFrames();
   Result<void> ReadSurroundings(const std::vector<double>& numbers, int64_t frame);
   fs::path Folder() const;
@@ -129,6 +130,7 @@ Result<void> Reader::ReadImages() {
       "select place, id, name, mask, intrinsics, gain, pose, file_bytes, x_begin, y_begin, x_end, "
       "y_end, frames, rays from lf_images order by id",
       [this](const Statement& row) { return ReadImage(row); }));
+  LF_RETURN_IF_ERROR(ReadVirtual());
   LightField& light_field = package_.light_field;
   if (std::all_of(light_field.mask_names.begin(), light_field.mask_names.end(),
                   [](const std::string& name) { return name.empty(); }))
@@ -140,6 +142,32 @@ Result<void> Reader::ReadImages() {
   std::sort(places.begin(), places.end());
   if (std::adjacent_find(places.begin(), places.end()) != places.end())
     return Damaged("two LF images have the same place in the order");
+  return {};
+}
+
+// Marks the virtual LF images. Most packages have none, and lack the table.
+Result<void> Reader::ReadVirtual() {
+  LF_ASSIGN_OR_RETURN(const bool has_virtual, HasTable(&database_, "virtual_images"));
+  if (!has_virtual) return {};
+  LF_ASSIGN_OR_RETURN(const uint64_t count, settings_.Whole("light_field.virtual"));
+  if (count > package_.whole.image_count)
+    return settings_.Wrong("light_field.virtual", "at most the number of LF images");
+  package_.whole_virtual_count = count;
+  LF_RETURN_IF_ERROR(ForEachRow(
+      database_, "select id from virtual_images", [this](const Statement& row) -> Result<void> {
+        LF_ASSIGN_OR_RETURN(const int64_t id, row.Integer(0));
+        const auto image = std::lower_bound(
+            package_.images.begin(), package_.images.end(), id,
+            [](const PackageImage& a, int64_t wanted) { return int64_t{a.id} < wanted; });
+        if (image == package_.images.end() || int64_t{image->id} != id)
+          return Damaged(fmt::format("LF image {} is virtual, but missing", id));
+        const auto index = static_cast<size_t>(image - package_.images.begin());
+        package_.light_field.cameras[index].is_virtual = true;
+        return {};
+      }));
+  const LightField& light_field = package_.light_field;
+  if (light_field.size() - RecordedCount(light_field) > count)
+    return settings_.Wrong("light_field.virtual", "at least the number of virtual LF images");
   return {};
 }
 
@@ -249,7 +277,8 @@ bool IsPackageName(const fs::path& path) { return path.extension() == ".lfp"; }
 
 Result<Package> ReadPackage(const fs::path& path, const ReadPackageOptions& options) {
   const std::string tables = std::string(kSettingsTable) + kIntrinsicsTable + kPackageTables;
-  LF_ASSIGN_OR_RETURN(Database database, Database::Open(path, kPackageFormat, {tables}));
+  LF_ASSIGN_OR_RETURN(Database database,
+                      Database::Open(path, kPackageFormat, {tables, tables + kVirtualTable}));
   if (options.check_seal) LF_RETURN_IF_ERROR(CheckSeal(path, kPackageFormat.name));
   return Reader(std::move(database), path).Read();
 }

@@ -30,6 +30,7 @@ class Writer {
     LF_RETURN_IF_ERROR(WriteSettings(SettingsOf(final_path, notes), &database_));
     LF_RETURN_IF_ERROR(WriteIntrinsics(light_field_.intrinsics, &database_));
     LF_RETURN_IF_ERROR(WriteImages());
+    if (package_.whole_virtual_count > 0) LF_RETURN_IF_ERROR(WriteVirtual());
     LF_RETURN_IF_ERROR(WriteFrames());
     return database_.Execute("commit");
   }
@@ -62,6 +63,8 @@ class Writer {
         {"mode", choices.mode},
         {"fps", fmt::format("{}", package_.path.fps)},
         {"path_unit_m", fmt::format("{}", package_.path.unit_m)}};
+    if (package_.whole_virtual_count > 0)
+      settings.emplace_back("light_field.virtual", fmt::format("{}", package_.whole_virtual_count));
     settings.insert(settings.end(), pixels.begin(), pixels.end());
     settings.insert(settings.end(), of_choices.begin(), of_choices.end());
     return settings;
@@ -70,6 +73,7 @@ class Writer {
   // Writes one row for each LF image, by ascending ranks, because SQLite then only appends rows.
   Result<void> WriteImages() {
     LF_CHECK(package_.images.size() == light_field_.size());
+    LF_CHECK(light_field_.size() - RecordedCount(light_field_) <= package_.whole_virtual_count);
     LF_ASSIGN_OR_RETURN(Statement image,
                         database_.Prepare("insert into lf_images values "
                                           "(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"));
@@ -82,6 +86,18 @@ class Writer {
       const int64_t place = package_.places.of_images[i];
       LF_RETURN_IF_ERROR(WriteImage(&image, i, place));
     }
+    return {};
+  }
+
+  // Makes and writes the table that only packages of light fields with virtual LF images have, so
+  // that the bytes of all other packages stay the same.
+  Result<void> WriteVirtual() {
+    LF_RETURN_IF_ERROR(database_.Execute(kVirtualTable));
+    LF_ASSIGN_OR_RETURN(Statement insert,
+                        database_.Prepare("insert into virtual_images values (?)"));
+    for (size_t i = 0; i < light_field_.size(); ++i)
+      if (light_field_.cameras[i].is_virtual)
+        LF_RETURN_IF_ERROR(insert.Bind(0, int64_t{package_.images[i].id}).Run());
     return {};
   }
 

@@ -5,7 +5,6 @@
 
 #include <filesystem>
 #include <string>
-#include <string_view>
 
 #include "lf/light_field/model/light_field.h"
 #include "lf/light_field/model/light_field_identity.h"
@@ -64,14 +63,6 @@ struct OpenedStore {
 };
 // kInput: the file cannot be read, or is no complete packed store.
 Result<OpenedStore> OpenComplete(const std::filesystem::path& path);
-
-inline Result<bool> HasTable(Database* database, std::string_view name) {
-  LF_ASSIGN_OR_RETURN(
-      Statement select,
-      database->Prepare("select 1 from sqlite_master where name = ? and type = 'table'"));
-  select.Bind(0, name);
-  return select.Step();
-}
 
 // Name of each StoredValues in the column `kind` of the table `codes`, in the order of the
 // enumeration.

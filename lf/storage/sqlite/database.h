@@ -116,6 +116,15 @@ class Database {
   std::shared_ptr<State> state_;
 };
 
+// Returns true if the database has a table of this name.
+inline Result<bool> HasTable(Database* database, std::string_view name) {
+  LF_ASSIGN_OR_RETURN(
+      Statement select,
+      database->Prepare("select 1 from sqlite_master where name = ? and type = 'table'"));
+  select.Bind(0, name);
+  return select.Step();
+}
+
 // Calls row(statement), which returns a Result<void>, for every row that an SQL command without
 // parameters returns. Ends at the first error.
 template <class Row>
