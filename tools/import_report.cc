@@ -101,6 +101,8 @@ void AddDensity(const Density& density, std::string* lines) {
 
 std::string ImagesText(const ImportReport& report) {
   std::string text = fmt::format("{}", report.capture.image_count);
+  if (report.capture.virtual_count > 0)
+    text += fmt::format(" recorded, {} virtual", report.capture.virtual_count);
   if (report.capture.mask_count > 0) text += fmt::format(", {} masks", report.capture.mask_count);
   if (report.excluded_count > 0) text += fmt::format(", {} left out", report.excluded_count);
   if (!report.faults) return text + ", not checked";
@@ -229,6 +231,7 @@ std::string ReportJson(const ImportReport& report) {
   }
   json["pixels"] = OrNull(report.pixels);
   json["cameras"] = Json::array();
+  if (capture.virtual_count > 0) json["virtual"] = capture.virtual_count;
   for (const CameraGroup& group : capture.groups) json["cameras"].push_back(JsonOf(group));
   json["positions_w"] = {{"min", JsonOf(capture.box_min_w)}, {"max", JsonOf(capture.box_max_w)}};
   json["spacing_w"] = OrNull(capture.spacing_w);

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tools/common/light_field_argument.h"
@@ -14,6 +15,7 @@
 #include "lf/core/shell_word.h"
 #include "lf/focus/example_path.h"
 #include "lf/light_field/model/capture_geometry.h"
+#include "lf/light_field/model/keep_images.h"
 #include "lf/storage/load/open_store.h"
 
 namespace {
@@ -148,7 +150,9 @@ int main(int argc, char** argv) {
 
   return program.Run(argc, argv, [&]() -> lf::Result<void> {
     LF_RETURN_IF_ERROR(CheckMayWrite(output));
-    LF_ASSIGN_OR_RETURN(const lf::LightField light_field, input.Open());
+    LF_ASSIGN_OR_RETURN(lf::LightField opened, input.Open());
+    // Focus and aperture are chosen for what was recorded.
+    const lf::LightField light_field = lf::RecordedPart(std::move(opened));
     lf::ExampleOptions options;
     options.move = *lf::ParseExampleMove(move);
     if (focus > 0) options.focus_distance_w = focus;

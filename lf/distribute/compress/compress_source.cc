@@ -25,9 +25,10 @@ struct Needed {
   PixelRect rect;
 };
 
-// Refuses packed stores, because lossy compression would be applied twice.
+// Refuses packed stores, because lossy compression would be applied twice, and virtual LF images,
+// which only the densified store has that was made with them.
 Result<void> CheckNotPacked(const LightField& light_field) {
-  if (!HoldsPackedStore(light_field)) return {};
+  if (!HoldsPackedStore(light_field) && !HasVirtual(light_field)) return {};
   return UsageError(fmt::format(
       "{}: is a packed store, which cannot be compressed again: give the light field that it was "
       "made from",

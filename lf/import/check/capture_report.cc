@@ -11,6 +11,7 @@
 #include "lf/import/check/nearest_distances.h"
 #include "lf/light_field/model/brackets.h"
 #include "lf/light_field/model/capture_geometry.h"
+#include "lf/light_field/model/keep_images.h"
 
 namespace lf {
 namespace {
@@ -134,6 +135,15 @@ void Append(std::vector<CaptureWarning> warnings, CaptureReport* report) {
 CaptureReport ReportCapture(const LightField& light_field, const CaptureReportOptions& options,
                             ThreadPool& pool) {
   LF_CHECK(light_field.size() > 0);
+  if (const size_t recorded = RecordedCount(light_field);
+      recorded > 0 && recorded < light_field.size()) {
+    CaptureReportOptions of_recorded = {options.distance_w};
+    for (size_t i = 0; i < options.lights.size(); ++i)
+      if (!light_field.cameras[i].is_virtual) of_recorded.lights.push_back(options.lights[i]);
+    CaptureReport report = ReportCapture(RecordedPart(light_field), of_recorded, pool);
+    report.virtual_count = light_field.size() - recorded;
+    return report;
+  }
   CaptureReport report;
   report.image_count = light_field.size();
   report.mask_count = static_cast<size_t>(

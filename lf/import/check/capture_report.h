@@ -60,7 +60,8 @@ struct CaptureWarning {
 };
 
 struct CaptureReport {
-  size_t image_count = 0;
+  size_t image_count = 0;    // number of recorded LF images
+  size_t virtual_count = 0;  // number of virtual LF images, which nothing else here counts
   size_t mask_count = 0;
   std::vector<CameraGroup> groups;  // the largest image_count first
   Vec3 box_min_w = Vec3::Zero();    // bounding box of the camera positions
@@ -84,7 +85,8 @@ struct CaptureReportOptions {
   std::vector<double> lights = {};   // LightOf() (exif_gains.h) of each LF image; empty: unknown
 };
 
-// Reports about a light field, which must have at least one LF image. The kinds of warnings are:
+// Reports about a light field, which must have at least one LF image. Virtual LF images are only
+// counted, unless there are no others: the report is about the capture. The kinds of warnings are:
 //   facing-away         cameras that look away from the common point or direction of most cameras
 //   diverging-axes      most cameras look away from the point where their axes meet
 //   upside-down         cameras whose up axis is more than 120 degrees away from the common up axis

@@ -77,6 +77,28 @@ TEST(CaptureReport, TellsWhereTheCamerasStand) {
   EXPECT_EQ(Kinds(report), Words{});
 }
 
+TEST(CaptureReport, DescribesTheRecordedImagesAlone) {
+  const CaptureReportOptions options = {.distance_w = 2, .lights = std::vector<double>(100, 1.0)};
+  const CaptureReport recorded = ReportOf(Grid(), options);
+  LightField field = Grid();
+  for (int i = 0; i < 50; ++i) {
+    Add(*LookAlong({0.1 * (i % 10) + 0.01, 0.2 * (i / 10), 9}, {0, 0, 1}, {0, -1, 0}), &field);
+    field.cameras.back().is_virtual = true;
+  }
+  CaptureReportOptions of_all = options;
+  of_all.lights.resize(150, 1.0);
+  const CaptureReport report = ReportOf(field, of_all);
+  EXPECT_EQ(report.image_count, 100u);
+  EXPECT_EQ(report.virtual_count, 50u);
+  EXPECT_EQ(report.box_max_w, recorded.box_max_w);
+  EXPECT_EQ(report.spacing_w->median, recorded.spacing_w->median);
+  EXPECT_EQ(report.density->disparity_px, recorded.density->disparity_px);
+  EXPECT_EQ(report.groups[0].image_count, 100u);
+  // A light field without recorded LF images is described as it is.
+  for (LfCamera& camera : field.cameras) camera.is_virtual = true;
+  EXPECT_EQ(ReportOf(field, of_all).image_count, 150u);
+}
+
 TEST(CaptureReport, GroupsCamerasByModelAndSize) {
   LightField field = Grid();
   field.intrinsics.push_back(kCamera);

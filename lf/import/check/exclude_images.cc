@@ -5,9 +5,9 @@
 
 #include <string_view>
 #include <unordered_map>
-#include <utility>
 
 #include "lf/core/file.h"
+#include "lf/light_field/model/keep_images.h"
 
 namespace lf {
 namespace {
@@ -100,16 +100,7 @@ Result<size_t> ExcludeImages(std::span<const std::string> patterns, LightField* 
                     "a light field needs at least one",
                     light_field->size()));
   const size_t removed = light_field->size() - kept.size();
-  const bool has_masks = !light_field->mask_names.empty();
-  for (size_t i = 0; i < kept.size(); ++i) {
-    if (kept[i] == i) continue;
-    light_field->cameras[i] = light_field->cameras[kept[i]];
-    light_field->image_names[i] = std::move(light_field->image_names[kept[i]]);
-    if (has_masks) light_field->mask_names[i] = std::move(light_field->mask_names[kept[i]]);
-  }
-  light_field->cameras.resize(kept.size());
-  light_field->image_names.resize(kept.size());
-  if (has_masks) light_field->mask_names.resize(kept.size());
+  KeepImages(kept, light_field);
   return removed;
 }
 

@@ -33,7 +33,7 @@ Result<LightField> ReadTransformsJson(const std::filesystem::path& path);
 
 // Writes `light_field` such that reading the file returns bit-identical cameras, except that
 // distortion models whose parameters bend no ray may be read as kNone. Image names are written
-// unchanged.
+// unchanged. No LF image may be virtual.
 //   writer  name of the program; it is written with a checksum (lf_written_by) unless it is empty
 // kOutput: the file cannot be written; a name is not UTF-8, or an image name has no extension.
 Result<void> WriteTransformsJson(const LightField& light_field, const std::filesystem::path& path,

@@ -247,6 +247,7 @@ constexpr std::string_view kOpening = "{\n";
 Result<void> WriteTransformsJson(const LightField& light_field, const fs::path& path,
                                  std::string_view writer) {
   LF_CHECK(light_field.size() > 0 && light_field.image_names.size() == light_field.size());
+  LF_CHECK(!HasVirtual(light_field));  // the file has no key for the mark
   Result<std::string> text = TransformsJsonText(light_field);
   if (!text) return OutputError(fmt::format("{}: {}", path.string(), text.error().message));
   if (!writer.empty()) {
