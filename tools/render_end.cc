@@ -12,6 +12,13 @@ constexpr const char* kAdvice =
     "the report names them; once they are mended, render again without --resume, which would keep "
     "the finished frames";
 
+// Returns the number of LF images that were to be read, recorded and virtual ones, because both may
+// be missing. `Report` is a RenderReport or a PackageReport.
+template <class Report>
+size_t ReadCount(const Report& report) {
+  return report.selected_image_count + report.selected_virtual_count;
+}
+
 // Returns how many LF images packages lack, such as "2 of 20 in package-0000, 1 of 18 in
 // package-0003".
 std::string PackagesText(const RenderReport& report) {
@@ -22,7 +29,7 @@ std::string PackagesText(const RenderReport& report) {
     if (package.skipped_image_count == 0) continue;
     if (++count > kMostNamed) continue;
     text += fmt::format("{}{} of {} in {}", text.empty() ? "" : ", ", package.skipped_image_count,
-                        package.selected_image_count, package.name);
+                        ReadCount(package), package.name);
   }
   if (count > kMostNamed) text += fmt::format(", and some in {} others", count - kMostNamed);
   return text;
@@ -31,7 +38,7 @@ std::string PackagesText(const RenderReport& report) {
 }  // namespace
 
 MissingImages MissingOf(const RenderReport& report, const std::string& advice) {
-  MissingImages missing{report.skipped.size(), report.selected_image_count, "", advice};
+  MissingImages missing{report.skipped.size(), ReadCount(report), "", advice};
   if (missing.count == 0) return missing;
   const SkippedImage& first = report.skipped.front();
   if (report.packages.size() > 1)
@@ -45,11 +52,11 @@ MissingImages MissingOf(const RenderReport& report, const std::string& advice) {
 
 bool Accepts(const MissingLimit& limit, const RenderReport& report) {
   if (report.packages.empty() || !limit.is_share())
-    return limit.Allows(report.skipped.size(), report.selected_image_count);
-  return std::all_of(
-      report.packages.begin(), report.packages.end(), [&](const PackageReport& package) {
-        return limit.Allows(package.skipped_image_count, package.selected_image_count);
-      });
+    return limit.Allows(report.skipped.size(), ReadCount(report));
+  return std::all_of(report.packages.begin(), report.packages.end(),
+                     [&](const PackageReport& package) {
+                       return limit.Allows(package.skipped_image_count, ReadCount(package));
+                     });
 }
 
 Result<void> EndOfRender(const RenderReport& report, const MissingLimit& limit,

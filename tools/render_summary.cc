@@ -173,10 +173,14 @@ void SummariseRender(const RenderReport& report, const std::string& look_at) {
           : fmt::format("{}rays, {:.3g} M/s per core, ", ShortNumber(static_cast<double>(rays)),
                         report.MraysPerSecondPerCore());
   LogInfo(
-      "{} frames {}x{} in {}: {}{} of {} LF images, peak memory {} MiB", report.frames.size(),
+      "{} frames {}x{} in {}: {}{} of {} LF images{}, peak memory {} MiB", report.frames.size(),
       report.width, report.height, ShortDuration(report.total_s), collected,
       report.selected_image_count - std::min(report.selected_image_count, report.skipped.size()),
-      report.lf_image_count, report.peak_memory_bytes >> 20);
+      report.lf_image_count,
+      report.selected_virtual_count > 0
+          ? fmt::format(" and {} virtual ones", report.selected_virtual_count)
+          : "",
+      report.peak_memory_bytes >> 20);
   TellRebinning(report);
   TellLensWeights(report);
   TellNoise(report);

@@ -7,7 +7,8 @@
 
 namespace lf {
 
-std::vector<LfImageId> CamerasAroundLens(const ImageIndex& index, const RenderCamera& frame) {
+std::vector<LfImageId> CamerasAroundLens(const ImageIndex& index, const RenderCamera& frame,
+                                         bool recorded_only) {
   const Intrinsics& k = frame.pinhole.intrinsics;
   const std::optional<Vec3> focus = FocusPointOfElement(frame, 0.5 * k.width_px, 0.5 * k.height_px);
   if (!focus) return {};
@@ -28,6 +29,7 @@ std::vector<LfImageId> CamerasAroundLens(const ImageIndex& index, const RenderCa
     size_t count = 0;
     tree.ForEachLeaf(SeenRegion(middle), [&](size_t leaf, bool /*all_inside*/) {
       for (const LfImageId id : tree.Leaf(leaf)) {
+        if (recorded_only && index.light_field().cameras[id.value].is_virtual) continue;
         const Vec3 centre_world = index.light_field().Camera(id).CentreWorld();
         ids.push_back(id);
         count += LensPointOfLine(frame, centre_world, *focus).norm() <= radius_w;

@@ -17,7 +17,9 @@ namespace lf {
 // (selection/lens_weights/frame_weights.h) of these lines pass through the lens, the lens is
 // widened until enough do, but not without limit. The ids are ascending; there are none if the
 // middle of the plate has no focus point.
-std::vector<LfImageId> CamerasAroundLens(const ImageIndex& index, const RenderCamera& frame);
+//   recorded_only  true: virtual LF images are passed over
+std::vector<LfImageId> CamerasAroundLens(const ImageIndex& index, const RenderCamera& frame,
+                                         bool recorded_only = false);
 
 // Returns the approximate distance, in world units, between the lines of neighbouring cameras of
 // CamerasAroundLens() in the lens plane (CameraDistance() in

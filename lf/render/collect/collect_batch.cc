@@ -30,8 +30,8 @@ class FrameGate {
   std::atomic<State> state_ = State::kUndecided;
 };
 
-void Count(const PixelRect& rect, bool any_accepted, FrameRays* rays) {
-  rays->image_count += any_accepted ? 1 : 0;
+void Count(const PixelRect& rect, bool any_accepted, bool is_virtual, FrameRays* rays) {
+  if (any_accepted) ++(is_virtual ? rays->virtual_count : rays->image_count);
   rays->tested_count += static_cast<uint64_t>(rect.pixel_count());
 }
 
@@ -244,7 +244,8 @@ void BatchCollector::AddToFrames(std::vector<BatchImage>& batch, std::span<Batch
       const uint64_t accepted = AddToTile(contribution, task.tile, *contribution.pixels, &sums);
       contribution.accepted_count += accepted;
       if (accepted > 0)
-        tally.TakeImage([&](size_t element, int c) { return sums.Added(element, c); });
+        tally.TakeImage(IsVirtual(batch[k].id),
+                        [&](size_t element, int c) { return sums.Added(element, c); });
     }
     sums.Flush();
     if (!frames_[frame].plate->has_opacity()) return;
@@ -273,7 +274,8 @@ void BatchCollector::AddToFrames(std::vector<BatchImage>& batch, std::span<Batch
     for (size_t k = 0; k < batch.size(); ++k) {
       const Contribution& contribution = contributions_[f * batch.size() + k];
       frames[f].rays.accepted_count += contribution.accepted_count;
-      Count(contribution.rect, contribution.accepted_count > 0, &frames[f].rays);
+      Count(contribution.rect, contribution.accepted_count > 0, IsVirtual(batch[k].id),
+            &frames[f].rays);
     }
   }
 }
@@ -333,9 +335,9 @@ void BatchCollector::AddByReference(const std::vector<BatchImage>& batch, BatchF
             ? GatherReference(lf_camera, image.pixels, camera, &plate, weights, reading_)
             : ScatterReference(lf_camera, image.pixels, camera, rect, &plate, weights);
     if (plate.has_opacity()) AddOpacityByReference(image, rect, camera, weights, &plate);
-    tally.TakeImage(total_of);
+    tally.TakeImage(IsVirtual(image.id), total_of);
     frame->rays.accepted_count += accepted;
-    Count(rect, accepted > 0, &frame->rays);
+    Count(rect, accepted > 0, IsVirtual(image.id), &frame->rays);
   }
   frame->is_done = true;
   cpu_ns_ += timer.Nanoseconds();

@@ -168,6 +168,8 @@ class BatchCollector {
                              SensorPlate* plate) const;
   void ForEachTimed(size_t count, const std::function<void(size_t)>& body);
 
+  bool IsVirtual(LfImageId id) const { return light_field_.cameras[id.value].is_virtual; }
+
   const LightField& light_field_;
   std::span<const CollectedFrame> frames_;
   RayReading reading_;

@@ -20,16 +20,18 @@ namespace lf {
 using ImageWeights = std::function<RayWeights(LfImageId id)>;
 
 struct FrameRays {
-  uint64_t image_count = 0;   // number of LF images with an accepted ray
+  uint64_t image_count = 0;   // number of recorded LF images with an accepted ray
   uint64_t tested_count = 0;  // number of LF pixels in the rectangles that the frame needs
   // Number of rays that were added to the plate. It includes rays of weight 0, except in tiles of
   // the plate (TileSums::GridOf()) whose elements all have weight 0, because these are passed over.
   uint64_t accepted_count = 0;
+  uint64_t virtual_count = 0;  // number of virtual LF images with an accepted ray
 
   FrameRays& operator+=(const FrameRays& more) {
     image_count += more.image_count;
     tested_count += more.tested_count;
     accepted_count += more.accepted_count;
+    virtual_count += more.virtual_count;
     return *this;
   }
 };

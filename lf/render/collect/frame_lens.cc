@@ -106,7 +106,7 @@ Image<float> FrameLens::EffectiveCounts() const {
                                           element(row, plate.height_px) + 0.5));
   const ApertureTest opening(camera_.aperture);
   for (const auto& [id, camera] : cameras_) {
-    if (!weights_->TakesPart(camera)) continue;
+    if (!weights_->TakesPart(camera) || light_field_.cameras[id].is_virtual) continue;
     const RayThrough ray(light_field_.Camera(LfImageId{id}), camera_.pinhole.ForwardWorld());
     const RayWeights weights = WeightsOf(LfImageId{id});
     for (int row = 0; row < sums.height(); ++row)

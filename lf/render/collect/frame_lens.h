@@ -74,10 +74,11 @@ class FrameLens {
 
   // Returns effective numbers of LF images, (sum w)^2 / sum w^2: the number of LF images of equal
   // weight that would give the same noise. Here w is the weight of an LF image in an element. The
-  // sums are over the LF images that contain the element's focus point; the result is 0 if no LF
-  // image does. Computed for the middle element of each square of EffectiveStep() x EffectiveStep()
-  // elements. Does not take broken LF images and masks into account.
-  // Shape: [rows][columns] of EffectiveSquares(). Empty if there are no lens weights.
+  // sums are over the recorded LF images that contain the element's focus point, without virtual
+  // ones, which bring no new measurement; the result is 0 if no recorded LF image does. Computed
+  // for the middle element of each square of EffectiveStep() x EffectiveStep() elements. Does not
+  // take broken LF images and masks into account. Shape: [rows][columns] of EffectiveSquares().
+  // Empty if there are no lens weights.
   Image<float> EffectiveCounts() const;
 
  private:

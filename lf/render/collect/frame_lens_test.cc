@@ -250,6 +250,32 @@ TEST(FrameLens, EffectiveCountsAreThoseOfTheWeights) {
   }
 }
 
+// Virtual LF images get weights, but are not counted.
+TEST(FrameLens, EffectiveCountsAreThoseOfRecordedImages) {
+  ThreadPool pool(2);
+  LightField field = testing::NoiseField(15);
+  RenderCamera frame = testing::NoiseFrames().front();
+  for (double* value : {&frame.pinhole.intrinsics.fx_px, &frame.pinhole.intrinsics.fy_px})
+    *value *= 4;
+  for (uint32_t i = 0; i < field.size(); ++i) field.cameras[i].is_virtual = i % 3 != 0;
+  const FrameLens lens(ImageIndex(field), frame, LensWeights::kArea, {}, pool);
+  const int middle = EffectiveStep(frame.pinhole.intrinsics) / 2;
+  double sum = 0, squares = 0;
+  size_t virtual_count = 0;
+  for (uint32_t i = 0; i < field.size(); ++i) {
+    const double weight = lens.WeightsOf(LfImageId{i}).At(middle, middle);
+    if (field.cameras[i].is_virtual) virtual_count += weight > 0 ? 1 : 0;
+    if (field.cameras[i].is_virtual) continue;
+    sum += weight;
+    squares += weight * weight;
+  }
+  ASSERT_GT(squares, 0);
+  EXPECT_GT(virtual_count, 0u);
+  EXPECT_NEAR(lens.EffectiveCounts().at(0, 0), sum * sum / squares, 1e-3);
+  for (LfCamera& camera : field.cameras) camera.is_virtual = true;
+  EXPECT_EQ(lens.EffectiveCounts().at(0, 0), 0);
+}
+
 // Rays then need both a weight and the opening of the lens.
 TEST(FrameLens, KeepsTheOpeningIfVeryManyLfImagesShareIt) {
   ThreadPool pool(2);

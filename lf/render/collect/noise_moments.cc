@@ -50,13 +50,21 @@ class HexReader {
   size_t count_ = 0;
 };
 
+// Returns the part of an element's total that recorded LF images have added.
+ElementSum OfRecorded(const ElementSum& total, const ElementMoments& moments) {
+  return {total.sum - moments.of_virtual.sum, total.count - moments.of_virtual.count};
+}
+
 // Tests some inequalities that hold for any sums S_i and counts W_i of LF images (noise_moments.h).
 // Returns false if these sums and moments break one of them, so that they cannot be right. All
 // products fit in 128 bits.
-bool CanBe(const ElementSum& total, const ElementMoments& moments) {
+bool CanBe(const ElementSum& all, const ElementMoments& moments) {
+  if (moments.of_virtual.sum > all.sum || moments.of_virtual.count > all.count) return false;
+  const ElementSum total = OfRecorded(all, moments);
   const UInt128 sum = total.sum, count = total.count, n = moments.image_count;
   const UInt128 squares = moments.sum_squares, cross = moments.cross_sum;
-  if (n == 0) return moments == ElementMoments{} && total == ElementSum{};
+  if (n == 0)
+    return squares == 0 && cross == 0 && moments.count_squares == 0 && total == ElementSum{};
   if (n > count || moments.count_squares < count || moments.count_squares > count * count)
     return false;
   if (cross < sum || cross > sum * count || squares < sum || squares > sum * sum) return false;
@@ -65,8 +73,9 @@ bool CanBe(const ElementSum& total, const ElementMoments& moments) {
 
 }  // namespace
 
-double StandardErrorOfMean(const ElementSum& total, const ElementMoments& moments) {
+double StandardErrorOfMean(const ElementSum& all, const ElementMoments& moments) {
   if (moments.image_count < 2) return std::numeric_limits<double>::infinity();
+  const ElementSum total = OfRecorded(all, moments);
   // The moments of T_i = S_i - m0 W_i (S_i, W_i and the mean m are those of noise_moments.h; m0 is
   // the integer nearest to m) are computed exactly. Only m - m0, at most 1/2, needs floating point.
   // Intermediate unsigned values may wrap, but the results are below 2^122 in magnitude, and
@@ -124,11 +133,26 @@ void NoiseMoments::AddImage(size_t index, int channel, const ElementSum& of_imag
   moments.image_count += count > 0 ? 1 : 0;
 }
 
+void NoiseMoments::AddVirtual(size_t index, int channel, const ElementSum& of_image) {
+  ElementSum& of_virtual = moments_[index * SensorPlate::kChannels + channel].of_virtual;
+  of_virtual.sum += of_image.sum;
+  of_virtual.count += of_image.count;
+}
+
+bool NoiseMoments::HasVirtual() const {
+  return std::any_of(moments_.begin(), moments_.end(),
+                     [](const ElementMoments& one) { return one.of_virtual != ElementSum{}; });
+}
+
 std::string NoiseMoments::Text() const {
   std::string text = fmt::format("{:x} {:x}", columns_, rows_);
   for (const ElementMoments& one : moments_)
     fmt::format_to(std::back_inserter(text), " {:x} {:x} {:x} {:x}", one.sum_squares, one.cross_sum,
                    one.count_squares, one.image_count);
+  if (HasVirtual())
+    for (const ElementMoments& one : moments_)
+      fmt::format_to(std::back_inserter(text), " {:x} {:x}", one.of_virtual.sum,
+                     one.of_virtual.count);
   return text;
 }
 
@@ -151,14 +175,26 @@ Result<NoiseMoments> NoiseMoments::Read(std::string_view text, const SensorPlate
     }
     if (numbers[3] > UINT32_MAX) return fault("a number of LF images below 2^32");
     ElementMoments& moments = read.moments_[i];
-    moments = {numbers[0], numbers[1], numbers[2], static_cast<uint32_t>(numbers[3])};
+    moments = {numbers[0], numbers[1], numbers[2], static_cast<uint32_t>(numbers[3]), {}};
+  }
+  const bool has_virtual = !reader.is_at_end();
+  for (ElementMoments& moments : read.moments_) {
+    if (!has_virtual) break;
+    const std::optional<UInt128> sum = reader.Next(), count = reader.Next();
+    if (!sum || !count || *sum > UINT64_MAX || *count > UINT64_MAX)
+      return fault("a sum or count below 2^64");
+    moments.of_virtual = {static_cast<uint64_t>(*sum), static_cast<uint64_t>(*count)};
+  }
+  if (!reader.is_at_end() || has_virtual != read.HasVirtual())
+    return fault("no further number after it");
+  for (size_t i = 0; i < read.moments_.size(); ++i) {
+    const ElementMoments& moments = read.moments_[i];
     const PlateElement at = read.ElementAt(i / SensorPlate::kChannels);
     const int channel = static_cast<int>(i) % SensorPlate::kChannels;
     if (!CanBe(plate.At(at.x, at.y, channel), moments))
       return fault(fmt::format("sums that fit the rays in channel {} of element ({}, {})", channel,
                                at.x, at.y));
   }
-  if (!reader.is_at_end()) return fault("no further number after it");
   return read;
 }
 

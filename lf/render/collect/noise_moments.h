@@ -38,6 +38,10 @@ namespace lf {
 
 using UInt128 = unsigned __int128;
 
+// Virtual LF images (LfCamera::is_virtual) are not independent, because they were made from
+// recorded ones. All sums of the formula are therefore over the recorded LF images alone; the sums
+// and counts of virtual ones are kept to be subtracted from those of the plate.
+
 // The moments of one element and channel, to which LF image i adds the sum S_i of its rays' values
 // and the count W_i of its rays. The plate has the sums of S_i and W_i over all LF images.
 struct ElementMoments {
@@ -45,6 +49,8 @@ struct ElementMoments {
   UInt128 cross_sum = 0;      // sum over LF images of S_i W_i (W_i: count of its rays)
   UInt128 count_squares = 0;  // sum over LF images of W_i^2
   uint32_t image_count = 0;   // number n of LF images with W_i > 0
+  ElementSum of_virtual =
+      {};  // sum and count of all virtual LF images; the rest is of recorded ones
 
   friend bool operator==(const ElementMoments&, const ElementMoments&) = default;
 };
@@ -77,14 +83,17 @@ class NoiseMoments {
   // Returns the indices of the measured elements that lie in `rect`, ascending.
   std::vector<size_t> IndicesIn(const PixelRect& rect) const;
 
-  // Adds the moments of one LF image to an element and channel. Must be called once for each LF
-  // image that adds something there, with the total that it adds. Several threads may call it at
-  // the same time, for different elements.
+  // Adds the moments of one recorded LF image to an element and channel. Must be called once for
+  // each LF image that adds something there, with the total that it adds. Several threads may call
+  // it at the same time, for different elements.
   void AddImage(size_t index, int channel, const ElementSum& of_image);
+  // Adds the sum and count of one virtual LF image to an element and channel, in the same way.
+  void AddVirtual(size_t index, int channel, const ElementSum& of_image);
 
-  // Returns the moments as text, at most 420 kB: hexadecimal numbers separated by one space. The
-  // numbers are columns, rows, and the four members of ElementMoments for every element and
-  // channel. Read() restores the same moments.
+  // Returns the moments as text, at most 650 kB: hexadecimal numbers separated by one space. The
+  // numbers are columns, rows, and the first four members of ElementMoments for every element and
+  // channel. If there are virtual LF images, the sum and count of `of_virtual` follow for every
+  // element and channel. Read() restores the same moments.
   std::string Text() const;
   // Returns the moments of a plate from the text that Text() returned for it. kInput if the text is
   // damaged or belongs to another plate: numbers are missing, or cannot be moments of the sums and
@@ -95,6 +104,8 @@ class NoiseMoments {
   friend bool operator==(const NoiseMoments&, const NoiseMoments&) = default;
 
  private:
+  bool HasVirtual() const;  // true if a virtual LF image added something
+
   int plate_width_ = 0;
   int plate_height_ = 0;
   int columns_ = 0;
@@ -121,12 +132,16 @@ class NoiseTally {
 
   // Adds to the moments, as one LF image, what the totals have gained since the last call.
   template <class TotalOf>
-  void TakeImage(const TotalOf& total_of) {
+  void TakeImage(bool is_virtual, const TotalOf& total_of) {
     for (size_t i = 0; i < elements_.size(); ++i)
       for (int c = 0; c < SensorPlate::kChannels; ++c) {
         const ElementSum total = total_of(i, c), before = before_[i][c];
         if (total == before) continue;
-        moments_->AddImage(indices_[i], c, {total.sum - before.sum, total.count - before.count});
+        const ElementSum gained = {total.sum - before.sum, total.count - before.count};
+        if (is_virtual)
+          moments_->AddVirtual(indices_[i], c, gained);
+        else
+          moments_->AddImage(indices_[i], c, gained);
         before_[i][c] = total;
       }
   }

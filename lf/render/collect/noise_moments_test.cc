@@ -82,6 +82,38 @@ TEST(NoiseMoments, KnownAnswers) {
   EXPECT_EQ((ImageSums{{{1000, 500}, {0, 0}}}).Moments().image_count, 1u);
 }
 
+// The total of the plate has rays of virtual LF images, but the noise is that of the others.
+TEST(NoiseMoments, VirtualImagesChangeNoNoise) {
+  NoiseMoments moments(1, 1);
+  SensorPlate plate(1, 1);
+  for (int c = 0; c < SensorPlate::kChannels; ++c) {
+    for (const ElementSum& recorded : {ElementSum{100, 1}, ElementSum{300, 1}}) {
+      moments.AddImage(0, c, recorded);
+      plate.Add(0, 0, c, recorded);
+    }
+    const std::string before = moments.Text();
+    for (const ElementSum& of_virtual : {ElementSum{1000, 7}, ElementSum{0, 3}}) {
+      moments.AddVirtual(0, c, of_virtual);
+      plate.Add(0, 0, c, of_virtual);
+    }
+    EXPECT_EQ(StandardErrorOfMean(plate.At(0, 0, c), moments.At(0, c)), 100);
+    EXPECT_EQ(moments.At(0, c).image_count, 2u);
+    if (c == 0) {
+      EXPECT_EQ(before.find("3e8"), std::string::npos);
+    }
+  }
+  const Result<NoiseMoments> read = NoiseMoments::Read(moments.Text(), plate);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(*read, moments);
+  EXPECT_EQ(read->Text(), moments.Text());
+  // More virtual rays than the plate has, a block of zeros, and a block that is cut off.
+  EXPECT_FALSE(NoiseMoments::Read(moments.Text(), SensorPlate(1, 1)));
+  const std::string text = moments.Text();
+  EXPECT_FALSE(NoiseMoments::Read(text.substr(0, text.rfind(' ')), plate));
+  EXPECT_FALSE(NoiseMoments::Read(text + " 0", plate));
+  EXPECT_FALSE(NoiseMoments::Read(text.substr(0, text.find(" 3e8")) + " 0 0 0 0 0 0", plate));
+}
+
 // Tests the largest counts that a plate can have, with the brightest rays.
 TEST(NoiseMoments, NothingWraps) {
   constexpr uint64_t kCount = uint64_t{1} << 43;

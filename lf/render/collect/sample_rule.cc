@@ -87,6 +87,7 @@ ReachableElements::ReachableElements(const ImageIndex& index, const RenderCamera
   std::map<uint32_t, DistortionMap> maps;
   std::vector<Viewer> viewers;
   for (const SelectedImage& image : images) {
+    if (light_field.cameras[image.id.value].is_virtual) continue;
     RayWeights counts = weights ? weights(image.id) : RayWeights();
     if (counts.are_none()) continue;
     const PinholeCamera lf_camera = light_field.Camera(image.id);

@@ -27,7 +27,8 @@ Result<uint32_t> ParseSampleRule(const std::string& text, const std::string& opt
 // channel.
 inline constexpr double kMostElements = 0.99;
 
-// The elements that can get rays, because an LF image sees their focus point through the lens. In
+// The elements that can get recorded rays, because a recorded LF image sees their focus point
+// through the lens; virtual ones do not count. In
 // each square of kGrid x kGrid elements, only the middle element is tested; the result holds for
 // the whole square.
 class ReachableElements {

@@ -106,6 +106,11 @@ Result<void> CheckFilmOptions(const Package& package, const FilmOptions& options
         "frame: give lfrenderer at most this --max-images, or make the package again",
         package.name, *most));
   LF_RETURN_IF_ERROR(CheckShard(film));
+  if (package.whole_virtual_count > 0 && (film.stop_at_samples || film.require_samples))
+    return UsageError(
+        "--stop-when and --require samples>=N count the rays of recorded LF images alone, but "
+        "frames of a densified light field add the rays of virtual LF images to the same counts: "
+        "use \"noise<=X\", or render the light field that the store was made from");
   if (film.CountsRays() && film.reading.estimator == Estimator::kBilinear &&
       film.reading.filter == PixelFilter::kMosaic)
     return UsageError(

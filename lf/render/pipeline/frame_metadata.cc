@@ -42,6 +42,8 @@ ImageMetadata FrameMetadata(FrameId frame, const RenderCamera& camera, const Fra
       {"lf:lf_images", fmt::format("{}", rays.image_count)},
       {"lf:rays_accepted", fmt::format("{}", rays.accepted_count)},
   };
+  if (rays.virtual_count > 0)
+    metadata.emplace_back("lf:virtual_lf_images", fmt::format("{}", rays.virtual_count));
   const double f_number = FNumber(camera.focal_length_w, diameter_w);
   if (std::isfinite(f_number)) metadata.emplace_back("lf:f_number", f_number);
   return metadata;

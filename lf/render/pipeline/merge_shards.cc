@@ -99,6 +99,7 @@ Result<ShardPlate> Look(const fs::path& path) {
   // Entries that may differ between the shards of a frame: the shard, its rays, and its LF images.
   constexpr const char* kOwn[] = {"shard",
                                   "sheet.lf_images",
+                                  "sheet.virtual_lf_images",
                                   "sheet.rays_tested",
                                   "sheet.rays_accepted",
                                   "sheet.lf_images_skipped",
@@ -379,8 +380,9 @@ class Merger {
   // skipped when the plates were rendered.
   void AddImages(RenderReport* report) const {
     for (const auto& [id, frame] : frames_) {
-      uint64_t count = 0;
+      uint64_t count = 0, virtual_count = 0;
       for (const ShardPlate& plate : frame.plates) {
+        virtual_count += plate.notes.rays.virtual_count;
         count += plate.notes.rays.image_count + plate.notes.skipped_count;
         std::vector<SkippedImage> skipped;
         for (const std::string& name : plate.notes.skipped)
@@ -390,6 +392,8 @@ class Merger {
         report->AddSkipped(skipped);
       }
       report->selected_image_count = std::max<size_t>(report->selected_image_count, count);
+      report->selected_virtual_count =
+          std::max<size_t>(report->selected_virtual_count, virtual_count);
     }
   }
 

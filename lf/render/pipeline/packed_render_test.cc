@@ -6,6 +6,7 @@
 #include <string>
 
 #include "lf/core/file.h"
+#include "lf/light_field/model/keep_images.h"
 #include "lf/pixels/files/image_file.h"
 #include "lf/pixels/files/test_folder.h"
 #include "lf/render/collect/test_noise_field.h"
@@ -41,6 +42,7 @@ class PackedRenderTest : public FolderTest {
   LightField Packed(uint64_t shard_bytes = 0) {
     PackedStorePlan plan;
     plan.shard_bytes = shard_bytes;
+    if (HasVirtual(field_)) plan.densified = DensifiedPlan{"steps 5", 0.1, 2, 2};
     PackedStoreWriter writer = PackedStoreWriter::Create(store_, field_, plan).value();
     for (uint32_t i = 0; i < field_.size(); ++i) {
       const auto image = ReadRecordedImage(field_, {i}, {0, 0, kWidth, kHeight});
@@ -88,6 +90,52 @@ TEST_F(PackedRenderTest, ColoursWithMasks) {
   field_.mask_names[5] = field_.image_names[0];
   field_.cameras[6].gain = 1.5f;
   ExpectSameFrames();
+}
+
+// Marks of virtual LF images change reports, but no pixel.
+TEST_F(PackedRenderTest, ReportsOfADensifiedStoreCountRecordedImages) {
+  field_ = testing::NoiseField(9);
+  field_.folder = folder_;
+  // Every element is in many LF images, so that noise can be measured.
+  for (RenderCamera& camera : film_.cameras)
+    for (double* value : {&camera.pinhole.intrinsics.fx_px, &camera.pinhole.intrinsics.fy_px})
+      *value *= 3;
+  WriteImages<uint8_t>(3, ".png");
+  options_.film.reading.estimator = Estimator::kBilinear;
+  options_.film.require_noise = 1;
+  const RenderReport all = RenderTo("all", Packed()).value();
+  for (uint32_t i = 0; i < field_.size(); i += 5) field_.cameras[i].is_virtual = true;
+  const LightField dense = Packed();
+  const RenderReport densified = RenderTo("densified", dense).value();
+  const RenderReport recorded = RenderTo("recorded", RecordedPart(dense)).value();
+  EXPECT_EQ(densified.lf_image_count, RecordedCount(field_));
+  EXPECT_EQ(densified.virtual_count, field_.size() - RecordedCount(field_));
+  EXPECT_EQ(densified.selected_image_count, recorded.selected_image_count);
+  EXPECT_EQ(densified.selected_image_count + densified.selected_virtual_count,
+            all.selected_image_count);
+  ASSERT_EQ(densified.frames.size(), 3u);
+  size_t measured = 0;
+  for (size_t f = 0; f < 3; ++f) {
+    const FrameRays &of_all = all.frames[f].rays, &rays = densified.frames[f].rays;
+    EXPECT_EQ(rays.accepted_count, of_all.accepted_count);
+    EXPECT_EQ(rays.image_count, recorded.frames[f].rays.image_count);
+    EXPECT_GT(rays.virtual_count, 0u);
+    EXPECT_EQ(rays.image_count + rays.virtual_count, of_all.image_count);
+    EXPECT_EQ(densified.frames[f].noise->reached, recorded.frames[f].noise->reached);
+    if (densified.frames[f].noise->reached) {
+      ++measured;
+      EXPECT_NE(densified.frames[f].noise->reached, all.frames[f].noise->reached);
+    }
+    EXPECT_EQ(densified.frames[f].noise->image_count, rays.image_count);
+  }
+  EXPECT_GT(measured, 0u);
+  options_.film.require_noise.reset();
+  options_.film.require_samples = 2;
+  const Result<RenderReport> refused = RenderTo("refused", dense);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);
+  EXPECT_NE(refused.error().message.find("densified"), std::string::npos);
+  EXPECT_TRUE(RenderTo("recorded2", RecordedPart(dense)));
 }
 
 TEST_F(PackedRenderTest, Mosaics) {

@@ -172,7 +172,8 @@ Result<void> Renderer::Begin(Package package) {
   totals_.width = plate.width_px;
   totals_.height = plate.height_px;
   totals_.thread_count = pool_.thread_count();
-  totals_.lf_image_count = setup_->package().whole.image_count;
+  totals_.virtual_count = setup_->package().whole_virtual_count;
+  totals_.lf_image_count = setup_->package().whole.image_count - totals_.virtual_count;
   totals_.has_masks =
       !light_field.mask_names.empty() || light_field.encoding.alpha == AlphaMeaning::kMask;
   done_.frame_total = setup_->frames().size();

@@ -103,6 +103,7 @@ RenderReport Joined(RenderReport all, const RenderReport& part) {
   all.frames.insert(all.frames.end(), part.frames.begin(), part.frames.end());
   all.AddSkipped(part.skipped);
   all.selected_image_count = std::max(all.selected_image_count, part.selected_image_count);
+  all.selected_virtual_count = std::max(all.selected_virtual_count, part.selected_virtual_count);
   all.pass_count += part.pass_count;
   all.total_s += part.total_s;
   all.load_cpu_s += part.load_cpu_s;
@@ -302,7 +303,8 @@ Result<RenderReport> RenderPackages(PackagedFilm film, const RenderOptions& opti
     before.ray_count = now.ray_count;
     before.image_count = now.image_count;
     report = Joined(std::move(report), done);
-    report.packages.push_back({name, done.selected_image_count, done.skipped.size()});
+    report.packages.push_back(
+        {name, done.selected_image_count, done.skipped.size(), done.selected_virtual_count});
     frames.insert(frames.end(), part.frames.begin(), part.frames.end());
   }
   std::sort(frames.begin(), frames.end());

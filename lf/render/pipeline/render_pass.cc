@@ -64,8 +64,14 @@ Result<void> RenderPass::Prepare() {
   if (const RebinnedRays* rebinned = renderer_.rebinned())
     for (size_t i = 0; i < rebinned->section_count(); ++i)
       saved_rays_places_.push_back(rebinned->places_done(i));
-  size_t& selected = context_.totals.selected_image_count;
-  selected = std::max(selected, renderer_.images().size());
+  const std::vector<LfCamera>& cameras = context_.setup.light_field().cameras;
+  const auto virtual_count = static_cast<size_t>(std::count_if(
+      renderer_.images().begin(), renderer_.images().end(),
+      [&](const SelectedImage& image) { return cameras[image.id.value].is_virtual; }));
+  RenderReport& totals = context_.totals;
+  totals.selected_image_count =
+      std::max(totals.selected_image_count, renderer_.images().size() - virtual_count);
+  totals.selected_virtual_count = std::max(totals.selected_virtual_count, virtual_count);
   return {};
 }
 
@@ -226,7 +232,7 @@ Result<FrameReport> RenderPass::WritePicture(size_t f, const std::optional<Compl
 
 void RenderPass::WarnIfBlack(const FrameReport& report) {
   if (context_.setup.film().shard || report.rays.image_count != 0 ||
-      report.interpolated_share.value_or(0) != 0)
+      report.rays.virtual_count != 0 || report.interpolated_share.value_or(0) != 0)
     return;
   // Only the first kTold black frames are logged; report.json states 0 LF images for all of them.
   constexpr size_t kTold = 10;

@@ -167,6 +167,8 @@ PlateEntries TextOf(const PlateNotes& notes) {
       {"sheet.rays_tested", fmt::format("{}", notes.rays.tested_count)},
       {"sheet.rays_accepted", fmt::format("{}", notes.rays.accepted_count)},
   };
+  if (notes.rays.virtual_count > 0)
+    text.emplace_back("sheet.virtual_lf_images", fmt::format("{}", notes.rays.virtual_count));
   if (notes.places_done)
     text.emplace_back("sheet.finished_early", fmt::format("{}", *notes.places_done));
   if (notes.skipped_count > 0) {
@@ -237,6 +239,8 @@ Result<PlateNotes> PlateNotesOf(const PlateEntries& entries, int width_px, int h
   notes.rays.image_count = reader.WholeNumber("sheet.lf_images", UINT32_MAX);
   notes.rays.tested_count = reader.WholeNumber("sheet.rays_tested", UINT64_MAX / 2);
   notes.rays.accepted_count = reader.WholeNumber("sheet.rays_accepted", UINT64_MAX / 2);
+  if (FindEntry(entries, "sheet.virtual_lf_images") != nullptr)
+    notes.rays.virtual_count = reader.WholeNumber("sheet.virtual_lf_images", UINT32_MAX);
   if (FindEntry(entries, "sheet.finished_early") != nullptr)
     notes.places_done =
         static_cast<uint32_t>(reader.WholeNumber("sheet.finished_early", UINT32_MAX));

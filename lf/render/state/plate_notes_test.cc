@@ -26,7 +26,7 @@ PlateNotes Notes() {
   notes.fps = 23.976;
   notes.estimator = Estimator::kNearest;
   notes.version = "1.2.3";
-  notes.rays = {12, uint64_t{1} << 40, 34567};
+  notes.rays = {12, uint64_t{1} << 40, 34567, 5};
   notes.develop.pedestal = 1024;
   notes.develop.scale = 65535 / 16.0;
   notes.develop.white_balance = {2.1, 1, 1.7};
@@ -53,6 +53,8 @@ TEST(PlateNotes, ComesBackAsTheSameBits) {
   EXPECT_EQ(read->camera.focus_tilt.vertical_rad, 0.2);
   EXPECT_EQ(read->develop.linear_srgb_from_camera, notes.develop.linear_srgb_from_camera);
   EXPECT_EQ(read->rays.tested_count, uint64_t{1} << 40);
+  EXPECT_EQ(read->rays.image_count, 12u);
+  EXPECT_EQ(read->rays.virtual_count, 5u);
   EXPECT_EQ(read->weighed->effective_counts.pixels(), notes.weighed->effective_counts.pixels());
 }
 

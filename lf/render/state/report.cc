@@ -27,6 +27,7 @@ Json FrameToJson(const FrameReport& frame) {
                {"rays_per_element_min", frame.min_count},
                {"rays_per_element_median", frame.median_count},
                {"develop_s", frame.develop_s}};
+  if (frame.rays.virtual_count > 0) json["virtual_lf_images"] = frame.rays.virtual_count;
   if (frame.interpolated_share) json["interpolated_share"] = *frame.interpolated_share;
   if (frame.weighed) {
     json["effective_lf_images"] = frame.weighed->effective_count;
@@ -151,10 +152,18 @@ std::string ToJson(const RenderReport& report) {
                {"lf_images_skipped", report.skipped.size()},
                {"skipped_lf_images", std::move(skipped)},
                {"frames", std::move(frames)}};
-  for (const PackageReport& package : report.packages)
-    json["packages"].push_back({{"name", package.name},
-                                {"lf_images_selected", package.selected_image_count},
-                                {"lf_images_skipped", package.skipped_image_count}});
+  if (report.virtual_count > 0 || report.selected_virtual_count > 0) {
+    json["virtual_lf_images"] = report.virtual_count;
+    json["virtual_lf_images_selected"] = report.selected_virtual_count;
+  }
+  for (const PackageReport& package : report.packages) {
+    Json& item =
+        json["packages"].emplace_back(Json{{"name", package.name},
+                                           {"lf_images_selected", package.selected_image_count},
+                                           {"lf_images_skipped", package.skipped_image_count}});
+    if (package.selected_virtual_count > 0)
+      item["virtual_lf_images_selected"] = package.selected_virtual_count;
+  }
   if (report.rebinning)
     json["rebinning"] = {{"slabs", report.rebinning->slab_count},
                          {"cells", report.rebinning->cell_count},

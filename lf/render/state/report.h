@@ -88,8 +88,9 @@ struct RebinReport {
 // Report of one of the packages that one call of RenderPackages() has rendered.
 struct PackageReport {
   std::string name;
-  size_t selected_image_count = 0;  // largest number of LF images that a pass reads
+  size_t selected_image_count = 0;  // largest number of recorded LF images that a pass reads
   size_t skipped_image_count = 0;
+  size_t selected_virtual_count = 0;  // largest number of virtual LF images that a pass reads
 };
 
 struct RenderReport {
@@ -99,9 +100,12 @@ struct RenderReport {
   int width = 0;
   int height = 0;
   int thread_count = 0;
-  size_t lf_image_count = 0;  // number of LF images of the light field
+  size_t lf_image_count = 0;  // number of recorded LF images of the light field
+  size_t virtual_count = 0;   // number of virtual LF images of the light field
   bool has_masks = false;     // true if LF images have masks, as files or alpha; not in the JSON
-  size_t selected_image_count = 0;  // largest number of LF images that a pass reads
+  // Largest numbers of recorded and virtual LF images that a pass reads.
+  size_t selected_image_count = 0;
+  size_t selected_virtual_count = 0;
   size_t pass_count = 0;
   std::vector<FrameReport> frames;
   // LF images that were skipped because they are missing or broken, each once.

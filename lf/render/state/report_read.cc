@@ -20,6 +20,7 @@ FrameReport FrameFromJson(const Json& json, std::string* fault) {
   fields.Get("rays_per_element_min", &frame.min_count);
   fields.Get("rays_per_element_median", &frame.median_count);
   fields.Get("develop_s", &frame.develop_s);
+  fields.Get("virtual_lf_images", &frame.rays.virtual_count);
   fields.Get("inputs", &frame.camera);
   if (fields.Find("interpolated_share") != nullptr)
     fields.Get("interpolated_share", &frame.interpolated_share.emplace());
@@ -64,6 +65,7 @@ Result<RenderReport> ParseReport(std::string_view text, const std::string& name)
     fields.Get("version", &report.version);
     fields.Get("inputs", &report.inputs);
     fields.Get("lf_images_selected", &report.selected_image_count);
+    fields.Get("virtual_lf_images_selected", &report.selected_virtual_count);
     fields.Get("seconds", &report.total_s);
     fields.Get("load_cpu_s", &report.load_cpu_s);
     fields.Get("load_wall_s", &report.load_wall_s);

@@ -73,8 +73,18 @@ TEST(Report, ReadsBackWhatItWrote) {
   frame.noise = FrameNoise{0.002, 0.0019, 72, 70};
   frame.camera = {{"frame", "7"}};
   report.frames = {frame, {FrameId{9}, {}, {}, {}, {}, 0, {}, {}}};
+  EXPECT_EQ(ToJson(report).find("virtual"), std::string::npos);
+  report.selected_virtual_count = 30;
+  report.frames[0].rays.virtual_count = 20;
+  const auto json = nlohmann::json::parse(ToJson(report));
+  EXPECT_EQ(json["virtual_lf_images_selected"], 30);
+  EXPECT_EQ(json["frames"][0]["virtual_lf_images"], 20);
+  EXPECT_EQ(json["frames"][0]["lf_images"], 3);
   const Result<RenderReport> read = ParseReport(ToJson(report), "x");
   ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->selected_virtual_count, 30u);
+  EXPECT_EQ(read->frames[0].rays.virtual_count, 20u);
+  EXPECT_EQ(read->frames[1].rays.virtual_count, 0u);
   EXPECT_EQ(read->inputs, report.inputs);
   EXPECT_EQ(read->selected_image_count, 17u);
   EXPECT_EQ(read->total_s, 1.25);

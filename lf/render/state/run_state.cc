@@ -23,6 +23,7 @@ constexpr const char* kPlacesDone = "progress.places_done";
 constexpr const char* kNoise = "progress.noise";
 constexpr const char* kRaysExtension = ".rays";
 constexpr const char* kRaysFrames = "rays.frames";
+constexpr const char* kVirtual = "progress.virtual_lf_images";
 
 // Returns N if the file name is "frame_N.EXTENSION"; nullopt for other names.
 std::optional<FrameId> FrameOf(const fs::path& path) {
@@ -299,6 +300,8 @@ PlateEntries RunState::PlateText(FrameId frame, const FrameProgress& progress,
   text.emplace_back("progress.lf_images", fmt::format("{}", progress.rays.image_count));
   text.emplace_back("progress.rays_tested", fmt::format("{}", progress.rays.tested_count));
   text.emplace_back("progress.rays_accepted", fmt::format("{}", progress.rays.accepted_count));
+  if (progress.rays.virtual_count > 0)
+    text.emplace_back(kVirtual, fmt::format("{}", progress.rays.virtual_count));
   if (moments != nullptr) text.emplace_back(kNoise, moments->Text());
   return text;
 }
@@ -316,6 +319,8 @@ Result<FrameProgress> RunState::LoadPlate(FrameId frame, SensorPlate* plate,
   LF_RETURN_IF_ERROR(get("progress.lf_images", &progress.rays.image_count));
   LF_RETURN_IF_ERROR(get("progress.rays_tested", &progress.rays.tested_count));
   LF_RETURN_IF_ERROR(get("progress.rays_accepted", &progress.rays.accepted_count));
+  if (FindEntry(reader.entries(), kVirtual) != nullptr)
+    LF_RETURN_IF_ERROR(get(kVirtual, &progress.rays.virtual_count));
   if (reader.width() != plate->width() || reader.height() != plate->height())
     return WithAdvice(
         InputError(fmt::format("{}: has {} x {} elements, expected {} x {}", path.string(),
