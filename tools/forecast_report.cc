@@ -95,6 +95,11 @@ void AddDensity(const PreprocessReport& report, const CameraPath& path, std::str
 
 namespace {
 
+// Returns " and N virtual ones", to follow a number of recorded LF images; "" if N is 0.
+std::string AndVirtual(size_t count) {
+  return count > 0 ? fmt::format(" and {} virtual ones", count) : "";
+}
+
 // Returns text that says that the depths of the scene were estimated, or how to state unknown
 // depths; "" if the user or the calibration stated them.
 std::string DepthsText(const ForecastFacts& facts) {
@@ -146,7 +151,7 @@ std::vector<std::string> DensityWarnings(const PreprocessReport& report, const C
   size_t black_count = 0;
   const FrameForecast* black = nullptr;
   for (const FrameForecast& frame : report.frames) {
-    if (frame.image_count > 0) continue;
+    if (!frame.ReadsNone()) continue;
     ++black_count;
     if (black == nullptr) black = &frame;
   }
@@ -176,24 +181,27 @@ std::string ForecastText(const PreprocessReport& report, const CameraPath& path,
                          const ForecastFacts& facts) {
   std::string lines;
   const Intrinsics& plate = path.Camera(report.frames.front().frame).pinhole.intrinsics;
-  size_t image_count = 0;
+  size_t image_count = 0, virtual_count = 0;
   uint64_t rays = 0, bytes = 0;
   double cpu_s = 0;
   for (const PackageForecast& package : report.packages) {
     image_count += package.image_count;
+    virtual_count += package.virtual_count;
     rays += package.ray_count;
     bytes += package.read_bytes;
     cpu_s += package.cpu_s;
   }
   AddLine("light field",
-          fmt::format("{}, {} LF images", facts.light_field, report.light_field_image_count),
+          fmt::format("{}, {} LF images{}", facts.light_field, report.light_field_image_count,
+                      AndVirtual(report.light_field_virtual_count)),
           &lines);
   AddLine(
       "film",
       fmt::format("{} frames of {} x {}", report.frames.size(), plate.width_px, plate.height_px),
       &lines);
   AddLine("to be read",
-          fmt::format("{} LF images in files of {} together{}", image_count, Bytes(bytes),
+          fmt::format("{} LF images{} in files of {} together{}", image_count,
+                      AndVirtual(virtual_count), Bytes(bytes),
                       report.packages.size() > 1
                           ? "; those that several packages need are counted for each"
                           : ""),
@@ -239,6 +247,10 @@ std::string ForecastJson(const PreprocessReport& report, const CameraPath& path,
   json["light_field"] = facts.light_field;
   json["output"] = facts.output.empty() ? Json() : Json(facts.output);
   json["lf_images"] = report.light_field_image_count;
+  const auto add_virtual = [](size_t count, Json* to) {
+    if (count > 0) (*to)["virtual_lf_images"] = count;
+  };
+  add_virtual(report.light_field_virtual_count, &json);
   json["lf_images_needed"] = report.needed_count;
   json["lf_images_missing"] = report.missing_count;
   json["order"] = NameOf(facts.order);
@@ -270,6 +282,7 @@ std::string ForecastJson(const PreprocessReport& report, const CameraPath& path,
                                 {"memory_bytes", package.memory_bytes},
                                 {"passes", package.pass_count},
                                 {"cpu_s", report.rate ? Json(package.cpu_s) : Json()}});
+    add_virtual(package.virtual_count, &json["packages"].back());
   }
   json["frames"] = Json::array();
   for (const FrameForecast& frame : report.frames) {
@@ -285,6 +298,7 @@ std::string ForecastJson(const PreprocessReport& report, const CameraPath& path,
                               {"depths", {density.depths.near_w, density.depths.far_w}},
                               {"near_displacement_px", density.near_displacement_px},
                               {"far_displacement_px", density.far_displacement_px}});
+    add_virtual(frame.virtual_count, &json["frames"].back());
   }
   const ForecastAdvice advice = AdviceOf(report, path, !facts.depths_from.empty());
   json["advice"] = {

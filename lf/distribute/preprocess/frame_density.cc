@@ -69,7 +69,7 @@ FrameDensity DensityOf(const ImageIndex& index, const RenderCamera& frame,
   FrameDensity density;
   const Intrinsics& plate = frame.pinhole.intrinsics;
   Around around;
-  around.ids = CamerasAroundLens(index, frame);
+  around.ids = CamerasAroundLens(index, frame, true);
   for (const LfImageId id : around.ids)
     around.centres_world.push_back(index.light_field().Camera(id).CentreWorld());
   density.camera_distance_w = index.light_field().encoding.masks_clipped

@@ -1,5 +1,6 @@
 // Measures whether the LF cameras are dense enough for a frame, so that a photographer knows this
-// before hours of rendering.
+// before hours of rendering. Only recorded LF images count, because virtual ones show what the
+// recorded ones show, or a guess.
 //
 // Every LF camera whose rays pass through the lens shows a point at depth z once in a frame that is
 // focused at z_f. Two LF cameras whose rays meet the lens plane at a distance s from each other

@@ -47,6 +47,28 @@ TEST(FrameDensity, OfAGridInTheLensPlane) {
               0.01 * std::sqrt(2), 1e-9);
 }
 
+// Virtual LF cameras between those of the grid make no capture denser.
+TEST(FrameDensity, CountsRecordedCamerasAlone) {
+  LightField grid = Grid();
+  const RenderCamera frame = Frame(0.0301, 0, 0, 0);
+  const FrameDensity recorded = DensityOf(ImageIndex(grid), frame, DepthRange{1, 4});
+  for (int row = -20; row < 20; ++row)
+    for (int column = -20; column < 20; ++column) {
+      LfCamera& camera = grid.cameras.emplace_back();
+      camera.cam_from_world.translation = {-0.01 * column - 0.005, -0.01 * row - 0.005, 0};
+      camera.is_virtual = true;
+      grid.image_names.push_back("virtual/x");
+    }
+  const FrameDensity densified = DensityOf(ImageIndex(grid), frame, DepthRange{1, 4});
+  EXPECT_EQ(densified.cameras_in_lens, recorded.cameras_in_lens);
+  EXPECT_EQ(densified.camera_distance_w, recorded.camera_distance_w);
+  EXPECT_EQ(densified.MostDisplacement_px(), recorded.MostDisplacement_px());
+  EXPECT_EQ(densified.least_aperture_w, recorded.least_aperture_w);
+  for (LfCamera& camera : grid.cameras) camera.is_virtual = false;
+  EXPECT_GT(DensityOf(ImageIndex(grid), frame, DepthRange{1, 4}).cameras_in_lens,
+            recorded.cameras_in_lens);
+}
+
 TEST(FrameDensity, OfAFrameBeforeTheGrid) {
   const LightField grid = Grid();
   const ImageIndex index(grid);

@@ -184,7 +184,8 @@ Result<void> Preprocessor::Begin() {
                       OpenStore(light_field_, options_.reading.estimator == Estimator::kBilinear
                                                   ? Mosaics::kToRgb
                                                   : Mosaics::kAsRecorded));
-  report_.light_field_image_count = light_field_.size();
+  report_.light_field_image_count = RecordedCount(light_field_);
+  report_.light_field_virtual_count = light_field_.size() - report_.light_field_image_count;
   whole_ = IdentityOf(light_field_);
   footprint_ = light_field_.encoding.footprint;
   if (options_.reading.estimator == Estimator::kBilinear) {
@@ -245,7 +246,11 @@ Result<void> Preprocessor::ForecastFrames() {
   for (const FrameId frame : frames_) {
     LF_ASSIGN_OR_RETURN(FrameNeeds needs, Needs(frame));
     LF_RETURN_IF_ERROR(CheckKept(*store_, light_field_, frame, needs));
-    report_.frames.push_back({frame, needs.images.size(), needs.RayCount(), {}});
+    const auto virtual_count = static_cast<size_t>(std::count_if(
+        needs.images.begin(), needs.images.end(),
+        [this](const auto& image) { return light_field_.cameras[image.id.value].is_virtual; }));
+    report_.frames.push_back(
+        {frame, needs.images.size() - virtual_count, virtual_count, needs.RayCount(), {}});
     if (needs.sampling) sampling[frame] = *needs.sampling;
     Keep(frame, std::move(needs));
   }
@@ -262,7 +267,7 @@ Result<void> Preprocessor::ForecastFrames() {
   LF_RETURN_IF_ERROR(CheckInterrupted());
   report_.density_s = SecondsSince(density_start);
   if (std::all_of(report_.frames.begin(), report_.frames.end(),
-                  [](const FrameForecast& frame) { return frame.image_count == 0; }))
+                  [](const FrameForecast& frame) { return frame.ReadsNone(); }))
     return NoneContributes(frames_);
   return {};
 }
@@ -279,7 +284,7 @@ void Preprocessor::Keep(FrameId frame, FrameNeeds needs) {
 Result<void> Preprocessor::Measure() {
   std::vector<size_t> by_rays(frames_.size());
   std::iota(by_rays.begin(), by_rays.end(), size_t{0});
-  std::erase_if(by_rays, [this](size_t f) { return report_.frames[f].image_count == 0; });
+  std::erase_if(by_rays, [this](size_t f) { return report_.frames[f].ReadsNone(); });
   std::sort(by_rays.begin(), by_rays.end(), [this](size_t a, size_t b) {
     return report_.frames[a].ray_count < report_.frames[b].ray_count;
   });
@@ -376,7 +381,7 @@ Result<void> Preprocessor::CountMissing(const Package& package, PackageForecast*
 Package Preprocessor::PackageOf(const Section& section, const Gathering& gathering) const {
   Package package;
   package.whole = whole_;
-  package.whole_virtual_count = light_field_.size() - RecordedCount(light_field_);
+  package.whole_virtual_count = report_.light_field_virtual_count;
   package.choices = {options_.order,         options_.seed,          options_.max_image_count,
                      options_.max_angle_rad, needs_.HasNeighbours(), NameOf(options_.mode)};
   package.path = path_;
@@ -432,8 +437,12 @@ std::vector<uint64_t> Preprocessor::FileSizes(const Package& package) const {
 
 Result<void> Preprocessor::Forecast(const Package& package, PackageForecast* forecast) const {
   forecast->frames = package.FrameIds();
-  for (const PackageImage& image : package.images) {
-    (image.frame_count > 0 ? forecast->image_count : forecast->neighbour_count) += 1;
+  for (size_t i = 0; i < package.images.size(); ++i) {
+    const PackageImage& image = package.images[i];
+    const bool is_virtual = package.light_field.cameras[i].is_virtual;
+    ++(image.frame_count == 0 ? forecast->neighbour_count
+       : is_virtual           ? forecast->virtual_count
+                              : forecast->image_count);
     forecast->read_bytes += image.file_bytes;
     forecast->ray_count += image.ray_count;
   }
@@ -443,7 +452,8 @@ Result<void> Preprocessor::Forecast(const Package& package, PackageForecast* for
   forecast->pass_count =
       (package.frames.size() + memory.frames_per_pass - 1) / memory.frames_per_pass;
   if (report_.rate)
-    forecast->cpu_s = report_.rate->load_s * static_cast<double>(forecast->image_count) +
+    forecast->cpu_s = report_.rate->load_s *
+                          static_cast<double>(forecast->image_count + forecast->virtual_count) +
                       report_.rate->collect_s * static_cast<double>(forecast->ray_count) +
                       report_.rate->finish_s * static_cast<double>(package.frames.size());
   return {};

@@ -65,15 +65,19 @@ struct PreprocessOptions {
 
 struct FrameForecast {
   FrameId frame;
-  size_t image_count = 0;  // number of LF images that are read
-  uint64_t ray_count = 0;  // number of rays that are tested or rebinned
+  size_t image_count = 0;    // number of recorded LF images that are read
+  size_t virtual_count = 0;  // number of virtual LF images that are read
+  uint64_t ray_count = 0;    // number of rays that are tested or rebinned
   FrameDensity density;
+
+  bool ReadsNone() const { return image_count + virtual_count == 0; }
 };
 
 struct PackageForecast {
   std::string name;  // package-0000, or package-0000-of-frames-1-4 for a part of the film
   std::vector<FrameId> frames;
-  size_t image_count = 0;      // number of LF images that are read
+  size_t image_count = 0;      // number of recorded LF images that are read
+  size_t virtual_count = 0;    // number of virtual LF images that are read
   size_t missing_count = 0;    // number of LF images to read whose files are missing or empty
   size_t neighbour_count = 0;  // number of other LF cameras: their images are not read
   uint64_t read_bytes = 0;     // total size of the files that are read
@@ -86,8 +90,9 @@ struct PackageForecast {
 };
 
 struct PreprocessReport {
-  size_t light_field_image_count = 0;
-  size_t needed_count = 0;    // LF images that packages need, each counted once
+  size_t light_field_image_count = 0;    // number of recorded LF images of the light field
+  size_t light_field_virtual_count = 0;  // number of its virtual LF images
+  size_t needed_count = 0;               // LF images that packages need, each counted once
   size_t missing_count = 0;   // number of needed LF images whose files are missing or empty
   std::string first_missing;  // path of the first missing or empty file
   std::vector<FrameForecast> frames;
