@@ -38,6 +38,19 @@ Json CornersOf(const PinholeCamera& camera) {
   return corners;
 }
 
+// Returns the ids of virtual LF images as ranges: [[begin, end], ...].
+Json VirtualRanges(const LightField& field) {
+  Json ranges = Json::array();
+  for (size_t i = 0; i < field.size(); ++i) {
+    if (!field.cameras[i].is_virtual) continue;
+    if (i > 0 && field.cameras[i - 1].is_virtual)
+      ranges.back()[1] = i + 1;
+    else
+      ranges.push_back({i, i + 1});
+  }
+  return ranges;
+}
+
 }  // namespace
 
 PageAnswer Refusal(int status, const std::string& message) {
@@ -87,6 +100,7 @@ std::string SceneJson(const PageScene& scene, const PathDraft& draft,
                {"packages_note", scene.packages_note()},
                {"watch", arguments.watch.string()},
                {"server", abilities.is_server}};
+  if (HasVirtual(field)) json["light_field"]["virtual_ranges"] = VirtualRanges(field);
   if (field.depth_range)
     json["light_field"]["depths"] = {field.depth_range->near_w, field.depth_range->far_w};
   return RecordLine(json);
@@ -126,7 +140,8 @@ std::string CameraJson(const PageScene& scene, LfImageId id) {
                      {"width", k.width_px},
                      {"height", k.height_px},
                      {"focal_px", k.fx_px},
-                     {"distorted", k.has_distortion()}});
+                     {"distorted", k.has_distortion()},
+                     {"virtual", field.cameras[id.value].is_virtual}});
 }
 
 std::string OverlapJson(PageScene& scene, const PathDraft& draft, FrameId frame, LfImageId id) {
