@@ -23,7 +23,7 @@ OWNERS = {
     "nlohmann/": {"import/formats", "light_field/transforms_json", "render/state"},
     "simdjson": {"light_field/transforms_json"},
     "tbb/": {"core"},
-    "hwy/": {"pixels/codec", "collection", "collection/prefilter", "rebinning", "storage/load"},
+    "hwy/": {"pixels/codec", "collection", "collection/prefilter", "densify", "rebinning", "storage/load"},
     "nanoflann": {"rebinning"},
     "zstd": {"pixels/codec", "film/plate"},
     "xxhash": {"core"},

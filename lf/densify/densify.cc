@@ -1,0 +1,368 @@
+#include "lf/densify/densify.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "lf/core/log.h"
+#include "lf/densify/depth_plane.h"
+#include "lf/densify/recorded_values.h"
+#include "lf/densify/stored_planes.h"
+#include "lf/densify/synthesis.h"
+#include "lf/densify/working_images.h"
+#include "lf/storage/load/measure_footprint.h"
+#include "lf/storage/load/open_store.h"
+#include "lf/storage/packed/packed_store_writer.h"
+
+namespace lf {
+namespace {
+
+// Is changed whenever the same light field and options give other virtual LF images, so that an
+// unfinished store of an older program is not resumed.
+constexpr int kDensifyVersion = 1;
+
+std::string SettingsInWords(const DensifyPlan& plan, const DensifyChoices& choices) {
+  return fmt::format(
+      "densify {}, {} virtual LF images at distances of {}, {} depths, divisor {}, tolerance {}",
+      kDensifyVersion, plan.virtual_cameras.size(), plan.distance_w, plan.planes, choices.divisor,
+      plan.tolerance);
+}
+
+Result<void> CheckKind(const LightField& light_field) {
+  if (light_field.size() < 3)
+    return InputError(fmt::format("the light field has {} LF images: densifying needs at least 3",
+                                  light_field.size()));
+  if (HasVirtual(light_field))
+    return UsageError(
+        "the light field has virtual LF images already: densify the light field that was recorded");
+  if (light_field.encoding.AlphaIsLight())
+    return InputError(
+        "alpha is light (lf_alpha), and virtual LF images would need opacities, which are not "
+        "estimated: use --lf-alpha mask");
+  if (light_field.encoding.masks_clipped)
+    return InputError(
+        "the light field has brackets (lf_masks_clipped), which are not supported: densify the LF "
+        "images of one exposure");
+  return {};
+}
+
+// Returns the recorded LF cameras, and behind them the virtual ones.
+LightField WithVirtual(const LightField& light_field, std::span<const VirtualCamera> cameras) {
+  LightField all = light_field;
+  all.mask_names.clear();  // masks are stored with the LF images
+  for (size_t i = 0; i < cameras.size(); ++i) {
+    const Intrinsics& k = cameras[i].camera.intrinsics;
+    const auto known = std::find(all.intrinsics.begin(), all.intrinsics.end(), k);
+    LfCamera camera;
+    camera.cam_from_world = cameras[i].camera.cam_from_world;
+    camera.intrinsics_index = static_cast<uint32_t>(known - all.intrinsics.begin());
+    camera.is_virtual = true;
+    if (known == all.intrinsics.end()) all.intrinsics.push_back(k);
+    all.cameras.push_back(camera);
+    all.image_names.push_back(fmt::format("virtual/{:06}", i + 1));
+  }
+  return all;
+}
+
+class Densifier {
+ public:
+  Densifier(const LightField& light_field, const DensifyOptions& options, ThreadPool& pool,
+            const std::function<void(const DensifyProgress&)>& progress)
+      : light_field_(light_field), options_(options), pool_(pool), progress_(progress) {}
+
+  Result<DensifyReport> Run();
+
+ private:
+  using Loaded = std::vector<std::shared_ptr<const WorkingImage>>;
+
+  Result<void> CheckTarget() const;
+  Result<void> Test();
+  Result<void> OpenWriter();
+  Result<void> SweepAll();
+  Result<void> Sweep(uint32_t id);
+  Result<void> RefineAll();
+  Result<DepthPlane> Refined(uint32_t id, double* agreeing_count);
+  Result<void> AddRecorded(LfImageId id);
+  Result<void> AddVirtual(const RecordedValues& values, size_t i);
+  Result<Loaded> Load(std::span<const uint32_t> ids);
+  // Calls body(i) for each i on all threads, until a call fails or the user interrupts, and shows
+  // progress.
+  Result<void> ForEach(const char* step, size_t count,
+                       const std::function<Result<void>(size_t)>& body);
+  PinholeCamera CameraOf(uint32_t id) const {
+    return WorkingCamera(light_field_.Camera(LfImageId{id}), options_.choices.divisor);
+  }
+
+  const LightField& light_field_;
+  const DensifyOptions& options_;
+  ThreadPool& pool_;
+  const std::function<void(const DensifyProgress&)>& progress_;
+
+  std::unique_ptr<LfImageStore> store_;
+  std::unique_ptr<WorkingImages> images_;
+  DensifyPlan plan_;
+  LightField all_;  // recorded and virtual LF cameras
+  std::optional<PackedStoreWriter> writer_;
+  std::vector<DepthPlane> depths_;  // [LF image]; empty for those that are not swept
+
+  std::mutex mutex_;  // guards the report
+  DensifyReport report_;
+};
+
+Result<void> Densifier::ForEach(const char* step, size_t count,
+                                const std::function<Result<void>(size_t)>& body) {
+  std::optional<Error> error;
+  size_t done = 0;
+  pool_.ForEach(count, [&](size_t i) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (error) return;
+      if (options_.interrupted && *options_.interrupted) {
+        error = Error{
+            ErrorKind::kInterrupted,
+            fmt::format("interrupted after {} of {} ({}): --resume continues", done, count, step)};
+        return;
+      }
+    }
+    const Result<void> result = body(i);
+    const std::lock_guard lock(mutex_);
+    if (!result && !error) error = result.error();
+    ++done;
+    if (progress_) progress_({step, done, count});
+  });
+  if (!error) return {};
+  // Earlier work is committed, unless the disk or the memory failed.
+  if (writer_ && error->kind != ErrorKind::kOutput) LF_RETURN_IF_ERROR(writer_->Commit());
+  return *error;
+}
+
+Result<Densifier::Loaded> Densifier::Load(std::span<const uint32_t> ids) {
+  Loaded loaded;
+  for (const uint32_t id : ids) {
+    LF_ASSIGN_OR_RETURN(auto image, images_->Get(LfImageId{id}));
+    loaded.push_back(std::move(image));
+  }
+  return loaded;
+}
+
+Result<void> Densifier::CheckTarget() const {
+  const std::filesystem::path& store = options_.store;
+  std::error_code failure;
+  const bool is_there = std::filesystem::exists(std::filesystem::symlink_status(store, failure));
+  if (is_there && !IsPackedStore(store))
+    return UsageError(
+        fmt::format("{}: exists already, and is not a packed store: give another name, or remove "
+                    "the file",
+                    store.string()));
+  if (options_.overwrite) return {};
+  if (is_there)
+    return UsageError(
+        fmt::format("{}: exists already: replace it with --overwrite", store.string()));
+  if (PackedStoreWriter::IsUnfinished(store) && !options_.resume)
+    return UsageError(fmt::format(
+        "{}: exists already as an unfinished store: continue it with --resume, or start it again "
+        "with --overwrite",
+        store.string()));
+  return {};
+}
+
+Result<void> Densifier::Test() {
+  LF_ASSIGN_OR_RETURN(report_.tests, TestByLeavingOut(light_field_, *store_, plan_, pool_));
+  if (report_.tests.empty()) {
+    LogWarning(
+        "no LF camera is surrounded by others, so that virtual LF images cannot be tested against "
+        "recorded ones");
+    return {};
+  }
+  const double gain_db = MedianGainDb(report_.tests);
+  if (gain_db >= kLeastGainDb || options_.choices.force) return {};
+  const auto worst =
+      std::min_element(report_.tests.begin(), report_.tests.end(),
+                       [](const LeftOut& a, const LeftOut& b) { return a.GainDb() < b.GainDb(); });
+  return InputError(fmt::format(
+      "{} LF images were left out in turn and made from their neighbours: the result is only "
+      "{:.1f} "
+      "dB better than a mean of the neighbours, expected at least {} dB (worst: {}, {:.1f} dB). "
+      "Poses may be wrong, for example where equal patterns were confused, or the depths "
+      "({:.4g} to {:.4g}): check the poses, state --depths, or try --force",
+      report_.tests.size(), gain_db, kLeastGainDb, light_field_.image_names[worst->id.value],
+      worst->GainDb(), 1 / plan_.range.greatest,
+      plan_.range.least > 0 ? 1 / plan_.range.least : INFINITY));
+}
+
+Result<void> Densifier::OpenWriter() {
+  all_ = WithVirtual(light_field_, plan_.virtual_cameras);
+  // Virtual LF images are interpolated, so that their own pixels would not tell.
+  LF_ASSIGN_OR_RETURN(all_.encoding.footprint, FootprintOf(light_field_, *store_));
+  PackedStorePlan plan;
+  plan.whole = IdentityOf(light_field_);
+  plan.codec = std::string(kLosslessCodec);
+  plan.densified = DensifiedPlan{SettingsInWords(plan_, options_.choices), plan_.range.least,
+                                 plan_.range.greatest, options_.choices.divisor};
+  plan.source = options_.source_name;
+  plan.version = options_.version;
+  LF_ASSIGN_OR_RETURN(FileLock lock, PackedStoreWriter::Lock(options_.store));
+  if (options_.overwrite && !options_.resume)
+    PackedStoreWriter::RemoveUnfinished(options_.store, lock);
+  auto writer = options_.resume
+                    ? PackedStoreWriter::Resume(options_.store, all_, plan, std::move(lock))
+                    : PackedStoreWriter::Create(options_.store, all_, plan, std::move(lock));
+  if (!writer) return writer.error();
+  writer_.emplace(*std::move(writer));
+  return {};
+}
+
+Result<void> Densifier::Sweep(uint32_t id) {
+  const PinholeCamera camera = CameraOf(id);
+  if (writer_->HasPlane(LfImageId{id}, PlaneKind::kSwept)) {
+    LF_ASSIGN_OR_RETURN(const Image<uint16_t> stored,
+                        writer_->ReadPlane(LfImageId{id}, PlaneKind::kSwept));
+    depths_[id] = CutTo(stored, camera.intrinsics.width_px, camera.intrinsics.height_px);
+    return {};
+  }
+  std::vector<uint32_t> ids{id};
+  ids.insert(ids.end(), plan_.compare_with[id].begin(), plan_.compare_with[id].end());
+  LF_ASSIGN_OR_RETURN(const Loaded loaded, Load(ids));
+  const ThreadCpuTimer timer;
+  std::vector<SweepView> views;
+  for (size_t k = 1; k < loaded.size(); ++k) views.push_back(ViewFrom(*loaded[0], *loaded[k]));
+  depths_[id] = SweepDepths(*loaded[0], views, plan_.range, plan_.planes);
+  {
+    const std::lock_guard lock(mutex_);
+    report_.sweep_cpu_s += static_cast<double>(timer.Nanoseconds()) * 1e-9;
+    report_.swept_pixels += static_cast<double>(depths_[id].pixels().size());
+  }
+  const Intrinsics& k = light_field_.Camera(LfImageId{id}).intrinsics;
+  return writer_->AddPlane(
+      LfImageId{id}, PlaneKind::kSwept,
+      PaddedTo(depths_[id], PlaneSizeOf(k.width_px, k.height_px, options_.choices.divisor)));
+}
+
+Result<void> Densifier::SweepAll() {
+  depths_.resize(light_field_.size());
+  return ForEach("depths", plan_.swept.size(), [&](size_t i) { return Sweep(plan_.swept[i]); });
+}
+
+Result<DepthPlane> Densifier::Refined(uint32_t id, double* agreeing_count) {
+  constexpr int kWanted = 2;
+  std::vector<DepthView> views;
+  for (const uint32_t other : plan_.compare_with[id])
+    if (!depths_[other].empty())
+      views.push_back({&depths_[other], MapBetween(CameraOf(id), CameraOf(other))});
+  const Image<uint8_t> agreeing = CountAgreeing(depths_[id], views, plan_.range, plan_.tolerance);
+  const int wanted = std::min(kWanted, static_cast<int>(views.size()));
+  *agreeing_count =
+      static_cast<double>(std::count_if(agreeing.pixels().begin(), agreeing.pixels().end(),
+                                        [&](uint8_t count) { return count >= wanted; }));
+  LF_ASSIGN_OR_RETURN(const auto image, images_->Get(LfImageId{id}));
+  return FillDisagreeing(depths_[id], agreeing, wanted, image->tones, plan_.range,
+                         plan_.shift_per_depth_px);
+}
+
+Result<void> Densifier::RefineAll() {
+  constexpr int kRounds = 2;
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<DepthPlane> refined(depths_.size());
+    double agreeing = 0, pixels = 0;
+    LF_RETURN_IF_ERROR(
+        ForEach("comparing depths", plan_.swept.size(), [&](size_t i) -> Result<void> {
+          const uint32_t id = plan_.swept[i];
+          double count = 0;
+          LF_ASSIGN_OR_RETURN(refined[id], Refined(id, &count));
+          const std::lock_guard lock(mutex_);
+          agreeing += count;
+          pixels += static_cast<double>(refined[id].pixels().size());
+          return {};
+        }));
+    depths_ = std::move(refined);
+    report_.agreeing_share = agreeing / pixels;
+  }
+  return ForEach("storing depths", plan_.sources.size(), [&](size_t i) -> Result<void> {
+    const LfImageId id{plan_.sources[i]};
+    if (writer_->HasPlane(id, PlaneKind::kDisparity)) return {};
+    return writer_->AddPlane(id, PlaneKind::kDisparity,
+                             AsRecorded(depths_[id.value], light_field_.Camera(id).intrinsics,
+                                        options_.choices.divisor));
+  });
+}
+
+Result<void> Densifier::AddRecorded(LfImageId id) {
+  if (writer_->Has(id)) return {};
+  const Intrinsics& k = light_field_.Camera(id).intrinsics;
+  LF_ASSIGN_OR_RETURN(const RecordedImage image,
+                      ReadRecordedImage(light_field_, id, {0, 0, k.width_px, k.height_px}));
+  CodecSettings settings;
+  settings.profile = CodecProfile::kLossless;
+  return writer_->Add(id, CodeOf(image, settings));
+}
+
+Result<void> Densifier::AddVirtual(const RecordedValues& values, size_t i) {
+  const LfImageId id{static_cast<uint32_t>(light_field_.size() + i)};
+  if (writer_->Has(id)) return {};
+  const VirtualCamera& wanted = plan_.virtual_cameras[i];
+  std::vector<uint32_t> ids;
+  for (const WeightedPoint& source : wanted.sources) ids.push_back(source.index);
+  LF_ASSIGN_OR_RETURN(const Loaded loaded, Load(ids));
+  const ThreadCpuTimer timer;
+  std::vector<Source> sources;
+  for (size_t k = 0; k < ids.size(); ++k)
+    sources.push_back(
+        {loaded[k].get(), &depths_[ids[k]], static_cast<float>(wanted.sources[k].weight)});
+  const VirtualImage image = Synthesize(wanted.camera, sources, plan_.range, plan_.tolerance);
+  {
+    const std::lock_guard lock(mutex_);
+    const auto pixels = static_cast<double>(image.light.width()) * image.light.height();
+    report_.synthesis_cpu_s += static_cast<double>(timer.Nanoseconds()) * 1e-9;
+    report_.made_pixels += pixels;
+    report_.weak_share += image.weak_share * pixels;
+  }
+  CodecSettings settings;
+  settings.profile = CodecProfile::kLossless;
+  return writer_->Add(id, CodeOf(values.Of(image.light), settings));
+}
+
+Result<DensifyReport> Densifier::Run() {
+  LF_RETURN_IF_ERROR(CheckKind(light_field_));
+  LF_RETURN_IF_ERROR(CheckTarget());
+  LF_ASSIGN_OR_RETURN(store_, OpenStore(light_field_, Mosaics::kToRgb));
+  images_ = std::make_unique<WorkingImages>(light_field_, *store_, options_.choices.divisor,
+                                            options_.memory_bytes);
+  LF_ASSIGN_OR_RETURN(plan_, PlanDensify(light_field_, *store_, options_.choices, pool_));
+  report_.recorded_count = light_field_.size();
+  report_.virtual_count = plan_.virtual_cameras.size();
+  report_.range = plan_.range;
+  report_.planes = plan_.planes;
+  report_.shift_px = plan_.ShiftPx();
+  report_.distance_w = plan_.distance_w;
+  report_.spacing_px = plan_.spacing_px;
+  LF_RETURN_IF_ERROR(Test());
+
+  LF_RETURN_IF_ERROR(OpenWriter());
+  LF_RETURN_IF_ERROR(ForEach("recorded LF images", light_field_.size(), [&](size_t i) {
+    return AddRecorded(LfImageId{static_cast<uint32_t>(i)});
+  }));
+  LF_RETURN_IF_ERROR(SweepAll());
+  LF_RETURN_IF_ERROR(RefineAll());
+  LF_ASSIGN_OR_RETURN(const RecordedImage first,
+                      ReadRecordedImage(light_field_, LfImageId{0}, {0, 0, 2, 2}));
+  const RecordedValues values(light_field_.encoding, first.values, first.layout);
+  LF_RETURN_IF_ERROR(ForEach("virtual LF images", plan_.virtual_cameras.size(),
+                             [&](size_t i) { return AddVirtual(values, i); }));
+  if (report_.made_pixels > 0) report_.weak_share /= report_.made_pixels;
+  LF_RETURN_IF_ERROR(writer_->DropPlanes(PlaneKind::kSwept));
+  LF_RETURN_IF_ERROR(writer_->Finish());
+  return std::move(report_);
+}
+
+}  // namespace
+
+Result<DensifyReport> Densify(const LightField& light_field, const DensifyOptions& options,
+                              ThreadPool& pool,
+                              const std::function<void(const DensifyProgress&)>& progress) {
+  return Densifier(light_field, options, pool, progress).Run();
+}
+
+}  // namespace lf

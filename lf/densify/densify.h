@@ -1,0 +1,73 @@
+// Makes a sparse light field dense: puts virtual LF images between the recorded ones, and writes
+// all of them into a packed store.
+//
+//   1. The inverse depth of every pixel is found by comparing an LF image with its neighbours
+//      (depth_plane.h).
+//   2. Depths on which neighbours do not agree are replaced.
+//   3. Virtual LF images are made of the recorded ones around them (synthesis.h).
+//
+// A virtual LF image depends only on a few recorded LF images, so that it has the same bits for any
+// number of threads, and however often the work was interrupted.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "lf/core/parallel.h"
+#include "lf/core/result.h"
+#include "lf/densify/densify_plan.h"
+#include "lf/densify/self_test.h"
+#include "lf/light_field/model/light_field.h"
+
+namespace lf {
+
+struct DensifyOptions {
+  std::filesystem::path store;  // path of the packed store, such as STORE.lfs
+  DensifyChoices choices;
+  size_t memory_bytes = size_t{2} << 30;  // for LF images that are kept in memory
+  // True: resumes an unfinished store, or begins a new one if there is none.
+  bool resume = false;
+  bool overwrite = false;   // true: replaces an existing store, unfinished or complete
+  std::string source_name;  // LIGHTFIELD, as the user gave it
+  std::string version;      // version of the program
+  const std::atomic<bool>* interrupted = nullptr;
+};
+
+struct DensifyProgress {
+  const char* step = "";  // what is being done
+  size_t done = 0;
+  size_t total = 0;
+};
+
+struct DensifyReport {
+  size_t recorded_count = 0;
+  size_t virtual_count = 0;
+  InverseDepths range;
+  int planes = 0;         // number of inverse depths that were compared
+  double shift_px = 0;    // DensifyPlan::ShiftPx()
+  double distance_w = 0;  // distance between neighbouring virtual LF cameras
+  double spacing_px = 0;  // DensifyPlan::spacing_px
+  std::vector<LeftOut> tests;
+  // Share of the pixels on whose depth two neighbours agree.
+  double agreeing_share = 0;
+  // Mean of VirtualImage::weak_share of the virtual LF images that were made.
+  double weak_share = 0;
+  // Work of this call: CPU time, and the number of pixels that were swept and made.
+  double sweep_cpu_s = 0, synthesis_cpu_s = 0;
+  double swept_pixels = 0, made_pixels = 0;
+};
+
+// Writes the recorded LF images and virtual ones into options.store. kInput: the light field cannot
+// be densified (PlanDensify()), has opacities, or fails its test (TestByLeavingOut()) unless
+// choices.force is set; or an LF image that is needed cannot be read. kUsage, kOutput as
+// PackedStoreWriter; the store exists and no option says what to do with it. kInterrupted: finished
+// work is kept.
+Result<DensifyReport> Densify(const LightField& light_field, const DensifyOptions& options,
+                              ThreadPool& pool,
+                              const std::function<void(const DensifyProgress&)>& progress);
+
+}  // namespace lf

@@ -1,0 +1,228 @@
+#include "lf/densify/densify_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "lf/core/log.h"
+#include "lf/densify/depth_search.h"
+#include "lf/densify/pair_map.h"
+#include "lf/densify/working_image.h"
+#include "lf/selection/image_index.h"
+#include "lf/selection/select.h"
+
+namespace lf {
+namespace {
+
+constexpr int kLeastPlanes = 24, kMostPlanes = 256;
+constexpr double kPlaneStep_px = 0.35;
+constexpr double kTolerance_px = 0.6;
+constexpr double kOutside = 0.5;  // of the median distance between LF cameras
+
+// Limits of the shift between compared LF images, as a share of their width, and of the angle
+// between their rays to the middle of the scene.
+constexpr double kMuchShift = 0.25, kMostShift = 0.5;
+constexpr double kLargeAngle_deg = 8, kMostAngle_deg = 15;
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Returns the median shift between compared working images per unit of inverse depth.
+double ShiftOf(const LightField& light_field, const DensifyPlan& plan, int divisor) {
+  std::vector<double> shifts;
+  for (uint32_t i = 0; i < plan.compare_with.size(); ++i) {
+    const PinholeCamera camera = WorkingCamera(light_field.Camera(LfImageId{i}), divisor);
+    double sum = 0;
+    for (const uint32_t other : plan.compare_with[i])
+      sum += ShiftPerInverseDepth(camera, light_field.Camera(LfImageId{other}));
+    shifts.push_back(sum / static_cast<double>(plan.compare_with[i].size()));
+  }
+  return Median(std::move(shifts));
+}
+
+Result<void> CheckCameras(const CameraPlane& plane) {
+  const double width = MedianDistance(plane.points);
+  // The middle of the LF cameras must be inside their hull.
+  const bool is_line =
+      plane.points.size() < 3 || !(width > 0) || LatticeAmong(plane.points, width, 0).empty();
+  if (!is_line) return {};
+  return InputError(fmt::format(
+      "the {} LF cameras stand on one line, or at one place: virtual LF images can only be made "
+      "between LF cameras that surround an area",
+      plane.points.size()));
+}
+
+// Checks that neighbouring LF images are near enough to one another.
+Result<void> CheckReach(const LightField& light_field, const DensifyPlan& plan, int divisor,
+                        bool force) {
+  const double width = light_field.Camera(LfImageId{0}).intrinsics.width_px / divisor;
+  const double share = plan.ShiftPx() / width;
+  const double f_px = light_field.Camera(LfImageId{0}).intrinsics.fx_px / divisor;
+  const double middle = (plan.range.least + plan.range.greatest) / 2;
+  const double angle_deg = DegreesFromRadians(std::atan(plan.shift_per_depth_px / f_px * middle));
+  const std::string figures = fmt::format(
+      "between neighbouring LF images, near points of the scene shift by {:.0f} % of the width "
+      "against far ones, and rays to the middle of the scene differ by {:.1f} degrees",
+      100 * share, angle_deg);
+  if ((share > kMostShift || angle_deg > kMostAngle_deg) && !force)
+    return InputError(fmt::format(
+        "{}: expected at most {:.0f} % and {:.0f} degrees; take photographs at smaller distances, "
+        "or try --force",
+        figures, 100 * kMostShift, kMostAngle_deg));
+  if (share > kMuchShift || angle_deg > kLargeAngle_deg)
+    LogWarning("{}: what virtual LF images show beside outlines will often be wrong", figures);
+  return {};
+}
+
+// Returns the distance between LF cameras that brings about a spacing in a frame, or in virtual LF
+// images if there are no frames.
+double DistanceFor(const LightField& light_field, const DensifyPlan& plan,
+                   const DensifyChoices& choices) {
+  const double f_px = light_field.Camera(LfImageId{0}).intrinsics.fx_px / choices.divisor;
+  double least = choices.frames.empty()
+                     ? choices.spacing_px / (f_px * (plan.range.greatest - plan.range.least))
+                     : INFINITY;
+  for (const RenderCamera& frame : choices.frames) {
+    const double focus = 1 / frame.focus_distance_w;
+    const double away =
+        std::max(std::abs(plan.range.least - focus), std::abs(plan.range.greatest - focus));
+    least = std::min(least, choices.spacing_px / (frame.pinhole.intrinsics.fx_px * away));
+  }
+  return least;
+}
+
+// Returns the light field of virtual LF cameras alone.
+LightField VirtualField(const LightField& light_field, std::span<const VirtualCamera> cameras) {
+  LightField result;
+  result.encoding = light_field.encoding;
+  for (const VirtualCamera& wanted : cameras) {
+    LfCamera camera;
+    camera.cam_from_world = wanted.camera.cam_from_world;
+    camera.intrinsics_index = static_cast<uint32_t>(result.intrinsics.size());
+    result.intrinsics.push_back(wanted.camera.intrinsics);
+    result.cameras.push_back(camera);
+    result.image_names.emplace_back();
+  }
+  return result;
+}
+
+// Keeps the virtual LF cameras that contribute to one of the frames.
+std::vector<VirtualCamera> Contributing(const LightField& light_field,
+                                        std::vector<VirtualCamera> cameras,
+                                        std::span<const RenderCamera> frames, ThreadPool& pool) {
+  const LightField field = VirtualField(light_field, cameras);
+  SelectOptions select;
+  select.reach = PixelReach::kElement;
+  std::vector<uint32_t> kept;
+  for (const SelectedImage& image : SelectImages(ImageIndex(field), frames, select, pool))
+    kept.push_back(image.id.value);
+  std::sort(kept.begin(), kept.end());
+  std::vector<VirtualCamera> result;
+  for (const uint32_t id : kept) result.push_back(std::move(cameras[id]));
+  return result;
+}
+
+// Returns the distance at which so many places lie around the LF cameras that finding them takes
+// minutes.
+double LeastDistance(std::span<const Vec2> points) {
+  constexpr double kMostPlaces = 400'000;
+  Vec2 least = points[0], most = points[0];
+  for (const Vec2& point : points) {
+    least = least.cwiseMin(point);
+    most = most.cwiseMax(point);
+  }
+  return std::sqrt((most - least).prod() / kMostPlaces);
+}
+
+// Chooses the virtual LF cameras; if there are too many, they stand less densely.
+Result<void> ChooseVirtual(const LightField& light_field, const DensifyChoices& choices,
+                           ThreadPool& pool, DensifyPlan* plan) {
+  constexpr double kCoarser = 1.02;
+  // Beyond the LF cameras, virtual ones may only stand on a plane.
+  const double outside_w =
+      plan->plane.is_unrolled ? 0 : kOutside * MedianDistance(plan->plane.points);
+  const double wanted_w = DistanceFor(light_field, *plan, choices);
+  const double recorded_w = MedianDistance(plan->plane.points);
+  if (recorded_w <= wanted_w && !choices.force)
+    return InputError(fmt::format(
+        "the LF cameras are {:.4g} apart, and {:.4g} suffices: copies of what is out of focus are "
+        "{:.2g} px apart; render the light field as it is, or ask for a smaller --spacing",
+        recorded_w, wanted_w, choices.spacing_px * recorded_w / wanted_w));
+  const auto most = static_cast<double>(choices.most_virtual);
+  for (plan->distance_w = std::max(wanted_w, LeastDistance(plan->plane.points));;) {
+    const std::vector<LatticePlace> lattice =
+        LatticeAmong(plan->plane.points, plan->distance_w, outside_w);
+    auto count = static_cast<double>(lattice.size());
+    if (count <= most || !choices.frames.empty()) {
+      plan->virtual_cameras.clear();
+      for (const LatticePlace& at : lattice)
+        plan->virtual_cameras.push_back(
+            VirtualCameraAt(light_field, plan->plane, at, choices.divisor));
+      if (!choices.frames.empty())
+        plan->virtual_cameras =
+            Contributing(light_field, std::move(plan->virtual_cameras), choices.frames, pool);
+      count = static_cast<double>(plan->virtual_cameras.size());
+      if (count <= most) break;
+    }
+    plan->distance_w *= std::max(kCoarser, 0.98 * std::sqrt(count / most));
+  }
+  plan->spacing_px = choices.spacing_px * plan->distance_w / wanted_w;
+  if (plan->virtual_cameras.empty())
+    return UsageError(
+        "no place between the LF cameras contributes to the frames: check the camera path with "
+        "lfcammvminfo, or leave it out");
+  return {};
+}
+
+// Returns `ids` and the LF images that these are compared with.
+std::set<uint32_t> WithCompared(const std::set<uint32_t>& ids, const DensifyPlan& plan) {
+  std::set<uint32_t> result = ids;
+  for (const uint32_t id : ids)
+    result.insert(plan.compare_with[id].begin(), plan.compare_with[id].end());
+  return result;
+}
+
+}  // namespace
+
+int PlanesFor(double shift_px) {
+  return std::clamp(static_cast<int>(shift_px / kPlaneStep_px) + 2, kLeastPlanes, kMostPlanes);
+}
+
+double ToleranceFor(const InverseDepths& range, int planes, double shift_per_depth_px) {
+  return std::max(kTolerance_px / shift_per_depth_px,
+                  0.8 * (range.greatest - range.least) / (planes - 1));
+}
+
+Result<DensifyPlan> PlanDensify(const LightField& light_field, const LfImageStore& store,
+                                const DensifyChoices& choices, ThreadPool& pool) {
+  DensifyPlan plan;
+  plan.divisor = choices.divisor;
+  LF_ASSIGN_OR_RETURN(plan.plane, CameraPlaneOf(light_field));
+  LF_RETURN_IF_ERROR(CheckCameras(plan.plane));
+  plan.compare_with = CompareWith(plan.plane.points);
+  if (choices.depths) {
+    plan.range = {1 / choices.depths->far_w, 1 / choices.depths->near_w};
+  } else {
+    LF_ASSIGN_OR_RETURN(plan.range, FindInverseDepths(light_field, store, plan.compare_with, pool));
+  }
+  plan.shift_per_depth_px = ShiftOf(light_field, plan, choices.divisor);
+  LF_RETURN_IF_ERROR(CheckReach(light_field, plan, choices.divisor, choices.force));
+  plan.planes = PlanesFor(plan.ShiftPx());
+  plan.tolerance = ToleranceFor(plan.range, plan.planes, plan.shift_per_depth_px);
+  LF_RETURN_IF_ERROR(ChooseVirtual(light_field, choices, pool, &plan));
+  std::set<uint32_t> sources;
+  for (const VirtualCamera& camera : plan.virtual_cameras)
+    for (const WeightedPoint& source : camera.sources) sources.insert(source.index);
+  plan.sources.assign(sources.begin(), sources.end());
+  // Depths are compared with those of neighbours twice (RefineDepths()).
+  const std::set<uint32_t> swept = WithCompared(WithCompared(sources, plan), plan);
+  plan.swept.assign(swept.begin(), swept.end());
+  return plan;
+}
+
+}  // namespace lf

@@ -1,0 +1,45 @@
+// The inverse depth of every pixel of an LF image, from the comparison with its neighbours.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "lf/core/image.h"
+#include "lf/densify/inverse_depths.h"
+#include "lf/densify/matching_costs.h"
+#include "lf/densify/working_image.h"
+
+namespace lf {
+
+// Numbers of InverseDepths, [height][width], for a working image.
+using DepthPlane = Image<uint16_t>;
+
+// Returns the plane that semi-global matching chooses, smoothed by a median of 3 x 3 pixels. Large
+// images are matched in tiles that overlap, so that the memory is bounded.
+//   views   one or more
+//   planes  number of inverse depths that are compared, 2 or more
+DepthPlane SweepDepths(const WorkingImage& reference, std::span<const SweepView> views,
+                       const InverseDepths& range, int planes);
+
+// A neighbour of an LF image with its depth plane.
+struct DepthView {
+  const DepthPlane* plane = nullptr;
+  PairMap from_reference;
+};
+
+// Returns, for each pixel, how many neighbours have the same inverse depth, within `tolerance`, at
+// the place where they show the pixel.
+Image<uint8_t> CountAgreeing(const DepthPlane& plane, std::span<const DepthView> views,
+                             const InverseDepths& range, double tolerance);
+
+// Replaces the depths of pixels on which fewer than `wanted` neighbours agree. Such a pixel takes
+// the depth of the nearest pixel with enough agreement in one of eight directions: the one with the
+// most similar tones, where far depths are preferred, because most of these pixels belong to a
+// background that other LF images do not see.
+//   agreeing              CountAgreeing() of the plane
+//   shift_per_depth_px    ShiftPerInverseDepth() of typical neighbours
+DepthPlane FillDisagreeing(const DepthPlane& plane, const Image<uint8_t>& agreeing, int wanted,
+                           const Image<uint16_t>& tones, const InverseDepths& range,
+                           double shift_per_depth_px);
+
+}  // namespace lf

@@ -1,0 +1,112 @@
+#include "lf/densify/depth_search.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <mutex>
+#include <optional>
+
+#include "lf/densify/semi_global.h"
+#include "lf/densify/working_images.h"
+
+namespace lf {
+namespace {
+
+constexpr int kSearchedWidth = 200;
+constexpr size_t kReferences = 8, kMostViews = 6;
+
+// Returns the sum of the absolute differences of green beside and above a pixel.
+int TextureAt(const Image<uint16_t>& tones, int x, int y) {
+  return std::abs(tones.at(x + 1, y, 1) - tones.at(x - 1, y, 1)) +
+         std::abs(tones.at(x, y + 1, 1) - tones.at(x, y - 1, 1));
+}
+
+// Appends the inverse depths of the pixels of one LF image that are sure.
+void AppendSure(const WorkingImage& reference, std::span<const SweepView> views,
+                std::vector<double>* found) {
+  constexpr double kGreatestShift = 0.3, kBeyondInfinity = 0.1, kLeastStep_px = 0.5;
+  constexpr int kMostSearched = 220;
+  constexpr int kTexture = 8, kCheap = 40, kClear = 6, kBorder = 2;
+  std::vector<double> shifts;
+  for (const SweepView& view : views)
+    shifts.push_back(ShiftPerInverseDepth(reference.camera, view.image->camera));
+  std::nth_element(shifts.begin(), shifts.begin() + static_cast<long>(shifts.size() / 2),
+                   shifts.end());
+  const double shift = shifts[shifts.size() / 2];
+  if (!(shift > 0)) return;
+  const double greatest = kGreatestShift * reference.width() / shift;
+  const InverseDepths range{-kBeyondInfinity * greatest, greatest};
+  const double extent = range.greatest - range.least;
+  const int planes =
+      std::clamp(static_cast<int>(extent * shift / kLeastStep_px) + 1, 8, kMostSearched);
+  MatchingCosts costs;
+  ComputeMatchingCosts(reference, views, range, planes,
+                       {0, 0, reference.width(), reference.height()}, &costs);
+  const ChosenPlanes chosen = ChoosePlanes(costs, reference.tones, true);
+  for (int y = kBorder; y < reference.height() - kBorder; ++y)
+    for (int x = kBorder; x < reference.width() - kBorder; ++x)
+      if (TextureAt(reference.tones, x, y) > kTexture && chosen.cost.at(x, y) < kCheap &&
+          chosen.lead.at(x, y) > kClear && chosen.place.at(x, y) < static_cast<float>(planes - 3))
+        found->push_back(range.least +
+                         static_cast<double>(chosen.place.at(x, y)) * extent / (planes - 1));
+}
+
+InverseDepths RangeOf(std::vector<double> depths) {
+  constexpr double kOutermost = 0.005, kWidened = 0.06, kFewBeyond = 0.02;
+  std::sort(depths.begin(), depths.end());
+  const auto at = [&](double share) {
+    return depths[static_cast<size_t>(share * static_cast<double>(depths.size() - 1))];
+  };
+  const double least = at(kOutermost), greatest = at(1 - kOutermost);
+  const double margin = kWidened * (greatest - least) + 1e-3 * std::abs(greatest);
+  const bool few_beyond = at(kFewBeyond) >= 0;
+  return {few_beyond ? std::max(0.0, least - margin) : least - margin, greatest + margin};
+}
+
+}  // namespace
+
+Result<InverseDepths> FindInverseDepths(const LightField& light_field, const LfImageStore& store,
+                                        std::span<const std::vector<uint32_t>> compare_with,
+                                        ThreadPool& pool) {
+  constexpr size_t kLeastDepths = 200;
+  const int divisor = std::max(1, light_field.intrinsics.front().width_px / kSearchedWidth);
+  WorkingImages images(light_field, store, divisor, std::numeric_limits<size_t>::max());
+  const size_t count = std::min(kReferences, light_field.size());
+  std::vector<std::vector<double>> depths(count);
+  std::mutex mutex;
+  std::optional<Error> error;
+  pool.ForEach(count, [&](size_t i) {
+    const size_t id = count == 1 ? 0 : i * (light_field.size() - 1) / (count - 1);
+    std::vector<std::shared_ptr<const WorkingImage>> loaded;
+    const auto load = [&](uint32_t wanted) {
+      auto image = images.Get(LfImageId{wanted});
+      const std::lock_guard lock(mutex);
+      if (image)
+        loaded.push_back(*image);
+      else
+        error = image.error();
+      return image.has_value();
+    };
+    if (!load(static_cast<uint32_t>(id))) return;
+    for (size_t k = 0; k < std::min(kMostViews, compare_with[id].size()); ++k)
+      if (!load(compare_with[id][k])) return;
+    std::vector<SweepView> views;
+    for (size_t k = 1; k < loaded.size(); ++k) views.push_back(ViewFrom(*loaded[0], *loaded[k]));
+    if (!views.empty()) AppendSure(*loaded[0], views, &depths[i]);
+  });
+  if (error) return *error;
+  std::vector<double> all;
+  for (const std::vector<double>& of_image : depths)
+    all.insert(all.end(), of_image.begin(), of_image.end());
+  if (all.size() < kLeastDepths)
+    return InputError(fmt::format(
+        "depths of the scene: only {} pixels of {} LF images have a sure depth, expected at least "
+        "{}: the LF images overlap too little or lack texture; state the depths by --depths",
+        all.size(), count, kLeastDepths));
+  return RangeOf(std::move(all));
+}
+
+}  // namespace lf

@@ -1,0 +1,186 @@
+#include "lf/densify/self_test.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <optional>
+
+#include "lf/densify/depth_plane.h"
+#include "lf/densify/synthesis.h"
+#include "lf/densify/working_images.h"
+
+namespace lf {
+namespace {
+
+constexpr int kTestedWidth = 200;
+constexpr size_t kMostTests = 8;
+constexpr int kBlendDepths = 12;
+
+// Returns the tones of light, smoothed by two means over 3 x 3 pixels. NaN where there is no light.
+Image<float> SmoothTones(const Image<uint16_t>& light, const ToneCurve& curve) {
+  Image<float> tones(light.width(), light.height(), 3, NAN);
+  for (int y = 0; y < light.height(); ++y)
+    for (int x = 0; x < light.width(); ++x)
+      for (int c = 0; c < 3 && light.at(x, y, LfPixels::kRayLane) != 0; ++c)
+        tones.at(x, y, c) = curve.Tone(light.at(x, y, c));
+  for (int round = 0; round < 2; ++round) {
+    const Image<float> sharp = tones;
+    for (int y = 1; y + 1 < tones.height(); ++y)
+      for (int x = 1; x + 1 < tones.width(); ++x)
+        for (int c = 0; c < 3; ++c) {
+          float sum = 0;
+          for (int j = -1; j <= 1; ++j)
+            for (int i = -1; i <= 1; ++i) sum += sharp.at(x + i, y + j, c);
+          tones.at(x, y, c) = sum / 9;
+        }
+  }
+  return tones;
+}
+
+double PsnrDb(const Image<float>& a, const Image<float>& b) {
+  constexpr int kBorder = 4;
+  double squares = 0, count = 0;
+  for (int y = kBorder; y < a.height() - kBorder; ++y)
+    for (int x = kBorder; x < a.width() - kBorder; ++x)
+      for (int c = 0; c < 3; ++c) {
+        const double error = static_cast<double>(a.at(x, y, c) - b.at(x, y, c)) / 255;
+        if (std::isnan(error)) continue;
+        squares += error * error;
+        ++count;
+      }
+  if (count == 0) return 0;
+  constexpr double kLeast = 1e-10;
+  return -10 * std::log10(std::max(squares / count, kLeast));
+}
+
+// Tests of one light field.
+class Tester {
+ public:
+  Tester(const LightField& light_field, const LfImageStore& store, const DensifyPlan& plan)
+      : light_field_(light_field),
+        plan_(plan),
+        divisor_(std::max(1, light_field.intrinsics.front().width_px / kTestedWidth)),
+        curve_(light_field.encoding),
+        images_(light_field, store, divisor_, std::numeric_limits<size_t>::max()),
+        planes_(PlanesFor(plan.ShiftPx() * plan.divisor / divisor_)),
+        tolerance_(
+            ToleranceFor(plan.range, planes_, plan.shift_per_depth_px * plan.divisor / divisor_)) {}
+
+  // Tests one LF image; none if no LF cameras surround it.
+  Result<std::optional<LeftOut>> Test(uint32_t left_out);
+
+ private:
+  // The working images of some LF images, whose depths are compared only among them.
+  struct Group {
+    std::vector<uint32_t> ids;
+    std::vector<std::shared_ptr<const WorkingImage>> images;
+    std::vector<DepthPlane> planes;
+  };
+  Result<Group> SweepWithout(uint32_t left_out, std::span<const uint32_t> wanted);
+
+  const LightField& light_field_;
+  const DensifyPlan& plan_;
+  const int divisor_;
+  const ToneCurve curve_;
+  WorkingImages images_;
+  const int planes_;
+  const double tolerance_;
+};
+
+Result<Tester::Group> Tester::SweepWithout(uint32_t left_out, std::span<const uint32_t> wanted) {
+  Group group;
+  group.ids.assign(wanted.begin(), wanted.end());
+  for (const uint32_t id : wanted) {
+    LF_ASSIGN_OR_RETURN(auto reference, images_.Get(LfImageId{id}));
+    std::vector<std::shared_ptr<const WorkingImage>> others;
+    std::vector<SweepView> views;
+    for (const uint32_t other : plan_.compare_with[id]) {
+      if (other == left_out) continue;
+      LF_ASSIGN_OR_RETURN(auto image, images_.Get(LfImageId{other}));
+      views.push_back(ViewFrom(*reference, *image));
+      others.push_back(std::move(image));
+    }
+    group.planes.push_back(SweepDepths(*reference, views, plan_.range, planes_));
+    group.images.push_back(std::move(reference));
+  }
+  return group;
+}
+
+Result<std::optional<LeftOut>> Tester::Test(uint32_t left_out) {
+  const Vec2 place = plan_.plane.points[left_out];
+  std::vector<Vec2> others = plan_.plane.points;
+  // Far outside the hull, a point is nobody's neighbour.
+  others.erase(others.begin() + left_out);
+  std::vector<WeightedPoint> neighbours = NaturalNeighbours(others, place);
+  if (neighbours.size() < 3) return std::optional<LeftOut>();
+  if (neighbours.size() > kMostSources) neighbours.resize(kMostSources);
+  std::vector<uint32_t> ids;
+  double sum = 0;
+  for (WeightedPoint& neighbour : neighbours) {
+    if (neighbour.index >= left_out) ++neighbour.index;
+    ids.push_back(neighbour.index);
+    sum += neighbour.weight;
+  }
+  LF_ASSIGN_OR_RETURN(Group group, SweepWithout(left_out, ids));
+  LF_ASSIGN_OR_RETURN(const auto recorded, images_.Get(LfImageId{left_out}));
+  const auto made_with = [&](const std::vector<DepthPlane>& planes) {
+    std::vector<Source> sources;
+    for (size_t i = 0; i < ids.size(); ++i)
+      sources.push_back(
+          {group.images[i].get(), &planes[i], static_cast<float>(neighbours[i].weight / sum)});
+    return Synthesize(recorded->camera, sources, plan_.range, tolerance_).light;
+  };
+  const Image<float> truth = SmoothTones(recorded->light, curve_);
+  LeftOut result{LfImageId{left_out}};
+  result.virtual_psnr_db = PsnrDb(SmoothTones(made_with(group.planes), curve_), truth);
+  for (int i = 0; i < kBlendDepths; ++i) {
+    std::vector<DepthPlane> flat = group.planes;
+    const auto number = static_cast<uint16_t>(1 + i * InverseDepths::kLast / (kBlendDepths - 1));
+    for (DepthPlane& plane : flat) std::fill(plane.pixels().begin(), plane.pixels().end(), number);
+    result.blend_psnr_db =
+        std::max(result.blend_psnr_db, PsnrDb(SmoothTones(made_with(flat), curve_), truth));
+  }
+  return std::optional(result);
+}
+
+}  // namespace
+
+Result<std::vector<LeftOut>> TestByLeavingOut(const LightField& light_field,
+                                              const LfImageStore& store, const DensifyPlan& plan,
+                                              ThreadPool& pool) {
+  std::vector<uint32_t> inner;
+  for (uint32_t i = 0; i < light_field.size(); ++i) {
+    std::vector<Vec2> others = plan.plane.points;
+    others.erase(others.begin() + i);
+    if (NaturalNeighbours(others, plan.plane.points[i]).size() >= 3) inner.push_back(i);
+  }
+  const size_t count = std::min(kMostTests, inner.size());
+  std::vector<std::optional<LeftOut>> results(count);
+  Tester tester(light_field, store, plan);
+  std::mutex mutex;
+  std::optional<Error> error;
+  pool.ForEach(count, [&](size_t i) {
+    const size_t chosen = count == 1 ? inner.size() / 2 : i * (inner.size() - 1) / (count - 1);
+    auto result = tester.Test(inner[chosen]);
+    const std::lock_guard lock(mutex);
+    if (result)
+      results[i] = *result;
+    else
+      error = result.error();
+  });
+  if (error) return *error;
+  std::vector<LeftOut> tests;
+  for (const std::optional<LeftOut>& result : results)
+    if (result) tests.push_back(*result);
+  return tests;
+}
+
+double MedianGainDb(const std::vector<LeftOut>& tests) {
+  std::vector<double> gains;
+  for (const LeftOut& test : tests) gains.push_back(test.GainDb());
+  std::nth_element(gains.begin(), gains.begin() + static_cast<long>(gains.size() / 2), gains.end());
+  return gains[gains.size() / 2];
+}
+
+}  // namespace lf

@@ -1,0 +1,42 @@
+// Tells from recorded LF images how right virtual ones are.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lf/core/ids.h"
+#include "lf/core/parallel.h"
+#include "lf/core/result.h"
+#include "lf/densify/densify_plan.h"
+#include "lf/light_field/model/light_field.h"
+#include "lf/storage/load/lf_image_store.h"
+
+namespace lf {
+
+// A recorded LF image and the virtual one at its place, made without it.
+struct LeftOut {
+  LfImageId id;
+  double virtual_psnr_db = 0;
+  // The best that the same LF images reach without depths: their mean, aligned at one of several
+  // depths.
+  double blend_psnr_db = 0;
+  double GainDb() const { return virtual_psnr_db - blend_psnr_db; }
+};
+
+// The least median gain of a light field that can be densified. Wrong poses, and depths that are
+// not found, leave no gain.
+inline constexpr double kLeastGainDb = 1.5;
+
+// Leaves out up to eight LF images in turn, spread over the light field, and compares each with the
+// virtual LF image that is made of its neighbours; both are reduced to about 200 pixels and
+// smoothed. The distances between LF cameras are therefore larger than they will be. LF images on
+// the hull of the LF cameras are not tested, because none surround them. Empty if there are no
+// others.
+// Errors of LoadWorkingImage().
+Result<std::vector<LeftOut>> TestByLeavingOut(const LightField& light_field,
+                                              const LfImageStore& store, const DensifyPlan& plan,
+                                              ThreadPool& pool);
+
+double MedianGainDb(const std::vector<LeftOut>& tests);
+
+}  // namespace lf

@@ -1,0 +1,33 @@
+// Chooses one inverse depth for each pixel such that the costs are low and the depth changes little
+// from pixel to pixel.
+#pragma once
+
+#include <cstdint>
+
+#include "lf/core/image.h"
+#include "lf/densify/matching_costs.h"
+
+namespace lf {
+
+// The chosen places of the pixels of MatchingCosts::rect.
+struct ChosenPlanes {
+  // Between 0, the first plane, and planes - 1, the last one; interpolated by a parabola through
+  // the sums of three planes.
+  Image<float> place;
+  Image<uint8_t> cost;  // matching cost of the nearest plane
+  // Least sum of the planes more than two away from the chosen one, minus its sum, relative to the
+  // number of paths: how clearly the plane is better than others. Left empty unless asked for.
+  Image<uint16_t> lead;
+};
+
+// Semi-global matching in integers (Hirschmueller, "Stereo processing by semiglobal matching and
+// mutual information", PAMI 2008): adds, for each pixel and plane, the least costs of eight
+// straight paths that end there. A step to the next plane costs kSmallStep; a larger step costs
+// kLargeStep, or less where the image has an edge, but more than kSmallStep.
+inline constexpr int kSmallStep = 24;
+inline constexpr int kLargeStep = 480;
+
+//   tones  of the whole reference image
+ChosenPlanes ChoosePlanes(const MatchingCosts& costs, const Image<uint16_t>& tones, bool with_lead);
+
+}  // namespace lf

@@ -1,0 +1,47 @@
+// Computes the image of an LF camera that recorded none, from LF images around it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "lf/camera/pinhole.h"
+#include "lf/core/image.h"
+#include "lf/densify/depth_plane.h"
+#include "lf/densify/inverse_depths.h"
+#include "lf/densify/working_image.h"
+
+namespace lf {
+
+// A recorded LF image that a virtual one is made of.
+struct Source {
+  const WorkingImage* image = nullptr;
+  const DepthPlane* plane = nullptr;
+  float weight = 0;  // above 0; the weights of all sources add up to 1
+};
+
+struct VirtualImage {
+  Image<uint16_t> light;  // [height][width][4]: 16-bit radiance R, G, B and 1; 0 if no source shows
+                          // the pixel
+  // Share of the pixels on whose depth sources with less than 2/5 of the weight agree.
+  double weak_share = 0;
+};
+
+// Computes the image of `camera`, in three steps:
+//   1. The pixels of each source are projected to the camera. The nearest depth at each of its
+//      pixels is that source's candidate.
+//   2. All sources vote on each candidate: a source whose plane has about the same depth at its
+//      place votes for it with its weight. A source that sees through the place, because it shows a
+//      larger depth there, votes against it.
+//   3. The colour is the mean of the sources' colours at the elected depth, interpolated in linear
+//      light, each with its weight and its agreement. Close elections mix the colours of several
+//      candidates, because a pixel at an outline shows two depths (Penner and Zhang, "Soft 3D
+//      reconstruction for view synthesis", 2017).
+// A pixel without candidate takes the largest depth that a candidate around it has.
+//   camera     without distortion
+//   sources    1 to kMostSources
+//   tolerance  of inverse depths that count as equal
+inline constexpr size_t kMostSources = 8;
+VirtualImage Synthesize(const PinholeCamera& camera, std::span<const Source> sources,
+                        const InverseDepths& range, double tolerance);
+
+}  // namespace lf

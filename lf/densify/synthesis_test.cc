@@ -1,0 +1,113 @@
+#include "lf/densify/synthesis.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lf/densify/test_world.h"
+
+namespace lf {
+namespace {
+
+constexpr InverseDepths kScene = {0.1, 1.1};
+constexpr double kTolerance = 0.05;
+
+// Four cameras around a place in the middle, with true depths.
+struct FourSources {
+  std::vector<WorkingImage> images;
+  std::vector<DepthPlane> planes;
+  std::vector<Source> sources;
+
+  explicit FourSources(const std::vector<Wall>& walls) {
+    for (const double y : {-0.1, 0.1})
+      for (const double x : {-0.1, 0.1}) {
+        images.push_back(ImageOfWalls(CameraAt(x, y), walls));
+        planes.push_back(TrueDepths(images.back().camera, walls));
+      }
+    for (size_t i = 0; i < images.size(); ++i) sources.push_back({&images[i], &planes[i], 0.25f});
+  }
+
+  static DepthPlane TrueDepths(const PinholeCamera& camera, const std::vector<Wall>& walls) {
+    DepthPlane plane(camera.intrinsics.width_px, camera.intrinsics.height_px);
+    for (int y = 0; y < plane.height(); ++y)
+      for (int x = 0; x < plane.width(); ++x) {
+        Vec3 point;
+        plane.at(x, y) =
+            kScene.NumberOf(1 / WallAt(camera, walls, x + 0.5, y + 0.5, &point)->depth);
+      }
+    return plane;
+  }
+};
+
+// Returns the PSNR of the pixels that are at least `border` away from the border of the image.
+double PsnrInside(const Image<uint16_t>& a, const Image<uint16_t>& b, int border) {
+  double squares = 0;
+  int count = 0;
+  for (int y = border; y < a.height() - border; ++y)
+    for (int x = border; x < a.width() - border; ++x)
+      for (int c = 0; c < 3; ++c, ++count) {
+        const double error = (a.at(x, y, c) - b.at(x, y, c)) / 65535.0;
+        squares += error * error;
+      }
+  return -10 * std::log10(squares / count);
+}
+
+TEST(Synthesis, ShowsAWallAsARecordedImageWould) {
+  const std::vector<Wall> walls = {{2.3, INFINITY, 1}};
+  const FourSources four(walls);
+  const PinholeCamera camera = CameraAt(0.013, -0.021);
+  const VirtualImage image = Synthesize(camera, four.sources, kScene, kTolerance);
+  EXPECT_GT(PsnrInside(image.light, ImageOfWalls(camera, walls).light, 8), 42);
+  EXPECT_LT(image.weak_share, 0.02);
+}
+
+TEST(Synthesis, ShowsBothSidesOfAnOutline) {
+  const std::vector<Wall> walls = {{1.5, 0.1, 1}, {6, INFINITY, 2}};
+  const FourSources four(walls);
+  const PinholeCamera camera = CameraAt(0.013, -0.021);
+  const VirtualImage image = Synthesize(camera, four.sources, kScene, kTolerance);
+  EXPECT_GT(PsnrInside(image.light, ImageOfWalls(camera, walls).light, 10), 33);
+}
+
+TEST(Synthesis, AVirtualCameraAtARecordedOneShowsItsImage) {
+  const std::vector<Wall> walls = {{1.5, 0.1, 1}, {6, INFINITY, 2}};
+  const FourSources four(walls);
+  const Source only[] = {{&four.images[0], &four.planes[0], 1}};
+  const VirtualImage image = Synthesize(four.images[0].camera, only, kScene, kTolerance);
+  for (int y = 0; y < image.light.height(); ++y)
+    for (int x = 0; x < image.light.width(); ++x)
+      for (int c = 0; c < 3; ++c)
+        ASSERT_NEAR(image.light.at(x, y, c), four.images[0].light.at(x, y, c), 64) << x << " " << y;
+}
+
+TEST(Synthesis, OneWrongSourceOfFourIsOutvoted) {
+  const std::vector<Wall> walls = {{2.3, INFINITY, 1}};
+  FourSources four(walls);
+  const PinholeCamera camera = CameraAt(0, 0);
+  std::fill(four.planes[2].pixels().begin(), four.planes[2].pixels().end(), kScene.NumberOf(1));
+  const VirtualImage image = Synthesize(camera, four.sources, kScene, kTolerance);
+  EXPECT_GT(PsnrInside(image.light, ImageOfWalls(camera, walls).light, 10), 40);
+}
+
+TEST(Synthesis, PixelsThatNoSourceShowsAreMasked) {
+  const std::vector<Wall> walls = {{2.3, INFINITY, 1}};
+  const FourSources four(walls);
+  PinholeCamera camera = CameraAt(0, 0);
+  camera.cam_from_world.rotation = Eigen::AngleAxisd(0.5, Vec3::UnitY()).toRotationMatrix();
+  const VirtualImage image = Synthesize(camera, four.sources, kScene, kTolerance);
+  int masked = 0, shown = 0;
+  for (int y = 0; y < image.light.height(); ++y)
+    for (int x = 0; x < image.light.width(); ++x) {
+      const bool is_shown = image.light.at(x, y, 3) == 1;
+      ++(is_shown ? shown : masked);
+      if (!is_shown) {
+        EXPECT_EQ(image.light.at(x, y, 0), 0);
+      }
+    }
+  EXPECT_GT(masked, 1000);
+  EXPECT_GT(shown, 1000);
+}
+
+}  // namespace
+}  // namespace lf

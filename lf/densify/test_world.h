@@ -1,0 +1,80 @@
+// A world of textured walls whose images are known exactly, for tests.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "lf/camera/pinhole.h"
+#include "lf/core/random.h"
+#include "lf/densify/working_image.h"
+
+namespace lf {
+
+// A wall at z = depth, with a hole where x > edge or nothing if edge is infinite. Cameras look
+// along z.
+struct Wall {
+  double depth = 1;
+  double edge = INFINITY;  // the wall ends at this x
+  uint64_t seed = 1;
+};
+
+// Returns smooth noise in [0, 1) that changes within about a length of 1.
+inline double SmoothNoise(double x, double y, uint64_t seed) {
+  const double column = std::floor(x), row = std::floor(y), u = x - column, v = y - row;
+  const auto at = [&](double i, double j) {
+    return RandomUnit(seed, static_cast<uint64_t>(column + i + 100000),
+                      static_cast<uint64_t>(row + j + 100000));
+  };
+  const double s = u * u * (3 - 2 * u), t = v * v * (3 - 2 * v);
+  return std::lerp(std::lerp(at(0, 0), at(1, 0), s), std::lerp(at(0, 1), at(1, 1), s), t);
+}
+
+// Returns the number of the wall that a camera sees at a pixel: the nearest that the ray meets.
+inline const Wall* WallAt(const PinholeCamera& camera, const std::vector<Wall>& walls, double x_px,
+                          double y_px, Vec3* point) {
+  const Ray ray = RayOfPixel(camera, x_px, y_px);
+  const Wall* seen = nullptr;
+  for (const Wall& wall : walls) {
+    const Vec3 at = ray.At((wall.depth - ray.origin.z()) / ray.direction.z());
+    if (at.x() > wall.edge || (seen && seen->depth < wall.depth)) continue;
+    seen = &wall;
+    *point = at;
+  }
+  return seen;
+}
+
+// Returns what a camera records: radiance of 16 bits, and tones equal to its upper 8 bits.
+inline WorkingImage ImageOfWalls(const PinholeCamera& camera, const std::vector<Wall>& walls) {
+  constexpr double kPixelsPerDetail = 5;
+  const Intrinsics& k = camera.intrinsics;
+  WorkingImage image{camera, Image<uint16_t>(k.width_px, k.height_px, LfPixels::kRgbLanes),
+                     Image<uint16_t>(k.width_px, k.height_px, LfPixels::kRgbLanes)};
+  for (int y = 0; y < k.height_px; ++y)
+    for (int x = 0; x < k.width_px; ++x) {
+      Vec3 point;
+      const Wall* wall = WallAt(camera, walls, x + 0.5, y + 0.5, &point);
+      if (!wall) continue;
+      const double scale = k.fx_px / wall->depth / kPixelsPerDetail;
+      for (int c = 0; c < 3; ++c) {
+        const double value = SmoothNoise(point.x() * scale, point.y() * scale,
+                                         wall->seed * 3 + static_cast<uint64_t>(c));
+        image.light.at(x, y, c) = static_cast<uint16_t>(65535 * value);
+        image.tones.at(x, y, c) = static_cast<uint16_t>(255 * value);
+      }
+      image.light.at(x, y, 3) = 1;
+      image.tones.at(x, y, 3) = 255;
+    }
+  return image;
+}
+
+// Returns a camera at (x, y, 0) that looks along z.
+inline PinholeCamera CameraAt(double x, double y, int width_px = 96, int height_px = 64) {
+  PinholeCamera camera;
+  camera.intrinsics = {100, 100, width_px / 2.0, height_px / 2.0, 0, width_px, height_px, {}, {}};
+  camera.cam_from_world.translation = Vec3(-x, -y, 0);
+  return camera;
+}
+
+}  // namespace lf
