@@ -1,0 +1,218 @@
+#!/usr/bin/python3
+"""Tests densified light fields from a user's view: nearer to the truth than the recorded ones, the same bits however
+they were made, refused where they cannot be right.
+
+usage: lfdensify_test.py LFDENSIFY LFSYNTH LFRENDERER LFCOMPRESSOR
+"""
+import json
+import os
+import shutil
+import signal
+import sqlite3
+import subprocess
+import sys
+import unittest
+
+import numpy as np
+
+from program_test_case import ProgramTestCase, wait_until
+
+os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"
+import cv2  # noqa: E402
+
+DENSIFY = SYNTH = RENDERER = COMPRESSOR = None
+
+PATH_YAML = """format: lfpath 1
+fps: 25
+frames: {frames}
+resolution: [160, 120]
+camera:
+  field_of_view_deg: 45
+  focal_length_mm: 50
+  position: {position}
+  look_at: {target}
+  up: {up}
+lens:
+  aperture_diameter: {aperture}
+  focus_distance: 0.8
+"""
+
+
+def psnr(a, b):
+    return -10 * np.log10(np.mean((np.clip(a, 0, 1) - np.clip(b, 0, 1)) ** 2))
+
+
+def contents(store):
+    """Returns the encoded LF images and planes of a store."""
+    with sqlite3.connect(f"file:{store}?immutable=1", uri=True) as database:
+        return (database.execute("select id, code, mask from blobs order by id").fetchall(),
+                database.execute("select id, kind, plane from planes order by id, kind").fetchall())
+
+
+class DensifyTest(ProgramTestCase):
+    """Has a still life, photographed by 4 x 4 cameras."""
+
+    def setUp(self):
+        super().setUp()
+        self.field = self.folder / "field"
+        self.store = self.folder / "dense.lfs"
+
+    def synth(self, *options):
+        self.succeeds(SYNTH, "still-life", "-o", self.field, "--count", 16, "--size", "160x120", "--spacing", 0.02,
+                      "-q", *options)
+
+    def cameras(self):
+        text = json.loads((self.field / "transforms.json").read_text())
+        return text, np.array([frame["transform_matrix"] for frame in text["frames"]])
+
+    def write_path(self, aperture=0.05, frames=1):
+        """Writes a path whose camera stands in the middle of the LF cameras."""
+        _, poses = self.cameras()
+        position, axes = poses[:, :3, 3].mean(0), poses[0][:3, :3]
+        words = {name: "[" + ", ".join(repr(float(x)) for x in vector) + "]"
+                 for name, vector in (("position", position), ("target", position - axes[:, 2]),
+                                      ("up", axes[:, 1]))}
+        path = self.folder / "path.yaml"
+        path.write_text(PATH_YAML.format(frames=frames, aperture=aperture, **words))
+        return path
+
+    def densify(self, *options, code=0, store=None, most=60):
+        return self.succeeds(DENSIFY, self.field, "-o", store or self.store, "--most", most, *options, code=code)
+
+    def render(self, field, path):
+        frames = self.folder / "frames"
+        shutil.rmtree(frames, ignore_errors=True)
+        self.succeeds(RENDERER, field, path, "-o", frames, "--format", "exr-float", "--no-contact-sheet", "-q")
+        return cv2.imread(str(frames / "frame_0001.exr"), cv2.IMREAD_UNCHANGED)[..., :3]
+
+    # Truth
+
+    def gain_db(self, *options):
+        """Returns by how much a densified light field comes nearer to the picture of a true lens."""
+        self.synth("--calibration-only", *options)
+        path = self.write_path()
+        self.synth("--truth", path, "--truth-samples", 150, *options)
+        truth = cv2.imread(str(next((self.field / "truth").glob("*.exr"))), cv2.IMREAD_UNCHANGED)[..., :3]
+        self.densify(most=250)
+        return psnr(truth, self.render(self.store, path)) - psnr(truth, self.render(self.field, path))
+
+    def test_blur_comes_much_nearer_to_the_picture_of_a_true_lens(self):
+        self.assertGreater(self.gain_db(), 8)
+
+    def test_so_does_that_of_cameras_with_distorted_lenses(self):
+        self.assertGreater(self.gain_db("--distortion", "0.12,-0.25,0.001,-0.002"), 8)
+
+    def test_so_does_that_of_mosaics(self):
+        self.assertGreater(self.gain_db("--bayer"), 6)
+
+    def test_virtual_lf_images_are_marked_and_recorded_ones_stay_as_they_are(self):
+        self.synth()
+        report = json.loads(self.densify("--json"))
+        self.assertEqual(report["recorded"], 16)
+        self.assertGreater(report["virtual"], 20)
+        self.assertLessEqual(report["virtual"], 60)
+        with sqlite3.connect(f"file:{self.store}?immutable=1", uri=True) as database:
+            marked = [row[0] for row in database.execute("select id from virtual_images order by id")]
+            planes = database.execute("select distinct kind from planes").fetchall()
+        self.assertEqual(marked, list(range(16, 16 + report["virtual"])))
+        self.assertEqual(planes, [("disparity",)])
+        loss = self.folder / "whole.lfs"
+        self.succeeds(COMPRESSOR, self.field, "-o", loss, "--profile", "lossless")
+        recorded = {row[0]: row[1:] for row in contents(self.store)[0]}
+        with sqlite3.connect(f"file:{loss}?immutable=1", uri=True) as database:
+            for id, code, mask in database.execute("select id, code, mask from blobs"):
+                self.assertEqual(recorded[id], (code, mask))
+
+    def test_a_film_gets_only_the_virtual_lf_images_that_it_looks_at(self):
+        self.synth()
+        path = self.write_path(aperture=0.04)
+        whole = json.loads(self.densify("--json", "--spacing", 6))
+        film = json.loads(self.succeeds(DENSIFY, self.field, path, "-o", self.folder / "film.lfs", "--json",
+                                        "--spacing", 6))
+        self.assertLess(film["virtual"], whole["virtual"])
+        self.render(self.folder / "film.lfs", path)
+
+    # Equal bits
+
+    def test_any_number_of_threads_gives_the_same_bits(self):
+        self.synth("--format", "png")
+        stores = []
+        for threads in 1, 2, 3:
+            store = self.folder / f"{threads}.lfs"
+            self.densify("--threads", threads, store=store)
+            stores.append(contents(store))
+        self.assertEqual(stores[0], stores[1])
+        self.assertEqual(stores[0], stores[2])
+
+    def test_a_store_that_was_interrupted_and_killed_ends_with_the_same_bits(self):
+        self.synth()
+        self.densify()
+        unfinished = self.folder / "again.lfs.unfinished"
+        again = self.folder / "again.lfs"
+        for stop in signal.SIGINT, signal.SIGKILL, signal.SIGTERM:
+            process = subprocess.Popen([DENSIFY, self.field, "-o", again, "--most", "60", "--threads", "1",
+                                        "--resume"], stderr=subprocess.DEVNULL)
+            size = unfinished.stat().st_size if unfinished.exists() else 0
+            wait_until(lambda: unfinished.exists() and unfinished.stat().st_size > size + 20000, process)
+            process.send_signal(stop)
+            self.assertIn(process.wait(), (5, -stop, 0))
+        if not again.exists():
+            self.densify("--resume", store=again)
+        self.assertEqual(contents(self.store), contents(again))
+
+    # Refusals
+
+    def rewrite(self, change):
+        text, _ = self.cameras()
+        change(text["frames"])
+        (self.field / "transforms.json").write_text(json.dumps(text))
+
+    def test_wrong_poses_are_refused(self):
+        self.synth()
+
+        def exchange(frames):
+            names = [frame["file_path"] for frame in frames]
+            for frame, name in zip(frames, np.random.default_rng(1).permutation(names)):
+                frame["file_path"] = str(name)
+        self.rewrite(exchange)
+        self.fails(3, ["left out"], DENSIFY, self.field, "-o", self.store, "--depths", 0.35, 20)
+        self.assertFalse(self.store.exists())
+
+    def test_cameras_on_a_line_are_refused(self):
+        self.synth()
+        self.rewrite(lambda frames: frames.__delitem__(slice(4, None)))
+        self.fails(3, ["one line"], DENSIFY, self.field, "-o", self.store)
+
+    def test_lf_images_too_far_apart_are_refused(self):
+        self.synth()
+        self.fails(3, ["--force"], DENSIFY, self.field, "-o", self.store, "--depths", 0.05, 20)
+
+    def test_a_dense_light_field_is_refused(self):
+        self.synth()
+        self.fails(3, ["render the light field as it is"], DENSIFY, self.field, "-o", self.store, "--spacing", 16)
+
+    def test_a_densified_light_field_is_refused(self):
+        self.synth()
+        self.densify()
+        self.fails(2, ["virtual LF images already"], DENSIFY, self.store, "-o", self.folder / "b.lfs")
+
+    def test_an_existing_store_is_only_replaced_if_the_user_says_so(self):
+        self.synth()
+        self.densify()
+        before = contents(self.store)
+        self.fails(2, ["exists already", "--overwrite"], DENSIFY, self.field, "-o", self.store)
+        self.assertEqual(contents(self.store), before)
+        self.densify("--overwrite")
+        self.assertEqual(contents(self.store), before)
+
+    def test_wrong_options_are_usage_errors(self):
+        self.synth()
+        for words, options in ((["--depths", "nearest"], ["--depths", 3, 1]), ([".lfs"], ["-o", "dense.txt"]),
+                               (["--divisor"], ["--divisor", 0])):
+            output = [] if "-o" in options else ["-o", self.store]
+            self.fails(2, words, DENSIFY, self.field, *output, *options)
+
+
+if __name__ == "__main__":
+    DENSIFY, SYNTH, RENDERER, COMPRESSOR = sys.argv[1:5]
+    unittest.main(argv=sys.argv[:1])

@@ -1,0 +1,88 @@
+#include "tools/densify_report.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tools/common/progress.h"
+
+#include "lf/core/shell_word.h"
+
+namespace lf {
+namespace {
+
+// Returns a depth in world units; "infinity" for inverse depths of 0 and less.
+std::string DepthText(double inverse_depth) {
+  return inverse_depth > 0 ? fmt::format("{:.4g}", 1 / inverse_depth) : std::string("infinity");
+}
+
+double NanosecondsPer(double cpu_s, double pixels) { return pixels > 0 ? cpu_s * 1e9 / pixels : 0; }
+
+}  // namespace
+
+std::string DensifyText(const DensifyReport& report, const LightField& light_field,
+                        const DensifyOptions& options, double total_s) {
+  std::string text = fmt::format(
+      "{}: {} recorded and {} virtual LF images\n"
+      "depths    {} to {}; {} were compared; near points shift by {:.1f} px against far ones\n"
+      "cameras   virtual ones are {:.4g} apart: copies at most {:.2g} px apart\n",
+      options.store.string(), report.recorded_count, report.virtual_count,
+      DepthText(report.range.greatest), DepthText(report.range.least), report.planes,
+      report.shift_px, report.distance_w, report.spacing_px);
+  if (report.spacing_px > options.choices.spacing_px * 1.001)
+    text += fmt::format(
+        "note: {} virtual LF images would be needed for {:.2g} px: allow more by --most\n", "more",
+        options.choices.spacing_px);
+  text += fmt::format(
+      "agreement {:.1f} % of the pixels have depths on which two neighbours agree; {:.1f} % of "
+      "the\n"
+      "          virtual pixels rest on few\n",
+      100 * report.agreeing_share, 100 * report.weak_share);
+  if (!report.tests.empty()) {
+    text += fmt::format(
+        "test      LF images left out and made from their neighbours: {:.1f} dB better than a "
+        "mean\n"
+        "          of these\n",
+        MedianGainDb(report.tests));
+    for (const LeftOut& test : report.tests)
+      text += fmt::format("          {:.1f} dB (mean: {:.1f} dB)  {}\n", test.virtual_psnr_db,
+                          test.blend_psnr_db, light_field.image_names[test.id.value]);
+  }
+  text += fmt::format(
+      "speed     {:.0f} ns per swept pixel, {:.0f} ns per virtual pixel (CPU); {}\n",
+      NanosecondsPer(report.sweep_cpu_s, report.swept_pixels),
+      NanosecondsPer(report.synthesis_cpu_s, report.made_pixels), ShortDuration(total_s));
+  text +=
+      fmt::format("next: lfrenderer {} PATH.yaml -o frames\n", ShellWord(options.store.string()));
+  return text;
+}
+
+std::string DensifyJson(const DensifyReport& report, const LightField& light_field,
+                        const DensifyOptions& options, double total_s) {
+  nlohmann::ordered_json tests = nlohmann::ordered_json::array();
+  for (const LeftOut& test : report.tests)
+    tests.push_back({{"lf_image", light_field.image_names[test.id.value]},
+                     {"virtual_psnr_db", test.virtual_psnr_db},
+                     {"mean_psnr_db", test.blend_psnr_db}});
+  const nlohmann::ordered_json json = {
+      {"store", options.store.string()},
+      {"recorded", report.recorded_count},
+      {"virtual", report.virtual_count},
+      {"inverse_depths", {report.range.least, report.range.greatest}},
+      {"compared_depths", report.planes},
+      {"shift_px", report.shift_px},
+      {"camera_distance_w", report.distance_w},
+      {"spacing_px", report.spacing_px},
+      {"agreeing_share", report.agreeing_share},
+      {"weak_share", report.weak_share},
+      {"tests", tests},
+      {"swept_pixels", report.swept_pixels},
+      {"sweep_cpu_s", report.sweep_cpu_s},
+      {"virtual_pixels", report.made_pixels},
+      {"synthesis_cpu_s", report.synthesis_cpu_s},
+      {"total_s", total_s}};
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace lf

@@ -1,0 +1,191 @@
+// lfdensify LIGHTFIELD [PATH.yaml] -o STORE.lfs: puts virtual LF images between recorded ones.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <string>
+
+#include "tools/common/byte_size.h"
+#include "tools/common/interrupt.h"
+#include "tools/common/light_field_argument.h"
+#include "tools/common/program.h"
+#include "tools/common/progress.h"
+#include "tools/densify_report.h"
+
+#include "lf/camera/path/path_yaml.h"
+#include "lf/densify/densify.h"
+#include "lf/storage/packed/packed_store_file.h"
+
+namespace {
+
+constexpr lf::HelpTexts kHelp = {
+    .summary =
+        "Puts virtual LF images between the recorded ones of a sparse light field, so that blur "
+        "is smooth.",
+    .usage = R"(  lfdensify LIGHTFIELD -o STORE.lfs [OPTIONS]
+  lfdensify LIGHTFIELD PATH.yaml -o STORE.lfs [OPTIONS])",
+    .examples = R"(  lfdensify capture/ -o dense.lfs                 # for any camera path
+  lfdensify capture/ path.yaml -o film.lfs        # only what the frames of a film look at
+  lfdensify capture/ -o dense.lfs --divisor 2     # photographs with more pixels than frames
+  lfrenderer dense.lfs path.yaml -o frames        # a store is a LIGHTFIELD)",
+    .details =
+        R"(If few photographs are rendered with a large aperture, what is out of focus appears as separate
+copies. The program estimates the depth of every pixel by comparing neighbouring LF images, and makes
+the images of virtual LF cameras between the recorded ones. Recorded LF images stay as they are.
+doc/densify.md shows where this works and where it fails.
+
+First, some LF images are left out in turn and made from their neighbours. If the result is hardly
+better than a mean of the neighbours, poses or depths are wrong, and the program ends with exit
+code 3.
+
+Until the store is complete its name is STORE.lfs.unfinished. Ctrl-C, kill -9 or a crash lose a few
+seconds of work; --resume continues.)",
+};
+
+struct Arguments {
+  lf::LightFieldArgument light_field;
+  std::string path, output, memory = "2G";
+  std::vector<double> depths;
+  lf::DensifyChoices choices;
+  bool resume = false, overwrite = false;
+};
+
+void AddInput(CLI::App& app, Arguments& a) {
+  lf::OptionGroup input(app, lf::kInputGroup);
+  input
+      .Add("LIGHTFIELD", a.light_field.path,
+           "Light field of any supported kind\n"
+           "Its LF cameras must surround an area, and look in one direction or at one point.")
+      ->required()
+      ->check(lf::NotEmpty());
+  input
+      .Add("PATH.yaml", a.path,
+           "Camera path of a film (none)\n"
+           "Only virtual LF images that contribute to its frames are made, as densely as these "
+           "frames need. If it is not given, virtual LF images are made wherever LF cameras are "
+           "around, densely enough for a focus anywhere in the scene.")
+      ->check(lf::NotEmpty());
+  a.light_field.AddOptionsTo(app);
+}
+
+void AddOutput(CLI::App& app, Arguments& a) {
+  lf::OptionGroup output(app, lf::kOutputGroup);
+  output.Add("-o,--output STORE.lfs", a.output, "Packed store to write")
+      ->required()
+      ->check(lf::NotEmpty());
+}
+
+void AddQuality(CLI::App& app, Arguments& a) {
+  lf::OptionGroup quality(app, lf::kQualityGroup);
+  quality
+      .Add("--depths NEAR FAR", a.depths,
+           "Depths of the scene, in world units (found)\n"
+           "Distances from the LF cameras, along their optical axes. If the option is not given, "
+           "the depths are found by comparing a few reduced LF images.")
+      ->expected(2)
+      ->check(CLI::PositiveNumber);
+  quality
+      .Add("--spacing PX", a.choices.spacing_px,
+           "Largest distance between copies (1.5)\n"
+           "What is out of focus is made of copies, one for each LF image. The unit is an element "
+           "of the frames if PATH.yaml is given, otherwise a pixel of the virtual LF images.")
+      ->check(CLI::Range(0.25, 16.));
+  quality
+      .Add("--most N", a.choices.most_virtual,
+           "Make at most N virtual LF images (2000)\n"
+           "If more are needed for --spacing, they stand less densely.")
+      ->check(CLI::Range(size_t{1}, size_t{1000000}));
+  quality
+      .Add("--divisor N", a.choices.divisor,
+           "Reduce virtual LF images to 1/N of the size (1)\n"
+           "Serves for photographs that have more pixels than frames. Recorded LF images keep "
+           "their size.")
+      ->check(CLI::Range(1, 16));
+  quality.AddFlag("--force", a.choices.force,
+                  "Densify even if figures speak against it\n"
+                  "Refused otherwise: LF images too far from one another, LF cameras that are "
+                  "dense enough already, and LF images that cannot be made from their neighbours.");
+}
+
+void AddRunning(CLI::App& app, Arguments& a) {
+  lf::OptionGroup running(app, lf::kRunningGroup);
+  auto* resume = running.AddFlag("--resume", a.resume,
+                                 "Continue an unfinished store\n"
+                                 "Give the same inputs and options as when the store was begun. "
+                                 "The image files must be unchanged.");
+  running
+      .AddFlag("--overwrite", a.overwrite,
+               "Replace an existing store, finished or unfinished\n"
+               "A file that is not a packed store is never replaced.")
+      ->excludes(resume);
+  running
+      .Add("--memory SIZE", a.memory,
+           "Memory for LF images that are kept (2G)\n"
+           "Depths take 2 bytes for each pixel of all LF images on top, and about 200 MB are used "
+           "by each thread.")
+      ->check(lf::NotEmpty());
+}
+
+void AddOptions(CLI::App& app, Arguments& a) {
+  AddInput(app, a);
+  AddOutput(app, a);
+  AddQuality(app, a);
+  AddRunning(app, a);
+}
+
+lf::Result<lf::DensifyOptions> MakeOptions(const Arguments& a, const lf::LightField& light_field) {
+  lf::DensifyOptions options;
+  options.store = a.output;
+  if (options.store.extension() != lf::kStoreExtension)
+    return lf::UsageError(
+        fmt::format("-o {}: expected a file name that ends in {}", a.output, lf::kStoreExtension));
+  options.choices = a.choices;
+  if (!a.depths.empty()) {
+    if (!(a.depths[0] < a.depths[1]))
+      return lf::UsageError(
+          fmt::format("--depths {} {}: expected the nearest depth first, then the farthest",
+                      a.depths[0], a.depths[1]));
+    options.choices.depths = lf::DepthRange{a.depths[0], a.depths[1]};
+  }
+  if (!a.path.empty()) {
+    LF_ASSIGN_OR_RETURN(const lf::CameraPath path, lf::ReadPathYaml(a.path, light_field.unit_m));
+    options.choices.frames = path.cameras;
+  }
+  LF_ASSIGN_OR_RETURN(options.memory_bytes, lf::ParseByteSize(a.memory, "--memory"));
+  options.resume = a.resume;
+  options.overwrite = a.overwrite;
+  options.source_name = a.light_field.path;
+  options.version = lf::Version();
+  return options;
+}
+
+lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
+  const auto begin = std::chrono::steady_clock::now();
+  const std::atomic<bool>& interrupted = lf::CatchInterrupts();
+  LF_ASSIGN_OR_RETURN(const lf::LightField light_field, a.light_field.Open());
+  LF_ASSIGN_OR_RETURN(lf::DensifyOptions options, MakeOptions(a, light_field));
+  options.interrupted = &interrupted;
+  lf::ThreadPool pool(common.threads);
+  lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "LF images");
+  LF_ASSIGN_OR_RETURN(const lf::DensifyReport report,
+                      lf::Densify(light_field, options, pool, [&](const lf::DensifyProgress& now) {
+                        meter.Update(now.done, now.total, now.step);
+                      }));
+  const double total_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return lf::PrintReport(common.json ? lf::DensifyJson(report, light_field, options, total_s)
+                                     : lf::DensifyText(report, light_field, options, total_s));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  lf::Program program("lfdensify", kHelp);
+  AddOptions(program.app(), arguments);
+  program.AddCommonOptions({.threads = true,
+                            .json = "Print the report to stdout as JSON",
+                            .progress = true,
+                            .verbose = true,
+                            .quiet = true});
+  return program.Run(argc, argv, [&] { return Run(arguments, program.common()); });
+}
