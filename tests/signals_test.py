@@ -72,6 +72,9 @@ class SignalsTest(WritersCase):
     def test_lfcompressor(self):
         self.same("lfcompressor", "--resume")
 
+    def test_lfdensify(self):
+        self.same("lfdensify", "--resume")
+
     def test_lfmerge(self):
         self.same("lfmerge", "--resume")
 

@@ -77,6 +77,8 @@ class TinyCalls:
         synth, convert = self.synth(out), self.words("lfimport", self.field, "-o", out)
         store = self.words("lfcompressor", self.field, "-o", out.with_suffix(".lfs"))
         shards = [*store, "--shard-size", "4k"]
+        dense = self.words("lfdensify", self.field, "-o", out.with_suffix(".lfs"), "--depths", 1, 10, "--force",
+                           "--most", 60)
         packages = self.preprocess(self.path, out)
         merge = self.words("lfmerge", self.shards / "partial" / "shards", "-o", out)
         return [Call("lfsynth", synth, [[*synth, "--overwrite"]]),
@@ -85,6 +87,7 @@ class TinyCalls:
                 Call("lfpreprocessor", packages, [[*packages, "--overwrite"]]),
                 Call("lfcompressor", store, [[*store, "--resume"], [*store, "--overwrite"]]),
                 Call("lfcompressor, shards", shards, [[*shards, "--resume"], [*shards, "--overwrite"]]),
+                Call("lfdensify", dense, [[*dense, "--resume"], [*dense, "--overwrite"]]),
                 Call("lfrenderer, collect", film, [[*film, "--resume"]]),
                 Call("lfrenderer, hybrid", hybrid, [[*hybrid, "--resume"]]),
                 Call("lfrenderer, rebin", rebin, [[*rebin, "--resume"]]),

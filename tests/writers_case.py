@@ -50,6 +50,8 @@ class WritersCase(ProgramTestCase):
             "lfpreprocessor": [self.field, self.path, "-o", out, "--packages", 2, "--seed", int(way == "b")],
             "lfmerge": [self.world / f"cut_{way}" / "partial" / "shards", "-o", out, "--no-contact-sheet"],
             "lfcompressor": [self.field, "-o", out / "store.lfs", "--threshold", 2 + 6 * (way == "b")],
+            "lfdensify": [self.field, "-o", out / "store.lfs", "--depths", 1, 10, "--force", "--most",
+                          60 + 20 * (way == "b")],
             "lfsynth": ["chart", "-o", out, "--count", 9, "--size", "32x24", "--samples", 1, "--format", "png",
                         "--distance", 3 + (way == "b")],
             "lfimport": [self.field, "-o", out, "--unit-m", 1 + (way == "b"), "--check", "none"],
@@ -86,7 +88,8 @@ class WritersCase(ProgramTestCase):
     def files(cls, program, out):
         """Returns digests of a program's results, without reports, which contain times."""
         kinds = {"lfrenderer": "frame_*", "lfmerge": "frame_*", "lfsubmit": "frame_*", "lfpreprocessor": "*.lfp",
-                 "lfcompressor": "*.lfs", "lfimport": "*.json", "lfexample": "*.yaml", "lfsynth": "**/[!.]*"}
+                 "lfcompressor": "*.lfs", "lfdensify": "*.lfs", "lfimport": "*.json", "lfexample": "*.yaml",
+                 "lfsynth": "**/[!.]*"}
         return {str(path.relative_to(out)): cls.digest(path)
                 for path in sorted(out.glob(kinds[program])) if path.is_file()}
 

@@ -68,6 +68,9 @@ class WritersTest(WritersCase):
     def test_lfcompressor(self):
         self.race("lfcompressor", "--overwrite")
 
+    def test_lfdensify(self):
+        self.race("lfdensify", "--overwrite")
+
     def test_lfsynth(self):
         self.race("lfsynth")
 

@@ -338,6 +338,7 @@ Result<DensifyReport> Densifier::Run() {
   report_.shift_px = plan_.ShiftPx();
   report_.distance_w = plan_.distance_w;
   report_.spacing_px = plan_.spacing_px;
+  LogDebug("{}: {}", options_.store.string(), SettingsInWords(plan_, options_.choices));
   LF_RETURN_IF_ERROR(Test());
 
   LF_RETURN_IF_ERROR(OpenWriter());

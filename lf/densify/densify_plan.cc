@@ -147,7 +147,9 @@ Result<void> ChooseVirtual(const LightField& light_field, const DensifyChoices& 
   const double outside_w =
       plan->plane.is_unrolled ? 0 : kOutside * MedianDistance(plan->plane.points);
   const double wanted_w = DistanceFor(light_field, *plan, choices);
-  const double recorded_w = MedianDistance(plan->plane.points);
+  // The mean distance of compared LF cameras; rows may be farther apart than columns.
+  const double recorded_w = plan->shift_per_depth_px /
+                            light_field.Camera(LfImageId{0}).intrinsics.fx_px * choices.divisor;
   if (recorded_w <= wanted_w && !choices.force)
     return InputError(fmt::format(
         "the LF cameras are {:.4g} apart, and {:.4g} suffices: copies of what is out of focus are "
@@ -172,6 +174,10 @@ Result<void> ChooseVirtual(const LightField& light_field, const DensifyChoices& 
     plan->distance_w *= std::max(kCoarser, 0.98 * std::sqrt(count / most));
   }
   plan->spacing_px = choices.spacing_px * plan->distance_w / wanted_w;
+  if (plan->virtual_cameras.empty() && choices.frames.empty())
+    return UsageError(
+        fmt::format("{} virtual LF images are too few to stand between {} LF cameras: raise --most",
+                    choices.most_virtual, plan->plane.points.size()));
   if (plan->virtual_cameras.empty())
     return UsageError(
         "no place between the LF cameras contributes to the frames: check the camera path with "

@@ -66,7 +66,8 @@ double ToleranceFor(const InverseDepths& range, int planes, double shift_per_dep
 //   store  of the light field, with Mosaics::kToRgb
 // kInput: fewer than three LF cameras, or all on one line; LF images too far from one another (the
 // message has the shift or the angle); LF cameras that are dense enough already; or an error of
-// FindInverseDepths(). kUsage: no virtual LF image contributes to the frames.
+// FindInverseDepths(). kUsage: no virtual LF image contributes to the frames, or most_virtual is
+// too small.
 Result<DensifyPlan> PlanDensify(const LightField& light_field, const LfImageStore& store,
                                 const DensifyChoices& choices, ThreadPool& pool);
 
