@@ -46,9 +46,8 @@ Result<RenderRate> MeasureRate(const ImageIndex& index, const RenderCamera& fram
       OpenStore(light_field, reading.estimator == Estimator::kBilinear ? Mosaics::kToRgb
                                                                        : Mosaics::kAsRecorded));
   const LfImageStore& store = *opened;
-  SensorPlate plate = SensorPlate::WithOpacity(frame.pinhole.intrinsics.width_px,
-                                               frame.pinhole.intrinsics.height_px,
-                                               light_field.encoding.HasOpacity());
+  SensorPlate plate(frame.pinhole.intrinsics.width_px, frame.pinhole.intrinsics.height_px,
+                    light_field.encoding.HasOpacity() ? PlateKind::kOpacity : PlateKind::kColours);
   const std::vector<SelectedImage> sample = SampleOf(needs, store);
   if (sample.empty())
     return InputError(

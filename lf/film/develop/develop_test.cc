@@ -68,7 +68,7 @@ double BruteForce(const SensorPlate& plate, int x, int y, int channel,
 
 // Returns a plate with the colours of `colours`, whose opacity is its red channel.
 SensorPlate WithRedOpacity(const SensorPlate& colours) {
-  SensorPlate plate = SensorPlate::WithOpacity(colours.width(), colours.height());
+  SensorPlate plate(colours.width(), colours.height(), PlateKind::kOpacity);
   for (int y = 0; y < plate.height(); ++y)
     for (int x = 0; x < plate.width(); ++x)
       for (int c = 0; c < plate.channels(); ++c) plate.Add(x, y, c, colours.At(x, y, c % 3));
@@ -94,7 +94,7 @@ TEST(Develop, OpacityIsAveragedAndFilledLikeAColour) {
 
 TEST(Develop, OpacityIsExactWhereAllRaysAgreeAndNeverOutsideOfItsRange) {
   ThreadPool pool(1);
-  SensorPlate plate = SensorPlate::WithOpacity(4, 1);
+  SensorPlate plate(4, 1, PlateKind::kOpacity);
   const uint64_t values[] = {4096, 61440, 4000, 65535};
   for (int x = 0; x < 4; ++x)
     for (int c = 0; c < 4; ++c) plate.Add(x, 0, c, {values[x] * 7, 7});

@@ -53,10 +53,10 @@ class PlateReader {
 
   int width() const { return width_; }
   int height() const { return height_; }
-  bool has_opacity() const { return channels_ > SensorPlate::kChannels; }
+  PlateKind kind() const { return kind_; }
   const PlateEntries& entries() const { return entries_; }
 
-  // Adds all rays to a plate of the file's size and channels. Takes about a megabyte of memory
+  // Adds all rays to a plate of the file's size and kind. Takes about a megabyte of memory
   // beside the plate. Must be called only once. kInput if the file is truncated or damaged; the
   // plate then holds a part of the rays and must not be used.
   Result<void> AddTo(SensorPlate* plate);
@@ -70,7 +70,7 @@ class PlateReader {
   std::unique_ptr<entry_file::Source> source_;
   int width_ = 0;
   int height_ = 0;
-  int channels_ = SensorPlate::kChannels;
+  PlateKind kind_ = PlateKind::kColours;
   int rows_per_chunk_ = 1;
   uint64_t wide_count_ = 0;
   PlateEntries entries_;

@@ -57,8 +57,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size_bytes) {
   }
   // Callers refuse plates of another size than they expect, so that very large ones need no test.
   if (int64_t{reader->width()} * reader->height() > 1 << 20) return 0;
-  lf::SensorPlate plate =
-      lf::SensorPlate::WithOpacity(reader->width(), reader->height(), reader->has_opacity());
+  lf::SensorPlate plate(reader->width(), reader->height(), reader->kind());
   const lf::Result<void> added = reader->AddTo(&plate);
   if (!added) {
     LF_CHECK(added.error().message.starts_with("p: "));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 
 #include "lf/core/check.h"
 #include "lf/core/hash.h"
@@ -44,10 +45,10 @@ Result<void> PlateReader::ReadHead() {
   LF_ASSIGN_OR_RETURN(entry_file::Front front, entry_file::ReadFront(*source_, sizeof(Head)));
   Head head;
   std::memcpy(&head, front.head.data(), sizeof(head));
-  if (head.width < 1 || head.width > kMaxSide || head.height < 1 || head.height > kMaxSide ||
-      (head.channels != SensorPlate::kChannels && head.channels != SensorPlate::kChannels + 1))
+  const std::optional<PlateKind> kind = PlateKindOf(head.channels);
+  if (head.width < 1 || head.width > kMaxSide || head.height < 1 || head.height > kMaxSide || !kind)
     return InputError(fmt::format(
-        "{}: states {} x {} elements with {} channels, expected 3 or 4 channels, and width and "
+        "{}: states {} x {} elements with {} channels, expected 3, 4 or 7 channels, and width and "
         "height from 1 to {}",
         source_->name(), head.width, head.height, head.channels, kMaxSide));
   const uint64_t most_rows = 1 + kChunkWords / (uint64_t{head.width} * head.channels);
@@ -67,15 +68,14 @@ Result<void> PlateReader::ReadHead() {
   entries_ = std::move(front.entries);
   width_ = static_cast<int>(head.width);
   height_ = static_cast<int>(head.height);
-  channels_ = static_cast<int>(head.channels);
+  kind_ = *kind;
   rows_per_chunk_ = static_cast<int>(head.rows_per_chunk);
   wide_count_ = head.wide_count;
   return {};
 }
 
 Result<void> PlateReader::AddTo(SensorPlate* plate) {
-  LF_CHECK(plate->width() == width_ && plate->height() == height_ &&
-           plate->channels() == channels_);
+  LF_CHECK(plate->width() == width_ && plate->height() == height_ && plate->kind() == kind_);
   const int chunk_count = (height_ - 1) / rows_per_chunk_ + 1;
   for (int chunk = 0; chunk < chunk_count; ++chunk)
     LF_RETURN_IF_ERROR(AddChunk(static_cast<uint32_t>(chunk), plate));
@@ -88,7 +88,7 @@ Result<void> PlateReader::AddTo(SensorPlate* plate) {
 Result<void> PlateReader::AddChunk(uint32_t chunk, SensorPlate* plate) {
   const int y_begin = static_cast<int>(chunk) * rows_per_chunk_;
   const int y_end = std::min(height_, y_begin + rows_per_chunk_);
-  const size_t row_words = static_cast<size_t>(width_) * channels_;
+  const size_t row_words = static_cast<size_t>(width_) * static_cast<size_t>(kind_);
   std::vector<uint64_t> words(static_cast<size_t>(y_end - y_begin) * row_words);
   const size_t size = words.size() * sizeof(uint64_t);
   ChunkHead head;
@@ -113,14 +113,14 @@ Result<void> PlateReader::AddChunk(uint32_t chunk, SensorPlate* plate) {
                                           rays.count));
     if (rays.count == 0) continue;
     const auto in_row = static_cast<int>(i % row_words);
-    plate->Add(in_row / channels_, y_begin + static_cast<int>(i / row_words), in_row % channels_,
-               rays);
+    plate->Add(in_row / plate->channels(), y_begin + static_cast<int>(i / row_words),
+               in_row % plate->channels(), rays);
   }
   return {};
 }
 
 Result<void> PlateReader::AddWide(SensorPlate* plate) {
-  const uint64_t row_words = static_cast<uint64_t>(width_) * static_cast<uint64_t>(channels_);
+  const uint64_t row_words = static_cast<uint64_t>(width_) * static_cast<uint64_t>(kind_);
   const uint64_t word_count = row_words * static_cast<uint64_t>(height_);
   Hasher hasher;
   uint64_t next_index = 0;
@@ -138,8 +138,8 @@ Result<void> PlateReader::AddWide(SensorPlate* plate) {
                                             word.index, word.sum, word.count));
       next_index = word.index + 1;
       const auto in_row = static_cast<int>(word.index % row_words);
-      plate->Add(in_row / channels_, static_cast<int>(word.index / row_words), in_row % channels_,
-                 {word.sum, word.count});
+      plate->Add(in_row / plate->channels(), static_cast<int>(word.index / row_words),
+                 in_row % plate->channels(), {word.sum, word.count});
     }
     done += block.size();
   }

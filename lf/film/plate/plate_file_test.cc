@@ -87,20 +87,20 @@ TEST_F(PlateFile, GivesBackEverySumAndCount) {
   }
 }
 
-TEST_F(PlateFile, GivesBackTheFourthChannelWideWordsIncluded) {
+TEST_F(PlateFile, GivesBackAllChannelsOfEachKindWideWordsIncluded) {
   ThreadPool pool(2);
-  SensorPlate plate = testing::WithNoiseOpacity(317, 211, 7);
-  plate.Add(316, 210, SensorPlate::kOpacityChannel, {uint64_t{61440} << 24, uint64_t{1} << 24});
-  const fs::path path = folder_ / "a.plate";
-  ASSERT_TRUE(WritePlate(path, kEntries, plate, pool));
-  Result<PlateReader> reader = PlateReader::Open(path);
-  ASSERT_TRUE(reader) << reader.error().message;
-  ASSERT_TRUE(reader->has_opacity());
-  SensorPlate read = SensorPlate::WithOpacity(317, 211);
-  ASSERT_TRUE(reader->AddTo(&read));
-  EXPECT_EQ(read, plate);
-  const std::string of_colours = BytesOf(SensorPlate(3, 2));
-  EXPECT_FALSE(PlateReader::OpenBytes(of_colours, "x")->has_opacity());
+  for (const PlateKind kind : {PlateKind::kColours, PlateKind::kOpacity, PlateKind::kGuarded}) {
+    SensorPlate plate = testing::NoisePlateOf(kind, 317, 211, 7);
+    plate.Add(316, 210, plate.channels() - 1, {uint64_t{61440} << 24, uint64_t{1} << 24});
+    const fs::path path = folder_ / "a.plate";
+    ASSERT_TRUE(WritePlate(path, kEntries, plate, pool));
+    Result<PlateReader> reader = PlateReader::Open(path);
+    ASSERT_TRUE(reader) << reader.error().message;
+    ASSERT_EQ(reader->kind(), kind);
+    SensorPlate read(317, 211, kind);
+    ASSERT_TRUE(reader->AddTo(&read));
+    EXPECT_EQ(read, plate);
+  }
 }
 
 // If an element gets more rays than a packed word can hold, they move to the wide table, and later

@@ -10,18 +10,18 @@ ElementSum Unpack(uint64_t word) { return {word & SensorPlate::kSumMask, CountOf
 
 }  // namespace
 
-SensorPlate::SensorPlate(int width, int height, uint32_t count_limit)
-    : SensorPlate(width, height, kChannels, count_limit) {}
-SensorPlate SensorPlate::WithOpacity(int width, int height, bool has_opacity,
-                                     uint32_t count_limit) {
-  return SensorPlate(width, height, kChannels + (has_opacity ? 1 : 0), count_limit);
+std::optional<PlateKind> PlateKindOf(uint32_t channels) {
+  for (const PlateKind kind : {PlateKind::kColours, PlateKind::kOpacity, PlateKind::kGuarded})
+    if (static_cast<uint32_t>(kind) == channels) return kind;
+  return std::nullopt;
 }
-SensorPlate::SensorPlate(int width, int height, int channels, uint32_t count_limit)
+
+SensorPlate::SensorPlate(int width, int height, PlateKind kind, uint32_t count_limit)
     : width_(width),
       height_(height),
-      channels_(channels),
+      kind_(kind),
       count_limit_(count_limit),
-      packed_(static_cast<size_t>(width) * height * channels),
+      packed_(static_cast<size_t>(width) * height * static_cast<size_t>(kind)),
       wide_mutex_(std::make_unique<std::mutex>()) {
   LF_CHECK(count_limit >= 1 && count_limit <= kMaxCount);
 }
@@ -65,20 +65,20 @@ void SensorPlate::Add(int x, int y, int channel, const ElementSum& rays) {
 }
 
 void SensorPlate::Merge(const SensorPlate& other) {
-  LF_CHECK(width_ == other.width_ && height_ == other.height_ && channels_ == other.channels_);
+  LF_CHECK(width_ == other.width_ && height_ == other.height_ && kind_ == other.kind_);
   for (int y = 0; y < height_; ++y)
     for (int x = 0; x < width_; ++x)
-      for (int channel = 0; channel < channels_; ++channel)
+      for (int channel = 0; channel < channels(); ++channel)
         if (const ElementSum rays = other.At(x, y, channel); rays.count > 0)
           Add(x, y, channel, rays);
 }
 
 bool operator==(const SensorPlate& a, const SensorPlate& b) {
-  if (a.width_ != b.width_ || a.height_ != b.height_ || a.channels_ != b.channels_) return false;
+  if (a.width_ != b.width_ || a.height_ != b.height_ || a.kind_ != b.kind_) return false;
   if (a.wide_.empty() && b.wide_.empty()) return a.packed_ == b.packed_;
   for (int y = 0; y < a.height_; ++y)
     for (int x = 0; x < a.width_; ++x)
-      for (int channel = 0; channel < a.channels_; ++channel)
+      for (int channel = 0; channel < a.channels(); ++channel)
         if (a.At(x, y, channel) != b.At(x, y, channel)) return false;
   return true;
 }

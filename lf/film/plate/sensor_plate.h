@@ -7,9 +7,8 @@
 // number of threads and any split of the work. 2^24 - 1 rays of value 65535 just fit; before an
 // element could exceed that, its content moves to a side table of wide words. Nothing wraps.
 //
-// A plate may have a fourth channel, opacity: its word follows the three words of an element's
-// colours, [height][width][4], and counts the same rays. Opacities are values v as
-// light_field/model/lf_pixels.h defines them.
+// PlateKind lists further channels that a plate may have: their words follow the three words of an
+// element's colours, [height][width][channels()].
 #pragma once
 
 #include <cstddef>
@@ -17,6 +16,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,28 +33,46 @@ struct ElementSum {
   friend bool operator==(const ElementSum&, const ElementSum&) = default;
 };
 
+// The kinds of plates. The value of a kind is its number of channels.
+enum class PlateKind : uint8_t {
+  kColours = 3,  // R G B
+  // R G B, then the opacity of the same rays. Opacities are values v as
+  // light_field/model/lf_pixels.h defines them.
+  kOpacity = 4,
+  // The plate of a densified light field (doc/densify.md): R G B of the rays of recorded LF images,
+  // then the defocus of the same rays in the values of opacities (1 is out of focus), then R G B of
+  // the rays of all LF images. Code that reads three colours reads those of recorded LF images.
+  kGuarded = 7,
+};
+// Returns the kind with this number of channels; nullopt if there is none.
+std::optional<PlateKind> PlateKindOf(uint32_t channels);
+
 class SensorPlate {
  public:
   static constexpr int kChannels = 3;  // the colours R, G and B
   static constexpr int kOpacityChannel = 3;
+  static constexpr int kDefocusChannel = 3;
+  static constexpr int kAllRaysChannel = 4;  // R of the rays of all LF images
   static constexpr int kSumBits = 40;
   static constexpr uint64_t kOneRay = uint64_t{1} << kSumBits;
   static constexpr uint64_t kSumMask = kOneRay - 1;
   static constexpr uint32_t kMaxCount = (1u << 24) - 1;
 
   // count_limit: the largest count a packed word may hold; below kMaxCount for tests only.
-  SensorPlate(int width, int height, uint32_t count_limit = kMaxCount);
-  // Returns a plate with the fourth channel if `has_opacity`, otherwise one without it.
-  static SensorPlate WithOpacity(int width, int height, bool has_opacity = true,
-                                 uint32_t count_limit = kMaxCount);
+  SensorPlate(int width, int height, PlateKind kind = PlateKind::kColours,
+              uint32_t count_limit = kMaxCount);
+  SensorPlate(int width, int height, uint32_t count_limit)
+      : SensorPlate(width, height, PlateKind::kColours, count_limit) {}
   SensorPlate(SensorPlate&&) noexcept;
   SensorPlate& operator=(SensorPlate&&) noexcept;
   ~SensorPlate();
 
   int width() const { return width_; }
   int height() const { return height_; }
-  int channels() const { return channels_; }
-  bool has_opacity() const { return channels_ > kChannels; }
+  PlateKind kind() const { return kind_; }
+  int channels() const { return static_cast<int>(kind_); }
+  bool has_opacity() const { return kind_ == PlateKind::kOpacity; }
+  bool is_guarded() const { return kind_ == PlateKind::kGuarded; }
   size_t size_bytes() const;
 
   // Returns sum and count of one element and channel, wherever they are stored.
@@ -66,7 +84,7 @@ class SensorPlate {
   // Adds the sum of any number of rays. Needs sum <= 65535 * count.
   void Add(int x, int y, int channel, const ElementSum& rays);
 
-  // Adds all sums and counts of another plate, which must have the same size and channels.
+  // Adds all sums and counts of another plate, which must have the same size and kind.
   void Merge(const SensorPlate& other);
 
   // These functions show how sums and counts are stored, for files. words() are the packed words
@@ -81,9 +99,8 @@ class SensorPlate {
 
  private:
   friend class PlateTile;
-  SensorPlate(int width, int height, int channels, uint32_t count_limit);
   size_t IndexOf(int x, int y, int channel) const {
-    return (static_cast<size_t>(y) * width_ + x) * channels_ + channel;
+    return (static_cast<size_t>(y) * width_ + x) * channels() + channel;
   }
   // Moves packed words of `rect` whose count exceeds `count_kept` to the wide table. Returns the
   // largest count of the words of `rect` that stay packed.
@@ -91,7 +108,7 @@ class SensorPlate {
 
   int width_;
   int height_;
-  int channels_;
+  PlateKind kind_;
   uint32_t count_limit_;
   LargeVector<uint64_t> packed_;
   // The total of an element's channel is its packed word plus its wide word. Wide words are rare,
@@ -114,7 +131,7 @@ class PlateTile {
     LF_DCHECK(y >= rect_.y_begin && y < rect_.y_end);
     return plate_->packed_.data() + plate_->IndexOf(rect_.x_begin, y, 0);
   }
-  int channels() const { return plate_->channels_; }
+  int channels() const { return plate_->channels(); }
 
   // The largest number of rays that may be reserved at once.
   uint32_t max_reserve() const { return plate_->count_limit_; }

@@ -28,9 +28,9 @@ inline SensorPlate NoisePlate(int width, int height, uint64_t seed, uint32_t cou
   return plate;
 }
 
-// Returns a plate of noise in four channels.
-inline SensorPlate WithNoiseOpacity(int width, int height, uint64_t seed) {
-  SensorPlate plate = SensorPlate::WithOpacity(width, height);
+// Returns a plate of noise in all channels of its kind.
+inline SensorPlate NoisePlateOf(PlateKind kind, int width, int height, uint64_t seed) {
+  SensorPlate plate(width, height, kind);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
       for (int c = 0; c < plate.channels(); ++c) {

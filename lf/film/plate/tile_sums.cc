@@ -18,8 +18,9 @@ void AddTo(ElementSum* total, const ElementSum& sum) {
 void TileSums::Begin(PlateTile* tile, std::span<const PlateElement> watched, Target target) {
   LF_CHECK(mosaic_limit_ <= tile->max_reserve());
   LF_CHECK(!has_rgb_ && !has_counted_ && !has_mosaic_);
-  LF_CHECK(target == Target::kColours ||
-           (tile->channels() > SensorPlate::kChannels && watched.empty()));
+  LF_CHECK(target == Target::kColours || watched.empty());
+  LF_CHECK(target != Target::kFourth || tile->channels() > SensorPlate::kChannels);
+  LF_CHECK(target != Target::kAllRays || tile->channels() > SensorPlate::kAllRaysChannel);
   tile_ = tile;
   target_ = target;
   watched_ = watched;
@@ -82,7 +83,7 @@ void TileSums::MakeRgbRoom(uint32_t rays) {
 }
 
 void TileSums::MakeCountedRoom(uint32_t rays) {
-  LF_CHECK(rays <= ray_limit_ && target_ == Target::kColours);
+  LF_CHECK(rays <= ray_limit_ && target_ != Target::kFourth);
   FlushCounted();
   const size_t count = static_cast<size_t>(stride()) * rect().height();
   if (counted_.size() < count) counted_.resize(count);
@@ -110,11 +111,11 @@ void TileSums::FlushRgb() {
   if (!has_rgb_) return;
   KeepWatched([this](const PlateElement& element, int c) { return PendingRgb(element, c); });
   tile_->Reserve(ray_limit_ - rgb_headroom_);
-  if (target_ == Target::kColours)
-    FlushRgbBy([](const Element& element, uint64_t rays, uint64_t* word) {
-      word[0] += rays | element.rgb_rays[0];
-      word[1] += rays | element.rgb_rays[1];
-      word[2] += rays | element.rgb_rays[2];
+  if (target_ != Target::kFourth)
+    FlushRgbBy([first = FirstColour()](const Element& element, uint64_t rays, uint64_t* word) {
+      word[first + 0] += rays | element.rgb_rays[0];
+      word[first + 1] += rays | element.rgb_rays[1];
+      word[first + 2] += rays | element.rgb_rays[2];
     });
   else
     FlushRgbBy([](const Element& element, uint64_t rays, uint64_t* word) {
@@ -151,7 +152,8 @@ void TileSums::FlushCounted() {
     for (int x = 0; x < rect().width(); ++x, ++element, word += tile_->channels()) {
       Prefetch(word + ahead);
       for (int c = 0; c < SensorPlate::kChannels; ++c)
-        word[c] += uint64_t{element->counts[c]} << SensorPlate::kSumBits | element->rgb[c];
+        word[FirstColour() + c] +=
+            uint64_t{element->counts[c]} << SensorPlate::kSumBits | element->rgb[c];
       *element = CountedElement{};
     }
   }

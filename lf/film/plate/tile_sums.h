@@ -60,15 +60,16 @@ class TileSums {
   // The channels of the plate that sums of RGB LF images go to.
   enum class Target : uint8_t {
     kColours,  // R, G and B are added to the three colours
-    kOpacity,  // R is added to the fourth channel; opacities have R = G = B
+    kFourth,   // R is added to the fourth channel; opacities and defocus have R = G = B
+    kAllRays,  // R, G and B are added to the last three channels of a guarded plate
   };
 
   // Makes `tile` the destination of everything that is added until Flush(). The sums of an earlier
   // tile must have been flushed.
   //   watched  elements of the tile whose sums Added() returns; must outlive the last call of
   //            Added() or Flush() for this tile
-  //   target   if kOpacity, the plate must have opacity, `watched` must be empty, and only
-  //            ReserveRgb() may be called
+  //   target   unless kColours, the plate must have the channels, and `watched` must be empty; if
+  //            kFourth, only ReserveRgb() may be called
   void Begin(PlateTile* tile, std::span<const PlateElement> watched = {},
              Target target = Target::kColours);
   const PixelRect& rect() const { return tile_->rect(); }
@@ -117,6 +118,8 @@ class TileSums {
   void MakeCountedRoom(uint32_t rays);
   void MakeMosaicRoom(uint32_t rays);
   void FlushRgb();
+  // Returns the channel of the plate that R is added to, unless only R is.
+  int FirstColour() const { return target_ == Target::kAllRays ? SensorPlate::kAllRaysChannel : 0; }
   template <class AddTo>
   void FlushRgbBy(const AddTo& add_to);
   void FlushCounted();

@@ -249,7 +249,7 @@ void BatchCollector::AddToFrames(std::vector<BatchImage>& batch, std::span<Batch
     }
     sums.Flush();
     if (!frames_[frame].plate->has_opacity()) return;
-    sums.Begin(&tile, {}, TileSums::Target::kOpacity);
+    sums.Begin(&tile, {}, TileSums::Target::kFourth);
     for (size_t k = 0; k < batch.size(); ++k)
       if (Contribution& contribution = contributions_[task.taker * batch.size() + k];
           !contribution.rect.empty())

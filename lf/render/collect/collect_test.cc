@@ -205,7 +205,7 @@ TEST(Collect, OpacityIsCollectedByTheRaysAndWeightsOfColours) {
             SelectImages(ImageIndex(field), frames, {.reach = ReachOf(estimator)}, pool);
         std::vector<SensorPlate> plates, colours;
         for (size_t f = 0; f < frames.size(); ++f) {
-          plates.push_back(SensorPlate::WithOpacity(80, 60));
+          plates.push_back(SensorPlate(80, 60, PlateKind::kOpacity));
           colours.emplace_back(80, 60);
         }
         for (std::vector<SensorPlate>* into : {&plates, &colours}) {

@@ -118,8 +118,9 @@ Result<void> FilmRenderer::PreparePlates(const EarlierRun* earlier) {
     Frame& frame = frames_[f];
     const Intrinsics& plate = frame.lens->camera().pinhole.intrinsics;
     if (!setup_.work().IsStopped() && !frame.is_released)
-      frame.plate = SensorPlate::WithOpacity(plate.width_px, plate.height_px,
-                                             setup_.light_field().encoding.HasOpacity());
+      frame.plate = SensorPlate(
+          plate.width_px, plate.height_px,
+          setup_.light_field().encoding.HasOpacity() ? PlateKind::kOpacity : PlateKind::kColours);
   });
   for (Frame& frame : frames_) {
     if (setup_.work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
@@ -151,7 +152,7 @@ Result<FrameProgress> FilmRenderer::LoadPlate(Frame* frame, const EarlierRun* ea
   if (!frame->has_noise && !frame->is_early) {
     LogInfo("frame {} is started again, because its noise was not measured before",
             frame->id.value);
-    plate = SensorPlate::WithOpacity(width, height, plate.has_opacity());
+    plate = SensorPlate(width, height, plate.kind());
     start = {};
     frame->has_noise = true;
   }

@@ -34,7 +34,7 @@ struct ShardPlate {
   RunInputs inputs;  // entries that all plates of a frame have in common
   int width_px = 0;
   int height_px = 0;
-  bool has_opacity = false;
+  PlateKind kind = PlateKind::kColours;
 };
 
 Result<std::vector<fs::path>> FilesOf(const std::vector<fs::path>& given) {
@@ -85,7 +85,7 @@ Result<ShardPlate> Look(const fs::path& path) {
   plate.path = path;
   plate.width_px = reader.width();
   plate.height_px = reader.height();
-  plate.has_opacity = reader.has_opacity();
+  plate.kind = reader.kind();
   LF_ASSIGN_OR_RETURN(
       plate.notes, PlateNotesOf(reader.entries(), reader.width(), reader.height(), path.string()));
   if (const std::string* const text = FindEntry(reader.entries(), "shard")) {
@@ -311,14 +311,13 @@ class Merger {
     notes.rays = {};
     for (const ShardPlate& plate : plates) notes.rays += plate.notes.rays;
     SensorPlate sum(0, 0);
-    if (!frame->is_kept)
-      sum = SensorPlate::WithOpacity(first.width_px, first.height_px, first.has_opacity);
+    if (!frame->is_kept) sum = SensorPlate(first.width_px, first.height_px, first.kind);
     for (const ShardPlate& plate : plates) {
       if (IsStopped()) return Interrupted();
       if (!frame->is_kept) {
         LF_ASSIGN_OR_RETURN(PlateReader reader, OpenPlate(plate.path));
         if (reader.width() != first.width_px || reader.height() != first.height_px ||
-            reader.has_opacity() != first.has_opacity)
+            reader.kind() != first.kind)
           return InputError(fmt::format(
               "{}: was replaced while lfmerge read it: start lfmerge again", plate.path.string()));
         if (const Result<void> added = reader.AddTo(&sum); !added) return WithRemedy(added.error());

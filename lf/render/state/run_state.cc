@@ -326,9 +326,9 @@ Result<FrameProgress> RunState::LoadPlate(FrameId frame, SensorPlate* plate,
         InputError(fmt::format("{}: has {} x {} elements, expected {} x {}", path.string(),
                                reader.width(), reader.height(), plate->width(), plate->height())),
         kPlateAdvice);
-  if (reader.has_opacity() != plate->has_opacity())
+  if (reader.kind() != plate->kind())
     return WithAdvice(InputError(fmt::format("{}: has {} channels, expected {}", path.string(),
-                                             reader.has_opacity() ? 4 : 3, plate->channels())),
+                                             static_cast<int>(reader.kind()), plate->channels())),
                       kPlateAdvice);
   if (const Result<void> added = reader.AddTo(plate); !added)
     return WithAdvice(added.error(), kPlateAdvice);
