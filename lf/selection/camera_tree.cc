@@ -66,18 +66,22 @@ float RoundedUp(double v) { return -RoundedDown(-v); }
 }  // namespace
 
 struct CameraTree::Builder {
-  explicit Builder(CameraTree* of) : tree(*of), cameras(of->light_field_.cameras) {}
+  Builder(CameraTree* of, Content the_content)
+      : tree(*of), cameras(of->light_field_.cameras), content(the_content) {}
+
+  bool Contains(size_t i) const { return content == Content::kAll || !cameras[i].is_virtual; }
 
   void Build() {
     places.reserve(cameras.size());
     WorldBox all;
-    for (const LfCamera& camera : cameras) {
-      places.push_back(camera.cam_from_world.Inverse().translation);
-      all.Add(places.back());
+    for (size_t i = 0; i < cameras.size(); ++i) {
+      places.push_back(cameras[i].cam_from_world.Inverse().translation);
+      if (Contains(i)) all.Add(places.back());
     }
     const double size = std::max((all.high - all.low).maxCoeff(), 1e-300);
     codes.reserve(cameras.size());
     for (uint32_t i = 0; i < cameras.size(); ++i) {
+      if (!Contains(i)) continue;
       uint64_t code = 0;
       for (int axis = 0; axis < 3; ++axis) {
         const double part = (places[i][axis] - all.low[axis]) / size;
@@ -144,13 +148,14 @@ struct CameraTree::Builder {
 
   CameraTree& tree;
   const std::vector<LfCamera>& cameras;
+  const Content content;
   std::vector<Vec3> places;
   std::vector<std::pair<uint64_t, uint32_t>> codes;
 };
 
-CameraTree::CameraTree(const LightField& light_field) : light_field_(light_field) {
-  ids_.reserve(light_field.size());
-  Builder(this).Build();
+CameraTree::CameraTree(const LightField& light_field, Content content) : light_field_(light_field) {
+  ids_.reserve(content == Content::kAll ? light_field.size() : RecordedCount(light_field));
+  Builder(this, content).Build();
   nodes_.shrink_to_fit();
   leaf_begin_.shrink_to_fit();
   for (const Intrinsics& k : light_field.intrinsics)

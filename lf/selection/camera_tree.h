@@ -18,7 +18,9 @@ namespace lf {
 // the tree.
 class CameraTree {
  public:
-  explicit CameraTree(const LightField& light_field);
+  // The LF cameras that a tree contains.
+  enum class Content : uint8_t { kAll, kRecorded };
+  explicit CameraTree(const LightField& light_field, Content content = Content::kAll);
 
   const LightField& light_field() const { return light_field_; }
 

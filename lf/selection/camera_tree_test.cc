@@ -5,9 +5,11 @@
 
 #include <map>
 #include <set>
+#include <vector>
 
 #include "lf/camera/testing_scenes.h"
 #include "lf/core/random.h"
+#include "lf/selection/image_index.h"
 #include "lf/selection/overlap.h"
 #include "lf/selection/select.h"
 #include "lf/selection/test_rays.h"
@@ -60,6 +62,34 @@ TEST(CameraTree, HoldsEveryCameraOnce) {
       for (const LfImageId id : tree.Leaf(leaf)) EXPECT_TRUE(found.insert(id.value).second);
     }
     EXPECT_EQ(found.size(), count);
+  }
+}
+
+// The index of recorded LF images finds the leaves that it would find without virtual ones, which
+// makes lens weights the same to the bit.
+TEST(ImageIndex, OfRecordedImagesIsThatOfALightFieldWithoutVirtualOnes) {
+  LightField field = RandomField(700, false), recorded = field;
+  recorded.cameras.clear();
+  recorded.image_names.clear();
+  std::vector<uint32_t> ids;  // ids of the recorded LF images in `field`
+  for (uint32_t i = 0; i < field.size(); ++i) {
+    field.cameras[i].is_virtual = i % 7 > 2;
+    if (field.cameras[i].is_virtual) continue;
+    ids.push_back(i);
+    recorded.cameras.push_back(field.cameras[i]);
+    recorded.image_names.push_back(field.image_names[i]);
+  }
+  const ImageIndex all(field), alone(recorded);
+  EXPECT_EQ(&alone.recorded(), &alone);
+  EXPECT_FALSE(all.is_of_recorded());
+  EXPECT_TRUE(all.recorded().is_of_recorded());
+  EXPECT_EQ(all.recorded().PlaceOf(LfImageId{7}), all.PlaceOf(LfImageId{7}));
+  const CameraTree &tree = all.recorded().tree(), &expected = alone.tree();
+  ASSERT_EQ(tree.leaf_count(), expected.leaf_count());
+  for (size_t leaf = 0; leaf < tree.leaf_count(); ++leaf) {
+    ASSERT_EQ(tree.Leaf(leaf).size(), expected.Leaf(leaf).size());
+    for (size_t i = 0; i < tree.Leaf(leaf).size(); ++i)
+      EXPECT_EQ(tree.Leaf(leaf)[i].value, ids[expected.Leaf(leaf)[i].value]);
   }
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "lf/core/ids.h"
 #include "lf/light_field/model/light_field.h"
@@ -26,10 +27,19 @@ class ImageIndex {
   uint32_t PlaceOf(LfImageId id) const { return places_.of_images[id.value]; }
   // Exclusive upper bound of all places.
   uint32_t place_end() const { return places_.end; }
+  // Returns an index of the recorded LF images alone, with the same ids and places: this index if
+  // no LF image is virtual.
+  const ImageIndex& recorded() const { return recorded_ ? *recorded_ : *this; }
+  // Returns true if the index leaves out virtual LF images.
+  bool is_of_recorded() const { return content_ == CameraTree::Content::kRecorded; }
 
  private:
+  ImageIndex(const LightField& light_field, ImagePlaces places, CameraTree::Content content);
+
+  CameraTree::Content content_;
   CameraTree tree_;
   ImagePlaces places_;
+  std::unique_ptr<ImageIndex> recorded_;  // null if no LF image is virtual
 };
 
 }  // namespace lf

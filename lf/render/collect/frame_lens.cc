@@ -25,7 +25,10 @@ Result<void> CheckHasArea(const RenderCamera& camera, FrameId frame) {
 FrameLens::FrameLens(const ImageIndex& index, const RenderCamera& frame, LensWeights kind,
                      const SelectOptions& select, ThreadPool& pool,
                      std::optional<double> camera_distance_w)
-    : light_field_(index.light_field()), select_(select), camera_(frame) {
+    : light_field_(index.light_field()),
+      is_of_recorded_(index.is_of_recorded()),
+      select_(select),
+      camera_(frame) {
   if (kind == LensWeights::kNone) return;
   camera_distance_w_ = camera_distance_w ? *camera_distance_w : CameraDistanceAround(index, frame);
   RenderCamera grown = frame;
@@ -47,7 +50,7 @@ FrameLens::FrameLens(const ImageIndex& index, const RenderCamera& frame, LensWei
 }
 
 RayWeights FrameLens::WeightsOf(LfImageId id) const {
-  if (!weights_) return IsWithinAngle(light_field_.cameras[id.value], camera_, select_) ? 1 : 0;
+  if (!weights_) return Takes(id) ? 1 : 0;
   const auto found = cameras_.find(id.value);
   if (found == cameras_.end() || !weights_->TakesPart(found->second)) return 0;
   const size_t camera = found->second;
@@ -71,7 +74,9 @@ RayWeights FrameLens::WeightsOf(LfImageId id) const {
 }
 
 bool FrameLens::Takes(LfImageId id) const {
-  if (!weights_) return IsWithinAngle(light_field_.cameras[id.value], camera_, select_);
+  const LfCamera& of_image = light_field_.cameras[id.value];
+  if (!weights_)
+    return !(is_of_recorded_ && of_image.is_virtual) && IsWithinAngle(of_image, camera_, select_);
   const auto found = cameras_.find(id.value);
   if (found == cameras_.end() || !weights_->TakesPart(found->second)) return false;
   // The share of an LF camera may be so small that its weight is rounded to 0.

@@ -34,7 +34,7 @@ class FrameLens {
   static constexpr double kReach_distances = 8;
 
   // If `kind` is kArea, CheckHasArea() must accept the lens. The object refers to the light field
-  // of `index`.
+  // of `index`. LF images that the index leaves out have the weight 0.
   //   camera_distance_w  CameraDistanceAround() in the whole light field. Must be set if the index
   //                      covers only a part of the light field: a part that contains all LF images
   //                      of near() then gives the same weights as the whole light field. Unset:
@@ -83,6 +83,7 @@ class FrameLens {
 
  private:
   const LightField& light_field_;
+  const bool is_of_recorded_;  // true: virtual LF images have the weight 0
   SelectOptions select_;
   RenderCamera camera_;
   double camera_distance_w_ = 0;
