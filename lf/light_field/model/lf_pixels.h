@@ -6,6 +6,7 @@
 
 #include "lf/core/geometry.h"
 #include "lf/core/image.h"
+#include "lf/light_field/model/lf_depths.h"
 
 namespace lf {
 
@@ -30,8 +31,8 @@ struct LfPixels {
         radiance.pixels()[i] = 1;
   }
 
-  // Makes this object hold another part of an LF image, in the same memory, without a mask and
-  // without opacities. All lanes of `radiance` are unspecified until they are written.
+  // Makes this object hold another part of an LF image, in the same memory, without a mask,
+  // opacities and depths. All lanes of `radiance` are unspecified until they are written.
   void Reset(const PixelRect& part, BayerPattern pattern) {
     radiance.Resize(part.width(), part.height(), pattern == BayerPattern::kNone ? kRgbLanes : 1);
     bayer = pattern;
@@ -40,6 +41,7 @@ struct LfPixels {
     any_masked = false;
     rect = part;
     opacity.Resize(0, 0, kRgbLanes);
+    depths = {};
   }
 
   bool IsMasked(int column, int row) const {
@@ -75,6 +77,9 @@ struct LfPixels {
   // with the lanes of `radiance`: the lane of each colour contains the same opacity, so that
   // kernels collect opacities with the same rays and weights as colours.
   Image<uint16_t> opacity;
+
+  // Depths of the whole LF image if the store was opened for them (StoreContent), otherwise empty.
+  LfDepths depths;
 
   // Moves the opacities into pixels that kernels can collect. The result is empty if there are no
   // opacities.

@@ -17,6 +17,10 @@ namespace lf {
 // How mosaics are loaded: as recorded, or converted to RGB.
 enum class Mosaics { kAsRecorded, kToRgb };
 
+// The content that is loaded of recorded LF images: their pixels, or also their depths
+// (LfPixels::depths) if the store has some.
+enum class StoreContent { kPixels, kPixelsAndDepths };
+
 class LfImageStore {
  public:
   virtual ~LfImageStore() = default;
@@ -36,6 +40,10 @@ class LfImageStore {
   virtual bool IsPartial() const { return false; }
   // Returns false if some of the pixels `rect`, clipped to the image, were left out on purpose.
   virtual bool Keeps(LfImageId /*id*/, const PixelRect& /*rect*/) const { return true; }
+
+  // Returns true if Load() loads the depths of recorded LF images: the store is densified, and was
+  // opened for depths.
+  virtual bool LoadsDepths() const { return false; }
 
   // Returns the number of bytes that loading reads: the size of the file, or of the encoded image
   // in a packed store; 0 if the image is missing or the size is not known.

@@ -8,10 +8,12 @@
 
 namespace lf {
 
-Result<std::unique_ptr<LfImageStore>> OpenStore(const LightField& light_field, Mosaics mosaics) {
+Result<std::unique_ptr<LfImageStore>> OpenStore(const LightField& light_field, Mosaics mosaics,
+                                                StoreContent content) {
   if (!HoldsPackedStore(light_field))
     return std::unique_ptr<LfImageStore>(std::make_unique<FolderStore>(light_field, mosaics));
-  LF_ASSIGN_OR_RETURN(std::unique_ptr<LfImageStore> store, PackedStore::Open(light_field, mosaics));
+  LF_ASSIGN_OR_RETURN(std::unique_ptr<LfImageStore> store,
+                      PackedStore::Open(light_field, mosaics, content));
   return store;
 }
 

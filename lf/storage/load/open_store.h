@@ -12,6 +12,7 @@ namespace lf {
 // Returns a PackedStore if light_field.folder is the file of a packed store, otherwise a
 // FolderStore. The store keeps a reference to `light_field`, which must outlive it. kInput as
 // PackedStore::Open().
-Result<std::unique_ptr<LfImageStore>> OpenStore(const LightField& light_field, Mosaics mosaics);
+Result<std::unique_ptr<LfImageStore>> OpenStore(const LightField& light_field, Mosaics mosaics,
+                                                StoreContent content = StoreContent::kPixels);
 
 }  // namespace lf

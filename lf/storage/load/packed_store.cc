@@ -107,13 +107,16 @@ PackedStore::PackedStore(const LightField& light_field, Mosaics mosaics,
       codes_(std::move(codes)) {}
 
 Result<std::unique_ptr<PackedStore>> PackedStore::Open(const LightField& light_field,
-                                                       Mosaics mosaics) {
+                                                       Mosaics mosaics, StoreContent content) {
   LF_ASSIGN_OR_RETURN(std::vector<PackedCode> codes, FindCodes(light_field.folder, light_field));
   std::unique_ptr<PackedStore> store(new PackedStore(light_field, mosaics, std::move(codes)));
   if (std::any_of(store->codes_.begin(), store->codes_.end(),
                   [](const PackedCode& code) { return code.values == StoredValues::kDisplay16; })) {
     LF_ASSIGN_OR_RETURN(const DisplayLevels levels, ReadDisplayLevels(light_field.folder));
     store->curve_.emplace(levels.black, levels.white);
+  }
+  if (content == StoreContent::kPixelsAndDepths) {
+    LF_ASSIGN_OR_RETURN(store->densified_, ReadDensifiedPlan(light_field.folder));
   }
   return store;
 }
@@ -139,14 +142,30 @@ Result<void> PackedStore::Load(LfImageId id, const PixelRect& rect, LfPixels* pi
   LF_CHECK(id.value < light_field_.size());
   LF_RETURN_IF_ERROR(CheckListed(codes_[id.value], light_field_, id));
   LF_ASSIGN_OR_RETURN(std::unique_ptr<Loading> loading, TakeLoading());
-  const Result<void> loaded = LoadMosaicsAs(
+  Result<void> loaded = LoadMosaicsAs(
       mosaics_, light_field_, id, rect,
       [&](const PixelRect& recorded, LfPixels* into) {
         return LoadRecorded(loading.get(), id, recorded, into);
       },
       &loading->mosaic, pixels);
+  if (loaded && densified_ && !light_field_.cameras[id.value].is_virtual)
+    loaded = LoadDepths(loading.get(), id, &pixels->depths);
   GiveBack(std::move(loading));
   return loaded;
+}
+
+Result<void> PackedStore::LoadDepths(Loading* loading, LfImageId id, LfDepths* depths) const {
+  if (!loading->planes) {
+    LF_ASSIGN_OR_RETURN(loading->planes, PackedPlaneReader::Open(light_field_.folder));
+  }
+  const LfImageId in_store = {codes_[id.value].id};
+  LF_ASSIGN_OR_RETURN(const bool has_plane, loading->planes->Has(in_store, PlaneKind::kDisparity));
+  if (!has_plane) return {};
+  LF_ASSIGN_OR_RETURN(depths->numbers, loading->planes->Read(in_store, PlaneKind::kDisparity));
+  depths->least = densified_->plane_least;
+  depths->greatest = densified_->plane_greatest;
+  depths->divisor = densified_->plane_divisor;
+  return {};
 }
 
 Result<void> PackedStore::LoadRecorded(Loading* loading, LfImageId id, const PixelRect& rect,

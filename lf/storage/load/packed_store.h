@@ -13,6 +13,7 @@
 #include "lf/storage/load/display_curve.h"
 #include "lf/storage/load/lf_image_store.h"
 #include "lf/storage/load/radiance_conversion.h"
+#include "lf/storage/packed/packed_planes.h"
 #include "lf/storage/packed/packed_store_file.h"
 
 namespace lf {
@@ -28,7 +29,8 @@ class PackedStore : public LfImageStore {
   // Opens the file light_field.folder. LF images are found in it by name, so that `light_field` may
   // be the store's own light field or another one, such as that of a package. kInput as
   // FindCodes() and ReadDisplayLevels().
-  static Result<std::unique_ptr<PackedStore>> Open(const LightField& light_field, Mosaics mosaics);
+  static Result<std::unique_ptr<PackedStore>> Open(const LightField& light_field, Mosaics mosaics,
+                                                   StoreContent content = StoreContent::kPixels);
 
   // Loads the pixels of `rect`, clipped to the image. kInput as LfImageStore says, naming store and
   // image: the image is not in the store, the pixels lie beyond those that were encoded, or the
@@ -36,6 +38,7 @@ class PackedStore : public LfImageStore {
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override;
   // An LF image that is listed without encoded pixels was missing or broken when the store was
   // made. It does not count as left out on purpose.
+  bool LoadsDepths() const override { return densified_.has_value(); }
   bool IsPartial() const override;
   bool Keeps(LfImageId id, const PixelRect& rect) const override;
   // Returns true if the store's table lists encoded pixels.
@@ -52,20 +55,23 @@ class PackedStore : public LfImageStore {
     DecodedPart mask;
     ImagePart part;  // the stored values that are converted to radiance
     Image<float> floats;
-    LfPixels mosaic;  // the mosaic that is converted to RGB
+    LfPixels mosaic;                                         // the mosaic that is converted to RGB
+    std::optional<PackedPlaneReader> planes = std::nullopt;  // opened when depths are first loaded
   };
 
   PackedStore(const LightField& light_field, Mosaics mosaics, std::vector<PackedCode> codes);
   Result<void> LoadRecorded(Loading* loading, LfImageId id, const PixelRect& rect,
                             LfPixels* pixels) const;
+  Result<void> LoadDepths(Loading* loading, LfImageId id, LfDepths* depths) const;
   Result<std::unique_ptr<Loading>> TakeLoading() const;
   void GiveBack(std::unique_ptr<Loading> loading) const;
 
   const LightField& light_field_;
   const RadianceTables tables_;  // for LF images of gain 1
   const Mosaics mosaics_;
-  const std::vector<PackedCode> codes_;  // entry of each LF image, in the order of their ids
-  std::optional<DisplayCurve> curve_;    // set if any LF image is encoded as kDisplay16
+  const std::vector<PackedCode> codes_;     // entry of each LF image, in the order of their ids
+  std::optional<DisplayCurve> curve_;       // set if any LF image is encoded as kDisplay16
+  std::optional<DensifiedPlan> densified_;  // set if Load() loads depths
   mutable std::mutex mutex_;
   mutable std::vector<std::unique_ptr<Loading>> loadings_;  // buffers that no load uses now
 };

@@ -7,6 +7,7 @@
 #include <functional>
 #include <string>
 #include <thread>
+#include <tuple>
 #include <vector>
 
 #include "lf/core/file.h"
@@ -115,6 +116,41 @@ class PackedStoreTest : public FolderTest {
   std::filesystem::path path_;
   bool is_rounded_ = false;
 };
+
+TEST_F(PackedStoreTest, LoadsTheDepthsOfRecordedImages) {
+  AddImages<uint8_t>(3);
+  field_.cameras[1].is_virtual = field_.cameras[4].is_virtual = true;
+  PackedStorePlan plan;
+  plan.densified = DensifiedPlan{"settings", 0.25, 4, 2};
+  const auto plane_of = [](uint32_t i) {
+    Image<uint16_t> plane(kPackedWidth / 2, kPackedHeight / 2, 1, static_cast<uint16_t>(100 + i));
+    plane.at(3, 5) = 0;
+    return plane;
+  };
+  PackedStoreWriter writer = PackedStoreWriter::Create(path_, field_, plan).value();
+  for (uint32_t i = 0; i < field_.size(); ++i) {
+    const Result<RecordedImage> image = ReadRecordedImage(field_, {i}, kPackedWhole);
+    ASSERT_TRUE(writer.Add({i}, CodeOf(*image, {.profile = CodecProfile::kLossless})));
+    if (!field_.cameras[i].is_virtual && i != 5) {
+      ASSERT_TRUE(writer.AddPlane({i}, PlaneKind::kDisparity, plane_of(i)));
+    }
+  }
+  ASSERT_TRUE(writer.Finish());
+  packed_ = ReadPackedStore(path_).value().light_field;
+  const auto without = Opened();
+  EXPECT_FALSE(without->LoadsDepths());
+  EXPECT_TRUE(Loaded(*without, {0}, kPackedWhole).depths.numbers.empty());
+  const auto store =
+      OpenStore(packed_, Mosaics::kAsRecorded, StoreContent::kPixelsAndDepths).value();
+  EXPECT_TRUE(store->LoadsDepths());
+  for (uint32_t i = 0; i < kCount; ++i) {
+    const LfDepths depths = Loaded(*store, {i}, {3, 5, 17, 11}).depths;
+    EXPECT_EQ(depths.numbers.empty(), field_.cameras[i].is_virtual || i == 5);
+    if (depths.numbers.empty()) continue;
+    EXPECT_EQ(depths.numbers.pixels(), plane_of(i).pixels());
+    EXPECT_EQ(std::tuple(depths.least, depths.greatest, depths.divisor), std::tuple(0.25, 4, 2));
+  }
+}
 
 TEST_F(PackedStoreTest, ColoursHaveTheBitsOfTheFolder) {
   AddImages<uint8_t>(3);

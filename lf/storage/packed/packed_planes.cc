@@ -13,6 +13,11 @@ PlaneSize PlaneSizeOf(int width_px, int height_px, int divisor) {
   return {(width_px + divisor - 1) / divisor, (height_px + divisor - 1) / divisor};
 }
 
+Result<std::optional<DensifiedPlan>> ReadDensifiedPlan(const std::filesystem::path& path) {
+  LF_ASSIGN_OR_RETURN(OpenedStore store, OpenComplete(path));
+  return ReadDensified(&store);
+}
+
 struct PackedPlaneReader::State {
   Database database;
   int divisor = 1;

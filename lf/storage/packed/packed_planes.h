@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "lf/camera/pinhole.h"
@@ -43,6 +44,10 @@ struct PlaneSize {
 };
 // Returns the size of the LF image divided by `divisor`, rounded up.
 PlaneSize PlaneSizeOf(int width_px, int height_px, int divisor);
+
+// Reads the plan of a densified store, and no other facts; nullopt if the store is not densified.
+// kInput as ReadPackedStore().
+Result<std::optional<DensifiedPlan>> ReadDensifiedPlan(const std::filesystem::path& path);
 
 // Reads planes of a complete store, one at a time, for one thread.
 class PackedPlaneReader {
