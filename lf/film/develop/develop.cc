@@ -4,6 +4,7 @@
 #include <atomic>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "lf/film/develop/channel_fill.h"
@@ -30,6 +31,21 @@ uint32_t KnownCount(const Completion* completion, int x, int y, uint32_t count) 
   return is_completed ? std::numeric_limits<uint32_t>::max() : count;
 }
 
+double MeanOf(const ElementSum& rays) {
+  return static_cast<double>(rays.sum) / static_cast<double>(rays.count);
+}
+
+// Returns the share m of all rays, virtual ones included, in element (x, y) of a guarded plate
+// (Develop()): 1 if the element has no recorded ray.
+double DensifiedShare(const SensorPlate& plate, const DevelopOptions& options, int x, int y) {
+  const ElementSum rays = plate.At(x, y, SensorPlate::kDefocusChannel);
+  if (rays.count == 0) return 1;
+  const double defocus =
+      (MeanOf(rays) - options.transparent) / (options.opaque - options.transparent);
+  const double s = std::clamp((defocus - kGuardFrom) / (kGuardTo - kGuardFrom), 0.0, 1.0);
+  return s * s * (3 - 2 * s);
+}
+
 // Computes the averages, ray counts and coverage of the elements of row y. Returns, for each
 // channel, true if an element of the row must be filled or smoothed.
 std::array<bool, kChannels> AverageRow(const SensorPlate& plate, const DevelopOptions& options,
@@ -38,8 +54,14 @@ std::array<bool, kChannels> AverageRow(const SensorPlate& plate, const DevelopOp
   std::array<bool, kChannels> is_thin = {};
   for (int x = 0; x < plate.width(); ++x) {
     int collected = 0;
+    double densified = 0;
+    if (plate.is_guarded())
+      frame.densified.at(x, y) =
+          static_cast<float>(densified = DensifiedShare(plate, options, x, y));
     for (int c = 0; c < kChannels; ++c) {
-      const ElementSum rays = plate.At(x, y, c);
+      ElementSum rays = plate.At(x, y, c), all;
+      if (densified > 0) all = plate.At(x, y, SensorPlate::kAllRaysChannel + c);
+      if (rays.count == 0) std::swap(rays, all);
       frame.ray_count.at(x, y, c) = static_cast<uint32_t>(
           std::min<uint64_t>(rays.count, std::numeric_limits<uint32_t>::max()));
       is_thin[c] |= KnownCount(options.completion, x, y, frame.ray_count.at(x, y, c)) < rays_needed;
@@ -48,8 +70,9 @@ std::array<bool, kChannels> AverageRow(const SensorPlate& plate, const DevelopOp
       double average = 0;
       if (rays.count > 0) {
         ++collected;
-        average = static_cast<double>(rays.sum) / static_cast<double>(rays.count);
+        average = MeanOf(rays);
       }
+      if (all.count > 0) average += densified * (MeanOf(all) - average);
       if (share > 0) average += share * (options.completion->rgb.at(x, y, c) - average);
       mean.at(x, y, c) = static_cast<float>((average - options.pedestal) / options.scale);
     }
@@ -65,12 +88,14 @@ std::array<bool, kChannels> AverageRow(const SensorPlate& plate, const DevelopOp
 
 DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, ThreadPool& pool) {
   LF_CHECK(options.scale > 0 && options.fill_radius_px >= 0);
-  LF_CHECK(options.completion == nullptr || !plate.has_opacity());
+  LF_CHECK(options.completion == nullptr || plate.kind() == PlateKind::kColours);
+  LF_CHECK(!plate.is_guarded() || options.opaque > options.transparent);
   const int width = plate.width(), height = plate.height();
   const uint32_t rays_needed = std::max(options.smooth_below, 1u);
   DevelopedFrame frame{Image<float>(width, height, kChannels),
                        Image<uint32_t>(width, height, kChannels), Image<float>(width, height)};
   if (options.completion != nullptr) frame.interpolated = Image<float>(width, height);
+  if (plate.is_guarded()) frame.densified = Image<float>(width, height);
   Image<float> mean(width, height, kChannels);
   std::atomic<bool> is_ended = false;
   const auto ends = [&] {

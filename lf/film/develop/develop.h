@@ -45,12 +45,13 @@ struct DevelopOptions {
   int fill_radius_px = kFillRadius_px;
 
   // For a plate with opacities: opacity = (mean - transparent) / (opaque - transparent), where mean
-  // is the sum of values / number of rays of the opacity channel.
+  // is the sum of values / number of rays of the opacity channel. Likewise for the defocus of a
+  // guarded plate.
   double transparent = 0;
   double opaque = 65535;
 
   // Light interpolated from rebinned rays. If given, it is mixed with collected light, and used
-  // alone in elements without rays. Must be null for a plate with opacities.
+  // alone in elements without rays. Must be null unless the plate has only colours.
   const Completion* completion = nullptr;
 
   // If given, any thread calls it, before each row and at least once for every 64 values (channels
@@ -59,10 +60,18 @@ struct DevelopOptions {
   std::function<bool()> is_interrupted = {};
 };
 
+// An element of a guarded plate shows the rays of recorded LF images alone up to kGuardFrom, and
+// those of all LF images from kGuardTo on; in part between. The two numbers are shares of its
+// recorded rays that are out of focus.
+inline constexpr double kGuardFrom = 0.1;
+inline constexpr double kGuardTo = 0.2;
+
 struct DevelopedFrame {
-  Image<float> rgb;           // [height][width][3] linear light, sRGB primaries
-  Image<uint32_t> ray_count;  // [height][width][3] number of rays
-  Image<float> coverage;      // [height][width] share of the channels with a ray of their own
+  Image<float> rgb;  // [height][width][3] linear light, sRGB primaries
+  // [height][width][3] number of rays; for a guarded plate, the number of recorded rays where there
+  // are some
+  Image<uint32_t> ray_count;
+  Image<float> coverage;  // [height][width] share of the channels with a ray of their own
   // [height][width] in [0, 1]; empty for a plate without opacities. rgb is multiplied by it.
   Image<float> opacity = {};
   // [height][width] number of LF images of equal weight that would give the same noise; empty
@@ -72,6 +81,9 @@ struct DevelopedFrame {
   // [height][width] share of each element that was interpolated from rebinned rays; empty without
   // completion
   Image<float> interpolated = {};
+  // [height][width] share of each element that shows the rays of all LF images, virtual ones
+  // included, instead of those of recorded LF images alone; empty unless the plate is guarded
+  Image<float> densified = {};
 };
 
 // Averages the rays of every element and channel, and mixes (1 - share) of the average with share
@@ -87,6 +99,9 @@ struct DevelopedFrame {
 // without a ray, and kSmoothRadius_px otherwise, even if it contains fewer. The element's own
 // value, if it has one, is one of the v_i, with d = 0.5. Elements with completion count as
 // collected, with enough rays. Then Develop() applies white balance and linear_srgb_from_camera.
+// The average of a guarded plate is R + m (V - R), where R is the average of the recorded rays, V
+// that of all rays, and m grows from 0 to 1 like s^2 (3 - 2 s) where s is the share of defocus from
+// kGuardFrom to kGuardTo. Without recorded rays it is V.
 // Opacities are averaged and filled like a colour, from the same neighbours, and clipped. Counts
 // above 2^32 - 1 become 2^32 - 1. The bits do not depend on the number of threads.
 DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, ThreadPool& pool);

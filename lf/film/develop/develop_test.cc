@@ -105,6 +105,55 @@ TEST(Develop, OpacityIsExactWhereAllRaysAgreeAndNeverOutsideOfItsRange) {
   for (int x = 0; x < 4; ++x) EXPECT_EQ(frame.opacity.at(x, 0), static_cast<float>(x % 2));
 }
 
+// Every eleventh element of GuardedOf() has no recorded rays.
+bool IsRecorded(int x, int y) { return (x + y) % 11 != 0; }
+
+// Returns a guarded plate with the colours of two plates and the same defocus in every element.
+SensorPlate GuardedOf(const SensorPlate& recorded, const SensorPlate& all, double defocus) {
+  SensorPlate plate(recorded.width(), recorded.height(), PlateKind::kGuarded);
+  for (int y = 0; y < plate.height(); ++y)
+    for (int x = 0; x < plate.width(); ++x) {
+      const uint64_t count = IsRecorded(x, y) ? recorded.At(x, y, 1).count : 0;
+      plate.Add(x, y, SensorPlate::kDefocusChannel,
+                {static_cast<uint64_t>(defocus * 60000) * count, count});
+      for (int c = 0; c < 3; ++c) {
+        if (count > 0) plate.Add(x, y, c, recorded.At(x, y, c));
+        plate.Add(x, y, SensorPlate::kAllRaysChannel + c, all.At(x, y, c));
+      }
+    }
+  return plate;
+}
+
+// In focus, the picture has the bits of recorded LF images alone; out of focus, those of all.
+TEST(Develop, AGuardedElementShowsAllRaysOnlyOutOfFocus) {
+  ThreadPool pool(2);
+  const SensorPlate recorded = RandomPlate(50, 37, 1, 6, 5), all = RandomPlate(50, 37, 1, 9, 8);
+  DevelopOptions options;
+  options.opaque = 60000;
+  const DevelopedFrame of_recorded = Develop(recorded, options, pool);
+  const DevelopedFrame of_all = Develop(all, options, pool);
+  EXPECT_TRUE(of_all.densified.empty());
+  for (const auto& [defocus, share] : {std::pair(0.0, 0.0), {0.1, 0.0}, {0.15, 0.5}, {0.2, 1.0}}) {
+    const DevelopedFrame frame = Develop(GuardedOf(recorded, all, defocus), options, pool);
+    for (int y = 0; y < 37; ++y)
+      for (int x = 0; x < 50; ++x) {
+        // Elements without recorded rays show all rays.
+        const double m = IsRecorded(x, y) ? share : 1;
+        ASSERT_NEAR(frame.densified.at(x, y), m, 1e-6);
+        for (int c = 0; c < 3; ++c) {
+          const float r = of_recorded.rgb.at(x, y, c), v = of_all.rgb.at(x, y, c);
+          if (m == 0) {
+            ASSERT_EQ(frame.rgb.at(x, y, c), r);
+          } else {
+            ASSERT_NEAR(frame.rgb.at(x, y, c), r + m * (v - r), 1e-6);
+          }
+          ASSERT_EQ(frame.ray_count.at(x, y, c),
+                    (IsRecorded(x, y) ? recorded : all).At(x, y, c).count);
+        }
+      }
+  }
+}
+
 TEST(Develop, AgreesWithTheFormulaForAnyDensity) {
   ThreadPool pool(2);
   uint64_t seed = 1;

@@ -104,6 +104,8 @@ Result<void> WriteExrFrame(const std::filesystem::path& path, const DevelopedFra
     channels.push_back({"effective", frame.effective_count.view(), 0, as_half});
   if (!frame.interpolated.empty())
     channels.push_back({"interpolated", frame.interpolated.view(), 0, as_half});
+  if (!frame.densified.empty())
+    channels.push_back({"densified", frame.densified.view(), 0, as_half});
   return WriteExr(path, channels, metadata, is_interrupted);
 }
 

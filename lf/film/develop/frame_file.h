@@ -18,7 +18,8 @@ namespace lf {
 enum class FrameFormat {
   // "exr": an EXR file with the channels R G B count.R count.G count.B coverage. Plates with
   // opacities add A, by which R G B are multiplied; lens weights add the channel effective, and
-  // rebinned rays the channel interpolated. Counts are 32-bit integers, all other channels half.
+  // rebinned rays the channel interpolated, guarded plates the channel densified. Counts are 32-bit
+  // integers, all other channels half.
   kExrHalf,
   kExrFloat,  // "exr-float": as "exr", with float instead of half
   kPng8,      // "png": sRGB, 8 bit; plates with opacities add alpha, by which RGB is not multiplied
