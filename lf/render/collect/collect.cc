@@ -25,6 +25,7 @@ double SecondsSince(Clock::time_point start) {
 struct Loading {
   size_t index = 0;  // index of the LF image in State::order_
   std::optional<Result<LfPixels>> pixels;
+  NearbyDepths depths;
 };
 
 // A batch: the LF images with indices [begin, end) in State::order_.
@@ -194,7 +195,7 @@ Batch FrameCollector::State::BatchFrom(size_t from) const {
     const bool is_long =
         rays > options_.batch_ray_count || frame_rays > options_.batch_frame_ray_count;
     if (image.place >= decision || (is_long && batch.end > batch.begin)) break;
-    batch.loading.push_back({batch.end, std::nullopt});
+    batch.loading.push_back({batch.end, std::nullopt, {}});
   }
   batch.place_end =
       batch.end < order_.size() ? std::min(decision, order_[batch.end].place) : PlaceEnd();
@@ -241,6 +242,8 @@ void FrameCollector::State::Load(const Batch& batch, Loading* loading) {
       rect.empty() ? LfPixels()
                    : LoadWithoutThrowing(store_, selected.id, rect,
                                          light_field_.image_names[selected.id.value], TakeSpare());
+  if (*loading->pixels)
+    loading->depths = NearbyDepthsOf(std::exchange((*loading->pixels)->depths, {}));
   load_cpu_ns_ += timer.Nanoseconds();
   load_wall_ns_ += std::chrono::nanoseconds(Clock::now() - start).count();
 }
@@ -265,7 +268,8 @@ Result<void> FrameCollector::State::FinishLoading(Batch* batch) {
       whole_ = image.id;
       LfPixels pixels = **std::move(loading.pixels);
       LfPixels opacity = pixels.TakeOpacity();
-      batch->images.push_back({image.id, image.place, std::move(pixels), std::move(opacity)});
+      batch->images.push_back({image.id, image.place, std::move(pixels), std::move(opacity),
+                               std::move(loading.depths)});
       continue;
     }
     // An LF image is skipped only if it is broken itself (kInput). If the machine lacks something,

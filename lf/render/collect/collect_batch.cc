@@ -98,11 +98,15 @@ void BatchCollector::Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>
     return;
   }
   size_t frame_bytes = 1;
-  for (const BatchImage& image : batch)
+  for (const BatchImage& image : batch) {
     frame_bytes +=
-        PlanBytes(reading_.estimator, light_field_.Camera(image.id).intrinsics.has_distortion(),
-                  image.pixels.rect.width(), image.pixels.rect.height(), frames_[0].plate->width(),
-                  frames_[0].plate->height());
+        exposure_count() * PlanBytes(reading_.estimator,
+                                     light_field_.Camera(image.id).intrinsics.has_distortion(),
+                                     image.pixels.rect.width(), image.pixels.rect.height(),
+                                     frames_[0].plate->width(), frames_[0].plate->height());
+    if (is_guarded() && !light_field_.cameras[image.id.value].is_virtual)
+      frame_bytes += DefocusBytes(image.pixels.rect);
+  }
   const size_t most = std::max<size_t>(1, plan_bytes_ / frame_bytes);
   for (size_t begin = 0, count = 0; begin < takers.size(); begin += count) {
     if (is_interrupted()) return;
@@ -122,8 +126,8 @@ size_t BatchCollector::CountTogether(const std::vector<BatchImage>& batch,
   for (const BatchImage& image : batch) {
     std::optional<Prefilter> filter;
     const auto differs = [&](const BatchFrame& frame) {
+      if (PlainlyMisses(image, frame.frame)) return false;
       const RenderCamera& camera = frames_[frame.frame].camera;
-      if (image.overlap->PlainlyMisses(camera)) return false;
       const Prefilter needed =
           SamplingOf(light_field_.Camera(image.id), camera, reading_).prefilter;
       if (!filter) filter = needed;
@@ -140,17 +144,32 @@ PixelRect BatchCollector::RectOf(const BatchImage& image, const RenderCamera& fr
   return Intersection(image.overlap->Rect(frame), image.loaded);
 }
 
+BatchCollector::Exposure BatchCollector::ExposureOf(size_t frame, size_t exposure) const {
+  const CollectedFrame& of = frames_[frame];
+  if (exposure == 0) return {of.camera, of.weights};
+  return {of.guard->camera, of.guard->weights};
+}
+
+bool BatchCollector::PlainlyMisses(const BatchImage& image, size_t frame) const {
+  for (size_t e = 0; e < exposure_count(); ++e)
+    if (!image.overlap->PlainlyMisses(ExposureOf(frame, e).camera)) return false;
+  return true;
+}
+
 PixelRect BatchCollector::RectOf(LfImageId id, std::span<const size_t> frames) const {
   const PinholeCamera camera = light_field_.Camera(id);
-  const auto takes = [&](size_t frame) { return !WeightsOf(frame, id).are_none(); };
-  if (std::none_of(frames.begin(), frames.end(), takes)) return {};
+  std::vector<const RenderCamera*> taking;
+  for (const size_t frame : frames)
+    for (size_t e = 0; e < exposure_count(); ++e)
+      if (const Exposure exposure = ExposureOf(frame, e); !WeightsOf(exposure, id).are_none())
+        taking.push_back(&exposure.camera);
+  if (taking.empty()) return {};
   if (whole_images_) return {0, 0, camera.intrinsics.width_px, camera.intrinsics.height_px};
   std::vector<IdealCell> cells;
   if (camera.intrinsics.has_distortion()) cells = MakeIdealCells(camera.intrinsics);
   const ImageOverlap overlap(camera, cells, ReachOf(reading_));
   PixelRect rect;
-  for (const size_t frame : frames)
-    if (takes(frame)) rect = Bounds(rect, overlap.Rect(frames_[frame].camera));
+  for (const RenderCamera* const frame : taking) rect = Bounds(rect, overlap.Rect(*frame));
   return rect;
 }
 
@@ -184,7 +203,7 @@ std::span<BatchFrame> BatchCollector::FramesThatMayTake(const std::vector<BatchI
   ForEachTimed(frames.size(), [&](size_t f) {
     frames[f].is_done = std::none_of(batch.begin(), batch.end(), [&](const BatchImage& image) {
       return frames[f].places.Holds(image.place) &&
-             (whole_images_ || !image.overlap->PlainlyMisses(frames_[frames[f].frame].camera));
+             (whole_images_ || !PlainlyMisses(image, frames[f].frame));
     });
   });
   const auto rest = std::stable_partition(frames.begin(), frames.end(),
@@ -192,33 +211,44 @@ std::span<BatchFrame> BatchCollector::FramesThatMayTake(const std::vector<BatchI
   return frames.first(static_cast<size_t>(rest - frames.begin()));
 }
 
+// Plans the segments (pieces of scanlines) of an LF image in an exposure. Leaves the rectangle of
+// the contribution empty if there are none.
+void BatchCollector::PlanContribution(const BatchImage& image, const Exposure& exposure,
+                                      Contribution* contribution) const {
+  const RenderCamera& frame = exposure.camera;
+  const PinholeCamera camera = light_field_.Camera(image.id);
+  contribution->weights = WeightsOf(exposure, image.id);
+  if (contribution->weights.are_none()) return;
+  contribution->rect = RectOf(image, frame);
+  if (contribution->rect.empty()) return;
+  const Intrinsics& plate = frame.pinhole.intrinsics;
+  if (reading_.estimator == Estimator::kBilinear)
+    contribution->gather = PlanGather(camera, frame, std::move(contribution->gather), reading_);
+  else
+    contribution->scatter = PlanScatter(camera, frame, contribution->rect,
+                                        TileSums::GridOf(plate.width_px, plate.height_px),
+                                        image.ideal_pixels.get(), std::move(contribution->scatter));
+}
+
 void BatchCollector::AddToFrames(std::vector<BatchImage>& batch, std::span<BatchFrame> frames,
                                  const OtherItems& other_items, bool keep_pixels,
                                  const std::atomic<bool>* interrupted) {
-  // First plans the segments (pieces of scanlines) of every pair of frame and LF image, then adds
-  // the rays of every pair of frame and tile.
-  const size_t contribution_count = frames.size() * batch.size();
-  while (contributions_.size() < contribution_count) contributions_.emplace_back();
-  ForEachTimed(contribution_count, [&](size_t i) {
-    const BatchFrame& taker = frames[i / batch.size()];
+  // First plans all contributions, then adds the rays of every pair of frame and tile.
+  const size_t of_frame = exposure_count() * batch.size();
+  while (contributions_.size() < frames.size() * of_frame) contributions_.emplace_back();
+  ForEachTimed(frames.size() * of_frame, [&](size_t i) {
+    const BatchFrame& taker = frames[i / of_frame];
+    const size_t exposure = i % of_frame / batch.size();
     const BatchImage& image = batch[i % batch.size()];
     Contribution& contribution = contributions_[i];
     contribution.rect = {};
     contribution.accepted_count = 0;
     if (!taker.places.Holds(image.place)) return;
-    const RenderCamera& frame = frames_[taker.frame].camera;
-    const PinholeCamera camera = light_field_.Camera(image.id);
-    contribution.weights = WeightsOf(taker.frame, image.id);
-    if (contribution.weights.are_none()) return;
-    contribution.rect = RectOf(image, frame);
-    if (contribution.rect.empty()) return;
-    const Intrinsics& plate = frame.pinhole.intrinsics;
-    if (reading_.estimator == Estimator::kBilinear)
-      contribution.gather = PlanGather(camera, frame, std::move(contribution.gather), reading_);
-    else
-      contribution.scatter = PlanScatter(camera, frame, contribution.rect,
-                                         TileSums::GridOf(plate.width_px, plate.height_px),
-                                         image.ideal_pixels.get(), std::move(contribution.scatter));
+    PlanContribution(image, ExposureOf(taker.frame, exposure), &contribution);
+    if (!is_guarded() || exposure > 0 || contribution.rect.empty()) return;
+    contribution.defocus = DefocusIn(taker.frame, image, TakeSpareDefocus());
+    if (const Prefilter filter = PrefilterOf(contribution); !filter.changes_nothing())
+      FilterInPlace(filter, &contribution.defocus);
   });
 
   FilterImages(batch, frames.size(), keep_pixels);
@@ -231,31 +261,6 @@ void BatchCollector::AddToFrames(std::vector<BatchImage>& batch, std::span<Batch
   for (size_t f = 0; f < frames.size(); ++f)
     for (size_t tile = 0; tile < tiles_[frames[f].frame].size(); ++tile) tasks.push_back({f, tile});
   std::vector<FrameGate> gates(frames.size());
-  const auto collect = [&](const Task& task) {
-    if (!gates[task.taker].IsOpen(interrupted)) return;
-    thread_local TileSums sums;
-    const size_t frame = frames[task.taker].frame;
-    PlateTile& tile = tiles_[frame][task.tile];
-    NoiseTally tally(frames_[frame].moments, tile.rect());
-    sums.Begin(&tile, tally.elements());
-    for (size_t k = 0; k < batch.size(); ++k) {
-      Contribution& contribution = contributions_[task.taker * batch.size() + k];
-      if (contribution.rect.empty()) continue;
-      const uint64_t accepted = AddToTile(contribution, task.tile, *contribution.pixels, &sums);
-      contribution.accepted_count += accepted;
-      if (accepted > 0)
-        tally.TakeImage(IsVirtual(batch[k].id),
-                        [&](size_t element, int c) { return sums.Added(element, c); });
-    }
-    sums.Flush();
-    if (!frames_[frame].plate->has_opacity()) return;
-    sums.Begin(&tile, {}, TileSums::Target::kFourth);
-    for (size_t k = 0; k < batch.size(); ++k)
-      if (Contribution& contribution = contributions_[task.taker * batch.size() + k];
-          !contribution.rect.empty())
-        AddToTile(contribution, task.tile, *contribution.opacity, &sums);
-    sums.Flush();
-  };
   // Items of `other_items` take longer than tiles, and therefore come first: if the last items are
   // short, threads wait only briefly at the end.
   pool_.ForEach(other_items.count + tasks.size(), [&](size_t i) {
@@ -264,46 +269,93 @@ void BatchCollector::AddToFrames(std::vector<BatchImage>& batch, std::span<Batch
       return;
     }
     const ThreadCpuTimer timer;
-    collect(tasks[i - other_items.count]);
+    const Task& task = tasks[i - other_items.count];
+    if (gates[task.taker].IsOpen(interrupted))
+      CollectTile(batch, task.taker, frames[task.taker].frame, task.tile);
     cpu_ns_ += timer.Nanoseconds();
   });
 
+  // The memory goes to other LF images, because the next batch has its recorded ones at other
+  // indices.
+  for (Contribution& contribution : contributions_)
+    if (!contribution.defocus.radiance.empty())
+      spare_defocus_.push_back(std::exchange(contribution.defocus, {}));
   for (size_t f = 0; f < frames.size(); ++f) {
     frames[f].is_done = gates[f].IsOpen(nullptr);
     if (!frames[f].is_done) continue;
     for (size_t k = 0; k < batch.size(); ++k) {
-      const Contribution& contribution = contributions_[f * batch.size() + k];
+      const Contribution& contribution = ContributionOf(f, 0, k, batch.size());
       frames[f].rays.accepted_count += contribution.accepted_count;
       Count(contribution.rect, contribution.accepted_count > 0, IsVirtual(batch[k].id),
             &frames[f].rays);
+      if (is_guarded() && IsVirtual(batch[k].id) &&
+          ContributionOf(f, 1, k, batch.size()).accepted_count > 0)
+        ++frames[f].rays.virtual_count;
     }
   }
 }
 
+LfPixels BatchCollector::TakeSpareDefocus() {
+  const std::lock_guard lock(defocus_mutex_);
+  if (spare_defocus_.empty()) return {};
+  LfPixels pixels = std::move(spare_defocus_.back());
+  spare_defocus_.pop_back();
+  return pixels;
+}
+
+// Adds the planned rays of all LF images of the batch to a tile of a frame.
+//   taker  index of the frame among those that are planned together
+void BatchCollector::CollectTile(std::span<const BatchImage> batch, size_t taker, size_t frame,
+                                 size_t number) {
+  thread_local TileSums sums;
+  PlateTile& tile = tiles_[frame][number];
+  const auto for_each = [&](size_t exposure, const auto& body) {
+    for (size_t k = 0; k < batch.size(); ++k)
+      if (Contribution& contribution = ContributionOf(taker, exposure, k, batch.size());
+          !contribution.rect.empty())
+        body(batch[k].id, contribution);
+  };
+  NoiseTally tally(frames_[frame].moments, tile.rect());
+  sums.Begin(&tile, tally.elements());
+  for_each(0, [&](LfImageId id, Contribution& contribution) {
+    const uint64_t accepted = AddToTile(contribution, number, *contribution.pixels, &sums);
+    contribution.accepted_count += accepted;
+    if (accepted > 0)
+      tally.TakeImage(IsVirtual(id), [&](size_t element, int c) { return sums.Added(element, c); });
+  });
+  sums.Flush();
+  if (frames_[frame].plate->kind() == PlateKind::kColours) return;
+  sums.Begin(&tile, {}, TileSums::Target::kFourth);
+  for_each(0, [&](LfImageId /*id*/, const Contribution& contribution) {
+    AddToTile(contribution, number, *contribution.fourth, &sums);
+  });
+  sums.Flush();
+  if (!is_guarded()) return;
+  sums.Begin(&tile, {}, TileSums::Target::kAllRays);
+  for_each(1, [&](LfImageId /*id*/, Contribution& contribution) {
+    contribution.accepted_count += AddToTile(contribution, number, *contribution.pixels, &sums);
+  });
+  sums.Flush();
+}
+
 // Filters the LF images of the batch for the planned contributions to `frame_count` frames, and
-// sets the pixels and the opacity of these contributions.
+// sets the pixels and the fourth channel of these contributions.
 void BatchCollector::FilterImages(std::vector<BatchImage>& batch, size_t frame_count,
                                   bool keep_pixels) {
   std::vector<std::vector<Prefilter>> filters(batch.size());
   const auto for_each_planned = [&](const auto& body) {
-    for (size_t f = 0; f < frame_count; ++f)
-      for (size_t k = 0; k < batch.size(); ++k)
-        if (Contribution& contribution = contributions_[f * batch.size() + k];
-            !contribution.rect.empty())
-          body(k, contribution);
-  };
-  const auto filter_of = [&](const Contribution& contribution) {
-    return reading_.estimator == Estimator::kBilinear ? contribution.gather.sampling.prefilter
-                                                      : Prefilter();
+    for (size_t i = 0; i < frame_count * exposure_count() * batch.size(); ++i)
+      if (!contributions_[i].rect.empty()) body(i % batch.size(), contributions_[i]);
   };
   for_each_planned([&](size_t k, const Contribution& contribution) {
-    filters[k].push_back(filter_of(contribution));
+    filters[k].push_back(PrefilterOf(contribution));
   });
   filtered_->Filter(batch, std::move(filters), keep_pixels,
                     [&](size_t count, const auto& body) { ForEachTimed(count, body); });
   for_each_planned([&](size_t k, Contribution& contribution) {
-    contribution.pixels = &filtered_->Pixels(batch, k, filter_of(contribution));
-    contribution.opacity = &filtered_->Opacity(batch, k, filter_of(contribution));
+    contribution.pixels = &filtered_->Pixels(batch, k, PrefilterOf(contribution));
+    contribution.fourth = is_guarded() ? &contribution.defocus
+                                       : &filtered_->Opacity(batch, k, PrefilterOf(contribution));
   });
 }
 
@@ -317,24 +369,27 @@ uint64_t BatchCollector::AddToTile(const Contribution& contribution, size_t tile
 
 void BatchCollector::AddByReference(const std::vector<BatchImage>& batch, BatchFrame* frame) {
   const ThreadCpuTimer timer;
-  const RenderCamera& camera = frames_[frame->frame].camera;
   SensorPlate& plate = *frames_[frame->frame].plate;
   NoiseTally tally(frames_[frame->frame].moments, {0, 0, plate.width(), plate.height()});
   const auto total_of = [&](size_t element, int c) {
     return plate.At(tally.elements()[element].x, tally.elements()[element].y, c);
   };
   tally.Start(total_of);
+  const Exposure exposure = ExposureOf(frame->frame, 0);
   for (const BatchImage& image : batch) {
-    const PixelRect rect = RectOf(image, camera);
-    if (rect.empty() || !frame->places.Holds(image.place)) continue;
-    const RayWeights weights = WeightsOf(frame->frame, image.id);
-    if (weights.are_none()) continue;
-    const PinholeCamera lf_camera = light_field_.Camera(image.id);
-    const uint64_t accepted =
-        reading_.estimator == Estimator::kBilinear
-            ? GatherReference(lf_camera, image.pixels, camera, &plate, weights, reading_)
-            : ScatterReference(lf_camera, image.pixels, camera, rect, &plate, weights);
-    if (plate.has_opacity()) AddOpacityByReference(image, rect, camera, weights, &plate);
+    if (!frame->places.Holds(image.place)) continue;
+    if (is_guarded() && AddChannelsByReference(image, image.pixels, ExposureOf(frame->frame, 1), 3,
+                                               SensorPlate::kAllRaysChannel, &plate) > 0)
+      frame->rays.virtual_count += IsVirtual(image.id) ? 1 : 0;
+    const PixelRect rect = RectOf(image, exposure.camera);
+    if (rect.empty() || WeightsOf(exposure, image.id).are_none()) continue;
+    const uint64_t accepted = CollectByReference(image, image.pixels, exposure, &plate);
+    if (plate.has_opacity())
+      AddChannelsByReference(image, image.opacity, exposure, 1, SensorPlate::kOpacityChannel,
+                             &plate);
+    if (is_guarded())
+      AddChannelsByReference(image, DefocusIn(frame->frame, image, {}), exposure, 1,
+                             SensorPlate::kDefocusChannel, &plate);
     tally.TakeImage(IsVirtual(image.id), total_of);
     frame->rays.accepted_count += accepted;
     Count(rect, accepted > 0, IsVirtual(image.id), &frame->rays);
@@ -343,20 +398,34 @@ void BatchCollector::AddByReference(const std::vector<BatchImage>& batch, BatchF
   cpu_ns_ += timer.Nanoseconds();
 }
 
-// Collects opacity as the colour of a separate plate, and adds that plate to the opacity channel of
-// `plate`.
-void BatchCollector::AddOpacityByReference(const BatchImage& image, const PixelRect& rect,
-                                           const RenderCamera& camera, const RayWeights& weights,
-                                           SensorPlate* plate) const {
-  SensorPlate opacity(plate->width(), plate->height());
+uint64_t BatchCollector::CollectByReference(const BatchImage& image, const LfPixels& pixels,
+                                            const Exposure& exposure, SensorPlate* plate) const {
+  const PixelRect rect = RectOf(image, exposure.camera);
+  const RayWeights weights = WeightsOf(exposure, image.id);
+  if (rect.empty() || weights.are_none()) return 0;
   const PinholeCamera lf_camera = light_field_.Camera(image.id);
-  if (reading_.estimator == Estimator::kBilinear)
-    GatherReference(lf_camera, image.opacity, camera, &opacity, weights, reading_);
-  else
-    ScatterReference(lf_camera, image.opacity, camera, rect, &opacity, weights);
+  return reading_.estimator == Estimator::kBilinear
+             ? GatherReference(lf_camera, pixels, exposure.camera, plate, weights, reading_)
+             : ScatterReference(lf_camera, pixels, exposure.camera, rect, plate, weights);
+}
+
+// Collects the pixels on a separate plate, and adds the first `count` channels of that plate to the
+// channels from `first` on of `plate`. Returns the number of rays.
+uint64_t BatchCollector::AddChannelsByReference(const BatchImage& image, const LfPixels& pixels,
+                                                const Exposure& exposure, int count, int first,
+                                                SensorPlate* plate) const {
+  SensorPlate separate(plate->width(), plate->height());
+  const uint64_t accepted = CollectByReference(image, pixels, exposure, &separate);
   for (int y = 0; y < plate->height(); ++y)
     for (int x = 0; x < plate->width(); ++x)
-      plate->Add(x, y, SensorPlate::kOpacityChannel, opacity.At(x, y, 0));
+      for (int c = 0; c < count; ++c) plate->Add(x, y, first + c, separate.At(x, y, c));
+  return accepted;
+}
+
+LfPixels BatchCollector::DefocusIn(size_t frame, const BatchImage& image, LfPixels memory) const {
+  const CollectedFrame& of = frames_[frame];
+  return DefocusOf(image.depths, light_field_.Camera(image.id), of.camera.focus_plane,
+                   of.guard->camera_distance_w, image.loaded, std::move(memory));
 }
 
 // Runs body(i) for each item i in [0, count), and measures the CPU time. If there are many items,

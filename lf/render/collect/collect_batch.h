@@ -7,6 +7,7 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
@@ -23,6 +24,7 @@
 #include "lf/light_field/model/lf_pixels.h"
 #include "lf/light_field/model/light_field.h"
 #include "lf/render/collect/collected_frame.h"
+#include "lf/render/collect/defocus.h"
 #include "lf/render/collect/shared_ideal_pixels.h"
 #include "lf/selection/overlap.h"
 #include "lf/selection/select.h"
@@ -67,6 +69,7 @@ struct BatchImage {
   LfPixels pixels;
   // opacity of these pixels (LfPixels::TakeOpacity()); only used by plates with opacity
   LfPixels opacity = {};
+  NearbyDepths depths = {};  // of a recorded LF image; only used by guarded plates
   // BatchCollector sets the members below. If the LF camera has no lens distortion, *cells is
   // empty. `ideal_pixels` is then null, as it always is with kBilinear or kReference.
   std::shared_ptr<const std::vector<IdealCell>> cells = nullptr;
@@ -134,22 +137,41 @@ class BatchCollector {
   double cpu_seconds() const { return static_cast<double>(cpu_ns_.load()) * 1e-9; }
 
  private:
-  // The contribution of one LF image to one frame.
+  // The rays that a frame takes: of all LF images or, if it has a guard, first of the recorded LF
+  // images, and then of all.
+  struct Exposure {
+    const RenderCamera& camera;
+    const ImageWeights& weights;
+  };
+  // The contribution of one LF image to one exposure of a frame.
   struct Contribution {
     PixelRect rect;
     ScatterPlan scatter;  // used by kNearest; kBilinear uses `gather`
     GatherPlan gather;
     RayWeights weights;
-    // The pixels and the opacity of the LF image, filtered if `gather` needs it. filtered_ or the
-    // batch owns them.
+    // The pixels of the LF image, filtered if `gather` needs it. filtered_ or the batch owns them.
     const LfPixels* pixels = nullptr;
-    const LfPixels* opacity = nullptr;
+    // The values of the plate's fourth channel: the opacity, filtered likewise, or `defocus`.
+    const LfPixels* fourth = nullptr;
+    LfPixels defocus;  // memory of spare_defocus_, while the contribution is collected
     std::atomic<uint64_t> accepted_count = 0;
   };
+  bool is_guarded() const { return !frames_.empty() && frames_.front().guard; }
+  size_t exposure_count() const { return is_guarded() ? 2 : 1; }
+  Exposure ExposureOf(size_t frame, size_t exposure) const;
+  bool PlainlyMisses(const BatchImage& image, size_t frame) const;
+  // Returns the contribution of LF image k of a batch of `image_count`.
+  Contribution& ContributionOf(size_t taker, size_t exposure, size_t k, size_t image_count) {
+    return contributions_[(taker * exposure_count() + exposure) * image_count + k];
+  }
   PixelRect RectOf(const BatchImage& image, const RenderCamera& frame) const;
-  RayWeights WeightsOf(size_t frame, LfImageId id) const {
-    const ImageWeights& weights = frames_[frame].weights;
-    return weights ? weights(id) : RayWeights();
+  // The prefilter of the LF image's pixels.
+  Prefilter PrefilterOf(const Contribution& contribution) const {
+    return reading_.estimator == Estimator::kBilinear ? contribution.gather.sampling.prefilter
+                                                      : Prefilter();
+  }
+  static RayWeights WeightsOf(const Exposure& exposure, LfImageId id) {
+    return exposure.weights ? exposure.weights(id) : RayWeights();
   }
   void UndoDistortion(std::vector<BatchImage>& batch);
   std::span<BatchFrame> FramesThatMayTake(const std::vector<BatchImage>& batch,
@@ -163,9 +185,17 @@ class BatchCollector {
   uint64_t AddToTile(const Contribution& contribution, size_t tile, const LfPixels& pixels,
                      TileSums* sums) const;
   void AddByReference(const std::vector<BatchImage>& batch, BatchFrame* frame);
-  void AddOpacityByReference(const BatchImage& image, const PixelRect& rect,
-                             const RenderCamera& camera, const RayWeights& weights,
-                             SensorPlate* plate) const;
+  LfPixels TakeSpareDefocus();
+  void PlanContribution(const BatchImage& image, const Exposure& exposure,
+                        Contribution* contribution) const;
+  void CollectTile(std::span<const BatchImage> batch, size_t taker, size_t frame, size_t number);
+  uint64_t CollectByReference(const BatchImage& image, const LfPixels& pixels,
+                              const Exposure& exposure, SensorPlate* plate) const;
+  uint64_t AddChannelsByReference(const BatchImage& image, const LfPixels& pixels,
+                                  const Exposure& exposure, int count, int first,
+                                  SensorPlate* plate) const;
+  // Returns the defocus of the LF image in a guarded frame, not filtered.
+  LfPixels DefocusIn(size_t frame, const BatchImage& image, LfPixels memory) const;
   void ForEachTimed(size_t count, const std::function<void(size_t)>& body);
 
   bool IsVirtual(LfImageId id) const { return light_field_.cameras[id.value].is_virtual; }
@@ -178,8 +208,10 @@ class BatchCollector {
   bool whole_images_;
   ThreadPool& pool_;
   std::vector<std::vector<PlateTile>> tiles_;  // [frame]: the tiles of its plate
-  std::deque<Contribution>
-      contributions_;  // [frame][LF image] of a batch; the next batch reuses their memory
+  // [frame][exposure][LF image] of a batch; the next batch reuses their memory.
+  std::deque<Contribution> contributions_;
+  std::mutex defocus_mutex_;
+  std::vector<LfPixels> spare_defocus_;  // unused memory of Contribution::defocus
   // Ideal pixels of the LF cameras of the last batch, by the index of their intrinsics. Empty with
   // kBilinear or kReference.
   SharedIdealPixels ideal_pixels_;

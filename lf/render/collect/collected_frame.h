@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "lf/camera/render_camera.h"
 #include "lf/core/ids.h"
 #include "lf/film/plate/sensor_plate.h"
+#include "lf/light_field/model/radiance.h"
 #include "lf/render/collect/noise_moments.h"
 #include "lf/selection/select.h"
 
@@ -43,6 +45,16 @@ struct FrameProgress {
   FrameRays rays;  // counts of the rays that this FrameCollector tested and added
 };
 
+// The rays of all LF images, which a frame with a guarded plate (PlateKind::kGuarded) collects
+// besides those of recorded LF images (doc/densify.md, "The guard").
+struct FrameGuard {
+  RenderCamera camera;   // with the lens of all LF cameras
+  ImageWeights weights;  // of all LF images in this lens
+  // Distance between neighbouring recorded LF cameras around the lens, which decides how far out of
+  // focus a ray is.
+  double camera_distance_w = 0;
+};
+
 struct CollectedFrame {
   RenderCamera camera;
   SensorPlate* plate = nullptr;  // receives the rays; must not be null
@@ -50,6 +62,10 @@ struct CollectedFrame {
   // the LF images that the frame takes at places before places.begin.
   PlaceRange places = {};
   ImageWeights weights = {};
+  // Must be set in all frames or in none. If it is set, `camera` and `weights` are those of
+  // recorded LF images alone, `weights` gives virtual LF images the weight 0, and progress.rays
+  // counts the rays of recorded LF images, and the virtual LF images with a ray of the guard.
+  std::optional<FrameGuard> guard = {};
   // Moments of the plate, made for its width and height. They are updated with the plate, and
   // always include exactly the LF images whose rays the plate has. Null: no moments are kept.
   NoiseMoments* moments = nullptr;
@@ -57,6 +73,12 @@ struct CollectedFrame {
   FrameProgress progress = {};
   bool is_stopped = false;  // true: the frame takes no more LF images
 };
+
+// Returns the kind of the plates of a light field.
+inline PlateKind PlateKindOf(const RadianceEncoding& encoding, bool is_guarded) {
+  if (is_guarded) return PlateKind::kGuarded;
+  return encoding.HasOpacity() ? PlateKind::kOpacity : PlateKind::kColours;
+}
 
 // Returns frames that take all LF images, with weight 1.
 //   plates  one plate for each camera, with the size of the camera's image

@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "lf/film/plate/sensor_plate.h"
+#include "lf/render/collect/collected_frame.h"
+#include "lf/render/collect/defocus.h"
 
 namespace lf {
 namespace {
@@ -20,6 +22,8 @@ constexpr size_t kDevelopBytesPerElement = 64;
 // Additional memory to develop a frame with opacity, for each element: opacity, its counts and
 // tables.
 constexpr size_t kOpacityBytes = 16;
+// Additional memory to develop a guarded frame, for each element: the channel `densified`.
+constexpr size_t kGuardBytes = 4;
 constexpr size_t kSheetBytesPerElement = 3;  // 8-bit RGB picture of the contact sheet
 constexpr size_t kMostSheetPictures = 12;
 
@@ -46,17 +50,19 @@ struct ImageNeed {
   size_t pixels = 1;
   size_t kept_bytes = 1;    // its radiance, mask, opacity and ideal pixels
   size_t decode_bytes = 1;  // memory to decode it, in one thread
-  size_t plan_bytes = 1;    // the plan of its rays in one frame
+  // The plan of its rays in one frame, with their defocus if the plate is guarded.
+  size_t plan_bytes = 1;
 };
 
 ImageNeed NeedOf(const LightField& light_field, Estimator estimator, int plate_width,
-                 int plate_height) {
+                 int plate_height, bool is_guarded) {
   // kBilinear needs RGB, so mosaics are demosaicked.
   const bool is_rgb =
       light_field.encoding.bayer == BayerPattern::kNone || estimator == Estimator::kBilinear;
   const size_t decode_bytes_per_pixel = DefaultMaxRadiance(light_field.image_names) > 1
                                             ? kDecodeFloatBytesPerPixel
                                             : kDecodeBytesPerPixel;
+  constexpr size_t kNearbyDepthsBytes = 2 * sizeof(uint16_t);
   constexpr size_t kPatchBytesPerPixel = 1;  // table of ideal pixels (camera/ideal_pixels.h)
   ImageNeed need;
   for (const Intrinsics& k : light_field.intrinsics) {
@@ -64,12 +70,15 @@ ImageNeed NeedOf(const LightField& light_field, Estimator estimator, int plate_w
     const size_t bytes_per_pixel =
         (is_rgb ? LfPixels::kRgbLanes * sizeof(uint16_t) : sizeof(uint16_t) + 1) +
         (light_field.encoding.HasOpacity() ? LfPixels::kRgbLanes * sizeof(uint16_t) : 0) +
-        (k.has_distortion() ? kPatchBytesPerPixel : 0);
+        (k.has_distortion() ? kPatchBytesPerPixel : 0) + (is_guarded ? kNearbyDepthsBytes : 0);
     need.pixels = std::max(need.pixels, pixels);
     need.kept_bytes = std::max(need.kept_bytes, pixels * bytes_per_pixel);
     need.decode_bytes = std::max(need.decode_bytes, pixels * decode_bytes_per_pixel);
-    need.plan_bytes = std::max(need.plan_bytes, PlanBytes(estimator, k.has_distortion(), k.width_px,
-                                                          k.height_px, plate_width, plate_height));
+    const size_t plan_bytes = PlanBytes(estimator, k.has_distortion(), k.width_px, k.height_px,
+                                        plate_width, plate_height);
+    need.plan_bytes = std::max(
+        need.plan_bytes,
+        is_guarded ? 2 * plan_bytes + DefocusBytes({0, 0, k.width_px, k.height_px}) : plan_bytes);
   }
   return need;
 }
@@ -78,13 +87,16 @@ ImageNeed NeedOf(const LightField& light_field, Estimator estimator, int plate_w
 
 Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field,
                               const RayReading& reading, int plate_width, int plate_height,
-                              size_t frame_count, int thread_count, size_t bytes_per_frame) {
+                              size_t frame_count, int thread_count, size_t bytes_per_frame,
+                              bool is_guarded) {
   const size_t element_count = static_cast<size_t>(plate_width) * plate_height;
-  const ImageNeed need = NeedOf(light_field, reading.estimator, plate_width, plate_height);
+  const ImageNeed need =
+      NeedOf(light_field, reading.estimator, plate_width, plate_height, is_guarded);
   MemoryPlan plan;
   const bool has_opacity = light_field.encoding.HasOpacity();
-  const size_t channels = SensorPlate::kChannels + (has_opacity ? 1 : 0);
-  const size_t develop_bytes = kDevelopBytesPerElement + (has_opacity ? kOpacityBytes : 0);
+  const auto channels = static_cast<size_t>(PlateKindOf(light_field.encoding, is_guarded));
+  const size_t develop_bytes =
+      kDevelopBytesPerElement + (has_opacity ? kOpacityBytes : 0) + (is_guarded ? kGuardBytes : 0);
   plan.plate_bytes = element_count * channels * sizeof(uint64_t);
   plan.image_bytes = need.kept_bytes;
 

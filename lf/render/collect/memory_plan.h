@@ -34,8 +34,10 @@ struct MemoryPlan {
 // suffices. If LF images are prefiltered, the memory of one batch also holds a filtered copy of
 // each of its LF images.
 //   bytes_per_frame  further memory for each frame, such as its moments (noise_moments.h)
+//   is_guarded       true: the plates are guarded (PlateKind::kGuarded)
 Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field,
                               const RayReading& reading, int plate_width, int plate_height,
-                              size_t frame_count, int thread_count, size_t bytes_per_frame = 0);
+                              size_t frame_count, int thread_count, size_t bytes_per_frame = 0,
+                              bool is_guarded = false);
 
 }  // namespace lf

@@ -65,6 +65,17 @@ TEST(MemoryPlan, LargeImagesAndManyThreadsCount) {
   EXPECT_GE(many.plan_bytes, many.batch_image_count * size_t{4000} * 6000 / 256 * 32);
 }
 
+// A guarded plate has seven channels instead of three, and the defocus of LF pixels is planned.
+TEST(MemoryPlan, GuardedFramesNeedMoreMemory) {
+  const LightField field = Field(960, 640);
+  const auto plan = [&](bool is_guarded) {
+    return *PlanMemory(2048 * kMiB, field, Estimator::kBilinear, 1920, 1080, 900, 2, 0, is_guarded);
+  };
+  EXPECT_EQ(plan(true).plate_bytes, plan(false).plate_bytes / 3 * 7);
+  EXPECT_LT(plan(true).frames_per_pass * 2, plan(false).frames_per_pass);
+  EXPECT_GE(plan(true).plan_bytes, plan(true).batch_image_count * 960 * 640 * 8);
+}
+
 TEST(MemoryPlan, NamesTheLeastMemoryThatIsEnough) {
   const Result<MemoryPlan> plan =
       PlanMemory(100 * kMiB, Field(960, 640), Estimator::kNearest, 1920, 1080, 1, 2);

@@ -31,6 +31,7 @@ struct RenderMemory {
 Result<RenderMemory> PlanRenderMemory(size_t memory_bytes, RenderMode mode, size_t max_cells,
                                       const LightField& light_field, const RayReading& reading,
                                       int plate_width, int plate_height, size_t frame_count,
-                                      int thread_count, size_t measured_bytes = 0);
+                                      int thread_count, size_t measured_bytes = 0,
+                                      bool is_guarded = false);
 
 }  // namespace lf
