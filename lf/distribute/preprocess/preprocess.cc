@@ -92,6 +92,8 @@ class Preprocessor {
     needs_.lens_weights = options.lens_weights;
     needs_.mode = options.mode;
     needs_.max_image_count = options.max_image_count;
+    needs_.guard =
+        options.guard && options.mode == RenderMode::kCollect && HasVirtual(light_field_);
   }
 
   Result<PreprocessReport> Run();
@@ -300,10 +302,10 @@ Result<void> Preprocessor::Measure() {
 
 Result<MemoryPlan> Preprocessor::MemoryOf(const LightField& light_field, size_t frame_count) const {
   const Intrinsics& plate = path_.Camera(frames_.front()).pinhole.intrinsics;
-  LF_ASSIGN_OR_RETURN(
-      RenderMemory memory,
-      PlanRenderMemory(options_.memory_bytes, options_.mode, 0, light_field, options_.reading,
-                       plate.width_px, plate.height_px, frame_count, pool_.thread_count()));
+  LF_ASSIGN_OR_RETURN(RenderMemory memory,
+                      PlanRenderMemory(options_.memory_bytes, options_.mode, 0, light_field,
+                                       options_.reading, plate.width_px, plate.height_px,
+                                       frame_count, pool_.thread_count(), 0, needs_.guard));
   memory.plan.total_bytes += memory.rebin_bytes;
   return memory.plan;
 }

@@ -48,6 +48,9 @@ struct PreprocessOptions {
   // rendered in any mode, except for packages for LensWeights::kNone and kCollect.
   RenderMode mode = RenderMode::kCollect;
 
+  // True: the renders that follow guard frames of a densified light field (FilmOptions::guard).
+  bool guard = true;
+
   // Number of packages: package_count if it is set; otherwise, if frames_per_package is set, as
   // many as that requires; otherwise as few as possible such that all plates of a package fit into
   // memory_bytes at the same time.

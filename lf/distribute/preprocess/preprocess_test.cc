@@ -83,7 +83,10 @@ void PreprocessTest::ExpectPackageIsAsGoodAsTheWhole(const Package& package,
     EXPECT_EQ(lens.camera().aperture.radius_w, again.camera().aperture.radius_w);
     const FrameNeeds wanted = NeedsOf(whole, camera, needs, pool_);
     EXPECT_EQ(frame.ray_count, wanted.RayCount());
-    EXPECT_EQ(frame.image_count, wanted.images.size());
+    EXPECT_EQ(frame.image_count, std::count_if(wanted.images.begin(), wanted.images.end(),
+                                               [this](const FrameNeeds::Image& image) {
+                                                 return !field_.cameras[image.id.value].is_virtual;
+                                               }));
     for (const FrameNeeds::Image& image : wanted.images) {
       PackageImage& all = images[image.id.value];
       all.rect = Bounds(all.rect, image.rect);
@@ -144,6 +147,42 @@ TEST_F(PreprocessTest, PackagesHaveWhatTheirFramesNeed) {
       EXPECT_FALSE(report.rate);  // because there are no image files
       EXPECT_NE(report.rate_error, "");
     }
+}
+
+// Guarded frames take more LF images, because recorded LF cameras are farther apart than all, and
+// have the lens weights of the whole light field with and without virtual LF images.
+TEST_F(PreprocessTest, PackagesHaveWhatTheGuardNeeds) {
+  for (uint32_t i = 0; i < field_.size(); ++i) field_.cameras[i].is_virtual = i % 3 != 0;
+  const ImageIndex whole(field_, options_.seed);
+  std::map<bool, uint64_t> rays;
+  for (const LensWeights weights : {LensWeights::kAuto, LensWeights::kNone})
+    for (const bool guard : {true, false}) {
+      options_.lens_weights = weights;
+      options_.guard = guard;
+      options_.overwrite = true;
+      NeedsOptions needs;
+      needs.select.reach = PixelReach::kElement;
+      needs.lens_weights = weights;
+      needs.guard = guard;
+      for (const PackageForecast& forecast : Run().packages) {
+        const Package package = Read(forecast);
+        EXPECT_EQ(package.choices.has_neighbours, needs.HasNeighbours());
+        ExpectPackageIsAsGoodAsTheWhole(package, needs);
+        rays[guard] += forecast.ray_count;
+        const ImageIndex part(package.light_field, package.places);
+        for (const PackageFrame& frame : package.frames) {
+          if (!needs.HasNeighbours()) continue;
+          const FrameLens lens(whole.recorded(), film_.Camera(frame.id), weights, needs.select,
+                               pool_);
+          const FrameLens again(part.recorded(), film_.Camera(frame.id), weights, needs.select,
+                                pool_, package.RecordedCameraDistance(frame.id));
+          for (uint32_t i = 0; i < package.light_field.size(); ++i)
+            ASSERT_EQ(again.WeightsOf(LfImageId{i}).At(40, 30),
+                      lens.WeightsOf(LfImageId{package.images[i].id}).At(40, 30));
+        }
+      }
+    }
+  EXPECT_GT(rays[true], rays[false]);
 }
 
 // Packages have the LF images for rebinned rays, even if no ray of an LF camera passes through the

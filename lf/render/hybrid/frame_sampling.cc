@@ -84,6 +84,8 @@ std::vector<Vec2> SeenThrough(const ImageIndex& index, const RenderCamera& frame
 FrameSampling SamplingOf(const ImageIndex& index, const RenderCamera& frame,
                          std::span<const SelectedImage> near, double camera_distance_w) {
   FrameSampling sampling;
+  if (&index.recorded() != &index)
+    sampling.recorded_distance_w = CameraDistanceAround(index.recorded(), frame);
   if (near.empty() || !(camera_distance_w > 0)) return sampling;
   sampling.lf.camera_distance_w = camera_distance_w;
   std::vector<double> pixel_rad;
@@ -102,7 +104,7 @@ FrameSampling SamplingOf(const ImageIndex& index, const RenderCamera& frame,
 FrameSampling SamplingOf(const ImageIndex& index, const RenderCamera& frame,
                          const SelectOptions& select, ThreadPool& pool) {
   const double distance_w = CameraDistanceAround(index, frame);
-  if (!(distance_w > 0)) return {};
+  if (!(distance_w > 0)) return SamplingOf(index, frame, {}, 0);
   SelectOptions widest = select;
   widest.reach = kWidestReach;
   return SamplingOf(index, frame, ImagesNearLens(index, frame, distance_w, widest, pool),

@@ -28,6 +28,9 @@ struct FrameSampling {
   // Upper bound of the distance, in world units, from any point of the lens to the nearest point of
   // SeenThrough(); but at most kFarthestDistances times lf.camera_distance_w.
   double hole_w = 0;
+  // Distance between neighbouring recorded LF cameras around the lens, in world units; unset unless
+  // the light field has virtual LF images.
+  std::optional<double> recorded_distance_w = std::nullopt;
 };
 
 // Returns the LF images with rays through the lens, or up to kFarthestDistances * camera_distance_w

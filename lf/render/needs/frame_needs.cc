@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -34,6 +35,9 @@ class NeedsFinder {
         pool_(pool),
         distance_w_(DistanceOf(sampling)),
         lens_(index, frame, options.lens_weights, options.select, pool, distance_w_) {
+    if (&index.recorded() != &index || (sampling && sampling->recorded_distance_w))
+      recorded_lens_.emplace(index.recorded(), frame, options.lens_weights, options.select, pool,
+                             sampling ? sampling->recorded_distance_w : std::nullopt);
     LF_CHECK(options.mode == RenderMode::kCollect || !options.max_image_count);
     LF_CHECK(options.mode != RenderMode::kRebin || options.lens_weights == LensWeights::kNone);
     needs_.sampling = sampling;
@@ -48,13 +52,26 @@ class NeedsFinder {
 
  private:
   void AddCollected() {
-    TakingFrame frame = {lens_.camera()};
-    if (options_.lens_weights != LensWeights::kNone)
-      frame.takes = [this](LfImageId id) { return lens_.Takes(id); };
+    const bool is_guarded = options_.guard && recorded_lens_;
+    const FrameLens& counted = is_guarded ? *recorded_lens_ : lens_;
+    std::vector<TakingFrame> frames = {Taking(counted)};
     if (options_.max_image_count)
-      frame.places = PlacesOfFirst(*options_.max_image_count, index_, frame, options_.select);
-    for (const SelectedImage& image : SelectImages(index_, {&frame, 1}, options_.select, pool_))
+      frames[0].places =
+          PlacesOfFirst(*options_.max_image_count, is_guarded ? index_.recorded() : index_,
+                        frames[0], options_.select);
+    if (is_guarded) {
+      frames.push_back(Taking(lens_));
+      frames[1].places = frames[0].places;
+    }
+    for (const SelectedImage& image : SelectImages(index_, frames, options_.select, pool_))
       needs_.images.push_back({image.id, image.rect, image.ray_count});
+  }
+
+  TakingFrame Taking(const FrameLens& lens) const {
+    TakingFrame frame = {lens.camera()};
+    if (options_.lens_weights != LensWeights::kNone || options_.guard)
+      frame.takes = [&lens](LfImageId id) { return lens.Takes(id); };
+    return frame;
   }
 
   void AddRebinned() {
@@ -123,6 +140,8 @@ class NeedsFinder {
       for (const SelectedImage& image :
            SelectImages(index_, std::span(&lens_.camera(), 1), widest, pool_))
         all.push_back(image.id);
+    if (recorded_lens_)
+      for (const LfImageId id : recorded_lens_->near()) all.push_back(id);
     std::sort(all.begin(), all.end());
     all.erase(std::unique(all.begin(), all.end()), all.end());
     for (const FrameNeeds::Image& image : needs_.images) read.push_back(image.id);
@@ -158,6 +177,7 @@ class NeedsFinder {
   ThreadPool& pool_;
   const std::optional<double> distance_w_;
   const FrameLens lens_;
+  std::optional<FrameLens> recorded_lens_;  // set if the whole light field has virtual LF images
   FrameNeeds needs_;
 };
 
@@ -173,14 +193,15 @@ uint64_t FrameNeeds::RayCount() const {
 
 FrameSurroundings SurroundingsOf(const FrameSampling& sampling) {
   return {sampling.lf.camera_distance_w, sampling.lf.pixel_rad, sampling.lf.middle_world,
-          sampling.hole_w};
+          sampling.hole_w, sampling.recorded_distance_w};
 }
 
 std::optional<FrameSampling> SamplingOf(const Package& package, FrameId frame) {
   if (package.surroundings.empty()) return std::nullopt;
   const FrameSurroundings& around = package.surroundings[frame.value - 1];
   return FrameSampling{{around.camera_distance_w, around.pixel_rad, around.middle_world},
-                       around.hole_w};
+                       around.hole_w,
+                       around.recorded_distance_w};
 }
 
 FrameNeeds NeedsOf(const ImageIndex& index, const RenderCamera& frame, const NeedsOptions& options,

@@ -37,9 +37,13 @@ struct NeedsOptions {
   // Only its members query, previews and rebin are used; none if the mode is kCollect.
   RebinPassOptions rebin;
 
+  // True if the plates of frames are guarded (FilmSetup::is_guarded()): the light field must be
+  // densified, and the mode kCollect.
+  bool guard = false;
+
   // Returns true if the picture of a frame may depend on LF cameras whose LF images are not read
   // for it.
-  bool HasNeighbours() const { return lens_weights != LensWeights::kNone || Rebins(mode); }
+  bool HasNeighbours() const { return lens_weights != LensWeights::kNone || Rebins(mode) || guard; }
 };
 
 struct FrameNeeds {
@@ -52,7 +56,8 @@ struct FrameNeeds {
   };
   std::vector<Image> images;  // the LF images that are read, by ascending ranks
   // Other LF cameras that are needed to compute lens weights and gaps (render/hybrid/lens_gaps.h),
-  // by ascending ids. The LF cameras of `images` and `neighbours` alone give the same lens weights,
+  // by ascending ids. The LF cameras of `images` and `neighbours` alone give the same lens weights
+  // (in a densified light field, with and without its virtual LF images),
   // the same LF images within max_image_count, and (for the default QueryOptions) the same rebinned
   // rays as the whole light field. Empty if NeedsOptions::HasNeighbours() is false.
   std::vector<LfImageId> neighbours;

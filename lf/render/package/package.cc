@@ -18,6 +18,12 @@ std::optional<double> Package::CameraDistance(FrameId frame) const {
   return surroundings[frame.value - 1].camera_distance_w;
 }
 
+std::optional<double> Package::RecordedCameraDistance(FrameId frame) const {
+  const std::optional<double> of_all = CameraDistance(frame);
+  if (!of_all) return std::nullopt;
+  return surroundings[frame.value - 1].recorded_distance_w.value_or(*of_all);
+}
+
 Package PackageOfAll(LightField light_field, CameraPath path, uint64_t seed) {
   Package package;
   package.whole = IdentityOf(light_field);

@@ -33,6 +33,8 @@ struct FrameSurroundings {
   double pixel_rad = 0;          // angle that one LF pixel covers
   Vec3 middle_world = Vec3::Zero();  // mean position of the LF cameras near the lens
   double hole_w = 0;                 // FrameSampling::hole_w
+  // FrameSampling::recorded_distance_w; unset unless the light field is densified
+  std::optional<double> recorded_distance_w = std::nullopt;
 };
 
 // Options of the selection, which a render of the package cannot change.
@@ -89,6 +91,8 @@ struct Package {
   // Returns FrameSurroundings::camera_distance_w of a frame of the film; nullopt if it was not
   // measured.
   std::optional<double> CameraDistance(FrameId frame) const;
+  // Returns the same among recorded LF cameras.
+  std::optional<double> RecordedCameraDistance(FrameId frame) const;
 };
 
 // Returns a whole light field and path as one package, with the LF images in an order shuffled by

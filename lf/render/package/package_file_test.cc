@@ -61,6 +61,7 @@ Package TestPackage() {
   for (uint32_t f = 0; f < 12; ++f) {
     package.path.cameras.push_back(testing::RandomCameraPair(f).render_camera);
     package.surroundings.push_back({f / 7.0, 0.01 + f, {1.0 / 3, f * 0.1, -2}, f / 9.0});
+    if (f % 2 == 0) package.surroundings.back().recorded_distance_w = f / 5.0;
     if (f % 3 != 0) continue;
     PackageFrame frame;
     frame.id = FrameId{f + 1};
@@ -207,6 +208,9 @@ TEST_F(PackageFileTest, ReadsWhatWasWrittenToTheBit) {
     EXPECT_EQ(a_frame.pixel_rad, b_frame.pixel_rad);
     EXPECT_EQ(a_frame.middle_world, b_frame.middle_world);
     EXPECT_EQ(a_frame.hole_w, b_frame.hole_w);
+    EXPECT_EQ(a_frame.recorded_distance_w, b_frame.recorded_distance_w);
+    EXPECT_EQ(read->RecordedCameraDistance(FrameId{static_cast<uint32_t>(f) + 1}),
+              b_frame.recorded_distance_w.value_or(b_frame.camera_distance_w));
     EXPECT_EQ(read->CameraDistance(FrameId{static_cast<uint32_t>(f) + 1}),
               b_frame.camera_distance_w);
   }

@@ -33,7 +33,7 @@ std::array<double, kCameraNumbers> NumbersOfCamera(const RenderCamera& camera);
 RenderCamera CameraOfNumbers(std::span<const double, kCameraNumbers> numbers);
 
 // Number of values that describe a FrameSurroundings, in the order of its members, of which
-// middle_world has three values.
+// middle_world has three values. One more if recorded_distance_w is set.
 inline constexpr size_t kSurroundingsNumbers = 6;
 
 }  // namespace lf

@@ -205,16 +205,20 @@ Result<void> Reader::ReadImage(const Statement& row) {
 Result<void> Reader::ReadSurroundings(const std::vector<double>& numbers, int64_t frame) {
   const size_t before = static_cast<size_t>(frame) - 1;
   if (numbers.empty() && package_.surroundings.empty()) return {};
-  const bool are_sane = numbers.size() == kSurroundingsNumbers &&
+  const bool has_recorded = numbers.size() == kSurroundingsNumbers + 1;
+  const bool are_sane = (numbers.size() == kSurroundingsNumbers || has_recorded) &&
                         std::all_of(numbers.begin(), numbers.end(),
                                     [](double x) { return std::abs(x) <= kMostNumber; }) &&
                         numbers[0] >= 0 && numbers[1] >= 0 && numbers[5] >= 0 &&
-                        (numbers[0] == 0 || numbers[1] > 0);
+                        (numbers[0] == 0 || numbers[1] > 0) && numbers.back() >= 0;
   if (!are_sane || package_.surroundings.size() != before)
     return Damaged(fmt::format(
         "the values of the LF cameras around frame {} are missing or impossible", frame));
-  package_.surroundings.push_back(
-      {numbers[0], numbers[1], {numbers[2], numbers[3], numbers[4]}, numbers[5]});
+  package_.surroundings.push_back({numbers[0],
+                                   numbers[1],
+                                   {numbers[2], numbers[3], numbers[4]},
+                                   numbers[5],
+                                   has_recorded ? std::optional(numbers.back()) : std::nullopt});
   return {};
 }
 

@@ -148,12 +148,14 @@ class Writer {
     if (package_.surroundings.empty()) return {};
     const FrameSurroundings& around = package_.surroundings[frame - 1];
     const Vec3& middle = around.middle_world;
-    return {around.camera_distance_w,
-            around.pixel_rad,
-            middle.x(),
-            middle.y(),
-            middle.z(),
-            around.hole_w};
+    std::vector<double> numbers = {around.camera_distance_w,
+                                   around.pixel_rad,
+                                   middle.x(),
+                                   middle.y(),
+                                   middle.z(),
+                                   around.hole_w};
+    if (around.recorded_distance_w) numbers.push_back(*around.recorded_distance_w);
+    return numbers;
   }
 
   Database database_;
