@@ -94,6 +94,31 @@ Result<void> CheckLensWeights(const Package& package, const FilmOptions& film,
 
 }  // namespace
 
+Result<void> CheckGuard(const Package& package, const FilmOptions& film) {
+  constexpr const char* kRemedy = "add --guard off";
+  if (film.Rebins())
+    return UsageError(fmt::format(
+        "--mode {}: the light field is densified, and rebinned rays cannot be guarded: use --mode "
+        "collect, or {}",
+        NameOf(film.mode), kRemedy));
+  const RadianceEncoding& encoding = package.light_field.encoding;
+  if (encoding.HasOpacity())
+    return UsageError(fmt::format(
+        "the light field is densified, and frames with alpha cannot be guarded: composite the LF "
+        "images over a background with --background, or {}",
+        kRemedy));
+  if (encoding.bayer != BayerPattern::kNone)
+    return UsageError(fmt::format(
+        "the light field is densified, and frames of mosaics cannot be guarded: {}", kRemedy));
+  if (!package.choices.has_neighbours)
+    return UsageError(fmt::format(
+        "the light field is densified, but package {} lacks the LF cameras beside the lens, which "
+        "the guard needs, because it was made with lfpreprocessor --guard off: make it again "
+        "without this option, or {}",
+        package.name, kRemedy));
+  return {};
+}
+
 Result<void> CheckFilmOptions(const Package& package, const FilmOptions& options,
                               const std::vector<FrameId>& given) {
   const FilmOptions film = Resolved(options, package);
@@ -106,11 +131,12 @@ Result<void> CheckFilmOptions(const Package& package, const FilmOptions& options
         "frame: give lfrenderer at most this --max-images, or make the package again",
         package.name, *most));
   LF_RETURN_IF_ERROR(CheckShard(film));
-  if (package.whole_virtual_count > 0 && (film.stop_at_samples || film.require_samples))
+  if (package.whole_virtual_count > 0 && !film.guard &&
+      (film.stop_at_samples || film.require_samples))
     return UsageError(
         "--stop-when and --require samples>=N count the rays of recorded LF images alone, but "
         "frames of a densified light field add the rays of virtual LF images to the same counts: "
-        "use \"noise<=X\", or render the light field that the store was made from");
+        "use \"noise<=X\", or leave out --guard off");
   if (film.CountsRays() && film.reading.estimator == Estimator::kBilinear &&
       film.reading.filter == PixelFilter::kMosaic)
     return UsageError(

@@ -20,4 +20,9 @@ namespace lf {
 Result<void> CheckFilmOptions(const Package& package, const FilmOptions& options,
                               const std::vector<FrameId>& frames);
 
+// Checks that the film can be guarded, because its light field is densified: frames collect rays
+// and have no rebinned ones, LF images have neither opacities nor mosaics, and a package has the LF
+// cameras beside the lens. kUsage otherwise.
+Result<void> CheckGuard(const Package& package, const FilmOptions& film);
+
 }  // namespace lf

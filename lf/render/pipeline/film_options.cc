@@ -21,6 +21,7 @@ NeedsOptions NeedsOfFilm(const Package& package, const FilmOptions& film, const 
   needs.max_image_count = film.max_image_count;
   needs.mode = film.mode;
   needs.rebin = film.rebin;
+  needs.guard = film.guard && film.mode == RenderMode::kCollect && package.whole_virtual_count > 0;
   return needs;
 }
 

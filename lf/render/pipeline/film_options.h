@@ -33,6 +33,10 @@ struct FilmOptions {
   // neighbours.
   LensWeights lens_weights = LensWeights::kNone;
   CollectBackEnd back_end = CollectBackEnd::kFast;
+  // True: frames of a densified light field have guarded plates (FilmSetup::is_guarded()), so that
+  // they are never worse than frames of its recorded LF images alone (doc/densify.md). Changes
+  // nothing for other light fields.
+  bool guard = true;
 
   // If set, a frame takes at most this number of LF images: the first ones in the order that
   // contribute to it. Must be above 0, and must not exceed the limit that the package was made

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lf/core/log.h"
+#include "lf/render/collect/around_lens.h"
 #include "lf/render/hybrid/frame_sampling.h"
 #include "lf/render/needs/frame_needs.h"
 
@@ -44,8 +45,8 @@ Result<void> FilmRenderer::Begin(const EarlierRun* earlier) {
   LF_RETURN_IF_ERROR(FindLenses());
   if (film_.max_image_count)
     setup_.pool().ForEach(frames_.size(), [this](size_t f) {
-      frames_[f].places =
-          PlacesOfFirst(*film_.max_image_count, setup_.index(), Taking(frames_[f]), select_);
+      frames_[f].places = PlacesOfFirst(*film_.max_image_count, counted_index(),
+                                        Taking(frames_[f], *frames_[f].lens), select_);
     });
   if (film_.Rebins()) LF_RETURN_IF_ERROR(PrepareRebinning(earlier));
   if (film_.HasPlates()) LF_RETURN_IF_ERROR(PreparePlates(earlier));
@@ -65,18 +66,24 @@ Result<void> FilmRenderer::Begin(const EarlierRun* earlier) {
 Result<void> FilmRenderer::FindLenses() {
   for (Frame& frame : frames_) {
     if (setup_.work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
-    frame.lens.emplace(setup_.index(), setup_.path().Camera(frame.id), film_.lens_weights, select_,
-                       setup_.pool(), setup_.package().CameraDistance(frame.id));
+    const RenderCamera& camera = setup_.path().Camera(frame.id);
+    const Package& package = setup_.package();
+    frame.lens.emplace(counted_index(), camera, film_.lens_weights, select_, setup_.pool(),
+                       setup_.is_guarded() ? package.RecordedCameraDistance(frame.id)
+                                           : package.CameraDistance(frame.id));
+    if (setup_.is_guarded())
+      frame.all_lens.emplace(setup_.index(), camera, film_.lens_weights, select_, setup_.pool(),
+                             package.CameraDistance(frame.id));
   }
   return {};
 }
 
 // Returns the description of a frame by which selection finds the LF images whose rays have a
-// weight above 0 in the frame.
-TakingFrame FilmRenderer::Taking(const Frame& frame) const {
-  TakingFrame taking = {frame.lens->camera(), frame.places};
-  if (film_.lens_weights != LensWeights::kNone)
-    taking.takes = [&frame](LfImageId id) { return frame.lens->Takes(id); };
+// weight above 0 in a lens of the frame.
+TakingFrame FilmRenderer::Taking(const Frame& frame, const FrameLens& lens) const {
+  TakingFrame taking = {lens.camera(), frame.places};
+  if (film_.lens_weights != LensWeights::kNone || setup_.is_guarded())
+    taking.takes = [&lens](LfImageId id) { return lens.Takes(id); };
   return taking;
 }
 
@@ -104,11 +111,30 @@ std::vector<CollectedFrame> FilmRenderer::FramesOfCollector() {
   if (!film_.HasPlates()) return collected;
   for (Frame& frame : frames_) {
     collected.push_back({frame.lens->camera(), &frame.plate, frame.places});
-    if (film_.lens_weights != LensWeights::kNone || setup_.package().choices.max_angle_rad)
+    if (film_.lens_weights != LensWeights::kNone || setup_.package().choices.max_angle_rad ||
+        setup_.is_guarded())
       collected.back().weights = [&frame](LfImageId id) { return frame.lens->WeightsOf(id); };
+    if (setup_.is_guarded()) collected.back().guard = GuardOf(frame);
     if (film_.MeasuresNoise()) collected.back().moments = &frame.moments;
   }
   return collected;
+}
+
+FrameGuard FilmRenderer::GuardOf(const Frame& frame) const {
+  FrameGuard guard;
+  guard.camera = frame.all_lens->camera();
+  guard.weights = [&frame](LfImageId id) { return frame.all_lens->WeightsOf(id); };
+  guard.camera_distance_w = frame.lens->camera_distance_w();
+  if (film_.lens_weights == LensWeights::kNone)
+    guard.camera_distance_w = setup_.package().RecordedCameraDistance(frame.id).value_or(
+        CameraDistanceAround(counted_index(), guard.camera));
+  return guard;
+}
+
+SensorPlate FilmRenderer::EmptyPlateOf(const Frame& frame) const {
+  const Intrinsics& plate = frame.lens->camera().pinhole.intrinsics;
+  return {plate.width_px, plate.height_px,
+          PlateKindOf(setup_.light_field().encoding, setup_.is_guarded())};
 }
 
 Result<void> FilmRenderer::PreparePlates(const EarlierRun* earlier) {
@@ -116,11 +142,7 @@ Result<void> FilmRenderer::PreparePlates(const EarlierRun* earlier) {
   // the memory.
   setup_.pool().ForEach(frames_.size(), [this](size_t f) {
     Frame& frame = frames_[f];
-    const Intrinsics& plate = frame.lens->camera().pinhole.intrinsics;
-    if (!setup_.work().IsStopped() && !frame.is_released)
-      frame.plate = SensorPlate(
-          plate.width_px, plate.height_px,
-          setup_.light_field().encoding.HasOpacity() ? PlateKind::kOpacity : PlateKind::kColours);
+    if (!setup_.work().IsStopped() && !frame.is_released) frame.plate = EmptyPlateOf(frame);
   });
   for (Frame& frame : frames_) {
     if (setup_.work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
@@ -152,7 +174,7 @@ Result<FrameProgress> FilmRenderer::LoadPlate(Frame* frame, const EarlierRun* ea
   if (!frame->has_noise && !frame->is_early) {
     LogInfo("frame {} is started again, because its noise was not measured before",
             frame->id.value);
-    plate = SensorPlate(width, height, plate.kind());
+    plate = EmptyPlateOf(*frame);
     start = {};
     frame->has_noise = true;
   }
@@ -213,7 +235,10 @@ void FilmRenderer::SelectForFrames() {
     SelectOptions select = select_;
     select.whole_images = setup_.work().whole_images;
     std::vector<TakingFrame> taking;
-    for (const Frame& frame : frames_) taking.push_back(Taking(frame));
+    for (const Frame& frame : frames_) {
+      taking.push_back(Taking(frame, *frame.lens));
+      if (frame.all_lens) taking.push_back(Taking(frame, *frame.all_lens));
+    }
     images_ = SelectImages(setup_.index(), taking, select, setup_.pool());
   }
   if (film_.shard)

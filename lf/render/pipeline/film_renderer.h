@@ -101,7 +101,13 @@ class FilmRenderer {
   const NoiseMoments* moments(size_t f) const {
     return frames_[f].has_noise ? &frames_[f].moments : nullptr;
   }
+  // The lens of the LF images that the frame's plate has or, if the plate is guarded, of the
+  // recorded LF images alone.
   const FrameLens& lens(size_t f) const { return *frames_[f].lens; }
+  // The lens of all LF images if the plate is guarded; otherwise null.
+  const FrameLens* all_lens(size_t f) const {
+    return frames_[f].all_lens ? &*frames_[f].all_lens : nullptr;
+  }
 
   // True if the frame is to be finished with the rays of the earlier run.
   bool EndsEarly(size_t f) const { return frames_[f].is_early; }
@@ -156,7 +162,8 @@ class FilmRenderer {
  private:
   struct Frame {
     FrameId id;
-    std::optional<FrameLens> lens;  // unset until Begin()
+    std::optional<FrameLens> lens;      // unset until Begin()
+    std::optional<FrameLens> all_lens;  // set if the plate is guarded
     SensorPlate plate{0, 0};
     NoiseMoments moments;  // moments of the plate; empty if noise is not measured
     // Places of the LF images that this run still collects. If there is an earlier run, the plate
@@ -174,7 +181,13 @@ class FilmRenderer {
   };
 
   Result<void> FindLenses();
-  TakingFrame Taking(const Frame& frame) const;
+  TakingFrame Taking(const Frame& frame, const FrameLens& lens) const;
+  FrameGuard GuardOf(const Frame& frame) const;
+  SensorPlate EmptyPlateOf(const Frame& frame) const;
+  // The index of the LF images that stop rules and reports count.
+  const ImageIndex& counted_index() const {
+    return setup_.is_guarded() ? setup_.index().recorded() : setup_.index();
+  }
   Result<void> PrepareRebinning(const EarlierRun* earlier);
   Result<void> CheckReach(const LensGaps& gaps, FrameId frame) const;
   Result<void> PreparePlates(const EarlierRun* earlier);

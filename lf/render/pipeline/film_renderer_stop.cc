@@ -12,9 +12,9 @@ const ReachableElements& FilmRenderer::ReachableOf(size_t f) {
   Frame& frame = frames_[f];
   if (!frame.reachable) {
     ImageWeights weights;
-    if (film_.lens_weights != LensWeights::kNone)
+    if (film_.lens_weights != LensWeights::kNone || setup_.is_guarded())
       weights = [&frame](LfImageId id) { return frame.lens->WeightsOf(id); };
-    frame.reachable = std::make_unique<ReachableElements>(setup_.index(), frame.lens->camera(),
+    frame.reachable = std::make_unique<ReachableElements>(counted_index(), frame.lens->camera(),
                                                           PlaceRange{0, frame.places.end}, select_,
                                                           film_.reading, setup_.pool(), weights);
   }

@@ -42,10 +42,14 @@ Result<std::unique_ptr<FilmSetup>> FilmSetup::Make(Package package, const FilmOp
   LF_RETURN_IF_ERROR(CheckFilmOptions(package, resolved, frames));
   std::unique_ptr<FilmSetup> setup(
       new FilmSetup(std::move(package), resolved, work, std::move(frames), pool));
-  LF_ASSIGN_OR_RETURN(setup->store_,
-                      OpenStore(setup->light_field(), film.reading.estimator == Estimator::kBilinear
-                                                          ? Mosaics::kToRgb
-                                                          : Mosaics::kAsRecorded));
+  const bool is_guarded = resolved.guard && setup->package().whole_virtual_count > 0;
+  LF_ASSIGN_OR_RETURN(
+      setup->store_,
+      OpenStore(
+          setup->light_field(),
+          film.reading.estimator == Estimator::kBilinear ? Mosaics::kToRgb : Mosaics::kAsRecorded,
+          is_guarded ? StoreContent::kPixelsAndDepths : StoreContent::kPixels));
+  if (setup->is_guarded()) LF_RETURN_IF_ERROR(CheckGuard(setup->package(), resolved));
   LF_RETURN_IF_ERROR(setup->CheckStore());
   LF_RETURN_IF_ERROR(setup->FindFootprint());
   LF_RETURN_IF_ERROR(setup->PlanMemory());
@@ -80,13 +84,18 @@ Result<void> FilmSetup::PlanMemory() {
       const RenderMemory memory,
       PlanRenderMemory(work_.memory_bytes, film_.mode, film_.rebin.max_cells, light_field(),
                        film_.reading, plate.width_px, plate.height_px, frames_.size(),
-                       pool_.thread_count(), film_.MeasuresNoise() ? NoiseMoments::kMostBytes : 0));
+                       pool_.thread_count(), film_.MeasuresNoise() ? NoiseMoments::kMostBytes : 0,
+                       is_guarded()));
   plan_ = memory.plan;
   max_cells_ = memory.max_cells;
   return {};
 }
 
-NeedsOptions FilmSetup::Needs() const { return NeedsOfFilm(package_, film_, work_); }
+NeedsOptions FilmSetup::Needs() const {
+  NeedsOptions needs = NeedsOfFilm(package_, film_, work_);
+  needs.guard = is_guarded();
+  return needs;
+}
 
 SelectOptions FilmSetup::Select() const { return Needs().select; }
 

@@ -47,6 +47,9 @@ class FilmSetup {
   const ImageIndex& index() const { return index_; }
   const LfImageStore& store() const { return *store_; }
   const MemoryPlan& plan() const { return plan_; }
+  // True if the plates are guarded: FilmOptions::guard is set, and the light field is that of a
+  // densified store.
+  bool is_guarded() const { return store_->LoadsDepths(); }
   // The largest number of cells of rebinned rays; 0 if the mode has none.
   size_t max_cells() const { return max_cells_; }
   SelectOptions Select() const;

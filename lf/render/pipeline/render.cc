@@ -91,6 +91,7 @@ RunStateOptions StateOptions(const FilmSetup& setup, const FolderOptions& folder
   RunInputs picture = InputsOfPicture(choices);
   if (!package.name.empty()) picture.emplace_back(kFilmOfPackage, cameras);
   RunInputs rays = InputsOfRays(package.whole, package.light_field.encoding, choices);
+  if (setup.is_guarded()) rays.emplace_back("guard", "on");
   for (auto& input : InputsOfRebinning(film, setup.max_cells(), cameras))
     rays.push_back(std::move(input));
   return {folder.output_folder, package.name,    package.FrameIds(), folder.format, folder.resume,

@@ -211,9 +211,11 @@ Result<void> RenderPass::WriteFinishedPlate(size_t f, std::filesystem::path path
   progress.places_done = renderer_.PlaceOfEnd(f);  // must not depend on the division into passes
   PlateEntries text = context_.state.PlateText(renderer_.id(f), progress, renderer_.moments(f));
   PlateNotes notes = NotesOf(f);
+  std::vector<const FrameLens*> lenses = {&renderer_.lens(f)};
+  if (const FrameLens* const all = renderer_.all_lens(f)) lenses.push_back(all);
   notes.skipped = SkippedOf(
       Totals().skipped, setup.index(),
-      {renderer_.lens(f), {0, progress.places_done}, setup.Select().reach, setup.film().shard});
+      {std::move(lenses), {0, progress.places_done}, setup.Select().reach, setup.film().shard});
   notes.skipped_count = notes.skipped.size();
   for (auto& entry : TextOf(notes)) text.push_back(std::move(entry));
   if (setup.film().shard) text.emplace_back("shard", setup.film().shard->Text());

@@ -1,5 +1,6 @@
 #include "lf/render/pipeline/skipped_images.h"
 
+#include <algorithm>
 #include <string_view>
 #include <unordered_set>
 
@@ -11,11 +12,13 @@ namespace {
 bool Takes(const FrameTakes& frame, const ImageIndex& index, LfImageId id) {
   const uint32_t place = index.PlaceOf(id);
   if (!frame.places.Holds(place) || (frame.shard && !frame.shard->Holds(place))) return false;
-  if (frame.lens.WeightsOf(id).are_none()) return false;
   const PinholeCamera camera = index.light_field().Camera(id);
   std::vector<IdealCell> cells;
   if (camera.intrinsics.has_distortion()) cells = MakeIdealCells(camera.intrinsics);
-  return !ContributingRect(camera, frame.lens.camera(), cells, frame.reach).empty();
+  return std::any_of(frame.lenses.begin(), frame.lenses.end(), [&](const FrameLens* lens) {
+    return !lens->WeightsOf(id).are_none() &&
+           !ContributingRect(camera, lens->camera(), cells, frame.reach).empty();
+  });
 }
 
 }  // namespace
