@@ -95,7 +95,7 @@ class DensifyTest(ProgramTestCase):
         self.synth("--truth", path, "--truth-samples", 150, *options)
         truth = cv2.imread(str(next((self.field / "truth").glob("*.exr"))), cv2.IMREAD_UNCHANGED)[..., :3]
         self.densify(most=250)
-        guard = ("--guard", "off") if "--bayer" in options else ()
+        guard = ("--no-guard",) if "--bayer" in options else ()
         return psnr(truth, self.render(self.store, path, *guard)) - psnr(truth, self.render(self.field, path))
 
     def test_blur_comes_much_nearer_to_the_picture_of_a_true_lens(self):

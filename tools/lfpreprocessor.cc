@@ -44,11 +44,11 @@ bit-identical to those of lfrenderer LIGHTFIELD PATH.yaml.)",
 struct Arguments {
   lf::LightFieldArgument light_field;
   std::string path, output, frames, memory = "8G", order = "shuffle", balance = "rays";
-  std::string estimator = "auto", lens_weights = "auto", guard = "on", mode = "collect";
+  std::string estimator = "auto", lens_weights = "auto", mode = "collect";
   int64_t packages = 0, frames_per_package = 0, max_images = 0;
   double max_angle_deg = 0;
   std::vector<double> depths;
-  bool plan = false, overwrite = false;
+  bool no_guard = false, plan = false, overwrite = false;
   lf::AllowMissing allow_missing;
 };
 
@@ -100,10 +100,9 @@ void AddRender(CLI::App& app, Arguments& a) {
                     "Give the value that lfrenderer --lens-weights will have.\n"
                     "none, with --mode collect: packages do not contain the LF cameras beside the "
                     "lens, and can only be rendered with --lens-weights none");
-  picture.AddChoice("--guard", a.guard, {"on", "off"},
-                    "Guard of the later render\n"
-                    "Give the value that lfrenderer --guard will have. It matters only for "
-                    "densified light fields.");
+  picture.AddFlag("--no-guard", a.no_guard,
+                  "The later render will have --no-guard\n"
+                  "It matters only for densified light fields.");
   picture.AddChoice(
       "--estimator", a.estimator, {"auto", "nearest", "bilinear"},
       "Estimator of the later render\n"
@@ -174,7 +173,7 @@ lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::Comm
       a.estimator == "nearest" ? lf::Estimator::kNearest : lf::Estimator::kBilinear;
   options.reading.filter = lf::FilterOf(lf::PixelFilter::kAuto, encoding, false);
   options.lens_weights = *lf::LensWeightsOf(a.lens_weights);
-  options.guard = a.guard == "on";
+  options.guard = !a.no_guard;
   options.mode = *lf::RenderModeOf(a.mode);
   // As in lfrenderer, auto means none with --mode rebin, which collects no rays to weight.
   if (options.mode == lf::RenderMode::kRebin && options.lens_weights == lf::LensWeights::kAuto)
@@ -241,7 +240,7 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   if (facts.rebins) facts.render_options = fmt::format(" --mode {}", a.mode);
   if (options.lens_weights == lf::LensWeights::kNone && options.mode != lf::RenderMode::kRebin)
     facts.render_options += " --lens-weights none";
-  if (!options.guard) facts.render_options += " --guard off";
+  if (!options.guard) facts.render_options += " --no-guard";
   facts.depths_from = depths_from;
   LF_RETURN_IF_ERROR(lf::PrintReport(common.json ? lf::ForecastJson(report, path, facts)
                                                  : lf::ForecastText(report, path, facts)));

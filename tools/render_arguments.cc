@@ -103,13 +103,11 @@ void AddPicture(CLI::App& app, RenderArguments& a) {
       "than to any other\n"
       "hat: interpolation between the nearest LF images, for small lenses and pinholes\n"
       "auto: area for large lenses, hat for small ones, a mix of both in between");
-  picture.AddChoice(
-      "--guard", a.guard, {"on", "off"},
-      "Keep frames of a densified light field as sharp as its photographs\n"
-      "on: where a frame is in focus, it shows the rays of recorded LF images alone, and elsewhere "
-      "also those of virtual LF images\n"
-      "off: it shows the rays of all LF images everywhere\n"
-      "Light fields without virtual LF images need no guard.");
+  picture.AddFlag(
+      "--no-guard", a.no_guard,
+      "Show virtual LF images where a frame is in focus\n"
+      "Frames of a densified light field show the rays of recorded LF images alone where they are "
+      "in focus. With this option they show those of all LF images everywhere.");
   picture
       .Add("--fill RADIUS|off", a.fill,
            "Radius for filling elements without rays, in elements\n"
@@ -300,7 +298,7 @@ Result<FilmOptions> RenderArguments::MakeFilm(uint64_t seed) const {
   film.reading.footprint = PixelFootprintOf(lf_pixels);
   film.lens_weights = *LensWeightsOf(lens_weights);
   film.mode = *RenderModeOf(mode);
-  film.guard = guard == "on";
+  film.guard = !no_guard;
   LF_ASSIGN_OR_RETURN(film.rebin, rebin.Make(seed));
   if (back_end == "reference") film.back_end = CollectBackEnd::kReference;
   LF_RETURN_IF_ERROR(

@@ -22,8 +22,8 @@ struct RenderArguments {
   std::vector<std::string> inputs;  // the words LIGHTFIELD PATH.yaml, or PACKAGE...
   LightFieldArgument light_field;   // its options; its `path` is the value of --lightfield
   std::string output, video, frames, memory = "8G", format = "exr", mode = "collect";
-  std::string guard = "on", estimator = "auto", filter = "auto", lens_weights = "auto",
-              back_end = "fast", lf_pixels = "auto";
+  std::string estimator = "auto", filter = "auto", lens_weights = "auto", back_end = "fast",
+              lf_pixels = "auto";
   std::string order = "shuffle", rectangles = "on", dump_every = "30s", stop_when, require, shard,
               finish, fill = "2";
   RebinArguments rebin;
@@ -31,7 +31,8 @@ struct RenderArguments {
   int64_t max_images = 0;    // 0: no limit
   double max_angle_deg = 0;  // 0: no limit
   uint32_t smooth_below = 0;
-  bool no_contact_sheet = false, resume = false, overwrite = false, keep_plates = false;
+  bool no_guard = false, no_contact_sheet = false, resume = false, overwrite = false,
+       keep_plates = false;
 
   void AddTo(CLI::App& app);
   // Returns the common options of lfrenderer.

@@ -95,7 +95,7 @@ Result<void> CheckLensWeights(const Package& package, const FilmOptions& film,
 }  // namespace
 
 Result<void> CheckGuard(const Package& package, const FilmOptions& film) {
-  constexpr const char* kRemedy = "add --guard off";
+  constexpr const char* kRemedy = "add --no-guard";
   if (film.Rebins())
     return UsageError(fmt::format(
         "--mode {}: the light field is densified, and rebinned rays cannot be guarded: use --mode "
@@ -113,7 +113,7 @@ Result<void> CheckGuard(const Package& package, const FilmOptions& film) {
   if (!package.choices.has_neighbours)
     return UsageError(fmt::format(
         "the light field is densified, but package {} lacks the LF cameras beside the lens, which "
-        "the guard needs, because it was made with lfpreprocessor --guard off: make it again "
+        "the guard needs, because it was made with lfpreprocessor --no-guard: make it again "
         "without this option, or {}",
         package.name, kRemedy));
   return {};
@@ -136,7 +136,7 @@ Result<void> CheckFilmOptions(const Package& package, const FilmOptions& options
     return UsageError(
         "--stop-when and --require samples>=N count the rays of recorded LF images alone, but "
         "frames of a densified light field add the rays of virtual LF images to the same counts: "
-        "use \"noise<=X\", or leave out --guard off");
+        "use \"noise<=X\", or leave out --no-guard");
   if (film.CountsRays() && film.reading.estimator == Estimator::kBilinear &&
       film.reading.filter == PixelFilter::kMosaic)
     return UsageError(
