@@ -134,7 +134,7 @@ class ProgramOptionsTest(ProgramTestCase):
         yield "lfrenderer", [field, path, "-o", out / "shards", "--shard", "1/1"], "memory: "
         yield "lfmerge", [out / "shards", "-o", out / "merged", "--overwrite"], "plates"
         yield "lfcompressor", [field, "-o", out / "a.lfs", "--overwrite"], "codec default"
-        yield "lfdensify", [field, "-o", out / "b.lfs", "--overwrite", "--depths", 0.2, 0.4, "--force"], "divisor 1"
+        yield "lfdensify", [field, "-o", out / "b.lfs", "--overwrite", "--depths", 0.2, 10, "--force"], "divisor 1"
         yield "lfsubmit", [out / "packages/package-0000.lfp", "-o", out / "film",
                            "--overwrite"], "--resume --progress json"
         yield "lfvisualizer", [field, path, "--text"], "transforms.json"

@@ -77,8 +77,8 @@ class TinyCalls:
         synth, convert = self.synth(out), self.words("lfimport", self.field, "-o", out)
         store = self.words("lfcompressor", self.field, "-o", out.with_suffix(".lfs"))
         shards = [*store, "--shard-size", "4k"]
-        dense = self.words("lfdensify", self.field, "-o", out.with_suffix(".lfs"), "--depths", 1, 10, "--force",
-                           "--most", 60)
+        dense = self.words("lfdensify", self.field, "-o", out.with_suffix(".lfs"), "--depths", 0.2, 10,
+                           "--spacing", 0.25, "--force", "--most", 60)
         packages = self.preprocess(self.path, out)
         merge = self.words("lfmerge", self.shards / "partial" / "shards", "-o", out)
         return [Call("lfsynth", synth, [[*synth, "--overwrite"]]),

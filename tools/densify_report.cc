@@ -30,6 +30,7 @@ std::string DensifyText(const DensifyReport& report, const LightField& light_fie
       options.store.string(), report.recorded_count, report.virtual_count,
       DepthText(report.range.greatest), DepthText(report.range.least), report.planes,
       report.shift_px, report.distance_w, report.spacing_px);
+  if (report.was_there) return text + "existed already: nothing was written\n";
   if (report.spacing_px > options.choices.spacing_px * 1.001)
     text += fmt::format(
         "note: {} virtual LF images would be needed for {:.2g} px: allow more by --most\n", "more",
@@ -67,6 +68,7 @@ std::string DensifyJson(const DensifyReport& report, const LightField& light_fie
                      {"mean_psnr_db", test.blend_psnr_db}});
   const nlohmann::ordered_json json = {
       {"store", options.store.string()},
+      {"existed", report.was_there},
       {"recorded", report.recorded_count},
       {"virtual", report.virtual_count},
       {"inverse_depths", {report.range.least, report.range.greatest}},

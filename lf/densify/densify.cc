@@ -158,7 +158,7 @@ Result<void> Densifier::CheckTarget() const {
                     "the file",
                     store.string()));
   if (options_.overwrite) return {};
-  if (is_there)
+  if (is_there && !options_.resume)
     return UsageError(
         fmt::format("{}: exists already: replace it with --overwrite", store.string()));
   if (PackedStoreWriter::IsUnfinished(store) && !options_.resume)
@@ -204,6 +204,11 @@ Result<void> Densifier::OpenWriter() {
                                  plan_.range.greatest, options_.choices.divisor};
   plan.source = options_.source_name;
   plan.version = options_.version;
+  if (options_.resume && IsPackedStore(options_.store) &&
+      !PackedStoreWriter::IsUnfinished(options_.store)) {
+    report_.was_there = true;
+    return CheckIsOfPlan(options_.store, all_, plan, true);
+  }
   LF_ASSIGN_OR_RETURN(FileLock lock, PackedStoreWriter::Lock(options_.store));
   if (options_.overwrite && !options_.resume)
     PackedStoreWriter::RemoveUnfinished(options_.store, lock);
@@ -342,6 +347,7 @@ Result<DensifyReport> Densifier::Run() {
   LF_RETURN_IF_ERROR(Test());
 
   LF_RETURN_IF_ERROR(OpenWriter());
+  if (report_.was_there) return std::move(report_);
   LF_RETURN_IF_ERROR(ForEach("recorded LF images", light_field_.size(), [&](size_t i) {
     return AddRecorded(LfImageId{static_cast<uint32_t>(i)});
   }));

@@ -29,7 +29,8 @@ struct DensifyOptions {
   std::filesystem::path store;  // path of the packed store, such as STORE.lfs
   DensifyChoices choices;
   size_t memory_bytes = size_t{2} << 30;  // for LF images that are kept in memory
-  // True: resumes an unfinished store, or begins a new one if there is none.
+  // True: resumes an unfinished store, or begins a new one if there is none. If the store is
+  // complete, it must match the options, and is kept.
   bool resume = false;
   bool overwrite = false;   // true: replaces an existing store, unfinished or complete
   std::string source_name;  // LIGHTFIELD, as the user gave it
@@ -44,6 +45,7 @@ struct DensifyProgress {
 };
 
 struct DensifyReport {
+  bool was_there = false;  // true if the store was complete, so that nothing was written
   size_t recorded_count = 0;
   size_t virtual_count = 0;
   InverseDepths range;

@@ -175,9 +175,10 @@ Result<void> ChooseVirtual(const LightField& light_field, const DensifyChoices& 
   }
   plan->spacing_px = choices.spacing_px * plan->distance_w / wanted_w;
   if (plan->virtual_cameras.empty() && choices.frames.empty())
-    return UsageError(
-        fmt::format("{} virtual LF images are too few to stand between {} LF cameras: raise --most",
-                    choices.most_virtual, plan->plane.points.size()));
+    return UsageError(fmt::format(
+        "no virtual LF camera has room between the {} LF cameras, which are {:.4g} apart, if "
+        "virtual ones are {:.4g} apart: ask for a smaller --spacing, or raise --most ({})",
+        plan->plane.points.size(), recorded_w, plan->distance_w, choices.most_virtual));
   if (plan->virtual_cameras.empty())
     return UsageError(
         "no place between the LF cameras contributes to the frames: check the camera path with "
