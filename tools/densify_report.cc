@@ -32,9 +32,8 @@ std::string DensifyText(const DensifyReport& report, const LightField& light_fie
       report.shift_px, report.distance_w, report.spacing_px);
   if (report.was_there) return text + "existed already: nothing was written\n";
   if (report.spacing_px > options.choices.spacing_px * 1.001)
-    text += fmt::format(
-        "note: {} virtual LF images would be needed for {:.2g} px: allow more by --most\n", "more",
-        options.choices.spacing_px);
+    text += fmt::format("note: {:.2g} px need more virtual LF images than --most allows\n",
+                        options.choices.spacing_px);
   text += fmt::format(
       "agreement {:.1f} % of the pixels have depths on which two neighbours agree; {:.1f} % of "
       "the\n"

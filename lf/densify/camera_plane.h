@@ -33,37 +33,4 @@ Mat3 MeanRotation(std::span<const Mat3> rotations, std::span<const double> weigh
 // of eight directions, up to four times as far as usual, or at least the nearest four.
 std::vector<std::vector<uint32_t>> CompareWith(std::span<const Vec2> points);
 
-// A point beside another and its weight.
-struct WeightedPoint {
-  uint32_t index = 0;
-  double weight = 0;
-};
-
-// Returns the natural neighbours of `place`: the points whose Voronoi cells it would border on. The
-// weight of a neighbour is the length of that border divided by its distance (Belikov et al., "The
-// non-Sibsonian interpolation", 1997). The weights add up to 1, and the weighted mean of the
-// neighbours is `place`. The neighbours are sorted, the largest weight first. Returns none if
-// `place` is outside the convex hull of the points.
-//   points  may include `place` itself, which is then the only neighbour
-std::vector<WeightedPoint> NaturalNeighbours(std::span<const Vec2> points, const Vec2& place);
-
-// A place for a virtual LF camera. The LF cameras tell the light there by interpolation, or by a
-// small extrapolation.
-struct LatticePlace {
-  Vec2 place = Vec2::Zero();
-  // Weighted mean of the neighbours: `place`, or the nearest place in the convex hull of the
-  // points.
-  Vec2 inside = Vec2::Zero();
-  std::vector<WeightedPoint> neighbours;  // NaturalNeighbours() of `inside`
-};
-
-// Returns the places of a hexagonal lattice, with this distance between neighbours, that lie in the
-// convex hull of the points or at most `outside` away from it, without those that are nearer than
-// half the distance to one of the points.
-std::vector<LatticePlace> LatticeAmong(std::span<const Vec2> points, double distance,
-                                       double outside);
-
-// Returns the median of the distances from a point to the nearest other point.
-double MedianDistance(std::span<const Vec2> points);
-
 }  // namespace lf

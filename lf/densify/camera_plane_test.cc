@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "lf/core/random.h"
+#include "lf/densify/camera_lattice.h"
 
 namespace lf {
 namespace {
@@ -104,6 +105,15 @@ TEST(Lattice, OutsideTheHullItReachesAsFarAsAskedFor) {
     EXPECT_LE((at.inside - at.place).norm(), 0.51);
   }
   EXPECT_GT(farthest, 0.3);
+}
+
+TEST(Lattice, OnlyPointsThatSurroundAnAreaAreOffOneLine) {
+  EXPECT_FALSE(AreOnOneLine(Grid(3, 2)));
+  EXPECT_TRUE(AreOnOneLine(Grid(5, 1)));
+  EXPECT_TRUE(AreOnOneLine(Grid(2, 1)));
+  // Three LF cameras of a hexagonal lattice leave no place of an equal lattice between them.
+  const Vec2 triangle[] = {{0, 0}, {1, 0}, {0.5, 0.86602540378443865}};
+  EXPECT_FALSE(AreOnOneLine(triangle));
 }
 
 TEST(MeanRotation, OfTurnsToBothSidesIsNoTurn) {

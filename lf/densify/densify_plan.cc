@@ -5,11 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "lf/core/log.h"
+#include "lf/core/median.h"
+#include "lf/densify/camera_lattice.h"
 #include "lf/densify/depth_search.h"
 #include "lf/densify/pair_map.h"
 #include "lf/densify/working_image.h"
+#include "lf/light_field/model/capture_geometry.h"
 #include "lf/selection/image_index.h"
 #include "lf/selection/select.h"
 
@@ -26,12 +30,6 @@ constexpr double kOutside = 0.5;  // of the median distance between LF cameras
 constexpr double kMuchShift = 0.25, kMostShift = 0.5;
 constexpr double kLargeAngle_deg = 8, kMostAngle_deg = 15;
 
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // Returns the median shift between compared working images per unit of inverse depth.
 double ShiftOf(const LightField& light_field, const DensifyPlan& plan, int divisor) {
   std::vector<double> shifts;
@@ -46,11 +44,7 @@ double ShiftOf(const LightField& light_field, const DensifyPlan& plan, int divis
 }
 
 Result<void> CheckCameras(const CameraPlane& plane) {
-  const double width = MedianDistance(plane.points);
-  // The middle of the LF cameras must be inside their hull.
-  const bool is_line =
-      plane.points.size() < 3 || !(width > 0) || LatticeAmong(plane.points, width, 0).empty();
-  if (!is_line) return {};
+  if (!AreOnOneLine(plane.points)) return {};
   return InputError(fmt::format(
       "the {} LF cameras stand on one line, or at one place: virtual LF images can only be made "
       "between LF cameras that surround an area",
@@ -127,25 +121,13 @@ std::vector<VirtualCamera> Contributing(const LightField& light_field,
   return result;
 }
 
-// Returns the distance at which so many places lie around the LF cameras that finding them takes
-// minutes.
-double LeastDistance(std::span<const Vec2> points) {
-  constexpr double kMostPlaces = 400'000;
-  Vec2 least = points[0], most = points[0];
-  for (const Vec2& point : points) {
-    least = least.cwiseMin(point);
-    most = most.cwiseMax(point);
-  }
-  return std::sqrt((most - least).prod() / kMostPlaces);
-}
-
 // Chooses the virtual LF cameras; if there are too many, they stand less densely.
 Result<void> ChooseVirtual(const LightField& light_field, const DensifyChoices& choices,
                            ThreadPool& pool, DensifyPlan* plan) {
   constexpr double kCoarser = 1.02;
+  constexpr double kMostPlaces = 400'000;  // more would take minutes
   // Beyond the LF cameras, virtual ones may only stand on a plane.
-  const double outside_w =
-      plan->plane.is_unrolled ? 0 : kOutside * MedianDistance(plan->plane.points);
+  const double outside_w = plan->plane.is_unrolled ? 0 : kOutside * MedianSpacing(light_field);
   const double wanted_w = DistanceFor(light_field, *plan, choices);
   // The mean distance of compared LF cameras; rows may be farther apart than columns.
   const double recorded_w = plan->shift_per_depth_px /
@@ -156,7 +138,8 @@ Result<void> ChooseVirtual(const LightField& light_field, const DensifyChoices& 
         "{:.2g} px apart; render the light field as it is, or ask for a smaller --spacing",
         recorded_w, wanted_w, choices.spacing_px * recorded_w / wanted_w));
   const auto most = static_cast<double>(choices.most_virtual);
-  for (plan->distance_w = std::max(wanted_w, LeastDistance(plan->plane.points));;) {
+  for (plan->distance_w = std::max(wanted_w, DistanceForPlaces(plan->plane.points, kMostPlaces));
+       ;) {
     const std::vector<LatticePlace> lattice =
         LatticeAmong(plan->plane.points, plan->distance_w, outside_w);
     auto count = static_cast<double>(lattice.size());
@@ -226,7 +209,7 @@ Result<DensifyPlan> PlanDensify(const LightField& light_field, const LfImageStor
   for (const VirtualCamera& camera : plan.virtual_cameras)
     for (const WeightedPoint& source : camera.sources) sources.insert(source.index);
   plan.sources.assign(sources.begin(), sources.end());
-  // Depths are compared with those of neighbours twice (RefineDepths()).
+  // Depths are compared with those of neighbours twice.
   const std::set<uint32_t> swept = WithCompared(WithCompared(sources, plan), plan);
   plan.swept.assign(swept.begin(), swept.end());
   return plan;

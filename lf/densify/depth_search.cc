@@ -8,7 +8,9 @@
 #include <limits>
 #include <mutex>
 #include <optional>
+#include <utility>
 
+#include "lf/core/median.h"
 #include "lf/densify/semi_global.h"
 #include "lf/densify/working_images.h"
 
@@ -33,9 +35,8 @@ void AppendSure(const WorkingImage& reference, std::span<const SweepView> views,
   std::vector<double> shifts;
   for (const SweepView& view : views)
     shifts.push_back(ShiftPerInverseDepth(reference.camera, view.image->camera));
-  std::nth_element(shifts.begin(), shifts.begin() + static_cast<long>(shifts.size() / 2),
-                   shifts.end());
-  const double shift = shifts[shifts.size() / 2];
+  if (shifts.empty()) return;
+  const double shift = Median(std::move(shifts));
   if (!(shift > 0)) return;
   const double greatest = kGreatestShift * reference.width() / shift;
   const InverseDepths range{-kBeyondInfinity * greatest, greatest};
@@ -95,7 +96,7 @@ Result<InverseDepths> FindInverseDepths(const LightField& light_field, const LfI
       if (!load(compare_with[id][k])) return;
     std::vector<SweepView> views;
     for (size_t k = 1; k < loaded.size(); ++k) views.push_back(ViewFrom(*loaded[0], *loaded[k]));
-    if (!views.empty()) AppendSure(*loaded[0], views, &depths[i]);
+    AppendSure(*loaded[0], views, &depths[i]);
   });
   if (error) return *error;
   std::vector<double> all;

@@ -5,7 +5,9 @@
 #include <limits>
 #include <mutex>
 #include <optional>
+#include <utility>
 
+#include "lf/core/median.h"
 #include "lf/densify/depth_plane.h"
 #include "lf/densify/synthesis.h"
 #include "lf/densify/working_images.h"
@@ -54,6 +56,16 @@ double PsnrDb(const Image<float>& a, const Image<float>& b) {
   return -10 * std::log10(std::max(squares / count, kLeast));
 }
 
+// Returns the natural neighbours of a point among the other points; none if it is on their hull.
+std::vector<WeightedPoint> NeighboursWithout(std::vector<Vec2> points, uint32_t left_out) {
+  const Vec2 place = points[left_out];
+  points.erase(points.begin() + left_out);
+  std::vector<WeightedPoint> neighbours = NaturalNeighbours(points, place);
+  for (WeightedPoint& neighbour : neighbours)
+    if (neighbour.index >= left_out) ++neighbour.index;
+  return neighbours;
+}
+
 // Tests of one light field.
 class Tester {
  public:
@@ -67,13 +79,12 @@ class Tester {
         tolerance_(
             ToleranceFor(plan.range, planes_, plan.shift_per_depth_px * plan.divisor / divisor_)) {}
 
-  // Tests one LF image; none if no LF cameras surround it.
-  Result<std::optional<LeftOut>> Test(uint32_t left_out);
+  // Tests an LF image that others surround.
+  Result<LeftOut> Test(uint32_t left_out);
 
  private:
-  // The working images of some LF images, whose depths are compared only among them.
+  // Working images and their depths.
   struct Group {
-    std::vector<uint32_t> ids;
     std::vector<std::shared_ptr<const WorkingImage>> images;
     std::vector<DepthPlane> planes;
   };
@@ -90,7 +101,6 @@ class Tester {
 
 Result<Tester::Group> Tester::SweepWithout(uint32_t left_out, std::span<const uint32_t> wanted) {
   Group group;
-  group.ids.assign(wanted.begin(), wanted.end());
   for (const uint32_t id : wanted) {
     LF_ASSIGN_OR_RETURN(auto reference, images_.Get(LfImageId{id}));
     std::vector<std::shared_ptr<const WorkingImage>> others;
@@ -107,18 +117,12 @@ Result<Tester::Group> Tester::SweepWithout(uint32_t left_out, std::span<const ui
   return group;
 }
 
-Result<std::optional<LeftOut>> Tester::Test(uint32_t left_out) {
-  const Vec2 place = plan_.plane.points[left_out];
-  std::vector<Vec2> others = plan_.plane.points;
-  // Far outside the hull, a point is nobody's neighbour.
-  others.erase(others.begin() + left_out);
-  std::vector<WeightedPoint> neighbours = NaturalNeighbours(others, place);
-  if (neighbours.size() < 3) return std::optional<LeftOut>();
+Result<LeftOut> Tester::Test(uint32_t left_out) {
+  std::vector<WeightedPoint> neighbours = NeighboursWithout(plan_.plane.points, left_out);
   if (neighbours.size() > kMostSources) neighbours.resize(kMostSources);
   std::vector<uint32_t> ids;
   double sum = 0;
-  for (WeightedPoint& neighbour : neighbours) {
-    if (neighbour.index >= left_out) ++neighbour.index;
+  for (const WeightedPoint& neighbour : neighbours) {
     ids.push_back(neighbour.index);
     sum += neighbour.weight;
   }
@@ -141,7 +145,7 @@ Result<std::optional<LeftOut>> Tester::Test(uint32_t left_out) {
     result.blend_psnr_db =
         std::max(result.blend_psnr_db, PsnrDb(SmoothTones(made_with(flat), curve_), truth));
   }
-  return std::optional(result);
+  return result;
 }
 
 }  // namespace
@@ -150,13 +154,10 @@ Result<std::vector<LeftOut>> TestByLeavingOut(const LightField& light_field,
                                               const LfImageStore& store, const DensifyPlan& plan,
                                               ThreadPool& pool) {
   std::vector<uint32_t> inner;
-  for (uint32_t i = 0; i < light_field.size(); ++i) {
-    std::vector<Vec2> others = plan.plane.points;
-    others.erase(others.begin() + i);
-    if (NaturalNeighbours(others, plan.plane.points[i]).size() >= 3) inner.push_back(i);
-  }
+  for (uint32_t i = 0; i < light_field.size(); ++i)
+    if (NeighboursWithout(plan.plane.points, i).size() >= 3) inner.push_back(i);
   const size_t count = std::min(kMostTests, inner.size());
-  std::vector<std::optional<LeftOut>> results(count);
+  std::vector<LeftOut> tests(count);
   Tester tester(light_field, store, plan);
   std::mutex mutex;
   std::optional<Error> error;
@@ -165,22 +166,18 @@ Result<std::vector<LeftOut>> TestByLeavingOut(const LightField& light_field,
     auto result = tester.Test(inner[chosen]);
     const std::lock_guard lock(mutex);
     if (result)
-      results[i] = *result;
+      tests[i] = *result;
     else
       error = result.error();
   });
   if (error) return *error;
-  std::vector<LeftOut> tests;
-  for (const std::optional<LeftOut>& result : results)
-    if (result) tests.push_back(*result);
   return tests;
 }
 
 double MedianGainDb(const std::vector<LeftOut>& tests) {
   std::vector<double> gains;
   for (const LeftOut& test : tests) gains.push_back(test.GainDb());
-  std::nth_element(gains.begin(), gains.begin() + static_cast<long>(gains.size() / 2), gains.end());
-  return gains[gains.size() / 2];
+  return Median(std::move(gains));
 }
 
 }  // namespace lf

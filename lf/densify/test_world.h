@@ -7,31 +7,19 @@
 #include <vector>
 
 #include "lf/camera/pinhole.h"
-#include "lf/core/random.h"
+#include "lf/core/test_value_noise.h"
 #include "lf/densify/working_image.h"
 
 namespace lf {
 
-// A wall at z = depth, with a hole where x > edge or nothing if edge is infinite. Cameras look
-// along z.
+// A wall at z = depth, left of an edge. Cameras look along z.
 struct Wall {
   double depth = 1;
   double edge = INFINITY;  // the wall ends at this x
   uint64_t seed = 1;
 };
 
-// Returns smooth noise in [0, 1) that changes within about a length of 1.
-inline double SmoothNoise(double x, double y, uint64_t seed) {
-  const double column = std::floor(x), row = std::floor(y), u = x - column, v = y - row;
-  const auto at = [&](double i, double j) {
-    return RandomUnit(seed, static_cast<uint64_t>(column + i + 100000),
-                      static_cast<uint64_t>(row + j + 100000));
-  };
-  const double s = u * u * (3 - 2 * u), t = v * v * (3 - 2 * v);
-  return std::lerp(std::lerp(at(0, 0), at(1, 0), s), std::lerp(at(0, 1), at(1, 1), s), t);
-}
-
-// Returns the number of the wall that a camera sees at a pixel: the nearest that the ray meets.
+// Returns the wall that a camera sees at a pixel: the nearest that the ray meets.
 inline const Wall* WallAt(const PinholeCamera& camera, const std::vector<Wall>& walls, double x_px,
                           double y_px, Vec3* point) {
   const Ray ray = RayOfPixel(camera, x_px, y_px);
@@ -58,8 +46,8 @@ inline WorkingImage ImageOfWalls(const PinholeCamera& camera, const std::vector<
       if (!wall) continue;
       const double scale = k.fx_px / wall->depth / kPixelsPerDetail;
       for (int c = 0; c < 3; ++c) {
-        const double value = SmoothNoise(point.x() * scale, point.y() * scale,
-                                         wall->seed * 3 + static_cast<uint64_t>(c));
+        const double value = ValueNoise(point.x() * scale, point.y() * scale,
+                                        wall->seed * 3 + static_cast<uint64_t>(c));
         image.light.at(x, y, c) = static_cast<uint16_t>(65535 * value);
         image.tones.at(x, y, c) = static_cast<uint16_t>(255 * value);
       }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lf/camera/pinhole.h"
+#include "lf/densify/camera_lattice.h"
 #include "lf/densify/camera_plane.h"
 #include "lf/light_field/model/light_field.h"
 

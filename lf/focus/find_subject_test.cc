@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "lf/core/random.h"
+#include "lf/core/test_value_noise.h"
 #include "lf/focus/focus_pick.h"
-#include "lf/focus/test_value_noise.h"
 
 namespace lf {
 namespace {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "lf/core/median.h"
 #include "lf/light_field/model/capture_geometry.h"
 
 namespace lf {
@@ -23,9 +24,7 @@ bool AxesConverge(const std::vector<Ray>& axes, const Vec3& point) {
     const Vec3 offset = point - axis.origin;
     ratios.push_back(axis.direction.cross(offset).norm() / std::max(1e-300, offset.norm()));
   }
-  const auto middle = ratios.begin() + static_cast<ptrdiff_t>(ratios.size() / 2);
-  std::nth_element(ratios.begin(), middle, ratios.end());
-  return *middle < 0.2;
+  return Median(std::move(ratios)) < 0.2;
 }
 
 }  // namespace
@@ -109,12 +108,8 @@ std::vector<CaptureWarning> WarnOfRepeats(const LightField& light_field,
   std::vector<double> apart_w;  // nearest-neighbour distances of cameras that share no position
   for (size_t i = 0; i < nearest_w.size(); ++i)
     if (nearest_w[i] > rounding_w(i)) apart_w.push_back(nearest_w[i]);
-  double typical_w = 0;  // median of apart_w, on which one distant camera has little influence
-  if (!apart_w.empty()) {
-    const auto middle = apart_w.begin() + static_cast<ptrdiff_t>(apart_w.size() / 2);
-    std::nth_element(apart_w.begin(), middle, apart_w.end());
-    typical_w = *middle;
-  }
+  // One distant camera has little influence on the median.
+  const double typical_w = apart_w.empty() ? 0 : Median(std::move(apart_w));
   std::vector<LfImageId> repeated;
   for (size_t i = 0; i < nearest_w.size(); ++i)
     if (nearest_w[i] <= kSamePlace * typical_w + rounding_w(i)) repeated.push_back(ids[i]);

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "lf/core/random.h"
+#include "lf/core/test_value_noise.h"
 #include "lf/focus/focus_pick.h"
-#include "lf/focus/test_value_noise.h"
 
 namespace lf {
 namespace {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "lf/core/check.h"
+#include "lf/core/median.h"
 #include "lf/rebinning/splat.h"
 #include "lf/render/collect/around_lens.h"
 #include "lf/selection/lens_weights/frame_weights.h"
@@ -21,12 +22,6 @@ constexpr double kSigmaPerDistance = 0.5;
 // Largest sigma of a kernel on the plate, in elements; must be below the largest that splats
 // support (rebinning/splat_tile.h).
 constexpr double kMostSigma_px = 8;
-
-double MiddleOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double NearestOf(std::span<const Vec2> seen_through, const Vec2& point) {
   double nearest_w = std::numeric_limits<double>::infinity();
@@ -95,7 +90,7 @@ FrameSampling SamplingOf(const ImageIndex& index, const RenderCamera& frame,
     sampling.lf.middle_world += lf_camera.CentreWorld();
   }
   sampling.lf.middle_world /= static_cast<double>(near.size());
-  sampling.lf.pixel_rad = MiddleOf(std::move(pixel_rad));
+  sampling.lf.pixel_rad = Median(std::move(pixel_rad));
   sampling.hole_w = std::min(HoleOf(frame, SeenThrough(index, frame, near)),
                              kFarthestDistances * camera_distance_w);
   return sampling;

@@ -4,8 +4,10 @@
 #include <chrono>
 #include <iterator>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "lf/core/median.h"
 #include "lf/light_field/model/lf_pixels.h"
 #include "lf/render/state/run_inputs.h"
 
@@ -14,13 +16,10 @@ namespace {
 
 // Returns the median of the values above 0; 0 if there are none.
 double MedianOfSeen(const LargeVector<float>& values) {
-  std::vector<float> sorted;
-  std::copy_if(values.begin(), values.end(), std::back_inserter(sorted),
+  std::vector<float> seen;
+  std::copy_if(values.begin(), values.end(), std::back_inserter(seen),
                [](float value) { return value > 0; });
-  if (sorted.empty()) return 0;
-  const auto middle = sorted.begin() + static_cast<ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  return *middle;
+  return seen.empty() ? 0 : Median(std::move(seen));
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace lf {
 // renders whose pixels show areas, and 0.79 - 1.0 in photographs, whose lenses blur. Returns kArea
 // if fewer than 200 sharp edges are found, or the LF images are broken. kOutput: the machine lacks
 // something, such as memory; a guess instead would change the bits of frames.
-// Of mosaics, it looks at recorded green pixels along diagonals.
+// In mosaics, recorded green pixels along diagonals are looked at.
 //   store  must load mosaics as RGB
 Result<PixelFootprint> MeasureFootprint(const LightField& light_field, const LfImageStore& store);
 

@@ -1,4 +1,4 @@
-// Texture of the synthetic scenes that tests of focus and import/exposure render.
+// Texture of the synthetic scenes that tests of focus, densify and import/exposure render.
 #pragma once
 
 #include <cmath>
