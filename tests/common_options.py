@@ -35,7 +35,7 @@ OFFERED = {
     "lfcammvminfo": {"--json"},
     "lfpreprocessor": set(COMMON),
     "lfcompressor": set(COMMON) - {"--seed"},
-    "lfdensify": set(COMMON) - {"--seed", "--strict", "--allow-missing"},
+    "lfdensify": set(COMMON) - {"--seed"},
     "lfrenderer": set(COMMON),
     # --allow-missing follows the two dashes, because it is an option of lfrenderer.
     "lfsubmit": set(COMMON) - {"--seed", "--allow-missing"},

@@ -162,6 +162,18 @@ class DensifyTest(ProgramTestCase):
             self.densify("--resume", store=again)
         self.assertEqual(contents(self.store), contents(again))
 
+    def test_a_broken_lf_image_is_left_out_and_named(self):
+        self.synth()
+        broken = next(self.field.rglob("*.exr"))
+        broken.write_bytes(broken.read_bytes()[:100])
+        report = json.loads(self.densify("--json", code=6))
+        self.assertEqual(report["recorded"], 15)
+        self.assertEqual([image["lf_image"].rpartition("/")[2] for image in report["skipped"]], [broken.name])
+        path = self.write_path()
+        self.render(self.store, path)
+        self.densify("--overwrite", "--allow-missing", 1)
+        self.fails(3, [broken.name], DENSIFY, self.field, "-o", self.store, "--overwrite", "--strict")
+
     # Refusals
 
     def rewrite(self, change):

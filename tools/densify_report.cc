@@ -21,8 +21,8 @@ double NanosecondsPer(double cpu_s, double pixels) { return pixels > 0 ? cpu_s *
 
 }  // namespace
 
-std::string DensifyText(const DensifyReport& report, const LightField& light_field,
-                        const DensifyOptions& options, double total_s) {
+std::string DensifyText(const DensifyReport& report, const DensifyOptions& options,
+                        double total_s) {
   std::string text = fmt::format(
       "{}: {} recorded and {} virtual LF images\n"
       "depths    {} to {}; {} were compared; near points shift by {:.1f} px against far ones\n"
@@ -30,6 +30,8 @@ std::string DensifyText(const DensifyReport& report, const LightField& light_fie
       options.store.string(), report.recorded_count, report.virtual_count,
       DepthText(report.range.greatest), DepthText(report.range.least), report.planes,
       report.shift_px, report.distance_w, report.spacing_px);
+  for (const DensifyReport::Skipped& skipped : report.skipped)
+    text += fmt::format("skipped   {}: {}\n", skipped.name, skipped.reason);
   if (report.was_there) return text + "existed already: nothing was written\n";
   if (report.spacing_px > options.choices.spacing_px * 1.001)
     text += fmt::format("note: {:.2g} px need more virtual LF images than --most allows\n",
@@ -47,7 +49,7 @@ std::string DensifyText(const DensifyReport& report, const LightField& light_fie
         MedianGainDb(report.tests));
     for (const LeftOut& test : report.tests)
       text += fmt::format("          {:.1f} dB (mean: {:.1f} dB)  {}\n", test.virtual_psnr_db,
-                          test.blend_psnr_db, light_field.image_names[test.id.value]);
+                          test.blend_psnr_db, test.name);
   }
   text += fmt::format(
       "speed     {:.0f} ns per swept pixel, {:.0f} ns per virtual pixel (CPU); {}\n",
@@ -58,13 +60,16 @@ std::string DensifyText(const DensifyReport& report, const LightField& light_fie
   return text;
 }
 
-std::string DensifyJson(const DensifyReport& report, const LightField& light_field,
-                        const DensifyOptions& options, double total_s) {
+std::string DensifyJson(const DensifyReport& report, const DensifyOptions& options,
+                        double total_s) {
   nlohmann::ordered_json tests = nlohmann::ordered_json::array();
   for (const LeftOut& test : report.tests)
-    tests.push_back({{"lf_image", light_field.image_names[test.id.value]},
+    tests.push_back({{"lf_image", test.name},
                      {"virtual_psnr_db", test.virtual_psnr_db},
                      {"mean_psnr_db", test.blend_psnr_db}});
+  nlohmann::ordered_json skipped = nlohmann::ordered_json::array();
+  for (const DensifyReport::Skipped& image : report.skipped)
+    skipped.push_back({{"lf_image", image.name}, {"reason", image.reason}});
   const nlohmann::ordered_json json = {
       {"store", options.store.string()},
       {"existed", report.was_there},
@@ -77,6 +82,7 @@ std::string DensifyJson(const DensifyReport& report, const LightField& light_fie
       {"spacing_px", report.spacing_px},
       {"agreeing_share", report.agreeing_share},
       {"weak_share", report.weak_share},
+      {"skipped", skipped},
       {"tests", tests},
       {"swept_pixels", report.swept_pixels},
       {"sweep_cpu_s", report.sweep_cpu_s},
@@ -84,6 +90,18 @@ std::string DensifyJson(const DensifyReport& report, const LightField& light_fie
       {"synthesis_cpu_s", report.synthesis_cpu_s},
       {"total_s", total_s}};
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+MissingImages MissingOf(const DensifyReport& report, const DensifyOptions& options) {
+  MissingImages missing{report.skipped.size(), report.skipped.size() + report.recorded_count, "",
+                        "once they are mended, densify again with --overwrite"};
+  if (missing.count > 0)
+    missing.what = fmt::format(
+        "{}: {} of {} LF images were not used, because they are missing or broken; the first: {}: "
+        "{}",
+        options.store.string(), missing.count, missing.asked, report.skipped.front().name,
+        report.skipped.front().reason);
+  return missing;
 }
 
 }  // namespace lf

@@ -3,16 +3,18 @@
 
 #include <string>
 
+#include "tools/common/allow_missing.h"
+
 #include "lf/densify/densify.h"
-#include "lf/light_field/model/light_field.h"
 
 namespace lf {
 
 // Returns the report: depths, virtual LF images, how right they are, speed, and the next command.
 //   total_s  elapsed time of the call
-std::string DensifyText(const DensifyReport& report, const LightField& light_field,
-                        const DensifyOptions& options, double total_s);
-std::string DensifyJson(const DensifyReport& report, const LightField& light_field,
-                        const DensifyOptions& options, double total_s);
+std::string DensifyText(const DensifyReport& report, const DensifyOptions& options, double total_s);
+std::string DensifyJson(const DensifyReport& report, const DensifyOptions& options, double total_s);
+
+// Returns the LF images that are not used because they are missing or broken.
+MissingImages MissingOf(const DensifyReport& report, const DensifyOptions& options);
 
 }  // namespace lf

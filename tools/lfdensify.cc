@@ -4,6 +4,7 @@
 #include <chrono>
 #include <string>
 
+#include "tools/common/allow_missing.h"
 #include "tools/common/byte_size.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
@@ -37,6 +38,8 @@ First, some LF images are left out in turn and made from their neighbours. If th
 better than a mean of the neighbours, poses or depths are wrong, and the program ends with exit
 code 3.
 
+LF images that are missing or broken are left out, and the exit code is then 6.
+
 Until the store is complete its name is STORE.lfs.unfinished. Ctrl-C, kill -9 or a crash lose a few
 seconds of work; --resume continues.)",
 };
@@ -47,6 +50,7 @@ struct Arguments {
   std::vector<double> depths;
   lf::DensifyChoices choices;
   bool resume = false, overwrite = false;
+  lf::AllowMissing allow_missing;
 };
 
 void AddInput(CLI::App& app, Arguments& a) {
@@ -65,6 +69,7 @@ void AddInput(CLI::App& app, Arguments& a) {
            "around, densely enough for a focus anywhere in the scene.")
       ->check(lf::NotEmpty());
   a.light_field.AddOptionsTo(app);
+  a.allow_missing.AddTo(app, "the LF images of the light field");
 }
 
 void AddOutput(CLI::App& app, Arguments& a) {
@@ -161,8 +166,10 @@ lf::Result<lf::DensifyOptions> MakeOptions(const Arguments& a, const lf::LightFi
 lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   const auto begin = std::chrono::steady_clock::now();
   const std::atomic<bool>& interrupted = lf::CatchInterrupts();
+  LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, a.allow_missing.Limit());
   LF_ASSIGN_OR_RETURN(const lf::LightField light_field, a.light_field.Open());
   LF_ASSIGN_OR_RETURN(lf::DensifyOptions options, MakeOptions(a, light_field));
+  options.strict = common.strict;
   options.interrupted = &interrupted;
   lf::ThreadPool pool(common.threads);
   lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "LF images");
@@ -172,8 +179,9 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
                       }));
   const double total_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  return lf::PrintReport(common.json ? lf::DensifyJson(report, light_field, options, total_s)
-                                     : lf::DensifyText(report, light_field, options, total_s));
+  LF_RETURN_IF_ERROR(lf::PrintReport(common.json ? lf::DensifyJson(report, options, total_s)
+                                                 : lf::DensifyText(report, options, total_s)));
+  return lf::EndWithMissing(lf::MissingOf(report, options), limit);
 }
 
 }  // namespace
@@ -183,6 +191,8 @@ int main(int argc, char** argv) {
   lf::Program program("lfdensify", kHelp);
   AddOptions(program.app(), arguments);
   program.AddCommonOptions({.threads = true,
+                            .strict = "Stop at an LF image that cannot be read\n"
+                                      "Without this option it is left out.",
                             .json = "Print the report to stdout as JSON",
                             .progress = true,
                             .verbose = true,

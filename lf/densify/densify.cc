@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
 
 #include "lf/core/log.h"
 #include "lf/densify/depth_plane.h"
@@ -13,6 +14,7 @@
 #include "lf/densify/stored_planes.h"
 #include "lf/densify/synthesis.h"
 #include "lf/densify/working_images.h"
+#include "lf/light_field/model/keep_images.h"
 #include "lf/storage/load/measure_footprint.h"
 #include "lf/storage/load/open_store.h"
 #include "lf/storage/packed/packed_store_writer.h"
@@ -32,9 +34,6 @@ std::string SettingsInWords(const DensifyPlan& plan, const DensifyChoices& choic
 }
 
 Result<void> CheckKind(const LightField& light_field) {
-  if (light_field.size() < 3)
-    return InputError(fmt::format("the light field has {} LF images: densifying needs at least 3",
-                                  light_field.size()));
   if (HasVirtual(light_field))
     return UsageError(
         "the light field has virtual LF images already: densify the light field that was recorded");
@@ -47,6 +46,13 @@ Result<void> CheckKind(const LightField& light_field) {
         "the light field has brackets (lf_masks_clipped), which are not supported: densify the LF "
         "images of one exposure");
   return {};
+}
+
+Result<void> CheckCount(const LightField& light_field) {
+  constexpr size_t kLeast = 3;
+  if (light_field.size() >= kLeast) return {};
+  return InputError(fmt::format("{} LF images can be read: densifying needs at least {}",
+                                light_field.size(), kLeast));
 }
 
 // Returns the recorded LF cameras, and behind them the virtual ones.
@@ -69,9 +75,13 @@ LightField WithVirtual(const LightField& light_field, std::span<const VirtualCam
 
 class Densifier {
  public:
-  Densifier(const LightField& light_field, const DensifyOptions& options, ThreadPool& pool,
+  Densifier(LightField light_field, const DensifyOptions& options, ThreadPool& pool,
             const std::function<void(const DensifyProgress&)>& progress)
-      : light_field_(light_field), options_(options), pool_(pool), progress_(progress) {}
+      : whole_(IdentityOf(light_field)),
+        light_field_(std::move(light_field)),
+        options_(options),
+        pool_(pool),
+        progress_(progress) {}
 
   Result<DensifyReport> Run();
 
@@ -79,6 +89,7 @@ class Densifier {
   using Loaded = std::vector<std::shared_ptr<const WorkingImage>>;
 
   Result<void> CheckTarget() const;
+  Result<void> LeaveOutBroken();
   Result<void> Test();
   Result<void> OpenWriter();
   Result<void> SweepAll();
@@ -96,13 +107,15 @@ class Densifier {
     return WorkingCamera(light_field_.Camera(LfImageId{id}), options_.choices.divisor);
   }
 
-  const LightField& light_field_;
+  const LightFieldIdentity whole_;
+  LightField light_field_;  // without broken LF images
   const DensifyOptions& options_;
   ThreadPool& pool_;
   const std::function<void(const DensifyProgress&)>& progress_;
 
   std::unique_ptr<LfImageStore> store_;
   std::unique_ptr<WorkingImages> images_;
+  std::vector<uint32_t> whole_ids_;  // number of each LF image in the whole light field
   DensifyPlan plan_;
   LightField all_;  // recorded and virtual LF cameras
   std::optional<PackedStoreWriter> writer_;
@@ -150,13 +163,7 @@ Result<Densifier::Loaded> Densifier::Load(std::span<const uint32_t> ids) {
 
 Result<void> Densifier::CheckTarget() const {
   const std::filesystem::path& store = options_.store;
-  std::error_code failure;
-  const bool is_there = std::filesystem::exists(std::filesystem::symlink_status(store, failure));
-  if (is_there && !IsPackedStore(store))
-    return UsageError(
-        fmt::format("{}: exists already, and is not a packed store: give another name, or remove "
-                    "the file",
-                    store.string()));
+  LF_ASSIGN_OR_RETURN(const bool is_there, IsStoreThere(store));
   if (options_.overwrite) return {};
   if (is_there && !options_.resume)
     return UsageError(
@@ -166,6 +173,39 @@ Result<void> Densifier::CheckTarget() const {
         "{}: exists already as an unfinished store: continue it with --resume, or start it again "
         "with --overwrite",
         store.string()));
+  return {};
+}
+
+// Loads every LF image once, and removes those that cannot be read.
+Result<void> Densifier::LeaveOutBroken() {
+  LF_ASSIGN_OR_RETURN(store_, OpenStore(light_field_, Mosaics::kToRgb));
+  std::vector<std::string> reasons(light_field_.size());
+  LF_RETURN_IF_ERROR(ForEach("checking LF images", light_field_.size(), [&](size_t i) {
+    const LfImageId id{static_cast<uint32_t>(i)};
+    const Intrinsics& k = light_field_.Camera(id).intrinsics;
+    const auto loaded = LoadWithoutThrowing(*store_, id, {0, 0, k.width_px, k.height_px},
+                                            light_field_.image_names[i], LfPixels{});
+    if (loaded) return Result<void>();
+    if (options_.strict || loaded.error().kind != ErrorKind::kInput)
+      return Result<void>(loaded.error());
+    reasons[i] = loaded.error().message;
+    return Result<void>();
+  }));
+  std::vector<size_t> kept;
+  for (size_t i = 0; i < reasons.size(); ++i) {
+    if (reasons[i].empty()) {
+      kept.push_back(i);
+      whole_ids_.push_back(static_cast<uint32_t>(i));
+    } else {
+      report_.skipped.push_back({light_field_.image_names[i], reasons[i]});
+    }
+  }
+  if (kept.size() == light_field_.size()) return {};
+  if (kept.empty())
+    return InputError(fmt::format("none of the {} LF images can be read; the first: {}",
+                                  light_field_.size(), report_.skipped.front().reason));
+  KeepImages(kept, &light_field_);
+  LF_ASSIGN_OR_RETURN(store_, OpenStore(light_field_, Mosaics::kToRgb));
   return {};
 }
 
@@ -188,9 +228,8 @@ Result<void> Densifier::Test() {
       "dB better than a mean of the neighbours, expected at least {} dB (worst: {}, {:.1f} dB). "
       "Poses may be wrong, for example where equal patterns were confused, or the depths "
       "({:.4g} to {:.4g}): check the poses, state --depths, or try --force",
-      report_.tests.size(), gain_db, kLeastGainDb, light_field_.image_names[worst->id.value],
-      worst->GainDb(), 1 / plan_.range.greatest,
-      plan_.range.least > 0 ? 1 / plan_.range.least : INFINITY));
+      report_.tests.size(), gain_db, kLeastGainDb, worst->name, worst->GainDb(),
+      1 / plan_.range.greatest, plan_.range.least > 0 ? 1 / plan_.range.least : INFINITY));
 }
 
 Result<void> Densifier::OpenWriter() {
@@ -198,7 +237,9 @@ Result<void> Densifier::OpenWriter() {
   // Virtual LF images are interpolated, so that their own pixels would not tell.
   LF_ASSIGN_OR_RETURN(all_.encoding.footprint, FootprintOf(light_field_, *store_));
   PackedStorePlan plan;
-  plan.whole = IdentityOf(light_field_);
+  plan.whole = whole_;
+  plan.whole_ids = whole_ids_;
+  plan.whole_ids.resize(all_.size(), kNoWholeId);
   plan.codec = std::string(kLosslessCodec);
   plan.densified = DensifiedPlan{SettingsInWords(plan_, options_.choices), plan_.range.least,
                                  plan_.range.greatest, options_.choices.divisor};
@@ -332,7 +373,8 @@ Result<void> Densifier::AddVirtual(const RecordedValues& values, size_t i) {
 Result<DensifyReport> Densifier::Run() {
   LF_RETURN_IF_ERROR(CheckKind(light_field_));
   LF_RETURN_IF_ERROR(CheckTarget());
-  LF_ASSIGN_OR_RETURN(store_, OpenStore(light_field_, Mosaics::kToRgb));
+  LF_RETURN_IF_ERROR(LeaveOutBroken());
+  LF_RETURN_IF_ERROR(CheckCount(light_field_));
   images_ = std::make_unique<WorkingImages>(light_field_, *store_, options_.choices.divisor,
                                             options_.memory_bytes);
   LF_ASSIGN_OR_RETURN(plan_, PlanDensify(light_field_, *store_, options_.choices, pool_));

@@ -33,6 +33,7 @@ struct DensifyOptions {
   // complete, it must match the options, and is kept.
   bool resume = false;
   bool overwrite = false;   // true: replaces an existing store, unfinished or complete
+  bool strict = false;      // true: an LF image that cannot be read is an error
   std::string source_name;  // LIGHTFIELD, as the user gave it
   std::string version;      // version of the program
   const std::atomic<bool>* interrupted = nullptr;
@@ -46,7 +47,12 @@ struct DensifyProgress {
 
 struct DensifyReport {
   bool was_there = false;  // true if the store was complete, so that nothing was written
-  size_t recorded_count = 0;
+  struct Skipped {
+    std::string name;
+    std::string reason;
+  };
+  std::vector<Skipped> skipped;  // LF images that are not used because they cannot be read
+  size_t recorded_count = 0;     // those that are used
   size_t virtual_count = 0;
   InverseDepths range;
   int planes = 0;         // number of inverse depths that were compared
@@ -65,9 +71,9 @@ struct DensifyReport {
 
 // Writes the recorded LF images and virtual ones into options.store. kInput: the light field cannot
 // be densified (PlanDensify()), has opacities, or fails its test (TestByLeavingOut()) unless
-// choices.force is set; or an LF image that is needed cannot be read. kUsage, kOutput as
-// PackedStoreWriter; the store exists and no option says what to do with it. kInterrupted: finished
-// work is kept.
+// choices.force is set; or an LF image cannot be read and `strict` is set, or fewer than three can.
+// kUsage, kOutput as PackedStoreWriter; the store exists and no option says what to do with it.
+// kInterrupted: finished work is kept.
 Result<DensifyReport> Densify(const LightField& light_field, const DensifyOptions& options,
                               ThreadPool& pool,
                               const std::function<void(const DensifyProgress&)>& progress);

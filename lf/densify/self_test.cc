@@ -136,7 +136,7 @@ Result<LeftOut> Tester::Test(uint32_t left_out) {
     return Synthesize(recorded->camera, sources, plan_.range, tolerance_).light;
   };
   const Image<float> truth = SmoothTones(recorded->light, curve_);
-  LeftOut result{LfImageId{left_out}};
+  LeftOut result{light_field_.image_names[left_out]};
   result.virtual_psnr_db = PsnrDb(SmoothTones(made_with(group.planes), curve_), truth);
   for (int i = 0; i < kBlendDepths; ++i) {
     std::vector<DepthPlane> flat = group.planes;

@@ -1,10 +1,9 @@
 // Tells from recorded LF images how right virtual ones are.
 #pragma once
 
-#include <cstdint>
+#include <string>
 #include <vector>
 
-#include "lf/core/ids.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
 #include "lf/densify/densify_plan.h"
@@ -15,7 +14,7 @@ namespace lf {
 
 // A recorded LF image and the virtual one at its place, made without it.
 struct LeftOut {
-  LfImageId id;
+  std::string name;
   double virtual_psnr_db = 0;
   // The best that the same LF images reach without depths: their mean, aligned at one of several
   // depths.

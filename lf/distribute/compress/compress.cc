@@ -24,16 +24,6 @@ double Now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// Returns true if the store exists. kUsage if another file has its name.
-Result<bool> IsThere(const fs::path& path) {
-  std::error_code error;
-  if (!fs::exists(fs::symlink_status(path, error))) return false;
-  if (IsPackedStore(path)) return true;
-  return UsageError(fmt::format(
-      "{}: exists already, and is not a packed store: give another name, or remove the file",
-      path.string()));
-}
-
 PackedStorePlan PlanOf(const CompressSource& source, const CompressOptions& options,
                        const CodecSettings& settings) {
   PackedStorePlan plan;
@@ -257,7 +247,7 @@ Result<void> Compressor::FindSkipped() {
 // to do with it.
 Result<void> Compressor::CheckTarget() {
   const fs::path& store = options_.store;
-  LF_ASSIGN_OR_RETURN(const bool is_there, IsThere(store));
+  LF_ASSIGN_OR_RETURN(const bool is_there, IsStoreThere(store));
   const bool is_unfinished = PackedStoreWriter::IsUnfinished(store);
   if (options_.overwrite) return {};
   if (options_.resume) {

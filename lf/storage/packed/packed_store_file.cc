@@ -188,6 +188,15 @@ bool IsPackedStore(const fs::path& path) {
   return id == kStoreFormat.application_id;
 }
 
+Result<bool> IsStoreThere(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::exists(std::filesystem::symlink_status(path, error))) return false;
+  if (IsPackedStore(path)) return true;
+  return UsageError(fmt::format(
+      "{}: exists already, and is not a packed store: give another name, or remove the file",
+      path.string()));
+}
+
 std::vector<fs::path> PackedStoresIn(const fs::path& folder) {
   std::vector<fs::path> stores;
   std::error_code error;

@@ -37,6 +37,8 @@ inline constexpr const char* kStoreExtension = ".lfs";
 // Returns true if the first bytes of the file identify a packed store. False for a shard of a
 // store.
 bool IsPackedStore(const std::filesystem::path& path);
+// Returns true if the store exists. kUsage: a file that is no packed store has its name.
+Result<bool> IsStoreThere(const std::filesystem::path& path);
 // Returns true if `folder` of the light field has the extension of a packed store and is no
 // directory. Only opening the file tells whether it is a valid store of this version.
 inline bool HoldsPackedStore(const LightField& light_field) {
