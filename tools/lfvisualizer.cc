@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tools/common/allow_missing.h"
+#include "tools/common/byte_size.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
@@ -45,7 +46,7 @@ ssh -L 8080:127.0.0.1:8080 HOST, where HOST is the machine that runs lfvisualize
 struct Arguments {
   lf::LightFieldArgument light_field;
   lf::PageArguments page;
-  std::string path, watch, frames, export_folder;
+  std::string path, watch, frames, export_folder, live_memory = "512M";
   int port = 0;
   uint64_t max_images = 0, export_images = 400;
   bool text = false;
@@ -94,6 +95,14 @@ void AddOutput(CLI::App& app, Arguments& a) {
            "They are chosen from the LF images that the frames of PATH use.")
       ->needs(to_files);
   a.allow_missing.AddTo(app, "the LF images in the export")->needs(to_files);
+  output
+      .Add("--live-memory SIZE", a.live_memory,
+           "Memory of the live picture, such as 512M or 4G\n"
+           "It bounds the LF images that are kept for pictures that follow the mouse, shrunken to "
+           "the "
+           "size of the picture.")
+      ->excludes(text)
+      ->excludes(to_files);
 }
 
 void AddQuality(CLI::App& app, Arguments& a) {
@@ -171,6 +180,7 @@ lf::Result<void> Run(Arguments& a, const lf::CommonOptions& common) {
   a.page.needs = Needs(a);
   a.page.seed = common.seed;
   a.page.threads = common.threads;
+  LF_ASSIGN_OR_RETURN(a.page.live_memory_bytes, lf::ParseByteSize(a.live_memory, "--live-memory"));
   LF_ASSIGN_OR_RETURN(lf::LightField light_field, a.light_field.Open());
   LF_ASSIGN_OR_RETURN(const auto scene, lf::PageScene::Open(std::move(light_field), a.page));
   if (!a.export_folder.empty()) {

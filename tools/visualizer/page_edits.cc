@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <mutex>
@@ -10,8 +11,10 @@
 
 #include "tools/visualizer/edit_json.h"
 
+#include "lf/camera/path/path_yaml.h"
 #include "lf/core/file.h"
 #include "lf/focus/focus_pick.h"
+#include "lf/live/shrink.h"
 #include "lf/render/state/record_fields.h"
 
 namespace lf {
@@ -84,6 +87,21 @@ PageAnswer StartPreview(PageScene& scene, PreviewRender& preview, const Json& js
   return JsonAnswer(Json::object());
 }
 
+// The text does not become a draft: drafts are few, and a drag would replace those that pages show.
+PageAnswer ShowLive(PageScene& scene, LiveView& live, const Json& json) {
+  const std::string file = scene.arguments().path.filename().string();
+  const auto path = ParsePathYaml(TextOf(json, "text"), file, scene.light_field().unit_m);
+  if (!path) return RefusedPath(path.error(), file);
+  const auto frame = FrameOf(json, *path);
+  const double width = NumberOf(json, "width"), budget_ms = NumberOf(json, "budget_ms");
+  if (!frame || !(width >= 1))
+    return Refusal(422, "expected a frame of the path, and \"width\" from 1 on");
+  const int width_px = static_cast<int>(std::min<double>(width, kLongestLiveSide_px));
+  std::optional<double> budget_s;
+  if (budget_ms >= 0) budget_s = budget_ms / 1000;
+  return live.Answer(WithPlateWidth(path->Camera(*frame), width_px, kLongestLiveSide_px), budget_s);
+}
+
 PageAnswer PickFocus(PageScene& scene, const Json& json) {
   const std::shared_ptr<PathDraft> draft = scene.FindDraft(TextOf(json, "path"));
   if (!draft) return Refusal(410, "this path has been forgotten: send it again");
@@ -122,7 +140,7 @@ PageAnswer PickFocus(PageScene& scene, const Json& json) {
 
 }  // namespace
 
-PageAnswer Edit(PageScene& scene, PreviewRender& preview, std::string_view name,
+PageAnswer Edit(PageScene& scene, PreviewRender& preview, LiveView& live, std::string_view name,
                 const std::string& body) {
   const Json json = ReadEdit(body);
   if (!json.is_object()) return Refusal(400, "expected a JSON object of texts and numbers");
@@ -133,6 +151,7 @@ PageAnswer Edit(PageScene& scene, PreviewRender& preview, std::string_view name,
   }
   if (name == "save") return Save(scene, json);
   if (name == "preview") return StartPreview(scene, preview, json);
+  if (name == "live") return ShowLive(scene, live, json);
   if (name == "focus") return PickFocus(scene, json);
   if (name == "preview/stop") {
     preview.Stop();

@@ -4,11 +4,15 @@
 #include <string>
 #include <string_view>
 
+#include "tools/visualizer/live_view.h"
 #include "tools/visualizer/page_answers.h"
 #include "tools/visualizer/page_scene.h"
 #include "tools/visualizer/preview_render.h"
 
 namespace lf {
+
+// Longest side of a live picture, in elements; larger ones are answered with smaller ones.
+inline constexpr int kLongestLiveSide_px = 1280;
 
 // Answers a POST request by its name; its body is JSON. Mistakes of the user are answered with
 // status 200 and {"error": message}. Refusals have the status 410 for a path that has been
@@ -21,11 +25,15 @@ namespace lf {
 //                 "force" is not true
 //   preview       {"text", "frame"} -> {}; events report the progress of the render
 //   preview/stop  {} -> {}
+//   live          {"text", "frame", "width": of the picture, in elements; "budget_ms": time for it,
+//                 or left out for a still picture} -> bytes of a picture
+//                 (doc/formats/page_data.md);
+//                 {"superseded": true} for a still picture that a newer request has broken off
 //   focus         {"path": id, "frame", "x", "y"}; x and y are in elements of the frame or, if
 //                 "camera" names an LF camera, in pixels of its LF image
 //                 -> {"point": position in the world, "focus_distance": in world units,
 //                 "certainty": from 0 to 1, "cameras": LF cameras that were compared}
-PageAnswer Edit(PageScene& scene, PreviewRender& preview, std::string_view name,
+PageAnswer Edit(PageScene& scene, PreviewRender& preview, LiveView& live, std::string_view name,
                 const std::string& body);
 
 }  // namespace lf

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <utility>
 
+#include "tools/visualizer/live_view.h"
 #include "tools/visualizer/page_answers.h"
 #include "tools/visualizer/page_edits.h"
 #include "tools/visualizer/page_scene.h"
@@ -44,8 +45,10 @@ struct World {
     LF_CHECK(opened);
     scene = *std::move(opened);
     preview = std::make_unique<lf::PreviewRender>(*scene);
+    live = std::make_unique<lf::LiveView>(*scene, size_t{1} << 20);
   }
   ~World() {
+    live.reset();
     preview.reset();
     scene.reset();
     std::error_code ignored;
@@ -55,6 +58,7 @@ struct World {
   std::filesystem::path folder;
   std::unique_ptr<lf::PageScene> scene;
   std::unique_ptr<lf::PreviewRender> preview;
+  std::unique_ptr<lf::LiveView> live;
 };
 
 }  // namespace
@@ -72,7 +76,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
     answer = lf::Answer(*world.scene, name);
   } else {
     if (name == "preview") return 0;  // it would take too long
-    answer = lf::Edit(*world.scene, *world.preview, name, text.substr(line_end + 1));
+    answer = lf::Edit(*world.scene, *world.preview, *world.live, name, text.substr(line_end + 1));
   }
   static const std::set<int> kStatuses = {200, 400, 404, 410, 422, 507};
   LF_CHECK(kStatuses.contains(answer.status));

@@ -2,6 +2,7 @@
 // the render that is watched.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <list>
 #include <memory>
@@ -36,6 +37,7 @@ struct PageArguments {
   double max_angle_deg = 0;
   uint64_t seed = 0;
   int threads = 0;
+  size_t live_memory_bytes = size_t{512} << 20;  // LiveOptions::memory_bytes
 };
 
 // A path while it is edited: its text, checked by the parser of the programs.

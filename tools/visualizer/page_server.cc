@@ -10,6 +10,7 @@
 #include <thread>
 #include <utility>
 
+#include "tools/visualizer/live_view.h"
 #include "tools/visualizer/page_answers.h"
 #include "tools/visualizer/page_daemon.h"
 #include "tools/visualizer/page_edits.h"
@@ -43,9 +44,10 @@ struct PageServer::Parts {
       : scene(page_scene),
         socket(listening),
         preview(page_scene),
+        live(page_scene, page_scene.arguments().live_memory_bytes),
         daemon(std::move(door), page_scene.events(),
                [this](const RequestHead& head, std::string_view name, std::string&& body) {
-                 return head.method == "POST" ? Edit(scene, preview, name, body) : Get(name);
+                 return head.method == "POST" ? Edit(scene, preview, live, name, body) : Get(name);
                }) {}
   ~Parts() {
     if (socket >= 0) ::close(socket);
@@ -57,6 +59,7 @@ struct PageServer::Parts {
   PageScene& scene;
   int socket;  // the listening socket; -1 once the daemon has taken it over
   PreviewRender preview;
+  LiveView live;
   PageDaemon daemon;
 };
 

@@ -1,0 +1,112 @@
+// The LF images that are kept in memory, shrunken, for live pictures. A thread loads those of the
+// lens that is looked through, and forgets others when the memory is full.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "lf/camera/render_camera.h"
+#include "lf/core/ids.h"
+#include "lf/core/parallel.h"
+#include "lf/light_field/model/lf_pixels.h"
+#include "lf/light_field/model/light_field.h"
+#include "lf/selection/image_index.h"
+#include "lf/storage/load/lf_image_store.h"
+
+namespace lf {
+
+class ResidentImages {
+ public:
+  // An LF image in memory.
+  struct Image {
+    LfPixels pixels;
+    LfPixels opacity;  // LfPixels::TakeOpacity() of the pixels
+  };
+  struct Status {
+    size_t resident_count = 0;  // LF images in memory
+    // LF images that the frame of the last Aim() needs, as many as memory has room for; 0 until
+    // they are known
+    size_t wanted_count = 0;
+    size_t wanted_done_count = 0;  // those of them that are in memory or broken
+    size_t broken_count = 0;       // LF images that could not be loaded
+    std::string first_broken;      // the error of one of them; "" if there is none
+    int divisor = 0;               // of ShrunkField(); 0 until it is known
+    uint64_t version = 0;          // differs whenever any other number differs
+  };
+
+  //   index, store  of the whole light field; must outlive this object. The store must load RGB
+  //                 (Mosaics::kToRgb)
+  //   memory_bytes  bounds the memory of the shrunken LF images; at least one is kept. While LF
+  //                 images are loaded, each of the threads has one more in full size
+  //   threads       as ThreadPool
+  //   changed       called after the status has changed, by any thread; may be empty
+  ResidentImages(const ImageIndex& index, const LfImageStore& store, size_t memory_bytes,
+                 int threads, std::function<void()> changed = {});
+  ~ResidentImages();  // stops loading
+  ResidentImages(const ResidentImages&) = delete;
+  ResidentImages& operator=(const ResidentImages&) = delete;
+
+  // Loads the LF images of this frame from now on: those whose rays pass through its lens, or
+  // somewhat beside it, in the order of OrderOverLens(). If there are too many for the memory,
+  // those that are loaded already are preferred. Returns at once.
+  void Aim(const RenderCamera& frame);
+
+  // Calls use(field, images), during which nothing is added to or removed from the LF images in
+  // memory.
+  //   field   the shrunken light field (ShrunkField()); null before the first LF image
+  //   images  LF images in memory, by their ids in the light field. use() may move pixels out of
+  //           them, and must put them back
+  void Use(
+      const std::function<void(const LightField* field, std::map<uint32_t, Image>& images)>& use);
+
+  Status status() const;
+  // Waits until all LF images that the last Aim() wants are in memory or broken.
+  void WaitUntilLoaded();
+
+ private:
+  struct Wanted {
+    std::vector<LfImageId> ids;  // in the order in which they are loaded
+    std::set<uint32_t> set;      // the same ids
+  };
+  void Run();
+  void LoadFor(const RenderCamera& frame);
+  void UseDivisor(int divisor);
+  Wanted WantedBy(const RenderCamera& frame);
+  bool HasNews() const;
+  void LoadSome(const Wanted& wanted, const std::vector<LfImageId>& some);
+  void MakeRoom(const Wanted& wanted);
+  size_t Capacity() const;
+  void Tell(const std::function<void(Status*)>& change);
+
+  const ImageIndex& index_;
+  const LfImageStore& store_;
+  const size_t memory_bytes_;
+  const std::function<void()> changed_;
+  ThreadPool pool_;
+
+  std::mutex images_mutex_;  // guards the next two members while use() runs; the loader writes them
+  std::optional<LightField> field_;
+  std::map<uint32_t, Image> images_;
+  std::set<uint32_t> broken_;  // only the loader uses it
+
+  mutable std::mutex mutex_;  // guards the members below, except thread_
+  std::condition_variable news_;
+  std::optional<RenderCamera> aim_;   // the newest frame of Aim() until the loader takes it
+  std::optional<RenderCamera> last_;  // the frame that the loader has taken last
+  bool is_loading_ = false;
+  std::atomic<bool> is_ending_ = false;
+  Status status_;
+  std::thread thread_;
+};
+
+}  // namespace lf

@@ -1,0 +1,113 @@
+#include "lf/live/shrink.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "lf/camera/magnification.h"
+#include "lf/collection/prefilter/prefilter.h"
+#include "lf/core/check.h"
+#include "lf/core/median.h"
+#include "lf/render/collect/around_lens.h"
+
+namespace lf {
+namespace {
+
+constexpr int kLanes = LfPixels::kRgbLanes;
+
+// Adds up the lanes of the pixels of a square. The ray lane counts the pixels that are not masked.
+std::array<uint32_t, kLanes> SumOf(const Image<uint16_t>& pixels, int x, int y, int divisor) {
+  std::array<uint32_t, kLanes> sum = {};
+  for (int row = y; row < std::min(y + divisor, pixels.height()); ++row) {
+    const uint16_t* const values = pixels.row(row);
+    for (int i = x * kLanes; i < std::min(x + divisor, pixels.width()) * kLanes; i += kLanes)
+      for (int lane = 0; lane < kLanes; ++lane) sum[lane] += values[i + lane];
+  }
+  return sum;
+}
+
+// Returns true if a pixel of the result is masked.
+bool ShrinkPlane(const Image<uint16_t>& pixels, int divisor, Image<uint16_t>* shrunken) {
+  bool any_masked = false;
+  const auto square =
+      static_cast<uint32_t>(std::min(divisor, pixels.width()) * std::min(divisor, pixels.height()));
+  for (int y = 0; y < shrunken->height(); ++y) {
+    uint16_t* mean = shrunken->row(y);
+    for (int x = 0; x < shrunken->width(); ++x, mean += kLanes) {
+      const std::array<uint32_t, kLanes> sum = SumOf(pixels, x * divisor, y * divisor, divisor);
+      const uint32_t count = sum[LfPixels::kRayLane];
+      const bool is_masked = count == 0 || 2 * count < square;
+      any_masked |= is_masked;
+      for (int lane = 0; lane < kLanes; ++lane)
+        mean[lane] = is_masked ? 0 : static_cast<uint16_t>((sum[lane] + count / 2) / count);
+    }
+  }
+  return any_masked;
+}
+
+int Shrunk(int size_px, int divisor) { return std::max(1, size_px / divisor); }
+
+void Scale(double factor, Intrinsics* k) {
+  k->fx_px *= factor;
+  k->fy_px *= factor;
+  k->cx_px *= factor;
+  k->cy_px *= factor;
+  k->skew_px *= factor;
+}
+
+}  // namespace
+
+LightField ShrunkField(LightField light_field, int divisor) {
+  for (Intrinsics& k : light_field.intrinsics) {
+    Scale(1.0 / divisor, &k);
+    k.width_px = Shrunk(k.width_px, divisor);
+    k.height_px = Shrunk(k.height_px, divisor);
+  }
+  light_field.encoding.bayer = BayerPattern::kNone;
+  return light_field;
+}
+
+void Shrink(const LfPixels& pixels, int divisor, LfPixels* shrunken) {
+  LF_CHECK(pixels.bayer == BayerPattern::kNone && divisor >= 1);
+  const PixelRect whole = {0, 0, Shrunk(pixels.rect.width(), divisor),
+                           Shrunk(pixels.rect.height(), divisor)};
+  shrunken->Reset(whole, BayerPattern::kNone);
+  shrunken->any_masked = ShrinkPlane(pixels.radiance, divisor, &shrunken->radiance);
+  if (pixels.opacity.empty()) return;
+  shrunken->opacity.Resize(whole.width(), whole.height(), kLanes);
+  ShrinkPlane(pixels.opacity, divisor, &shrunken->opacity);
+}
+
+int DivisorFor(const ImageIndex& index, const RenderCamera& frame, int current) {
+  constexpr size_t kMeasured = 32;
+  constexpr double kNarrowest_px = 0.5;
+  const std::vector<LfImageId> around = CamerasAroundLens(index, frame);
+  if (around.empty()) return std::max(1, current);
+  std::vector<double> widths_px;
+  const size_t step = (around.size() + kMeasured - 1) / kMeasured;
+  for (size_t i = 0; i < around.size(); i += step)
+    widths_px.push_back(ElementWidth_px(index.light_field().Camera(around[i]), frame));
+  const double width_px = Median(std::move(widths_px));
+  if (current > 0 && width_px / current <= kFinerAtMost && width_px / current >= kNarrowest_px)
+    return current;
+  constexpr double kRounding = 1e-3;
+  return std::max(1, static_cast<int>(std::ceil(width_px / kFinerAtMost - kRounding)));
+}
+
+RenderCamera WithPlateWidth(const RenderCamera& frame, int width_px, int side_px) {
+  RenderCamera scaled = frame;
+  Intrinsics& k = scaled.pinhole.intrinsics;
+  const double factor = std::min({static_cast<double>(width_px) / k.width_px,
+                                  static_cast<double>(side_px) / k.width_px,
+                                  static_cast<double>(side_px) / k.height_px});
+  const auto size = [&](int px) {
+    return std::clamp(static_cast<int>(std::lround(px * factor)), 1, side_px);
+  };
+  Scale(factor, &k);
+  k.width_px = size(k.width_px);
+  k.height_px = size(k.height_px);
+  return scaled;
+}
+
+}  // namespace lf

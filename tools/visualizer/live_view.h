@@ -1,0 +1,43 @@
+// Live pictures for the page: frames that are rendered while a person drags something.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <list>
+#include <mutex>
+#include <optional>
+
+#include "tools/visualizer/page_answers.h"
+#include "tools/visualizer/page_scene.h"
+
+#include "lf/camera/render_camera.h"
+#include "lf/core/parallel.h"
+#include "lf/live/live_renderer.h"
+
+namespace lf {
+
+class LiveView {
+ public:
+  // Posts "live" to the scene's board when LF images have been loaded: {"resident": 60, "wanted":
+  // 200, "done": 60, "broken": 0, "version": 17} (ResidentImages::Status).
+  //   memory_bytes  LiveOptions::memory_bytes
+  LiveView(PageScene& scene, size_t memory_bytes);
+
+  // Answers with a picture of the frame (doc/formats/page_data.md, POST live).
+  //   budget_s  LiveWish::budget_s. A picture without a budget is a still one: it is broken off by
+  //             the next call, and then answered with {"superseded": true}
+  PageAnswer Answer(const RenderCamera& frame, std::optional<double> budget_s);
+
+ private:
+  void Tell();
+  std::atomic<bool>* BreakOffStillPictures(bool is_still);
+
+  PageScene& scene_;
+  ThreadPool pool_;  // separate, so that the page's answers do not wait for pictures
+  std::mutex mutex_;
+  // For each still picture that is waited for, a flag that breaks it off. Guarded by mutex_.
+  std::list<std::atomic<bool>> still_;
+  LiveRenderer renderer_;
+};
+
+}  // namespace lf
