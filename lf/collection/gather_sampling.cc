@@ -6,6 +6,7 @@
 #include "lf/camera/distortion.h"
 #include "lf/camera/ideal_pixels.h"
 #include "lf/camera/magnification.h"
+#include "lf/camera/resolution.h"
 
 namespace lf {
 const char* NameOf(PixelFilter filter) {
@@ -65,13 +66,9 @@ bool MayLackRays(const Intrinsics& k) {
 RenderCamera WithFinerPlate(const RenderCamera& render_camera, int samples) {
   RenderCamera finer = render_camera;
   Intrinsics& k = finer.pinhole.intrinsics;
+  ScaleResolution(samples, &k);
   k.width_px *= samples;
   k.height_px *= samples;
-  k.fx_px *= samples;
-  k.fy_px *= samples;
-  k.cx_px *= samples;
-  k.cy_px *= samples;
-  k.skew_px *= samples;
   return finer;
 }
 

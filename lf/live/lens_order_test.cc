@@ -63,7 +63,7 @@ TEST(LensOrder, PreferredPointsComeFirstUnlessTheyAreCrowded) {
   const std::vector<size_t> order = FarthestPointOrder(points, 4, 50);
   EXPECT_EQ(std::count(order.begin(), order.end(), 50), 1);
   EXPECT_EQ(std::count(order.begin(), order.end(), 51), 1);
-  // Of two points that are nearly as far, the preferred one is chosen.
+  // If two points are nearly as far, the preferred one is chosen.
   const std::vector<Vec2> two = {{1, 0}, {0, 0}, {-1.2, 0}};
   EXPECT_EQ(FarthestPointOrder(two, 2, 1)[1], 0U);
   EXPECT_EQ(FarthestPointOrder(two, 2, 0)[1], 2U);

@@ -176,14 +176,15 @@ void ResidentImages::LoadSome(const Wanted& wanted, const std::vector<LfImageId>
   std::vector<Result<Image>> loaded(some.size(), Result<Image>(Image()));
   const int divisor = status().divisor;
   pool_.ForEach(some.size(), [&](size_t i) {
-    const Intrinsics k = field.Camera(some[i]).intrinsics;
-    Result<LfPixels> pixels = LoadWithoutThrowing(store_, some[i], {0, 0, k.width_px, k.height_px},
-                                                  field.image_names[some[i].value], LfPixels());
-    if (!pixels) {
-      loaded[i] = pixels.error();
+    LfPixels pixels;
+    const Result<int> reduced =
+        LoadReducedWithoutThrowing(store_, some[i], divisor, field.Camera(some[i]).intrinsics,
+                                   field.image_names[some[i].value], &pixels);
+    if (!reduced) {
+      loaded[i] = reduced.error();
       return;
     }
-    Shrink(*pixels, divisor, &loaded[i]->pixels);
+    Shrink(pixels, divisor / *reduced, &loaded[i]->pixels);
     loaded[i]->opacity = loaded[i]->pixels.TakeOpacity();
   });
   std::string error;

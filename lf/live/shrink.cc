@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lf/camera/magnification.h"
+#include "lf/camera/resolution.h"
 #include "lf/collection/prefilter/prefilter.h"
 #include "lf/core/check.h"
 #include "lf/core/median.h"
@@ -46,32 +47,18 @@ bool ShrinkPlane(const Image<uint16_t>& pixels, int divisor, Image<uint16_t>* sh
   return any_masked;
 }
 
-int Shrunk(int size_px, int divisor) { return std::max(1, size_px / divisor); }
-
-void Scale(double factor, Intrinsics* k) {
-  k->fx_px *= factor;
-  k->fy_px *= factor;
-  k->cx_px *= factor;
-  k->cy_px *= factor;
-  k->skew_px *= factor;
-}
-
 }  // namespace
 
 LightField ShrunkField(LightField light_field, int divisor) {
-  for (Intrinsics& k : light_field.intrinsics) {
-    Scale(1.0 / divisor, &k);
-    k.width_px = Shrunk(k.width_px, divisor);
-    k.height_px = Shrunk(k.height_px, divisor);
-  }
+  for (Intrinsics& k : light_field.intrinsics) k = WithLargerPixels(k, divisor);
   light_field.encoding.bayer = BayerPattern::kNone;
   return light_field;
 }
 
 void Shrink(const LfPixels& pixels, int divisor, LfPixels* shrunken) {
   LF_CHECK(pixels.bayer == BayerPattern::kNone && divisor >= 1);
-  const PixelRect whole = {0, 0, Shrunk(pixels.rect.width(), divisor),
-                           Shrunk(pixels.rect.height(), divisor)};
+  const PixelRect whole = {0, 0, std::max(1, pixels.rect.width() / divisor),
+                           std::max(1, pixels.rect.height() / divisor)};
   shrunken->Reset(whole, BayerPattern::kNone);
   shrunken->any_masked = ShrinkPlane(pixels.radiance, divisor, &shrunken->radiance);
   if (pixels.opacity.empty()) return;
@@ -92,7 +79,10 @@ int DivisorFor(const ImageIndex& index, const RenderCamera& frame, int current) 
   if (current > 0 && width_px / current <= kFinerAtMost && width_px / current >= kNarrowest_px)
     return current;
   constexpr double kRounding = 1e-3;
-  return std::max(1, static_cast<int>(std::ceil(width_px / kFinerAtMost - kRounding)));
+  const int least = std::max(1, static_cast<int>(std::ceil(width_px / kFinerAtMost - kRounding)));
+  for (const int divisor : {1, 2, 3, 4, 6, 8, 12})
+    if (least <= divisor) return divisor;
+  return (least + 7) / 8 * 8;
 }
 
 RenderCamera WithPlateWidth(const RenderCamera& frame, int width_px, int side_px) {
@@ -104,7 +94,7 @@ RenderCamera WithPlateWidth(const RenderCamera& frame, int width_px, int side_px
   const auto size = [&](int px) {
     return std::clamp(static_cast<int>(std::lround(px * factor)), 1, side_px);
   };
-  Scale(factor, &k);
+  ScaleResolution(factor, &k);
   k.width_px = size(k.width_px);
   k.height_px = size(k.height_px);
   return scaled;

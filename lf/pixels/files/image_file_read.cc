@@ -16,6 +16,7 @@
 #include "lf/pixels/files/picture_decoder.h"
 #include "lf/pixels/files/read_jpeg.h"
 #include "lf/pixels/files/read_raw.h"
+#include "lf/pixels/files/reduced_jpeg.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -66,6 +67,20 @@ Result<void> PartOfJpeg(const FileBytes& file, const WantedPixels& wanted, Image
   if (!std::holds_alternative<Image<uint8_t>>(part->image)) part->image.emplace<Image<uint8_t>>();
   LF_ASSIGN_OR_RETURN(part->rect, jpeg.Read(rect, &std::get<Image<uint8_t>>(part->image)));
   return {};
+}
+
+Result<int> ReducedFrom(const FileBytes& file, const WantedReduction& wanted, ImagePart* part) {
+  LF_ASSIGN_OR_RETURN(const ImageFormat format, ProbeImage(file.read, file.name));
+  if (format != ImageFormat::kJpeg) return 1;
+  LF_ASSIGN_OR_RETURN(JpegReader jpeg, JpegReader::Open(file.read, file.name));
+  part->info = jpeg.info();
+  LF_ASSIGN_OR_RETURN(const int reduction, wanted(part->info));
+  if (reduction == 1) return 1;
+  if (!std::holds_alternative<Image<uint8_t>>(part->image)) part->image.emplace<Image<uint8_t>>();
+  auto& image = std::get<Image<uint8_t>>(part->image);
+  LF_RETURN_IF_ERROR(jpeg.ReadReduced(reduction, &image));
+  part->rect = {0, 0, image.width(), image.height()};
+  return reduction;
 }
 
 Result<void> PartOfRaw(const FileBytes& file, const WantedPixels& wanted, ImagePart* part) {
@@ -148,6 +163,10 @@ Result<ExposureFacts> ReadExposureFactsBytes(std::string_view bytes, const std::
 
 Result<ImageFileInfo> ReadImageInfoBytes(std::string_view bytes, const std::string& name) {
   return WithoutThrowing(name, [&] { return InfoFrom(FileInMemory(bytes, name)); });
+}
+
+Result<int> ReadReducedJpeg(const fs::path& path, const WantedReduction& wanted, ImagePart* part) {
+  return FromFile(path, [&](const FileBytes& file) { return ReducedFrom(file, wanted, part); });
 }
 
 Result<void> ReadImagePart(const fs::path& path, const WantedPixels& wanted, ImagePart* part) {

@@ -158,6 +158,38 @@ Result<JpegReader> JpegReader::Open(const ByteSource& source, const std::string&
   return JpegReader(std::move(state));
 }
 
+// Calls libjpeg, and may therefore be left by longjmp.
+void JpegReader::ReadRows(const PixelRect& part, Image<uint8_t>* image) {
+  jpeg_decompress_struct& decompress = state_->decompress;
+  constexpr JDIMENSION kMostRows = 16;
+  JSAMPROW rows[kMostRows];
+  while (decompress.output_scanline < static_cast<JDIMENSION>(part.y_end)) {
+    const JDIMENSION y = decompress.output_scanline;
+    const JDIMENSION count = std::min(kMostRows, static_cast<JDIMENSION>(part.y_end) - y);
+    for (JDIMENSION i = 0; i < count; ++i)
+      rows[i] = image->row(static_cast<int>(y + i) - part.y_begin);
+    jpeg_read_scanlines(&decompress, rows, count);
+  }
+}
+
+Result<void> JpegReader::ReadReduced(int reduction, Image<uint8_t>* image) {
+  LF_CHECK(reduction == 2 || reduction == 4 || reduction == 8);
+  State& state = *state_;
+  jpeg_decompress_struct& decompress = state.decompress;
+  LF_RETURN_IF_ERROR(state.Run([&] {
+    decompress.scale_num = 1;
+    decompress.scale_denom = static_cast<unsigned>(reduction);
+    jpeg_start_decompress(&decompress);
+  }));
+  const PixelRect whole = {0, 0, static_cast<int>(decompress.output_width),
+                           static_cast<int>(decompress.output_height)};
+  image->Resize(whole.width(), whole.height(), state.info.channels);
+  return state.Run([&] {
+    ReadRows(whole, image);
+    jpeg_finish_decompress(&decompress);
+  });
+}
+
 Result<PixelRect> JpegReader::Read(const PixelRect& wanted, Image<uint8_t>* image) {
   State& state = *state_;
   jpeg_decompress_struct& decompress = state.decompress;
@@ -182,15 +214,7 @@ Result<PixelRect> JpegReader::Read(const PixelRect& wanted, Image<uint8_t>* imag
   std::vector<uint8_t> last_row(static_cast<size_t>(whole.width()) * state.info.channels);
   LF_RETURN_IF_ERROR(state.Run([&] {
     if (part.y_begin > 0) jpeg_skip_scanlines(&decompress, static_cast<JDIMENSION>(part.y_begin));
-    constexpr JDIMENSION kMostRows = 16;
-    JSAMPROW rows[kMostRows];
-    while (decompress.output_scanline < static_cast<JDIMENSION>(part.y_end)) {
-      const JDIMENSION y = decompress.output_scanline;
-      const JDIMENSION count = std::min(kMostRows, static_cast<JDIMENSION>(part.y_end) - y);
-      for (JDIMENSION i = 0; i < count; ++i)
-        rows[i] = image->row(static_cast<int>(y + i) - part.y_begin);
-      jpeg_read_scanlines(&decompress, rows, count);
-    }
+    ReadRows(part, image);
     // Skipping to the very end would not detect damage there, so the last row is decoded.
     if (decompress.output_scanline + 1 < decompress.output_height)
       jpeg_skip_scanlines(&decompress, decompress.output_height - 1 - decompress.output_scanline);

@@ -22,7 +22,7 @@ bool SamePixels(const lf::Image<uint8_t>& whole, const lf::Image<uint8_t>& image
 
 // The first eight bytes tell which part is wanted; the rest is the file. Any file must give either
 // an error, which names the file and does not depend on the wanted part, or a picture. The wanted
-// part must equal that part of the whole picture.
+// part must equal that part of the whole picture. A reduced picture must find the same damage.
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
   uint16_t corner[4];
   if (size_bytes < sizeof(corner)) return 0;
@@ -53,11 +53,18 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
   LF_CHECK(again.has_value());
   const auto whole_rect = again->Read({0, 0, info.width, info.height}, &whole);
   LF_CHECK(part_rect.has_value() == whole_rect.has_value());
+  auto third = lf::JpegReader::Open(source, "fuzz");
+  LF_CHECK(third.has_value());
+  const int reduction = 2 << corner[0] % 3;
+  lf::Image<uint8_t> reduced;
+  LF_CHECK(third->ReadReduced(reduction, &reduced).has_value() == whole_rect.has_value());
   if (!part_rect) {
     LF_CHECK(part_rect.error().message.starts_with("fuzz: "));
     return 0;
   }
   LF_CHECK(lf::Intersection(*part_rect, wanted) == wanted);
   LF_CHECK(SamePixels(whole, part, *part_rect, wanted));
+  LF_CHECK(reduced.width() == (info.width + reduction - 1) / reduction);
+  LF_CHECK(reduced.height() == (info.height + reduction - 1) / reduction);
   return 0;
 }

@@ -80,6 +80,31 @@ const std::vector<JpegKind> kKinds = {
     {3, 2, 2, false, 0}, {3, 2, 2, true, 0},  {3, 4, 1, false, 0}, {3, 4, 2, true, 0},
     {3, 2, 2, false, 1}, {3, 2, 2, false, 3}, {3, 1, 4, false, 0}, {3, 2, 2, false, 0, true}};
 
+// The picture is a wave of 128 grey steps, and noise. The means of squares of the whole picture
+// follow the wave, and reduced pixels come near to them.
+TEST(ReadJpeg, ReducedPixelsAreAboutMeans) {
+  for (const JpegKind& kind : kKinds)
+    for (const int reduction : {2, 4, 8}) {
+      const std::string file = JpegOfKind(333, 251, kind);
+      Image<uint8_t> whole, reduced;
+      ASSERT_TRUE(ReadPart(file, {0, 0, 333, 251}, &whole));
+      const ByteSource source = SourceOf(file);
+      auto reader = JpegReader::Open(source, "a.jpg");
+      ASSERT_TRUE(reader && reader->ReadReduced(reduction, &reduced));
+      ASSERT_EQ(reduced.width(), (333 + reduction - 1) / reduction);
+      ASSERT_EQ(reduced.height(), (251 + reduction - 1) / reduction);
+      double error = 0, count = 0;
+      for (int y = 0; y < 251 / reduction; ++y)
+        for (int x = 0; x < 333 / reduction; ++x, ++count) {
+          double mean = 0;
+          for (int i = 0; i < reduction * reduction; ++i)
+            mean += whole.at(x * reduction + i % reduction, y * reduction + i / reduction);
+          error += std::abs(reduced.at(x, y) - mean / (reduction * reduction));
+        }
+      EXPECT_LT(error / count, reduction == 2 ? 9 : reduction == 4 ? 7 : 4) << reduction;
+    }
+}
+
 TEST(ReadJpeg, APartIsBitForBitThatOfTheWhole) {
   uint64_t draw = 0;
   for (const JpegKind& kind : kKinds)

@@ -36,6 +36,9 @@ class FolderStore : public LfImageStore {
   // levels (lf_black_level, lf_white_level) exceed the file's bits, a mask file has another size
   // than the image, or the file's channels or its kind (camera raw) contradict lf_bayer.
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override;
+  // Reduces JPEG files without a mask and without a quarter turn, by 2, 4 or 8.
+  Result<int> LoadReduced(LfImageId id, int divisor, const Intrinsics& k,
+                          LfPixels* pixels) const override;
   bool IsThere(LfImageId id) const override;
   uint64_t StoredBytes(LfImageId id) const override;
   // Announces the image's file, but not its mask file.
@@ -53,6 +56,7 @@ class FolderStore : public LfImageStore {
   // Loads the pixels as recorded, without demosaicing.
   Result<void> LoadRecorded(ImagePart* part, LfImageId id, const PixelRect& rect,
                             LfPixels* pixels) const;
+  Result<int> LoadReducedBy(Loading* loading, LfImageId id, int divisor, LfPixels* pixels) const;
   std::unique_ptr<Loading> TakeLoading() const;
   void GiveBack(std::unique_ptr<Loading> loading) const;
 

@@ -10,17 +10,35 @@
 
 namespace lf {
 
-Result<LfPixels> LoadWithoutThrowing(const LfImageStore& store, LfImageId id, const PixelRect& rect,
-                                     const std::string& name, LfPixels pixels) {
+namespace {
+
+// Returns load(), or an error if that throws.
+template <class Load>
+auto WithoutThrowing(const std::string& name, const Load& load) -> decltype(load()) {
   try {
-    LF_RETURN_IF_ERROR(store.Load(id, rect, &pixels));
-    return pixels;
+    return load();
   } catch (const std::bad_alloc&) {
     return OutputError(fmt::format(
         "{}: too little memory to load it: lower --memory, or use a machine with more", name));
   } catch (const std::exception& exception) {
     return Error{KindOfReadFailure(exception), fmt::format("{}: {}", name, exception.what())};
   }
+}
+
+}  // namespace
+
+Result<LfPixels> LoadWithoutThrowing(const LfImageStore& store, LfImageId id, const PixelRect& rect,
+                                     const std::string& name, LfPixels pixels) {
+  return WithoutThrowing(name, [&]() -> Result<LfPixels> {
+    LF_RETURN_IF_ERROR(store.Load(id, rect, &pixels));
+    return std::move(pixels);
+  });
+}
+
+Result<int> LoadReducedWithoutThrowing(const LfImageStore& store, LfImageId id, int divisor,
+                                       const Intrinsics& k, const std::string& name,
+                                       LfPixels* pixels) {
+  return WithoutThrowing(name, [&] { return store.LoadReduced(id, divisor, k, pixels); });
 }
 
 void MachineFailure::Note(const Error& error) {

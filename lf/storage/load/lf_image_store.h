@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "lf/camera/pinhole.h"
 #include "lf/core/geometry.h"
 #include "lf/core/ids.h"
 #include "lf/core/result.h"
@@ -30,6 +31,18 @@ class LfImageStore {
   // is missing, broken or of another size than the calibration says. kOutput: the machine lacks
   // something, such as memory. The caller decides whether to continue without the image.
   virtual Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const = 0;
+
+  // Loads a whole LF image as Load() does, or, if that is faster, reduced: each pixel is about the
+  // mean of a square of LF pixels, and pixels that fill no square are cut off, as
+  // WithLargerPixels() of camera/resolution.h says. The mean may be one of stored values instead of
+  // light, which is for pictures that must be quick. Returns the number of LF pixels along each
+  // side of a square, which divides `divisor`; 1 for a whole LF image.
+  //   k  intrinsics of the LF image
+  virtual Result<int> LoadReduced(LfImageId id, int /*divisor*/, const Intrinsics& k,
+                                  LfPixels* pixels) const {
+    LF_RETURN_IF_ERROR(Load(id, {0, 0, k.width_px, k.height_px}, pixels));
+    return 1;
+  }
 
   // Returns true if the file of the LF image, or its encoded image in a packed store, exists, even
   // if it is broken. The answer may change, for example if a disk is unmounted during the run.
@@ -61,6 +74,10 @@ class LfImageStore {
 //   name  name of the LF image, for messages
 Result<LfPixels> LoadWithoutThrowing(const LfImageStore& store, LfImageId id, const PixelRect& rect,
                                      const std::string& name, LfPixels pixels);
+// Calls store.LoadReduced() likewise.
+Result<int> LoadReducedWithoutThrowing(const LfImageStore& store, LfImageId id, int divisor,
+                                       const Intrinsics& k, const std::string& name,
+                                       LfPixels* pixels);
 
 // Remembers the first failure to load that is the machine's fault (out of memory, too many open
 // files). A caller that leaves out LF images that cannot be loaded must call Check() at the end,
