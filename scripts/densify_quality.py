@@ -33,8 +33,8 @@ from lens_weights import decibels, text
 from quality import results
 
 NO_GUARD = "--no-guard --mode collect --estimator auto --lens-weights auto"
-# Virtual LF images of the larger photographs: half the size, and fewer than by default, to keep the time short.
-REDUCED = ("--divisor", 2, "--most", 600)
+FEWER = ("--most", 600)  # keeps the time short
+REDUCED = ("--divisor", 2, *FEWER)
 COLUMNS = ("recorded LF images", "virtual", "frame", "*R*", "*V*", "guarded")
 
 
@@ -110,9 +110,9 @@ def band(bench):
     table = lens_weights.Table(*COLUMNS, "all 288")
     compare_with_all(bench, table, "band", lambda frames: [
         ("all", frames, ()),
-        ("all, `--spacing 0.5`", frames, ("--spacing", 0.5)),
+        ("all, `--force --spacing 0.5`", frames, ("--force", "--spacing", 0.5, *FEWER)),
         ("every 2nd column", captures.band(frames, 2, 1), ()),
-        ("every 2nd column, `--spacing 1`", captures.band(frames, 2, 1), ("--spacing", 1)),
+        ("every 2nd column, `--force --spacing 1`", captures.band(frames, 2, 1), ("--force", "--spacing", 1, *FEWER)),
         ("every 4th column", captures.band(frames, 4, 1), ()),
         ("every 4th column and 2nd row", captures.band(frames, 4, 2), ()),
         ("every 8th column and 2nd row", captures.band(frames, 8, 2), ())],
@@ -141,7 +141,7 @@ def scenes(bench):
         for step in steps:
             kept = captures.square(field["frames"], range(0, side, step))
             part = quality.write_field(bench.folder / f"{scene}_{step}", field, kept)
-            bench.measure(table, [scene, len(kept)], part, frames, (), lambda frame, _: (of_all[frame],))
+            bench.measure(table, [scene, len(kept)], part, frames, FEWER, lambda frame, _: (of_all[frame],))
     return table
 
 
