@@ -34,7 +34,6 @@ from quality import results
 
 NO_GUARD = "--no-guard --mode collect --estimator auto --lens-weights auto"
 FEWER = ("--most", 600)  # keeps the time short
-REDUCED = ("--divisor", 2, *FEWER)
 COLUMNS = ("recorded LF images", "virtual", "frame", "*R*", "*V*", "guarded")
 
 
@@ -146,17 +145,21 @@ def scenes(bench):
 
 
 def against_all(bench, field, paths, parts):
-    """Returns the table of parts of a light field, against the frames of all its LF images.
+    """Returns the table of parts of a light field, against the frames of all its LF images. LF images are reduced to
+    half their size first: LF pixels are then about as large as elements, as in the ground truth.
 
-    paths  [(name of the frame, path)]
-    parts  [(name, frames)]
+    paths  {name of the frame: path}
+    parts  [(name, function that chooses among the frames of the light field)]
     """
     table = lens_weights.Table(*COLUMNS)
-    calibration = quality.write_field(bench.folder / "all", field, field["frames"])
-    frames = [(name, path, lens_weights.first_frame(bench.renderer, calibration, path, "")[0]) for name, path in paths]
-    for number, (name, kept) in enumerate(parts):
-        part = quality.write_field(bench.folder / f"part_{number}", field, kept)
-        bench.measure(table, [f"{len(kept)}, {name}"], part, frames, REDUCED)
+    whole = quality.of_areas(quality.write_field(bench.folder / "whole", field, field["frames"]), bench.folder / "half")
+    frames = [(name, path, lens_weights.first_frame(bench.renderer, whole, path, "")[0])
+              for name, path in paths.items()]
+    half = quality.read_field(whole)
+    for number, (name, choose) in enumerate(parts):
+        kept = choose(half["frames"])
+        part = quality.write_field(bench.folder / f"part_{number}", half, kept)
+        bench.measure(table, [f"{len(kept)}, {name}"], part, frames, FEWER)
     return table
 
 
@@ -164,24 +167,22 @@ def shop(bench):
     imported = bench.folder / "imported"
     results.call([bench.programs / "lfimport", bench.shared / "data/blender-shop/images", "-o", imported, "-q"])
     field = quality.read_field(imported / "transforms.json")
-    all_frames = field["frames"]
+    grid = lambda kept: lambda frames: captures.square(frames, kept)
     return against_all(
         bench, field,
-        [(f"focus {focus}", captures.middle_path(field, bench.folder / f"{focus}.yaml", (384, 256), 400, 0.7, focus))
-         for focus in (4.6, 8.12, 13)],
-        [("14 x 14", captures.square(all_frames, range(0, 27, 2))),
-         ("9 x 9", captures.square(all_frames, (0, 3, 6, 10, 13, 16, 20, 23, 26))),
-         ("5 x 5", captures.square(all_frames, (0, 6, 13, 20, 26))),
-         ("at random", captures.at_random(all_frames, 73, 1)), ("at random", captures.at_random(all_frames, 51, 1))])
+        {f"focus {focus}": captures.middle_path(field, bench.folder / f"{focus}.yaml", (384, 256), 400, 0.7, focus)
+         for focus in (4.6, 8.12, 13)},
+        [("9 x 9", grid((0, 3, 6, 10, 13, 16, 20, 23, 26))), ("5 x 5", grid((0, 6, 13, 20, 26))),
+         ("at random", lambda frames: captures.at_random(frames, 51, 1))])
 
 
 def cards(bench):
     field = captures.cards_field(bench.shared / "data/stanford-cards-9x9/images")
     return against_all(
         bench, field,
-        [(f"focus {focus}", captures.middle_path(field, bench.folder / f"{focus}.yaml", (320, 320), 500, 14.4, focus))
-         for focus in (148, 286)],
-        [("5 x 5 of 9 x 9", captures.square(field["frames"], range(0, 9, 2)))])
+        {f"focus {focus}": captures.middle_path(field, bench.folder / f"{focus}.yaml", (320, 320), 500, 14.4, focus)
+         for focus in (148, 286)},
+        [("5 x 5 of 9 x 9", lambda frames: captures.square(frames, range(0, 9, 2)))])
 
 
 def gain_of(report):

@@ -156,12 +156,14 @@ def of_areas(calibration, folder):
     folder.mkdir(parents=True)
     field = json.loads(calibration.read_text())
     field["lf_transfer"] = "linear"
-    for key in ("w", "h", "fl_x", "fl_y", "cx", "cy"):
-        field[key] = field[key] // 2 if key in "wh" else field[key] / 2
+    for owner in (field, *field["frames"]):
+        for key in {"w", "h", "fl_x", "fl_y", "cx", "cy"} & owner.keys():
+            owner[key] = owner[key] // 2 if key in "wh" else owner[key] / 2
+    light_of = linear(np.arange(256) / 255)
     for frame in field["frames"]:
         stored = cv2.imread(str(calibration.parent / frame["file_path"]))
         name = pathlib.Path(frame["file_path"]).stem + ".png"
-        light = halved(linear(stored / 255))
+        light = halved(light_of[stored])
         cv2.imwrite(str(folder / name), np.round(65535 * light).astype(np.uint16))
         frame["file_path"] = name
     (folder / "transforms.json").write_text(json.dumps(field))
