@@ -26,8 +26,8 @@ struct LeftOut {
 // not found, leave no gain.
 inline constexpr double kLeastGainDb = 1.5;
 
-// From this median on, virtual LF images are about as right as pixels can tell. If they leave no
-// gain, the mean is right as well.
+// From this median on, virtual LF images are about as right as pixels can tell. So is a mean that
+// they hardly exceed.
 inline constexpr double kNearlyRightDb = 36;
 
 // Leaves out up to eight LF images in turn, spread over the light field, and compares each with the
