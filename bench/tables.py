@@ -7,7 +7,7 @@ usage: bench/tables.py BUILD_DIR [--only NAME,...] [--resume] [--tiny] [--data .
 --only    these tables alone (names of --list)
 --resume  leave out tables whose record was made with the present sources and defaults
 --tiny    run every script with settings that take a few seconds, and write nothing: tests whether the scripts work
---data    folder with data/blender-shop, data/beer-colmap and groundtruth
+--data    folder with data/blender-shop, data/beer-colmap, data/stanford-cards-9x9 and groundtruth
 
 Sources must be committed: a record names the commit that it was made from. A script that fails is reported at the end;
 the other tables are made nevertheless. bench/run tables builds first. On two free cores all of it takes about two
@@ -61,6 +61,8 @@ TABLES = {
     "lens_weights-mosaics": ("quality",
                              "scripts/lens_weights.py {build}/bin/lfrenderer {data}/groundtruth --tables mosaics",
                              "--only nothing"),
+    **{f"densify_quality-{group}": ("densify", "scripts/densify_quality.py {build}/bin {data} --only " + group, None)
+       for group in ("planar", "band", "scenes", "shop", "cards", "spoiled", "flicker")},
     "image_orders": ("performance", "bench/image_orders.py {build}", "--density 0.002"),
     "forecast_table": ("cluster", "bench/forecast_table.py {build}", "--count 400 --packages 1,2"),
     "ray_usage": ("quality", "bench/ray_usage.py {build}", "--density 0.001"),

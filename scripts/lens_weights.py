@@ -63,8 +63,8 @@ def psnr(truth, picture):
     return -10 * np.log10(np.mean(error ** 2))
 
 
-def decibels(renderer, truth, calibration, path, options):
-    """Returns (PSNR, number of contributing LF images); None if the frame has no ray."""
+def first_frame(renderer, calibration, path, options):
+    """Returns (picture, number of contributing LF images); None if the frame has no ray."""
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
         result = subprocess.run(
@@ -75,8 +75,13 @@ def decibels(renderer, truth, calibration, path, options):
         if result.returncode != 0:
             sys.exit(result.stderr)
         report = json.loads((folder / "frames" / "report.json").read_text())
-        return (psnr(truth, linear_exr(folder / "frames" / "frame_0001.exr")),
-                report["frames"][0]["lf_images"])
+        return linear_exr(folder / "frames" / "frame_0001.exr"), report["frames"][0]["lf_images"]
+
+
+def decibels(renderer, truth, calibration, path, options):
+    """Returns (PSNR, number of contributing LF images); None if the frame has no ray."""
+    picture, images = first_frame(renderer, calibration, path, options)
+    return None if picture is None else psnr(truth, picture), images
 
 
 def text(found):
@@ -138,16 +143,14 @@ def table_of_captures(renderer, truth_folder, only):
                         focus_distance_m=PINHOLE_FOCUS_M, focus_plane={"normal": list(forward)})
         truth = linear_pfm(truth_folder / case["linear"])
         calibration = truth_folder / case["light_field"]
-        field = json.loads(calibration.read_text())
-        for frame in field["frames"]:
-            frame["file_path"] = str((calibration.parent / frame["file_path"]).resolve())
+        field = quality.read_field(calibration)
         for name, frames in captures(case, field["frames"]):
             with tempfile.TemporaryDirectory() as temporary:
                 folder = pathlib.Path(temporary)
-                (folder / "transforms.json").write_text(json.dumps(dict(field, frames=frames)))
+                kept = quality.write_field(folder, field, frames)
                 (folder / "path.yaml").write_text(quality.path_yaml(case))
-                found = {w: decibels(renderer, truth, folder / "transforms.json",
-                                     folder / "path.yaml", options) for w, options in WEIGHTS.items()}
+                found = {w: decibels(renderer, truth, kept, folder / "path.yaml", options)
+                         for w, options in WEIGHTS.items()}
             table.add(case["name"], name, f"{found['none'][1]} ({found['auto'][1]} weighed)",
                       *(text(found[w]) for w in WEIGHTS))
     return table

@@ -78,6 +78,21 @@ lens:
 """
 
 
+def read_field(calibration):
+    """Returns a transforms.json whose frames name their files by absolute paths: parts of it may lie in any folder."""
+    field = json.loads(calibration.read_text())
+    for frame in field["frames"]:
+        frame["file_path"] = str((calibration.parent / frame["file_path"]).resolve())
+    return field
+
+
+def write_field(folder, field, frames):
+    """Writes a light field that has these frames alone. Returns its calibration."""
+    folder.mkdir(exist_ok=True)
+    (folder / "transforms.json").write_text(json.dumps(dict(field, frames=frames)))
+    return folder / "transforms.json"
+
+
 def mosaic(calibration, folder):
     """Writes the light field as an RGGB mosaic sensor would have recorded it."""
     folder.mkdir(parents=True)
@@ -130,17 +145,25 @@ def linear(srgb):
     return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
 
 
+def encoded(light):
+    """Returns sRGB of linear light, from 0 to 1."""
+    light = np.clip(light, 0, 1)
+    return np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+
+
 def of_areas(calibration, folder):
     """Writes the light field at half its size, with pixels that show the means of areas."""
     folder.mkdir(parents=True)
     field = json.loads(calibration.read_text())
     field["lf_transfer"] = "linear"
-    for key in ("w", "h", "fl_x", "fl_y", "cx", "cy"):
-        field[key] = field[key] // 2 if key in "wh" else field[key] / 2
+    for owner in (field, *field["frames"]):
+        for key in {"w", "h", "fl_x", "fl_y", "cx", "cy"} & owner.keys():
+            owner[key] = owner[key] // 2 if key in "wh" else owner[key] / 2
+    light_of = linear(np.arange(256) / 255)
     for frame in field["frames"]:
         stored = cv2.imread(str(calibration.parent / frame["file_path"]))
         name = pathlib.Path(frame["file_path"]).stem + ".png"
-        light = halved(linear(stored / 255))
+        light = halved(light_of[stored])
         cv2.imwrite(str(folder / name), np.round(65535 * light).astype(np.uint16))
         frame["file_path"] = name
     (folder / "transforms.json").write_text(json.dumps(field))

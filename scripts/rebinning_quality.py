@@ -45,13 +45,9 @@ def ground_truth_cases(truth_folder, folder):
         truth = lens_weights.linear_pfm(truth_folder / case["linear"])
         calibration = truth_folder / case["light_field"]
         yield case["name"], calibration, path, truth
-        field = json.loads(calibration.read_text())
-        for frame in field["frames"]:
-            frame["file_path"] = str((calibration.parent / frame["file_path"]).resolve())
-        thinned = folder / (calibration.parent.name + "_4th")
-        thinned.mkdir(exist_ok=True)
-        (thinned / "transforms.json").write_text(json.dumps(dict(field, frames=field["frames"][::4])))
-        yield case["name"] + ", every 4th LF image", thinned / "transforms.json", path, truth
+        field = quality.read_field(calibration)
+        thinned = quality.write_field(folder / (calibration.parent.name + "_4th"), field, field["frames"][::4])
+        yield case["name"] + ", every 4th LF image", thinned, path, truth
 
 
 def synthetic_cases(renderer, folder):
@@ -67,18 +63,14 @@ def synthetic_cases(renderer, folder):
             yield f"{scene}, lens {words}", scenes.calibration(scene), path, truth
         # Keeps only the middle rows, so that the lens is twice as high as the capture.
         calibration = scenes.calibration(scene)
-        field = json.loads(calibration.read_text())
+        field = quality.read_field(calibration)
         up = lens_weights.np.array(field["frames"][0]["transform_matrix"])[:3, 1]
         places = [lens_weights.np.array(f["transform_matrix"])[:3, 3] @ up for f in field["frames"]]
         middle = sum(places) / len(places)
         kept = [f for f, p in zip(field["frames"], places) if abs(p - middle) < 2 * spacing]
-        for frame in kept:
-            frame["file_path"] = str((calibration.parent / frame["file_path"]).resolve())
-        band = folder / (scene + "_band")
-        band.mkdir(exist_ok=True)
-        (band / "transforms.json").write_text(json.dumps(dict(field, frames=kept)))
+        band = quality.write_field(folder / (scene + "_band"), field, kept)
         path, truth = scenes.truth(scene, 8 * spacing)
-        yield (f"{scene}, lens twice as high as the band", band / "transforms.json", path, truth)
+        yield f"{scene}, lens twice as high as the band", band, path, truth
 
 
 def faults_of(name, found):

@@ -107,6 +107,15 @@ class DensifyTest(ProgramTestCase):
     def test_so_does_that_of_mosaics(self):
         self.assertGreater(self.gain_db("--bayer"), 6)
 
+    def test_noise_does_not_hide_the_depths(self):
+        self.synth("--format", "png")
+        dice = np.random.default_rng(1)
+        for file in (self.field / "images").glob("*.png"):
+            picture = cv2.imread(str(file))
+            noisy = np.clip(picture + dice.normal(0, 8, picture.shape), 0, 255)
+            cv2.imwrite(str(file), np.rint(noisy).astype(np.uint8))
+        self.densify(most=20)
+
     def test_virtual_lf_images_are_marked_and_recorded_ones_stay_as_they_are(self):
         self.synth()
         report = json.loads(self.densify("--json"))

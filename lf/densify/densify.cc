@@ -222,14 +222,21 @@ Result<void> Densifier::Test() {
   const auto worst =
       std::min_element(report_.tests.begin(), report_.tests.end(),
                        [](const LeftOut& a, const LeftOut& b) { return a.GainDb() < b.GainDb(); });
+  const std::string reason =
+      MedianPsnrDb(report_.tests) >= kNearlyRightDb
+          ? std::string(
+                "The mean is nearly right, because neighbouring LF images differ little: render "
+                "the light field as it is, or try --force")
+          : fmt::format(
+                "Poses may be wrong, for example where equal patterns were confused, or the depths "
+                "({:.4g} to {:.4g}): check the poses, state --depths, or try --force",
+                1 / plan_.range.greatest, plan_.range.least > 0 ? 1 / plan_.range.least : INFINITY);
   return InputError(fmt::format(
-      "{} LF images were left out in turn and made from their neighbours: the result is only "
-      "{:.1f} "
-      "dB better than a mean of the neighbours, expected at least {} dB (worst: {}, {:.1f} dB). "
-      "Poses may be wrong, for example where equal patterns were confused, or the depths "
-      "({:.4g} to {:.4g}): check the poses, state --depths, or try --force",
-      report_.tests.size(), gain_db, kLeastGainDb, worst->name, worst->GainDb(),
-      1 / plan_.range.greatest, plan_.range.least > 0 ? 1 / plan_.range.least : INFINITY));
+      "{} LF images were left out in turn and made from their neighbours: at {:.0f} dB, the result "
+      "is only {:.1f} dB better than a mean of the neighbours, expected at least {} dB (worst: {}, "
+      "{:.1f} dB). {}",
+      report_.tests.size(), MedianPsnrDb(report_.tests), gain_db, kLeastGainDb, worst->name,
+      worst->GainDb(), reason));
 }
 
 Result<void> Densifier::OpenWriter() {

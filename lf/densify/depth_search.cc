@@ -19,6 +19,7 @@ namespace {
 
 constexpr int kSearchedWidth = 200;
 constexpr size_t kReferences = 8, kMostViews = 6;
+constexpr int kTexture = 8, kSearchedBorder = 2;
 
 // Returns the sum of the absolute differences of green beside and above a pixel.
 int TextureAt(const Image<uint16_t>& tones, int x, int y) {
@@ -26,12 +27,23 @@ int TextureAt(const Image<uint16_t>& tones, int x, int y) {
          std::abs(tones.at(x, y + 1, 1) - tones.at(x, y - 1, 1));
 }
 
+// Returns the largest cost of a match that counts as good. Noise makes right matches dear as well:
+// where it does, the better half of the textured pixels counts.
+int GoodCost(const Image<uint16_t>& tones, const ChosenPlanes& chosen) {
+  constexpr int kGood = 40;
+  std::vector<double> costs;
+  for (int y = kSearchedBorder; y < tones.height() - kSearchedBorder; ++y)
+    for (int x = kSearchedBorder; x < tones.width() - kSearchedBorder; ++x)
+      if (TextureAt(tones, x, y) > kTexture) costs.push_back(chosen.cost.at(x, y));
+  return costs.empty() ? kGood : std::max(kGood, static_cast<int>(Median(std::move(costs))));
+}
+
 // Appends the inverse depths of the pixels of one LF image that are sure.
 void AppendSure(const WorkingImage& reference, std::span<const SweepView> views,
                 std::vector<double>* found) {
   constexpr double kGreatestShift = 0.3, kBeyondInfinity = 0.1, kLeastStep_px = 0.5;
   constexpr int kMostSearched = 220;
-  constexpr int kTexture = 8, kCheap = 40, kClear = 6, kBorder = 2;
+  constexpr int kClear = 6;
   std::vector<double> shifts;
   for (const SweepView& view : views)
     shifts.push_back(ShiftPerInverseDepth(reference.camera, view.image->camera));
@@ -47,9 +59,10 @@ void AppendSure(const WorkingImage& reference, std::span<const SweepView> views,
   ComputeMatchingCosts(reference, views, range, planes,
                        {0, 0, reference.width(), reference.height()}, &costs);
   const ChosenPlanes chosen = ChoosePlanes(costs, reference.tones, true);
-  for (int y = kBorder; y < reference.height() - kBorder; ++y)
-    for (int x = kBorder; x < reference.width() - kBorder; ++x)
-      if (TextureAt(reference.tones, x, y) > kTexture && chosen.cost.at(x, y) < kCheap &&
+  const int good = GoodCost(reference.tones, chosen);
+  for (int y = kSearchedBorder; y < reference.height() - kSearchedBorder; ++y)
+    for (int x = kSearchedBorder; x < reference.width() - kSearchedBorder; ++x)
+      if (TextureAt(reference.tones, x, y) > kTexture && chosen.cost.at(x, y) < good &&
           chosen.lead.at(x, y) > kClear && chosen.place.at(x, y) < static_cast<float>(planes - 3))
         found->push_back(range.least +
                          static_cast<double>(chosen.place.at(x, y)) * extent / (planes - 1));

@@ -174,6 +174,12 @@ Result<std::vector<LeftOut>> TestByLeavingOut(const LightField& light_field,
   return tests;
 }
 
+double MedianPsnrDb(const std::vector<LeftOut>& tests) {
+  std::vector<double> psnrs;
+  for (const LeftOut& test : tests) psnrs.push_back(test.virtual_psnr_db);
+  return Median(std::move(psnrs));
+}
+
 double MedianGainDb(const std::vector<LeftOut>& tests) {
   std::vector<double> gains;
   for (const LeftOut& test : tests) gains.push_back(test.GainDb());

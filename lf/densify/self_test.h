@@ -26,6 +26,10 @@ struct LeftOut {
 // not found, leave no gain.
 inline constexpr double kLeastGainDb = 1.5;
 
+// From this median on, virtual LF images are about as right as pixels can tell. So is a mean that
+// they hardly exceed.
+inline constexpr double kNearlyRightDb = 36;
+
 // Leaves out up to eight LF images in turn, spread over the light field, and compares each with the
 // virtual LF image that is made of its neighbours; both are reduced to about 200 pixels and
 // smoothed. The distances between LF cameras are therefore larger than they will be. LF images on
@@ -36,6 +40,7 @@ Result<std::vector<LeftOut>> TestByLeavingOut(const LightField& light_field,
                                               const LfImageStore& store, const DensifyPlan& plan,
                                               ThreadPool& pool);
 
+double MedianPsnrDb(const std::vector<LeftOut>& tests);
 double MedianGainDb(const std::vector<LeftOut>& tests);
 
 }  // namespace lf

@@ -424,8 +424,11 @@ uint64_t BatchCollector::AddChannelsByReference(const BatchImage& image, const L
 
 LfPixels BatchCollector::DefocusIn(size_t frame, const BatchImage& image, LfPixels memory) const {
   const CollectedFrame& of = frames_[frame];
-  return DefocusOf(image.depths, light_field_.Camera(image.id), of.camera.focus_plane,
-                   of.guard->camera_distance_w, image.loaded, std::move(memory));
+  const PinholeCamera lf_camera = light_field_.Camera(image.id);
+  const double unit_px = DefocusUnitPx(image.depths.depths.divisor, lf_camera.intrinsics,
+                                       of.camera.pinhole.intrinsics);
+  return DefocusOf(image.depths, lf_camera, of.camera.focus_plane, of.guard->camera_distance_w,
+                   unit_px, image.loaded, std::move(memory));
 }
 
 // Runs body(i) for each item i in [0, count), and measures the CPU time. If there are many items,

@@ -52,7 +52,14 @@ class FocusDepths {
   Vec3 of_ideal_;
 };
 
+// Returns the mean focal length.
+double FocalPx(const Intrinsics& k) { return std::sqrt(std::abs(k.fx_px * k.fy_px)); }
+
 }  // namespace
+
+double DefocusUnitPx(int divisor, const Intrinsics& lf_camera, const Intrinsics& frame) {
+  return std::max({1.0, static_cast<double>(divisor), FocalPx(lf_camera) / FocalPx(frame)});
+}
 
 NearbyDepths NearbyDepthsOf(const LfDepths& depths) {
   NearbyDepths nearby;
@@ -79,16 +86,16 @@ NearbyDepths NearbyDepthsOf(const LfDepths& depths) {
 }
 
 LfPixels DefocusOf(const NearbyDepths& nearby, const PinholeCamera& lf_camera,
-                   const Plane& focus_plane, double camera_distance_w, const PixelRect& rect,
-                   LfPixels memory) {
+                   const Plane& focus_plane, double camera_distance_w, double unit_px,
+                   const PixelRect& rect, LfPixels memory) {
   LfPixels defocus = std::move(memory);
   defocus.Reset(rect, BayerPattern::kNone);
   const FocusDepths focus(lf_camera, focus_plane);
   const Intrinsics& k = lf_camera.intrinsics;
-  // Converts differences of inverse depth to shares of (kOutOfFocus_px - kInFocus_px).
-  const auto scale = static_cast<float>(std::sqrt(std::abs(k.fx_px * k.fy_px)) * camera_distance_w /
-                                        (kOutOfFocus_px - kInFocus_px));
-  constexpr auto kBegin = static_cast<float>(kInFocus_px / (kOutOfFocus_px - kInFocus_px));
+  // Converts differences of inverse depth to shares of (kOutOfFocus - kInFocus).
+  const auto scale =
+      static_cast<float>(FocalPx(k) * camera_distance_w / unit_px / (kOutOfFocus - kInFocus));
+  constexpr auto kBegin = static_cast<float>(kInFocus / (kOutOfFocus - kInFocus));
   constexpr auto kRange = static_cast<float>(LfPixels::kOpaque - LfPixels::kTransparent);
   const auto step = static_cast<float>((nearby.depths.greatest - nearby.depths.least) / 65534);
   const auto first = static_cast<float>(nearby.depths.least);

@@ -55,10 +55,25 @@ TEST(Defocus, GrowsWithTheDistanceOfNeighbouringPictures) {
          {std::pair(0.0, 0.0), {0.5, 0.0}, {0.75, 0.25}, {0.9, 0.5}, {1.3, 1.0}, {4.0, 1.0}})
       for (const double side : {-1, 1}) {
         const NearbyDepths nearby = NearbyDepthsOf(DepthsOf(1 + side * distance_px / 5, divisor));
-        const LfPixels defocus = DefocusOf(nearby, camera, focus, 0.1, kWhole);
+        const LfPixels defocus = DefocusOf(nearby, camera, focus, 0.1, 1, kWhole);
         for (const int x : {0, 11, kImageWidth - 1})
           EXPECT_NEAR(ShareAt(defocus, x, 7), share, 1e-3) << distance_px;
       }
+}
+
+TEST(Defocus, IsMeasuredInElementsOrPixelsOfVirtualImagesIfTheseAreLarger) {
+  const PinholeCamera camera = CameraAt({0, 0, 0}, {0, 0, 1});
+  const NearbyDepths nearby = NearbyDepthsOf(DepthsOf(1.36));  // 1.8 LF pixels
+  const Plane focus = {{0, 0, 1}, 1};
+  EXPECT_NEAR(ShareAt(DefocusOf(nearby, camera, focus, 0.1, 1, kWhole), 3, 3), 1, 1e-3);
+  EXPECT_NEAR(ShareAt(DefocusOf(nearby, camera, focus, 0.1, 2, kWhole), 3, 3), 0.5, 1e-3);
+  Intrinsics frame = camera.intrinsics;
+  EXPECT_EQ(DefocusUnitPx(1, camera.intrinsics, frame), 1);
+  EXPECT_EQ(DefocusUnitPx(3, camera.intrinsics, frame), 3);
+  frame.fx_px = frame.fy_px = 12.5;
+  EXPECT_EQ(DefocusUnitPx(3, camera.intrinsics, frame), 4);
+  frame.fx_px = frame.fy_px = 200;
+  EXPECT_EQ(DefocusUnitPx(1, camera.intrinsics, frame), 1);
 }
 
 TEST(Defocus, IsThatOfTheWorstPixelAround) {
@@ -67,14 +82,14 @@ TEST(Defocus, IsThatOfTheWorstPixelAround) {
   depths.numbers.at(5, 5) = DepthNumberOf(1.5);
   depths.numbers.at(15, 9) = LfDepths::kUnknown;
   const LfPixels defocus =
-      DefocusOf(NearbyDepthsOf(depths), camera, {{0, 0, 1}, 1}, 0.1, {2, 3, 20, 14});
+      DefocusOf(NearbyDepthsOf(depths), camera, {{0, 0, 1}, 1}, 0.1, 1, {2, 3, 20, 14});
   for (int y = 3; y < 14; ++y)
     for (int x = 2; x < 20; ++x) {
       const bool is_near = (std::abs(x - 5) <= 1 && std::abs(y - 5) <= 1) ||
                            (std::abs(x - 15) <= 1 && std::abs(y - 9) <= 1);
       EXPECT_NEAR(ShareAt(defocus, x - 2, y - 3), is_near ? 1 : 0, 1e-3) << x << " " << y;
     }
-  const LfPixels unknown = DefocusOf({}, camera, {{0, 0, 1}, 1}, 0.1, kWhole);
+  const LfPixels unknown = DefocusOf({}, camera, {{0, 0, 1}, 1}, 0.1, 1, kWhole);
   EXPECT_EQ(ShareAt(unknown, 3, 4), 1);
 }
 
@@ -100,12 +115,12 @@ TEST(Defocus, IsNoneOnATiltedFocusPlane) {
                                focus.normal.dot(ray.At(1) - ray.At(0));
         depths.numbers.at(x, y) = DepthNumberOf(1 / depth_w);
       }
-    const LfPixels defocus = DefocusOf(NearbyDepthsOf(depths), camera, focus, 0.1, kWhole);
+    const LfPixels defocus = DefocusOf(NearbyDepthsOf(depths), camera, focus, 0.1, 1, kWhole);
     for (int y = 0; y < kImageHeight; ++y)
       for (int x = 0; x < kImageWidth; ++x) EXPECT_EQ(ShareAt(defocus, x, y), 0) << x << " " << y;
     // The depths differ from those of a plane that is not tilted.
     const LfPixels untilted =
-        DefocusOf(NearbyDepthsOf(depths), camera, {{0, 0, 1}, 1.2}, 3, kWhole);
+        DefocusOf(NearbyDepthsOf(depths), camera, {{0, 0, 1}, 1.2}, 3, 1, kWhole);
     const auto& values = untilted.radiance.pixels();
     EXPECT_EQ(*std::max_element(values.begin(), values.end()), LfPixels::kOpaque);
   }
@@ -137,7 +152,7 @@ class DefocusStore : public DepthStore {
       : DepthStore(field), field_(field), focus_(focus) {}
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override {
     LF_RETURN_IF_ERROR(DepthStore::Load(id, rect, pixels));
-    *pixels = DefocusOf(NearbyDepthsOf(pixels->depths), field_.Camera(id), focus_, 0.01, rect);
+    *pixels = DefocusOf(NearbyDepthsOf(pixels->depths), field_.Camera(id), focus_, 0.01, 1, rect);
     return {};
   }
 
