@@ -40,7 +40,7 @@ Result<void> CheckKind(const LightField& light_field) {
   if (light_field.encoding.AlphaIsLight())
     return InputError(
         "alpha is light (lf_alpha), and virtual LF images would need opacities, which are not "
-        "estimated: use --lf-alpha mask");
+        "estimated: use --image-alpha mask");
   if (light_field.encoding.masks_clipped)
     return InputError(
         "the light field has brackets (lf_masks_clipped), which are not supported: densify the LF "
