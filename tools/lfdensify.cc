@@ -168,6 +168,9 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
                       lf::Densify(light_field, options, pool, [&](const lf::DensifyProgress& now) {
                         meter.Update(now.done, now.total, now.step);
                       }));
+  if (!report.dense.empty())
+    return lf::InputError(fmt::format(
+        "{}; render the light field as it is, or ask for a smaller --spacing", report.dense));
   const double total_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   LF_RETURN_IF_ERROR(lf::PrintReport(common.json ? lf::DensifyJson(report, options, total_s)
