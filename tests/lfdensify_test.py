@@ -183,6 +183,88 @@ class DensifyTest(ProgramTestCase):
         self.densify("--overwrite", "--allow-missing", 1)
         self.fails(3, [broken.name], DENSIFY, self.field, "-o", self.store, "--overwrite", "--strict")
 
+    # lfrenderer --densify
+
+    def small_path(self, resolution="[80, 60]"):
+        path = self.write_path(aperture=0.04, frames=2)
+        path.write_text(path.read_text().replace("[160, 120]", resolution))
+        return path
+
+    def call_of_film(self, path, *options, field=None, out=None):
+        return [RENDERER, field or self.field, path, "-o", out or self.folder / "film", "--no-contact-sheet", *options]
+
+    @staticmethod
+    def frames_of(out):
+        return [frame.read_bytes() for frame in sorted(out.glob("frame_*.exr"))]
+
+    def test_lfrenderer_makes_the_store_that_lfdensify_makes_and_keeps_it(self):
+        self.synth()
+        path, film, other = self.small_path(), self.folder / "film", self.folder / "other"
+        self.succeeds(*self.call_of_film(path, "--densify"))
+        self.succeeds(DENSIFY, self.field, path, "-o", self.store)
+        self.assertEqual(contents(film / "densified.lfs"), contents(self.store))
+        self.succeeds(*self.call_of_film(path, field=self.store, out=other))
+        self.assertEqual(len(self.frames_of(film)), 2)
+        self.assertEqual(self.frames_of(film), self.frames_of(other))
+        before = (film / "densified.lfs").stat()
+        self.succeeds(*self.call_of_film(path, "--densify", "--filter", "bicubic"))
+        self.assertNotEqual(self.frames_of(film), self.frames_of(other))
+        self.assertEqual((film / "densified.lfs").stat(), before)
+        path.write_text(path.read_text().replace("[80, 60]", "[60, 45]"))
+        self.fails(3, ["densified.lfs", "--overwrite"], *self.call_of_film(path, "--densify"))
+        self.succeeds(*self.call_of_film(path, "--densify", "--overwrite"))
+        self.assertNotEqual(contents(film / "densified.lfs"), contents(self.store))
+
+    def test_lfrenderer_resumes_a_store_that_was_interrupted(self):
+        self.synth()
+        path, film = self.small_path(), self.folder / "film"
+        unfinished = film / "densified.lfs.unfinished"
+        call = [str(word) for word in self.call_of_film(path, "--densify", "--threads", 1)]
+        process = subprocess.Popen(call, stderr=subprocess.PIPE, text=True)
+        wait_until(unfinished.exists, process)
+        process.send_signal(signal.SIGINT)
+        last = process.communicate()[1].splitlines()[-1]
+        self.assertEqual(process.returncode, 5)
+        self.assertTrue(last.endswith("--densify --threads 1 --resume"), last)
+        self.assertEqual(self.frames_of(film), [])
+        self.fails(2, ["densified.lfs", "--resume"], *call)
+        self.succeeds(*call, "--resume")
+        self.succeeds(DENSIFY, self.field, path, "-o", self.store)
+        self.assertEqual(contents(film / "densified.lfs"), contents(self.store))
+        self.assertEqual(len(self.frames_of(film)), 2)
+
+    def test_lfrenderer_renders_a_dense_light_field_as_it_is(self):
+        self.synth()
+        path, film, other = self.small_path("[16, 12]"), self.folder / "film", self.folder / "other"
+        result = self.call(*self.call_of_film(path, "--densify"))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("makes no virtual LF images", result.stderr)
+        self.succeeds(*self.call_of_film(path, out=other))
+        self.assertEqual(self.frames_of(film), self.frames_of(other))
+        self.assertFalse((film / "densified.lfs").exists())
+
+    def test_lfrenderer_names_broken_lf_images_that_it_left_out(self):
+        self.synth()
+        broken = next(self.field.rglob("*.exr"))
+        broken.write_bytes(broken.read_bytes()[:100])
+        call = self.call_of_film(self.small_path(), "--densify")
+        self.fails(6, [broken.name, "render again with --overwrite"], *call)
+        self.assertEqual(len(self.frames_of(self.folder / "film")), 2)
+        self.succeeds(*call, "--allow-missing", 1)
+        self.fails(3, [broken.name], *call, "--overwrite", "--strict")
+
+    def test_lfrenderer_refuses_what_it_cannot_densify_or_render_before_any_work(self):
+        self.synth()
+        path = self.small_path()
+        for words, options in ((["--shard", "lfdensify"], ["--shard", "1/2"]),
+                               (["--mode rebin", "--no-guard"], ["--mode", "rebin"]),
+                               (["samples>=N", "--no-guard"], ["--no-guard", "--stop-when", "samples>=1"])):
+            self.fails(2, words, *self.call_of_film(path, "--densify", *options))
+        self.fails(2, ["--densify", "lfdensify"], RENDERER, "a.lfp", "-o", self.folder / "film", "--densify")
+        self.assertFalse((self.folder / "film").exists())
+        self.densify()
+        self.fails(2, ["virtual LF images already"], *self.call_of_film(path, "--densify", field=self.store))
+
     # Refusals
 
     def rewrite(self, change):

@@ -15,7 +15,8 @@ import cv2
 import numpy as np
 
 from matrix_world import (BROKEN, FRAMES, MISSING, MODES, MOST_IMAGES, Difference,
-                          ProgramFailed, World, is_of_packages, last_line, once, run)
+                          ProgramFailed, World, is_of_packages, last_line, once,
+                          packaged_input, run)
 
 SHARDS = 2
 LEAST_PSNR_DB = 38
@@ -33,7 +34,7 @@ RUNS = {  # options with which a run changes the content of the frames
     "area": ["--order", "area", "--max-images", MOST_IMAGES],
 }
 INPUTS = ("folder", "store", "lossy store", "store of packages", "lossy store of packages",
-          "needed pixels", "lossy needed pixels")
+          "needed pixels", "lossy needed pixels", "densified store")
 CUTS = ("whole", "packages", "moved packages", "shards", "shards of packages", "lfsubmit")
 FIELDS = ("rgb", "mosaic", "alpha", "opacity", "falloff", "flawed", "flawed mosaic")
 VALUES = {"field": FIELDS, "input": INPUTS, "cut": CUTS, "mode": tuple(MODES), "run": tuple(RUNS)}
@@ -78,7 +79,7 @@ class Matrix(World):
         else:
             if order:  # lfpreprocessor gets the order and the limit of LF images, which packages store
                 options = MODES[cell.mode]
-            source = "folder" if self.is_moved(cell) else cell.input
+            source = packaged_input(cell.input) if self.is_moved(cell) else cell.input
             inputs = self.packages(cell.field, source, cell.mode, order)
         moved = ["--lightfield", self.input_of(cell)] if self.is_moved(cell) else []
         if cell.cut == "lfsubmit":
@@ -96,7 +97,7 @@ class Matrix(World):
                 Step(merge, [*merge, "--resume"])]
 
     def is_moved(self, cell):
-        """Returns True if the packages were made from the folder, but read another input."""
+        """Returns True if the packages were made from packaged_input(), but read another input."""
         return cell.cut == "moved packages" or (
             cell.cut == "lfsubmit" and is_of_packages(cell.input))
 
@@ -116,7 +117,7 @@ class Matrix(World):
             has_own_order = source == "lossy needed pixels"
         if not has_own_order:
             if "lossy" not in source:
-                source = "folder"
+                source = packaged_input(source)
             elif source != "lossy needed pixels":
                 source = "lossy store"
             else:
@@ -196,7 +197,8 @@ class Matrix(World):
         """Renders a cell as its run requires. A cell that must be refused is not interrupted."""
         steps = self.steps(cell, out)
         if shall_be_refused:
-            finish = ["--resume", "--finish", f"1-{FRAMES}"] if cell.run == "finish" else []
+            finishes = cell.run == "finish" and cell.cut != "lfsubmit"  # lfsubmit is refused when the job is submitted
+            finish = ["--resume", "--finish", f"1-{FRAMES}"] if finishes else []
             return self.ended(cell, out, [step._replace(words=[*step.words, *finish])
                                           for step in steps])
         if cell.run in ("killed", "noise killed"):
@@ -379,9 +381,11 @@ class Matrix(World):
     def check_early(self, cell, plain_cell, rendered):
         """Compares frames that were finished early with renders of the LF images that they name. Rebinned rays depend
         on the course of a render, and stores of packages have an order that is not written anywhere, so they are
-        skipped."""
+        skipped, as are densified stores, whose virtual LF images are made of many files each."""
         has_own_order = is_of_packages(cell.input) and not self.is_moved(cell)
         if render_mode(cell.mode) != "collect" or has_own_order or is_of_packages(plain_cell.input):
+            return
+        if cell.input == "densified store":
             return
         for frame, place in rendered.early.items():
             if rendered.early_pixels[frame] != self.pixels_before(plain_cell, place)[frame]:

@@ -26,10 +26,13 @@ MODES = {
     "bilinear area": ["--lens-weights", "area"],
     "bilinear hat": ["--lens-weights", "hat"],
     "bicubic": ["--filter", "bicubic"],
+    "unguarded": ["--no-guard"],
     "rebin": ["--mode", "rebin", "--max-rays", MOST_RAYS],
     "hybrid": ["--mode", "hybrid", "--max-rays", MOST_RAYS],
     "hybrid none": ["--mode", "hybrid", "--lens-weights", "none", "--max-rays", MOST_RAYS],
 }
+# The pictures of the LF images do not fit one another, so that the depths are arbitrary; they are the same each time.
+DENSIFY = ["--depths", 0.3, 20, "--most", 100, "--force"]
 BROKEN, MISSING, MASKED, BRIGHTER = 83, 97, (70, 86), 85  # LF images with flaws, near the middle
 
 PATH_YAML = """format: lfpath 1
@@ -215,6 +218,8 @@ class World:
 
     def package_options(self, mode):
         """Returns the options of a mode on which packages depend."""
+        if mode == "unguarded":
+            return MODES[mode]
         options = MODES[mode] if mode != "default" else []
         return [word for name, value in zip(options[::2], options[1::2]) for word in (name, value)
                 if name in ("--estimator", "--lens-weights") or
@@ -238,15 +243,23 @@ class World:
 
     @once
     def store(self, field, source, mode):
+        store = self.new_folder(f"{source} of {field}") / "a.lfs"
+        if source == "densified store":
+            self.make("lfdensify", self.folder_of(field), "-o", store, *DENSIFY)
+            return store
         if is_of_packages(source):
             words = [*self.packages(field, "folder", mode, ())]
             words += ["--needed-pixels"] if "needed" in source else []
         else:
             words = [self.folder_of(field)]
-        store = self.new_folder(f"{source} of {field}") / "a.lfs"
         profile = "default" if "lossy" in source else "lossless"
         self.make("lfcompressor", *words, "-o", store, "--profile", profile)
         return store
+
+
+def packaged_input(source):
+    """Returns the input from which packages are made that take their LF images from another one."""
+    return source if source == "densified store" else "folder"
 
 
 def is_of_packages(source):

@@ -138,7 +138,7 @@ std::vector<std::string> DensityWarnings(const PreprocessReport& report, const C
         fmt::format("frame {}: expect double edges, {:.0f} px apart, at {}{}, because LF cameras "
                     "are {} apart in the lens; {} or less would be needed. What would help: {}a "
                     "scene that lies {}; frames of {} x {} elements instead of {} x {}; or a "
-                    "capture {:.0f} times as dense along each axis",
+                    "capture {:.0f} times as dense along each axis{}",
                     sparse.frame.value, most_px, LengthText(density.DepthOfMost_w(), path.unit_m),
                     DepthsText(facts), LengthText(density.camera_distance_w, path.unit_m),
                     LengthText(density.camera_distance_w / most_px, path.unit_m),
@@ -146,7 +146,10 @@ std::vector<std::string> DensityWarnings(const PreprocessReport& report, const C
                                                RangeText(*advice.focus, path.unit_m))
                                  : "",
                     RangeText(advice.depths, path.unit_m), advice.width_px, advice.height_px,
-                    plate.width_px, plate.height_px, std::ceil(most_px / kDoubleEdge_px)));
+                    plate.width_px, plate.height_px, std::ceil(most_px / kDoubleEdge_px),
+                    report.light_field_virtual_count == 0
+                        ? ", or virtual LF images between the recorded ones (lfdensify)"
+                        : ""));
   }
   size_t black_count = 0;
   const FrameForecast* black = nullptr;

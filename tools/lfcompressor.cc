@@ -12,6 +12,7 @@
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
+#include "tools/common/store_options.h"
 #include "tools/compress_report.h"
 
 #include "lf/distribute/compress/compress.h"
@@ -79,9 +80,7 @@ void AddInput(CLI::App& app, Arguments& a) {
 
 void AddOutput(CLI::App& app, Arguments& a) {
   lf::OptionGroup output(app, lf::kOutputGroup);
-  output.Add("-o,--output STORE.lfs", a.output, "Packed store to write")
-      ->required()
-      ->check(lf::NotEmpty());
+  lf::AddStoreOutput(output, a.output);
   output
       .Add("--shard-size SIZE", a.shard_size,
            "Split the store into files of about this size\n"
@@ -127,15 +126,7 @@ void AddQuality(CLI::App& app, Arguments& a) {
 
 void AddRunning(CLI::App& app, Arguments& a) {
   lf::OptionGroup running(app, lf::kRunningGroup);
-  auto* resume = running.AddFlag("--resume", a.resume,
-                                 "Continue an unfinished store\n"
-                                 "Give the same inputs and options as when the store was begun. "
-                                 "The image files must be unchanged.");
-  running
-      .AddFlag("--overwrite", a.overwrite,
-               "Replace an existing store, finished or unfinished\n"
-               "A file that is not a packed store is never replaced.")
-      ->excludes(resume);
+  lf::AddStoreRestart(running, a.resume, a.overwrite);
   running.AddFlag(
       "--verify", a.verify,
       "Check the store after writing it\n"

@@ -10,6 +10,7 @@
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
+#include "tools/common/store_options.h"
 #include "tools/densify_report.h"
 
 #include "lf/camera/path/path_yaml.h"
@@ -74,9 +75,7 @@ void AddInput(CLI::App& app, Arguments& a) {
 
 void AddOutput(CLI::App& app, Arguments& a) {
   lf::OptionGroup output(app, lf::kOutputGroup);
-  output.Add("-o,--output STORE.lfs", a.output, "Packed store to write")
-      ->required()
-      ->check(lf::NotEmpty());
+  lf::AddStoreOutput(output, a.output);
 }
 
 void AddQuality(CLI::App& app, Arguments& a) {
@@ -113,15 +112,7 @@ void AddQuality(CLI::App& app, Arguments& a) {
 
 void AddRunning(CLI::App& app, Arguments& a) {
   lf::OptionGroup running(app, lf::kRunningGroup);
-  auto* resume = running.AddFlag("--resume", a.resume,
-                                 "Continue an unfinished store\n"
-                                 "Give the same inputs and options as when the store was begun. "
-                                 "The image files must be unchanged.");
-  running
-      .AddFlag("--overwrite", a.overwrite,
-               "Replace an existing store, finished or unfinished\n"
-               "A file that is not a packed store is never replaced.")
-      ->excludes(resume);
+  lf::AddStoreRestart(running, a.resume, a.overwrite);
   running
       .Add("--memory SIZE", a.memory,
            "Memory for LF images that are kept (2G)\n"
@@ -177,6 +168,9 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
                       lf::Densify(light_field, options, pool, [&](const lf::DensifyProgress& now) {
                         meter.Update(now.done, now.total, now.step);
                       }));
+  if (!report.dense.empty())
+    return lf::InputError(fmt::format(
+        "{}; render the light field as it is, or ask for a smaller --spacing", report.dense));
   const double total_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   LF_RETURN_IF_ERROR(lf::PrintReport(common.json ? lf::DensifyJson(report, options, total_s)

@@ -14,6 +14,7 @@
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
 #include "tools/render_arguments.h"
+#include "tools/render_densified.h"
 #include "tools/render_end.h"
 #include "tools/render_summary.h"
 
@@ -35,7 +36,8 @@ constexpr lf::HelpTexts kHelp = {
   lfrenderer capture/ path.yaml -o frames --stop-when "noise<=0.002"
   lfrenderer packages/package-*.lfp -o frames            # packages of lfpreprocessor
   lfrenderer capture/ path.yaml -o frames --shard 2/5    # a part of the LF images: see lfmerge
-  lfrenderer capture/ path.yaml -o frames --mode hybrid  # interpolate where no ray passes)",
+  lfrenderer capture/ path.yaml -o frames --mode hybrid  # interpolate where no ray passes
+  lfrenderer capture/ path.yaml -o frames --densify      # smooth blur from few LF images)",
     .details =
         R"(DIR receives frame_0001.exr ..., contact_sheet.png and report.json. EXR frames contain linear light
 (R, G, B), the number of rays of each element (count.R, count.G, count.B; with lens weights the sum
@@ -59,6 +61,7 @@ using Progress = std::function<void(const lf::RenderProgress&)>;
 struct Rendered {
   lf::Result<lf::RenderReport> report;
   lf::RenderOptions options;
+  lf::MissingImages missing = {};  // LF images that --densify left out
 };
 
 lf::Result<Rendered> RenderLightField(const lf::RenderArguments& arguments,
@@ -72,11 +75,19 @@ lf::Result<Rendered> RenderLightField(const lf::RenderArguments& arguments,
   LF_ASSIGN_OR_RETURN(lf::RenderOptions options, arguments.MakeOptions(common, path.frame_count()));
   options.signals = signals;
   options.folder.inputs.assign(arguments.inputs.begin(), arguments.inputs.end());
+  lf::MissingImages missing;
+  if (arguments.densify) {
+    lf::Result<lf::DensifiedFilm> densified =
+        lf::DensifyForFilm(std::move(light_field), path, arguments, options, common, pool);
+    if (!densified) return Rendered{densified.error(), options};
+    light_field = std::move(densified->light_field);
+    missing = std::move(densified->missing);
+  }
   lf::Package package = lf::PackageOfAll(std::move(light_field), std::move(path), common.seed);
   if (arguments.max_angle_deg > 0)
     package.choices.max_angle_rad = lf::RadiansFromDegrees(arguments.max_angle_deg);
   LF_RETURN_IF_ERROR(lf::PutInOrder(*lf::ImageOrderOf(arguments.order), options, pool, &package));
-  return Rendered{lf::Render(std::move(package), options, pool, progress), options};
+  return Rendered{lf::Render(std::move(package), options, pool, progress), options, missing};
 }
 
 lf::Result<Rendered> RenderPackageFiles(const lf::RenderArguments& arguments,
@@ -138,6 +149,7 @@ int main(int argc, char** argv) {
     lf::Result<void> required = lf::CheckRequired(report, rendered.options.film.require_samples);
     if (required) required = lf::CheckRequiredNoise(report, rendered.options.film.require_noise);
     LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, arguments.allow_missing.Limit());
-    return lf::EndOfRender(report, limit, required);
+    LF_RETURN_IF_ERROR(lf::EndOfRender(report, limit, required));
+    return lf::EndWithMissing(rendered.missing, limit);
   });
 }

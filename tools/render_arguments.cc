@@ -104,6 +104,13 @@ void AddPicture(CLI::App& app, RenderArguments& a) {
       "hat: interpolation between the nearest LF images, for small lenses and pinholes\n"
       "auto: area for large lenses, hat for small ones, a mix of both in between");
   picture.AddFlag(
+      "--densify", a.densify,
+      "Put virtual LF images between the recorded ones\n"
+      "Makes DIR/densified.lfs as lfdensify does for the path, with its default options, and "
+      "renders it (doc/densify.md). The store is kept and used again for the same light field and "
+      "path; --resume continues it, and --overwrite makes it anew. A light field that is dense "
+      "enough is rendered as it is.");
+  picture.AddFlag(
       "--no-guard", a.no_guard,
       "Show virtual LF images where a frame is in focus\n"
       "Frames of a densified light field show the rays of recorded LF images alone where they are "
@@ -267,8 +274,17 @@ Result<void> RenderArguments::Check(bool seed_given) const {
           "--max-angle cannot be used with packages, because lfpreprocessor has already selected "
           "their LF cameras: leave it out, or make the packages again with lfpreprocessor "
           "--max-angle");
+    if (densify)
+      return UsageError(
+          "--densify cannot be used with packages, which were made of the LF images that exist: "
+          "densify the light field with lfdensify, and make packages of STORE.lfs");
     return light_field.CheckWithPackages();
   }
+  if (densify && !shard.empty())
+    return UsageError(
+        "--densify cannot be used with --shard, because all shards need the same virtual LF "
+        "images: make them first with lfdensify LIGHTFIELD PATH.yaml -o STORE.lfs, and give "
+        "STORE.lfs to the shards");
   if (std::any_of(inputs.begin(), inputs.end(), IsPackageName))
     return UsageError(
         "packages and other inputs are given: expected LIGHTFIELD PATH.yaml, or only packages "

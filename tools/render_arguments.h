@@ -31,8 +31,8 @@ struct RenderArguments {
   int64_t max_images = 0;    // 0: no limit
   double max_angle_deg = 0;  // 0: no limit
   uint32_t smooth_below = 0;
-  bool no_guard = false, no_contact_sheet = false, resume = false, overwrite = false,
-       keep_plates = false;
+  bool densify = false, no_guard = false, no_contact_sheet = false, resume = false,
+       overwrite = false, keep_plates = false;
 
   void AddTo(CLI::App& app);
   // Returns the common options of lfrenderer.

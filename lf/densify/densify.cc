@@ -40,7 +40,7 @@ Result<void> CheckKind(const LightField& light_field) {
   if (light_field.encoding.AlphaIsLight())
     return InputError(
         "alpha is light (lf_alpha), and virtual LF images would need opacities, which are not "
-        "estimated: use --lf-alpha mask");
+        "estimated: use --image-alpha mask");
   if (light_field.encoding.masks_clipped)
     return InputError(
         "the light field has brackets (lf_masks_clipped), which are not supported: densify the LF "
@@ -255,7 +255,9 @@ Result<void> Densifier::OpenWriter() {
   if (options_.resume && IsPackedStore(options_.store) &&
       !PackedStoreWriter::IsUnfinished(options_.store)) {
     report_.was_there = true;
-    return CheckIsOfPlan(options_.store, all_, plan, true);
+    const Result<void> same = CheckIsOfPlan(options_.store, all_, plan, true);
+    if (same) return {};
+    return Error{same.error().kind, same.error().message + ", or replace it with --overwrite"};
   }
   LF_ASSIGN_OR_RETURN(FileLock lock, PackedStoreWriter::Lock(options_.store));
   if (options_.overwrite && !options_.resume)
@@ -385,6 +387,7 @@ Result<DensifyReport> Densifier::Run() {
   images_ = std::make_unique<WorkingImages>(light_field_, *store_, options_.choices.divisor,
                                             options_.memory_bytes);
   LF_ASSIGN_OR_RETURN(plan_, PlanDensify(light_field_, *store_, options_.choices, pool_));
+  report_.dense = plan_.dense;
   report_.recorded_count = light_field_.size();
   report_.virtual_count = plan_.virtual_cameras.size();
   report_.range = plan_.range;
@@ -392,6 +395,7 @@ Result<DensifyReport> Densifier::Run() {
   report_.shift_px = plan_.ShiftPx();
   report_.distance_w = plan_.distance_w;
   report_.spacing_px = plan_.spacing_px;
+  if (!report_.dense.empty()) return std::move(report_);
   LogDebug("{}: {}", options_.store.string(), SettingsInWords(plan_, options_.choices));
   LF_RETURN_IF_ERROR(Test());
 

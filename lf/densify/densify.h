@@ -46,6 +46,8 @@ struct DensifyProgress {
 };
 
 struct DensifyReport {
+  // Says that the LF cameras are dense enough, and then nothing was written; otherwise empty.
+  std::string dense;
   bool was_there = false;  // true if the store was complete, so that nothing was written
   struct Skipped {
     std::string name;
@@ -69,11 +71,12 @@ struct DensifyReport {
   double swept_pixels = 0, made_pixels = 0;
 };
 
-// Writes the recorded LF images and virtual ones into options.store. kInput: the light field cannot
-// be densified (PlanDensify()), has opacities, or fails its test (TestByLeavingOut()) unless
-// choices.force is set; or an LF image cannot be read and `strict` is set, or fewer than three can.
-// kUsage, kOutput as PackedStoreWriter; the store exists and no option says what to do with it.
-// kInterrupted: finished work is kept.
+// Writes the recorded LF images and virtual ones into options.store, unless the LF cameras are
+// dense enough already (DensifyReport::dense). kInput: the light field cannot be densified
+// (PlanDensify()), has opacities, or fails its test (TestByLeavingOut()) unless choices.force is
+// set; or an LF image cannot be read and `strict` is set, or fewer than three can. kUsage, kOutput
+// as PackedStoreWriter; the store exists and no option says what to do with it. kInterrupted:
+// finished work is kept.
 Result<DensifyReport> Densify(const LightField& light_field, const DensifyOptions& options,
                               ThreadPool& pool,
                               const std::function<void(const DensifyProgress&)>& progress);

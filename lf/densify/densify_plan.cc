@@ -132,11 +132,13 @@ Result<void> ChooseVirtual(const LightField& light_field, const DensifyChoices& 
   // The mean distance of compared LF cameras; rows may be farther apart than columns.
   const double recorded_w = plan->shift_per_depth_px /
                             light_field.Camera(LfImageId{0}).intrinsics.fx_px * choices.divisor;
-  if (recorded_w <= wanted_w && !choices.force)
-    return InputError(fmt::format(
+  if (recorded_w <= wanted_w && !choices.force) {
+    plan->dense = fmt::format(
         "the LF cameras are {:.4g} apart, and {:.4g} suffices: copies of what is out of focus are "
-        "{:.2g} px apart; render the light field as it is, or ask for a smaller --spacing",
-        recorded_w, wanted_w, choices.spacing_px * recorded_w / wanted_w));
+        "{:.2g} px apart",
+        recorded_w, wanted_w, choices.spacing_px * recorded_w / wanted_w);
+    return {};
+  }
   const auto most = static_cast<double>(choices.most_virtual);
   for (plan->distance_w = std::max(wanted_w, DistanceForPlaces(plan->plane.points, kMostPlaces));
        ;) {

@@ -46,6 +46,8 @@ struct DensifyPlan {
   double shift_per_depth_px = 0;  // median ShiftPerInverseDepth() of compared working images
   double distance_w = 0;          // distance between neighbouring virtual LF cameras
   double spacing_px = 0;  // what the distance brings about: DensifyChoices::spacing_px, or more
+  // Says that the LF cameras are dense enough, and then there are no virtual ones; otherwise empty.
+  std::string dense;
   std::vector<VirtualCamera> virtual_cameras;
   std::vector<uint32_t> swept;    // LF images whose depths are searched, ascending
   std::vector<uint32_t> sources;  // those that virtual LF images are made of, ascending
@@ -65,9 +67,8 @@ double ToleranceFor(const InverseDepths& range, int planes, double shift_per_dep
 // Makes the plan, or says why the light field cannot be densified.
 //   store  of the light field, with Mosaics::kToRgb
 // kInput: fewer than three LF cameras, or all on one line; LF images too far from one another (the
-// message has the shift or the angle); LF cameras that are dense enough already; or an error of
-// FindInverseDepths(). kUsage: no virtual LF image contributes to the frames, or most_virtual is
-// too small.
+// message has the shift or the angle); or an error of FindInverseDepths(). kUsage: no virtual LF
+// image contributes to the frames, or most_virtual is too small.
 Result<DensifyPlan> PlanDensify(const LightField& light_field, const LfImageStore& store,
                                 const DensifyChoices& choices, ThreadPool& pool);
 

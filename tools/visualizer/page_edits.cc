@@ -27,6 +27,11 @@ std::string TextOf(const Json& json, const char* key) {
   return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
+bool IsTrue(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_boolean() && found->get<bool>();
+}
+
 double NumberOf(const Json& json, const char* key) {
   const auto found = json.find(key);
   return found != json.end() && found->is_number() ? found->get<double>() : std::nan("");
@@ -61,10 +66,8 @@ PageAnswer Save(PageScene& scene, const Json& json) {
   if (!draft) return RefusedPath(draft.error(), scene.arguments().path.filename().string());
   static std::mutex one_page_at_a_time;  // so that each page sees what another has written
   const std::lock_guard lock(one_page_at_a_time);
-  const auto force = json.find("force");
-  const bool is_forced = force != json.end() && force->is_boolean() && force->get<bool>();
   const auto on_disk = scene.TextOnDisk();
-  if (!is_forced && on_disk && IdOfText(*on_disk) != TextOf(json, "expected"))
+  if (!IsTrue(json, "force") && on_disk && IdOfText(*on_disk) != TextOf(json, "expected"))
     return JsonAnswer(
         {{"error", scene.arguments().path.string() +
                        " has been changed by another program since it was opened here"},
@@ -83,7 +86,7 @@ PageAnswer StartPreview(PageScene& scene, PreviewRender& preview, const Json& js
   if (!draft) return RefusedPath(draft.error(), scene.arguments().path.filename().string());
   const auto frame = FrameOf(json, *(*draft)->path);
   if (!frame) return Refusal(422, "\"frame\": expected a frame of the path");
-  preview.Start((*draft)->path, *frame);
+  preview.Start((*draft)->path, *frame, IsTrue(json, "recorded"));
   return JsonAnswer(Json::object());
 }
 

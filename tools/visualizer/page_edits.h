@@ -23,7 +23,8 @@ inline constexpr int kLongestLiveSide_px = 1280;
 //   save          {"text", "expected": id of PATH.yaml's text as the page knows it, "force"}
 //                 -> {"id"}; {"error", "conflict": true} if the file was changed meanwhile and
 //                 "force" is not true
-//   preview       {"text", "frame"} -> {}; events report the progress of the render
+//   preview       {"text", "frame", "recorded"} -> {}; events report the progress of the render. If
+//                 "recorded" is true, virtual LF images are left out
 //   preview/stop  {} -> {}
 //   live          {"text", "frame", "width": of the picture, in elements; "budget_ms": time for it,
 //                 or left out for a still picture} -> bytes of a picture

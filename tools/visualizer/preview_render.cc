@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "lf/light_field/model/keep_images.h"
 #include "lf/render/package/package.h"
 #include "lf/view/scene_bytes.h"
 
@@ -25,12 +26,14 @@ constexpr int kPictureSide_px = 1280;
 constexpr milliseconds kBetweenPictures(250);
 constexpr int kPictureTimes = 3;
 
-FilmOptions OptionsOf(const PageArguments& arguments) {
+//   encoding  of the light field; the frames of mosaics and those with alpha cannot be guarded
+FilmOptions OptionsOf(const PageArguments& arguments, const RadianceEncoding& encoding) {
   FilmOptions film;
   film.reading.estimator =
       arguments.estimator == "nearest" ? Estimator::kNearest : Estimator::kBilinear;
   film.lens_weights = arguments.needs.lens_weights;
   film.max_image_count = arguments.needs.max_image_count;
+  film.guard = encoding.bayer == BayerPattern::kNone && !encoding.HasOpacity();
   return film;
 }
 
@@ -49,9 +52,10 @@ PreviewRender::~PreviewRender() {
   thread_.join();
 }
 
-void PreviewRender::Start(std::shared_ptr<const CameraPath> path, FrameId frame) {
+void PreviewRender::Start(std::shared_ptr<const CameraPath> path, FrameId frame,
+                          bool recorded_only) {
   const std::lock_guard lock(mutex_);
-  wish_ = {std::move(path), frame};
+  wish_ = {std::move(path), frame, recorded_only};
   interrupted_ = true;
   changed_.notify_all();
 }
@@ -98,14 +102,16 @@ void PreviewRender::Render(const Wish& wish) {
 // lacks; "" if it lacks none.
 Result<std::string> PreviewRender::RenderFrame(const Wish& wish) {
   const PageArguments& arguments = scene_.arguments();
-  Package film = PackageOfAll(scene_.light_field(), *wish.path, arguments.seed);
+  LightField light_field = scene_.light_field();
+  if (wish.recorded_only) light_field = RecordedPart(std::move(light_field));
+  const FilmOptions options = OptionsOf(arguments, light_field.encoding);
+  Package film = PackageOfAll(std::move(light_field), *wish.path, arguments.seed);
   film.choices.max_angle_rad = arguments.needs.select.max_angle_rad;
   WorkOptions work;
   work.memory_bytes = kMemory_bytes;
   work.interrupted = work.stop = &interrupted_;
-  LF_ASSIGN_OR_RETURN(
-      const std::unique_ptr<FilmRenderer> renderer,
-      FilmRenderer::Open(std::move(film), OptionsOf(arguments), work, {wish.frame}, pool_));
+  LF_ASSIGN_OR_RETURN(const std::unique_ptr<FilmRenderer> renderer,
+                      FilmRenderer::Open(std::move(film), options, work, {wish.frame}, pool_));
   LF_RETURN_IF_ERROR(renderer->CheckAnyContributes());
   Clock::time_point next_picture = Clock::now();  // the first picture is made at once
   for (bool is_going_on = true; is_going_on;) {

@@ -36,7 +36,8 @@ class PreviewRender {
   PreviewRender& operator=(const PreviewRender&) = delete;
 
   // Starts a render, and stops the current one.
-  void Start(std::shared_ptr<const CameraPath> path, FrameId frame);
+  //   recorded_only  true: virtual LF images are left out
+  void Start(std::shared_ptr<const CameraPath> path, FrameId frame, bool recorded_only);
   void Stop();
 
   // Answers the name "7.bin" with the newest picture of frame 7; with 404 if the current or last
@@ -47,6 +48,7 @@ class PreviewRender {
   struct Wish {
     std::shared_ptr<const CameraPath> path;
     FrameId frame;
+    bool recorded_only = false;
   };
   void Run();
   void Render(const Wish& wish);

@@ -31,6 +31,8 @@ export class Legend {
       this.rows[kind] = element("label", { title: style.help }, box, this.dots[kind], style.label, this.counts[kind]);
       root.append(this.rows[kind]);
     }
+    const ranges = state.scene.light_field.virtual_ranges;
+    if (ranges) root.append(virtualRow(ranges, view));
     state.on(["use", "film"], () => this.update());
     state.on(["theme"], () => this.colour());
     this.colour();
@@ -60,4 +62,22 @@ export class Legend {
       this.rows[kind].style.display = count > 0 || kind === USED ? "" : "none";
     });
   }
+}
+
+// Returns the row of the virtual LF cameras, which have the colours of the other rows, but are rings.
+function virtualRow(ranges: [number, number][], view: SpaceView): HTMLElement {
+  const box = element("input", { type: "checkbox", checked: true, "data-use": "virtual" });
+  box.addEventListener("change", () => {
+    view.points.showVirtual(box.checked);
+    view.draw();
+  });
+  const count = ranges.reduce((sum, [begin, end]) => sum + end - begin, 0);
+  return element(
+    "label",
+    { title: "its LF image is interpolated from recorded ones" },
+    box,
+    element("i", { class: "ring" }),
+    "Virtual",
+    element("b", {}, shortNumber(count)),
+  );
 }

@@ -34,7 +34,8 @@ async function start(): Promise<void> {
   byId("what").textContent =
     `${scene.light_field.name} · ${plural(scene.light_field.images, "LF image")} · ${scene.path_file}`;
 
-  const view = new SpaceView(byId<HTMLCanvasElement>("scene"), positions, scene.light_field.origin, (id) => {
+  const { origin, virtual_ranges: virtualRanges = [] } = scene.light_field;
+  const view = new SpaceView(byId<HTMLCanvasElement>("scene"), positions, virtualRanges, origin, (id) => {
     void state.select(id);
     if (id !== null) show("image");
   });

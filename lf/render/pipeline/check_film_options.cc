@@ -92,8 +92,7 @@ Result<void> CheckLensWeights(const Package& package, const FilmOptions& film,
   return {};
 }
 
-}  // namespace
-
+// Checks that the frames of a densified light field can be guarded.
 Result<void> CheckGuard(const Package& package, const FilmOptions& film) {
   constexpr const char* kRemedy = "add --no-guard";
   if (film.Rebins())
@@ -119,6 +118,8 @@ Result<void> CheckGuard(const Package& package, const FilmOptions& film) {
   return {};
 }
 
+}  // namespace
+
 Result<void> CheckFilmOptions(const Package& package, const FilmOptions& options,
                               const std::vector<FrameId>& given) {
   const FilmOptions film = Resolved(options, package);
@@ -131,6 +132,7 @@ Result<void> CheckFilmOptions(const Package& package, const FilmOptions& options
         "frame: give lfrenderer at most this --max-images, or make the package again",
         package.name, *most));
   LF_RETURN_IF_ERROR(CheckShard(film));
+  if (package.whole_virtual_count > 0 && film.guard) LF_RETURN_IF_ERROR(CheckGuard(package, film));
   if (package.whole_virtual_count > 0 && !film.guard &&
       (film.stop_at_samples || film.require_samples))
     return UsageError(

@@ -15,14 +15,11 @@ namespace lf {
 // lfrenderer does.
 //   options  need not be resolved: the function calls Resolved()
 //   frames   numbers of the frames to render; empty: all frames of the package
-// Returns kUsage if the options are not compatible, or if the lens of a frame is a pinhole but lens
-// weights by area need its area.
+// Returns kUsage if the options are not compatible; if the lens of a frame is a pinhole but lens
+// weights by area need its area; or if the light field is densified but its frames cannot be
+// guarded, because they have rebinned rays, LF images have opacities or mosaics, or the package
+// lacks the LF cameras beside the lens.
 Result<void> CheckFilmOptions(const Package& package, const FilmOptions& options,
                               const std::vector<FrameId>& frames);
-
-// Checks that the film can be guarded, because its light field is densified: frames collect rays
-// and have no rebinned ones, LF images have neither opacities nor mosaics, and a package has the LF
-// cameras beside the lens. kUsage otherwise.
-Result<void> CheckGuard(const Package& package, const FilmOptions& film);
 
 }  // namespace lf

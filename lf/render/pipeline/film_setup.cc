@@ -49,7 +49,6 @@ Result<std::unique_ptr<FilmSetup>> FilmSetup::Make(Package package, const FilmOp
           setup->light_field(),
           film.reading.estimator == Estimator::kBilinear ? Mosaics::kToRgb : Mosaics::kAsRecorded,
           is_guarded ? StoreContent::kPixelsAndDepths : StoreContent::kPixels));
-  if (setup->is_guarded()) LF_RETURN_IF_ERROR(CheckGuard(setup->package(), resolved));
   LF_RETURN_IF_ERROR(setup->CheckStore());
   LF_RETURN_IF_ERROR(setup->FindFootprint());
   LF_RETURN_IF_ERROR(setup->PlanMemory());

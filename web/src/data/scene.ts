@@ -26,6 +26,7 @@ export interface SceneFacts {
     options: string[];
     origin: Vec3;
     depths?: [number, number];
+    virtual_ranges?: [number, number][]; // ids of virtual LF images, as [begin, end]; missing: there are none
   };
   path: PathHead;
   path_file: string;
@@ -72,6 +73,7 @@ export interface CameraFacts {
   height: number;
   focal_px: number;
   distorted: boolean;
+  virtual: boolean;
 }
 
 export interface OverlapFacts {

@@ -82,6 +82,9 @@ export class ImagePanel {
     const rows = [
       element("dt", {}, "In this frame"),
       element("dd", {}, kind === undefined ? "…" : style.label),
+      ...(selected.virtual
+        ? [element("dt", {}, "Kind"), element("dd", {}, "Virtual: interpolated from recorded LF images")]
+        : []),
       element("dt", {}, "Stands at"),
       element("dd", {}, vector(selected.centre)),
       element("dt", {}, "Size"),

@@ -38,6 +38,7 @@ export class RenderPanel {
   private previewed: FrameCamera | null = null;
   private isLoading = false;
   private readonly sources = element("div", { class: "row group" });
+  private usesVirtual = true; // false: previews of a densified light field leave virtual LF images out
 
   constructor(
     private readonly root: HTMLElement,
@@ -105,7 +106,7 @@ export class RenderPanel {
     if (this.source !== "preview") this.setSource("preview");
     this.previewed = state.camera;
     try {
-      await post("preview", { text: document.text(), frame: state.frame });
+      await post("preview", { text: document.text(), frame: state.frame, recorded: !this.usesVirtual });
     } catch (error) {
       state.fail(error);
     }
@@ -147,6 +148,30 @@ export class RenderPanel {
     );
   }
 
+  // Returns the switch between the two pictures of a densified light field; null for other light fields.
+  private virtualSwitch(): HTMLElement | null {
+    if (!this.state.scene.light_field.virtual_ranges) return null;
+    const button = (usesVirtual: boolean, label: string, title: string) =>
+      element(
+        "button",
+        {
+          "aria-pressed": String(this.usesVirtual === usesVirtual),
+          title,
+          click: () => {
+            this.usesVirtual = usesVirtual;
+            void this.start();
+          },
+        },
+        label,
+      );
+    return element(
+      "div",
+      { class: "row group" },
+      button(true, "Densified", "with virtual LF images, where they make the blur smoother"),
+      button(false, "Recorded alone", "without virtual LF images"),
+    );
+  }
+
   private updatePreview(): void {
     const { state } = this;
     const { preview } = state;
@@ -163,6 +188,7 @@ export class RenderPanel {
         ),
         isBusy ? element("button", { click: () => void post("preview/stop", {}) }, "Stop") : null,
       ),
+      this.virtualSwitch() ?? "",
     );
     if (!preview) {
       this.status.textContent = "Nothing is rendered yet. A preview uses the path as it is now, saved or not.";

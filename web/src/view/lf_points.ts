@@ -9,31 +9,35 @@ import { USE_STYLES } from "./palette";
 const VERTEX = `
 attribute float use;
 attribute float share;
+attribute float isVirtual;
+uniform float showsVirtual;
 uniform vec3 colours[${USE_STYLES.length}];
 uniform float sizes[${USE_STYLES.length}];
 uniform float shown[${USE_STYLES.length}];
 uniform float pixelRatio;
 uniform float room;
 varying vec3 colour;
-varying float isUsed;
+varying float isHollow;
 void main() {
   int kind = int(use + 0.5);
   colour = colours[kind];
-  isUsed = kind == ${USED} ? 1.0 : 0.0;
+  isHollow = isVirtual;
   if (kind == ${USED}) colour *= 0.55 + 0.45 * share;
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
   // Used cameras are drawn in front of the others at any position.
   if (kind == ${USED}) gl_Position.z -= 1e-4 * gl_Position.w;
   gl_PointSize = max(1.0, sizes[kind] * room * pixelRatio);
-  if (shown[kind] < 0.5) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+  if (shown[kind] < 0.5 || isVirtual * (1.0 - showsVirtual) > 0.5) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 }`;
 
 const FRAGMENT = `
 varying vec3 colour;
-varying float isUsed;
+varying float isHollow;
 void main() {
   vec2 place = gl_PointCoord - 0.5;
-  if (dot(place, place) > 0.25) discard;
+  float square = dot(place, place);
+  // A virtual LF camera is a ring, a recorded one is a disk.
+  if (square > 0.25 || isHollow * 0.08 > square) discard;
   gl_FragColor = vec4(colour, 1.0);
 }`;
 
@@ -42,11 +46,15 @@ export class LfPoints {
   readonly positions: Float32Array;
   private readonly use: THREE.BufferAttribute;
   private readonly share: THREE.BufferAttribute;
+  private readonly isVirtual: Uint8Array; // 1 for virtual LF cameras, 0 for recorded ones
   private readonly material: THREE.ShaderMaterial;
 
-  constructor(positions: Float32Array) {
+  //   virtualRanges  ids of virtual LF cameras, as [begin, end]
+  constructor(positions: Float32Array, virtualRanges: [number, number][]) {
     this.positions = positions;
     const count = positions.length / 3;
+    this.isVirtual = new Uint8Array(count);
+    for (const [begin, end] of virtualRanges) this.isVirtual.fill(1, begin, end);
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
     this.use = new THREE.BufferAttribute(new Uint8Array(count).fill(1), 1);
@@ -55,6 +63,7 @@ export class LfPoints {
     this.share.setUsage(THREE.DynamicDrawUsage);
     geometry.setAttribute("use", this.use);
     geometry.setAttribute("share", this.share);
+    geometry.setAttribute("isVirtual", new THREE.BufferAttribute(this.isVirtual, 1));
     this.material = new THREE.ShaderMaterial({
       vertexShader: VERTEX,
       fragmentShader: FRAGMENT,
@@ -64,6 +73,7 @@ export class LfPoints {
         shown: { value: USE_STYLES.map(() => 1) },
         pixelRatio: { value: 1 },
         room: { value: 1 },
+        showsVirtual: { value: 1 },
       },
     });
     this.object = new THREE.Points(geometry, this.material);
@@ -89,8 +99,12 @@ export class LfPoints {
   show(kind: number, isShown: boolean): void {
     (this.material.uniforms.shown.value as number[])[kind] = isShown ? 1 : 0;
   }
-  isShown(kind: number): boolean {
-    return (this.material.uniforms.shown.value as number[])[kind] === 1;
+  showVirtual(isShown: boolean): void {
+    this.material.uniforms.showsVirtual.value = isShown ? 1 : 0;
+  }
+  private isShown(id: number): boolean {
+    if (this.isVirtual[id] && this.material.uniforms.showsVirtual.value === 0) return false;
+    return (this.material.uniforms.shown.value as number[])[this.kindOf(id)] === 1;
   }
 
   // Sets the use of all LF cameras in a frame.
@@ -119,7 +133,7 @@ export class LfPoints {
     let best: number | null = null;
     let bestScore = reach * reach;
     for (let i = 0; i < kinds.length; ++i) {
-      if (!this.isShown(kinds[i])) continue;
+      if (!this.isShown(i)) continue;
       const px = this.positions[3 * i];
       const py = this.positions[3 * i + 1];
       const pz = this.positions[3 * i + 2];

@@ -34,11 +34,12 @@ export class SpaceView {
   constructor(
     private readonly canvas: HTMLCanvasElement,
     positions: Float32Array,
+    virtualRanges: [number, number][],
     private readonly origin: Vec3,
     onPick: (id: number | null) => void,
   ) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
-    this.points = new LfPoints(positions);
+    this.points = new LfPoints(positions, virtualRanges);
     this.points.object.geometry.computeBoundingSphere();
     this.points.object.geometry.computeBoundingBox();
     this.model = new RenderCameraModel(origin);

@@ -1,0 +1,81 @@
+#include "tools/render_densified.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "tools/common/progress.h"
+#include "tools/densify_report.h"
+
+#include "lf/core/file.h"
+#include "lf/core/log.h"
+#include "lf/densify/densify.h"
+#include "lf/render/pipeline/check_outputs.h"
+#include "lf/storage/packed/packed_store_file.h"
+#include "lf/storage/packed/packed_store_writer.h"
+
+namespace lf {
+namespace {
+
+// Checks the options as if the light field were densified already.
+Result<void> CheckDensified(const LightField& light_field, const CameraPath& path,
+                            const RenderOptions& options) {
+  Package package = PackageOfAll(light_field, path, 0);
+  package.whole_virtual_count = 1;
+  return CheckRenderOptions(package, options);
+}
+
+DensifyOptions OptionsOf(const CameraPath& path, const RenderArguments& arguments,
+                         const RenderOptions& options) {
+  DensifyOptions densify;
+  densify.store = options.folder.output_folder / "densified.lfs";
+  densify.choices.frames = path.cameras;
+  // With the default of --memory, this is the default of lfdensify.
+  densify.memory_bytes = options.work.memory_bytes / 4;
+  densify.overwrite = options.folder.overwrite;
+  densify.resume =
+      options.folder.resume || (!options.folder.overwrite && IsPackedStore(densify.store) &&
+                                !PackedStoreWriter::IsUnfinished(densify.store));
+  densify.strict = options.work.strict;
+  densify.source_name = arguments.inputs.front();
+  densify.version = options.folder.version;
+  if (options.signals != nullptr) densify.interrupted = &options.signals->stop;
+  return densify;
+}
+
+// Tells what was done, and names the LF images that were left out.
+void Tell(const DensifyReport& report, const DensifyOptions& options) {
+  for (const DensifyReport::Skipped& skipped : report.skipped)
+    LogWarning("{}: left out: {}", skipped.name, skipped.reason);
+  LogInfo("{}: {} recorded and {} virtual LF images, copies at most {:.2g} px apart{}",
+          options.store.string(), report.recorded_count, report.virtual_count, report.spacing_px,
+          report.was_there ? "; existed already" : "");
+}
+
+}  // namespace
+
+Result<DensifiedFilm> DensifyForFilm(LightField light_field, const CameraPath& path,
+                                     const RenderArguments& arguments, const RenderOptions& options,
+                                     const CommonOptions& common, ThreadPool& pool) {
+  LF_RETURN_IF_ERROR(CheckDensified(light_field, path, options));
+  const DensifyOptions densify = OptionsOf(path, arguments, options);
+  LF_RETURN_IF_ERROR(CheckReplacesNone({densify.store}, options.folder.inputs));
+  LF_RETURN_IF_ERROR(CreateFolder(options.folder.output_folder));
+  ProgressMeter meter(ParseProgressStyle(common.progress), "LF images");
+  LF_ASSIGN_OR_RETURN(const DensifyReport report,
+                      Densify(light_field, densify, pool, [&](const DensifyProgress& now) {
+                        meter.Update(now.done, now.total, now.step);
+                      }));
+  if (!report.dense.empty()) {
+    LogInfo("--densify makes no virtual LF images: {}", report.dense);
+    return DensifiedFilm{std::move(light_field), {}};
+  }
+  Tell(report, densify);
+  DensifiedFilm film;
+  film.missing = MissingOf(report, densify);
+  film.missing.advice = "once they are mended, render again with --overwrite";
+  LF_ASSIGN_OR_RETURN(film.light_field, OpenLightField(densify.store, OpenOptions{}));
+  return film;
+}
+
+}  // namespace lf
