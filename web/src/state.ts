@@ -27,6 +27,7 @@ export type Change =
   | "selected"
   | "watch"
   | "preview"
+  | "exposure"
   | "saving" // the text is about to be saved: typed text must be taken over now
   | "theme"
   | "message";
@@ -51,6 +52,7 @@ export class State {
   selected: CameraFacts | null = null;
   watch: RenderFacts | null = null;
   preview: PreviewFacts | null = null;
+  exposure = 0; // brightening of all pictures of frames, stops
   message: { text: string; isError: boolean } | null = null;
   document!: PathDocument;
   history!: History;

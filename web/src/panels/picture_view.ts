@@ -5,8 +5,7 @@ import type { PickedFocus } from "../data/scene";
 import { post } from "../data/source";
 import { focusThrough } from "../data/tilted_focus";
 import { byId, element } from "../element";
-import type { PathDocument } from "../path/path_document";
-import type { PathValue } from "../path/path_quantities";
+import { setAtTime, setFocusDistance } from "../path/set_at_time";
 import type { State } from "../state";
 import { length, percent, precise } from "../words";
 
@@ -14,24 +13,6 @@ export interface PickRequest {
   camera?: number; // the LF camera whose image was clicked; unset: the frame's picture was clicked
   x: number; // column of the clicked position, in pixels of the LF image or elements of the frame
   y: number; // its row
-}
-
-// Sets a quantity of the focus. If it has keys, sets the key at `time` or adds one; otherwise sets its value for the
-// whole film, and removes a motion by speed or accelerations.
-function setFocus(document: PathDocument, name: string, time: number, value: PathValue): void {
-  const quantity = document.quantity(name);
-  if (quantity.keyframes.length > 0) document.setKeyframe(name, time, value);
-  else if (quantity.hasAccelerations) document.removeMotion(name, value);
-  else document.setBase(name, value);
-}
-
-// Sets the focus distance. If the file defines the focus in another way, or by speed or accelerations, replaces this
-// definition and returns a text that says so; otherwise returns "".
-function setFocusDistance(document: PathDocument, time: number, distance: number): string {
-  const { given, hasAccelerations } = document.quantity("focus_distance");
-  if (given) setFocus(document, "focus_distance", time, distance);
-  else document.useFocusDistance(distance);
-  return given && !hasAccelerations ? "" : ", which replaces the previous definition of the focus";
 }
 
 // Asks the server for the distance of the point at a position in a picture, and focuses on it.
@@ -77,7 +58,7 @@ function addToPlane(state: State, picked: PickedFocus, time: number, frame: numb
   const { distance, horizontal_deg, vertical_deg } = plane;
   const isTaken = state.edit("tilt the focus plane", (document) => {
     setFocusDistance(document, time, distance);
-    setFocus(document, "focus_tilt", time, { horizontal: horizontal_deg, vertical: vertical_deg });
+    setAtTime(document, "focus_tilt", time, { horizontal: horizontal_deg, vertical: vertical_deg });
   });
   if (isTaken)
     state.say(

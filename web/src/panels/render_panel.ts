@@ -8,7 +8,8 @@ import { develop, heatColour, heatMap, rayRange, readPicture, type GrowingPictur
 import { element } from "../element";
 import { PathDocument } from "../path/path_document";
 import type { State } from "../state";
-import { precise, shortNumber } from "../words";
+import { shortNumber } from "../words";
+import { exposureRow } from "./exposure";
 import { enlargeButton, focusThere, makePickable } from "./picture_view";
 
 const PREVIEW_WIDTH = 384;
@@ -16,15 +17,6 @@ const PREVIEW_WIDTH = 384;
 export class RenderPanel {
   private readonly canvas = element("canvas");
   private readonly box = element("div", { class: "picture" }, this.canvas);
-  private readonly exposure = element("input", {
-    type: "range",
-    min: -6,
-    max: 6,
-    step: 0.25,
-    value: 0,
-    "aria-label": "Exposure, stops",
-  });
-  private readonly stops = element("span", {}, "0 stops");
   private readonly rays = element("button", { "aria-pressed": "false" }, "Rays per element");
   private readonly scale = element("div");
   private readonly status = element("p", { role: "status" });
@@ -49,8 +41,6 @@ export class RenderPanel {
       root.append(element("p", { class: "muted" }, "These are exported files, without a render to watch."));
       return;
     }
-    const reset = element("button", { click: () => this.setStops(0) }, "Reset");
-    this.exposure.addEventListener("input", () => this.setStops(Number(this.exposure.value)));
     this.rays.addEventListener("click", () => {
       this.rays.setAttribute("aria-pressed", String(!this.showsRays()));
       this.drawPicture();
@@ -60,7 +50,7 @@ export class RenderPanel {
       this.about,
       this.box,
       this.status,
-      element("div", { class: "row" }, element("label", {}, "Exposure"), this.exposure, this.stops, reset),
+      exposureRow(state),
       element("div", { class: "row" }, this.rays, enlargeButton(this.box)),
       this.scale,
       this.strip,
@@ -71,6 +61,7 @@ export class RenderPanel {
       (x, y, isOfPlane) => this.focusAt(x, y, isOfPlane),
     );
     state.on(["preview", "watch", "frame", "path"], () => this.update());
+    state.on(["exposure"], () => this.drawPicture());
   }
 
   shown(): void {
@@ -115,12 +106,6 @@ export class RenderPanel {
 
   private showsRays(): boolean {
     return this.rays.getAttribute("aria-pressed") === "true";
-  }
-
-  private setStops(stops: number): void {
-    this.exposure.value = String(stops);
-    this.stops.textContent = `${stops > 0 ? "+" : ""}${precise(stops, 3)} stops`;
-    this.drawPicture();
   }
 
   private setSource(source: "preview" | "watch"): void {
@@ -321,7 +306,7 @@ export class RenderPanel {
       );
     } else {
       this.scale.replaceChildren();
-      context.putImageData(develop(picture, Number(this.exposure.value)), 0, 0);
+      context.putImageData(develop(picture, this.state.exposure), 0, 0);
     }
   }
 }

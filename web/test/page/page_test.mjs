@@ -301,7 +301,7 @@ test("a preview comes in, and a click on it focuses there", async () => {
         state.emit("preview");
       });
       assert.equal(await status.textContent(), "Frame 1, finished: 2 of 81 LF images were left out");
-      await page.locator("[aria-label='Exposure, stops']").fill("-6");
+      await page.locator("[aria-label='Exposure, stops']:visible").fill("-6");
       assert.ok((await lightest()) < 60);
       // The star in the middle is at the distance 1.
       const box = await page.locator(".picture:has(canvas)").boundingBox();
