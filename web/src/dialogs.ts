@@ -79,6 +79,7 @@ const KEYS: [string, string][] = [
   ["Home End", "first and last frame"],
   ["[ ]", "previous and next LF image that this frame takes"],
   ["1 … 5", "views: overview, aperture, side, top, through the lens"],
+  ["L", "the live picture, or back to the view in space"],
   ["K", "add a key of the focus distance at this frame"],
   ["P", "render a small preview of this frame"],
   ["Ctrl+Z, Ctrl+Shift+Z", "undo, redo"],
@@ -86,16 +87,26 @@ const KEYS: [string, string][] = [
   ["?", "these keys"],
 ];
 
+const LIVE_KEYS: [string, string][] = [
+  [", .", "focus nearer or farther"],
+  ["− +", "close or open the aperture"],
+  ["C", "the mouse moves the camera, or works the lens again"],
+  ["Arrows", "then orbit round the point in focus; with Shift, slide; Page Up and Page Down dolly"],
+  ["Esc", "forget a drag that has not ended"],
+];
+
+function keyTable(keys: [string, string][]): HTMLElement {
+  const row = ([key, what]: [string, string]) =>
+    element("tr", {}, element("td", {}, element("kbd", {}, key)), element("td", {}, what));
+  return element("table", {}, ...keys.map(row));
+}
+
 export function showKeys(): void {
   open(
     element("h2", {}, "Keys"),
-    element(
-      "table",
-      {},
-      ...KEYS.map(([keys, what]) =>
-        element("tr", {}, element("td", {}, element("kbd", {}, keys)), element("td", {}, what)),
-      ),
-    ),
+    keyTable(KEYS),
+    element("h2", {}, "In the live picture"),
+    keyTable(LIVE_KEYS),
     element(
       "p",
       { class: "muted" },

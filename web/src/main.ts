@@ -5,6 +5,7 @@ import { getBytes, getJson, listen, receivedBytes } from "./data/source";
 import { ask, showCommands, showKeys } from "./dialogs";
 import { byId, element } from "./element";
 import { Legend } from "./legend";
+import { startLive, type Live } from "./live/live";
 import { EditPanel } from "./panels/edit_panel";
 import { FramePanel } from "./panels/frame_panel";
 import { ImagePanel } from "./panels/image_panel";
@@ -41,10 +42,11 @@ async function start(): Promise<void> {
   });
   new Legend(byId("legend"), state, view);
   const timeline = new Timeline(state);
-  const { show, panels } = makeTabs(state);
-  wireView(state, view);
+  const { show, panels } = makeTabs(state, timeline);
+  const look = wireViews(state, view, panels.live, show);
+  wireSpace(state, view);
   wireButtons(state);
-  wireKeys(state, view, timeline, panels.render, show);
+  wireKeys(state, timeline, panels, show, look);
   wireMessages(state);
   wireTheme(state, view);
   await state.open();
@@ -53,22 +55,26 @@ async function start(): Promise<void> {
   view.look("overview");
   state.emit("theme");
   // Measurements (bench/) and tests read this object.
-  Object.assign(window, { lfvisualizer: { state, view, receivedBytes } });
+  Object.assign(window, { lfvisualizer: { state, view, live: panels.live, receivedBytes } });
   document.body.dataset.ready = "yes";
 }
 
-function makeTabs(state: State): {
-  show: (name: string) => void;
-  panels: { render: RenderPanel };
-} {
+interface Panels {
+  render: RenderPanel;
+  live: Live;
+}
+
+function makeTabs(state: State, timeline: Timeline): { show: (name: string) => void; panels: Panels } {
   const section = () => element("section", { role: "tabpanel", hidden: true });
-  const roots = { frame: section(), image: section(), edit: section(), render: section() };
+  const roots = { frame: section(), image: section(), edit: section(), lens: section(), render: section() };
   byId("panels").append(...Object.values(roots));
   const render = new RenderPanel(roots.render, state);
+  const live = startLive(byId("live"), roots.lens, state, () => timeline.stop());
   const panels: Record<string, [string, HTMLElement, Panel]> = {
     frame: ["Frame", roots.frame, new FramePanel(roots.frame, state)],
     image: ["LF image", roots.image, new ImagePanel(roots.image, state)],
     edit: ["Path", roots.edit, new EditPanel(roots.edit, state)],
+    lens: ["Lens", roots.lens, live.panel],
     render: ["Render", roots.render, render],
   };
   const buttons = new Map<string, HTMLElement>();
@@ -85,12 +91,34 @@ function makeTabs(state: State): {
     byId("tabs").append(button);
   }
   show(state.scene.watch ? "render" : "frame");
-  return { show, panels: { render } };
+  return { show, panels: { render, live } };
 }
 
-function wireView(state: State, view: SpaceView): void {
-  for (const [preset, label] of PRESETS)
-    byId("views").append(element("button", { "data-view": preset, click: () => view.look(preset) }, label));
+type View = Preset | "live" | "space"; // "space": the view in space as it was before the live picture
+
+// Makes the buttons of the views. Returns a function that chooses a view.
+function wireViews(state: State, space: SpaceView, live: Live, show: (name: string) => void): (view: View) => void {
+  const views: [View, string][] = [...PRESETS];
+  if (state.scene.server) views.unshift(["live", "Live picture"]);
+  const buttons = new Map<View, HTMLElement>();
+  const look = (view: View) => {
+    const isLive = view === "live";
+    byId("space").classList.toggle("live", isLive);
+    buttons.get("live")?.setAttribute("aria-pressed", String(isLive));
+    space.show(!isLive);
+    if (isLive !== state.isLive) live.view.show(isLive);
+    if (isLive) show("lens");
+    else if (view !== "space") space.look(view);
+  };
+  for (const [view, label] of views) {
+    const button = element("button", { "data-view": view, click: () => look(view) }, label);
+    buttons.set(view, button);
+    byId("views").append(button);
+  }
+  return look;
+}
+
+function wireSpace(state: State, view: SpaceView): void {
   const keyPlaces = () => {
     const places: Vec3[] = [];
     try {
@@ -157,10 +185,10 @@ function wireButtons(state: State): void {
 
 function wireKeys(
   state: State,
-  view: SpaceView,
   timeline: Timeline,
-  render: RenderPanel,
+  { render, live }: Panels,
   show: (name: string) => void,
+  look: (view: View) => void,
 ): void {
   const plain: Record<string, (event: KeyboardEvent) => void> = {
     " ": () => timeline.toggle(),
@@ -176,8 +204,9 @@ function wireKeys(
         path.setKeyframe("focus_distance", state.time, state.camera.focusDistance),
       ),
     p: () => (show("render"), void render.start()),
+    l: () => look(state.isLive ? "space" : "live"),
   };
-  PRESETS.forEach(([preset], i) => (plain[String(i + 1)] = () => view.look(preset)));
+  PRESETS.forEach(([preset], i) => (plain[String(i + 1)] = () => look(preset)));
   window.addEventListener("keydown", (event) => {
     const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
     if (event.ctrlKey || event.metaKey) {
@@ -196,7 +225,8 @@ function wireKeys(
     if (event.altKey || isTyped || byId<HTMLDialogElement>("dialog").open) return;
     // If a button has the focus, the browser presses it with the space bar.
     if (key === " " && target.tagName === "BUTTON") return;
-    if (!state.scene.server && (key === "k" || key === "p")) return;
+    if (!state.scene.server && "kpl".includes(key)) return;
+    if (state.isLive && live.key(event)) return event.preventDefault();
     const action = plain[key];
     if (!action) return;
     event.preventDefault();
@@ -260,6 +290,7 @@ function wireNews(state: State): void {
         state.preview = JSON.parse(data) as PreviewFacts;
         state.emit("preview");
       },
+      live: () => state.emit("live"),
       film: (data) => {
         if ((JSON.parse(data) as { path: string }).path === state.path.id) void state.askFilm();
       },
@@ -268,7 +299,10 @@ function wireNews(state: State): void {
     (isThere) => {
       link.textContent = isThere ? "" : "lfvisualizer has been ended";
       link.className = isThere ? "" : "bad";
-      if (isThere && wasGone) void state.askFrame();
+      if (isThere && wasGone) {
+        void state.askFrame();
+        state.emit("live");
+      }
       wasGone = !isThere;
     },
   );

@@ -27,6 +27,7 @@ export type Change =
   | "selected"
   | "watch"
   | "preview"
+  | "live" // LF images have been loaded for live pictures
   | "exposure"
   | "saving" // the text is about to be saved: typed text must be taken over now
   | "theme"
@@ -57,9 +58,12 @@ export class State {
   document!: PathDocument;
   history!: History;
   invalid: string | null = null; // why the text is no valid path; null if it is valid
+  isPlaying = false;
+  isLive = false; // true while the live picture is shown
   isDark = true;
 
   private savedText = "";
+  private shownText = ""; // text of the path that `cameras` are of
   // The points of the focus plane that were clicked so far in `frame`. Three points define the plane.
   planePoints: { frame: number; points: Vec3[] } | null = null;
   private savedId = "";
@@ -106,6 +110,10 @@ export class State {
   get time(): number {
     return (this.frame - 1) / this.path.fps;
   }
+  // True if `cameras` are those of the document as it is now.
+  get isShown(): boolean {
+    return this.shownText === this.document.text();
+  }
   get isChanged(): boolean {
     return this.document.text() !== this.savedText;
   }
@@ -120,15 +128,16 @@ export class State {
     this.savedId = this.scene.path.id;
     this.history = new History(text);
     this.document = PathDocument.parse(text, this.scene.light_field.unit_m);
-    await this.take(this.scene.path);
+    await this.take(this.scene.path, text);
     this.emit("text");
   }
 
-  private async take(head: PathHead): Promise<void> {
+  private async take(head: PathHead, text: string): Promise<void> {
     const number = ++this.taking;
     const cameras = readFrames(await getBytes(`path/${head.id}/frames.bin`));
     if (number !== this.taking) return; // a later edit was faster
     this.path = head;
+    this.shownText = text;
     this.cameras = cameras;
     this.frame = Math.min(this.frame, head.frames);
     this.film = null;
@@ -192,7 +201,8 @@ export class State {
       if (number !== this.checking) return;
       this.invalid = null;
       if (this.message?.isError) this.say("");
-      if (head.id !== this.path.id) await this.take(head);
+      if (head.id !== this.path.id) await this.take(head, text);
+      else this.shownText = text;
     } catch (error) {
       if (number !== this.checking) return;
       this.invalid = error instanceof Error ? error.message : String(error);
@@ -266,7 +276,8 @@ export class State {
     if (wanted === this.frame) return;
     this.frame = wanted;
     this.emit("frame");
-    void this.askFrame();
+    // While the film is played live, the server computes pictures only.
+    if (!(this.isPlaying && this.isLive)) void this.askFrame();
   }
 
   private async bytesOfUse(frame: number): Promise<ArrayBuffer> {

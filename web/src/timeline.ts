@@ -9,6 +9,7 @@ import { millimetres, precise, seconds, shortNumber } from "./words";
 
 interface Row {
   label: string;
+  rank: number; // rows with the lowest ranks are shown if there is not room for all
   colour: string;
   quantities: string[]; // names of the quantities whose keys the row shows
   fromZero: boolean;
@@ -18,6 +19,7 @@ interface Row {
 
 const LABELS = 118; // width of the labels to the left of the curves, CSS pixels
 const MARGIN = 12;
+const LEAST_HEIGHT = 30; // of a row, CSS pixels
 
 interface Key {
   quantity: Quantity;
@@ -34,13 +36,14 @@ export class Timeline {
   private readonly play = byId<HTMLButtonElement>("play");
   private readonly range = byId<HTMLInputElement>("scrub");
   private readonly clock = byId("clock");
-  private readonly rows: Row[];
+  private readonly allRows: Row[];
+  private rows: Row[] = []; // those for which there is room
   private keys: Key[] = [];
   private playing = 0;
   private dragged: { key: Key; time: number } | null = null;
 
   constructor(private readonly state: State) {
-    this.rows = this.makeRows();
+    this.allRows = this.makeRows();
     this.play.addEventListener("click", () => this.toggle());
     this.range.addEventListener("input", () => state.setFrame(Number(this.range.value)));
     byId("first").addEventListener("click", () => state.setFrame(1));
@@ -59,6 +62,7 @@ export class Timeline {
     return [
       {
         label: "Camera's speed",
+        rank: 2,
         colour: "--curve-0",
         quantities: ["position", "look_at", "orientation", "quaternion", "focal_length"],
         fromZero: true,
@@ -67,6 +71,7 @@ export class Timeline {
       },
       {
         label: "Aperture",
+        rank: 1,
         colour: "--curve-1",
         quantities: ["aperture_diameter", "f_number", "blade_rotation"],
         fromZero: true,
@@ -79,6 +84,7 @@ export class Timeline {
       },
       {
         label: "Focus distance",
+        rank: 0,
         colour: "--curve-2",
         quantities: ["focus_distance", "focus_point", "focus_tilt"],
         fromZero: false,
@@ -87,6 +93,7 @@ export class Timeline {
       },
       {
         label: "LF images",
+        rank: 3,
         colour: "--curve-3",
         quantities: [],
         fromZero: true,
@@ -98,6 +105,7 @@ export class Timeline {
       },
       {
         label: "Rays per element",
+        rank: 4,
         colour: "--curve-4",
         quantities: [],
         fromZero: true,
@@ -137,6 +145,7 @@ export class Timeline {
       this.playing = requestAnimationFrame(step);
     };
     this.playing = requestAnimationFrame(step);
+    state.isPlaying = true;
     this.play.dataset.playing = "yes";
     this.play.setAttribute("aria-label", "Pause");
   }
@@ -144,6 +153,8 @@ export class Timeline {
   stop(): void {
     cancelAnimationFrame(this.playing);
     this.playing = 0;
+    if (this.state.isPlaying && this.state.isLive) void this.state.askFrame();
+    this.state.isPlaying = false;
     this.play.dataset.playing = "no";
     this.play.setAttribute("aria-label", "Play");
   }
@@ -227,6 +238,8 @@ export class Timeline {
     const { state, canvas } = this;
     if (state.cameras.length === 0) return;
     this.range.max = String(state.path.frames);
+    const room = Math.floor(canvas.clientHeight / LEAST_HEIGHT);
+    this.rows = this.allRows.filter((row) => row.rank < room);
     this.findKeys();
     fitCanvas(canvas);
     this.still.width = canvas.width;

@@ -10,15 +10,15 @@ export interface GrowingPicture {
   halves: Uint16Array; // R, G, B and ray count of each element, as half floats
 }
 
-export function readPicture(bytes: ArrayBuffer): GrowingPicture {
-  const head = new Uint32Array(bytes, 0, 8);
+export function readPicture(bytes: ArrayBuffer, begin = 0): GrowingPicture {
+  const head = new Uint32Array(bytes, begin, 8);
   return {
     width: head[0],
     height: head[1],
     fullWidth: head[2],
     fullHeight: head[3],
     hasRays: head[4] === 1,
-    halves: new Uint16Array(bytes, 32),
+    halves: new Uint16Array(bytes, begin + 32),
   };
 }
 

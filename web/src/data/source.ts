@@ -54,17 +54,29 @@ export async function getBytes(name: string): Promise<ArrayBuffer> {
   return bytes;
 }
 
-// Posts a request and returns its answer. Throws a SourceError also if the user made a mistake: the server then answers
-// without an HTTP error, but with a key "error".
-export async function post<T>(name: string, body: object): Promise<T> {
-  const response = await ask(name, {
-    method: "POST",
-    headers: { "Content-Type": "application/json" },
-    body: JSON.stringify(body),
-  });
+function send(name: string, body: object): Promise<Response> {
+  return ask(name, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) });
+}
+
+async function jsonOf<T>(response: Response): Promise<T> {
   const json = (await response.json()) as T & { error?: unknown; conflict?: unknown };
   if (typeof json.error === "string") throw new SourceError(json.error, response.status, json.conflict === true);
   return json;
+}
+
+// Posts a request and returns its answer. Throws a SourceError also if the user made a mistake: the server then answers
+// without an HTTP error, but with a key "error".
+export async function post<T>(name: string, body: object): Promise<T> {
+  return jsonOf(await send(name, body));
+}
+
+// Posts a request that is answered by an array, or by JSON that says why there is none. Throws as post() does.
+export async function postForBytes<T>(name: string, body: object): Promise<ArrayBuffer | T> {
+  const response = await send(name, body);
+  if (response.headers.get("Content-Type")?.startsWith("application/json")) return jsonOf<T>(response);
+  const bytes = await response.arrayBuffer();
+  bytesReceived += bytes.byteLength;
+  return bytes;
 }
 
 // Receives server-sent events and calls the handler of their kind. If the connection breaks, the browser reconnects by

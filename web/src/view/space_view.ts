@@ -27,6 +27,7 @@ export class SpaceView {
   private readonly size: number; // diagonal of the box around all LF cameras, world units
   private readonly spacing: number; // approximate distance between neighbouring LF cameras, world units
   private pending = false;
+  private isShown = true;
   private frameCamera: FrameCamera | null = null;
   private through = false;
   private showsChosen = true; // true: also the frustum of the chosen LF camera is drawn
@@ -236,9 +237,15 @@ export class SpaceView {
     this.draw();
   }
 
+  // Draws nothing until it is shown again.
+  show(isShown: boolean): void {
+    this.isShown = isShown;
+    this.draw();
+  }
+
   // Requests a redraw at the next refresh of the screen.
   draw(): void {
-    if (this.pending) return;
+    if (this.pending || !this.isShown) return;
     this.pending = true;
     requestAnimationFrame(() => {
       this.pending = false;
@@ -292,7 +299,8 @@ function thinned<T>(all: T[], most: number): T[] {
   return step <= 1 ? all : all.filter((_, i) => i % step === 0 || i === all.length - 1);
 }
 
-function extentOf(positions: Float32Array): number {
+// Returns the diagonal of the box around all positions; 1 if they are one point.
+export function extentOf(positions: Float32Array): number {
   const low = [Infinity, Infinity, Infinity];
   const high = [-Infinity, -Infinity, -Infinity];
   for (let i = 0; i < positions.length; ++i) {

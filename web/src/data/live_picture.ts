@@ -1,0 +1,28 @@
+// The answer to the request of a live picture: facts about the picture, and the picture.
+
+import { readPicture, type GrowingPicture } from "./growing_picture";
+
+export interface LiveFacts {
+  images: number; // number of LF images in this picture
+  takeable: number; // number of LF images in memory that the frame could take
+  resident: number; // number of LF images in memory
+  wanted: number; // number of LF images that the frame needs
+  done: number; // number of those that are loaded or broken
+  broken: number;
+  first_broken: string;
+  divisor: number; // factor by which LF images are shrunken
+  uncovered_share: number; // share of the lens that was not recorded
+  camera_distance: number; // spacing of the LF images of this picture in the lens plane, world units; 0: not known
+  render_ms: number;
+}
+
+export interface LivePicture {
+  facts: LiveFacts;
+  picture: GrowingPicture;
+}
+
+export function readLivePicture(bytes: ArrayBuffer): LivePicture {
+  const size = new DataView(bytes).getUint32(0, true);
+  const facts = JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 4, size))) as LiveFacts;
+  return { facts, picture: readPicture(bytes, 4 + size) };
+}

@@ -1,0 +1,219 @@
+// The panel of the live picture: what the mouse does in it, sliders of the lens, and the exposure.
+
+import { lensRim, type FrameCamera } from "../data/frame_camera";
+import { element } from "../element";
+import { exposureRow } from "../panels/exposure";
+import type { State } from "../state";
+import { extentOf } from "../view/space_view";
+import { length } from "../words";
+import { rotationWriter, writeBlades } from "./lens_changes";
+import type { LiveCamera } from "./live_camera";
+import { apertureText } from "./live_status";
+import { depthFactor, type LiveTools } from "./live_tools";
+
+const SVG = "http://www.w3.org/2000/svg";
+const OPENINGS = 1000; // factor between the largest and the smallest opening of the slider
+const MOST_BLADES = 12;
+
+interface Parts {
+  state: State;
+  camera: LiveCamera;
+  tools: LiveTools;
+}
+
+export class LensPanel {
+  private readonly lens = document.createElementNS(SVG, "polygon");
+  private readonly fills: (() => void)[] = [];
+
+  constructor(
+    private readonly root: HTMLElement,
+    private readonly parts: Parts,
+  ) {
+    const { state, camera, tools } = parts;
+    if (!state.scene.server) {
+      root.append(element("p", { class: "muted" }, "These are exported files, without live pictures."));
+      return;
+    }
+    root.append(
+      this.switches(),
+      this.help(),
+      element("h2", {}, "Lens at this frame"),
+      element("div", { class: "lens" }, this.drawing(), element("div", {}, this.focus(), this.aperture())),
+      this.blades(),
+      this.rotation(),
+      element("h2", {}, "Picture"),
+      exposureRow(state),
+    );
+    camera.listen(() => this.shown());
+    tools.listen(() => this.shown());
+  }
+
+  shown(): void {
+    if (this.root.hidden || this.parts.state.cameras.length === 0) return;
+    for (const fill of this.fills) fill();
+  }
+
+  // ----------------------------------------------------------------------------------- switches
+
+  private toggle(label: string, title: string, isOn: () => boolean, click: () => void): HTMLElement {
+    const button = element("button", { title, click }, label);
+    this.fills.push(() => button.setAttribute("aria-pressed", String(isOn())));
+    return button;
+  }
+
+  private switches(): HTMLElement {
+    const { tools } = this.parts;
+    return element(
+      "div",
+      { class: "row" },
+      element(
+        "span",
+        { class: "group", role: "group", "aria-label": "What a drag does" },
+        this.toggle(
+          "Focus",
+          "A drag focuses (C)",
+          () => tools.mode === "focus",
+          () => tools.setMode("focus"),
+        ),
+        this.toggle(
+          "Camera",
+          "A drag moves the camera (C)",
+          () => tools.mode === "camera",
+          () => tools.setMode("camera"),
+        ),
+      ),
+    );
+  }
+
+  private help(): HTMLElement {
+    const text = element("p", { class: "muted" });
+    const words = {
+      focus:
+        "In the live picture, click to focus there, drag to focus nearer or farther, turn the wheel or pinch to set the " +
+        "aperture. Shift-click three places to tilt the focus plane.",
+      camera:
+        "In the live picture, drag to orbit round the point in focus, Shift and drag to slide, turn the wheel to dolly. " +
+        "The arrow keys do the same.",
+    };
+    this.fills.push(() => (text.textContent = words[this.parts.tools.mode]));
+    return text;
+  }
+
+  // ------------------------------------------------------------------------------------ sliders
+
+  // Returns a slider that shows a changed camera while it is dragged, and writes the change when it is let go.
+  private slider(
+    label: string,
+    attributes: Record<string, string | number>,
+    place: (camera: FrameCamera) => number,
+    change: (value: number, slider: HTMLInputElement) => void,
+    text: (camera: FrameCamera) => string,
+  ): HTMLElement {
+    const { camera } = this.parts;
+    const slider = element("input", { type: "range", "aria-label": label, step: "any", ...attributes });
+    const words = element("output");
+    slider.addEventListener("input", () => change(slider.valueAsNumber, slider));
+    slider.addEventListener("change", () => camera.finish());
+    this.fills.push(() => {
+      slider.value = String(place(camera.camera));
+      words.textContent = text(camera.camera);
+      slider.setAttribute("aria-valuetext", words.textContent);
+    });
+    return element("div", { class: "slider" }, element("label", {}, label), words, slider);
+  }
+
+  private focus(): HTMLElement {
+    const { state, camera, tools } = this.parts;
+    // The slider reaches from the nearest to the farthest focus of the film, and further by the depths of the scene.
+    const range = (): [number, number] => {
+      const factor = depthFactor(state.scene.light_field.depths);
+      const all = [camera.camera, ...state.cameras].map((one) => one.focusDistance);
+      return [all.reduce((a, b) => Math.min(a, b)) / factor, all.reduce((a, b) => Math.max(a, b)) * factor];
+    };
+    const distanceAt = (share: number) => {
+      const [near, far] = range();
+      return near * (far / near) ** share;
+    };
+    return this.slider(
+      "Focus",
+      { min: 0, max: 1 },
+      ({ focusDistance }) => {
+        const [near, far] = range();
+        return Math.log(focusDistance / near) / Math.log(far / near);
+      },
+      (share) => tools.showFocus(camera.camera, distanceAt(share)),
+      ({ focusDistance }) => length(focusDistance),
+    );
+  }
+
+  private aperture(): HTMLElement {
+    const { state, camera, tools } = this.parts;
+    const largest = extentOf(state.positions) / 2; // a larger lens collects nothing more
+    return this.slider(
+      "Aperture",
+      { min: 0, max: 1 },
+      ({ radius }) => (radius > 0 ? Math.max(0.01, 1 + Math.log(radius / largest) / Math.log(OPENINGS)) : 0),
+      (share) => tools.showAperture(camera.camera, share < 0.005 ? 0 : largest * OPENINGS ** (share - 1)),
+      (one) => apertureText(one, state.path.unit_m),
+    );
+  }
+
+  private blades(): HTMLElement {
+    const { camera } = this.parts;
+    const select = element("select", { "aria-label": "Blades of the aperture" });
+    select.addEventListener("change", () => {
+      camera.show("change blades", { ...camera.camera, blades: Number(select.value) }, writeBlades);
+      camera.finish();
+    });
+    this.fills.push(() => {
+      const { blades } = camera.camera;
+      const counts = new Set([0, ...Array.from({ length: MOST_BLADES - 2 }, (_, i) => i + 3), blades]);
+      select.replaceChildren(
+        ...[...counts].map((count) =>
+          element("option", { value: count, selected: count === blades }, count === 0 ? "0, a disk" : String(count)),
+        ),
+      );
+    });
+    return element("div", { class: "row" }, element("label", {}, "Blades"), select);
+  }
+
+  private rotation(): HTMLElement {
+    const { state, camera } = this.parts;
+    const period = (one: FrameCamera) => (2 * Math.PI) / Math.max(1, one.blades);
+    const within = (one: FrameCamera) => ((one.rotation % period(one)) + period(one)) % period(one);
+    const row = this.slider(
+      "Rotation",
+      { min: 0, max: 1 },
+      (one) => within(one) / period(one),
+      (share) => {
+        const one = camera.camera;
+        const rotation = one.rotation - within(one) + share * 0.999 * period(one);
+        camera.show("turn blades", { ...one, rotation }, rotationWriter(state.cameras));
+      },
+      (one) => `${Math.round((within(one) * 180) / Math.PI)}°`,
+    );
+    this.fills.push(() => (row.hidden = camera.camera.blades < 3));
+    return row;
+  }
+
+  // Draws the opening as seen from behind the lens.
+  private drawing(): Element {
+    const svg = document.createElementNS(SVG, "svg");
+    svg.setAttribute("viewBox", "-1.1 -1.1 2.2 2.2");
+    svg.setAttribute("aria-hidden", "true");
+    const ring = document.createElementNS(SVG, "circle");
+    ring.setAttribute("r", "1");
+    svg.append(ring, this.lens);
+    this.fills.push(() => {
+      const { camera } = this.parts.camera;
+      const unitLens: FrameCamera = { ...camera, centre: [0, 0, 0], right: [1, 0, 0], up: [0, -1, 0], radius: 0.96 };
+      this.lens.setAttribute(
+        "points",
+        lensRim(unitLens)
+          .map(([x, y]) => `${x},${y}`)
+          .join(" "),
+      );
+    });
+    return svg;
+  }
+}

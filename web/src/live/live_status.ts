@@ -1,0 +1,60 @@
+// The line below the live picture: the lens, the LF images of the picture, the share of the lens that was recorded, and
+// a warning of double edges.
+
+import { fNumber, type FrameCamera } from "../data/frame_camera";
+import type { LiveFacts } from "../data/live_picture";
+import { element } from "../element";
+import type { State } from "../state";
+import { length, millimetres, percent, plural, precise, shortNumber } from "../words";
+import { displacements, levelOf, type Displacement, type Level } from "./double_edges";
+
+const LEAST_RECORDED = 0.9; // share of the lens below which the line warns, as the panel of the frame does
+
+export function apertureText(camera: FrameCamera, unit_m: number): string {
+  if (camera.radius === 0) return "pinhole";
+  return `f/${precise(fNumber(camera), 3)}, ${millimetres(2 * camera.radius, unit_m)}`;
+}
+
+export function statusOf(state: State, camera: FrameCamera, facts: LiveFacts): HTMLElement[] {
+  const { unit_m } = state.path;
+  const parts = [
+    part("lens", `${apertureText(camera, unit_m)} · focus ${length(camera.focusDistance)}`),
+    part("images", imagesText(facts, unit_m)),
+  ];
+  const isLoading = facts.done < facts.wanted;
+  const isLacking = 1 - facts.uncovered_share < LEAST_RECORDED && !isLoading;
+  if (facts.images > 0) parts.push(part("recorded", recordedText(facts), isLacking ? "gentle" : "none"));
+  if (isLoading) parts.push(part("loading", `loading ${shortNumber(facts.done)} of ${shortNumber(facts.wanted)}`));
+  if (facts.broken > 0)
+    parts.push(part("broken", `${plural(facts.broken, "LF image")} broken: ${facts.first_broken}`, "loud"));
+  if (facts.camera_distance > 0 && camera.radius > 0) {
+    const all = displacements(camera, facts.camera_distance, state.scene.light_field.depths);
+    const worst = all.reduce((a, b) => (b.elements > a.elements ? b : a));
+    const level = levelOf(worst.elements);
+    if (level !== "none") parts.push(part("edges", edgesText(worst, level), level, EDGES_HELP));
+  }
+  return parts;
+}
+
+const EDGES_HELP =
+  "How far apart neighbouring LF images show the same point. Up to about one element looks like blur, more than four " +
+  "look like double edges.";
+
+function part(name: string, text: string, level = "none", title: string | null = null): HTMLElement {
+  return element("span", { "data-part": name, "data-level": level, title }, text);
+}
+
+function imagesText({ images, takeable, camera_distance }: LiveFacts, unit_m: number): string {
+  const of = images < takeable ? ` of ${shortNumber(takeable)}` : "";
+  const spacing = camera_distance > 0 ? `, spacing ${millimetres(camera_distance, unit_m)}` : "";
+  return `${shortNumber(images)}${of} ${images === 1 && !of ? "LF image" : "LF images"}${spacing}`;
+}
+
+function recordedText({ uncovered_share }: LiveFacts): string {
+  return `${percent(1 - uncovered_share)} of the lens recorded`;
+}
+
+function edgesText({ elements, depth }: Displacement, level: Level): string {
+  const where = Number.isFinite(depth) ? `at depth ${length(depth)}` : "at infinity";
+  return `${level === "loud" ? "double edges" : "slight double edges"}: ${precise(elements, 2)} elements ${where}`;
+}

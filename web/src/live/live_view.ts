@@ -1,0 +1,121 @@
+// The live picture: a large picture of the current frame that is rendered anew whenever the camera changes.
+
+import { develop } from "../data/growing_picture";
+import { readLivePicture, type LivePicture } from "../data/live_picture";
+import { postForBytes } from "../data/source";
+import { element } from "../element";
+import type { State } from "../state";
+import type { LiveCamera } from "./live_camera";
+import { LiveRequests } from "./live_requests";
+import { statusOf } from "./live_status";
+import { oneFramePath } from "./one_frame_path";
+
+const BUDGET_MS = 40; // time in which a quick picture is to be rendered
+const WIDTHS: [number, number] = [16, 1280]; // smallest and largest width that the server renders
+
+export class LiveView {
+  readonly canvas = element("canvas", { "aria-label": "Live picture of this frame", role: "img" });
+  // The picture with everything that lies on it; mouse and fingers work here.
+  readonly box = element("div", { id: "live-picture" }, this.canvas);
+  shown: LivePicture | null = null;
+  private readonly fault = element("p", { id: "live-fault", role: "status", hidden: true });
+  private readonly status = element("div", { id: "live-status" });
+  private readonly requests = new LiveRequests((isStill, isNewest) => this.ask(isStill, isNewest));
+  private pictureFault = "";
+  private version = 0; // number of pictures shown so far
+  private wanted = ""; // path of the newest picture that was wanted
+
+  constructor(
+    private readonly root: HTMLElement,
+    private readonly state: State,
+    private readonly camera: LiveCamera,
+  ) {
+    root.append(element("div", { id: "live-room" }, this.box, this.fault), this.status);
+    camera.listen(() => this.change());
+    state.on(["exposure"], () => this.draw());
+    state.on(["live"], () => this.requests.loaded());
+    state.on(["text"], () => this.tellFault());
+    document.addEventListener("visibilitychange", () => this.startOrStop());
+    let width = 0;
+    new ResizeObserver(() => {
+      if (this.width() === width) return;
+      width = this.width();
+      this.requests.change();
+    }).observe(this.box);
+  }
+
+  show(isShown: boolean): void {
+    this.state.isLive = isShown;
+    this.root.hidden = !isShown;
+    this.startOrStop();
+    if (!isShown) void this.state.askFrame(); // playing may have skipped it
+  }
+
+  private draw(): void {
+    const { shown, canvas } = this;
+    if (!shown) return;
+    const { picture } = shown;
+    canvas.width = picture.width;
+    canvas.height = picture.height;
+    canvas.getContext("2d")!.putImageData(develop(picture, this.state.exposure), 0, 0);
+    canvas.dataset.version = String(this.version);
+  }
+
+  private startOrStop(): void {
+    if (this.state.isLive && !document.hidden) this.requests.start();
+    else this.requests.stop();
+  }
+
+  private change(): void {
+    const { width, height } = this.camera.camera;
+    this.box.style.setProperty("--ratio", String(width / height));
+    const path = this.path();
+    if (path === this.wanted) return;
+    this.wanted = path;
+    this.requests.change();
+  }
+
+  private path(): string {
+    return oneFramePath(this.camera.camera, this.state.path.unit_m);
+  }
+
+  // Returns the width to be rendered: that of the picture on the screen, in steps so that few sizes occur.
+  private width(): number {
+    const pixels = this.box.clientWidth * Math.min(2, window.devicePixelRatio || 1);
+    return Math.max(WIDTHS[0], Math.min(WIDTHS[1], 16 * Math.round(pixels / 16)));
+  }
+
+  private async ask(isStill: boolean, isNewest: () => boolean): Promise<boolean> {
+    const { state } = this;
+    const { camera } = this.camera;
+    const text = this.path();
+    const budget = isStill
+      ? {}
+      : { budget_ms: state.isPlaying ? Math.min(BUDGET_MS, 800 / state.path.fps) : BUDGET_MS };
+    try {
+      const answer = await postForBytes<unknown>("live", { text, frame: 1, width: this.width(), ...budget });
+      if (!isNewest()) return true;
+      if (!(answer instanceof ArrayBuffer)) return false;
+      this.shown = readLivePicture(answer);
+      this.pictureFault = "";
+      ++this.version;
+      Object.assign(this.canvas.dataset, { still: isStill, focus: camera.focusDistance });
+      this.draw();
+      this.status.replaceChildren(...statusOf(state, camera, this.shown.facts));
+    } catch (error) {
+      if (!isNewest()) return true;
+      this.pictureFault = error instanceof Error ? error.message : String(error);
+    }
+    this.tellFault();
+    return true;
+  }
+
+  private tellFault(): void {
+    const { invalid } = this.state;
+    const fault = invalid
+      ? `The path has a fault; the picture is of the path before it. ${invalid}`
+      : this.pictureFault;
+    this.fault.textContent = fault;
+    this.fault.hidden = fault === "";
+  }
+}
