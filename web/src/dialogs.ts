@@ -92,6 +92,8 @@ const LIVE_KEYS: [string, string][] = [
   ["− +", "close or open the aperture"],
   ["C", "the mouse moves the camera, or works the lens again"],
   ["Arrows", "then orbit round the point in focus; with Shift, slide; Page Up and Page Down dolly"],
+  ["E", "focus peaking: colour the edges that are in focus"],
+  ["A", "keep this picture as A and compare with it, or end the comparison"],
   ["Esc", "forget a drag that has not ended"],
 ];
 

@@ -1,4 +1,5 @@
-// The panel of the live picture: what the mouse does in it, sliders of the lens, and the exposure.
+// The panel of the live picture: what the mouse does in it, sliders of the lens, exposure, focus peaking, and the
+// comparison of two settings.
 
 import { lensRim, type FrameCamera } from "../data/frame_camera";
 import { element } from "../element";
@@ -6,10 +7,12 @@ import { exposureRow } from "../panels/exposure";
 import type { State } from "../state";
 import { extentOf } from "../view/space_view";
 import { length } from "../words";
-import { rotationWriter, writeBlades } from "./lens_changes";
+import type { Comparison } from "./comparison";
+import { rotationWriter, writeBlades, writeAperture, writeFocusDistance } from "./lens_changes";
 import type { LiveCamera } from "./live_camera";
 import { apertureText } from "./live_status";
 import { depthFactor, type LiveTools } from "./live_tools";
+import type { LiveView } from "./live_view";
 
 const SVG = "http://www.w3.org/2000/svg";
 const OPENINGS = 1000; // factor between the largest and the smallest opening of the slider
@@ -18,7 +21,9 @@ const MOST_BLADES = 12;
 interface Parts {
   state: State;
   camera: LiveCamera;
+  view: LiveView;
   tools: LiveTools;
+  comparison: Comparison;
 }
 
 export class LensPanel {
@@ -29,7 +34,7 @@ export class LensPanel {
     private readonly root: HTMLElement,
     private readonly parts: Parts,
   ) {
-    const { state, camera, tools } = parts;
+    const { state, camera, tools, comparison } = parts;
     if (!state.scene.server) {
       root.append(element("p", { class: "muted" }, "These are exported files, without live pictures."));
       return;
@@ -37,6 +42,7 @@ export class LensPanel {
     root.append(
       this.switches(),
       this.help(),
+      this.backToA(),
       element("h2", {}, "Lens at this frame"),
       element("div", { class: "lens" }, this.drawing(), element("div", {}, this.focus(), this.aperture())),
       this.blades(),
@@ -46,11 +52,26 @@ export class LensPanel {
     );
     camera.listen(() => this.shown());
     tools.listen(() => this.shown());
+    comparison.listen(() => this.shown());
   }
 
   shown(): void {
     if (this.root.hidden || this.parts.state.cameras.length === 0) return;
     for (const fill of this.fills) fill();
+  }
+
+  togglePeaking(): void {
+    const { view, comparison } = this.parts;
+    view.peaks = !view.peaks;
+    view.draw();
+    comparison.draw();
+    this.shown();
+  }
+
+  toggleComparison(): void {
+    const { comparison } = this.parts;
+    if (comparison.kept) comparison.end();
+    else comparison.keep();
   }
 
   // ----------------------------------------------------------------------------------- switches
@@ -62,7 +83,7 @@ export class LensPanel {
   }
 
   private switches(): HTMLElement {
-    const { tools } = this.parts;
+    const { tools, view, comparison } = this.parts;
     return element(
       "div",
       { class: "row" },
@@ -82,6 +103,19 @@ export class LensPanel {
           () => tools.setMode("camera"),
         ),
       ),
+      element("span", { class: "grow" }),
+      this.toggle(
+        "A | B",
+        "Keep this picture as A, and compare with it (A)",
+        () => comparison.kept !== null,
+        () => this.toggleComparison(),
+      ),
+      this.toggle(
+        "Peaking",
+        "Colour what is in focus (E)",
+        () => view.peaks,
+        () => this.togglePeaking(),
+      ),
     );
   }
 
@@ -89,11 +123,9 @@ export class LensPanel {
     const text = element("p", { class: "muted" });
     const words = {
       focus:
-        "In the live picture, click to focus there, drag to focus nearer or farther, turn the wheel or pinch to set the " +
-        "aperture. Shift-click three places to tilt the focus plane.",
-      camera:
-        "In the live picture, drag to orbit round the point in focus, Shift and drag to slide, turn the wheel to dolly. " +
-        "The arrow keys do the same.",
+        "In the live picture, click: focus there. Drag: nearer or farther. Wheel or pinch: aperture. Shift-click three " +
+        "places: tilt the focus plane.",
+      camera: "In the live picture, drag: orbit round the point in focus. Shift and drag: slide. Wheel: dolly.",
     };
     this.fills.push(() => (text.textContent = words[this.parts.tools.mode]));
     return text;
@@ -215,5 +247,21 @@ export class LensPanel {
       );
     });
     return svg;
+  }
+
+  private backToA(): HTMLElement {
+    const { camera, comparison } = this.parts;
+    const goBack = () => {
+      const { focusDistance, radius } = comparison.kept!.camera;
+      camera.show("back to A", { ...camera.camera, focusDistance, radius }, (document, time, one) => {
+        const also = [writeFocusDistance(document, time, one), writeAperture(document, time, one)];
+        return also.filter((text) => text !== "").join(" ");
+      });
+      camera.finish();
+    };
+    const title = "Give this frame the focus distance and the aperture of A";
+    const row = element("div", { class: "row" }, element("button", { title, click: goBack }, "Back to A"));
+    this.fills.push(() => (row.hidden = comparison.kept === null));
+    return row;
   }
 }

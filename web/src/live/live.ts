@@ -1,6 +1,7 @@
 // Makes the parts of the live picture, and connects them.
 
 import type { State } from "../state";
+import { Comparison } from "./comparison";
 import { LensPanel } from "./lens_panel";
 import { LiveCamera } from "./live_camera";
 import { LiveTools } from "./live_tools";
@@ -20,7 +21,15 @@ export interface Live {
 export function startLive(root: HTMLElement, panelRoot: HTMLElement, state: State, stopPlaying: () => void): Live {
   const camera = new LiveCamera(state, stopPlaying);
   const view = new LiveView(root, state, camera);
+  const comparison = new Comparison(state, view, camera);
   const tools = new LiveTools(state, camera, view.box);
-  const panel = new LensPanel(panelRoot, { state, camera, tools });
-  return { view, camera, panel, key: (event) => tools.key(event) };
+  const panel = new LensPanel(panelRoot, { state, camera, view, tools, comparison });
+  const key = (event: KeyboardEvent): boolean => {
+    const name = event.key.toLowerCase();
+    if (name === "e") panel.togglePeaking();
+    else if (name === "a") panel.toggleComparison();
+    else return tools.key(event);
+    return true;
+  };
+  return { view, camera, panel, key };
 }

@@ -5,6 +5,7 @@ import { readLivePicture, type LivePicture } from "../data/live_picture";
 import { postForBytes } from "../data/source";
 import { element } from "../element";
 import type { State } from "../state";
+import { colourEdges } from "./focus_peaking";
 import type { LiveCamera } from "./live_camera";
 import { LiveRequests } from "./live_requests";
 import { statusOf } from "./live_status";
@@ -12,15 +13,18 @@ import { oneFramePath } from "./one_frame_path";
 
 const BUDGET_MS = 40; // time in which a quick picture is to be rendered
 const WIDTHS: [number, number] = [16, 1280]; // smallest and largest width that the server renders
+const EDGE_COLOUR: [number, number, number] = [70, 255, 140];
 
 export class LiveView {
   readonly canvas = element("canvas", { "aria-label": "Live picture of this frame", role: "img" });
   // The picture with everything that lies on it; mouse and fingers work here.
   readonly box = element("div", { id: "live-picture" }, this.canvas);
   shown: LivePicture | null = null;
+  peaks = false; // true: focus peaking
   private readonly fault = element("p", { id: "live-fault", role: "status", hidden: true });
   private readonly status = element("div", { id: "live-status" });
   private readonly requests = new LiveRequests((isStill, isNewest) => this.ask(isStill, isNewest));
+  private readonly listeners: (() => void)[] = [];
   private pictureFault = "";
   private version = 0; // number of pictures shown so far
   private wanted = ""; // path of the newest picture that was wanted
@@ -44,6 +48,11 @@ export class LiveView {
     }).observe(this.box);
   }
 
+  // Calls the listener after each new picture.
+  listen(listener: () => void): void {
+    this.listeners.push(listener);
+  }
+
   show(isShown: boolean): void {
     this.state.isLive = isShown;
     this.root.hidden = !isShown;
@@ -51,14 +60,20 @@ export class LiveView {
     if (!isShown) void this.state.askFrame(); // playing may have skipped it
   }
 
-  private draw(): void {
-    const { shown, canvas } = this;
+  draw(): void {
+    const { shown } = this;
     if (!shown) return;
-    const { picture } = shown;
+    this.paint(this.canvas, shown);
+    this.canvas.dataset.version = String(this.version);
+  }
+
+  // Draws a picture with the exposure and the peaking of the view.
+  paint(canvas: HTMLCanvasElement, { picture }: LivePicture): void {
     canvas.width = picture.width;
     canvas.height = picture.height;
-    canvas.getContext("2d")!.putImageData(develop(picture, this.state.exposure), 0, 0);
-    canvas.dataset.version = String(this.version);
+    const image = develop(picture, this.state.exposure);
+    if (this.peaks) colourEdges(image, EDGE_COLOUR);
+    canvas.getContext("2d")!.putImageData(image, 0, 0);
   }
 
   private startOrStop(): void {
@@ -102,6 +117,7 @@ export class LiveView {
       Object.assign(this.canvas.dataset, { still: isStill, focus: camera.focusDistance });
       this.draw();
       this.status.replaceChildren(...statusOf(state, camera, this.shown.facts));
+      for (const listener of this.listeners) listener();
     } catch (error) {
       if (!isNewest()) return true;
       this.pictureFault = error instanceof Error ? error.message : String(error);

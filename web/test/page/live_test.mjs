@@ -286,6 +286,44 @@ test("the film is played live, and scrubbed", async () => {
   });
 });
 
+test("two settings are compared, and edges in focus are coloured", async () => {
+  await withChart(
+    async (page) => {
+      const box = await openLive(page);
+      await page.keyboard.press("a");
+      await page.mouse.move(box.x + 50, box.y + 50);
+      await page.mouse.wheel(0, 300);
+      await until(page, "app.state.isShown && app.state.camera.radius < 0.005");
+      await stillPicture(page);
+      await page.waitForSelector(".live-side[data-side=B]:not(:has-text('12 mm'))");
+      assert.match(await page.textContent(".live-side[data-side=A]"), /12 mm/);
+      const line = await page.locator("#live-line").boundingBox();
+      await page.mouse.move(line.x + line.width / 2, line.y + 20);
+      await page.mouse.down();
+      await page.mouse.move(box.x + box.width / 4, line.y + 20);
+      await page.mouse.up();
+      assert.equal(await page.getAttribute("#live-line", "aria-valuenow"), "25");
+      await page.click("button:text-is('Back to A')");
+      await until(page, "app.state.isShown && Math.abs(app.state.camera.radius - 0.006) < 1e-9");
+      await page.keyboard.press("a");
+      assert.equal(await page.isVisible("#live-line"), false);
+      const greenElements = () =>
+        page.evaluate(() => {
+          const canvas = document.querySelector("#live-picture canvas");
+          const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+          let count = 0;
+          for (let i = 0; i < data.length; i += 4) if (data[i + 1] > data[i] + data[i + 2]) ++count;
+          return count;
+        });
+      const before = await greenElements();
+      await page.keyboard.press("e");
+      assert.ok((await greenElements()) > before + 20);
+    },
+    CHART_PATH,
+    ["--max-angle", "45"],
+  );
+});
+
 test("the live picture of a dense light field says what it is made of", withShop, async () => {
   const path = await writePath(SHOP_PATH);
   await withPage([SHOP, path], async (page) => {
