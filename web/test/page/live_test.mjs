@@ -338,7 +338,10 @@ test("the live picture of a dense light field says what it is made of", withShop
   });
 });
 
-for (const [width, height] of [[1000, 600]])
+for (const [width, height] of [
+  [390, 844],
+  [1000, 600],
+])
   test(`the live picture fits a window of ${width} × ${height}`, async () => {
     const path = await writePath(CHART_PATH);
     await withPage(
