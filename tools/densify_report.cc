@@ -48,8 +48,8 @@ std::string DensifyText(const DensifyReport& report, const DensifyOptions& optio
         "          of these\n",
         MedianGainDb(report.tests));
     for (const LeftOut& test : report.tests)
-      text += fmt::format("          {:.1f} dB (mean: {:.1f} dB)  {}\n", test.virtual_psnr_db,
-                          test.blend_psnr_db, test.name);
+      text += fmt::format("          {:.1f} dB (mean: {:.1f} dB) at {:.1f} degrees  {}\n",
+                          test.virtual_psnr_db, test.blend_psnr_db, test.angle_deg, test.name);
   }
   text += fmt::format(
       "speed     {:.0f} ns per swept pixel, {:.0f} ns per virtual pixel (CPU); {}\n",
@@ -66,7 +66,8 @@ std::string DensifyJson(const DensifyReport& report, const DensifyOptions& optio
   for (const LeftOut& test : report.tests)
     tests.push_back({{"lf_image", test.name},
                      {"virtual_psnr_db", test.virtual_psnr_db},
-                     {"mean_psnr_db", test.blend_psnr_db}});
+                     {"mean_psnr_db", test.blend_psnr_db},
+                     {"angle_deg", test.angle_deg}});
   nlohmann::ordered_json skipped = nlohmann::ordered_json::array();
   for (const DensifyReport::Skipped& image : report.skipped)
     skipped.push_back({{"lf_image", image.name}, {"reason", image.reason}});

@@ -25,7 +25,7 @@ constexpr double kPlaneStep_px = 0.35;
 constexpr double kTolerance_px = 0.6;
 constexpr double kOutside = 0.5;  // of the median distance between LF cameras
 
-// Limits of the shift between compared LF images, as a share of their width, and of the angle
+// Limits of the shift between compared LF images, as a share of their longer side, and of the angle
 // between their rays to the middle of the scene.
 constexpr double kMuchShift = 0.25, kMostShift = 0.5;
 constexpr double kLargeAngle_deg = 8, kMostAngle_deg = 15;
@@ -54,14 +54,14 @@ Result<void> CheckCameras(const CameraPlane& plane) {
 // Checks that neighbouring LF images are near enough to one another.
 Result<void> CheckReach(const LightField& light_field, const DensifyPlan& plan, int divisor,
                         bool force) {
-  const double width = light_field.Camera(LfImageId{0}).intrinsics.width_px / divisor;
-  const double share = plan.ShiftPx() / width;
-  const double f_px = light_field.Camera(LfImageId{0}).intrinsics.fx_px / divisor;
+  const Intrinsics k = light_field.Camera(LfImageId{0}).intrinsics;
+  const double share = plan.ShiftPx() * divisor / std::max(k.width_px, k.height_px);
+  const double f_px = k.fx_px / divisor;
   const double middle = (plan.range.least + plan.range.greatest) / 2;
   const double angle_deg = DegreesFromRadians(std::atan(plan.shift_per_depth_px / f_px * middle));
   const std::string figures = fmt::format(
-      "between neighbouring LF images, near points of the scene shift by {:.0f} % of the width "
-      "against far ones, and rays to the middle of the scene differ by {:.1f} degrees",
+      "between neighbouring LF images, near points of the scene shift by {:.0f} % of the longer "
+      "side against far ones, and rays to the middle of the scene differ by {:.1f} degrees",
       100 * share, angle_deg);
   if ((share > kMostShift || angle_deg > kMostAngle_deg) && !force)
     return InputError(fmt::format(

@@ -13,6 +13,7 @@
 #include "lf/core/median.h"
 #include "lf/densify/semi_global.h"
 #include "lf/densify/working_images.h"
+#include "lf/light_field/model/capture_geometry.h"
 
 namespace lf {
 namespace {
@@ -39,9 +40,10 @@ int GoodCost(const Image<uint16_t>& tones, const ChosenPlanes& chosen) {
 }
 
 // Appends the inverse depths of the pixels of one LF image that are sure.
-void AppendSure(const WorkingImage& reference, std::span<const SweepView> views,
+void AppendSure(const LightField& light_field, const std::optional<Vec3>& subject,
+                const WorkingImage& reference, std::span<const SweepView> views,
                 std::vector<double>* found) {
-  constexpr double kGreatestShift = 0.3, kBeyondInfinity = 0.1, kLeastStep_px = 0.5;
+  constexpr double kLeastStep_px = 0.5;
   constexpr int kMostSearched = 220;
   constexpr int kClear = 6;
   std::vector<double> shifts;
@@ -50,8 +52,8 @@ void AppendSure(const WorkingImage& reference, std::span<const SweepView> views,
   if (shifts.empty()) return;
   const double shift = Median(std::move(shifts));
   if (!(shift > 0)) return;
-  const double greatest = kGreatestShift * reference.width() / shift;
-  const InverseDepths range{-kBeyondInfinity * greatest, greatest};
+  const InverseDepths range =
+      SearchedRange(reference.camera, shift, subject, light_field.depth_range);
   const double extent = range.greatest - range.least;
   const int planes =
       std::clamp(static_cast<int>(extent * shift / kLeastStep_px) + 1, 8, kMostSearched);
@@ -82,12 +84,29 @@ InverseDepths RangeOf(std::vector<double> depths) {
 
 }  // namespace
 
+InverseDepths SearchedRange(const PinholeCamera& camera, double shift_per_depth_px,
+                            const std::optional<Vec3>& subject,
+                            const std::optional<DepthRange>& stated) {
+  constexpr double kGreatestShift = 0.3, kBeyondInfinity = 0.1;
+  constexpr double kNearer = 1.5, kFarther = 0.5;  // inverse depths, by those that are stated
+  const double longer_px = std::max(camera.intrinsics.width_px, camera.intrinsics.height_px);
+  const double shifted = kGreatestShift * longer_px / shift_per_depth_px;
+  const double subject_w = subject ? (camera.cam_from_world * *subject).z() : 0;
+  const InverseDepths range{-kBeyondInfinity * shifted,
+                            shifted + (subject_w > 0 ? 1 / subject_w : 0)};
+  if (!stated) return range;
+  const InverseDepths narrower{std::max(range.least, kFarther / stated->far_w),
+                               std::min(range.greatest, kNearer / stated->near_w)};
+  return narrower.greatest > narrower.least ? narrower : range;
+}
+
 Result<InverseDepths> FindInverseDepths(const LightField& light_field, const LfImageStore& store,
                                         std::span<const std::vector<uint32_t>> compare_with,
                                         ThreadPool& pool) {
   constexpr size_t kLeastDepths = 200;
   const int divisor = std::max(1, light_field.intrinsics.front().width_px / kSearchedWidth);
   WorkingImages images(light_field, store, divisor, std::numeric_limits<size_t>::max());
+  const std::optional<Vec3> subject = AxesMeetingPoint(light_field);
   const size_t count = std::min(kReferences, light_field.size());
   std::vector<std::vector<double>> depths(count);
   std::mutex mutex;
@@ -109,7 +128,7 @@ Result<InverseDepths> FindInverseDepths(const LightField& light_field, const LfI
       if (!load(compare_with[id][k])) return;
     std::vector<SweepView> views;
     for (size_t k = 1; k < loaded.size(); ++k) views.push_back(ViewFrom(*loaded[0], *loaded[k]));
-    AppendSure(*loaded[0], views, &depths[i]);
+    AppendSure(light_field, subject, *loaded[0], views, &depths[i]);
   });
   if (error) return *error;
   std::vector<double> all;

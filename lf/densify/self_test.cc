@@ -66,6 +66,16 @@ std::vector<WeightedPoint> NeighboursWithout(std::vector<Vec2> points, uint32_t 
   return neighbours;
 }
 
+// Returns the angle at which two cameras see the point at inverse depth z on the axis of the first.
+double AngleDeg(const PinholeCamera& first, const PinholeCamera& second, double z) {
+  const Vec3 centre = first.CentreWorld();
+  const Vec3 to_point = first.cam_from_world.rotation.row(2).transpose();
+  // The direction from the second camera, times z: it may be far away.
+  const Vec3 from_second = to_point - z * (second.CentreWorld() - centre);
+  return DegreesFromRadians(
+      std::atan2(to_point.cross(from_second).norm(), to_point.dot(from_second)));
+}
+
 // Tests of one light field.
 class Tester {
  public:
@@ -137,6 +147,10 @@ Result<LeftOut> Tester::Test(uint32_t left_out) {
   };
   const Image<float> truth = SmoothTones(recorded->light, curve_);
   LeftOut result{light_field_.image_names[left_out]};
+  const double middle = (plan_.range.least + plan_.range.greatest) / 2;
+  for (size_t i = 0; i < ids.size(); ++i)
+    result.angle_deg +=
+        neighbours[i].weight / sum * AngleDeg(recorded->camera, group.images[i]->camera, middle);
   result.virtual_psnr_db = PsnrDb(SmoothTones(made_with(group.planes), curve_), truth);
   for (int i = 0; i < kBlendDepths; ++i) {
     std::vector<DepthPlane> flat = group.planes;

@@ -19,6 +19,8 @@ struct LeftOut {
   // The best that the same LF images reach without depths: their mean, aligned at one of several
   // depths.
   double blend_psnr_db = 0;
+  // Angle between its ray to the middle of the scene and theirs, weighted as their colours are.
+  double angle_deg = 0;
   double GainDb() const { return virtual_psnr_db - blend_psnr_db; }
 };
 
