@@ -283,6 +283,19 @@ class DensifyTest(ProgramTestCase):
         self.fails(3, ["left out"], DENSIFY, self.field, "-o", self.store, "--depths", 0.35, 20)
         self.assertFalse(self.store.exists())
 
+    def test_two_sides_that_were_put_at_the_same_places_are_told_apart(self):
+        self.synth("--format", "png")
+        frames = self.cameras()[0]["frames"]
+        # Half of the cameras see the world turned upside down: what the opposite camera sees, turned.
+        places = [(row, column) for row in range(4) for column in range(row % 2, 4, 2)]
+        pictures = {place: cv2.imread(str(self.field / frames[15 - 4 * place[0] - place[1]]["file_path"]))
+                    for place in places}
+        for (row, column), picture in pictures.items():
+            cv2.imwrite(str(self.field / frames[4 * row + column]["file_path"]), picture[::-1, ::-1])
+        self.fails(3, ["contradict each other", "group 1 has 8", "group 2 has 8", "--exclude"],
+                   DENSIFY, self.field, "-o", self.store, "--depths", 0.35, 20)
+        self.assertFalse(self.store.exists())
+
     def test_cameras_on_a_line_are_refused(self):
         self.synth()
         self.rewrite(lambda frames: frames.__delitem__(slice(4, None)))

@@ -10,6 +10,7 @@
 
 #include "lf/core/log.h"
 #include "lf/densify/depth_plane.h"
+#include "lf/densify/folded_poses.h"
 #include "lf/densify/recorded_values.h"
 #include "lf/densify/stored_planes.h"
 #include "lf/densify/synthesis.h"
@@ -90,6 +91,7 @@ class Densifier {
 
   Result<void> CheckTarget() const;
   Result<void> LeaveOutBroken();
+  Result<void> CheckPoses();
   Result<void> Test();
   Result<void> OpenWriter();
   Result<void> SweepAll();
@@ -206,6 +208,21 @@ Result<void> Densifier::LeaveOutBroken() {
                                   light_field_.size(), report_.skipped.front().reason));
   KeepImages(kept, &light_field_);
   LF_ASSIGN_OR_RETURN(store_, OpenStore(light_field_, Mosaics::kToRgb));
+  return {};
+}
+
+// Looks for groups of LF images that contradict each other.
+Result<void> Densifier::CheckPoses() {
+  // More would take minutes; so many are not reconstructed from photographs taken by hand.
+  constexpr size_t kMostChecked = 400;
+  if (light_field_.size() > kMostChecked) return {};
+  LF_ASSIGN_OR_RETURN(const std::vector<ComparedPair> pairs,
+                      ComparePairs(light_field_, *store_, plan_.plane.points, plan_.range, pool_));
+  const std::vector<std::vector<uint32_t>> groups = ContradictingGroups(light_field_.size(), pairs);
+  if (groups.empty()) return {};
+  std::string text = ContradictionText(light_field_, groups);
+  if (!options_.choices.force) return InputError(std::move(text));
+  LogWarning("{}", text);
   return {};
 }
 
@@ -397,6 +414,7 @@ Result<DensifyReport> Densifier::Run() {
   report_.spacing_px = plan_.spacing_px;
   if (!report_.dense.empty()) return std::move(report_);
   LogDebug("{}: {}", options_.store.string(), SettingsInWords(plan_, options_.choices));
+  LF_RETURN_IF_ERROR(CheckPoses());
   LF_RETURN_IF_ERROR(Test());
 
   LF_RETURN_IF_ERROR(OpenWriter());

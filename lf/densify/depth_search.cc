@@ -22,12 +22,6 @@ constexpr int kSearchedWidth = 200;
 constexpr size_t kReferences = 8, kMostViews = 6;
 constexpr int kTexture = 8, kSearchedBorder = 2;
 
-// Returns the sum of the absolute differences of green beside and above a pixel.
-int TextureAt(const Image<uint16_t>& tones, int x, int y) {
-  return std::abs(tones.at(x + 1, y, 1) - tones.at(x - 1, y, 1)) +
-         std::abs(tones.at(x, y + 1, 1) - tones.at(x, y - 1, 1));
-}
-
 // Returns the largest cost of a match that counts as good. Noise makes right matches dear as well:
 // where it does, the better half of the textured pixels counts.
 int GoodCost(const Image<uint16_t>& tones, const ChosenPlanes& chosen) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "lf/camera/distortion.h"
 #include "lf/densify/bicubic.h"
@@ -51,6 +52,11 @@ Image<uint16_t> Undistorted(const Image<uint16_t>& light, const Intrinsics& k) {
 }
 
 }  // namespace
+
+int TextureAt(const Image<uint16_t>& tones, int x, int y) {
+  return std::abs(tones.at(x + 1, y, 1) - tones.at(x - 1, y, 1)) +
+         std::abs(tones.at(x, y + 1, 1) - tones.at(x, y - 1, 1));
+}
 
 PinholeCamera WorkingCamera(const PinholeCamera& lf_camera, int divisor) {
   PinholeCamera camera = lf_camera;

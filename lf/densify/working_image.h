@@ -23,6 +23,10 @@ struct WorkingImage {
   int height() const { return light.height(); }
 };
 
+// Returns the sum of the absolute differences of green beside and above a pixel, which must not be
+// on the border.
+int TextureAt(const Image<uint16_t>& tones, int x, int y);
+
 // Returns the camera of a working image: a pinhole with the calibration matrix and the size of the
 // LF camera, divided by `divisor`.
 PinholeCamera WorkingCamera(const PinholeCamera& lf_camera, int divisor);

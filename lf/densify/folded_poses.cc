@@ -1,0 +1,228 @@
+#include "lf/densify/folded_poses.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+#include <mutex>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "lf/core/median.h"
+#include "lf/densify/natural_neighbours.h"
+#include "lf/densify/semi_global.h"
+#include "lf/densify/working_images.h"
+
+namespace lf {
+namespace {
+
+constexpr int kComparedWidth = 100;
+constexpr size_t kNearest = 6;
+
+ChosenPlanes Swept(const WorkingImage& reference, const WorkingImage& image,
+                   const InverseDepths& range, int planes) {
+  const SweepView view[] = {ViewFrom(reference, image)};
+  MatchingCosts costs;
+  ComputeMatchingCosts(reference, view, range, planes,
+                       {0, 0, reference.width(), reference.height()}, &costs);
+  return ChoosePlanes(costs, reference.tones, false);
+}
+
+// Returns the share of the textured pixels of one image that the other one confirms; nullopt if few
+// pixels have texture.
+std::optional<double> ConfirmedShare(const WorkingImage& image, const ChosenPlanes& of_image,
+                                     const WorkingImage& other, const ChosenPlanes& of_other,
+                                     const InverseDepths& range, int planes) {
+  constexpr int kTexture = 24, kCheap = 60, kLeastTextured = 50;
+  constexpr float kSame = 1.5f;  // planes
+  const PairMap map = MapBetween(image.camera, other.camera);
+  const auto step = static_cast<float>((range.greatest - range.least) / (planes - 1));
+  const auto least = static_cast<float>(range.least);
+  int textured = 0, confirmed = 0;
+  for (int y = 1; y + 1 < image.height(); ++y)
+    for (int x = 1; x + 1 < image.width(); ++x) {
+      if (TextureAt(image.tones, x, y) <= kTexture) continue;
+      ++textured;
+      const float z = least + of_image.place.at(x, y) * step;
+      const PairMap::Place at =
+          map.At(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, z);
+      if (of_image.cost.at(x, y) >= kCheap || !(at.w > 0 && at.u_px >= 0 && at.v_px >= 0 &&
+                                                at.u_px < static_cast<float>(other.width()) &&
+                                                at.v_px < static_cast<float>(other.height())))
+        continue;
+      const float there =
+          least + of_other.place.at(static_cast<int>(at.u_px), static_cast<int>(at.v_px)) * step;
+      if (std::abs(there - z / at.w) < kSame * step) ++confirmed;
+    }
+  if (textured < kLeastTextured) return std::nullopt;
+  return static_cast<double>(confirmed) / textured;
+}
+
+// Returns the larger share of both; nullopt if few pixels have texture.
+std::optional<double> AgreeingShare(const WorkingImage& a, const WorkingImage& b,
+                                    const InverseDepths& range) {
+  constexpr double kStep_px = 0.5, kFewest = 8, kMost = 160;
+  const double shift_px = (range.greatest - range.least) * ShiftPerInverseDepth(a.camera, b.camera);
+  const int planes = static_cast<int>(std::clamp(shift_px / kStep_px + 2, kFewest, kMost));
+  const ChosenPlanes of_a = Swept(a, b, range, planes), of_b = Swept(b, a, range, planes);
+  const std::optional<double> in_a = ConfirmedShare(a, of_a, b, of_b, range, planes);
+  const std::optional<double> in_b = ConfirmedShare(b, of_b, a, of_a, range, planes);
+  return std::max(in_a, in_b);
+}
+
+// Groups of numbers that are joined step by step.
+class Groups {
+ public:
+  explicit Groups(size_t count) : parents_(count) {
+    std::iota(parents_.begin(), parents_.end(), 0u);
+  }
+  void Join(uint32_t a, uint32_t b) { parents_[RootOf(a)] = RootOf(b); }
+  uint32_t RootOf(uint32_t i) const {
+    while (parents_[i] != i) i = parents_[i];
+    return i;
+  }
+
+ private:
+  std::vector<uint32_t> parents_;
+};
+
+double UsualBest(size_t count, std::span<const ComparedPair> pairs) {
+  std::vector<double> best(count, -1);
+  for (const ComparedPair& pair : pairs)
+    for (const uint32_t i : {pair.first, pair.second})
+      best[i] = std::max(best[i], pair.agreeing_share);
+  std::erase(best, -1);
+  return Median(std::move(best));
+}
+
+std::string NameOf(const LightField& light_field, uint32_t id) {
+  return std::filesystem::path(light_field.image_names[id]).filename().string();
+}
+
+// Returns names with runs of LF images abbreviated: "a.jpg to c.jpg, f.jpg".
+std::string RunsText(const LightField& light_field, std::span<const uint32_t> ids) {
+  std::string text;
+  for (size_t i = 0; i < ids.size();) {
+    size_t last = i;
+    while (last + 1 < ids.size() && ids[last + 1] == ids[last] + 1) ++last;
+    text += (text.empty() ? "" : ", ") + NameOf(light_field, ids[i]);
+    if (last > i) text += " to " + NameOf(light_field, ids[last]);
+    i = last + 1;
+  }
+  return text;
+}
+
+}  // namespace
+
+Result<std::vector<ComparedPair>> ComparePairs(const LightField& light_field,
+                                               const LfImageStore& store,
+                                               std::span<const Vec2> points,
+                                               const InverseDepths& range, ThreadPool& pool) {
+  std::set<std::pair<uint32_t, uint32_t>> wanted;
+  for (uint32_t i = 0; i < points.size(); ++i) {
+    const std::vector<uint32_t> order = ByDistance(points, points[i]);
+    for (size_t k = 0, taken = 0; k < order.size() && taken < kNearest; ++k) {
+      if (order[k] == i) continue;
+      wanted.insert(std::minmax(i, order[k]));
+      ++taken;
+    }
+  }
+  const int divisor = std::max(1, light_field.intrinsics.front().width_px / kComparedWidth);
+  WorkingImages images(light_field, store, divisor, std::numeric_limits<size_t>::max());
+  const std::vector<std::pair<uint32_t, uint32_t>> list(wanted.begin(), wanted.end());
+  std::vector<std::optional<double>> shares(list.size());
+  std::mutex mutex;
+  std::optional<Error> error;
+  pool.ForEach(list.size(), [&](size_t i) {
+    const auto first = images.Get(LfImageId{list[i].first});
+    const auto second = images.Get(LfImageId{list[i].second});
+    if (first && second) {
+      shares[i] = AgreeingShare(**first, **second, range);
+      return;
+    }
+    const std::lock_guard lock(mutex);
+    error = first ? second.error() : first.error();
+  });
+  if (error) return *error;
+  std::vector<ComparedPair> pairs;
+  for (size_t i = 0; i < list.size(); ++i)
+    if (shares[i])
+      pairs.push_back({list[i].first, list[i].second,
+                       (points[list[i].first] - points[list[i].second]).norm(), *shares[i]});
+  return pairs;
+}
+
+std::vector<std::vector<uint32_t>> ContradictingGroups(size_t count,
+                                                       std::span<const ComparedPair> pairs) {
+  constexpr double kAgrees = 0.4, kDisagrees = 0.2;  // of the usual best share
+  constexpr double kLeastSize = 0.1, kInterleaved = 0.25;
+  constexpr double kLeastUsual = 0.15;
+  if (pairs.empty()) return {};
+  const double usual = UsualBest(count, pairs);
+  if (usual < kLeastUsual) return {};
+  Groups joined(count);
+  std::vector<double> distances;
+  for (const ComparedPair& pair : pairs)
+    if (pair.agreeing_share >= kAgrees * usual) {
+      joined.Join(pair.first, pair.second);
+      distances.push_back(pair.distance);
+    }
+  if (distances.empty()) return {};
+  const double near = Median(std::move(distances));
+
+  std::vector<std::vector<uint32_t>> groups(count);
+  for (uint32_t i = 0; i < count; ++i) groups[joined.RootOf(i)].push_back(i);
+  const auto least_size =
+      std::max<size_t>(3, static_cast<size_t>(std::ceil(kLeastSize * static_cast<double>(count))));
+  std::erase_if(groups, [&](const auto& group) { return group.size() < least_size; });
+  std::stable_sort(groups.begin(), groups.end(),
+                   [](const auto& a, const auto& b) { return a.size() > b.size(); });
+
+  const auto contradicts = [&](const std::vector<uint32_t>& larger,
+                               const std::vector<uint32_t>& smaller) {
+    std::set<uint32_t> disagreeing;
+    for (const ComparedPair& pair : pairs) {
+      if (pair.distance > near || pair.agreeing_share >= kDisagrees * usual) continue;
+      for (const auto& [here, there] :
+           {std::pair(pair.first, pair.second), std::pair(pair.second, pair.first)})
+        if (joined.RootOf(here) == joined.RootOf(smaller[0]) &&
+            joined.RootOf(there) == joined.RootOf(larger[0]))
+          disagreeing.insert(here);
+    }
+    return static_cast<double>(disagreeing.size()) >=
+           kInterleaved * static_cast<double>(smaller.size());
+  };
+  for (size_t i = 0; i < groups.size(); ++i)
+    for (size_t j = i + 1; j < groups.size(); ++j)
+      if (contradicts(groups[i], groups[j])) return groups;
+  return {};
+}
+
+std::string ContradictionText(const LightField& light_field,
+                              std::span<const std::vector<uint32_t>> groups) {
+  std::string text =
+      "these LF cameras' pictures contradict each other: LF images stand as near to one another as "
+      "those that agree, and show different things";
+  std::string commands;
+  for (size_t i = 0; i < groups.size(); ++i) {
+    text += fmt::format("{} group {} has {} ({})", i == 0 ? ";" : ",", i + 1, groups[i].size(),
+                        RunsText(light_field, groups[i]));
+    std::string excluded;
+    for (uint32_t id = 0; id < light_field.image_names.size(); ++id)
+      if (!std::binary_search(groups[i].begin(), groups[i].end(), id))
+        excluded += (excluded.empty() ? "" : ",") + NameOf(light_field, id);
+    commands += fmt::format("{} lfimport LIGHTFIELD -o group_{} --exclude '{}'", i == 0 ? ":" : ";",
+                            i + 1, excluded);
+  }
+  return text +
+         ". Poses are wrong, for example because equal patterns on two sides were confused, or "
+         "exposures differ (lfimport --match-exposure). Densify each group by itself" +
+         commands;
+}
+
+}  // namespace lf
