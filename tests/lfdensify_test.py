@@ -303,7 +303,7 @@ class DensifyTest(ProgramTestCase):
 
     def test_lf_images_too_far_apart_are_refused(self):
         self.synth()
-        self.fails(3, ["--force"], DENSIFY, self.field, "-o", self.store, "--depths", 0.05, 20)
+        self.fails(3, ["--force"], DENSIFY, self.field, "-o", self.store, "--depths", 0.03, 20)
 
     def test_a_dense_light_field_is_refused(self):
         self.synth()

@@ -25,7 +25,7 @@ namespace {
 
 // Is changed whenever the same light field and options give other virtual LF images, so that an
 // unfinished store of an older program is not resumed.
-constexpr int kDensifyVersion = 2;
+constexpr int kDensifyVersion = 3;
 
 std::string SettingsInWords(const DensifyPlan& plan, const DensifyChoices& choices) {
   return fmt::format(

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -30,15 +32,20 @@ constexpr double kOutside = 0.5;  // of the median distance between LF cameras
 constexpr double kMuchShift = 0.25, kMostShift = 0.5;
 constexpr double kLargeAngle_deg = 8, kMostAngle_deg = 15;
 
-// Returns the median shift between compared working images per unit of inverse depth.
-double ShiftOf(const LightField& light_field, const DensifyPlan& plan, int divisor) {
+// Returns the median shift between working images and those that they are compared with, per unit
+// of inverse depth; only the `most` nearest of these count.
+double ShiftOf(const LightField& light_field, const DensifyPlan& plan, int divisor,
+               size_t most = SIZE_MAX) {
   std::vector<double> shifts;
   for (uint32_t i = 0; i < plan.compare_with.size(); ++i) {
     const PinholeCamera camera = WorkingCamera(light_field.Camera(LfImageId{i}), divisor);
-    double sum = 0;
+    std::vector<double> of_camera;
     for (const uint32_t other : plan.compare_with[i])
-      sum += ShiftPerInverseDepth(camera, light_field.Camera(LfImageId{other}));
-    shifts.push_back(sum / static_cast<double>(plan.compare_with[i].size()));
+      of_camera.push_back(ShiftPerInverseDepth(camera, light_field.Camera(LfImageId{other})));
+    std::sort(of_camera.begin(), of_camera.end());
+    of_camera.resize(std::min(most, of_camera.size()));
+    shifts.push_back(std::accumulate(of_camera.begin(), of_camera.end(), 0.0) /
+                     static_cast<double>(of_camera.size()));
   }
   return Median(std::move(shifts));
 }
@@ -54,11 +61,13 @@ Result<void> CheckCameras(const CameraPlane& plane) {
 // Checks that neighbouring LF images are near enough to one another.
 Result<void> CheckReach(const LightField& light_field, const DensifyPlan& plan, int divisor,
                         bool force) {
+  constexpr size_t kNearest = 3;
   const Intrinsics k = light_field.Camera(LfImageId{0}).intrinsics;
-  const double share = plan.ShiftPx() * divisor / std::max(k.width_px, k.height_px);
-  const double f_px = k.fx_px / divisor;
+  const double shift_px = ShiftOf(light_field, plan, divisor, kNearest) * divisor;
+  const double share =
+      shift_px * (plan.range.greatest - plan.range.least) / std::max(k.width_px, k.height_px);
   const double middle = (plan.range.least + plan.range.greatest) / 2;
-  const double angle_deg = DegreesFromRadians(std::atan(plan.shift_per_depth_px / f_px * middle));
+  const double angle_deg = DegreesFromRadians(std::atan(shift_px / k.fx_px * middle));
   const std::string figures = fmt::format(
       "between neighbouring LF images, near points of the scene shift by {:.0f} % of the longer "
       "side against far ones, and rays to the middle of the scene differ by {:.1f} degrees",

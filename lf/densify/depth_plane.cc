@@ -101,7 +101,11 @@ DepthPlane FillDisagreeing(const DepthPlane& plane, const Image<uint8_t>& agreei
   constexpr int kReach = 60;
   // Cost of a neighbouring depth, in tones, per pixel of shift and per pixel of distance.
   constexpr float kPerShift = 2, kPerDistance = 0.5f;
-  const auto per_number = static_cast<float>(kPerShift * shift_per_depth_px * range.Step());
+  // Limit of that of the nearest depth. Where LF cameras are far apart, tones could not outweigh
+  // it.
+  constexpr double kMostForDepth = 20;
+  const auto per_number = static_cast<float>(std::min(kPerShift * shift_per_depth_px * range.Step(),
+                                                      kMostForDepth / InverseDepths::kLast));
   DepthPlane filled = plane;
   for (int y = 0; y < plane.height(); ++y)
     for (int x = 0; x < plane.width(); ++x) {

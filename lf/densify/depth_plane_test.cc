@@ -222,5 +222,23 @@ TEST(DepthPlane, WrongDepthsAreFoundAndReplacedByThoseOfTheBackground) {
     for (int x = 40; x < 50; ++x) ASSERT_EQ(filled.at(x, y), right.at(x, y));
 }
 
+TEST(DepthPlane, TonesOutweighThePreferenceForFarDepthsAlsoIfCamerasAreFarApart) {
+  constexpr int kMiddle = 48, kRow = 32;
+  DepthPlane plane(96, 64);
+  Image<uint16_t> tones(96, 64, LfPixels::kRgbLanes);
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 96; ++x) {
+      plane.at(x, y) = kRange.NumberOf(x <= kMiddle ? 1.0 : 0.2);
+      for (int c = 0; c < 3; ++c) tones.at(x, y, c) = x <= kMiddle ? 100 : 130;
+    }
+  Image<uint8_t> agreeing(96, 64, 1, 8);
+  agreeing.at(kMiddle, kRow) = 0;
+  for (const double shift_per_depth_px : {6.0, 200.0}) {
+    const DepthPlane filled =
+        FillDisagreeing(plane, agreeing, 2, tones, kRange, shift_per_depth_px);
+    EXPECT_EQ(filled.at(kMiddle, kRow), kRange.NumberOf(1.0)) << shift_per_depth_px;
+  }
+}
+
 }  // namespace
 }  // namespace lf
