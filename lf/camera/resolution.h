@@ -1,4 +1,4 @@
-// The same image with more or fewer pixels.
+// Changes the number of pixels of an image, for the same picture.
 #pragma once
 
 #include "lf/camera/pinhole.h"

@@ -38,7 +38,7 @@ ChosenPlanes Swept(const WorkingImage& reference, const WorkingImage& image,
 std::optional<double> ConfirmedShare(const WorkingImage& image, const ChosenPlanes& of_image,
                                      const WorkingImage& other, const ChosenPlanes& of_other,
                                      const InverseDepths& range, int planes) {
-  constexpr int kTexture = 24, kCheap = 60, kLeastTextured = 50;
+  constexpr int kLeastTexture = 24, kCheap = 60, kLeastTextured = 50;
   constexpr float kSame = 1.5f;  // planes
   const PairMap map = MapBetween(image.camera, other.camera);
   const auto step = static_cast<float>((range.greatest - range.least) / (planes - 1));
@@ -46,7 +46,7 @@ std::optional<double> ConfirmedShare(const WorkingImage& image, const ChosenPlan
   int textured = 0, confirmed = 0;
   for (int y = 1; y + 1 < image.height(); ++y)
     for (int x = 1; x + 1 < image.width(); ++x) {
-      if (TextureAt(image.tones, x, y) <= kTexture) continue;
+      if (TextureAt(image.tones, x, y) <= kLeastTexture) continue;
       ++textured;
       const float z = least + of_image.place.at(x, y) * step;
       const PairMap::Place at =
