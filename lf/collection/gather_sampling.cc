@@ -35,6 +35,7 @@ GatherSampling SamplingOf(const PinholeCamera& lf_camera, const RenderCamera& re
   // A prefilter would mix pixels that have no ray into those that have one.
   if (prefilters && !may_lack_rays) {
     sampling.prefilter = PrefilterFor(width_px, footprint);
+    sampling.step_px = static_cast<int>(std::clamp(std::round(width_px), 1.0, kWidestElement_px));
     return sampling;
   }
   if (sampling.filter == PixelFilter::kPrefiltered) sampling.filter = PixelFilter::kBilinear;

@@ -68,6 +68,7 @@ struct GatherSampling {
   // the filter is kPrefiltered. The element's ray is the mean of samples^2 evenly spaced rays, or
   // of as many of these as exist.
   int samples = 1;
+  int step_px = 1;  // about the distance of the rays of neighbouring elements in the LF image
   // The filter that must be applied to the LF image before it is sampled.
   Prefilter prefilter = {};
 };

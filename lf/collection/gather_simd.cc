@@ -65,13 +65,15 @@ using ElementOf =
 template <Reading kReading, class Weights>
 class RayAdder {
  public:
-  HWY_INLINE RayAdder(const Places& places, const LfPixels& pixels, const Weights& weights,
-                      ElementOf<kReading>* sums)
+  HWY_INLINE RayAdder(const Places& places, const LfPixels& pixels, int step_px,
+                      const Weights& weights, ElementOf<kReading>* sums)
       : places_(places),
         width_(pixels.rect.width()),
         height_(pixels.rect.height()),
         values_(pixels.radiance.row(0)),
         row_values_(static_cast<ptrdiff_t>(width_) * LfPixels::kRgbLanes),
+        ahead_values_(row_values_ * std::max(2, step_px)),
+        reads_new_rows_(step_px > 1),
         weights_(weights),
         sums_(sums),
         cubics_(TablesOfCubics()),
@@ -83,12 +85,14 @@ class RayAdder {
     return values_ + static_cast<ptrdiff_t>(places_.pixel[i]) * LfPixels::kRgbLanes;
   }
 
-  // Prefetches one cache line of a row of pixels below those of ray i. The processor does not
-  // prefetch rows by itself, because they are too far apart. It can have few pending requests at a
-  // time; therefore lines are requested one by one.
+  // Prefetches the cache lines of pixels that the element below that of ray i will need, or, if
+  // elements are as wide as LF pixels, the element below that one. The processor does not prefetch
+  // rows by itself, because they are too far apart. It can have few pending requests at a time;
+  // therefore lines are requested one by one.
   HWY_INLINE void FetchAhead(int i) const {
-    constexpr int kRowsAhead = 2;
-    hwy::Prefetch(Upper(i) + (1 + kRowsAhead) * row_values_);
+    const uint16_t* const upper = Upper(i) + ahead_values_;
+    hwy::Prefetch(upper + row_values_);
+    if (reads_new_rows_) hwy::Prefetch(upper);
   }
 
   // True if the four pixels of ray i, and `outer` more rows and columns on each side, are loaded
@@ -141,7 +145,8 @@ class RayAdder {
   const Places& places_;
   int width_, height_;
   const uint16_t* values_;
-  ptrdiff_t row_values_;
+  ptrdiff_t row_values_, ahead_values_;
+  bool reads_new_rows_;  // true: no row of pixels is read by two rows of elements
   const Weights weights_;
   ElementOf<kReading>* sums_;
   const CubicTables& cubics_;
@@ -155,15 +160,16 @@ HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, const Gathe
                              const LfPixels& pixels, const Weights& weights,
                              ElementOf<kReading>* sums) {
   constexpr bool kIsCubic = IsCubic(kReading);
-  constexpr int kLineElements = 8;  // pixels of an LF image in a cache line
+  constexpr int kLinePixels = 8;  // pixels of an LF image in a cache line
+  const int line_elements = std::max(1, kLinePixels / sampling.step_px);
   Places places;
   const auto find_places = s.is_cubic() ? FindPlaces<3> : FindPlaces<5>;
   find_places(s, begin, count, pixels.rect, sampling, &places);
-  const RayAdder<kReading, Weights> adder(places, pixels, weights, sums);
+  const RayAdder<kReading, Weights> adder(places, pixels, sampling.step_px, weights, sums);
   if (kMayBeMasked || (kIsCubic && !IsInner(s, begin, count, pixels.rect))) {
     uint32_t rays = 0;
     for (int i = 0; i < count; ++i) {
-      if (i % kLineElements == 0) adder.FetchAhead(i);
+      if (i % line_elements == 0) adder.FetchAhead(i);
       if (kIsCubic && adder.HasAll(i, 1))
         adder.Add(i);
       else if (adder.HasAll(i, 0))
@@ -175,9 +181,9 @@ HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, const Gathe
     return rays;
   }
   int i = 0;
-  for (; i + kLineElements <= count; i += kLineElements) {
-    adder.FetchAhead(i);
-    adder.template AddAll<kLineElements>(i);
+  for (; i + kLinePixels <= count; i += kLinePixels) {
+    for (int k = i; k < i + kLinePixels; k += line_elements) adder.FetchAhead(k);
+    adder.template AddAll<kLinePixels>(i);
   }
   for (; i < count; ++i) adder.Add(i);
   return static_cast<uint32_t>(count);
