@@ -31,27 +31,40 @@ namespace HWY_NAMESPACE {
 
 // True if `rect` holds the sixteen pixels around each of the rays [begin, begin + count) of the
 // segment. May be false even if `rect` holds them, if a ray is near the border.
-bool IsInner(const Segment& s, int begin, int count, const PixelRect& rect) {
+//   is_even  Prefilter::is_even: the pixels are knots, half a pixel to the right of pixels' centres
+bool IsInner(const Segment& s, int begin, int count, const PixelRect& rect, bool is_even) {
   const float t = s.t_begin + static_cast<float>(begin);
-  const auto is_inner = [](const PositionRange& range, int base, int pixel_begin, int pixel_end) {
+  const float shift = is_even ? 0.5F : 0;
+  const auto is_inner = [shift](const PositionRange& range, int base, int pixel_begin,
+                                int pixel_end) {
     constexpr float kBorder = 1.51F;
-    return static_cast<float>(base - pixel_begin) + range.low >= kBorder &&
-           static_cast<float>(base - pixel_end) + range.high <= -kBorder;
+    return static_cast<float>(base - pixel_begin) + range.low >= kBorder + shift &&
+           static_cast<float>(base - pixel_end) + range.high <= -kBorder + shift;
   };
   return is_inner(RangeOf(s.x_poly, t, count), s.base_x, rect.x_begin, rect.x_end) &&
          is_inner(RangeOf(s.y_poly, t, count), s.base_y, rect.y_begin, rect.y_end);
 }
 
 // The pixels that a ray is interpolated between: four or sixteen, with or without the shares that
-// mosaic_filter.h gives them.
-enum class Reading { kFour, kSixteen, kMosaicFour, kMosaicSixteen };
+// mosaic_filter.h gives them, or of an LF image that was filtered by shares.
+enum class Reading {
+  kFour,
+  kSixteen,
+  kMosaicFour,
+  kMosaicSixteen,
+  kMeanShareFour,
+  kMeanShareSixteen
+};
 
 constexpr bool IsMosaic(Reading reading) { return reading >= Reading::kMosaicFour; }
 constexpr bool IsCubic(Reading reading) {
-  return reading == Reading::kSixteen || reading == Reading::kMosaicSixteen;
+  return reading == Reading::kSixteen || reading == Reading::kMosaicSixteen ||
+         reading == Reading::kMeanShareSixteen;
 }
 
 Reading ReadingOf(const GatherSampling& sampling) {
+  if (sampling.prefilter.by_shares)
+    return sampling.is_cubic ? Reading::kMeanShareSixteen : Reading::kMeanShareFour;
   if (sampling.filter == PixelFilter::kMosaic)
     return sampling.is_cubic ? Reading::kMosaicSixteen : Reading::kMosaicFour;
   return sampling.is_cubic ? Reading::kSixteen : Reading::kFour;
@@ -112,7 +125,9 @@ class RayAdder {
   // AddOfFour() adds ray i, interpolated between four pixels. Add() interpolates between the number
   // of pixels that `kReading` says.
   HWY_ATTR HWY_INLINE void AddOfFour(int i) const {
-    if constexpr (IsMosaic(kReading))
+    if constexpr (kReading >= Reading::kMeanShareFour)
+      AddMeanShareRay<Weights>(mosaic_, places_, i, values_, row_values_, weights_, sums_);
+    else if constexpr (IsMosaic(kReading))
       AddMosaicRay<Weights>(mosaic_, places_, i, values_, row_values_, weights_, sums_);
     else
       AddRay<Weights>(places_, i, values_, row_values_, weights_, sums_);
@@ -121,6 +136,8 @@ class RayAdder {
     const uint16_t* const first = Upper(i) - row_values_ - LfPixels::kRgbLanes;
     if constexpr (kReading == Reading::kMosaicSixteen)
       AddCubicMosaicRay(cubics_, mosaic_, places_, i, first, row_values_, weights_, sums_);
+    else if constexpr (kReading == Reading::kMeanShareSixteen)
+      AddCubicMeanShareRay(cubics_, mosaic_, places_, i, first, row_values_, weights_, sums_);
     else if constexpr (kReading == Reading::kSixteen)
       AddCubicRay(cubics_, places_.left_right[i] >> 16, places_.lower[i], first, row_values_,
                   weights_, i, sums_);
@@ -137,6 +154,9 @@ class RayAdder {
     else if constexpr (kReading == Reading::kMosaicFour)
       for (int k = i; k < i + kCount; k += kRaysAtOnce)
         AddMosaicRays(mosaic_, places_, k, values_, row_values_, weights_, sums_);
+    else if constexpr (kReading == Reading::kMeanShareFour)
+      for (int k = i; k < i + kCount; k += kRaysAtOnce)
+        AddMeanShareRays(mosaic_, places_, k, values_, row_values_, weights_, sums_);
     else
       for (int k = i; k < i + kCount; ++k) Add(k);
   }
@@ -166,7 +186,8 @@ HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, const Gathe
   const auto find_places = s.is_cubic() ? FindPlaces<3> : FindPlaces<5>;
   find_places(s, begin, count, pixels.rect, sampling, &places);
   const RayAdder<kReading, Weights> adder(places, pixels, sampling.step_px, weights, sums);
-  if (kMayBeMasked || (kIsCubic && !IsInner(s, begin, count, pixels.rect))) {
+  if (kMayBeMasked ||
+      (kIsCubic && !IsInner(s, begin, count, pixels.rect, sampling.prefilter.is_even))) {
     uint32_t rays = 0;
     for (int i = 0; i < count; ++i) {
       if (i % line_elements == 0) adder.FetchAhead(i);
@@ -272,9 +293,11 @@ uint64_t GatherBy(const GatherPlan& plan, const LfPixels& pixels, const Weights&
   const Reading reading = ReadingOf(plan.sampling);
   // Each element gets at most one ray, so that the sums need room for only one more ray.
   if (IsMosaic(reading)) {
-    const auto gather = reading == Reading::kMosaicSixteen
-                            ? GatherAs<Reading::kMosaicSixteen, Weights>
-                            : GatherAs<Reading::kMosaicFour, Weights>;
+    const auto gather =
+        reading == Reading::kMosaicSixteen   ? GatherAs<Reading::kMosaicSixteen, Weights>
+        : reading == Reading::kMosaicFour    ? GatherAs<Reading::kMosaicFour, Weights>
+        : reading == Reading::kMeanShareFour ? GatherAs<Reading::kMeanShareFour, Weights>
+                                             : GatherAs<Reading::kMeanShareSixteen, Weights>;
     TileSums::CountedElement* const elements = sums->ReserveCounted(most_weight * kRecordedShare);
     return gather(plan, pixels, weights, *sums, elements);
   }
