@@ -35,18 +35,23 @@ constexpr uint32_t kHalf = kOne * kOne / 2;
 
 constexpr int kRaysAtOnce = 1;
 
-template <class Weights>
-HWY_INLINE void AddRays(const Places& places, int i, const uint16_t* values, ptrdiff_t row_values,
-                        const Weights& weights, TileSums::Element* sums) {
+// Returns lane `lane` of ray i, rounded.
+HWY_INLINE uint32_t MixedLane(const Places& places, int i, const uint16_t* values,
+                              ptrdiff_t row_values, int lane) {
   const uint16_t* upper = values + static_cast<ptrdiff_t>(places.pixel[i]) * LfPixels::kRgbLanes;
   const uint16_t* lower = upper + row_values;
   const uint32_t right = places.left_right[i] >> 16, left = kOne - right, down = places.lower[i];
-  for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane) {
-    const int next = lane + LfPixels::kRgbLanes;
-    const uint32_t sum = (upper[lane] * left + upper[next] * right) * (kOne - down) +
-                         (lower[lane] * left + lower[next] * right) * down;
-    sums[i].rgb_rays[lane] += ((sum + kHalf) >> (2 * kWeightBits)) * weights.At(i);
-  }
+  const int next = lane + LfPixels::kRgbLanes;
+  const uint32_t sum = (upper[lane] * left + upper[next] * right) * (kOne - down) +
+                       (lower[lane] * left + lower[next] * right) * down;
+  return (sum + kHalf) >> (2 * kWeightBits);
+}
+
+template <class Weights>
+HWY_INLINE void AddRays(const Places& places, int i, const uint16_t* values, ptrdiff_t row_values,
+                        const Weights& weights, TileSums::Element* sums) {
+  for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane)
+    sums[i].rgb_rays[lane] += MixedLane(places, i, values, row_values, lane) * weights.At(i);
 }
 template <class Weights>
 constexpr auto AddRay = AddRays<Weights>;
@@ -104,11 +109,10 @@ HWY_ATTR HWY_INLINE hn::Vec<D16> SideBySide(D16 d16, hn::Vec<D16> pairs) {
   return hn::BitCast(d16, hn::TableLookupBytes(hn::BitCast(d8, pairs), hn::LoadDup128(d8, kBytes)));
 }
 
-// Adds rays from `i` on: one for each block of 128 bits in a vector of `D`.
-template <class D, class Weights>
-HWY_ATTR HWY_INLINE void AddRaysOf(D d, const Places& places, int i, const uint16_t* values,
-                                   ptrdiff_t row_values, const Weights& weights,
-                                   TileSums::Element* sums) {
+// Returns rays from `i` on, interpolated and rounded: one in each block of 128 bits of the vector.
+template <class D>
+HWY_ATTR HWY_INLINE hn::Vec<D> MixedRays(D d, const Places& places, int i, const uint16_t* values,
+                                         ptrdiff_t row_values) {
   const hn::Repartition<uint16_t, D> d16;
   const hn::RebindToSigned<D> di;
   const hn::RebindToSigned<decltype(d16)> di16;
@@ -126,7 +130,15 @@ HWY_ATTR HWY_INLINE void AddRaysOf(D d, const Places& places, int i, const uint1
   // Adds back kMiddle, which was subtracted from each pixel, times the sum of all weights (65536).
   // Adds kHalf to round half up.
   constexpr uint32_t kBack = uint32_t{kMiddle} * kOne * kOne + kHalf;
-  auto rays = hn::ShiftRight<2 * kWeightBits>(hn::Add(sum, hn::Set(d, kBack)));
+  return hn::ShiftRight<2 * kWeightBits>(hn::Add(sum, hn::Set(d, kBack)));
+}
+
+// Adds rays from `i` on: one for each block of 128 bits in a vector of `D`.
+template <class D, class Weights>
+HWY_ATTR HWY_INLINE void AddRaysOf(D d, const Places& places, int i, const uint16_t* values,
+                                   ptrdiff_t row_values, const Weights& weights,
+                                   TileSums::Element* sums) {
+  auto rays = MixedRays(d, places, i, values, row_values);
   if constexpr (!Weights::kIsOne) rays = hn::Mul(rays, weights.OfPixels(d, i));
   uint32_t* const lanes = sums[i].rgb_rays;
   hn::StoreU(hn::Add(hn::LoadU(d, lanes), rays), d, lanes);

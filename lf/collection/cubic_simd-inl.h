@@ -52,25 +52,30 @@ inline const CubicTables& TablesOfCubics() {
 
 #if HWY_TARGET == HWY_SCALAR
 
-// Adds the ray between the sixteen pixels that begin at `first` to element i of `sums`. `right` and
+// Returns lane `lane` of the ray between the sixteen pixels that begin at `first`. `right` and
 // `down` are the distances of the ray from the upper left one of the inner four pixels, in steps of
 // 1 / kCubicSteps px.
+HWY_INLINE uint32_t CubicLane(const CubicTables& tables, uint32_t right, uint32_t down,
+                              const uint16_t* first, ptrdiff_t row_values, int lane) {
+  int32_t sum = 1 << (kCubicShift - 1);
+  for (int k = 0; k < 4; ++k) {
+    int32_t column = 1 << (kCubicColumnShift - 1);
+    for (int row = 0; row < 4; ++row)
+      column += tables.down[down][row] *
+                (first[row * row_values + k * LfPixels::kRgbLanes + lane] - kMiddle);
+    sum += tables.right[right][CubicTables::kPlaces[k]] * (column >> kCubicColumnShift);
+  }
+  return static_cast<uint32_t>(std::clamp((sum >> kCubicShift) + kMiddle, 0, 0xFFFF));
+}
+
+// Adds the ray of CubicLane() to element i of `sums`.
 template <class Weights>
 HWY_INLINE void AddCubicRay(const CubicTables& tables, uint32_t right, uint32_t down,
                             const uint16_t* first, ptrdiff_t row_values, const Weights& weights,
                             int i, TileSums::Element* sums) {
-  for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane) {
-    int32_t sum = 1 << (kCubicShift - 1);
-    for (int k = 0; k < 4; ++k) {
-      int32_t column = 1 << (kCubicColumnShift - 1);
-      for (int row = 0; row < 4; ++row)
-        column += tables.down[down][row] *
-                  (first[row * row_values + k * LfPixels::kRgbLanes + lane] - kMiddle);
-      sum += tables.right[right][CubicTables::kPlaces[k]] * (column >> kCubicColumnShift);
-    }
-    const int32_t value = (sum >> kCubicShift) + kMiddle;
-    sums[i].rgb_rays[lane] += static_cast<uint32_t>(std::clamp(value, 0, 0xFFFF)) * weights.At(i);
-  }
+  for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane)
+    sums[i].rgb_rays[lane] +=
+        CubicLane(tables, right, down, first, row_values, lane) * weights.At(i);
 }
 
 #else
@@ -142,15 +147,14 @@ HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<int32_t>> MixSixteen(D d, const ColumnWe
   }
 }
 
-// Adds the ray between the sixteen pixels that begin at `first` to element i of `sums`. `right` and
-// `down` are the distances of the ray from the upper left one of the inner four pixels, in steps of
+// Returns the ray between the sixteen pixels that begin at `first`. `right` and `down` are the
+// distances of the ray from the upper left one of the inner four pixels, in steps of
 // 1 / kCubicSteps px.
-template <class Weights>
-HWY_ATTR HWY_INLINE void AddCubicRay(const CubicTables& tables, uint32_t right, uint32_t down,
-                                     const uint16_t* first, ptrdiff_t row_values,
-                                     const Weights& weights, int i, TileSums::Element* sums) {
+HWY_ATTR HWY_INLINE hn::Vec<hn::Full128<int32_t>> CubicRay(const CubicTables& tables,
+                                                           uint32_t right, uint32_t down,
+                                                           const uint16_t* first,
+                                                           ptrdiff_t row_values) {
   const hn::Full128<int32_t> d;
-  const hn::Full128<uint32_t> du;
   const SixteenTag d_all;
   const hn::Repartition<int16_t, SixteenTag> d16;
   const auto rows = [&](int row) HWY_ATTR {
@@ -166,8 +170,16 @@ HWY_ATTR HWY_INLINE void AddCubicRay(const CubicTables& tables, uint32_t right, 
   const auto rounded =
       hn::ShiftRight<kCubicShift>(hn::Add(mixed, hn::Set(d, 1 << (kCubicShift - 1))));
   const auto value = hn::Add(rounded, hn::Set(d, static_cast<int32_t>(kMiddle)));
-  const auto clipped = hn::Min(hn::Max(value, hn::Zero(d)), hn::Set(d, 0xFFFF));
-  auto ray = hn::BitCast(du, clipped);
+  return hn::Min(hn::Max(value, hn::Zero(d)), hn::Set(d, 0xFFFF));
+}
+
+// Adds the ray of CubicRay() to element i of `sums`.
+template <class Weights>
+HWY_ATTR HWY_INLINE void AddCubicRay(const CubicTables& tables, uint32_t right, uint32_t down,
+                                     const uint16_t* first, ptrdiff_t row_values,
+                                     const Weights& weights, int i, TileSums::Element* sums) {
+  const hn::Full128<uint32_t> du;
+  auto ray = hn::BitCast(du, CubicRay(tables, right, down, first, row_values));
   if constexpr (!Weights::kIsOne) ray = hn::Mul(ray, weights.OfPixels(du, i));
   uint32_t* const lanes = sums[i].rgb_rays;
   hn::StoreU(hn::Add(hn::LoadU(du, lanes), ray), du, lanes);

@@ -38,7 +38,8 @@ struct Places {
   HWY_ALIGN uint32_t left_right[kRoom];  // weights of the left (low 16 bits) and the right pixels
   HWY_ALIGN uint32_t lower[kRoom];       // weights of the two lower pixels
   // Phase of the Bayer pattern: x % 2 + 2 (y % 2), where (x, y) is the upper left one of the four
-  // pixels, counted in the whole LF image. Only set for PixelFilter::kMosaic.
+  // pixels, counted in the whole LF image. Only set for PixelFilter::kMosaic without
+  // Prefilter::by_shares.
   HWY_ALIGN int32_t phase[kRoom];
 };
 
@@ -114,7 +115,7 @@ HWY_ATTR void FindPlaces(const Segment& s, int begin, int count, const PixelRect
     hn::Store(hn::BitCast(du, hn::Or(left_weight, hn::ShiftLeft<16>(right_weight))), du,
               places->left_right + i);
     hn::Store(hn::BitCast(du, weight_of(y.weight)), du, places->lower + i);
-    if (sampling.filter == PixelFilter::kMosaic) {
+    if (sampling.filter == PixelFilter::kMosaic && !sampling.prefilter.by_shares) {
       const auto odd = [](hn::Vec<LaneI> pixel, int first) HWY_ATTR {
         return hn::And(hn::Xor(pixel, hn::Set(LaneI(), first)), hn::Set(LaneI(), 1));
       };

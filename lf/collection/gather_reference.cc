@@ -131,7 +131,10 @@ std::optional<RgbRay> InterpolatePixels(const LfPixels& pixels, int width_px, in
     const auto share = [&](int dx, int dy) {
       return RecordedShareOf(pixels.recorded, image_column + dx, image_row + dy, c);
     };
-    if (sampling.filter == PixelFilter::kMosaic)
+    if (sampling.prefilter.by_shares) {
+      ray.value[c] = is_cubic ? Bicubic(pixel, right, down) : Bilinear(pixel, right, down);
+      ray.count[c] = MeanShareOf(pixels.recorded, c);
+    } else if (sampling.filter == PixelFilter::kMosaic)
       std::tie(ray.value[c], ray.count[c]) = is_cubic ? BicubicByShares(pixel, share, right, down)
                                                       : BilinearByShares(pixel, share, right, down);
     else

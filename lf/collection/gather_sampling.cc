@@ -28,20 +28,24 @@ GatherSampling SamplingOf(const PinholeCamera& lf_camera, const RenderCamera& re
   sampling.filter = FilterOf(reading.filter, RadianceEncoding(), false);
   const PixelFootprint footprint = reading.footprint.value_or(PixelFootprint::kArea);
   const bool may_lack_rays = MayLackRays(lf_camera.intrinsics);
-  // Means of unfiltered pixels keep apart what a mosaic recorded. They are nearer to the truth if
-  // its pixels show points, or are finer than elements.
-  const bool prefilters = sampling.filter == PixelFilter::kPrefiltered ||
-                          (sampling.filter == PixelFilter::kMosaic &&
-                           footprint == PixelFootprint::kArea && width_px <= kFinerAtMost);
+  const bool is_mosaic = sampling.filter == PixelFilter::kMosaic;
+  const bool are_finer = width_px > kFinerAtMost;
+  const bool by_shares = is_mosaic && width_px >= kMosaicByShares;
+  const bool prefilters = sampling.filter == PixelFilter::kPrefiltered || by_shares ||
+                          (is_mosaic && !are_finer && footprint == PixelFootprint::kArea);
   // A prefilter would mix pixels that have no ray into those that have one.
   if (prefilters && !may_lack_rays) {
-    sampling.prefilter = PrefilterFor(width_px, footprint);
+    sampling.step_px = static_cast<int>(std::clamp(std::round(width_px), 1.0, kWidestElement_px));
+    sampling.is_cubic = by_shares && width_px < kMosaicOfFour;
+    sampling.prefilter = sampling.is_cubic ? MeanOfMosaic(width_px, footprint)
+                         : by_shares       ? PrefilterOfMosaic(width_px, footprint)
+                                           : PrefilterFor(width_px, footprint);
     return sampling;
   }
   if (sampling.filter == PixelFilter::kPrefiltered) sampling.filter = PixelFilter::kBilinear;
   // A value just above a whole number counts as that number.
   constexpr double kRounding = 1e-3;
-  if (width_px > kFinerAtMost)
+  if (are_finer)
     sampling.samples =
         static_cast<int>(std::ceil(std::min<double>(width_px - kRounding, kMostSamples)));
   sampling.is_cubic = sampling.filter == PixelFilter::kBicubic ||

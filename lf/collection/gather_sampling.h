@@ -19,10 +19,13 @@ namespace lf {
 //              image or masked, the ray is bilinear
 //   kMosaic    is for RGB pixels made from a mosaic. A recorded colour counts more than an
 //              interpolated one (mosaic_filter.h), and the ray adds a count from 1 to
-//              kRecordedShare to each colour. If LF pixels show areas and are not finer than
-//              elements, it uses four values of an LF image that was filtered before. Otherwise it
-//              uses sixteen pixels, or four if an element has kBilinearFrom x kBilinearFrom samples
-//              or more, because their mean hides the difference
+//              kRecordedShare to each colour. It uses
+//                - four values of an LF image that was filtered before, if LF pixels show areas and
+//                  are not finer than elements
+//                - values of an LF image that was filtered by shares (Prefilter::by_shares), if
+//                  elements are at least kMosaicByShares LF pixels wide: sixteen, or four from
+//                  kMosaicOfFour on
+//                - otherwise sixteen pixels for each sample
 //   kPrefiltered  interpolates linearly between four values of an LF image that was filtered before
 //              (prefilter.h), so that an element of any size needs only one sample
 //   kAuto      stands for the filter that FilterOf() returns for the whole light field;
@@ -50,6 +53,14 @@ struct PixelReading {
       : filter(the_filter) {}  // NOLINT: implicit, because `footprint` has a default
 };
 
+// Widths of elements, in LF pixels, from which a mosaic is filtered by shares, and from which four
+// filtered values are read instead of sixteen. They were chosen with pictures of true lenses
+// (doc/quality.md): filters whose knots are midway between pixels blur narrower elements.
+inline constexpr double kMosaicByShares = 1.75;
+inline constexpr double kMosaicOfFour = 2.5;
+
+// Number of samples along an edge of an element from which mosaics that cannot be filtered (see
+// MayLackRays) are interpolated between four pixels.
 inline constexpr int kBilinearFrom = 3;
 
 // Largest number of samples along an edge of an element.
@@ -68,6 +79,7 @@ struct GatherSampling {
   // the filter is kPrefiltered. The element's ray is the mean of samples^2 evenly spaced rays, or
   // of as many of these as exist.
   int samples = 1;
+  int step_px = 1;  // about the distance of the rays of neighbouring elements in the LF image
   // The filter that must be applied to the LF image before it is sampled.
   Prefilter prefilter = {};
 };

@@ -51,9 +51,9 @@ TEST(GatherSampling, TakesAsManySamplesAsLfPixelsAreSmaller) {
   EXPECT_EQ(of(0.01).samples, kMostSamples);
   EXPECT_EQ(of(0.3).filter, PixelFilter::kBicubic);
   EXPECT_TRUE(of(0.3).is_cubic);
-  EXPECT_TRUE(of(0.5, PixelFilter::kMosaic).is_cubic);
-  EXPECT_EQ(of(0.5, PixelFilter::kMosaic).prefilter, Prefilter());
-  EXPECT_FALSE(of(0.3, PixelFilter::kMosaic).is_cubic);
+  EXPECT_TRUE(of(0.6, PixelFilter::kMosaic).is_cubic);
+  EXPECT_EQ(of(0.6, PixelFilter::kMosaic).samples, 2);
+  EXPECT_EQ(of(0.6, PixelFilter::kMosaic).prefilter, Prefilter());
   EXPECT_EQ(of(2, PixelFilter::kNearest).filter, PixelFilter::kNearest);
 }
 
@@ -98,6 +98,22 @@ TEST(GatherSampling, AMosaicIsPrefilteredIfItsPixelsShowAreasAndAreNotFiner) {
     EXPECT_TRUE(points.is_cubic);
   }
   EXPECT_EQ(of(0.79, PixelFootprint::kArea).prefilter, Prefilter());
+}
+
+TEST(GatherSampling, AMosaicIsFilteredBySharesIfItsPixelsAreMuchFiner) {
+  for (const double magnification : {0.57, 0.5, 0.41, 0.39, 0.1})
+    for (const auto footprint : {PixelFootprint::kArea, PixelFootprint::kPoint}) {
+      const testing::CameraPair pair = PairOf(magnification);
+      PixelReading reading = PixelFilter::kMosaic;
+      reading.footprint = footprint;
+      const GatherSampling sampling = SamplingOf(pair.lf_camera, pair.render_camera, reading);
+      EXPECT_EQ(sampling.samples, 1);
+      EXPECT_TRUE(sampling.prefilter.by_shares);
+      EXPECT_EQ(sampling.is_cubic, magnification > 0.4);
+      EXPECT_EQ(sampling.prefilter, magnification > 0.4
+                                        ? MeanOfMosaic(1 / magnification, footprint)
+                                        : PrefilterOfMosaic(1 / magnification, footprint));
+    }
 }
 
 // Elements may be wider than any integer, in LF pixels, because a frame may show the light field
@@ -154,7 +170,7 @@ TEST(CubicWeights, SumToOneAndReproduceParabolas) {
 }
 
 TEST(PixelFilter, ConstantPicturesStayWhatTheyAre) {
-  for (const double magnification : {2.0, 0.3})
+  for (const double magnification : {2.0, 0.5, 0.3})
     for (const PixelFilter filter :
          {PixelFilter::kBicubic, PixelFilter::kMosaic, PixelFilter::kPrefiltered})
       for (const uint16_t value : {0, 1, 777, 32768, 65535}) {
@@ -198,6 +214,14 @@ TEST(PixelFilter, WhatAMosaicRecordedCountsMore) {
   EXPECT_EQ(red_at(3.5, 2.5, true), std::pair(9000, 8u));
   EXPECT_EQ(red_at(4, 3, true), std::pair(6545, 3u));
   EXPECT_EQ(red_at(3, 2.5, true), std::pair(8000, 5u));
+  // Filtered by shares, every ray counts as the mean share.
+  LfPixels filtered;
+  const GatherSampling by_shares{PixelFilter::kMosaic, true, 1, 2,
+                                 MeanOfMosaic(2, PixelFootprint::kPoint)};
+  FilterPixels(by_shares.prefilter, pixels, &filtered);
+  const RgbRay ray = *InterpolatePixels(filtered, 8, 6, 4.3, 3.2, by_shares);
+  EXPECT_NEAR(ray.value[0], 6545, 5);
+  EXPECT_EQ(ray.count, (std::array<uint32_t, 3>{3, 5, 3}));
   pixels.recorded = BayerPattern::kNone;
   EXPECT_EQ(red_at(4, 3), std::pair(2250, 8u));
   EXPECT_EQ(red_at(4, 3, true), std::pair(2250, 8u));

@@ -31,27 +31,40 @@ namespace HWY_NAMESPACE {
 
 // True if `rect` holds the sixteen pixels around each of the rays [begin, begin + count) of the
 // segment. May be false even if `rect` holds them, if a ray is near the border.
-bool IsInner(const Segment& s, int begin, int count, const PixelRect& rect) {
+//   is_even  Prefilter::is_even: the pixels are knots, half a pixel to the right of pixels' centres
+bool IsInner(const Segment& s, int begin, int count, const PixelRect& rect, bool is_even) {
   const float t = s.t_begin + static_cast<float>(begin);
-  const auto is_inner = [](const PositionRange& range, int base, int pixel_begin, int pixel_end) {
+  const float shift = is_even ? 0.5F : 0;
+  const auto is_inner = [shift](const PositionRange& range, int base, int pixel_begin,
+                                int pixel_end) {
     constexpr float kBorder = 1.51F;
-    return static_cast<float>(base - pixel_begin) + range.low >= kBorder &&
-           static_cast<float>(base - pixel_end) + range.high <= -kBorder;
+    return static_cast<float>(base - pixel_begin) + range.low >= kBorder + shift &&
+           static_cast<float>(base - pixel_end) + range.high <= -kBorder + shift;
   };
   return is_inner(RangeOf(s.x_poly, t, count), s.base_x, rect.x_begin, rect.x_end) &&
          is_inner(RangeOf(s.y_poly, t, count), s.base_y, rect.y_begin, rect.y_end);
 }
 
 // The pixels that a ray is interpolated between: four or sixteen, with or without the shares that
-// mosaic_filter.h gives them.
-enum class Reading { kFour, kSixteen, kMosaicFour, kMosaicSixteen };
+// mosaic_filter.h gives them, or of an LF image that was filtered by shares.
+enum class Reading {
+  kFour,
+  kSixteen,
+  kMosaicFour,
+  kMosaicSixteen,
+  kMeanShareFour,
+  kMeanShareSixteen
+};
 
 constexpr bool IsMosaic(Reading reading) { return reading >= Reading::kMosaicFour; }
 constexpr bool IsCubic(Reading reading) {
-  return reading == Reading::kSixteen || reading == Reading::kMosaicSixteen;
+  return reading == Reading::kSixteen || reading == Reading::kMosaicSixteen ||
+         reading == Reading::kMeanShareSixteen;
 }
 
 Reading ReadingOf(const GatherSampling& sampling) {
+  if (sampling.prefilter.by_shares)
+    return sampling.is_cubic ? Reading::kMeanShareSixteen : Reading::kMeanShareFour;
   if (sampling.filter == PixelFilter::kMosaic)
     return sampling.is_cubic ? Reading::kMosaicSixteen : Reading::kMosaicFour;
   return sampling.is_cubic ? Reading::kSixteen : Reading::kFour;
@@ -65,13 +78,15 @@ using ElementOf =
 template <Reading kReading, class Weights>
 class RayAdder {
  public:
-  HWY_INLINE RayAdder(const Places& places, const LfPixels& pixels, const Weights& weights,
-                      ElementOf<kReading>* sums)
+  HWY_INLINE RayAdder(const Places& places, const LfPixels& pixels, int step_px,
+                      const Weights& weights, ElementOf<kReading>* sums)
       : places_(places),
         width_(pixels.rect.width()),
         height_(pixels.rect.height()),
         values_(pixels.radiance.row(0)),
         row_values_(static_cast<ptrdiff_t>(width_) * LfPixels::kRgbLanes),
+        ahead_values_(row_values_ * std::max(2, step_px)),
+        reads_new_rows_(step_px > 1),
         weights_(weights),
         sums_(sums),
         cubics_(TablesOfCubics()),
@@ -83,12 +98,14 @@ class RayAdder {
     return values_ + static_cast<ptrdiff_t>(places_.pixel[i]) * LfPixels::kRgbLanes;
   }
 
-  // Prefetches one cache line of a row of pixels below those of ray i. The processor does not
-  // prefetch rows by itself, because they are too far apart. It can have few pending requests at a
-  // time; therefore lines are requested one by one.
+  // Prefetches the cache lines of pixels that the element below that of ray i will need, or, if
+  // elements are as wide as LF pixels, the element below that one. The processor does not prefetch
+  // rows by itself, because they are too far apart. It can have few pending requests at a time;
+  // therefore lines are requested one by one.
   HWY_INLINE void FetchAhead(int i) const {
-    constexpr int kRowsAhead = 2;
-    hwy::Prefetch(Upper(i) + (1 + kRowsAhead) * row_values_);
+    const uint16_t* const upper = Upper(i) + ahead_values_;
+    hwy::Prefetch(upper + row_values_);
+    if (reads_new_rows_) hwy::Prefetch(upper);
   }
 
   // True if the four pixels of ray i, and `outer` more rows and columns on each side, are loaded
@@ -108,7 +125,9 @@ class RayAdder {
   // AddOfFour() adds ray i, interpolated between four pixels. Add() interpolates between the number
   // of pixels that `kReading` says.
   HWY_ATTR HWY_INLINE void AddOfFour(int i) const {
-    if constexpr (IsMosaic(kReading))
+    if constexpr (kReading >= Reading::kMeanShareFour)
+      AddMeanShareRay<Weights>(mosaic_, places_, i, values_, row_values_, weights_, sums_);
+    else if constexpr (IsMosaic(kReading))
       AddMosaicRay<Weights>(mosaic_, places_, i, values_, row_values_, weights_, sums_);
     else
       AddRay<Weights>(places_, i, values_, row_values_, weights_, sums_);
@@ -117,6 +136,8 @@ class RayAdder {
     const uint16_t* const first = Upper(i) - row_values_ - LfPixels::kRgbLanes;
     if constexpr (kReading == Reading::kMosaicSixteen)
       AddCubicMosaicRay(cubics_, mosaic_, places_, i, first, row_values_, weights_, sums_);
+    else if constexpr (kReading == Reading::kMeanShareSixteen)
+      AddCubicMeanShareRay(cubics_, mosaic_, places_, i, first, row_values_, weights_, sums_);
     else if constexpr (kReading == Reading::kSixteen)
       AddCubicRay(cubics_, places_.left_right[i] >> 16, places_.lower[i], first, row_values_,
                   weights_, i, sums_);
@@ -133,6 +154,9 @@ class RayAdder {
     else if constexpr (kReading == Reading::kMosaicFour)
       for (int k = i; k < i + kCount; k += kRaysAtOnce)
         AddMosaicRays(mosaic_, places_, k, values_, row_values_, weights_, sums_);
+    else if constexpr (kReading == Reading::kMeanShareFour)
+      for (int k = i; k < i + kCount; k += kRaysAtOnce)
+        AddMeanShareRays(mosaic_, places_, k, values_, row_values_, weights_, sums_);
     else
       for (int k = i; k < i + kCount; ++k) Add(k);
   }
@@ -141,7 +165,8 @@ class RayAdder {
   const Places& places_;
   int width_, height_;
   const uint16_t* values_;
-  ptrdiff_t row_values_;
+  ptrdiff_t row_values_, ahead_values_;
+  bool reads_new_rows_;  // true: no row of pixels is read by two rows of elements
   const Weights weights_;
   ElementOf<kReading>* sums_;
   const CubicTables& cubics_;
@@ -155,15 +180,17 @@ HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, const Gathe
                              const LfPixels& pixels, const Weights& weights,
                              ElementOf<kReading>* sums) {
   constexpr bool kIsCubic = IsCubic(kReading);
-  constexpr int kLineElements = 8;  // pixels of an LF image in a cache line
+  constexpr int kLinePixels = 8;  // pixels of an LF image in a cache line
+  const int line_elements = std::max(1, kLinePixels / sampling.step_px);
   Places places;
   const auto find_places = s.is_cubic() ? FindPlaces<3> : FindPlaces<5>;
   find_places(s, begin, count, pixels.rect, sampling, &places);
-  const RayAdder<kReading, Weights> adder(places, pixels, weights, sums);
-  if (kMayBeMasked || (kIsCubic && !IsInner(s, begin, count, pixels.rect))) {
+  const RayAdder<kReading, Weights> adder(places, pixels, sampling.step_px, weights, sums);
+  if (kMayBeMasked ||
+      (kIsCubic && !IsInner(s, begin, count, pixels.rect, sampling.prefilter.is_even))) {
     uint32_t rays = 0;
     for (int i = 0; i < count; ++i) {
-      if (i % kLineElements == 0) adder.FetchAhead(i);
+      if (i % line_elements == 0) adder.FetchAhead(i);
       if (kIsCubic && adder.HasAll(i, 1))
         adder.Add(i);
       else if (adder.HasAll(i, 0))
@@ -175,9 +202,9 @@ HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, const Gathe
     return rays;
   }
   int i = 0;
-  for (; i + kLineElements <= count; i += kLineElements) {
-    adder.FetchAhead(i);
-    adder.template AddAll<kLineElements>(i);
+  for (; i + kLinePixels <= count; i += kLinePixels) {
+    for (int k = i; k < i + kLinePixels; k += line_elements) adder.FetchAhead(k);
+    adder.template AddAll<kLinePixels>(i);
   }
   for (; i < count; ++i) adder.Add(i);
   return static_cast<uint32_t>(count);
@@ -266,9 +293,11 @@ uint64_t GatherBy(const GatherPlan& plan, const LfPixels& pixels, const Weights&
   const Reading reading = ReadingOf(plan.sampling);
   // Each element gets at most one ray, so that the sums need room for only one more ray.
   if (IsMosaic(reading)) {
-    const auto gather = reading == Reading::kMosaicSixteen
-                            ? GatherAs<Reading::kMosaicSixteen, Weights>
-                            : GatherAs<Reading::kMosaicFour, Weights>;
+    const auto gather =
+        reading == Reading::kMosaicSixteen   ? GatherAs<Reading::kMosaicSixteen, Weights>
+        : reading == Reading::kMosaicFour    ? GatherAs<Reading::kMosaicFour, Weights>
+        : reading == Reading::kMeanShareFour ? GatherAs<Reading::kMeanShareFour, Weights>
+                                             : GatherAs<Reading::kMeanShareSixteen, Weights>;
     TileSums::CountedElement* const elements = sums->ReserveCounted(most_weight * kRecordedShare);
     return gather(plan, pixels, weights, *sums, elements);
   }

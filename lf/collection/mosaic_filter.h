@@ -18,6 +18,10 @@
 //   t = floor(a_x a_y s / 2^9).
 // With D = sum t and S = sum t p, at most 2^10 and 2^26, the ray's value is S / D, rounded half
 // up, and it counts as D / 2^7 rays, rounded half up.
+//
+// If the LF image was filtered by shares (Prefilter::by_shares), its values contain the shares
+// already: the ray has the value that is interpolated between four or sixteen of them without
+// shares, and it counts as MeanShareOf() rays.
 #pragma once
 
 #include <algorithm>
@@ -42,6 +46,13 @@ inline uint32_t RecordedShareOf(BayerPattern recorded, int x, int y, int channel
   const bool is_recorded =
       recorded == BayerPattern::kNone || BayerChannel(recorded, x, y) == channel;
   return is_recorded ? kRecordedShare : 1;
+}
+
+// Returns the mean of RecordedShareOf() over 2 x 2 pixels, rounded half up.
+inline uint32_t MeanShareOf(BayerPattern recorded, int channel) {
+  uint32_t sum = 0;
+  for (int i = 0; i < 4; ++i) sum += RecordedShareOf(recorded, i % 2, i / 2, channel);
+  return (sum + 2) / 4;
 }
 
 // Returns the value of a ray of sixteen pixels, from S (`sum`) and D (`count`) as defined above.

@@ -42,12 +42,16 @@ struct MosaicTable {
   // Weights for rays of four pixels, [phase][row]: twice the shares s of the left and the right
   // pixel, interleaved for each lane.
   HWY_ALIGN uint16_t rows[4][2][8];
+  HWY_ALIGN int32_t mean_shares[LfPixels::kRgbLanes];  // for images that were filtered by shares
 
   explicit MosaicTable(BayerPattern recorded) {
     const auto share = [recorded](int x, int y, int lane) {
       const bool is_colour = lane != LfPixels::kRayLane;
       return is_colour ? RecordedShareOf(recorded, x, y, lane) : kRecordedShare;
     };
+    for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane)
+      mean_shares[lane] = static_cast<int32_t>(
+          lane == LfPixels::kRayLane ? kRecordedShare : MeanShareOf(recorded, lane));
     for (int phase = 0; phase < 4; ++phase) {
       const int x = phase % 2, y = phase / 2;
       for (int row = 0; row < 2; ++row)
@@ -87,7 +91,8 @@ inline const MosaicTable& TableOfMosaic(BayerPattern recorded) {
 constexpr int kSideShift = 16 - kShareShift - 1;
 
 // AddMosaicRays() adds rays [i, i + kRaysAtOnce) of `places` to the elements with the same indices
-// in `sums`, AddMosaicRay() and AddCubicMosaicRay() add ray i alone.
+// in `sums`, AddMosaicRay() and AddCubicMosaicRay() add ray i alone. AddMeanShareRays(),
+// AddMeanShareRay() and AddCubicMeanShareRay() do so for LF images that were filtered by shares.
 //   values  the first pixel of the LF image's loaded rectangle
 #if HWY_TARGET == HWY_SCALAR
 
@@ -116,6 +121,34 @@ HWY_INLINE void AddMosaicRays(const MosaicTable& table, const Places& places, in
 }
 template <class Weights>
 constexpr auto AddMosaicRay = AddMosaicRays<Weights>;
+
+template <class Weights>
+HWY_INLINE void AddMeanShareRays(const MosaicTable& table, const Places& places, int i,
+                                 const uint16_t* values, ptrdiff_t row_values,
+                                 const Weights& weights, TileSums::CountedElement* sums) {
+  for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane) {
+    const uint32_t rays = static_cast<uint32_t>(table.mean_shares[lane]) * weights.At(i);
+    sums[i].rgb[lane] += MixedLane(places, i, values, row_values, lane) * rays;
+    sums[i].counts[lane] += rays;
+  }
+}
+template <class Weights>
+constexpr auto AddMeanShareRay = AddMeanShareRays<Weights>;
+
+//   first  the upper left one of the sixteen pixels of ray i
+template <class Weights>
+HWY_INLINE void AddCubicMeanShareRay(const CubicTables& cubics, const MosaicTable& table,
+                                     const Places& places, int i, const uint16_t* first,
+                                     ptrdiff_t row_values, const Weights& weights,
+                                     TileSums::CountedElement* sums) {
+  for (int lane = 0; lane < LfPixels::kRgbLanes; ++lane) {
+    const uint32_t rays = static_cast<uint32_t>(table.mean_shares[lane]) * weights.At(i);
+    sums[i].rgb[lane] +=
+        CubicLane(cubics, places.left_right[i] >> 16, places.lower[i], first, row_values, lane) *
+        rays;
+    sums[i].counts[lane] += rays;
+  }
+}
 
 //   first  the upper left one of the sixteen pixels of ray i
 template <class Weights>
@@ -253,6 +286,39 @@ HWY_ATTR HWY_INLINE void AddMosaicRay(const MosaicTable& table, const Places& pl
                                       const uint16_t* values, ptrdiff_t row_values,
                                       const Weights& weights, TileSums::CountedElement* sums) {
   AddMosaicRaysOf(LanesOfOne(), table, places, i, values, row_values, weights, sums);
+}
+
+template <class D, class Weights>
+HWY_ATTR HWY_INLINE void AddMeanShareRaysOf(D d, const MosaicTable& table, const Places& places,
+                                            int i, const uint16_t* values, ptrdiff_t row_values,
+                                            const Weights& weights,
+                                            TileSums::CountedElement* sums) {
+  const hn::RebindToSigned<D> di;
+  const auto value = hn::BitCast(di, MixedRays(d, places, i, values, row_values));
+  AddCounted(value, hn::LoadDup128(di, table.mean_shares), weights, i, sums);
+}
+template <class Weights>
+HWY_ATTR HWY_INLINE void AddMeanShareRays(const MosaicTable& table, const Places& places, int i,
+                                          const uint16_t* values, ptrdiff_t row_values,
+                                          const Weights& weights, TileSums::CountedElement* sums) {
+  AddMeanShareRaysOf(AllLanes(), table, places, i, values, row_values, weights, sums);
+}
+template <class Weights>
+HWY_ATTR HWY_INLINE void AddMeanShareRay(const MosaicTable& table, const Places& places, int i,
+                                         const uint16_t* values, ptrdiff_t row_values,
+                                         const Weights& weights, TileSums::CountedElement* sums) {
+  AddMeanShareRaysOf(LanesOfOne(), table, places, i, values, row_values, weights, sums);
+}
+
+//   first  the upper left one of the sixteen pixels of ray i
+template <class Weights>
+HWY_ATTR HWY_INLINE void AddCubicMeanShareRay(const CubicTables& cubics, const MosaicTable& table,
+                                              const Places& places, int i, const uint16_t* first,
+                                              ptrdiff_t row_values, const Weights& weights,
+                                              TileSums::CountedElement* sums) {
+  const auto value =
+      CubicRay(cubics, places.left_right[i] >> 16, places.lower[i], first, row_values);
+  AddCounted(value, hn::Load(hn::Full128<int32_t>(), table.mean_shares), weights, i, sums);
 }
 
 //   first  the upper left one of the sixteen pixels of ray i

@@ -1,6 +1,7 @@
 #include "lf/collection/prefilter/prefilter.h"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "lf/collection/prefilter/prefilter_rows.h"
@@ -9,13 +10,33 @@
 namespace lf {
 namespace {
 
-// Writes the knots of pixels to `knots`, row by row. `knots` may be `pixels`: a row of knots is
-// written after all rows of pixels up to it were read.
-//   width, height  of the pixels
-//   to             rectangle of the knots
-void FilterRows(const Prefilter& filter, const uint16_t* pixels, int width, int height,
-                bool any_masked, const PixelRect& to, uint16_t* knots) {
-  constexpr size_t kLanes = LfPixels::kRgbLanes;
+constexpr size_t kLanes = LfPixels::kRgbLanes;
+
+// Does the first step of FilterPixels() for row `y` of pixels.
+void FilterAlong(const Prefilter& filter, const LfPixels& pixels, int y, int count, int32_t* out) {
+  const uint16_t* const row = pixels.radiance.row(y);
+  const int width = pixels.radiance.width();
+  if (!filter.by_shares || pixels.recorded == BayerPattern::kNone)
+    return FilterAlongRow(filter, row, width, pixels.any_masked, count, out);
+  std::array<int32_t, 2 * kLanes> factors;
+  for (size_t i = 0; i < factors.size(); ++i) {
+    const int x = static_cast<int>(i / kLanes), lane = static_cast<int>(i % kLanes);
+    factors[i] = lane == LfPixels::kRayLane ? 256
+                                            : ShareFactor(pixels.recorded, pixels.rect.x_begin + x,
+                                                          pixels.rect.y_begin + y, lane);
+  }
+  thread_local std::vector<int32_t> weighed;
+  weighed.resize(static_cast<size_t>(width) * kLanes);
+  WeighRow(factors, row, width, weighed.data());
+  FilterAlongWeighedRow(filter, weighed.data(), width, pixels.any_masked, count, out);
+}
+
+// Writes the knots of pixels to `knots`, row by row. `knots` may be the first value of `pixels`: a
+// row of knots is written after all rows of pixels up to it were read.
+//   to  rectangle of the knots
+void FilterRows(const Prefilter& filter, const LfPixels& pixels, const PixelRect& to,
+                uint16_t* knots) {
+  const int width = pixels.radiance.width(), height = pixels.radiance.height();
   // The pixels from -before to +after of a row or a column make the value of knot 0.
   const int before = filter.count - 1, after = filter.is_even ? filter.count : before;
   const auto row_values = static_cast<size_t>(width) * kLanes;
@@ -31,10 +52,9 @@ void FilterRows(const Prefilter& filter, const uint16_t* pixels, int width, int 
   int next = 0;
   for (int y = 0; y < to.height(); ++y) {
     for (; next < std::min(height, y + after + 1); ++next)
-      FilterAlongRow(filter, pixels + static_cast<size_t>(next) * row_values, width, any_masked,
-                     to.width(), at(next));
+      FilterAlong(filter, pixels, next, to.width(), at(next));
     for (int k = -before; k <= after; ++k) rows[static_cast<size_t>(k + before)] = at(y + k);
-    const bool any_missing = any_masked || y < before || y + after >= height;
+    const bool any_missing = pixels.any_masked || y < before || y + after >= height;
     FilterAlongColumns(filter, rows.data() + before, any_missing, to.width(),
                        knots + static_cast<size_t>(y) * to.width() * kLanes);
   }
@@ -48,17 +68,14 @@ void FilterPixels(const Prefilter& filter, const LfPixels& pixels, LfPixels* out
   out->recorded = pixels.recorded;
   out->any_masked = pixels.any_masked;
   if (out->rect.empty()) return;
-  FilterRows(filter, pixels.radiance.row(0), pixels.rect.width(), pixels.rect.height(),
-             pixels.any_masked, out->rect, out->radiance.row(0));
+  FilterRows(filter, pixels, out->rect, out->radiance.row(0));
 }
 
 void FilterInPlace(const Prefilter& filter, LfPixels* pixels) {
   LF_CHECK(pixels->bayer == BayerPattern::kNone);
   const PixelRect knots = KnotsOf(filter, pixels->rect);
   Image<uint16_t>& radiance = pixels->radiance;
-  if (!knots.empty())
-    FilterRows(filter, radiance.row(0), radiance.width(), radiance.height(), pixels->any_masked,
-               knots, radiance.row(0));
+  if (!knots.empty()) FilterRows(filter, *pixels, knots, radiance.row(0));
   radiance.Resize(knots.width(), knots.height(), LfPixels::kRgbLanes);
   pixels->rect = knots;
 }

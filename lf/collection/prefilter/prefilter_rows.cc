@@ -3,6 +3,7 @@
 #include "lf/collection/prefilter/prefilter_rows.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -21,6 +22,10 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr ptrdiff_t kLanes = LfPixels::kRgbLanes;
 constexpr int kRowShift = Prefilter::kBits - kPrefilterFraction;
 constexpr int kColumnShift = Prefilter::kBits + kPrefilterFraction;
+
+using Factors = std::array<int32_t, 2 * LfPixels::kRgbLanes>;
+constexpr int kFactorBits = 8;
+constexpr int32_t kHalfFactor = 1 << (kFactorBits - 1);
 
 #if HWY_TARGET == HWY_SCALAR
 
@@ -41,8 +46,9 @@ int64_t Filtered(const Prefilter& filter, const At& at, int64_t one, int lane) {
   return sum_of(lane) + missing * middle;
 }
 
-void FilterAlongRow(const Prefilter& filter, const uint16_t* row, int width, bool /*any_masked*/,
-                    int count, int32_t* out) {
+template <class Value>
+void FilterRow(const Prefilter& filter, const Value* row, int width, bool /*any_masked*/, int count,
+               int32_t* out) {
   for (int x = 0; x < count; ++x)
     for (int lane = 0; lane < kLanes; ++lane) {
       const auto at = [&](int k, int of_lane) -> int64_t {
@@ -51,6 +57,12 @@ void FilterAlongRow(const Prefilter& filter, const uint16_t* row, int width, boo
       out[x * kLanes + lane] = static_cast<int32_t>(
           (Filtered(filter, at, 1, lane) + (1 << (kRowShift - 1))) >> kRowShift);
     }
+}
+
+void WeighRow(const Factors& factors, const uint16_t* row, int width, int32_t* weighed) {
+  for (ptrdiff_t i = 0; i < width * kLanes; ++i)
+    weighed[i] =
+        (row[i] * factors[static_cast<size_t>(i % (2 * kLanes))] + kHalfFactor) >> kFactorBits;
 }
 
 void FilterAlongColumns(const Prefilter& filter, const int32_t* const* rows, bool /*any_missing*/,
@@ -126,14 +138,38 @@ HWY_ATTR HWY_INLINE void ForEachVector(int begin, int end, const Body& body) {
   for (; i < last; i += kLanes) body(d_pixel, i);
 }
 
+template <class D>
+HWY_ATTR HWY_INLINE hn::Vec<D> LoadValues(D d, const uint16_t* values) {
+  return hn::PromoteTo(d, hn::LoadU(hn::Rebind<uint16_t, D>(), values));
+}
+template <class D>
+HWY_ATTR HWY_INLINE hn::Vec<D> LoadValues(D d, const int32_t* values) {
+  return hn::LoadU(d, values);
+}
+
+HWY_ATTR void WeighRow(const Factors& factors, const uint16_t* HWY_RESTRICT row, int width,
+                       int32_t* HWY_RESTRICT weighed) {
+  const auto weigh = [&](auto d, ptrdiff_t i, size_t first_factor) HWY_ATTR {
+    const auto factor = hn::LoadU(d, factors.data() + first_factor);
+    const auto product = hn::Mul(LoadValues(d, row + i), factor);
+    hn::StoreU(hn::ShiftRight<kFactorBits>(hn::Add(product, hn::Set(d, kHalfFactor))), d,
+               weighed + i);
+  };
+  const hn::CappedTag<int32_t, 2 * kLanes> d;
+  const hn::Full128<int32_t> d_pixel;
+  const ptrdiff_t end = width * kLanes;
+  ptrdiff_t i = 0;
+  for (; i + 2 * kLanes <= end; i += 2 * kLanes)
+    for (size_t k = 0; k < factors.size(); k += hn::Lanes(d)) weigh(d, i + k, k);
+  if (i < end) weigh(d_pixel, i, 0);
+}
+
 // Computes knots [begin, end) of a row. All pixels within their reach must be in memory.
-template <class Form, bool kAnyMissing>
-HWY_ATTR HWY_INLINE void FilterInRow(const Prefilter& filter, const uint16_t* HWY_RESTRICT row,
+template <class Form, bool kAnyMissing, class Value>
+HWY_ATTR HWY_INLINE void FilterInRow(const Prefilter& filter, const Value* HWY_RESTRICT row,
                                      int begin, int end, int32_t* HWY_RESTRICT out) {
   ForEachVector(begin, end, [&](auto d, ptrdiff_t i) HWY_ATTR {
-    const hn::Rebind<uint16_t, decltype(d)> d16;
-    const auto at = [&](int k)
-                        HWY_ATTR { return hn::PromoteTo(d, hn::LoadU(d16, row + i + k * kLanes)); };
+    const auto at = [&](int k) HWY_ATTR { return LoadValues(d, row + i + k * kLanes); };
     const auto sum = Filtered<Form, 0, kAnyMissing>(d, filter, at);
     const auto half = hn::Set(d, 1 << (kRowShift - 1));
     hn::StoreU(hn::ShiftRight<kRowShift>(hn::Add(sum, half)), d, out + i);
@@ -141,12 +177,12 @@ HWY_ATTR HWY_INLINE void FilterInRow(const Prefilter& filter, const uint16_t* HW
 }
 
 // Computes knots [begin, end) of a row, some of whose pixels may be masked or missing.
-template <class Form>
-HWY_ATTR HWY_INLINE void FilterBorder(const Prefilter& filter, const uint16_t* row, int width,
+template <class Form, class Value>
+HWY_ATTR HWY_INLINE void FilterBorder(const Prefilter& filter, const Value* row, int width,
                                       int begin, int end, int32_t* HWY_RESTRICT out) {
   // A copy of the pixels within reach, with masked ones in place of those that do not exist.
   const int reach = filter.count, first = begin - reach, last = end + reach;
-  thread_local std::vector<uint16_t> copy;
+  thread_local std::vector<Value> copy;
   copy.assign(static_cast<size_t>(last - first) * kLanes, 0);
   const int from = std::max(first, 0), to = std::min(last, width);
   std::copy(row + from * kLanes, row + to * kLanes, copy.begin() + (from - first) * kLanes);
@@ -166,8 +202,9 @@ HWY_ATTR HWY_INLINE void FilterInColumns(const Prefilter& filter, const int32_t*
   });
 }
 
-HWY_ATTR void FilterAlongRow(const Prefilter& original, const uint16_t* row, int width,
-                             bool any_masked, int count, int32_t* out) {
+template <class Value>
+HWY_ATTR void FilterRow(const Prefilter& original, const Value* row, int width, bool any_masked,
+                        int count, int32_t* out) {
   const Prefilter filter = original;  // a copy: it cannot change while `out` is written
   WithForm(filter, [&](auto form) HWY_ATTR {
     using Form = decltype(form);
@@ -192,6 +229,16 @@ HWY_ATTR void FilterAlongColumns(const Prefilter& original, const int32_t* const
 
 #endif
 
+HWY_ATTR void FilterAlongRow(const Prefilter& filter, const uint16_t* row, int width,
+                             bool any_masked, int count, int32_t* out) {
+  FilterRow(filter, row, width, any_masked, count, out);
+}
+
+HWY_ATTR void FilterAlongWeighedRow(const Prefilter& filter, const int32_t* weighed, int width,
+                                    bool any_masked, int count, int32_t* out) {
+  FilterRow(filter, weighed, width, any_masked, count, out);
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace lf
 HWY_AFTER_NAMESPACE();
@@ -199,11 +246,21 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace lf {
 HWY_EXPORT(FilterAlongRow);
+HWY_EXPORT(FilterAlongWeighedRow);
+HWY_EXPORT(WeighRow);
 HWY_EXPORT(FilterAlongColumns);
 
 void FilterAlongRow(const Prefilter& filter, const uint16_t* row, int width, bool any_masked,
                     int count, int32_t* out) {
   HWY_DYNAMIC_DISPATCH(FilterAlongRow)(filter, row, width, any_masked, count, out);
+}
+void WeighRow(const std::array<int32_t, 2 * LfPixels::kRgbLanes>& factors, const uint16_t* row,
+              int width, int32_t* weighed) {
+  HWY_DYNAMIC_DISPATCH(WeighRow)(factors, row, width, weighed);
+}
+void FilterAlongWeighedRow(const Prefilter& filter, const int32_t* weighed, int width,
+                           bool any_masked, int count, int32_t* out) {
+  HWY_DYNAMIC_DISPATCH(FilterAlongWeighedRow)(filter, weighed, width, any_masked, count, out);
 }
 void FilterAlongColumns(const Prefilter& filter, const int32_t* const* rows, bool any_missing,
                         int count, uint16_t* out) {
