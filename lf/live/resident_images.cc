@@ -1,6 +1,7 @@
 #include "lf/live/resident_images.h"
 
 #include <algorithm>
+#include <exception>
 #include <utility>
 
 #include "lf/live/lens_order.h"
@@ -87,7 +88,11 @@ void ResidentImages::Run() {
       last_ = frame;
       is_loading_ = true;
     }
-    LoadFor(frame);
+    try {
+      LoadFor(frame);
+    } catch (const std::exception& error) {  // such as lack of memory
+      Tell([&](Status* status) { status->first_broken = error.what(); });
+    }
   }
 }
 

@@ -39,9 +39,11 @@ class ResidentImages {
     size_t wanted_count = 0;
     size_t wanted_done_count = 0;  // those of them that are in memory or broken
     size_t broken_count = 0;       // LF images that could not be loaded
-    std::string first_broken;      // the error of one of them; "" if there is none
-    int divisor = 0;               // of ShrunkField(); 0 until it is known
-    uint64_t version = 0;          // differs whenever any other number differs
+    // The error of one of them, or why loading ended early, such as lack of memory; "" if there is
+    // none.
+    std::string first_broken;
+    int divisor = 0;       // of ShrunkField(); 0 until it is known
+    uint64_t version = 0;  // differs whenever any other number differs
   };
 
   //   index, store  of the whole light field; must outlive this object. The store must load RGB

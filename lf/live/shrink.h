@@ -21,10 +21,10 @@ LightField ShrunkField(LightField light_field, int divisor);
 void Shrink(const LfPixels& pixels, int divisor, LfPixels* shrunken);
 
 // Returns the divisor with which an element of the frame is about one pixel of a shrunken LF image
-// wide: the smallest one with which it is at most kFinerAtMost pixels wide
-// (collection/prefilter/prefilter.h), because wider elements need several samples. Above 4 it is
-// even, so that JPEG files are decoded at half their size (LfImageStore::LoadReduced()). Measured
-// in some of the LF cameras around the lens.
+// wide: the smallest one of 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, ... with which it is at most
+// kFinerAtMost pixels wide (collection/prefilter/prefilter.h), because wider elements need several
+// samples. Even divisors let JPEG files be decoded at a half, a quarter or an eighth of their size
+// (LfImageStore::LoadReduced()). Measured in some of the LF cameras around the lens.
 //   current  is returned instead if elements are also narrow enough with it, and at least half a
 //            pixel wide, so that a moving camera does not change the divisor all the time; 0: none
 int DivisorFor(const ImageIndex& index, const RenderCamera& frame, int current);
