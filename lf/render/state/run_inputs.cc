@@ -80,7 +80,7 @@ std::string CameraHash(const RenderCamera& camera) {
 
 RunInputs InputsOfRays(const LightFieldIdentity& light_field, const RadianceEncoding& encoding,
                        const RunChoices& choices) {
-  return {
+  RunInputs inputs = {
       {"law", fmt::format("{}", kRayModelVersion)},
       {"law.distortion", fmt::format("{}", kDistortedPositionsVersion)},
       {"estimator", NameOf(choices.reading.estimator)},
@@ -105,6 +105,10 @@ RunInputs InputsOfRays(const LightFieldIdentity& light_field, const RadianceEnco
       {"light_field.pixels", choices.pixels},
       {"light_field.encoding", EncodingText(encoding)},
       {"light_field.colours", ColoursText(encoding)}};
+  if (choices.reading.estimator == Estimator::kBilinear &&
+      choices.reading.filter == PixelFilter::kMosaic)
+    inputs.push_back({"law.mosaic", fmt::format("{}", kMosaicReadingVersion)});
+  return inputs;
 }
 
 RunInputs InputsOfCamera(FrameId frame, const RenderCamera& camera) {

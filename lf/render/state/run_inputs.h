@@ -49,6 +49,9 @@ inline constexpr int kRayModelVersion = 4;
 // the code that changes them within their tolerance (SegmentMaker::kTolerance) raises it: frames of
 // such light fields then have other bits, and others do not.
 inline constexpr int kDistortedPositionsVersion = 2;
+// The version of the reading of mosaics by elements that are wider than LF pixels. Frames of RGB
+// light fields and those that the filter "mosaic" does not read do not depend on it.
+inline constexpr int kMosaicReadingVersion = 2;
 
 // Returns the inputs that decide the rays of all frames: the versions of the ray model, the light
 // field (number of LF images, and hashes of calibration, encoding and names), and the choices for

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 
 #include "lf/render/collect/test_noise_field.h"
@@ -75,6 +76,22 @@ TEST(RunInputs, EveryInputMakesADifferenceAndItsKeyNamesIt) {
     EXPECT_EQ(difference->key, key);
     EXPECT_NE(difference->recorded, difference->wanted);
   }
+}
+
+// States of mosaics that an older reading made are refused, and states of RGB captures are kept.
+TEST(RunInputs, OnlyMosaicsHaveTheVersionOfTheirReading) {
+  const LightField field = testing::NoiseField();
+  const auto has_version = [&](Estimator estimator, PixelFilter filter) {
+    RunChoices choices;
+    choices.reading.estimator = estimator;
+    choices.reading.filter = filter;
+    const RunInputs inputs = InputsOfRays(IdentityOf(field), field.encoding, choices);
+    return std::count_if(inputs.begin(), inputs.end(),
+                         [](const auto& input) { return input.first == "law.mosaic"; }) == 1;
+  };
+  EXPECT_TRUE(has_version(Estimator::kBilinear, PixelFilter::kMosaic));
+  EXPECT_FALSE(has_version(Estimator::kBilinear, PixelFilter::kPrefiltered));
+  EXPECT_FALSE(has_version(Estimator::kNearest, PixelFilter::kMosaic));
 }
 
 TEST(RunInputs, WhatOneSideLacksIsADifference) {
