@@ -229,6 +229,9 @@ std::vector<CaseSpec> AllCases() {
   CaseSpec& coarse = gather("prefiltered_0.5");
   coarse.filter = PixelFilter::kPrefiltered;
   coarse.magnification = 0.5;
+  CaseSpec& coarse_mosaic = gather("mosaic_0.5");
+  coarse_mosaic.filter = PixelFilter::kMosaic;
+  coarse_mosaic.magnification = 0.5;
   for (CaseSpec& spec : cases) {
     for (const char* name : {"disk", "separable", "distortion_phone", "rgb", "bilinear", "bicubic",
                              "mosaic", "prefiltered"})
