@@ -87,7 +87,7 @@ class Frame:
 
     @property
     def metadata(self) -> Dict[str, Union[str, float, int]]:
-        """What a file of the frame says about it."""
+        """The facts about the frame that its files state."""
         return dict(self._core.metadata)
 
     def display(self) -> npt.NDArray[np.uint8]:

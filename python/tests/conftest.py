@@ -1,4 +1,4 @@
-"""What the tests of the Python package share: the programs, and a small synthetic light field.
+"""Shared by the tests of the Python package: the programs, and a small synthetic light field.
 
 LF_BIN names the folder of the programs.
 """

@@ -23,7 +23,7 @@ WAYS = {
 
 
 def words_of(options):
-    """The same options for lfrenderer."""
+    """Returns these options as words for lfrenderer."""
     return [word for name, value in options.items()
             for word in ("--" + name.replace("_", "-"), "off" if name == "fill" and value == 0 else str(value))]
 
