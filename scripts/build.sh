@@ -30,9 +30,9 @@ case $what in
     [[ -e $build/CMakeCache.txt ]] || options+=(-DLF_TESTS=OFF)
     ;;
   tests)
-    groups=(render visualizer test)
+    groups=(render visualizer test python)
     targets=("${@:2}")
-    options=(-DLF_VISUALIZER=ON -DLF_TESTS=ON)
+    options=(-DLF_VISUALIZER=ON -DLF_TESTS=ON -DLF_PYTHON=ON)
     ;;
   *)
     sed -n '4,6s/^# //p' scripts/build.sh >&2

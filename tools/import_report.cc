@@ -6,34 +6,13 @@
 
 #include "tools/import_exposure.h"
 
+#include "lf/camera/distortion_name.h"
 #include "lf/core/log.h"
 
 namespace lf {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-const char* NameOf(DistortionModel model) {
-  switch (model) {
-    case DistortionModel::kNone:
-      return "pinhole";
-    case DistortionModel::kRadialTangential:
-      return "radial-tangential";
-    case DistortionModel::kFisheye:
-      return "fisheye";
-    case DistortionModel::kFov:
-      return "fov";
-    case DistortionModel::kDivision:
-      return "division";
-    case DistortionModel::kUnified:
-      return "unified";
-    case DistortionModel::kThinPrism:
-      return "thin-prism fisheye";
-    case DistortionModel::kRadialTangentialThinPrism:
-      return "radial-tangential thin-prism fisheye";
-  }
-  LF_CHECK(false);
-}
 
 const char* NameOf(DistanceSource source) {
   switch (source) {

@@ -13,6 +13,7 @@
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
 #include "tools/common/store_options.h"
+#include "tools/common/validators.h"
 #include "tools/compress_report.h"
 
 #include "lf/distribute/compress/compress.h"

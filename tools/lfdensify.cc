@@ -11,6 +11,7 @@
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
 #include "tools/common/store_options.h"
+#include "tools/common/validators.h"
 #include "tools/densify_report.h"
 
 #include "lf/camera/path/path_yaml.h"

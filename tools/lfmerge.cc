@@ -11,6 +11,7 @@
 #include "tools/common/interrupt.h"
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
+#include "tools/common/validators.h"
 #include "tools/render_end.h"
 
 #include "lf/core/log.h"

@@ -12,6 +12,7 @@
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
+#include "tools/common/validators.h"
 #include "tools/forecast_report.h"
 
 #include "lf/camera/path/path_yaml.h"

@@ -10,6 +10,7 @@
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
+#include "tools/common/validators.h"
 #include "tools/visualizer/export_page.h"
 #include "tools/visualizer/page_server.h"
 

@@ -4,6 +4,7 @@
 
 #include "tools/common/help.h"
 #include "tools/common/program.h"
+#include "tools/common/validators.h"
 
 #include "lf/core/value_named.h"
 

@@ -9,6 +9,7 @@
 #include "tools/common/duration.h"
 #include "tools/common/frame_options.h"
 #include "tools/common/help.h"
+#include "tools/common/validators.h"
 
 #include "lf/core/log.h"
 #include "lf/core/value_named.h"

@@ -11,6 +11,7 @@
 #include "tools/common/duration.h"
 #include "tools/common/frame_options.h"
 #include "tools/common/help.h"
+#include "tools/common/validators.h"
 #include "tools/render_arguments.h"
 
 #include "lf/core/log.h"

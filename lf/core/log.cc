@@ -10,6 +10,7 @@ namespace {
 std::mutex mutex;
 LogLevel threshold = LogLevel::kInfo;
 bool line_in_progress = false;
+LogReceiver receiver = nullptr;
 
 void ClearLine() {
   if (line_in_progress) std::fputs("\r\x1b[K", stderr);
@@ -21,6 +22,11 @@ void ClearLine() {
 void SetLogLevel(LogLevel level) {
   const std::lock_guard lock(mutex);
   threshold = level;
+}
+
+void SetLogReceiver(LogReceiver new_receiver) {
+  const std::lock_guard lock(mutex);
+  receiver = new_receiver;
 }
 
 std::string OneLine(std::string_view text) {
@@ -40,8 +46,13 @@ std::string OneLine(std::string_view text) {
 }
 
 void LogMessage(LogLevel level, std::string_view message) {
-  const std::lock_guard lock(mutex);
+  std::unique_lock lock(mutex);
   if (level < threshold) return;
+  if (receiver != nullptr) {
+    const LogReceiver receive = receiver;
+    lock.unlock();  // the receiver may wait for a thread that sends a message itself
+    return receive(level, OneLine(message));
+  }
   ClearLine();
   const char* prefix = level == LogLevel::kWarning ? "warning: "
                        : level == LogLevel::kError ? "error: "

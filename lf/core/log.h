@@ -16,6 +16,12 @@ enum class LogLevel { kDebug, kInfo, kWarning, kError };
 // Meant for main().
 void SetLogLevel(LogLevel level);
 
+// Calls `receiver` with every message from now on, instead of writing it to stderr; null: writes to
+// stderr again. Several threads may call it at the same time. Meant for a process that is not ours,
+// such as a Python that has loaded the library.
+using LogReceiver = void (*)(LogLevel level, std::string_view message);
+void SetLogReceiver(LogReceiver receiver);
+
 // Returns the text as one line: control characters become \n, \t, \x1b and the like, as in C. File
 // names may contain any of them, and must neither look like another message nor move the cursor.
 std::string OneLine(std::string_view text);

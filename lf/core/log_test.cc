@@ -21,5 +21,17 @@ TEST(Log, NamesCannotForgeTheLastLine) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "warning: a\\nerror: b.png: no such file\n");
 }
 
+TEST(Log, AReceiverGetsMessagesInsteadOfStderr) {
+  static std::string received;
+  SetLogReceiver([](LogLevel level, std::string_view message) {
+    received = fmt::format("{} {}", static_cast<int>(level), message);
+  });
+  testing::internal::CaptureStderr();
+  LogMessage(LogLevel::kWarning, "a\nb");
+  SetLogReceiver(nullptr);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(received, "2 a\\nb");
+}
+
 }  // namespace
 }  // namespace lf

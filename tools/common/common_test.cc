@@ -12,6 +12,7 @@
 #include "tools/common/help.h"
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
+#include "tools/common/validators.h"
 
 namespace lf {
 namespace {

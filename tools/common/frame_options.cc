@@ -1,6 +1,7 @@
 #include "tools/common/frame_options.h"
 
 #include "tools/common/program.h"
+#include "tools/common/validators.h"
 
 namespace lf {
 

@@ -6,7 +6,7 @@
 #include <charconv>
 
 #include "tools/common/help.h"
-#include "tools/common/program.h"
+#include "tools/common/validators.h"
 
 namespace lf {
 namespace {

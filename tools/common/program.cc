@@ -3,13 +3,13 @@
 #include <malloc.h>
 #include <signal.h>
 
-#include <charconv>
 #include <cstdio>
 #include <iostream>
 #include <memory>
 #include <system_error>
 
 #include "tools/common/process_start.h"
+#include "tools/common/validators.h"
 
 #include "lf/core/log.h"
 
@@ -26,30 +26,6 @@ Result<void> PrintReport(const std::string& text) {
 }
 
 const char* Version() { return LF_VERSION; }
-
-CLI::Validator WholeNumber() {
-  return CLI::Validator(
-      [](std::string& word) -> std::string {
-        uint64_t number = 0;
-        const char* const end = word.data() + word.size();
-        const auto [rest, error] = std::from_chars(word.data(), end, number);
-        if (error != std::errc{} || rest != end)
-          return fmt::format("expected a whole number from 0 to {}, found '{}'", UINT64_MAX, word);
-        // Removes leading zeros, with which CLI11 would read an octal number.
-        word = fmt::format("{}", number);
-        return {};
-      },
-      "");
-}
-
-CLI::Validator NotEmpty() {
-  return CLI::Validator(
-      [](const std::string& word) -> std::string {
-        return word.empty() ? "expected a value, found nothing: is a variable of the shell unset?"
-                            : "";
-      },
-      "");
-}
 
 Program::Program(std::string name, const HelpTexts& texts) : app_(texts.summary, std::move(name)) {
   app_.formatter(std::make_shared<HelpFormatter>(texts));

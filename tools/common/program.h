@@ -66,10 +66,6 @@ class Program {
   bool quiet_ = false;
 };
 
-// Validators for options: a decimal number from 0 to 2^64 - 1, and a word that is not empty.
-CLI::Validator WholeNumber();
-CLI::Validator NotEmpty();
-
 // Prints a whole report to stdout. kOutput if that fails.
 Result<void> PrintReport(const std::string& text);
 

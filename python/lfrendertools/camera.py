@@ -1,0 +1,383 @@
+"""Thin-lens cameras, and paths of them."""
+from __future__ import annotations
+
+import math
+import os
+import pathlib
+from typing import Any, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple, Union, overload
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from .errors import InputError, OutputError, UsageError
+
+Floats = npt.NDArray[np.float64]
+Vector = Union[Sequence[float], Floats]
+
+# Values that a path file may change from frame to frame, with their key in the file.
+_MOVING = ("position", "quaternion", "field_of_view_deg", "aperture_diameter", "focus_distance", "focus_tilt_deg",
+           "blade_rotation_deg")
+
+
+class Camera:
+    """A thin-lens camera that takes one frame.
+
+    Lengths are world units, unless a name ends in `_mm`. World axes are those of the light field; the axes of a camera
+    are x to the right, y down, z forward. A camera cannot be changed: :meth:`replace` makes a changed copy.
+
+    Parameters
+    ----------
+    position : array_like of shape (3,)
+        Centre of the lens.
+    look_at, quaternion, world_from_cam : array_like
+        The direction: a point on the optical axis; the rotation from camera to world as (w, x, y, z); or this
+        rotation as a matrix (3, 3). One of them is required.
+    up : array_like of shape (3,), optional
+        With `look_at`: a direction that points up in the picture.
+    roll_deg : float, optional
+        A turn about the optical axis, clockwise for the photographer.
+    resolution : tuple of int
+        Width and height of the frame.
+    focal_length_mm, field_of_view_deg : float
+        Focal length, or horizontal field of view. One of them is required.
+    sensor_width_mm : float, optional
+        Width of the sensor plate.
+    f_number, aperture_diameter, aperture_diameter_mm : float
+        Opening of the lens. One of them is required; a diameter of 0 is a pinhole.
+    focus_distance, focus_point
+        Distance of the focus plane along the optical axis, or a point (3,) on this plane. One of them is required.
+    tilt_deg : tuple of float, optional
+        Horizontal and vertical tilt of the focus plane.
+    blades : int, optional
+        0: the aperture is a circle; 3 to 64: a regular polygon.
+    blade_rotation_deg : float, optional
+        Rotation of the polygon, counter-clockwise for the photographer.
+    breathing : bool, optional
+        True: the field of view narrows as the focus comes near.
+    unit_m : float, optional
+        Metres per world unit, as in the light field.
+
+    Raises
+    ------
+    UsageError, InputError
+        Arguments are missing, contradict each other, or are out of range.
+    """
+
+    __slots__ = ("_core",)
+
+    def __init__(self, position: Vector, *, look_at: Optional[Vector] = None, quaternion: Optional[Vector] = None,
+                 world_from_cam: Optional[npt.ArrayLike] = None, up: Vector = (0, -1, 0), roll_deg: float = 0,
+                 resolution: Tuple[int, int], focal_length_mm: Optional[float] = None,
+                 field_of_view_deg: Optional[float] = None, sensor_width_mm: float = 36,
+                 f_number: Optional[float] = None, aperture_diameter: Optional[float] = None,
+                 aperture_diameter_mm: Optional[float] = None, focus_distance: Optional[float] = None,
+                 focus_point: Optional[Vector] = None, tilt_deg: Tuple[float, float] = (0, 0), blades: int = 0,
+                 blade_rotation_deg: float = 0, breathing: bool = False, unit_m: float = 1) -> None:
+        _one_of(look_at=look_at, quaternion=quaternion, world_from_cam=world_from_cam)
+        _one_of(focal_length_mm=focal_length_mm, field_of_view_deg=field_of_view_deg)
+        _one_of(f_number=f_number, aperture_diameter=aperture_diameter, aperture_diameter_mm=aperture_diameter_mm)
+        _one_of(focus_distance=focus_distance, focus_point=focus_point)
+        if world_from_cam is not None:
+            quaternion = _quaternion_of(np.asarray(world_from_cam, dtype=np.float64))
+        camera = {"position": position, "look_at": look_at, "quaternion": quaternion, "roll_deg": roll_deg or None,
+                  "up": up if look_at is not None else None, "focal_length_mm": focal_length_mm,
+                  "field_of_view_deg": field_of_view_deg, "sensor_width_mm": sensor_width_mm}
+        lens = {"f_number": f_number, "aperture_diameter": aperture_diameter,
+                "aperture_diameter_mm": aperture_diameter_mm, "focus_distance": focus_distance,
+                "focus_point": focus_point, "focus_tilt_deg": tilt_deg, "blades": blades,
+                "blade_rotation_deg": blade_rotation_deg, "breathing": breathing}
+        text = _text_of_path(1, 1, unit_m, resolution, camera, lens, {})
+        cameras, _, _ = _core.parse_path(text, "camera", None)
+        self._core: _core.RenderCamera = cameras[0]
+
+    @classmethod
+    def _of(cls, core: _core.RenderCamera) -> Camera:
+        camera = cls.__new__(cls)
+        camera._core = core
+        return camera
+
+    @property
+    def resolution(self) -> Tuple[int, int]:
+        """Width and height of the frame."""
+        return self._core.resolution
+
+    @property
+    def position(self) -> Floats:
+        """Centre of the lens in the world, of shape (3,)."""
+        return self._core.position
+
+    @property
+    def cam_from_world(self) -> Floats:
+        """[R|t], of shape (3, 4), which maps world points to camera axes."""
+        return self._core.cam_from_world
+
+    @property
+    def K(self) -> Floats:
+        """Calibration matrix for rays through the lens centre, of shape (3, 3), in elements of the frame."""
+        return self._core.K
+
+    @property
+    def aperture_diameter(self) -> float:
+        """Diameter of the opening in world units."""
+        return self._core.aperture_diameter
+
+    @property
+    def f_number(self) -> float:
+        """Focal length divided by the diameter of the opening; infinite for a pinhole."""
+        diameter = self._core.aperture_diameter
+        return self._core.focal_length / diameter if diameter > 0 else math.inf
+
+    @property
+    def focal_length_mm(self) -> float:
+        """Focal length in millimetres."""
+        return self._core.focal_length * self._core.unit_m * 1000
+
+    @property
+    def focus_distance(self) -> float:
+        """Distance of the focus plane along the optical axis, in world units."""
+        return self._core.focus_distance
+
+    @property
+    def focus_plane(self) -> Tuple[Floats, float]:
+        """Normal of length 1 and offset of the focus plane: its points X have normal . X = offset."""
+        return self._core.focus_plane
+
+    @property
+    def tilt_deg(self) -> Tuple[float, float]:
+        """Horizontal and vertical tilt of the focus plane."""
+        return self._core.tilt_deg
+
+    @property
+    def blades(self) -> int:
+        """Number of blades; 0 for a circle."""
+        return self._core.blades
+
+    @property
+    def blade_rotation_deg(self) -> float:
+        """Rotation of the polygon of blades, counter-clockwise for the photographer."""
+        return self._core.blade_rotation_deg
+
+    @property
+    def unit_m(self) -> float:
+        """Metres per world unit."""
+        return self._core.unit_m
+
+    def _settings(self) -> Dict[str, Any]:
+        core = self._core
+        width = core.resolution[0]
+        return {"position": core.position, "world_from_cam": core.cam_from_world[:, :3].T,
+                "resolution": core.resolution,
+                "field_of_view_deg": math.degrees(2 * math.atan(width / (2 * core.K[0, 0]))),
+                "sensor_width_mm": core.sensor_width * core.unit_m * 1000, "aperture_diameter": core.aperture_diameter,
+                "focus_distance": core.focus_distance, "tilt_deg": core.tilt_deg, "blades": core.blades,
+                "blade_rotation_deg": core.blade_rotation_deg, "unit_m": core.unit_m}
+
+    def replace(self, **changes: Any) -> Camera:
+        """Return a copy with some arguments of the constructor changed.
+
+        A changed resolution keeps the horizontal field of view. A camera that breathes keeps its present field of
+        view.
+        """
+        if not changes:
+            return self
+        values = self._settings()
+        for default, others in (("world_from_cam", ("look_at", "quaternion")),
+                                ("field_of_view_deg", ("focal_length_mm",)),
+                                ("aperture_diameter", ("aperture_diameter_mm", "f_number")),
+                                ("focus_distance", ("focus_point",))):
+            if any(changes.get(other) is not None for other in others):
+                del values[default]
+        values.update(changes)
+        return Camera(**values)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Camera) and bool(self._core == other._core)
+
+    def __hash__(self) -> int:
+        return hash(self._core)
+
+    def __reduce__(self) -> Any:
+        return Camera._of, (self._core,)
+
+    def __repr__(self) -> str:
+        x, y, z = self.position
+        width, height = self.resolution
+        return (f"<Camera {width} x {height} at ({x:.4g}, {y:.4g}, {z:.4g}), focus {self.focus_distance:.4g}, "
+                f"aperture {self.aperture_diameter:.4g}>")
+
+
+class Path(Sequence[Camera]):
+    """A camera path: one camera for each frame. Frames are numbered from 1; the path's items from 0.
+
+    Parameters
+    ----------
+    cameras : iterable of Camera
+        The cameras of the frames, of one resolution and one `unit_m`.
+    fps : float, optional
+        Frames per second.
+    """
+
+    def __init__(self, cameras: Iterable[Camera], fps: float = 24) -> None:
+        self._cameras: List[Camera] = list(cameras)
+        self.fps = float(fps)
+        if not self._cameras:
+            raise UsageError("a path needs at least one camera")
+        for what in ("resolution", "unit_m"):
+            values = {getattr(camera, what) for camera in self._cameras}
+            if len(values) > 1:
+                raise UsageError(f"the cameras of a path must have one {what}, found {sorted(values)[:4]}")
+
+    @classmethod
+    def load(cls, path: Union[str, os.PathLike[str]], unit_m: Optional[float] = None) -> Path:
+        """Read a camera path file (doc/formats/path.md).
+
+        Parameters
+        ----------
+        path : path
+            The file.
+        unit_m : float, optional
+            Metres per world unit of the light field. A path that states another unit is an error.
+        """
+        try:
+            text = pathlib.Path(path).read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise InputError(f"{os.fspath(path)}: cannot be read: {error}") from None
+        return cls.parse(text, os.fspath(path), unit_m)
+
+    @classmethod
+    def parse(cls, text: str, name: str = "path", unit_m: Optional[float] = None) -> Path:
+        """Read the text of a camera path file, which messages call `name`. As :meth:`load` otherwise."""
+        cameras, fps, _ = _core.parse_path(text, name, unit_m)
+        return cls((Camera._of(core) for core in cameras), fps)
+
+    def save(self, path: Union[str, os.PathLike[str]]) -> None:
+        """Write a camera path file, with a key for every frame.
+
+        Positions, apertures and distances are read again as they are; directions and fields of view differ by at most
+        1e-12. The file appears only when it is whole.
+
+        Raises
+        ------
+        UsageError
+            The cameras have different numbers of blades or sensor widths, which a path file cannot express.
+        """
+        settings = [camera._settings() for camera in self._cameras]
+        for what in ("blades", "sensor_width_mm"):
+            if len({setting[what] for setting in settings}) > 1:
+                raise UsageError(f"{os.fspath(path)}: the cameras have different {what}, which a path file cannot say")
+        for setting in settings:
+            setting["quaternion"] = _quaternion_of(setting.pop("world_from_cam"))
+            setting["focus_tilt_deg"] = setting.pop("tilt_deg")
+        first = settings[0]
+        moving = {key for key in _MOVING if any(not np.array_equal(s[key], first[key]) for s in settings)}
+        keys = {key: [(i / self.fps, setting[key]) for i, setting in enumerate(settings)] for key in _MOVING
+                if key in moving}
+        camera = {key: first[key] for key in ("position", "quaternion", "field_of_view_deg", "sensor_width_mm")}
+        lens = {key: first[key] for key in ("aperture_diameter", "focus_distance", "focus_tilt_deg", "blades",
+                                            "blade_rotation_deg")}
+        text = _text_of_path(len(settings), self.fps, first["unit_m"], first["resolution"], camera, lens, keys)
+        target = pathlib.Path(path)
+        temporary = target.with_name(f".{target.name}.{os.getpid()}")
+        try:
+            with temporary.open("w", encoding="utf-8") as file:
+                file.write(text)
+                file.flush()
+                os.fsync(file.fileno())
+            temporary.replace(target)
+        except OSError as error:
+            temporary.unlink(missing_ok=True)
+            raise OutputError(f"{os.fspath(path)}: cannot be written: {error}") from None
+
+    @property
+    def cameras(self) -> Sequence[Camera]:
+        """The cameras of the frames."""
+        return tuple(self._cameras)
+
+    def __len__(self) -> int:
+        return len(self._cameras)
+
+    @overload
+    def __getitem__(self, i: int) -> Camera:
+        ...
+
+    @overload
+    def __getitem__(self, i: slice) -> Path:
+        ...
+
+    def __getitem__(self, i: Union[int, slice]) -> Union[Camera, Path]:
+        if isinstance(i, slice):
+            return Path(self._cameras[i], self.fps)
+        return self._cameras[i]
+
+    def __iter__(self) -> Iterator[Camera]:
+        return iter(self._cameras)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Path) and self.fps == other.fps and self._cameras == other._cameras
+
+    def __repr__(self) -> str:
+        return f"<Path of {len(self)} frames, {self.fps:g} per second>"
+
+
+def _one_of(**arguments: Any) -> None:
+    given = [name for name, value in arguments.items() if value is not None]
+    if len(given) == 1:
+        return
+    names = " or ".join(arguments)
+    found = " and ".join(given) if given else "none of them"
+    raise UsageError(f"expected {names}, found {found}")
+
+
+def _quaternion_of(rotation: Floats) -> Floats:
+    """Return the rotation as (w, x, y, z)."""
+    if rotation.shape != (3, 3):
+        raise UsageError(f"world_from_cam: expected a matrix of shape (3, 3), found {rotation.shape}")
+    error = np.abs(rotation @ rotation.T - np.eye(3)).max()
+    if not error < 1e-6 or np.linalg.det(rotation) < 0:
+        raise UsageError("world_from_cam: expected a rotation: columns of length 1 that are perpendicular and "
+                         "right-handed")
+    # The eigenvector of the largest eigenvalue is accurate for every rotation (Bar-Itzhack 2000).
+    r = rotation
+    matrix = np.array([
+        [r[0, 0] - r[1, 1] - r[2, 2], 0, 0, 0],
+        [r[1, 0] + r[0, 1], r[1, 1] - r[0, 0] - r[2, 2], 0, 0],
+        [r[2, 0] + r[0, 2], r[2, 1] + r[1, 2], r[2, 2] - r[0, 0] - r[1, 1], 0],
+        [r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1], r[0, 0] + r[1, 1] + r[2, 2]]])
+    x, y, z, w = np.linalg.eigh(matrix, UPLO="L")[1][:, -1]
+    quaternion = np.array([w, x, y, z])
+    return quaternion if w >= 0 else -quaternion
+
+
+def _value_text(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (int, np.integer)):
+        return str(int(value))
+    if isinstance(value, (float, np.floating)):
+        return repr(float(value))
+    return "[" + ", ".join(_value_text(entry) for entry in value) + "]"
+
+
+def _entry_text(key: str, value: Any) -> str:
+    if key == "focus_tilt_deg":
+        return f"{{horizontal: {_value_text(value[0])}, vertical: {_value_text(value[1])}}}"
+    return _value_text(value)
+
+
+def _text_of_path(count: int, fps: float, unit_m: float, resolution: Tuple[int, int], camera: Dict[str, Any],
+                  lens: Dict[str, Any], keys: Dict[str, List[Tuple[float, Any]]]) -> str:
+    """Return the text of a path file (doc/formats/path.md). Values that are None are left out."""
+    lines = ["format: lfpath 1", f"fps: {_value_text(fps)}", f"frames: {count}", f"unit_m: {_value_text(unit_m)}",
+             f"resolution: {_value_text(resolution)}"]
+    for section, values in (("camera", camera), ("lens", lens)):
+        lines.append(f"{section}:")
+        lines += [f"  {key}: {_entry_text(key, value)}" for key, value in values.items()
+                  if value is not None and key not in keys]
+    if keys:
+        lines.append("keyframes:")
+        for key, entries in keys.items():
+            lines.append(f"  {key}:")
+            lines += [f"    - {{time: {_value_text(time)}, value: {_entry_text(key, value)}, interpolation: linear}}"
+                      for time, value in entries]
+    return "\n".join(lines) + "\n"

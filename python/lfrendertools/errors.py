@@ -1,0 +1,52 @@
+"""The exceptions of this package. Each has the exit code with which the programs report the same error."""
+from __future__ import annotations
+
+
+class Error(Exception):
+    """Any error of this package.
+
+    Attributes
+    ----------
+    exit_code : int
+        The exit code of `lfrenderer` for an error of this kind.
+    """
+
+    exit_code = 1
+
+
+class UsageError(Error, ValueError):
+    """An argument is wrong, or arguments contradict each other."""
+
+    exit_code = 2
+
+
+class InputError(Error, ValueError):
+    """A file, or a value in it, is wrong."""
+
+    exit_code = 3
+
+
+class OutputError(Error, OSError):
+    """The disk, the memory or a program that was called failed."""
+
+    exit_code = 4
+
+
+class InterruptedRender(Error):
+    """The work was interrupted."""
+
+    exit_code = 5
+
+
+class BelowRequired(Error):
+    """The result is less than was asked for."""
+
+    exit_code = 6
+
+
+class MissingImagesWarning(UserWarning):
+    """LF images were left out of frames because they are missing or broken."""
+
+
+class BlackFrameWarning(UserWarning):
+    """No recorded ray passes the lens of a frame, which is therefore black."""

@@ -1,0 +1,440 @@
+"""Light fields: their LF cameras and LF images as arrays."""
+from __future__ import annotations
+
+import collections
+import concurrent.futures
+import dataclasses
+import functools
+import logging
+import os
+import pathlib
+from typing import Any, Iterable, Iterator, Optional, Sequence, Tuple, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from .camera import Camera
+from .camera import Path as CameraPath
+from .errors import UsageError
+
+FilePath = Union[str, "os.PathLike[str]"]
+Floats = npt.NDArray[np.float64]
+Picture = npt.NDArray[np.float32]
+
+
+@dataclasses.dataclass(frozen=True)
+class Intrinsics:
+    """How LF cameras map directions to pixels.
+
+    Attributes
+    ----------
+    K : ndarray of shape (3, 3)
+        Calibration matrix in pixels. The centre of the upper left pixel is (0.5, 0.5).
+    width, height : int
+        Size of the LF images in pixels.
+    distortion : str
+        Model of the lens distortion, or "pinhole" (lf/camera/distortion.h lists the models).
+    parameters : tuple of float
+        Its parameters.
+    """
+
+    K: Floats
+    width: int
+    height: int
+    distortion: str
+    parameters: Tuple[float, ...]
+
+
+@dataclasses.dataclass(frozen=True)
+class Grid:
+    """LF cameras that stand in rows and columns.
+
+    Attributes
+    ----------
+    ids : ndarray of int of shape (rows, columns)
+        Numbers of the LF cameras. Row 0 is the upper one and column 0 the left one, as the cameras see themselves.
+    pitch : tuple of float
+        Mean distance between neighbouring columns, and between neighbouring rows, in world units.
+    """
+
+    ids: npt.NDArray[np.int64]
+    pitch: Tuple[float, float]
+
+    @property
+    def shape(self) -> Tuple[int, int]:
+        """Number of rows and columns."""
+        return self.ids.shape[0], self.ids.shape[1]
+
+
+class LightField:
+    """A recorded light field: calibrated LF images of one scene. :func:`open` makes one.
+
+    World axes are those of the calibration. The axes of a camera are x to the right, y down, z forward. Pixel
+    positions are continuous: the centre of the upper left pixel is (0.5, 0.5). Arrays of all LF cameras are read-only
+    views of the light field's own memory, unless their description says otherwise.
+    """
+
+    def __init__(self, core: _core.LightField, path: str) -> None:
+        self._core = core
+        self._path = path
+        self._centres: Optional[Floats] = None
+
+    def __len__(self) -> int:
+        return len(self._core)
+
+    def __repr__(self) -> str:
+        return f"<LightField {self._path}: {len(self)} LF images>"
+
+    @property
+    def unit_m(self) -> float:
+        """Metres per world unit."""
+        return self._core.unit_m
+
+    @property
+    def depth_range(self) -> Optional[Tuple[float, float]]:
+        """Nearest and farthest depth of the scene in world units, if the calibration states them."""
+        return self._core.depth_range
+
+    @functools.cached_property
+    def names(self) -> Sequence[str]:
+        """Names of the LF images as the calibration states them."""
+        return tuple(self._core.names)
+
+    @property
+    def cam_from_world(self) -> Floats:
+        """Poses, of shape (n, 3, 4): [R|t], which map world points to camera axes."""
+        return self._core.cam_from_world
+
+    @property
+    def centres(self) -> Floats:
+        """Positions of the LF cameras in the world, of shape (n, 3). Computed at the first use, and then kept."""
+        if self._centres is None:
+            centres = self._core.centres()
+            centres.setflags(write=False)
+            self._centres = centres
+        return self._centres
+
+    @functools.cached_property
+    def intrinsics(self) -> Sequence[Intrinsics]:
+        """Each distinct set of intrinsics once."""
+        return tuple(Intrinsics(*entry) for entry in self._core.intrinsics())
+
+    @property
+    def intrinsics_index(self) -> npt.NDArray[np.uint32]:
+        """Index into `intrinsics` for each LF camera, of shape (n,)."""
+        return self._core.intrinsics_index
+
+    @functools.cached_property
+    def K(self) -> Floats:
+        """Calibration matrices, of shape (n, 3, 3): one in memory if all LF cameras share it, otherwise copies."""
+        matrices = np.array([k.K for k in self.intrinsics])
+        if len(matrices) == 1:
+            return np.broadcast_to(matrices[0], (len(self), 3, 3))
+        chosen: Floats = matrices[self.intrinsics_index]
+        chosen.setflags(write=False)
+        return chosen
+
+    @property
+    def gains(self) -> npt.NDArray[np.float32]:
+        """Factors by which recorded light is multiplied, of shape (n, 3): R, G, B."""
+        return self._core.gains
+
+    @property
+    def is_virtual(self) -> npt.NDArray[np.bool_]:
+        """True for LF images that were interpolated from recorded ones (doc/densify.md), of shape (n,)."""
+        return self._core.is_virtual
+
+    @property
+    def spacing(self) -> float:
+        """Median distance from an LF camera to its nearest neighbour, in world units."""
+        return self._core.spacing()
+
+    def project(self, i: int, points: npt.ArrayLike) -> Floats:
+        """Project points of the world into LF image `i`, lens distortion included.
+
+        Parameters
+        ----------
+        i : int
+            Number of the LF camera, from 0.
+        points : array_like of shape (n, 3)
+            Points in world units.
+
+        Returns
+        -------
+        ndarray of shape (n, 2)
+            Pixel positions, which may lie outside of the image; NaN for points that the lens cannot see.
+        """
+        return self._core.project(i, np.asarray(points, dtype=np.float64))
+
+    def rays(self, i: int, pixels: npt.ArrayLike) -> Tuple[Floats, Floats]:
+        """Return the rays that LF camera `i` records at pixel positions.
+
+        Parameters
+        ----------
+        i : int
+            Number of the LF camera, from 0.
+        pixels : array_like of shape (n, 2)
+            Pixel positions.
+
+        Returns
+        -------
+        origins, directions : ndarray of shape (n, 3)
+            The camera's position, n times, and directions in the world of length 1; NaN where no ray arrives.
+        """
+        positions = np.asarray(pixels, dtype=np.float64)
+        directions = self._core.ray_directions(i, positions)
+        return np.broadcast_to(self.centres[i], directions.shape), directions
+
+    def image(self, i: int, rect: Optional[Tuple[int, int, int, int]] = None, masked: float = float("nan")) -> Picture:
+        """Load an LF image as light, as a render reads it.
+
+        Parameters
+        ----------
+        i : int
+            Number of the LF image, from 0.
+        rect : tuple of int, optional
+            x_begin, y_begin, x_end, y_end of the part to load, in pixels; by default the whole LF image.
+        masked : float, optional
+            Value of pixels that send no ray.
+
+        Returns
+        -------
+        ndarray of shape (height, width, 3)
+            Linear light with sRGB primaries, where 1 is display white. Mosaics are demosaicked.
+        """
+        return self._core.image(i, rect, masked)
+
+    def images(self, ids: Optional[Iterable[int]] = None, ahead: int = 8) -> Iterator[Tuple[int, Picture]]:
+        """Load LF images one after the other, and `ahead` of them in advance by other threads.
+
+        Parameters
+        ----------
+        ids : iterable of int, optional
+            Numbers of LF images; by default all of them.
+        ahead : int, optional
+            Number of LF images in memory at most.
+
+        Yields
+        ------
+        i, picture : int, ndarray
+            Number of the LF image, and what :meth:`image` returns.
+        """
+        if ahead < 1:
+            raise UsageError(f"ahead={ahead}: expected 1 or more")
+        wanted = iter(range(len(self)) if ids is None else ids)
+        loading: "collections.deque[Tuple[int, concurrent.futures.Future[Picture]]]" = collections.deque()
+        with concurrent.futures.ThreadPoolExecutor(min(ahead, os.cpu_count() or 1)) as threads:
+            try:
+                for i in wanted:
+                    loading.append((i, threads.submit(self.image, i)))
+                    if len(loading) == ahead:
+                        first, future = loading.popleft()
+                        yield first, future.result()
+                while loading:
+                    first, future = loading.popleft()
+                    yield first, future.result()
+            finally:
+                for _, future in loading:
+                    future.cancel()
+
+    def grid(self) -> Optional[Grid]:
+        """Find the rows and columns in which the LF cameras stand.
+
+        Returns
+        -------
+        Grid or None
+            None unless every place of one regular grid has exactly one LF camera. Positions may be a quarter of the
+            pitch away from their place.
+        """
+        return _find_grid(self.centres, self.cam_from_world)
+
+    def array(self, views: Optional[Tuple[int, int]] = None, reduce: int = 1, out: Any = None) -> Any:
+        """Load LF images of a grid into one array.
+
+        Parameters
+        ----------
+        views : tuple of int, optional
+            Number of rows and columns, spread evenly over the grid; by default all of them.
+        reduce : int, optional
+            Each pixel of the result is the mean of `reduce` x `reduce` pixels.
+        out : array, optional
+            Receives the values, such as a `numpy.memmap` or a dataset of h5py, for light fields larger than the memory.
+
+        Returns
+        -------
+        ndarray of shape (rows, columns, height, width, 3)
+            Linear light; masked pixels are NaN.
+        """
+        grid = self.grid()
+        if grid is None:
+            raise UsageError("the LF cameras do not stand in a regular grid: use images() instead of array()")
+        if len(self.intrinsics) != 1:
+            sizes = {(k.width, k.height) for k in self.intrinsics}
+            if len(sizes) != 1:
+                raise UsageError(f"the LF images have {len(sizes)} sizes: use images() instead of array()")
+        rows, columns = views or grid.shape
+        if not (1 <= rows <= grid.shape[0] and 1 <= columns <= grid.shape[1]):
+            raise UsageError(f"views=({rows}, {columns}): the grid has {grid.shape[0]} rows, {grid.shape[1]} columns")
+        k = self.intrinsics[0]
+        if reduce < 1 or reduce > min(k.width, k.height):
+            raise UsageError(f"reduce={reduce}: expected 1 to {min(k.width, k.height)}")
+        size = (k.height // reduce, k.width // reduce)
+        shape = (rows, columns, *size, 3)
+        if out is None:
+            out = np.empty(shape, np.float32)
+        elif tuple(out.shape) != shape:
+            raise UsageError(f"out has the shape {tuple(out.shape)}, expected {shape}")
+        v = np.linspace(0, grid.shape[0] - 1, rows).round().astype(int)
+        u = np.linspace(0, grid.shape[1] - 1, columns).round().astype(int)
+        ids = grid.ids[np.ix_(v, u)]
+        for number, (_, picture) in enumerate(self.images(ids.ravel().tolist())):
+            if reduce > 1:
+                whole = picture[:size[0] * reduce, :size[1] * reduce]
+                picture = whole.reshape(size[0], reduce, size[1], reduce, 3).mean(axis=(1, 3))
+            out[number // columns, number % columns] = picture
+        return out
+
+    def path(self, move: str = "focus-pull", *, start: Optional[int] = None,
+             focus_distance: Optional[float] = None) -> CameraPath:
+        """Return a first camera path, as `lfexample` writes it.
+
+        Parameters
+        ----------
+        move : {"static", "orbit", "dolly", "focus-pull"}
+            Movement of the camera. A static path has one frame, others have 50.
+        start : int, optional
+            Number of the LF camera at which the path begins; by default the one in the middle of the capture.
+        focus_distance : float, optional
+            Distance of the subject in world units; by default found by comparing LF images, which takes seconds. A
+            message of the logger says if it is not sure.
+
+        Returns
+        -------
+        Path
+        """
+        text, doubt = self._core.example(self._path, move, start, focus_distance)
+        if doubt:
+            logging.getLogger("lfrendertools").warning("%s: the focus distance is not sure: %s", self._path, doubt)
+        return CameraPath.parse(text, self._path, self.unit_m)
+
+    @functools.cached_property
+    def _first_camera(self) -> Camera:
+        return self.path("static")[0]
+
+    def camera(self, **changes: Any) -> Camera:
+        """Return a camera that sees the subject of the light field sharply.
+
+        It stands at the LF camera in the middle of the capture. Its focus is on the subject, and its aperture as wide
+        as the distances between LF cameras allow without double edges (:meth:`path`). Found at the first call, and
+        then kept.
+
+        Parameters
+        ----------
+        **changes
+            Arguments of :class:`Camera` to replace, such as `focus_distance` or `blades`.
+
+        Returns
+        -------
+        Camera
+        """
+        return self._first_camera.replace(**changes)
+
+    def _repr_html_(self) -> str:
+        rows = "".join(f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in (
+            ("LF images", len(self)),
+            ("sizes", ", ".join(sorted({f"{k.width} x {k.height}" for k in self.intrinsics}))),
+            ("spacing", f"{self.spacing:.4g} units of {self.unit_m:.4g} m")))
+        return f"<table>{rows}</table>{_plot_of_rig(self.centres, self.cam_from_world)}"
+
+
+def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[float] = None,
+         images: Optional[FilePath] = None, image_scale: str = "auto", image_alpha: str = "auto",
+         background: str = "", pitch: Union[None, float, Tuple[float, float]] = None,
+         plane_distance: Optional[float] = None, flip_x: bool = False, flip_y: bool = False) -> LightField:
+    """Open a light field of any supported form.
+
+    Parameters
+    ----------
+    path : path
+        A calibration file or its folder (transforms.json, COLMAP, Middlebury, LLFF, HCI, AOS), a packed store
+        (STORE.lfs), or a folder of images with Stanford names.
+    focal_px : float, optional
+        Focal length in pixels, for folders with Stanford names.
+    fov_deg : float, optional
+        Field of view, for poses of Airborne Optical Sectioning.
+    images : path, optional
+        Folder in which image files are searched by name.
+    image_scale, image_alpha, background : str, optional
+        As the options of `lfrenderer` with these names.
+    pitch : float or tuple of float, optional
+        For folders with Stanford names: distance between columns, and between rows, in world units.
+    plane_distance : float, optional
+        For folders with Stanford names: distance of the plane to which the images are rectified.
+    flip_x, flip_y : bool, optional
+        For folders with Stanford names: True if columns or rows are counted the other way round.
+
+    Returns
+    -------
+    LightField
+
+    Raises
+    ------
+    InputError
+        There is no light field at `path`, or its calibration is wrong.
+    """
+    name = os.fspath(path)
+    core = _core.open_light_field(name, focal_px or 0.0, fov_deg or 0.0,
+                                  "" if images is None else os.fspath(images), image_scale, image_alpha, background,
+                                  pitch if pitch is None or isinstance(pitch, tuple) else (pitch, pitch),
+                                  plane_distance, (flip_x, flip_y))
+    return LightField(core, str(pathlib.Path(name)))
+
+
+def _lines(values: Floats, tolerance: float) -> Tuple[npt.NDArray[np.int64], Floats]:
+    """Group values that are closer than the tolerance. Returns the group of each value, and the mean of each group."""
+    order = np.argsort(values)
+    steps = np.diff(values[order]) > tolerance
+    groups = np.empty(len(values), np.int64)
+    groups[order] = np.concatenate([[0], np.cumsum(steps)])
+    return groups, np.bincount(groups, values) / np.bincount(groups)
+
+
+def _find_grid(centres: Floats, poses: Floats) -> Optional[Grid]:
+    if len(centres) == 0:
+        return None
+    right, down = poses[:, 0, :3].mean(axis=0), poses[:, 1, :3].mean(axis=0)
+    if min(np.linalg.norm(right), np.linalg.norm(down)) < 0.5:
+        return None
+    x, y = centres @ (right / np.linalg.norm(right)), centres @ (down / np.linalg.norm(down))
+    extent = max(np.ptp(x), np.ptp(y))
+    if extent == 0:
+        return Grid(np.zeros((1, 1), np.int64), (0.0, 0.0)) if len(centres) == 1 else None
+    tolerance = 0.25 * extent / max(1, len(centres) - 1) if min(np.ptp(x), np.ptp(y)) == 0 else \
+        0.35 * np.sqrt(np.ptp(x) * np.ptp(y) / len(centres))
+    columns, at_x = _lines(x, tolerance)
+    rows, at_y = _lines(y, tolerance)
+    if len(at_x) * len(at_y) != len(centres):
+        return None
+    ids = np.full((len(at_y), len(at_x)), -1, np.int64)
+    ids[rows, columns] = np.arange(len(centres))
+    if (ids < 0).any():
+        return None
+    pitch = tuple(float(np.ptp(at) / max(1, len(at) - 1)) for at in (at_x, at_y))
+    for at, step, values, groups in ((at_x, pitch[0], x, columns), (at_y, pitch[1], y, rows)):
+        places = at[0] + step * np.arange(len(at))
+        if len(at) > 1 and np.abs(values - places[groups]).max() > 0.25 * step:
+            return None
+    return Grid(ids, (pitch[0], pitch[1]))
+
+
+def _plot_of_rig(centres: Floats, poses: Floats) -> str:
+    """Return a plot of at most 2,000 LF cameras, as they see themselves from behind, as SVG."""
+    chosen = np.linspace(0, len(centres) - 1, min(len(centres), 2000)).astype(int)
+    right, down = poses[:, 0, :3].mean(axis=0), poses[:, 1, :3].mean(axis=0)
+    xy = np.stack([centres[chosen] @ right, centres[chosen] @ down], axis=1)
+    xy -= xy.min(axis=0)
+    xy *= 280 / max(float(xy.max()), 1e-300)
+    dots = "".join(f'<circle cx="{x + 10:.1f}" cy="{y + 10:.1f}" r="2"/>' for x, y in xy)
+    height = float(xy[:, 1].max()) + 20
+    return f'<svg width="300" height="{height:.0f}" fill="currentColor">{dots}</svg>'

@@ -1,0 +1,432 @@
+"""Frames of light fields: rendered at once, as a film, or step by step."""
+from __future__ import annotations
+
+import os
+import pathlib
+import re
+import types
+import warnings
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple, Type, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from .camera import Camera, Path
+from .errors import BlackFrameWarning, MissingImagesWarning, UsageError
+from .light_field import LightField
+
+# Called with the number of LF images that were read, and the number that will be read.
+Progress = Callable[[int, int], None]
+Frames = Union[None, str, Iterable[int]]
+
+_FORMATS = {".exr": "exr", ".png": "png"}
+
+
+class Frame:
+    """A frame of a light field. All arrays are shared with the frame, which saves what they contain.
+
+    :func:`render`, :func:`film`, :class:`Renderer` and :meth:`Plate.develop` make frames.
+    """
+
+    def __init__(self, core: _core.Frame) -> None:
+        self._core = core
+
+    @property
+    def number(self) -> int:
+        """Number of the frame in its path, from 1."""
+        return self._core.number
+
+    @property
+    def camera(self) -> Camera:
+        """The camera that took the frame."""
+        return Camera._of(self._core.camera)
+
+    @property
+    def rgb(self) -> npt.NDArray[np.float32]:
+        """Linear light with sRGB primaries, of shape (height, width, 3); 1 is display white."""
+        return self._core.rgb
+
+    @property
+    def count(self) -> npt.NDArray[np.uint32]:
+        """Number of rays of each channel, of shape (height, width, 3); with lens weights, the sum of their weights."""
+        return self._core.count
+
+    @property
+    def coverage(self) -> npt.NDArray[np.float32]:
+        """Share of the channels with a ray of their own, of shape (height, width)."""
+        return self._core.coverage
+
+    @property
+    def effective(self) -> Optional[npt.NDArray[np.float32]]:
+        """Number of LF images of equal weight that would give the same noise, of shape (height, width).
+
+        None without lens weights.
+        """
+        return self._core.effective
+
+    @property
+    def opacity(self) -> Optional[npt.NDArray[np.float32]]:
+        """Opacity, by which `rgb` is multiplied, of shape (height, width). None unless the light field keeps it."""
+        return self._core.opacity
+
+    @property
+    def interpolated(self) -> Optional[npt.NDArray[np.float32]]:
+        """Share of the light that is interpolated, of shape (height, width). None unless rays are rebinned."""
+        return self._core.interpolated
+
+    @property
+    def densified(self) -> Optional[npt.NDArray[np.float32]]:
+        """Share of the light that virtual LF images show too, of shape (height, width). None unless densified."""
+        return self._core.densified
+
+    @property
+    def image_count(self) -> int:
+        """Number of recorded LF images with a ray in the frame."""
+        return self._core.image_count
+
+    @property
+    def metadata(self) -> Dict[str, Union[str, float, int]]:
+        """The facts about the frame that its files state."""
+        return dict(self._core.metadata)
+
+    def display(self) -> npt.NDArray[np.uint8]:
+        """Return the picture for a display: sRGB values, of shape (height, width, 3)."""
+        linear = np.clip(np.nan_to_num(self.rgb.astype(np.float64)), 0, 1)
+        srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+        values: npt.NDArray[np.uint8] = np.floor(255 * srgb + 0.5).astype(np.uint8)
+        return values
+
+    def save(self, path: Union[str, "os.PathLike[str]"], format: Optional[str] = None) -> None:
+        """Write the frame as `lfrenderer` does: EXR with linear light and all other channels, or PNG for display.
+
+        Parameters
+        ----------
+        path : path
+            The file. It appears only when it is whole.
+        format : str, optional
+            "exr" (half floats), "exr-float", "png" or "png16"; by default "exr" or "png", by the suffix of `path`.
+        """
+        name = os.fspath(path)
+        chosen = format or _FORMATS.get(pathlib.Path(name).suffix.lower())
+        if chosen is None:
+            raise UsageError(f"{name}: expected a name that ends in .exr or .png, or a format")
+        self._core.save(name, chosen)
+
+    def _repr_png_(self) -> bytes:
+        return _png_of(self.display())
+
+    def __repr__(self) -> str:
+        height, width = self.rgb.shape[:2]
+        return f"<Frame {self.number}: {width} x {height} of {self.image_count} LF images>"
+
+
+class Plate:
+    """The sensor plate of a frame: exact sums and counts of rays, as integers.
+
+    The sum of plates of different LF images is the plate of all of them, with the same bits in any order.
+    """
+
+    def __init__(self, core: _core.Plate) -> None:
+        self._core = core
+
+    @classmethod
+    def load(cls, path: Union[str, "os.PathLike[str]"]) -> Plate:
+        """Read a plate that `lfrenderer --keep-plates` or `--shard` has written."""
+        return cls(_core.Plate.load(os.fspath(path)))
+
+    @property
+    def sums(self) -> npt.NDArray[np.uint64]:
+        """Sums of 16-bit values of rays, of shape (height, width, channels): a copy."""
+        return self._core.sums
+
+    @property
+    def counts(self) -> npt.NDArray[np.uint64]:
+        """Numbers of rays (with lens weights, sums of weights), of shape (height, width, channels): a copy."""
+        return self._core.counts
+
+    def __add__(self, other: Plate) -> Plate:
+        return Plate(self._core + other._core)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Plate) and bool(self._core == other._core)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def develop(self, threads: int = 0) -> Frame:
+        """Average the rays, fill small gaps, and convert the colours to linear sRGB."""
+        return Frame(self._core.develop(threads))
+
+
+class Renderer:
+    """Renders the frames of a path step by step, so that unfinished frames can be looked at.
+
+    Parameters
+    ----------
+    field : LightField
+        The light field.
+    path : Path or Camera
+        The cameras of the frames.
+    frames : str or iterable of int, optional
+        Frames to render, from 1: "1-10,20", "1-100x10", or numbers; by default all.
+    mode : {"collect", "rebin", "hybrid"}
+        How frames are made from recorded rays.
+    estimator, filter, lens_weights, lf_pixels, order : str
+        As the options of `lfrenderer` with these names.
+    max_images : int, optional
+        Largest number of LF images for each frame.
+    max_angle_deg : float, optional
+        Largest angle between the axes of LF camera and frame.
+    seed : int
+        Seed of the order "shuffle".
+    stop_when : str
+        Finish a frame early: "noise<=X" or "samples>=N".
+    smooth_below, fill : int
+        Smooth elements with fewer rays than `smooth_below`; fill elements without rays from elements up to `fill`
+        elements away.
+    guard : bool
+        False: show virtual LF images where a frame is in focus.
+    memory : str
+        Upper limit of the memory that is used, such as "8G" or "512M".
+    strict : bool
+        True: a missing or broken LF image is an error; False: it is left out, with a warning.
+    threads : int
+        Number of threads; 0: one for each processor.
+
+    Notes
+    -----
+    All frames must fit in the memory at the same time; :func:`film` renders longer paths. The bits of frames do not
+    depend on `threads`, nor on `memory` unless `mode` rebins. Defaults are those of `lfrenderer`, and so are the bits.
+    """
+
+    def __init__(self, field: LightField, path: Union[Path, Camera], frames: Frames = None, **options: Any) -> None:
+        self._film = _Film(field, path, frames, options)
+        passes = self._film.core.passes()
+        if len(passes) != 1:
+            raise UsageError(f"{sum(map(len, passes))} frames need {len(passes)} passes in this memory: render at most "
+                             f"{len(passes[0])} frames at once, give more memory, or use film()")
+        self._film.begin(passes[0])
+        self._is_done = False
+
+    def __enter__(self) -> Renderer:
+        return self
+
+    def __exit__(self, kind: Optional[Type[BaseException]], value: Optional[BaseException],
+                 trace: Optional[types.TracebackType]) -> None:
+        del self._film
+
+    def step(self) -> bool:
+        """Read the next batch of LF images. Returns False if no LF image is left.
+
+        Ctrl-C (KeyboardInterrupt) interrupts the batch; another call then repeats it.
+        """
+        if not self._is_done:
+            self._is_done = not self._film.core.step()
+        return not self._is_done
+
+    @property
+    def progress(self) -> Tuple[int, int]:
+        """Number of LF images that were read, and of those that will be read in all."""
+        return self._film.core.progress()
+
+    @property
+    def skipped(self) -> Sequence[Tuple[str, str]]:
+        """Names of the LF images that were left out, and why."""
+        return tuple(self._film.core.skipped())
+
+    def preview(self, i: int = 0) -> Frame:
+        """Return frame `i` of this renderer, from 0, with the rays that it has so far."""
+        return Frame(self._film.core.develop(i))
+
+    def plate(self, i: int = 0) -> Plate:
+        """Return a copy of the plate of frame `i`."""
+        return Plate(self._film.core.plate(i))
+
+    def stop(self, i: int = 0) -> Frame:
+        """Finish frame `i` with the rays that it has, and free its memory."""
+        frame = self.preview(i)
+        self._film.core.release(i)
+        return frame
+
+
+def render(field: LightField, camera: Union[Camera, Path], *, progress: Union[None, bool, Progress] = None,
+           **options: Any) -> Frame:
+    """Render one frame.
+
+    Parameters
+    ----------
+    field : LightField
+        The light field.
+    camera : Camera or Path
+        The camera; or a path, whose first frame is rendered unless `frames` names another one.
+    progress : bool or callable, optional
+        Called with the number of LF images read so far and in all. True: a progress bar, if tqdm is installed.
+    **options
+        As for :class:`Renderer`.
+
+    Returns
+    -------
+    Frame
+
+    Raises
+    ------
+    InputError
+        No LF image contributes to the frame, or all of them are broken.
+    """
+    frames = options.pop("frames", None)
+    film_of_one = _Film(field, camera, [1] if frames is None else frames, options)
+    passes = film_of_one.core.passes()
+    if sum(map(len, passes)) != 1:
+        raise UsageError("render() renders one frame: use film() for several")
+    film_of_one.begin(passes[0])
+    film_of_one.core.check_any_contributes()
+    film_of_one.collect(_teller(progress), 0, 1)
+    film_of_one.core.check_not_all_broken()
+    film_of_one.warn_of_missing()
+    return Frame(film_of_one.core.develop(0))
+
+
+def film(field: LightField, path: Path, frames: Frames = None, *, progress: Union[None, bool, Progress] = None,
+         **options: Any) -> Iterator[Tuple[int, Frame]]:
+    """Render the frames of a path, with one read of the LF images for as many frames as fit in the memory.
+
+    Parameters
+    ----------
+    field : LightField
+        The light field.
+    path : Path
+        The cameras.
+    frames : str or iterable of int, optional
+        Frames to render, from 1: "1-10,20", "1-100x10", or numbers; by default all.
+    progress : bool or callable, optional
+        As for :func:`render`.
+    **options
+        As for :class:`Renderer`.
+
+    Yields
+    ------
+    number, frame : int, Frame
+        Frames in the order of their numbers, unless `stop_when` finishes some of them early.
+    """
+    sequence = _Film(field, path, frames, options)
+    tell = _teller(progress)
+    passes = sequence.core.passes()
+    for number, some in enumerate(passes):
+        sequence.begin(some)
+        for f in sequence.collect_some(tell, number, len(passes)):
+            frame = Frame(sequence.core.develop(f))
+            sequence.core.release(f)
+            if frame.image_count == 0 and frame.interpolated is None:
+                warnings.warn(f"frame {frame.number} is black: no recorded ray passes its lens", BlackFrameWarning,
+                              stacklevel=2)
+            yield frame.number, frame
+        sequence.warn_of_missing()
+
+
+class _Film:
+    """Some frames of a path with their options."""
+
+    def __init__(self, field: LightField, path: Union[Path, Camera], frames: Frames, options: Dict[str, Any]) -> None:
+        cameras = Path([path]) if isinstance(path, Camera) else path
+        for camera in cameras:
+            if camera.unit_m != field.unit_m:
+                raise UsageError(f"the camera has unit_m={camera.unit_m:g}, and the light field {field.unit_m:g}: give "
+                                 f"the camera unit_m=field.unit_m, or make it by field.camera()")
+        words = _core.FilmWords()
+        own: Dict[str, Any] = {"memory": "8G", "strict": False, "threads": 0}
+        for name, value in options.items():
+            if name in own:
+                own[name] = value
+            elif hasattr(words, name) and not name.startswith("_"):
+                try:
+                    setattr(words, name, value)
+                except TypeError:
+                    raise UsageError(f"{name}={value!r}: a value of this type is not possible") from None
+            else:
+                known = sorted([*own, *(word for word in dir(words) if not word.startswith("_"))])
+                raise UsageError(f"unknown option {name}: expected one of {', '.join(known)}")
+        self.core = _core.Film(field._core, [camera._core for camera in cameras], cameras.fps,
+                               _numbers_of(frames, len(cameras)), words, str(own["memory"]), bool(own["strict"]),
+                               int(own["threads"]))
+        self._warned: List[str] = []
+
+    def begin(self, frames: Sequence[int]) -> None:
+        self.core.begin(list(frames))
+
+    def collect_some(self, tell: Progress, number: int, count: int) -> Iterator[int]:
+        """Collect a pass, and yield its frames when they are finished. `number` of `count` passes."""
+        is_going_on = True
+        while is_going_on:
+            is_going_on = self.core.step()
+            done, total = self.core.progress()
+            tell(number * total + done, count * total)
+            yield from self.core.stopped()
+        yield from self.core.left()
+
+    def collect(self, tell: Progress, number: int, count: int) -> None:
+        while self.core.step() and not self.core.stopped():
+            done, total = self.core.progress()
+            tell(number * total + done, count * total)
+        done, total = self.core.progress()
+        tell(done, total)
+
+    def warn_of_missing(self) -> None:
+        missing = [(name, reason) for name, reason in self.core.skipped() if name not in self._warned]
+        if not missing:
+            return
+        self._warned += [name for name, _ in missing]
+        warnings.warn(f"{len(missing)} LF images were left out, the first: {missing[0][1]}", MissingImagesWarning,
+                      stacklevel=3)
+
+
+def _numbers_of(frames: Frames, count: int) -> List[int]:
+    """Return ascending numbers of frames."""
+    if frames is None:
+        return []
+    if not isinstance(frames, str):
+        numbers = {int(number) for number in frames}
+    else:
+        numbers = set()
+        for part in frames.split(","):
+            found = re.fullmatch(r"\s*(\d+)(?:-(\d+)(?:x(\d+))?)?\s*", part)
+            if not found:
+                raise UsageError(f"frames=\"{frames}\": expected numbers and ranges such as 1-10,20 or 1-100x10")
+            first, last, step = found.groups()
+            numbers.update(range(int(first), int(last or first) + 1, max(1, int(step or 1))))
+    if not numbers or min(numbers) < 1 or max(numbers) > count:
+        raise UsageError(f"frames={frames!r}: the path has the frames 1 to {count}")
+    return sorted(numbers)
+
+
+def _teller(progress: Union[None, bool, Progress]) -> Progress:
+    if callable(progress):
+        return progress
+    if progress:
+        try:
+            import tqdm.auto
+        except ImportError:
+            pass
+        else:
+            bar = tqdm.auto.tqdm(unit=" LF images")
+
+            def show(done: int, total: int) -> None:
+                bar.total = total
+                bar.update(done - bar.n)
+                if done == total:
+                    bar.close()
+            return show
+    return lambda done, total: None
+
+
+def _png_of(picture: npt.NDArray[np.uint8]) -> bytes:
+    """Return an 8-bit RGB picture as the bytes of a PNG file."""
+    import struct
+    import zlib
+    height, width = picture.shape[:2]
+    rows = np.zeros((height, 1 + 3 * width), np.uint8)
+    rows[:, 1:] = picture.reshape(height, -1)
+
+    def chunk(kind: bytes, body: bytes) -> bytes:
+        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)) +
+            chunk(b"sRGB", b"\0") + chunk(b"IDAT", zlib.compress(rows.tobytes(), 6)) + chunk(b"IEND", b""))

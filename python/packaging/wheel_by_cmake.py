@@ -1,0 +1,83 @@
+"""Builds the Python package for pip (PEP 517): CMake compiles the extension, and a wheel is a zip file.
+
+It needs nothing from a package index. What compiles the library must be installed (scripts/packages/render.txt and
+python.txt).
+"""
+import base64
+import hashlib
+import os
+import pathlib
+import subprocess
+import sys
+import sysconfig
+import tarfile
+import tempfile
+import zipfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+NAME = "lfrendertools"
+
+
+def version():
+    return (ROOT / "VERSION").read_text().split()[0]
+
+
+def dist_info():
+    return f"{NAME}-{version()}.dist-info"
+
+
+def metadata():
+    return (f"Metadata-Version: 2.1\nName: {NAME}\nVersion: {version()}\n"
+            "Summary: Films densely recorded light fields with a thin-lens camera\nLicense: Apache-2.0\n"
+            "Requires-Python: >=3.9\nRequires-Dist: numpy>=1.21\nDescription-Content-Type: text/markdown\n\n"
+            + (ROOT / "doc/python/README.md").read_text())
+
+
+def tag():
+    python = f"cp{sys.version_info.major}{sys.version_info.minor}"
+    return f"{python}-{python}-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"
+
+
+def build(folder):
+    """Compiles the extension, and returns the folder of the whole package."""
+    options = ["-DLF_PYTHON=ON", "-DLF_TESTS=OFF", "-DLF_VISUALIZER=OFF", f"-DPython3_EXECUTABLE={sys.executable}"]
+    subprocess.run(["cmake", "--preset", "release", "-B", folder, *options], cwd=ROOT, check=True, stdout=sys.stderr)
+    subprocess.run(["cmake", "--build", folder, "--target", "lf_python"], cwd=ROOT, check=True, stdout=sys.stderr)
+    return pathlib.Path(folder) / "python" / NAME
+
+
+def record_line(name, content):
+    digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
+    return f"{name},sha256={digest},{len(content)}\n"
+
+
+def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+    with tempfile.TemporaryDirectory() as folder:
+        package = build(os.environ.get("LF_WHEEL_BUILD") or folder)
+        files = {f"{NAME}/{path.name}": path.read_bytes() for path in sorted(package.iterdir()) if path.is_file()}
+    files[f"{dist_info()}/METADATA"] = metadata().encode()
+    files[f"{dist_info()}/WHEEL"] = (f"Wheel-Version: 1.0\nGenerator: {NAME}\nRoot-Is-Purelib: false\n"
+                                     f"Tag: {tag()}\n").encode()
+    files[f"{dist_info()}/LICENSE"] = (ROOT / "LICENSE").read_bytes()
+    record = f"{dist_info()}/RECORD"
+    files[record] = ("".join(record_line(name, content) for name, content in files.items()) +
+                     f"{record},,\n").encode()
+    wheel = f"{NAME}-{version()}-{tag()}.whl"
+    with zipfile.ZipFile(pathlib.Path(wheel_directory) / wheel, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in files.items():
+            archive.writestr(zipfile.ZipInfo(name), content, zipfile.ZIP_DEFLATED)
+    return wheel
+
+
+def build_sdist(sdist_directory, config_settings=None):
+    """Packs the files that git knows; PKG-INFO is the metadata."""
+    base = f"{NAME}-{version()}"
+    names = subprocess.run(["git", "ls-files"], cwd=ROOT, check=True, capture_output=True, text=True).stdout.split("\n")
+    with tempfile.NamedTemporaryFile("w", suffix="PKG-INFO") as info:
+        info.write(metadata())
+        info.flush()
+        with tarfile.open(pathlib.Path(sdist_directory) / f"{base}.tar.gz", "w:gz") as archive:
+            archive.add(info.name, f"{base}/PKG-INFO")
+            for name in filter(None, names):
+                archive.add(ROOT / name, f"{base}/{name}", recursive=False)
+    return f"{base}.tar.gz"

@@ -1,0 +1,117 @@
+#include "python/src/cameras.h"
+
+#include <pybind11/eigen.h>
+#include <pybind11/stl.h>
+
+#include <array>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "python/src/errors.h"
+
+#include "lf/camera/path/path_yaml.h"
+#include "lf/camera/render_camera.h"
+
+namespace lf::python {
+namespace {
+
+namespace py = pybind11;
+
+// Calls visit(number) for each number of the camera, always in the same order; visit may change it.
+// Pickle keeps these numbers. The lens of a render camera has no distortion.
+template <class Visit>
+void VisitNumbers(RenderCamera& c, const Visit& visit) {
+  Intrinsics& k = c.pinhole.intrinsics;
+  const auto whole = [&](int& value) {
+    double number = value;
+    visit(number);
+    value = static_cast<int>(number);
+  };
+  for (double* number : {&k.fx_px, &k.fy_px, &k.cx_px, &k.cy_px, &k.skew_px}) visit(*number);
+  whole(k.width_px);
+  whole(k.height_px);
+  RigidTransform& pose = c.pinhole.cam_from_world;
+  for (int i = 0; i < 9; ++i) visit(pose.rotation.data()[i]);
+  for (int i = 0; i < 3; ++i) visit(pose.translation[i]);
+  visit(c.aperture.radius_w);
+  whole(c.aperture.blades);
+  visit(c.aperture.rotation_rad);
+  for (int i = 0; i < 3; ++i) visit(c.focus_plane.normal[i]);
+  for (double* number :
+       {&c.focus_plane.offset_w, &c.time_s, &c.focal_length_w, &c.sensor_width_w,
+        &c.focus_distance_w, &c.focus_tilt.horizontal_rad, &c.focus_tilt.vertical_rad, &c.unit_m})
+    visit(*number);
+}
+
+py::tuple NumbersOf(const RenderCamera& camera) {
+  RenderCamera copy = camera;
+  py::list numbers;
+  VisitNumbers(copy, [&](double& number) { numbers.append(number); });
+  return py::tuple(numbers);
+}
+
+RenderCamera CameraOf(const py::tuple& numbers) {
+  RenderCamera camera;
+  size_t next = 0;
+  VisitNumbers(camera, [&](double& number) {
+    if (next >= numbers.size()) throw py::value_error("a pickled camera lacks numbers");
+    number = numbers[next++].cast<double>();
+  });
+  return camera;
+}
+
+py::tuple ReadPath(const std::string& text, const std::string& name, std::optional<double> unit_m) {
+  const CameraPath path = Take(ParsePathYaml(text, name, unit_m));
+  return py::make_tuple(path.cameras, path.fps, path.unit_m);
+}
+
+}  // namespace
+
+void AddCameras(py::module_& module) {
+  py::class_<RenderCamera>(module, "RenderCamera")
+      .def_property_readonly("resolution",
+                             [](const RenderCamera& c) {
+                               return std::pair(c.pinhole.intrinsics.width_px,
+                                                c.pinhole.intrinsics.height_px);
+                             })
+      .def_property_readonly("K",
+                             [](const RenderCamera& c) { return c.pinhole.intrinsics.Matrix(); })
+      .def_property_readonly("cam_from_world",
+                             [](const RenderCamera& c) {
+                               Eigen::Matrix<double, 3, 4> matrix;
+                               matrix << c.pinhole.cam_from_world.rotation,
+                                   c.pinhole.cam_from_world.translation;
+                               return matrix;
+                             })
+      .def_property_readonly("position",
+                             [](const RenderCamera& c) { return c.pinhole.CentreWorld(); })
+      .def_property_readonly("aperture_diameter",
+                             [](const RenderCamera& c) { return 2 * c.aperture.radius_w; })
+      .def_property_readonly("blades", [](const RenderCamera& c) { return c.aperture.blades; })
+      .def_property_readonly(
+          "blade_rotation_deg",
+          [](const RenderCamera& c) { return DegreesFromRadians(c.aperture.rotation_rad); })
+      .def_property_readonly("focus_distance",
+                             [](const RenderCamera& c) { return c.focus_distance_w; })
+      .def_property_readonly("focus_plane",
+                             [](const RenderCamera& c) {
+                               return std::pair(c.focus_plane.normal, c.focus_plane.offset_w);
+                             })
+      .def_property_readonly("tilt_deg",
+                             [](const RenderCamera& c) {
+                               return std::pair(DegreesFromRadians(c.focus_tilt.horizontal_rad),
+                                                DegreesFromRadians(c.focus_tilt.vertical_rad));
+                             })
+      .def_property_readonly("focal_length", [](const RenderCamera& c) { return c.focal_length_w; })
+      .def_property_readonly("sensor_width", [](const RenderCamera& c) { return c.sensor_width_w; })
+      .def_property_readonly("unit_m", [](const RenderCamera& c) { return c.unit_m; })
+      .def("__eq__", [](const RenderCamera& a,
+                        const RenderCamera& b) { return NumbersOf(a).equal(NumbersOf(b)); })
+      .def("__hash__", [](const RenderCamera& c) { return py::hash(NumbersOf(c)); })
+      .def(py::pickle(&NumbersOf, &CameraOf));
+  module.def("parse_path", &ReadPath);
+}
+
+}  // namespace lf::python

@@ -1,0 +1,30 @@
+// The options of a film as Python's keyword arguments.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "lf/core/result.h"
+#include "lf/render/pipeline/film_options.h"
+#include "lf/selection/image_order.h"
+
+namespace lf::python {
+
+// Words have the meaning that the options of lfrenderer with these names have.
+struct FilmWords {
+  std::string mode = "collect", estimator = "auto", filter = "auto", lens_weights = "auto",
+              lf_pixels = "auto", order = "shuffle", stop_when;
+  std::optional<size_t> max_images;
+  std::optional<double> max_angle_deg;
+  uint64_t seed = 0;
+  uint32_t smooth_below = 0;
+  int fill = kFillRadius_px;
+  bool guard = true;
+};
+
+// Convert the words. kUsage: a word is not one of those that exist, or a number is out of range.
+Result<FilmOptions> FilmOptionsOf(const FilmWords& words);
+Result<ImageOrder> OrderOf(const FilmWords& words);
+
+}  // namespace lf::python

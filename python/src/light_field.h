@@ -1,0 +1,20 @@
+// The light field as Python sees it.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <memory>
+
+#include "lf/light_field/model/light_field.h"
+#include "lf/storage/load/lf_image_store.h"
+
+namespace lf::python {
+
+struct OpenedField {
+  LightField light_field;
+  std::unique_ptr<LfImageStore> store;  // loads mosaics as RGB
+};
+
+void AddLightField(pybind11::module_& module);
+
+}  // namespace lf::python

@@ -1,0 +1,48 @@
+#include "python/src/messages.h"
+
+#include <pybind11/pybind11.h>
+
+#include <string>
+
+#include "lf/core/log.h"
+
+namespace lf::python {
+namespace {
+
+namespace py = pybind11;
+
+int LevelOf(LogLevel level) {
+  switch (level) {
+    case LogLevel::kDebug:
+      return 10;
+    case LogLevel::kInfo:
+      return 20;
+    case LogLevel::kWarning:
+      return 30;
+    case LogLevel::kError:
+      return 40;
+  }
+  return 40;
+}
+
+// Any thread may call it, also while Python ends.
+void SendToPython(LogLevel level, std::string_view message) {
+  if (Py_IsInitialized() == 0) return;
+  const py::gil_scoped_acquire acquire;
+  try {
+    py::module_::import("logging")
+        .attr("getLogger")("lfrendertools")
+        .attr("log")(LevelOf(level), "%s", std::string(message));
+  } catch (py::error_already_set& error) {
+    error.discard_as_unraisable("a handler of the logger lfrendertools");
+  }
+}
+
+}  // namespace
+
+void SendMessagesToPython() {
+  SetLogLevel(LogLevel::kDebug);
+  SetLogReceiver(&SendToPython);
+}
+
+}  // namespace lf::python

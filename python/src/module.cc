@@ -1,0 +1,19 @@
+// The private extension of the package lfrendertools: lfrendertools._core. Its users call the typed
+// functions of the package, which check and explain their arguments.
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include "python/src/cameras.h"
+#include "python/src/errors.h"
+#include "python/src/film.h"
+#include "python/src/light_field.h"
+#include "python/src/messages.h"
+
+PYBIND11_MODULE(_core, module) {
+  lf::python::TranslateFailures();
+  lf::python::SendMessagesToPython();
+  lf::python::AddLightField(module);
+  lf::python::AddCameras(module);
+  lf::python::AddFilm(module);
+  module.attr("version") = LF_VERSION;
+}

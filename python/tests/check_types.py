@@ -1,0 +1,29 @@
+"""Checks the types of the Python package: mypy's strict rules, and the stubs of the extension against the extension.
+
+Exit code 77: mypy is not installed.
+"""
+import importlib.util
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+ALLOWED = pathlib.Path(__file__).resolve().with_name("stubtest_allowed.txt")
+PACKAGE = pathlib.Path(__file__).resolve().parents[1] / "lfrendertools"
+
+if importlib.util.find_spec("mypy") is None:
+    print("skipped: mypy is not installed")
+    sys.exit(77)
+with tempfile.TemporaryDirectory() as cache:
+    environment = dict(os.environ, MYPY_CACHE_DIR=cache)
+    failed = 0
+    for command in (["mypy", "--strict", PACKAGE],
+                    ["mypy.stubtest", "lfrendertools._core", "--ignore-missing-stub", "--allowlist", ALLOWED]):
+        # mypy refuses to find a package both where it lies and on the search path.
+        paths = {"PYTHONPATH": ""} if command[0] == "mypy" else {}
+        if command[0] == "mypy.stubtest":
+            paths["MYPYPATH"] = os.environ["PYTHONPATH"]
+        print("python3 -m", *command, flush=True)
+        failed |= subprocess.run([sys.executable, "-m", *map(str, command)], env=environment | paths).returncode
+sys.exit(failed != 0)

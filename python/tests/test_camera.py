@@ -1,0 +1,118 @@
+"""Cameras and paths."""
+import pickle
+
+import numpy as np
+import pytest
+
+import lfrendertools as lf
+
+
+def camera(**changes):
+    values = {"position": (0.1, -0.2, -1), "look_at": (0, 0, 1), "resolution": (120, 80), "focal_length_mm": 50,
+              "f_number": 4, "focus_distance": 2.5, "blades": 7, "blade_rotation_deg": 10, "tilt_deg": (3, -5)}
+    return lf.Camera(**{**values, **changes})
+
+
+def test_properties():
+    one = camera()
+    assert one.resolution == (120, 80)
+    assert np.allclose(one.position, (0.1, -0.2, -1))
+    assert one.f_number == pytest.approx(4) and one.focal_length_mm == pytest.approx(50)
+    assert one.aperture_diameter == pytest.approx(0.0125)
+    assert one.K[0, 0] == pytest.approx(50 / 36 * 120)
+    assert one.tilt_deg == pytest.approx((3, -5))
+    forward = one.cam_from_world[2, :3]
+    assert np.allclose(forward, np.array([-0.1, 0.2, 2]) / np.linalg.norm([-0.1, 0.2, 2]))
+    normal, offset = one.focus_plane
+    assert normal @ (one.position + 2.5 * forward) == pytest.approx(offset)
+
+
+def test_the_three_ways_to_give_a_direction_agree():
+    one = camera()
+    matrix = one.cam_from_world[:, :3].T
+    same = camera(look_at=None, world_from_cam=matrix)
+    assert np.allclose(same.cam_from_world, one.cam_from_world, atol=1e-14)
+    half_turn = np.diag([1.0, -1, -1])
+    assert np.allclose(camera(look_at=None, quaternion=(0, 1, 0, 0)).cam_from_world[:, :3], half_turn)
+    assert np.allclose(camera(look_at=None, world_from_cam=half_turn).cam_from_world[:, :3], half_turn)
+
+
+@pytest.mark.parametrize("changes, words", [
+    ({"look_at": None}, "look_at or quaternion or world_from_cam"), ({"f_number": None}, "f_number"),
+    ({"focus_point": (0, 0, 1)}, "focus_distance and focus_point"), ({"blades": 2}, "blades"),
+    ({"focus_distance": -1}, "focus_distance"), ({"position": (0, 0)}, "position"),
+    ({"look_at": None, "world_from_cam": np.ones((3, 3))}, "rotation")])
+def test_wrong_arguments(changes, words):
+    with pytest.raises(ValueError, match=words) as error:
+        camera(**changes)
+    assert isinstance(error.value, lf.Error)
+
+
+def test_replacing_and_comparing():
+    one = camera()
+    far = one.replace(focus_distance=5)
+    assert far != one and far.focus_distance == 5 and np.allclose(far.K, one.K)
+    assert far.replace(focus_distance=2.5).position == pytest.approx(one.position)
+    assert one == camera() and hash(one) == hash(camera())
+    assert one.replace(f_number=8).aperture_diameter == pytest.approx(one.aperture_diameter / 2)
+    with pytest.raises(AttributeError):
+        one.blades = 3
+
+
+def test_pickles_are_equal():
+    path = lf.Path([camera(), camera(focus_distance=3)], fps=12)
+    assert pickle.loads(pickle.dumps(path)) == path
+    assert pickle.loads(pickle.dumps(path[0])) == path[0]
+
+
+def test_saved_paths_are_read_again(tmp_path, path):
+    still = lf.Path([camera()] * 3)
+    moving = lf.Path([camera(position=(0.1 * i, 0, -1), focus_distance=2 + 0.1 * i, f_number=4 + i,
+                             tilt_deg=(i, -i), look_at=(0, 0.05 * i, 1)) for i in range(30)], fps=29.97)
+    for number, one in enumerate((still, moving, path)):
+        file = tmp_path / f"{number}.yaml"
+        one.save(file)
+        again = lf.Path.load(file)
+        assert len(again) == len(one) and again.fps == one.fps
+        for a, b in zip(again, one):
+            assert np.array_equal(a.position, b.position) or np.allclose(a.position, b.position, rtol=0, atol=1e-15)
+            assert a.focus_distance == b.focus_distance and a.aperture_diameter == pytest.approx(
+                b.aperture_diameter, abs=1e-16)
+            assert np.allclose(a.cam_from_world, b.cam_from_world, rtol=0, atol=1e-12)
+            assert np.allclose(a.K, b.K, rtol=1e-12)
+            assert a.blades == b.blades and a.tilt_deg == pytest.approx(b.tilt_deg, abs=1e-12)
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["0.yaml", "1.yaml", "2.yaml"]
+
+
+def test_paths_that_a_file_cannot_say(tmp_path):
+    with pytest.raises(lf.UsageError, match="blades"):
+        lf.Path([camera(), camera(blades=5)]).save(tmp_path / "path.yaml")
+    with pytest.raises(lf.UsageError, match="resolution"):
+        lf.Path([camera(), camera(resolution=(60, 40))])
+    with pytest.raises(lf.OutputError):
+        lf.Path([camera()]).save(tmp_path / "missing" / "path.yaml")
+
+
+def test_path_files_have_their_errors(tmp_path):
+    file = tmp_path / "path.yaml"
+    file.write_text("format: lfpath 1\nfpss: 24\n")
+    with pytest.raises(lf.InputError, match="path.yaml:2.*fps"):
+        lf.Path.load(file)
+    with pytest.raises(lf.InputError, match="missing.yaml"):
+        lf.Path.load(tmp_path / "missing.yaml")
+
+
+def test_cameras_of_a_light_field(field):
+    one = field.camera()
+    assert one.unit_m == field.unit_m and max(one.resolution) <= 160
+    assert np.allclose(one.position, field.centres[24], atol=1e-9)
+    assert 0.5 < one.focus_distance < 4
+    assert field.camera(f_number=2, focal_length_mm=35).f_number == pytest.approx(2)
+    assert field.camera(focus_distance=1.25) == one.replace(focus_distance=1.25)
+
+
+def test_first_paths(field, capture, run, tmp_path):
+    run("lfexample", capture, "-o", tmp_path / "path.yaml", "--camera", 24, "--focus", 1.1, "--move", "orbit")
+    assert field.path("orbit", start=24, focus_distance=1.1) == lf.Path.load(tmp_path / "path.yaml", field.unit_m)
+    with pytest.raises(lf.UsageError, match="focus-pull"):
+        field.path("zoom")

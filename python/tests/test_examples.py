@@ -1,0 +1,22 @@
+"""The examples make the pictures that they promise."""
+import pathlib
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from PIL import Image
+
+FOLDER = pathlib.Path(__file__).resolve().parents[2] / "examples/python"
+
+
+@pytest.mark.parametrize("script, words, parts", [
+    ("refocus.py", ["0.6", "2"], (5, 1)), ("bokeh_shapes.py", [], (2, 2)),
+    ("progressive.py", [], (1, 1))])
+def test_example(script, words, parts, capture, tmp_path):
+    picture = tmp_path / "picture.png"
+    end = subprocess.run([sys.executable, FOLDER / script, capture, picture, *words], capture_output=True, text=True)
+    assert end.returncode == 0, end.stderr
+    image = Image.open(picture)
+    assert image.size[0] % parts[0] == image.size[1] % parts[1] == 0 and min(image.size) > 80
+    assert np.asarray(image).std() > 10

@@ -1,0 +1,130 @@
+"""Light fields as arrays."""
+import json
+import pathlib
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import lfrendertools as lf
+
+
+def test_arrays_are_read_only_views(field):
+    assert len(field) == 49
+    poses = field.cam_from_world
+    assert poses.shape == (49, 3, 4) and poses.dtype == np.float64
+    assert np.shares_memory(poses, field.cam_from_world)
+    for array in (poses, field.gains, field.intrinsics_index, field.is_virtual, field.centres, field.K):
+        assert not array.flags.writeable and len(array) == 49
+        with pytest.raises(ValueError):
+            array[0] = 0
+    assert not field.is_virtual.any() and (field.gains == 1).all()
+
+
+def test_arrays_keep_the_light_field_alive(capture):
+    poses = lf.open(capture).cam_from_world
+    assert np.array_equal(poses, lf.open(capture).cam_from_world)
+
+
+def test_poses_are_those_of_the_calibration(field, capture):
+    frames = json.loads((capture / "transforms.json").read_text())["frames"]
+    for i in (0, 17, 48):
+        # transforms.json holds world_from_cam with y up and z backwards (OpenGL).
+        world_from_cam = np.array(frames[i]["transform_matrix"]) @ np.diag([1, -1, -1, 1])
+        expected = np.linalg.inv(world_from_cam)[:3]
+        assert np.allclose(field.cam_from_world[i], expected, atol=1e-12)
+        assert np.allclose(field.centres[i], world_from_cam[:3, 3], atol=1e-12)
+        assert field.names[i].endswith(pathlib.PurePath(frames[i]["file_path"]).name)
+
+
+def test_projection_by_hand(field):
+    points = np.random.default_rng(1).uniform(-0.2, 0.2, (20, 3)) + [0, 0, 1.5]
+    for i in (0, 24):
+        camera = field.cam_from_world[i] @ np.concatenate([points, np.ones((20, 1))], axis=1).T
+        pixels = (field.K[i] @ camera)[:2] / camera[2]
+        assert np.allclose(field.project(i, points), pixels.T, atol=1e-9)
+
+
+@pytest.mark.parametrize("distortion", ["none", "barrel"])
+def test_rays_meet_what_is_projected(run, tmp_path, distortion):
+    words = [] if distortion == "none" else ["--distortion", "-0.2,0.05,0.001,-0.002"]
+    run("lfsynth", "chart", "-o", tmp_path / "field", "--count", 4, "--size", "64x48", "--samples", 1, *words)
+    field = lf.open(tmp_path / "field")
+    pixels = np.random.default_rng(2).uniform([2, 2], [62, 46], (50, 2))
+    origins, directions = field.rays(3, pixels)
+    assert np.allclose(np.linalg.norm(directions, axis=1), 1)
+    assert np.allclose(field.project(3, origins + 2.5 * directions), pixels, atol=1e-6)
+    assert (field.intrinsics[0].distortion == "pinhole") == (distortion == "none")
+
+
+def test_points_that_no_lens_sees_are_nan(field):
+    assert np.isnan(field.project(0, [[0, 0, -1]])).all()
+
+
+def test_images_are_linear_light(field, capture):
+    stored = np.asarray(Image.open(capture / field.names[5])).astype(float)[..., :3] / 255
+    linear = np.where(stored <= 0.04045, stored / 12.92, ((stored + 0.055) / 1.055) ** 2.4)
+    picture = field.image(5)
+    assert picture.dtype == np.float32 and picture.shape == (120, 160, 3)
+    assert np.abs(picture - linear).max() <= 1 / 65535
+    assert np.array_equal(field.image(5, rect=(30, 20, 70, 50)), picture[20:50, 30:70])
+    for rect in ((0, 0, 161, 120), (5, 5, 5, 6), (-1, 0, 3, 3)):
+        with pytest.raises(lf.UsageError, match="rect"):
+            field.image(5, rect=rect)
+    with pytest.raises(IndexError, match="from 0 to 48"):
+        field.image(49)
+
+
+def test_images_come_in_order(field):
+    assert [i for i, _ in field.images()] == list(range(49))
+    for i, picture in field.images([3, 1, 3], ahead=2):
+        assert np.array_equal(picture, field.image(i))
+
+
+def test_a_broken_image_is_an_error_that_names_it(run, tmp_path):
+    run("lfsynth", "chart", "-o", tmp_path / "field", "--count", 4, "--size", "64x48", "--samples", 1)
+    field = lf.open(tmp_path / "field")
+    (tmp_path / "field" / field.names[2]).write_bytes(b"no picture")
+    with pytest.raises(lf.InputError, match=pathlib.PurePath(field.names[2]).name) as error:
+        field.image(2)
+    assert error.value.exit_code == 3
+
+
+def test_a_grid_is_found(field):
+    grid = field.grid()
+    assert grid.shape == (7, 7)
+    assert np.allclose(grid.pitch, 0.01)
+    right, down = field.cam_from_world[0, 0, :3], field.cam_from_world[0, 1, :3]
+    assert np.allclose(np.diff(field.centres[grid.ids] @ right, axis=1), 0.01)
+    assert np.allclose(np.diff(field.centres[grid.ids] @ down, axis=0), 0.01)
+
+
+def test_no_grid_where_there_is_none(run, tmp_path):
+    run("lfsynth", "chart", "-o", tmp_path / "field", "--count", 30, "--size", "32x24", "--samples", 1,
+        "--capture", "hemisphere")
+    assert lf.open(tmp_path / "field").grid() is None
+
+
+def test_arrays_of_a_grid(field, tmp_path):
+    grid = field.grid()
+    whole = field.array()
+    assert whole.shape == (7, 7, 120, 160, 3)
+    assert np.array_equal(whole[2, 5], field.image(int(grid.ids[2, 5])))
+    file = np.memmap(tmp_path / "array", np.float32, "w+", shape=(3, 3, 60, 80, 3))
+    some = field.array(views=(3, 3), reduce=2, out=file)
+    assert some is file
+    corner = field.image(int(grid.ids[6, 6])).reshape(60, 2, 80, 2, 3).mean(axis=(1, 3))
+    assert np.allclose(file[2, 2], corner, atol=1e-6)
+    with pytest.raises(lf.UsageError, match="expected"):
+        field.array(out=np.empty((1, 2)))
+
+
+def test_what_is_no_light_field(tmp_path):
+    with pytest.raises(lf.InputError, match=str(tmp_path)) as error:
+        lf.open(tmp_path)
+    assert isinstance(error.value, ValueError) and isinstance(error.value, lf.Error)
+
+
+def test_notebooks_show_the_rig(field):
+    html = field._repr_html_()
+    assert html.count("<circle") == 49 and "160 x 120" in html

@@ -1,0 +1,294 @@
+"""Frames: bits, plates, errors and manners."""
+import logging
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+
+import numpy as np
+import pytest
+
+import lfrendertools as lf
+
+WAYS = {
+    "default": {},
+    "nearest": {"estimator": "nearest", "lens_weights": "none"},
+    "hybrid": {"mode": "hybrid"},
+    "rebin": {"mode": "rebin"},
+    "few": {"max_images": 20, "seed": 7, "order": "area", "filter": "bicubic", "fill": 0},
+    "noise": {"stop_when": "noise<=0.02"},
+}
+
+
+def words_of(options):
+    """Returns these options as words for lfrenderer."""
+    return [word for name, value in options.items()
+            for word in ("--" + name.replace("_", "-"), "off" if name == "fill" and value == 0 else str(value))]
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_frames_have_the_bytes_of_lfrenderer(way, field, path, capture, path_file, run, tmp_path):
+    run("lfrenderer", capture, path_file, "-o", tmp_path / "frames", *words_of(WAYS[way]))
+    for number, frame in lf.film(field, path, **WAYS[way]):
+        file = tmp_path / f"{number}.exr"
+        frame.save(file)
+        assert file.read_bytes() == (tmp_path / "frames" / f"frame_{number:04}.exr").read_bytes()
+    assert number == 3
+    if way != "rebin":  # its slabs depend on all frames of the path
+        one = lf.render(field, path, frames=[2], **WAYS[way])
+        one.save(tmp_path / "one.exr")
+        assert (tmp_path / "one.exr").read_bytes() == (tmp_path / "frames" / "frame_0002.exr").read_bytes()
+
+
+def test_a_camera_renders_like_its_file(field, run, capture, tmp_path):
+    camera = field.camera(resolution=(80, 60), focus_distance=1.1, blades=6)
+    lf.Path([camera]).save(tmp_path / "path.yaml")
+    run("lfrenderer", capture, tmp_path / "path.yaml", "-o", tmp_path / "frames", "--format", "png")
+    frame = lf.render(field, lf.Path.load(tmp_path / "path.yaml"))
+    frame.save(tmp_path / "one.png")
+    assert (tmp_path / "one.png").read_bytes() == (tmp_path / "frames" / "frame_0001.png").read_bytes()
+    assert np.abs(lf.render(field, camera).rgb - frame.rgb).max() < 1e-3
+
+
+def test_bits_do_not_depend_on_threads_or_passes(field, path):
+    frames = [frame.rgb.copy() for _, frame in lf.film(field, path, threads=1)]
+    for threads, memory in ((2, "8G"), (3, "31M")):
+        for one, (_, other) in zip(frames, lf.film(field, path, threads=threads, memory=memory)):
+            assert np.array_equal(one, other.rgb)
+
+
+def test_arrays_of_a_frame(field, path):
+    frame = lf.render(field, path)
+    assert frame.coverage.mean() > 0.9 and frame.display().std() > 20
+    assert frame.rgb.shape == (80, 120, 3) and frame.rgb.dtype == np.float32
+    assert frame.count.shape == (80, 120, 3) and frame.count.dtype == np.uint32
+    assert frame.coverage.shape == (80, 120) and frame.coverage.max() == 1
+    assert frame.effective is not None and frame.effective.max() <= 49
+    assert frame.opacity is None and frame.interpolated is None and frame.densified is None
+    assert frame.metadata["lf:frame"] == 1 or "Software" in frame.metadata
+    assert frame.camera == path[0]
+    kept = frame.rgb
+    del frame
+    assert np.isfinite(kept).all()
+
+
+def test_changed_pixels_are_saved(field, path, tmp_path):
+    from PIL import Image
+    frame = lf.render(field, path)
+    shown = frame.display()
+    frame.save(tmp_path / "a.png")
+    assert np.array_equal(np.asarray(Image.open(tmp_path / "a.png")), shown)
+    frame.rgb[:] = 0.5
+    frame.save(tmp_path / "b.png")
+    assert (np.asarray(Image.open(tmp_path / "b.png")) == 188).all()
+    with pytest.raises(lf.UsageError, match="ends in"):
+        frame.save(tmp_path / "a.tiff")
+    with pytest.raises(lf.OutputError):
+        frame.save(tmp_path / "missing" / "a.png")
+
+
+def test_notebooks_show_frames(field, path):
+    import io
+    from PIL import Image
+    frame = lf.render(field, path)
+    assert np.array_equal(np.asarray(Image.open(io.BytesIO(frame._repr_png_()))), frame.display())
+
+
+def test_step_by_step(field, path):
+    with lf.Renderer(field, path) as renderer:
+        first = renderer.preview(0).image_count
+        while renderer.step():
+            pass
+        assert first == 0 and renderer.progress[0] == renderer.progress[1] > 0
+        assert np.array_equal(renderer.stop(1).rgb, lf.render(field, path, frames=[2]).rgb)
+        with pytest.raises(IndexError):
+            renderer.preview(1)
+        assert not renderer.step()
+
+
+def test_plates_of_shards_add_up(field, path, capture, path_file, run, tmp_path):
+    for shard in ("1/2", "2/2"):
+        run("lfrenderer", capture, path_file, "-o", tmp_path / "frames", "--shard", shard, "--frames", "1")
+    parts = [lf.Plate.load(file) for file in sorted((tmp_path / "frames").rglob("*.plate"))]
+    assert len(parts) == 2
+    with lf.Renderer(field, path, frames=[1]) as renderer:
+        while renderer.step():
+            pass
+        whole = renderer.plate()
+        frame = renderer.preview()
+    assert parts[0] + parts[1] == whole and parts[1] + parts[0] == whole and parts[0] != whole
+    assert np.array_equal(whole.counts, parts[0].counts + parts[1].counts)
+    assert np.array_equal(whole.counts, frame.count) and whole.sums.shape == (80, 120, 3)
+    assert np.array_equal((parts[0] + parts[1]).develop().rgb, frame.rgb)
+    with lf.Renderer(field, path[0].replace(resolution=(60, 40))) as renderer, \
+            pytest.raises(lf.UsageError, match="60 x 40"):
+        whole + renderer.plate()
+
+
+@pytest.mark.parametrize("options, words", [
+    ({"estimator": "best"}, "estimator=\"best\": expected one of auto, nearest, bilinear"),
+    ({"colour": 1}, "unknown option colour"), ({"stop_when": "noise<0"}, "stop_when"),
+    ({"max_images": "many"}, "max_images='many'"), ({"memory": "lots"}, "memory"), ({"frames": [4]}, "frames 1 to 3"),
+    ({"frames": "1-"}, "1-10,20"), ({"max_images": 0}, "max_images=0"), ({"fill": -1}, "fill=-1")])
+def test_wrong_options(field, path, options, words):
+    with pytest.raises(lf.UsageError, match=words) as error:
+        lf.render(field, path, **options)
+    assert error.value.exit_code == 2
+
+
+def test_units_must_agree(field):
+    with pytest.raises(lf.UsageError, match="unit_m"):
+        lf.render(field, field.camera(unit_m=field.unit_m * 2))
+
+
+def test_a_lens_that_sees_nothing(field):
+    away = field.camera(world_from_cam=np.diag([1.0, -1, -1]))
+    with pytest.raises(lf.InputError, match="no LF image"):
+        lf.render(field, away)
+    with pytest.warns(lf.BlackFrameWarning):
+        assert [frame.rgb.max() for _, frame in lf.film(field, lf.Path([away]))] == [0]
+
+
+def test_missing_images_are_told(run, tmp_path):
+    run("lfsynth", "still-life", "-o", tmp_path / "field", "--count", 9, "--size", "64x48", "--spacing", "0.01",
+        "--samples", 1)
+    field = lf.open(tmp_path / "field")
+    camera = field.camera(aperture_diameter=0.05)
+    (tmp_path / "field" / field.names[4]).unlink()
+    with pytest.warns(lf.MissingImagesWarning, match="1 LF images.*0004"):
+        frame = lf.render(field, camera)
+    assert frame.image_count == 8
+    with pytest.raises(lf.InputError, match="0004"):
+        lf.render(field, camera, strict=True)
+
+
+def test_progress_is_told(field, path):
+    told = []
+    lf.render(field, path, progress=lambda done, total: told.append((done, total)))
+    assert told[-1][0] == told[-1][1] > 0 and told == sorted(told)
+
+
+def test_an_exception_of_the_caller_ends_the_render(field, path):
+    def refuse(done, total):
+        raise RuntimeError("enough")
+    with pytest.raises(RuntimeError, match="enough"):
+        lf.render(field, path, progress=refuse)
+    assert lf.render(field, path).image_count > 0
+
+
+def test_messages_go_to_logging(run, tmp_path, caplog, capfd):
+    run("lfsynth", "chart", "-o", tmp_path / "field", "--count", 4, "--size", "64x48", "--samples", 1)
+    (tmp_path / "field/images").rename(tmp_path / "field/photographs")
+    capfd.readouterr()
+    with caplog.at_level(logging.INFO, "lfrendertools"):
+        lf.open(tmp_path / "field")
+    captured = capfd.readouterr()
+    assert captured.err == "" and captured.out == ""
+    assert any(record.name == "lfrendertools" and "photographs" in record.getMessage() for record in caplog.records)
+
+
+# A render that takes long enough to be interrupted: many passes over many frames.
+INTERRUPTED = """
+import os, signal, sys, threading
+import lfrendertools as lf
+before = signal.getsignal(signal.SIGINT)
+field = lf.open(sys.argv[1])
+camera = field.camera(resolution=(1600, 1200), blades=9)
+path = lf.Path([camera] * 40)
+threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT)).start()
+count = 0
+try:
+    for number, frame in lf.film(field, path):
+        count = number
+    print("finished")
+except KeyboardInterrupt:
+    print("interrupted before the end:", count < 40)
+assert signal.getsignal(signal.SIGINT) is before
+print("next:", lf.render(field, camera.replace(resolution=(80, 60))).image_count > 0)
+"""
+
+
+def test_ctrl_c_interrupts_and_the_next_call_works(capture):
+    end = subprocess.run([sys.executable, "-c", INTERRUPTED, capture], capture_output=True, text=True)
+    assert end.returncode == 0, end.stderr
+    assert end.stdout.split("\n")[:2] == ["interrupted before the end: True", "next: True"]
+
+
+def test_other_threads_go_on(field, path):
+    camera = path[0].replace(resolution=(960, 640))
+    counts, is_done = [0], threading.Event()
+
+    def count():
+        while not is_done.is_set():
+            counts[0] += 1
+    thread = threading.Thread(target=count)
+    renderer = lf.Renderer(field, lf.Path([camera] * 4))
+    thread.start()
+    before = counts[0]
+    renderer.step()
+    after = counts[0]
+    is_done.set()
+    thread.join()
+    assert after > before + 1000
+
+
+def test_two_threads_render_at_once(field, path):
+    expected = lf.render(field, path).rgb
+    results = [None, None]
+
+    def render(i):
+        results[i] = lf.render(field, path).rgb
+    threads = [threading.Thread(target=render, args=(i,)) for i in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert all(np.array_equal(result, expected) for result in results)
+
+
+def test_a_forked_process_is_told_why_it_cannot_render(field, path):
+    lf.render(field, path)
+    read, write = os.pipe()
+    child = os.fork()
+    if child == 0:
+        try:
+            lf.render(field, path)
+            text = "rendered"
+        except lf.UsageError as error:
+            text = str(error)
+        except BaseException as error:
+            text = repr(error)
+        os.write(write, text.encode())
+        os._exit(0)
+    os.close(write)
+    with os.fdopen(read) as pipe:
+        assert "forked" in pipe.read()
+    os.waitpid(child, 0)
+    assert lf.render(field, path).image_count > 0
+
+
+def test_many_renders_do_not_grow(field, path):
+    def resident_bytes():
+        with open("/proc/self/statm") as file:
+            return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    camera = path[0].replace(resolution=(48, 32))
+    for _ in range(40):
+        lf.render(field, camera)
+    before = resident_bytes()
+    for _ in range(200):
+        lf.render(field, camera)
+    assert resident_bytes() - before < 8 << 20
+
+
+def test_signals_of_the_host_stay(field, path):
+    handlers = [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGPIPE)]
+    lf.render(field, path)
+    assert handlers == [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGPIPE)]
+
+
+def test_cameras_travel_between_processes(path):
+    code = "import sys, pickle, lfrendertools; print(pickle.load(sys.stdin.buffer)[2].focus_distance)"
+    end = subprocess.run([sys.executable, "-c", code], input=pickle.dumps(path), capture_output=True, check=True)
+    assert float(end.stdout) == path[2].focus_distance
