@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
 #include <utility>
 
 #include "lf/live/lens_order.h"
@@ -21,26 +22,29 @@ constexpr size_t kPlanBytes = size_t{256} << 20;
 // Weight of the newest picture in the mean times.
 constexpr double kNewest = 0.3;
 
-// Returns the LF images in the order in which the frame takes them, and sets *inside_count to
-// LensOrder::inside_count.
-std::vector<LfImageId> OrderThroughLens(const LightField& field, const RenderCamera& frame,
-                                        const std::map<uint32_t, ResidentImages::Image>& images,
-                                        size_t* inside_count) {
+using Resident = ResidentImages::Snapshot::Resident;
+
+// Returns the LF images that the frame takes, by ascending ids.
+//   most  largest number of LF images
+std::vector<Resident> ImagesThroughLens(ResidentImages::Snapshot snapshot,
+                                        const RenderCamera& frame, size_t most) {
   const Intrinsics& k = frame.pinhole.intrinsics;
   const std::optional<Vec3> focus = FocusPointOfElement(frame, 0.5 * k.width_px, 0.5 * k.height_px);
-  *inside_count = 0;
   if (!focus) return {};
-  std::vector<LfImageId> ids;
+  std::vector<Resident>& images = snapshot.images;
+  if (most >= images.size()) return std::move(images);
   std::vector<Vec2> points;
-  for (const auto& [id, image] : images) {
-    ids.push_back(LfImageId{id});
-    points.push_back(LensPointOfLine(frame, field.Camera(ids.back()).CentreWorld(), *focus));
-  }
-  const LensOrder order = OrderOverLens(points, frame.aperture.radius_w, points.size());
-  *inside_count = order.inside_count;
-  std::vector<LfImageId> ordered;
-  for (const size_t i : order.indices) ordered.push_back(ids[i]);
-  return ordered;
+  for (const Resident& one : images)
+    points.push_back(LensPointOfLine(frame, snapshot.field->Camera(one.id).CentreWorld(), *focus));
+  const LensOrder order = OrderOverLens(points, frame.aperture.radius_w, most);
+  // LF images beside the lens get a share of it only if those through it are few.
+  const size_t count =
+      std::clamp(order.inside_count, std::min(LiveRenderer::kFewestImages, images.size()), most);
+  std::vector<Resident> taken;
+  for (size_t i = 0; i < count; ++i) taken.push_back(std::move(images[order.indices[i]]));
+  std::sort(taken.begin(), taken.end(),
+            [](const Resident& a, const Resident& b) { return a.id.value < b.id.value; });
+  return taken;
 }
 
 // Returns the light field of some LF images, given by ascending ids.
@@ -55,34 +59,16 @@ LightField FieldOf(const LightField& field, std::span<const LfImageId> ids) {
   return some;
 }
 
-// Moves LF images into a batch for collection, and back again at the end of its life.
-class BorrowedImages {
- public:
-  BorrowedImages(std::span<const LfImageId> ids, std::map<uint32_t, ResidentImages::Image>& images)
-      : batch_(ids.size()) {
-    for (uint32_t i = 0; i < ids.size(); ++i) owners_.push_back(&images.at(ids[i].value));
-    for (uint32_t i = 0; i < ids.size(); ++i) {
-      batch_[i].id = LfImageId{i};
-      batch_[i].place = i;
-      batch_[i].pixels = std::move(owners_[i]->pixels);
-      batch_[i].opacity = std::move(owners_[i]->opacity);
-    }
+std::vector<BatchImage> BatchOf(std::span<const Resident> images) {
+  std::vector<BatchImage> batch(images.size());
+  for (uint32_t i = 0; i < batch.size(); ++i) {
+    batch[i].id = LfImageId{i};
+    batch[i].place = i;
+    batch[i].shared_pixels = &images[i].image->pixels;
+    batch[i].shared_opacity = &images[i].image->opacity;
   }
-  ~BorrowedImages() {
-    for (size_t i = 0; i < batch_.size(); ++i) {
-      owners_[i]->pixels = std::move(batch_[i].pixels);
-      owners_[i]->opacity = std::move(batch_[i].opacity);
-    }
-  }
-  BorrowedImages(const BorrowedImages&) = delete;
-  BorrowedImages& operator=(const BorrowedImages&) = delete;
-
-  std::vector<BatchImage>& batch() { return batch_; }
-
- private:
-  std::vector<BatchImage> batch_;
-  std::vector<ResidentImages::Image*> owners_;
-};
+  return batch;
+}
 
 DevelopOptions DevelopOptionsOf(const RadianceEncoding& encoding) {
   DevelopOptions develop;
@@ -109,11 +95,7 @@ Result<LivePicture> LiveRenderer::Render(const RenderCamera& frame, const LiveWi
   if (wish.interrupted != nullptr && *wish.interrupted)
     return Error{ErrorKind::kInterrupted, "interrupted"};
   images_.Aim(frame);
-  LivePicture picture;
-  images_.Use([&](const LightField* field, std::map<uint32_t, ResidentImages::Image>& images) {
-    static const LightField kNone;
-    picture = RenderOf(frame, wish, field ? *field : kNone, images);
-  });
+  LivePicture picture = RenderOf(frame, wish, images_.TakeSnapshot());
   if (wish.interrupted != nullptr && *wish.interrupted)
     return Error{ErrorKind::kInterrupted, "interrupted"};
   return picture;
@@ -129,19 +111,16 @@ size_t LiveRenderer::CountFor(const RenderCamera& frame, const LiveWish& wish) c
 }
 
 LivePicture LiveRenderer::RenderOf(const RenderCamera& frame, const LiveWish& wish,
-                                   const LightField& field,
-                                   std::map<uint32_t, ResidentImages::Image>& images) {
+                                   ResidentImages::Snapshot snapshot) {
   const Clock::time_point begin = Clock::now();
   LivePicture live;
-  size_t inside_count = 0;
-  std::vector<LfImageId> order = OrderThroughLens(field, frame, images, &inside_count);
-  live.takeable_count = order.size();
-  const size_t most = CountFor(frame, wish);
-  // LF images beside the lens get a share of it only if those through it are few.
-  if (most < order.size())
-    order.resize(std::clamp(inside_count, std::min(kFewestImages, order.size()), most));
-  std::sort(order.begin(), order.end());
-  live.images = std::move(order);
+  static const LightField kNone;
+  const std::shared_ptr<const LightField> kept = snapshot.field;
+  const LightField& field = kept ? *kept : kNone;
+  live.takeable_count = snapshot.images.size();
+  const std::vector<Resident> images =
+      ImagesThroughLens(std::move(snapshot), frame, CountFor(frame, wish));
+  for (const Resident& one : images) live.images.push_back(one.id);
 
   const LightField some = FieldOf(field, live.images);
   const ImageIndex index(some);
@@ -157,10 +136,10 @@ LivePicture LiveRenderer::RenderOf(const RenderCamera& frame, const LiveWish& wi
   reading.filter = PixelFilter::kBilinear;
   BatchCollector collector(some, std::span(&collected, 1), reading, CollectBackEnd::kFast,
                            kPlanBytes, false, pool_);
-  BorrowedImages borrowed(live.images, images);
+  std::vector<BatchImage> batch = BatchOf(images);
   std::vector<BatchFrame> frames = {{0, {}, false, {}}};
   const Clock::time_point collecting = Clock::now();
-  collector.Add(borrowed.batch(), frames, {}, true, wish.interrupted);
+  collector.Add(batch, frames, {}, true, wish.interrupted);
   const double collect_s = SecondsSince(collecting);
   if (const auto facts = lens.facts()) live.uncovered_share = facts->coverage.uncovered_share;
   live.camera_distance_w = lens.camera_distance_w();

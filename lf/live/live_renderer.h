@@ -68,15 +68,15 @@ class LiveRenderer {
 
   // Renders a frame of the LF images that are in memory, and loads those that it lacks from now on.
   // The picture is black as long as there are none. Several threads may call it; they wait for each
-  // other.
+  // other, but not for LF images that are being loaded.
   Result<LivePicture> Render(const RenderCamera& frame, const LiveWish& wish);
 
   ResidentImages& images() { return images_; }
   const ResidentImages& images() const { return images_; }
 
  private:
-  LivePicture RenderOf(const RenderCamera& frame, const LiveWish& wish, const LightField& field,
-                       std::map<uint32_t, ResidentImages::Image>& images);
+  LivePicture RenderOf(const RenderCamera& frame, const LiveWish& wish,
+                       ResidentImages::Snapshot snapshot);
   size_t CountFor(const RenderCamera& frame, const LiveWish& wish) const;
 
   const LiveOptions options_;

@@ -59,10 +59,12 @@ void ResidentImages::Aim(const RenderCamera& frame) {
   news_.notify_all();
 }
 
-void ResidentImages::Use(
-    const std::function<void(const LightField*, std::map<uint32_t, Image>&)>& use) {
+ResidentImages::Snapshot ResidentImages::TakeSnapshot() const {
   const std::lock_guard lock(images_mutex_);
-  use(field_ ? &*field_ : nullptr, images_);
+  Snapshot snapshot = {field_, {}};
+  snapshot.images.reserve(images_.size());
+  for (const auto& [id, image] : images_) snapshot.images.push_back({LfImageId{id}, image});
+  return snapshot;
 }
 
 ResidentImages::Status ResidentImages::status() const {
@@ -120,10 +122,12 @@ void ResidentImages::LoadFor(const RenderCamera& frame) {
 // Begins anew if the divisor changes.
 void ResidentImages::UseDivisor(int divisor) {
   if (field_ && divisor == status().divisor) return;
+  auto field = std::make_shared<const LightField>(ShrunkField(index_.light_field(), divisor));
+  for (const auto& [id, image] : images_) forgotten_.push_back(image);
   {
     const std::lock_guard lock(images_mutex_);
     images_.clear();
-    field_ = ShrunkField(index_.light_field(), divisor);
+    field_ = std::move(field);
   }
   Tell([&](Status* status) {
     status->divisor = divisor;
@@ -192,18 +196,18 @@ void ResidentImages::LoadSome(const Wanted& wanted, const std::vector<LfImageId>
     Shrink(pixels, divisor / *reduced, &loaded[i]->pixels);
     loaded[i]->opacity = loaded[i]->pixels.TakeOpacity();
   });
+  MakeRoom(wanted, some.size());
+  WaitForForgotten();
   std::string error;
-  {
-    const std::lock_guard lock(images_mutex_);
-    for (size_t i = 0; i < some.size(); ++i) {
-      if (loaded[i]) {
-        MakeRoom(wanted);
-        images_[some[i].value] = *std::move(loaded[i]);
-      } else {
-        broken_.insert(some[i].value);
-        error = loaded[i].error().message;
-      }
+  for (size_t i = 0; i < some.size(); ++i) {
+    if (!loaded[i]) {
+      broken_.insert(some[i].value);
+      error = loaded[i].error().message;
+      continue;
     }
+    auto image = std::make_shared<const Image>(*std::move(loaded[i]));
+    const std::lock_guard lock(images_mutex_);
+    images_[some[i].value] = std::move(image);
   }
   Tell([&](Status* status) {
     status->wanted_done_count += some.size();
@@ -213,10 +217,31 @@ void ResidentImages::LoadSome(const Wanted& wanted, const std::vector<LfImageId>
   });
 }
 
-// Forgets LF images that are not wanted until there is room for one more.
-void ResidentImages::MakeRoom(const Wanted& wanted) {
-  for (auto image = images_.begin(); images_.size() >= Capacity() && image != images_.end();)
-    image = wanted.set.contains(image->first) ? std::next(image) : images_.erase(image);
+// Forgets LF images that are not wanted until there is room for `count` more.
+void ResidentImages::MakeRoom(const Wanted& wanted, size_t count) {
+  const size_t capacity = Capacity();
+  const std::lock_guard lock(images_mutex_);
+  for (auto image = images_.begin(); images_.size() + count > capacity && image != images_.end();) {
+    if (wanted.set.contains(image->first)) {
+      ++image;
+      continue;
+    }
+    forgotten_.push_back(image->second);
+    image = images_.erase(image);
+  }
+}
+
+// Waits until snapshots hold at most an eighth as many forgotten LF images as there is room for.
+void ResidentImages::WaitForForgotten() {
+  constexpr size_t kForgottenShare = 8;
+  constexpr auto kPause = std::chrono::milliseconds(5);
+  const size_t most = Capacity() / kForgottenShare;
+  std::unique_lock lock(mutex_);
+  while (!is_ending_) {
+    std::erase_if(forgotten_, [](const auto& image) { return image.expired(); });
+    if (forgotten_.size() <= most) return;
+    news_.wait_for(lock, kPause);
+  }
 }
 
 void ResidentImages::Tell(const std::function<void(Status*)>& change) {

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -31,6 +33,17 @@ class ResidentImages {
   struct Image {
     LfPixels pixels;
     LfPixels opacity;  // LfPixels::TakeOpacity() of the pixels
+  };
+  // The LF images that are in memory at one moment. Whoever holds one of them keeps it in memory,
+  // even if it is forgotten here.
+  struct Snapshot {
+    struct Resident {
+      LfImageId id;  // in `field`
+      std::shared_ptr<const Image> image;
+    };
+    // The shrunken light field (ShrunkField()); null before the first LF image.
+    std::shared_ptr<const LightField> field;
+    std::vector<Resident> images;  // by ascending ids
   };
   struct Status {
     size_t resident_count = 0;  // LF images in memory
@@ -63,13 +76,10 @@ class ResidentImages {
   // those that are loaded already are preferred. Returns at once.
   void Aim(const RenderCamera& frame);
 
-  // Calls use(field, images), during which nothing is added to or removed from the LF images in
-  // memory.
-  //   field   the shrunken light field (ShrunkField()); null before the first LF image
-  //   images  LF images in memory, by their ids in the light field. use() may move pixels out of
-  //           them, and must put them back
-  void Use(
-      const std::function<void(const LightField* field, std::map<uint32_t, Image>& images)>& use);
+  // Does not wait for LF images that are being loaded, and does not keep others from being loaded.
+  // The bound of the memory is exceeded by at most an eighth for LF images that are forgotten
+  // while snapshots hold them: loading then waits until they are let go.
+  Snapshot TakeSnapshot() const;
 
   Status status() const;
   // Waits until all LF images that the last Aim() wants are in memory or broken.
@@ -86,7 +96,8 @@ class ResidentImages {
   Wanted WantedBy(const RenderCamera& frame);
   bool HasNews() const;
   void LoadSome(const Wanted& wanted, const std::vector<LfImageId>& some);
-  void MakeRoom(const Wanted& wanted);
+  void MakeRoom(const Wanted& wanted, size_t count);
+  void WaitForForgotten();
   size_t Capacity() const;
   void Tell(const std::function<void(Status*)>& change);
 
@@ -96,10 +107,13 @@ class ResidentImages {
   const std::function<void()> changed_;
   ThreadPool pool_;
 
-  std::mutex images_mutex_;  // guards the next two members while use() runs; the loader writes them
-  std::optional<LightField> field_;
-  std::map<uint32_t, Image> images_;
-  std::set<uint32_t> broken_;  // only the loader uses it
+  // Held while the loader changes the next two members, or while another thread reads them.
+  mutable std::mutex images_mutex_;
+  std::shared_ptr<const LightField> field_;
+  std::map<uint32_t, std::shared_ptr<const Image>> images_;
+  // The members up to mutex_ are only for the loader.
+  std::vector<std::weak_ptr<const Image>> forgotten_;  // some may still be in snapshots
+  std::set<uint32_t> broken_;
 
   mutable std::mutex mutex_;  // guards the members below, except thread_
   std::condition_variable news_;
