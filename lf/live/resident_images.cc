@@ -34,11 +34,13 @@ bool SeeAlike(const RenderCamera& a, const RenderCamera& b) {
 }  // namespace
 
 ResidentImages::ResidentImages(const ImageIndex& index, const LfImageStore& store,
-                               size_t memory_bytes, int threads, std::function<void()> changed)
+                               size_t memory_bytes, int threads, std::function<void()> changed,
+                               double retry_s)
     : index_(index),
       store_(store),
       memory_bytes_(memory_bytes),
       changed_(std::move(changed)),
+      retry_after_(retry_s),
       pool_(threads),
       thread_([this] { Run(); }) {}
 
@@ -54,7 +56,8 @@ ResidentImages::~ResidentImages() {
 void ResidentImages::Aim(const RenderCamera& frame) {
   const std::lock_guard lock(mutex_);
   const std::optional<RenderCamera>& current = aim_ ? aim_ : last_;
-  if (current && SeeAlike(*current, frame)) return;
+  const bool retries = !status_.first_broken.empty() && Clock::now() - failed_at_ >= retry_after_;
+  if (current && SeeAlike(*current, frame) && !retries) return;
   aim_ = frame;
   news_.notify_all();
 }
@@ -93,18 +96,32 @@ void ResidentImages::Run() {
     try {
       LoadFor(frame);
     } catch (const std::exception& error) {  // such as lack of memory
-      Tell([&](Status* status) { status->first_broken = error.what(); });
+      Tell([&](Status* status) {
+        status->first_broken = error.what();
+        failed_at_ = Clock::now();
+      });
     }
   }
+}
+
+// Returns true if LF images that could not be loaded are to be tried again now.
+bool ResidentImages::TakesRetry() {
+  const std::lock_guard lock(mutex_);
+  if (Clock::now() - failed_at_ < retry_after_) return false;
+  failed_at_ = Clock::now();  // if they fail again, or another frame comes first
+  return true;
 }
 
 void ResidentImages::LoadFor(const RenderCamera& frame) {
   UseDivisor(DivisorFor(index_, frame, field_ ? status().divisor : 0));
   const Wanted wanted = WantedBy(frame);
+  const bool retries = TakesRetry();
   std::vector<LfImageId> missing;
   for (const LfImageId id : wanted.ids)
-    if (!images_.contains(id.value) && !broken_.contains(id.value)) missing.push_back(id);
+    if (!images_.contains(id.value) && (retries || !broken_.contains(id.value)))
+      missing.push_back(id);
   Tell([&](Status* status) {
+    status->first_broken = broken_.empty() ? "" : broken_.begin()->second;
     status->wanted_count = wanted.ids.size();
     status->wanted_done_count = wanted.ids.size() - missing.size();
   });
@@ -198,13 +215,14 @@ void ResidentImages::LoadSome(const Wanted& wanted, const std::vector<LfImageId>
   });
   MakeRoom(wanted, some.size());
   WaitForForgotten();
-  std::string error;
+  bool has_failed = false;
   for (size_t i = 0; i < some.size(); ++i) {
     if (!loaded[i]) {
-      broken_.insert(some[i].value);
-      error = loaded[i].error().message;
+      broken_[some[i].value] = loaded[i].error().message;
+      has_failed = true;
       continue;
     }
+    broken_.erase(some[i].value);
     auto image = std::make_shared<const Image>(*std::move(loaded[i]));
     const std::lock_guard lock(images_mutex_);
     images_[some[i].value] = std::move(image);
@@ -213,7 +231,8 @@ void ResidentImages::LoadSome(const Wanted& wanted, const std::vector<LfImageId>
     status->wanted_done_count += some.size();
     status->resident_count = images_.size();
     status->broken_count = broken_.size();
-    if (status->first_broken.empty()) status->first_broken = error;
+    status->first_broken = broken_.empty() ? "" : broken_.begin()->second;
+    if (has_failed) failed_at_ = Clock::now();
   });
 }
 

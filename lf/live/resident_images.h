@@ -53,7 +53,7 @@ class ResidentImages {
     size_t wanted_done_count = 0;  // those of them that are in memory or broken
     size_t broken_count = 0;       // LF images that could not be loaded
     // The error of one of them, or why loading ended early, such as lack of memory; "" if there is
-    // none.
+    // none. It is "" again once loading has succeeded.
     std::string first_broken;
     int divisor = 0;       // of ShrunkField(); 0 until it is known
     uint64_t version = 0;  // differs whenever any other number differs
@@ -64,16 +64,19 @@ class ResidentImages {
   //   memory_bytes  bounds the memory of the shrunken LF images; at least one is kept. While LF
   //                 images are loaded, each of the threads has one more in full size
   //   threads       as ThreadPool
+  //   retry_s       time from a failure to load until Aim() tries again, because some failures
+  //                 pass: lack of memory, a disk that was not mounted
   //   changed       called after the status has changed, by any thread; may be empty
   ResidentImages(const ImageIndex& index, const LfImageStore& store, size_t memory_bytes,
-                 int threads, std::function<void()> changed = {});
+                 int threads, std::function<void()> changed = {}, double retry_s = 5);
   ~ResidentImages();  // stops loading
   ResidentImages(const ResidentImages&) = delete;
   ResidentImages& operator=(const ResidentImages&) = delete;
 
   // Loads the LF images of this frame from now on: those whose rays pass through its lens, or
   // somewhat beside it, in the order of OrderOverLens(). If there are too many for the memory,
-  // those that are loaded already are preferred. Returns at once.
+  // those that are loaded already are preferred. LF images that could not be loaded are tried again
+  // after retry_s. Returns at once.
   void Aim(const RenderCamera& frame);
 
   // Does not wait for LF images that are being loaded, and does not keep others from being loaded.
@@ -86,12 +89,14 @@ class ResidentImages {
   void WaitUntilLoaded();
 
  private:
+  using Clock = std::chrono::steady_clock;
   struct Wanted {
     std::vector<LfImageId> ids;  // in the order in which they are loaded
     std::set<uint32_t> set;      // the same ids
   };
   void Run();
   void LoadFor(const RenderCamera& frame);
+  bool TakesRetry();
   void UseDivisor(int divisor);
   Wanted WantedBy(const RenderCamera& frame);
   bool HasNews() const;
@@ -105,6 +110,7 @@ class ResidentImages {
   const LfImageStore& store_;
   const size_t memory_bytes_;
   const std::function<void()> changed_;
+  const std::chrono::duration<double> retry_after_;
   ThreadPool pool_;
 
   // Held while the loader changes the next two members, or while another thread reads them.
@@ -113,13 +119,14 @@ class ResidentImages {
   std::map<uint32_t, std::shared_ptr<const Image>> images_;
   // The members up to mutex_ are only for the loader.
   std::vector<std::weak_ptr<const Image>> forgotten_;  // some may still be in snapshots
-  std::set<uint32_t> broken_;
+  std::map<uint32_t, std::string> broken_;  // errors of LF images that could not be loaded
 
   mutable std::mutex mutex_;  // guards the members below, except thread_
   std::condition_variable news_;
   std::optional<RenderCamera> aim_;   // the newest frame of Aim() until the loader takes it
   std::optional<RenderCamera> last_;  // the frame that the loader has taken last
   bool is_loading_ = false;
+  Clock::time_point failed_at_;  // time of the last failure to load
   std::atomic<bool> is_ending_ = false;
   Status status_;
   std::thread thread_;

@@ -16,10 +16,11 @@ using testing::NoiseStore;
 constexpr size_t kImageBytes = size_t{testing::kWidth} * testing::kHeight * 8;
 
 struct Loader {
-  explicit Loader(size_t memory_bytes, uint32_t side = 7)
+  explicit Loader(size_t memory_bytes, uint32_t side = 7, double retry_s = 1e9)
       : field(testing::NoiseField(side)),
         index(field),
-        images(index, store, memory_bytes, 2, [this] { ++change_count; }) {}
+        images(
+            index, store, memory_bytes, 2, [this] { ++change_count; }, retry_s) {}
   std::vector<uint32_t> Ids() {
     std::vector<uint32_t> ids;
     for (const auto& one : images.TakeSnapshot().images) ids.push_back(one.id.value);
@@ -142,6 +143,28 @@ TEST(ResidentImages, BrokenImagesAreCountedAndPassedOver) {
   EXPECT_EQ(status.wanted_done_count, status.wanted_count);
   EXPECT_EQ(status.resident_count + 3, status.wanted_count);
   EXPECT_NE(status.first_broken.find("image"), std::string::npos);
+}
+
+TEST(ResidentImages, FailedImagesAreTriedAgainLater) {
+  for (const double retry_s : {0.0, 1e9}) {
+    Loader loader(size_t{1} << 30, 7, retry_s);
+    loader.store.broken = {24, 25};
+    loader.images.Aim(Frame());
+    loader.images.WaitUntilLoaded();
+    loader.store.broken = {25};
+    loader.images.Aim(Frame());  // the same frame
+    loader.images.WaitUntilLoaded();
+    EXPECT_EQ(loader.images.status().broken_count, retry_s > 0 ? 2U : 1U);
+    EXPECT_NE(loader.images.status().first_broken, "");
+    loader.store.broken = {};
+    loader.images.Aim(Frame(0.001));
+    loader.images.WaitUntilLoaded();
+    const ResidentImages::Status status = loader.images.status();
+    EXPECT_EQ(status.broken_count, retry_s > 0 ? 2U : 0U);
+    EXPECT_EQ(status.first_broken == "", retry_s == 0);
+    EXPECT_EQ(status.wanted_done_count, status.wanted_count);
+    EXPECT_EQ(status.resident_count + status.broken_count, status.wanted_count);
+  }
 }
 
 TEST(ResidentImages, ManyLfCamerasStayWithinTheMemory) {

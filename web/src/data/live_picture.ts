@@ -9,7 +9,7 @@ export interface LiveFacts {
   wanted: number; // number of LF images that the frame needs
   done: number; // number of those that are loaded or broken
   broken: number;
-  first_broken: string;
+  first_broken: string; // why an LF image, or all, could not be loaded; "" if there is no failure
   divisor: number; // factor by which LF images are shrunken
   uncovered_share: number; // share of the lens that was not recorded
   camera_distance: number; // spacing of the LF images of this picture in the lens plane, world units; 0: not known

@@ -25,8 +25,7 @@ export function statusOf(state: State, camera: FrameCamera, facts: LiveFacts): H
   const isLacking = 1 - facts.uncovered_share < LEAST_RECORDED && !isLoading;
   if (facts.images > 0) parts.push(part("recorded", recordedText(facts), isLacking ? "gentle" : "none"));
   if (isLoading) parts.push(part("loading", `loading ${shortNumber(facts.done)} of ${shortNumber(facts.wanted)}`));
-  if (facts.broken > 0)
-    parts.push(part("broken", `${plural(facts.broken, "LF image")} broken: ${facts.first_broken}`, "loud"));
+  if (facts.first_broken) parts.push(part("broken", brokenText(facts), "loud", BROKEN_HELP));
   if (facts.camera_distance > 0 && camera.radius > 0) {
     const all = displacements(camera, facts.camera_distance, state.scene.light_field.depths);
     const worst = all.reduce((a, b) => (b.elements > a.elements ? b : a));
@@ -40,6 +39,8 @@ const EDGES_HELP =
   "How far apart neighbouring LF images show the same point. Up to about one element looks like blur, more than four " +
   "look like double edges.";
 
+const BROKEN_HELP = "LF images that could not be loaded are tried again after five seconds, when the picture changes.";
+
 function part(name: string, text: string, level = "none", title: string | null = null): HTMLElement {
   return element("span", { "data-part": name, "data-level": level, title }, text);
 }
@@ -52,6 +53,10 @@ function imagesText({ images, takeable, camera_distance }: LiveFacts, unit_m: nu
 
 function recordedText({ uncovered_share }: LiveFacts): string {
   return `${percent(1 - uncovered_share)} of the lens recorded`;
+}
+
+function brokenText({ broken, first_broken }: LiveFacts): string {
+  return broken > 0 ? `${plural(broken, "LF image")} broken: ${first_broken}` : first_broken;
 }
 
 function edgesText({ elements, depth }: Displacement, level: Level): string {
