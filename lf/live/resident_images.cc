@@ -122,6 +122,7 @@ void ResidentImages::LoadFor(const RenderCamera& frame) {
       missing.push_back(id);
   Tell([&](Status* status) {
     status->first_broken = broken_.empty() ? "" : broken_.begin()->second;
+    status->needed_count = wanted.needed_count;
     status->wanted_count = wanted.ids.size();
     status->wanted_done_count = wanted.ids.size() - missing.size();
   });
@@ -148,17 +149,23 @@ void ResidentImages::UseDivisor(int divisor) {
   }
   Tell([&](Status* status) {
     status->divisor = divisor;
+    status->image_bytes = ImageBytes();
     status->resident_count = status->wanted_done_count = 0;
   });
 }
 
-size_t ResidentImages::Capacity() const {
+// Returns the memory of the largest LF image.
+size_t ResidentImages::ImageBytes() const {
   size_t image_bytes = 1;
   for (const Intrinsics& k : field_->intrinsics)
     image_bytes = std::max(image_bytes, static_cast<size_t>(k.width_px) * k.height_px *
                                             LfPixels::kRgbLanes * sizeof(uint16_t));
   if (field_->encoding.HasOpacity()) image_bytes *= 2;
-  return std::max<size_t>(1, memory_bytes_ / image_bytes);
+  return image_bytes;
+}
+
+size_t ResidentImages::Capacity() const {
+  return std::max<size_t>(1, memory_bytes_ / ImageBytes());
 }
 
 ResidentImages::Wanted ResidentImages::WantedBy(const RenderCamera& frame) {
@@ -177,6 +184,7 @@ ResidentImages::Wanted ResidentImages::WantedBy(const RenderCamera& frame) {
   select.interrupted = &is_ending_;
   std::vector<SelectedImage> images = SelectImages(index_, std::span(&wider, 1), select, pool_);
   if (is_ending_) return wanted;
+  wanted.needed_count = images.size();
   const auto rest = std::stable_partition(images.begin(), images.end(), [&](const auto& image) {
     return images_.contains(image.id.value);
   });

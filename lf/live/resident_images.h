@@ -47,16 +47,17 @@ class ResidentImages {
   };
   struct Status {
     size_t resident_count = 0;  // LF images in memory
-    // LF images that the frame of the last Aim() needs, as many as memory has room for; 0 until
-    // they are known
+    size_t needed_count = 0;    // LF images that the frame of the last Aim() needs
+    // Number of these for which memory has room. Both numbers are 0 until they are known.
     size_t wanted_count = 0;
-    size_t wanted_done_count = 0;  // those of them that are in memory or broken
+    size_t wanted_done_count = 0;  // number of those that are in memory or broken
     size_t broken_count = 0;       // LF images that could not be loaded
     // The error of one of them, or why loading ended early, such as lack of memory; "" if there is
     // none. It is "" again once loading has succeeded.
     std::string first_broken;
-    int divisor = 0;       // of ShrunkField(); 0 until it is known
-    uint64_t version = 0;  // differs whenever any other number differs
+    int divisor = 0;         // of ShrunkField(); 0 until it is known
+    size_t image_bytes = 0;  // memory of an LF image; 0 until the divisor is known
+    uint64_t version = 0;    // differs whenever any other number differs
   };
 
   //   index, store  of the whole light field; must outlive this object. The store must load RGB
@@ -93,6 +94,7 @@ class ResidentImages {
   struct Wanted {
     std::vector<LfImageId> ids;  // in the order in which they are loaded
     std::set<uint32_t> set;      // the same ids
+    size_t needed_count = 0;     // Status::needed_count
   };
   void Run();
   void LoadFor(const RenderCamera& frame);
@@ -103,6 +105,7 @@ class ResidentImages {
   void LoadSome(const Wanted& wanted, const std::vector<LfImageId>& some);
   void MakeRoom(const Wanted& wanted, size_t count);
   void WaitForForgotten();
+  size_t ImageBytes() const;
   size_t Capacity() const;
   void Tell(const std::function<void(Status*)>& change);
 

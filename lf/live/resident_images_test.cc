@@ -58,6 +58,7 @@ TEST(ResidentImages, AllOfTheLensAreLoaded) {
   loader.images.WaitUntilLoaded();
   const ResidentImages::Status status = loader.images.status();
   EXPECT_EQ(status.divisor, 1);
+  EXPECT_EQ(status.needed_count, status.wanted_count);
   EXPECT_EQ(status.wanted_count, status.wanted_done_count);
   EXPECT_EQ(status.resident_count, loader.Ids().size());
   EXPECT_GT(status.resident_count, 30U);
@@ -172,7 +173,11 @@ TEST(ResidentImages, ManyLfCamerasStayWithinTheMemory) {
   loader.images.Aim(Frame());
   loader.images.WaitUntilLoaded();
   EXPECT_EQ(loader.Ids().size(), 20U);
-  EXPECT_EQ(loader.images.status().wanted_count, 20U);
+  const ResidentImages::Status status = loader.images.status();
+  EXPECT_EQ(status.wanted_count, 20U);
+  EXPECT_GT(status.needed_count, 1000U);
+  EXPECT_LE(status.needed_count, loader.field.size());
+  EXPECT_EQ(status.image_bytes, kImageBytes);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <list>
 #include <mutex>
 #include <optional>
+#include <string>
 
 #include "tools/visualizer/page_answers.h"
 #include "tools/visualizer/page_scene.h"
@@ -32,7 +33,10 @@ class LiveView {
   void Tell();
   std::atomic<bool>* BreakOffStillPictures(bool is_still);
 
+  std::string BytesOf(const LivePicture& live) const;
+
   PageScene& scene_;
+  const size_t memory_bytes_;
   ThreadPool pool_;  // separate, so that the page's answers do not wait for pictures
   std::mutex mutex_;
   // For each still picture that is waited for, a flag that breaks it off. Guarded by mutex_.
