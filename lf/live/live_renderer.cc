@@ -19,6 +19,9 @@ double SecondsSince(Clock::time_point begin) {
 }
 
 constexpr size_t kPlanBytes = size_t{256} << 20;
+// LF images that are collected at once. Their plans take little memory, and a picture can be
+// interrupted between them.
+constexpr size_t kTogether = 128;
 // Weight of the newest picture in the mean times.
 constexpr double kNewest = 0.3;
 
@@ -26,13 +29,13 @@ using Resident = ResidentImages::Snapshot::Resident;
 
 // Returns the LF images that the frame takes, by ascending ids.
 //   most  largest number of LF images
-std::vector<Resident> ImagesThroughLens(ResidentImages::Snapshot snapshot,
+std::vector<Resident> ImagesThroughLens(const ResidentImages::Snapshot& snapshot,
                                         const RenderCamera& frame, size_t most) {
   const Intrinsics& k = frame.pinhole.intrinsics;
   const std::optional<Vec3> focus = FocusPointOfElement(frame, 0.5 * k.width_px, 0.5 * k.height_px);
   if (!focus) return {};
-  std::vector<Resident>& images = snapshot.images;
-  if (most >= images.size()) return std::move(images);
+  const std::vector<Resident>& images = snapshot.images;
+  if (most >= images.size()) return images;
   std::vector<Vec2> points;
   for (const Resident& one : images)
     points.push_back(LensPointOfLine(frame, snapshot.field->Camera(one.id).CentreWorld(), *focus));
@@ -41,7 +44,7 @@ std::vector<Resident> ImagesThroughLens(ResidentImages::Snapshot snapshot,
   const size_t count =
       std::clamp(order.inside_count, std::min(LiveRenderer::kFewestImages, images.size()), most);
   std::vector<Resident> taken;
-  for (size_t i = 0; i < count; ++i) taken.push_back(std::move(images[order.indices[i]]));
+  for (size_t i = 0; i < count; ++i) taken.push_back(images[order.indices[i]]);
   std::sort(taken.begin(), taken.end(),
             [](const Resident& a, const Resident& b) { return a.id.value < b.id.value; });
   return taken;
@@ -59,15 +62,34 @@ LightField FieldOf(const LightField& field, std::span<const LfImageId> ids) {
   return some;
 }
 
-std::vector<BatchImage> BatchOf(std::span<const Resident> images) {
-  std::vector<BatchImage> batch(images.size());
-  for (uint32_t i = 0; i < batch.size(); ++i) {
-    batch[i].id = LfImageId{i};
-    batch[i].place = i;
-    batch[i].shared_pixels = &images[i].image->pixels;
-    batch[i].shared_opacity = &images[i].image->opacity;
+// Returns the LF images [begin, end) for collection. Their ids are indices of `images`.
+std::vector<BatchImage> BatchOf(std::span<const Resident> images, size_t begin, size_t end) {
+  std::vector<BatchImage> batch(end - begin);
+  for (size_t i = begin; i < end; ++i) {
+    BatchImage& one = batch[i - begin];
+    one.id = LfImageId{static_cast<uint32_t>(i)};
+    one.place = one.id.value;
+    one.shared_pixels = &images[i].image->pixels;
+    one.shared_opacity = &images[i].image->opacity;
   }
   return batch;
+}
+
+// Collects the LF images into the frame. Once *interrupted is true, LF images are left out.
+//   field  light field of the LF images
+void CollectAll(const LightField& field, std::span<const Resident> images,
+                const CollectedFrame& frame, const std::atomic<bool>* interrupted,
+                ThreadPool& pool) {
+  RayReading reading(Estimator::kBilinear);
+  reading.filter = PixelFilter::kBilinear;
+  BatchCollector collector(field, std::span(&frame, 1), reading, CollectBackEnd::kFast, kPlanBytes,
+                           false, pool);
+  for (size_t begin = 0; begin < images.size(); begin += kTogether) {
+    std::vector<BatchImage> batch =
+        BatchOf(images, begin, std::min(begin + kTogether, images.size()));
+    std::vector<BatchFrame> frames = {{0, {}, false, {}}};
+    collector.Add(batch, frames, {}, true, interrupted);
+  }
 }
 
 DevelopOptions DevelopOptionsOf(const RadianceEncoding& encoding) {
@@ -111,15 +133,15 @@ size_t LiveRenderer::CountFor(const RenderCamera& frame, const LiveWish& wish) c
 }
 
 LivePicture LiveRenderer::RenderOf(const RenderCamera& frame, const LiveWish& wish,
-                                   ResidentImages::Snapshot snapshot) {
+                                   std::shared_ptr<const ResidentImages::Snapshot> snapshot) {
   const Clock::time_point begin = Clock::now();
   LivePicture live;
   static const LightField kNone;
-  const std::shared_ptr<const LightField> kept = snapshot.field;
+  const std::shared_ptr<const LightField> kept = snapshot->field;
   const LightField& field = kept ? *kept : kNone;
-  live.takeable_count = snapshot.images.size();
-  const std::vector<Resident> images =
-      ImagesThroughLens(std::move(snapshot), frame, CountFor(frame, wish));
+  live.takeable_count = snapshot->images.size();
+  const std::vector<Resident> images = ImagesThroughLens(*snapshot, frame, CountFor(frame, wish));
+  snapshot = nullptr;  // LF images that the picture does not take may be forgotten
   for (const Resident& one : images) live.images.push_back(one.id);
 
   const LightField some = FieldOf(field, live.images);
@@ -132,14 +154,8 @@ LivePicture LiveRenderer::RenderOf(const RenderCamera& frame, const LiveWish& wi
   CollectedFrame collected = {lens.camera(), &live.plate};
   if (options_.lens_weights != LensWeights::kNone)
     collected.weights = [&](LfImageId id) { return lens.WeightsOf(id); };
-  RayReading reading(Estimator::kBilinear);
-  reading.filter = PixelFilter::kBilinear;
-  BatchCollector collector(some, std::span(&collected, 1), reading, CollectBackEnd::kFast,
-                           kPlanBytes, false, pool_);
-  std::vector<BatchImage> batch = BatchOf(images);
-  std::vector<BatchFrame> frames = {{0, {}, false, {}}};
   const Clock::time_point collecting = Clock::now();
-  collector.Add(batch, frames, {}, true, wish.interrupted);
+  CollectAll(some, images, collected, wish.interrupted, pool_);
   const double collect_s = SecondsSince(collecting);
   if (const auto facts = lens.facts()) live.uncovered_share = facts->coverage.uncovered_share;
   live.camera_distance_w = lens.camera_distance_w();

@@ -12,6 +12,7 @@
 #include <atomic>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -76,7 +77,7 @@ class LiveRenderer {
 
  private:
   LivePicture RenderOf(const RenderCamera& frame, const LiveWish& wish,
-                       ResidentImages::Snapshot snapshot);
+                       std::shared_ptr<const ResidentImages::Snapshot> snapshot);
   size_t CountFor(const RenderCamera& frame, const LiveWish& wish) const;
 
   const LiveOptions options_;

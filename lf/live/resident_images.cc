@@ -62,12 +62,14 @@ void ResidentImages::Aim(const RenderCamera& frame) {
   news_.notify_all();
 }
 
-ResidentImages::Snapshot ResidentImages::TakeSnapshot() const {
+std::shared_ptr<const ResidentImages::Snapshot> ResidentImages::TakeSnapshot() const {
   const std::lock_guard lock(images_mutex_);
+  if (snapshot_) return snapshot_;
   Snapshot snapshot = {field_, {}};
   snapshot.images.reserve(images_.size());
   for (const auto& [id, image] : images_) snapshot.images.push_back({LfImageId{id}, image});
-  return snapshot;
+  snapshot_ = std::make_shared<const Snapshot>(std::move(snapshot));
+  return snapshot_;
 }
 
 ResidentImages::Status ResidentImages::status() const {
@@ -135,6 +137,8 @@ void ResidentImages::LoadFor(const RenderCamera& frame) {
     LoadSome(wanted, {missing.begin() + static_cast<ptrdiff_t>(begin),
                       missing.begin() + static_cast<ptrdiff_t>(begin + count)});
   }
+  const std::lock_guard lock(mutex_);
+  spare_.clear();
 }
 
 // Begins anew if the divisor changes.
@@ -144,6 +148,7 @@ void ResidentImages::UseDivisor(int divisor) {
   for (const auto& [id, image] : images_) forgotten_.push_back(image);
   {
     const std::lock_guard lock(images_mutex_);
+    snapshot_ = nullptr;
     images_.clear();
     field_ = std::move(field);
   }
@@ -210,7 +215,7 @@ void ResidentImages::LoadSome(const Wanted& wanted, const std::vector<LfImageId>
   std::vector<Result<Image>> loaded(some.size(), Result<Image>(Image()));
   const int divisor = status().divisor;
   pool_.ForEach(some.size(), [&](size_t i) {
-    LfPixels pixels;
+    LfPixels pixels = TakeSpare();
     const Result<int> reduced =
         LoadReducedWithoutThrowing(store_, some[i], divisor, field.Camera(some[i]).intrinsics,
                                    field.image_names[some[i].value], &pixels);
@@ -220,6 +225,8 @@ void ResidentImages::LoadSome(const Wanted& wanted, const std::vector<LfImageId>
     }
     Shrink(pixels, divisor / *reduced, &loaded[i]->pixels);
     loaded[i]->opacity = loaded[i]->pixels.TakeOpacity();
+    const std::lock_guard lock(mutex_);
+    spare_.push_back(std::move(pixels));
   });
   MakeRoom(wanted, some.size());
   WaitForForgotten();
@@ -233,6 +240,7 @@ void ResidentImages::LoadSome(const Wanted& wanted, const std::vector<LfImageId>
     broken_.erase(some[i].value);
     auto image = std::make_shared<const Image>(*std::move(loaded[i]));
     const std::lock_guard lock(images_mutex_);
+    snapshot_ = nullptr;
     images_[some[i].value] = std::move(image);
   }
   Tell([&](Status* status) {
@@ -244,10 +252,21 @@ void ResidentImages::LoadSome(const Wanted& wanted, const std::vector<LfImageId>
   });
 }
 
+// Returns memory for an LF image in full size. New memory for each of them would leave holes
+// between the shrunken ones, which took as much memory again.
+LfPixels ResidentImages::TakeSpare() {
+  const std::lock_guard lock(mutex_);
+  if (spare_.empty()) return {};
+  LfPixels pixels = std::move(spare_.back());
+  spare_.pop_back();
+  return pixels;
+}
+
 // Forgets LF images that are not wanted until there is room for `count` more.
 void ResidentImages::MakeRoom(const Wanted& wanted, size_t count) {
   const size_t capacity = Capacity();
   const std::lock_guard lock(images_mutex_);
+  snapshot_ = nullptr;
   for (auto image = images_.begin(); images_.size() + count > capacity && image != images_.end();) {
     if (wanted.set.contains(image->first)) {
       ++image;

@@ -83,7 +83,7 @@ class ResidentImages {
   // Does not wait for LF images that are being loaded, and does not keep others from being loaded.
   // The bound of the memory is exceeded by at most an eighth for LF images that are forgotten
   // while snapshots hold them: loading then waits until they are let go.
-  Snapshot TakeSnapshot() const;
+  std::shared_ptr<const Snapshot> TakeSnapshot() const;  // is never null
 
   Status status() const;
   // Waits until all LF images that the last Aim() wants are in memory or broken.
@@ -103,6 +103,7 @@ class ResidentImages {
   Wanted WantedBy(const RenderCamera& frame);
   bool HasNews() const;
   void LoadSome(const Wanted& wanted, const std::vector<LfImageId>& some);
+  LfPixels TakeSpare();
   void MakeRoom(const Wanted& wanted, size_t count);
   void WaitForForgotten();
   size_t ImageBytes() const;
@@ -116,10 +117,12 @@ class ResidentImages {
   const std::chrono::duration<double> retry_after_;
   ThreadPool pool_;
 
-  // Held while the loader changes the next two members, or while another thread reads them.
+  // Held while the loader changes the next three members, or while another thread reads them.
   mutable std::mutex images_mutex_;
   std::shared_ptr<const LightField> field_;
   std::map<uint32_t, std::shared_ptr<const Image>> images_;
+  // Made by TakeSnapshot(); null again once the members above have changed.
+  mutable std::shared_ptr<const Snapshot> snapshot_;
   // The members up to mutex_ are only for the loader.
   std::vector<std::weak_ptr<const Image>> forgotten_;  // some may still be in snapshots
   std::map<uint32_t, std::string> broken_;  // errors of LF images that could not be loaded
@@ -129,6 +132,7 @@ class ResidentImages {
   std::optional<RenderCamera> aim_;   // the newest frame of Aim() until the loader takes it
   std::optional<RenderCamera> last_;  // the frame that the loader has taken last
   bool is_loading_ = false;
+  std::vector<LfPixels> spare_;  // memory for LF images in full size
   Clock::time_point failed_at_;  // time of the last failure to load
   std::atomic<bool> is_ending_ = false;
   Status status_;

@@ -23,7 +23,8 @@ struct Loader {
             index, store, memory_bytes, 2, [this] { ++change_count; }, retry_s) {}
   std::vector<uint32_t> Ids() {
     std::vector<uint32_t> ids;
-    for (const auto& one : images.TakeSnapshot().images) ids.push_back(one.id.value);
+    const auto snapshot = images.TakeSnapshot();
+    for (const auto& one : snapshot->images) ids.push_back(one.id.value);
     return ids;
   }
 
@@ -52,8 +53,8 @@ RenderCamera Frame(double x = 0, double radius_w = 0.03) {
 
 TEST(ResidentImages, AllOfTheLensAreLoaded) {
   Loader loader(size_t{1} << 30);
-  EXPECT_EQ(loader.images.TakeSnapshot().field, nullptr);
-  EXPECT_TRUE(loader.images.TakeSnapshot().images.empty());
+  EXPECT_EQ(loader.images.TakeSnapshot()->field, nullptr);
+  EXPECT_TRUE(loader.images.TakeSnapshot()->images.empty());
   loader.images.Aim(Frame());
   loader.images.WaitUntilLoaded();
   const ResidentImages::Status status = loader.images.status();
@@ -63,9 +64,9 @@ TEST(ResidentImages, AllOfTheLensAreLoaded) {
   EXPECT_EQ(status.resident_count, loader.Ids().size());
   EXPECT_GT(status.resident_count, 30U);
   EXPECT_GT(loader.change_count, 2);
-  const ResidentImages::Snapshot snapshot = loader.images.TakeSnapshot();
-  ASSERT_NE(snapshot.field, nullptr);
-  EXPECT_TRUE(HoldsNoise(snapshot.images[0]));
+  const auto snapshot = loader.images.TakeSnapshot();
+  ASSERT_NE(snapshot->field, nullptr);
+  EXPECT_TRUE(HoldsNoise(snapshot->images[0]));
 }
 
 TEST(ResidentImages, MemoryIsBoundedAndFollowsTheCamera) {
@@ -97,9 +98,9 @@ TEST(ResidentImages, AnotherSizeOfElementsBeginsAnew) {
   loader.images.Aim(coarse);
   loader.images.WaitUntilLoaded();
   EXPECT_EQ(loader.images.status().divisor, 3);
-  const ResidentImages::Snapshot snapshot = loader.images.TakeSnapshot();
-  EXPECT_EQ(snapshot.field->intrinsics[0].width_px, testing::kWidth / 3);
-  for (const auto& one : snapshot.images)
+  const auto snapshot = loader.images.TakeSnapshot();
+  EXPECT_EQ(snapshot->field->intrinsics[0].width_px, testing::kWidth / 3);
+  for (const auto& one : snapshot->images)
     EXPECT_EQ(one.image->pixels.rect.width(), testing::kWidth / 3);
 }
 
@@ -107,28 +108,28 @@ TEST(ResidentImages, LoadingGoesOnWhileAPictureHoldsImages) {
   Loader loader(size_t{1} << 30);
   loader.images.Aim(Frame(-0.03, 0.008));
   loader.images.WaitUntilLoaded();
-  const ResidentImages::Snapshot held = loader.images.TakeSnapshot();
+  const auto held = loader.images.TakeSnapshot();
   loader.images.Aim(Frame(0.03, 0.008));
   loader.images.WaitUntilLoaded();
-  EXPECT_GT(loader.Ids().size(), held.images.size());
+  EXPECT_GT(loader.Ids().size(), held->images.size());
   RenderCamera coarse = Frame();
   coarse.pinhole.intrinsics = {20, 20, 10, 7.5, 0, 20, 15};
   loader.images.Aim(coarse);
   loader.images.WaitUntilLoaded();
-  for (const auto& one : held.images) EXPECT_TRUE(HoldsNoise(one));
+  for (const auto& one : held->images) EXPECT_TRUE(HoldsNoise(one));
 }
 
 TEST(ResidentImages, ImagesThatAPictureHoldsCountAsMemory) {
   Loader loader(5 * kImageBytes);
   loader.images.Aim(Frame(-0.03, 0.008));
   loader.images.WaitUntilLoaded();
-  ResidentImages::Snapshot held = loader.images.TakeSnapshot();
+  auto held = loader.images.TakeSnapshot();
   loader.images.Aim(Frame(0.03, 0.008));
   // Two threads load two LF images, for which two others are forgotten.
   while (loader.Ids().size() == 5) std::this_thread::yield();
   EXPECT_EQ(loader.Ids().size(), 3U);
-  for (const auto& one : held.images) EXPECT_TRUE(HoldsNoise(one));
-  held.images.clear();
+  for (const auto& one : held->images) EXPECT_TRUE(HoldsNoise(one));
+  held = nullptr;
   loader.images.WaitUntilLoaded();
   EXPECT_EQ(loader.Ids().size(), 5U);
 }
