@@ -7,6 +7,7 @@
 
 #include "lf/live/lens_order.h"
 #include "lf/render/collect/collect_batch.h"
+#include "lf/render/collect/develop_options.h"
 #include "lf/render/collect/frame_lens.h"
 
 namespace lf {
@@ -90,17 +91,6 @@ void CollectAll(const LightField& field, std::span<const Resident> images,
     std::vector<BatchFrame> frames = {{0, {}, false, {}}};
     collector.Add(batch, frames, {}, true, interrupted);
   }
-}
-
-DevelopOptions DevelopOptionsOf(const RadianceEncoding& encoding) {
-  DevelopOptions develop;
-  develop.pedestal = encoding.pedestal;
-  develop.scale = encoding.Scale();
-  develop.white_balance = encoding.white_balance;
-  develop.linear_srgb_from_camera = encoding.linear_srgb_from_camera;
-  develop.transparent = LfPixels::kTransparent;
-  develop.opaque = LfPixels::kOpaque;
-  return develop;
 }
 
 }  // namespace
