@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -30,16 +31,16 @@ using Resident = ResidentImages::Snapshot::Resident;
 
 // Returns the LF images that the frame takes, by ascending ids.
 //   most  largest number of LF images
-std::vector<Resident> ImagesThroughLens(const ResidentImages::Snapshot& snapshot,
+std::vector<Resident> ImagesThroughLens(const LightField& field,
+                                        const std::vector<Resident>& images,
                                         const RenderCamera& frame, size_t most) {
   const Intrinsics& k = frame.pinhole.intrinsics;
   const std::optional<Vec3> focus = FocusPointOfElement(frame, 0.5 * k.width_px, 0.5 * k.height_px);
   if (!focus) return {};
-  const std::vector<Resident>& images = snapshot.images;
   if (most >= images.size()) return images;
   std::vector<Vec2> points;
   for (const Resident& one : images)
-    points.push_back(LensPointOfLine(frame, snapshot.field->Camera(one.id).CentreWorld(), *focus));
+    points.push_back(LensPointOfLine(frame, field.Camera(one.id).CentreWorld(), *focus));
   const LensOrder order = OrderOverLens(points, frame.aperture.radius_w, most);
   // LF images beside the lens get a share of it only if those through it are few.
   const size_t count =
@@ -129,8 +130,15 @@ LivePicture LiveRenderer::RenderOf(const RenderCamera& frame, const LiveWish& wi
   static const LightField kNone;
   const std::shared_ptr<const LightField> kept = snapshot->field;
   const LightField& field = kept ? *kept : kNone;
-  live.takeable_count = snapshot->images.size();
-  const std::vector<Resident> images = ImagesThroughLens(*snapshot, frame, CountFor(frame, wish));
+  std::vector<Resident> recorded;
+  if (wish.recorded_only)
+    std::copy_if(snapshot->images.begin(), snapshot->images.end(), std::back_inserter(recorded),
+                 [&](const Resident& one) { return !field.cameras[one.id.value].is_virtual; });
+  const std::vector<Resident>& takeable = wish.recorded_only ? recorded : snapshot->images;
+  live.takeable_count = takeable.size();
+  const std::vector<Resident> images =
+      ImagesThroughLens(field, takeable, frame, CountFor(frame, wish));
+  recorded.clear();
   snapshot = nullptr;  // LF images that the picture does not take may be forgotten
   for (const Resident& one : images) live.images.push_back(one.id);
 

@@ -39,6 +39,7 @@ struct LiveWish {
   // Time for the picture. As many LF images are taken as were collected in this time before, at
   // least kFewestImages. Unset: all that are in memory.
   std::optional<double> budget_s;
+  bool recorded_only = false;  // true: virtual LF images are left out
   // Once it is true, Render() returns kInterrupted soon. Null: nothing interrupts.
   const std::atomic<bool>* interrupted = nullptr;
 };

@@ -117,7 +117,7 @@ void ExpectBitsOfCollected(const LightField& field, const LfImageStore& store, i
     ASSERT_TRUE(live.Render(frame, {}));
     live.images().WaitUntilLoaded();
     for (const std::optional<double>& budget_s : {std::optional<double>(), {1e-9}}) {
-      const Result<LivePicture> picture = live.Render(frame, {budget_s, nullptr});
+      const Result<LivePicture> picture = live.Render(frame, {budget_s, false, nullptr});
       ASSERT_TRUE(picture);
       EXPECT_GE(picture->images.size(), LiveRenderer::kFewestImages);
       const int divisor = live.images().status().divisor;
@@ -167,8 +167,8 @@ TEST(LiveRenderer, ShortTimeTakesFewImagesAndMoreTimeAll) {
   const RenderCamera frame = Frame(0, 1);
   ASSERT_TRUE(live.Render(frame, {}));
   live.images().WaitUntilLoaded();
-  const Result<LivePicture> quick = live.Render(frame, {1e-9, nullptr});
-  const Result<LivePicture> slow = live.Render(frame, {100.0, nullptr});
+  const Result<LivePicture> quick = live.Render(frame, {1e-9, false, nullptr});
+  const Result<LivePicture> slow = live.Render(frame, {100.0, false, nullptr});
   const Result<LivePicture> still = live.Render(frame, {});
   ASSERT_TRUE(quick && slow && still);
   EXPECT_EQ(quick->images.size(), LiveRenderer::kFewestImages);
@@ -177,6 +177,27 @@ TEST(LiveRenderer, ShortTimeTakesFewImagesAndMoreTimeAll) {
   EXPECT_GT(still->takeable_count, 100U);
   EXPECT_GT(quick->camera_distance_w, 1.5 * still->camera_distance_w);
   EXPECT_LE(still->uncovered_share, quick->uncovered_share);
+}
+
+TEST(LiveRenderer, VirtualImagesCanBeLeftOut) {
+  LightField field = testing::NoiseField();
+  for (uint32_t i = 0; i < field.size(); i += 2) field.cameras[i].is_virtual = true;
+  const ImageIndex index(field);
+  const NoiseStore store;
+  ThreadPool pool(2);
+  LiveRenderer live(index, store, {}, pool);
+  const RenderCamera frame = Frame(0, 1.9);
+  ASSERT_TRUE(live.Render(frame, {}));
+  live.images().WaitUntilLoaded();
+  const Result<LivePicture> all = live.Render(frame, {});
+  const Result<LivePicture> recorded = live.Render(frame, {{}, true, nullptr});
+  ASSERT_TRUE(all && recorded);
+  EXPECT_GT(recorded->images.size(), all->images.size() / 3);
+  EXPECT_LT(recorded->images.size(), all->images.size());
+  EXPECT_EQ(recorded->takeable_count, recorded->images.size());
+  for (const LfImageId id : recorded->images) EXPECT_FALSE(field.cameras[id.value].is_virtual);
+  EXPECT_TRUE(recorded->plate == CollectedOf(field, store, live.images().status().divisor,
+                                             recorded->images, frame, pool));
 }
 
 TEST(LiveRenderer, WithoutImagesThePictureIsBlack) {
@@ -207,7 +228,7 @@ TEST(LiveRenderer, InterruptedPicturesAreErrorsAndLoseNothing) {
   live.images().WaitUntilLoaded();
   const Result<LivePicture> before = live.Render(frame, {});
   const std::atomic<bool> interrupted = true;
-  const Result<LivePicture> none = live.Render(frame, {{}, &interrupted});
+  const Result<LivePicture> none = live.Render(frame, {{}, false, &interrupted});
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().kind, ErrorKind::kInterrupted);
   EXPECT_TRUE(live.Render(frame, {})->plate == before->plate);

@@ -75,9 +75,10 @@ std::string LiveView::BytesOf(const LivePicture& live) const {
   return bytes + text + PictureBytes(PictureOf(live.picture, kLongestSide_px));
 }
 
-PageAnswer LiveView::Answer(const RenderCamera& frame, std::optional<double> budget_s) {
+PageAnswer LiveView::Answer(const RenderCamera& frame, std::optional<double> budget_s,
+                            bool recorded_only) {
   std::atomic<bool>* const flag = BreakOffStillPictures(!budget_s);
-  const Result<LivePicture> live = renderer_.Render(frame, {budget_s, flag});
+  const Result<LivePicture> live = renderer_.Render(frame, {budget_s, recorded_only, flag});
   if (flag != nullptr) {
     const std::lock_guard lock(mutex_);
     still_.remove_if([&](const std::atomic<bool>& one) { return &one == flag; });

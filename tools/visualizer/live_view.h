@@ -25,9 +25,10 @@ class LiveView {
   LiveView(PageScene& scene, size_t memory_bytes);
 
   // Answers with a picture of the frame (doc/formats/page_data.md, POST live).
-  //   budget_s  LiveWish::budget_s. A picture without a budget is a still one: it is broken off by
+  //   budget_s, recorded_only  as in LiveWish. A picture without a budget is a still one: it is
+  //   broken off by
   //             the next call, and then answered with {"superseded": true}
-  PageAnswer Answer(const RenderCamera& frame, std::optional<double> budget_s);
+  PageAnswer Answer(const RenderCamera& frame, std::optional<double> budget_s, bool recorded_only);
 
  private:
   void Tell();

@@ -43,6 +43,7 @@ export class LensPanel {
     root.append(
       this.switches(),
       this.help(),
+      this.virtualImages(),
       this.backToA(),
       element(
         "div",
@@ -272,6 +273,25 @@ export class LensPanel {
       );
     });
     return svg;
+  }
+
+  // Returns buttons that take or leave out virtual LF images, if there are some.
+  private virtualImages(): HTMLElement | string {
+    const { state, view } = this.parts;
+    if (!state.scene.light_field.virtual_ranges?.length) return "";
+    const button = (recorded: boolean, label: string, title: string) => {
+      const click = () => {
+        view.setRecordedOnly(recorded);
+        this.shown();
+      };
+      return this.toggle(label, title, () => view.recordedOnly === recorded, click);
+    };
+    return element(
+      "div",
+      { class: "row" },
+      button(false, "Densified", "with virtual LF images"),
+      button(true, "Recorded alone", "without virtual LF images"),
+    );
   }
 
   private backToA(): HTMLElement {
