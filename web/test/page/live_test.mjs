@@ -247,6 +247,14 @@ test("two settings are compared, and edges in focus are coloured", async () => {
       await page.mouse.move(box.x + box.width / 4, line.y + 20);
       await page.mouse.up();
       assert.equal(await page.getAttribute("#live-line", "aria-valuenow"), "25");
+      const versionOfA = () => page.evaluate("document.querySelector('#live-a').toDataURL()");
+      const ofFrame1 = await versionOfA();
+      await page.evaluate("lfvisualizer.state.setFrame(11)");
+      await until(page, "app.live.comparison.kept.frame === 11");
+      assert.notEqual(await versionOfA(), ofFrame1);
+      assert.match(await page.textContent(".live-side[data-side=A]"), /12 mm, focus 1$/);
+      await page.evaluate("lfvisualizer.state.setFrame(1)");
+      await until(page, "app.live.comparison.kept.frame === 1");
       await page.click("button:text-is('Back to A')");
       await until(page, "app.state.isShown && Math.abs(app.state.camera.radius - 0.006) < 1e-9");
       await page.keyboard.press("a");
@@ -263,7 +271,10 @@ test("two settings are compared, and edges in focus are coloured", async () => {
       await page.keyboard.press("e");
       assert.ok((await greenElements()) > before + 20);
     },
-    CHART_PATH,
+    CHART_PATH.replace(
+      "keyframes:\n",
+      "keyframes:\n  position: [{time: 0, value: [0, 0, -1]}, {time: 1, value: [0.03, 0, -1]}]\n",
+    ),
     ["--max-angle", "45"],
   );
 });
