@@ -1,35 +1,100 @@
 #include "lf/live/lens_order.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <limits>
+#include <optional>
+#include <queue>
+#include <unordered_map>
 
 namespace lf {
+
+namespace {
+
+// Points in the cells of a grid, so that those near a place are found quickly.
+class PointCells {
+ public:
+  //   far2  points for which it is negative are left out
+  PointCells(std::span<const Vec2> points, const std::vector<double>& far2, double width_w)
+      : width_w_(width_w) {
+    for (size_t i = 0; i < points.size(); ++i)
+      if (far2[i] >= 0) cells_[KeyOf(CellOf(points[i].x()), CellOf(points[i].y()))].push_back(i);
+  }
+  double width_w() const { return width_w_; }
+
+  // Calls body(i) at least for all points whose distance from the place is at most width_w().
+  template <class Body>
+  void ForEachNear(const Vec2& place, const Body& body) const {
+    const int64_t column = CellOf(place.x()), row = CellOf(place.y());
+    for (int64_t y = row - 1; y <= row + 1; ++y)
+      for (int64_t x = column - 1; x <= column + 1; ++x)
+        if (const auto cell = cells_.find(KeyOf(x, y)); cell != cells_.end())
+          for (const size_t i : cell->second) body(i);
+  }
+
+ private:
+  int64_t CellOf(double coordinate_w) const {
+    constexpr double kMost = 1e15;
+    return static_cast<int64_t>(std::floor(std::clamp(coordinate_w / width_w_, -kMost, kMost)));
+  }
+  // Cells with equal keys are one cell, which only costs time.
+  static uint64_t KeyOf(int64_t x, int64_t y) {
+    constexpr uint64_t kOdd = 0x9e3779b97f4a7c15;
+    return static_cast<uint64_t>(x) * kOdd + static_cast<uint64_t>(y);
+  }
+
+  const double width_w_;
+  std::unordered_map<uint64_t, std::vector<size_t>> cells_;
+};
+
+}  // namespace
 
 std::vector<size_t> FarthestPointOrder(std::span<const Vec2> points, size_t count,
                                        size_t preferred_count) {
   constexpr double kChosen = -1;
   constexpr double kPreference = 4;  // of squared distances
-  const double infinity = std::numeric_limits<double>::infinity();
-  count = std::min(count, points.size());
-  std::vector<double> far2(points.size(), infinity);  // squared distance from the chosen points
-  std::vector<size_t> chosen;
-  while (chosen.size() < count) {
-    size_t best = 0;
-    double best_value = -infinity;
-    for (size_t i = 0; i < points.size(); ++i) {
-      if (far2[i] == kChosen) continue;
-      const double value = chosen.empty() ? -points[i].squaredNorm()
-                                          : far2[i] * (i < preferred_count ? kPreference : 1);
-      if (value <= best_value) continue;
-      best = i;
-      best_value = value;
+  struct Candidate {
+    double value;
+    size_t index;
+    bool operator<(const Candidate& other) const {
+      return value != other.value ? value < other.value : index > other.index;
     }
-    chosen.push_back(best);
-    for (size_t i = 0; i < points.size(); ++i)
-      far2[i] = std::min(far2[i], (points[i] - points[best]).squaredNorm());
-    far2[best] = kChosen;
+  };
+  count = std::min(count, points.size());
+  if (count == 0) return {};
+  // Squared distances from the chosen points.
+  std::vector<double> far2(points.size(), std::numeric_limits<double>::infinity());
+  const auto value_of = [&](size_t i) { return far2[i] * (i < preferred_count ? kPreference : 1); };
+  std::priority_queue<Candidate> queue;  // those whose value has changed since are passed over
+  const auto nearest = std::min_element(
+      points.begin(), points.end(),
+      [](const Vec2& a, const Vec2& b) { return a.squaredNorm() < b.squaredNorm(); });
+  std::vector<size_t> chosen = {static_cast<size_t>(nearest - points.begin())};
+  // The cells are as wide as the largest distance of a point from the chosen points, or a little
+  // wider: a new one changes the distances of points within them only.
+  std::optional<PointCells> cells;
+  while (true) {
+    const size_t newest = chosen.back();
+    far2[newest] = kChosen;
+    if (chosen.size() == count) return chosen;
+    const auto approach = [&](size_t i) {
+      const double distance2 = (points[i] - points[newest]).squaredNorm();
+      if (distance2 >= far2[i]) return;
+      far2[i] = distance2;
+      queue.push({value_of(i), i});
+    };
+    if (cells)
+      cells->ForEachNear(points[newest], approach);
+    else
+      for (size_t i = 0; i < points.size(); ++i) approach(i);
+    while (queue.top().value != value_of(queue.top().index)) queue.pop();
+    chosen.push_back(queue.top().index);
+    const double reach_w = std::sqrt(queue.top().value);
+    queue.pop();
+    if (reach_w > 0 && (!cells || reach_w < cells->width_w() / 2))
+      cells.emplace(points, far2, reach_w);
   }
-  return chosen;
 }
 
 LensOrder OrderOverLens(std::span<const Vec2> points, double radius_w, size_t count,
@@ -39,7 +104,7 @@ LensOrder OrderOverLens(std::span<const Vec2> points, double radius_w, size_t co
   std::vector<Vec2> of_inside;
   size_t preferred_inside = 0;
   for (size_t i = 0; i < points.size(); ++i) {
-    if (points[i].norm() > kAtRim * radius_w) {
+    if (!(points[i].norm() <= kAtRim * radius_w)) {
       outside.push_back(i);
       continue;
     }
@@ -47,9 +112,13 @@ LensOrder OrderOverLens(std::span<const Vec2> points, double radius_w, size_t co
     of_inside.push_back(points[i]);
     preferred_inside += i < preferred_count ? 1 : 0;
   }
-  std::stable_sort(outside.begin(), outside.end(), [&](size_t a, size_t b) {
-    return points[a].squaredNorm() < points[b].squaredNorm();
-  });
+  // Points that are not numbers come last: their LF cameras stand in the focus plane.
+  const auto far2 = [&](size_t i) {
+    const double distance2 = points[i].squaredNorm();
+    return std::isnan(distance2) ? std::numeric_limits<double>::infinity() : distance2;
+  };
+  std::stable_sort(outside.begin(), outside.end(),
+                   [&](size_t a, size_t b) { return far2(a) < far2(b); });
   LensOrder order;
   for (const size_t i : FarthestPointOrder(of_inside, count, preferred_inside))
     order.indices.push_back(inside[i]);

@@ -30,6 +30,42 @@ double Hole(const std::vector<Vec2>& points, const std::vector<size_t>& order, s
   return hole;
 }
 
+// Farthest-point sampling as it is defined.
+std::vector<size_t> SlowOrder(const std::vector<Vec2>& points, size_t count, size_t preferred) {
+  std::vector<size_t> chosen;
+  while (chosen.size() < count) {
+    size_t best = points.size();
+    double best_value = 0;
+    for (size_t i = 0; i < points.size(); ++i) {
+      if (std::count(chosen.begin(), chosen.end(), i) > 0) continue;
+      double value = chosen.empty() ? -points[i].squaredNorm() : 1e9;
+      for (const size_t one : chosen)
+        value = std::min(value, (points[i] - points[one]).squaredNorm());
+      if (!chosen.empty() && i < preferred) value *= 4;
+      if (best < points.size() && value <= best_value) continue;
+      best = i;
+      best_value = value;
+    }
+    chosen.push_back(best);
+  }
+  return chosen;
+}
+
+TEST(LensOrder, IsFarthestPointSampling) {
+  std::vector<Vec2> grid, clusters;
+  for (int i = 0; i < 81; ++i) grid.push_back({i % 9, i / 9});  // many equal distances
+  for (const Vec2& point : RandomPoints(60)) {
+    clusters.push_back(1e-4 * point);
+    clusters.push_back({5 + 0.01 * point.x(), 3});
+    clusters.push_back({1, 1});
+  }
+  for (const std::vector<Vec2>& points : {RandomPoints(200), grid, clusters})
+    for (const size_t preferred : {0, 30})
+      for (const size_t count : {size_t{1}, size_t{17}, points.size()})
+        EXPECT_EQ(FarthestPointOrder(points, count, preferred),
+                  SlowOrder(points, count, preferred));
+}
+
 TEST(LensOrder, EveryBeginningIsSpread) {
   const std::vector<Vec2> points = RandomPoints(500);
   const std::vector<size_t> order = FarthestPointOrder(points, points.size());
@@ -54,6 +90,9 @@ TEST(LensOrder, PointsThroughTheLensComeFirst) {
   // Points 0 to 2 are preferred, of which only point 1 is in the lens.
   EXPECT_EQ(OrderOverLens(points, 1, 3, 3).indices, (std::vector<size_t>{4, 3, 1}));
   EXPECT_EQ(OrderOverLens({}, 1, 3).inside_count, 0U);
+  const double nan = std::nan("");
+  const std::vector<Vec2> undefined = {{nan, 0}, {0, 0}, {nan, nan}, {2, 0}};
+  EXPECT_EQ(OrderOverLens(undefined, 1, 9).indices, (std::vector<size_t>{1, 3, 0, 2}));
 }
 
 TEST(LensOrder, PreferredPointsComeFirstUnlessTheyAreCrowded) {

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
+#include <memory>
 #include <utility>
 
 #include "lf/live/lens_order.h"
 #include "lf/render/collect/collect_batch.h"
+#include "lf/render/collect/develop_options.h"
 #include "lf/render/collect/frame_lens.h"
 
 namespace lf {
@@ -18,29 +21,35 @@ double SecondsSince(Clock::time_point begin) {
 }
 
 constexpr size_t kPlanBytes = size_t{256} << 20;
+// LF images that are collected at once. Their plans take little memory, and a picture can be
+// interrupted between them.
+constexpr size_t kTogether = 128;
 // Weight of the newest picture in the mean times.
 constexpr double kNewest = 0.3;
 
-// Returns the LF images in the order in which the frame takes them, and sets *inside_count to
-// LensOrder::inside_count.
-std::vector<LfImageId> OrderThroughLens(const LightField& field, const RenderCamera& frame,
-                                        const std::map<uint32_t, ResidentImages::Image>& images,
-                                        size_t* inside_count) {
+using Resident = ResidentImages::Snapshot::Resident;
+
+// Returns the LF images that the frame takes, by ascending ids.
+//   most  largest number of LF images
+std::vector<Resident> ImagesThroughLens(const LightField& field,
+                                        const std::vector<Resident>& images,
+                                        const RenderCamera& frame, size_t most) {
   const Intrinsics& k = frame.pinhole.intrinsics;
   const std::optional<Vec3> focus = FocusPointOfElement(frame, 0.5 * k.width_px, 0.5 * k.height_px);
-  *inside_count = 0;
   if (!focus) return {};
-  std::vector<LfImageId> ids;
+  if (most >= images.size()) return images;
   std::vector<Vec2> points;
-  for (const auto& [id, image] : images) {
-    ids.push_back(LfImageId{id});
-    points.push_back(LensPointOfLine(frame, field.Camera(ids.back()).CentreWorld(), *focus));
-  }
-  const LensOrder order = OrderOverLens(points, frame.aperture.radius_w, points.size());
-  *inside_count = order.inside_count;
-  std::vector<LfImageId> ordered;
-  for (const size_t i : order.indices) ordered.push_back(ids[i]);
-  return ordered;
+  for (const Resident& one : images)
+    points.push_back(LensPointOfLine(frame, field.Camera(one.id).CentreWorld(), *focus));
+  const LensOrder order = OrderOverLens(points, frame.aperture.radius_w, most);
+  // LF images beside the lens get a share of it only if those through it are few.
+  const size_t count =
+      std::clamp(order.inside_count, std::min(LiveRenderer::kFewestImages, images.size()), most);
+  std::vector<Resident> taken;
+  for (size_t i = 0; i < count; ++i) taken.push_back(images[order.indices[i]]);
+  std::sort(taken.begin(), taken.end(),
+            [](const Resident& a, const Resident& b) { return a.id.value < b.id.value; });
+  return taken;
 }
 
 // Returns the light field of some LF images, given by ascending ids.
@@ -55,44 +64,34 @@ LightField FieldOf(const LightField& field, std::span<const LfImageId> ids) {
   return some;
 }
 
-// Moves LF images into a batch for collection, and back again at the end of its life.
-class BorrowedImages {
- public:
-  BorrowedImages(std::span<const LfImageId> ids, std::map<uint32_t, ResidentImages::Image>& images)
-      : batch_(ids.size()) {
-    for (uint32_t i = 0; i < ids.size(); ++i) owners_.push_back(&images.at(ids[i].value));
-    for (uint32_t i = 0; i < ids.size(); ++i) {
-      batch_[i].id = LfImageId{i};
-      batch_[i].place = i;
-      batch_[i].pixels = std::move(owners_[i]->pixels);
-      batch_[i].opacity = std::move(owners_[i]->opacity);
-    }
+// Returns the LF images [begin, end) for collection. Their ids are indices of `images`.
+std::vector<BatchImage> BatchOf(std::span<const Resident> images, size_t begin, size_t end) {
+  std::vector<BatchImage> batch(end - begin);
+  for (size_t i = begin; i < end; ++i) {
+    BatchImage& one = batch[i - begin];
+    one.id = LfImageId{static_cast<uint32_t>(i)};
+    one.place = one.id.value;
+    one.shared_pixels = &images[i].image->pixels;
+    one.shared_opacity = &images[i].image->opacity;
   }
-  ~BorrowedImages() {
-    for (size_t i = 0; i < batch_.size(); ++i) {
-      owners_[i]->pixels = std::move(batch_[i].pixels);
-      owners_[i]->opacity = std::move(batch_[i].opacity);
-    }
+  return batch;
+}
+
+// Collects the LF images into the frame. Once *interrupted is true, LF images are left out.
+//   field  light field of the LF images
+void CollectAll(const LightField& field, std::span<const Resident> images,
+                const CollectedFrame& frame, const std::atomic<bool>* interrupted,
+                ThreadPool& pool) {
+  RayReading reading(Estimator::kBilinear);
+  reading.filter = PixelFilter::kBilinear;
+  BatchCollector collector(field, std::span(&frame, 1), reading, CollectBackEnd::kFast, kPlanBytes,
+                           false, pool);
+  for (size_t begin = 0; begin < images.size(); begin += kTogether) {
+    std::vector<BatchImage> batch =
+        BatchOf(images, begin, std::min(begin + kTogether, images.size()));
+    std::vector<BatchFrame> frames = {{0, {}, false, {}}};
+    collector.Add(batch, frames, {}, true, interrupted);
   }
-  BorrowedImages(const BorrowedImages&) = delete;
-  BorrowedImages& operator=(const BorrowedImages&) = delete;
-
-  std::vector<BatchImage>& batch() { return batch_; }
-
- private:
-  std::vector<BatchImage> batch_;
-  std::vector<ResidentImages::Image*> owners_;
-};
-
-DevelopOptions DevelopOptionsOf(const RadianceEncoding& encoding) {
-  DevelopOptions develop;
-  develop.pedestal = encoding.pedestal;
-  develop.scale = encoding.Scale();
-  develop.white_balance = encoding.white_balance;
-  develop.linear_srgb_from_camera = encoding.linear_srgb_from_camera;
-  develop.transparent = LfPixels::kTransparent;
-  develop.opaque = LfPixels::kOpaque;
-  return develop;
 }
 
 }  // namespace
@@ -109,11 +108,7 @@ Result<LivePicture> LiveRenderer::Render(const RenderCamera& frame, const LiveWi
   if (wish.interrupted != nullptr && *wish.interrupted)
     return Error{ErrorKind::kInterrupted, "interrupted"};
   images_.Aim(frame);
-  LivePicture picture;
-  images_.Use([&](const LightField* field, std::map<uint32_t, ResidentImages::Image>& images) {
-    static const LightField kNone;
-    picture = RenderOf(frame, wish, field ? *field : kNone, images);
-  });
+  LivePicture picture = RenderOf(frame, wish, images_.TakeSnapshot());
   if (wish.interrupted != nullptr && *wish.interrupted)
     return Error{ErrorKind::kInterrupted, "interrupted"};
   return picture;
@@ -129,19 +124,23 @@ size_t LiveRenderer::CountFor(const RenderCamera& frame, const LiveWish& wish) c
 }
 
 LivePicture LiveRenderer::RenderOf(const RenderCamera& frame, const LiveWish& wish,
-                                   const LightField& field,
-                                   std::map<uint32_t, ResidentImages::Image>& images) {
+                                   std::shared_ptr<const ResidentImages::Snapshot> snapshot) {
   const Clock::time_point begin = Clock::now();
   LivePicture live;
-  size_t inside_count = 0;
-  std::vector<LfImageId> order = OrderThroughLens(field, frame, images, &inside_count);
-  live.takeable_count = order.size();
-  const size_t most = CountFor(frame, wish);
-  // LF images beside the lens get a share of it only if those through it are few.
-  if (most < order.size())
-    order.resize(std::clamp(inside_count, std::min(kFewestImages, order.size()), most));
-  std::sort(order.begin(), order.end());
-  live.images = std::move(order);
+  static const LightField kNone;
+  const std::shared_ptr<const LightField> kept = snapshot->field;
+  const LightField& field = kept ? *kept : kNone;
+  std::vector<Resident> recorded;
+  if (wish.recorded_only)
+    std::copy_if(snapshot->images.begin(), snapshot->images.end(), std::back_inserter(recorded),
+                 [&](const Resident& one) { return !field.cameras[one.id.value].is_virtual; });
+  const std::vector<Resident>& takeable = wish.recorded_only ? recorded : snapshot->images;
+  live.takeable_count = takeable.size();
+  const std::vector<Resident> images =
+      ImagesThroughLens(field, takeable, frame, CountFor(frame, wish));
+  recorded.clear();
+  snapshot = nullptr;  // LF images that the picture does not take may be forgotten
+  for (const Resident& one : images) live.images.push_back(one.id);
 
   const LightField some = FieldOf(field, live.images);
   const ImageIndex index(some);
@@ -153,14 +152,8 @@ LivePicture LiveRenderer::RenderOf(const RenderCamera& frame, const LiveWish& wi
   CollectedFrame collected = {lens.camera(), &live.plate};
   if (options_.lens_weights != LensWeights::kNone)
     collected.weights = [&](LfImageId id) { return lens.WeightsOf(id); };
-  RayReading reading(Estimator::kBilinear);
-  reading.filter = PixelFilter::kBilinear;
-  BatchCollector collector(some, std::span(&collected, 1), reading, CollectBackEnd::kFast,
-                           kPlanBytes, false, pool_);
-  BorrowedImages borrowed(live.images, images);
-  std::vector<BatchFrame> frames = {{0, {}, false, {}}};
   const Clock::time_point collecting = Clock::now();
-  collector.Add(borrowed.batch(), frames, {}, true, wish.interrupted);
+  CollectAll(some, images, collected, wish.interrupted, pool_);
   const double collect_s = SecondsSince(collecting);
   if (const auto facts = lens.facts()) live.uncovered_share = facts->coverage.uncovered_share;
   live.camera_distance_w = lens.camera_distance_w();

@@ -12,6 +12,7 @@
 #include <atomic>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -38,6 +39,7 @@ struct LiveWish {
   // Time for the picture. As many LF images are taken as were collected in this time before, at
   // least kFewestImages. Unset: all that are in memory.
   std::optional<double> budget_s;
+  bool recorded_only = false;  // true: virtual LF images are left out
   // Once it is true, Render() returns kInterrupted soon. Null: nothing interrupts.
   const std::atomic<bool>* interrupted = nullptr;
 };
@@ -68,15 +70,15 @@ class LiveRenderer {
 
   // Renders a frame of the LF images that are in memory, and loads those that it lacks from now on.
   // The picture is black as long as there are none. Several threads may call it; they wait for each
-  // other.
+  // other, but not for LF images that are being loaded.
   Result<LivePicture> Render(const RenderCamera& frame, const LiveWish& wish);
 
   ResidentImages& images() { return images_; }
   const ResidentImages& images() const { return images_; }
 
  private:
-  LivePicture RenderOf(const RenderCamera& frame, const LiveWish& wish, const LightField& field,
-                       std::map<uint32_t, ResidentImages::Image>& images);
+  LivePicture RenderOf(const RenderCamera& frame, const LiveWish& wish,
+                       std::shared_ptr<const ResidentImages::Snapshot> snapshot);
   size_t CountFor(const RenderCamera& frame, const LiveWish& wish) const;
 
   const LiveOptions options_;

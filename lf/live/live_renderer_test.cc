@@ -6,6 +6,7 @@
 #include "lf/render/collect/collect.h"
 #include "lf/render/collect/frame_lens.h"
 #include "lf/render/collect/test_noise_field.h"
+#include "lf/storage/load/demosaic.h"
 
 namespace lf {
 namespace {
@@ -20,27 +21,58 @@ RenderCamera Frame(int i, double element_px) {
   return WithPlateWidth(frame, static_cast<int>(70 / element_px), 1000);
 }
 
-// Serves shrunken LF images of noise.
+// Serves LF images of another store, shrunken.
 class ShrunkStore : public LfImageStore {
  public:
-  ShrunkStore(int divisor, std::vector<LfImageId> ids) : divisor_(divisor), ids_(std::move(ids)) {}
+  ShrunkStore(const LfImageStore& full, int divisor, std::vector<LfImageId> ids)
+      : full_(full), divisor_(divisor), ids_(std::move(ids)) {}
   Result<void> Load(LfImageId id, const PixelRect& /*rect*/, LfPixels* pixels) const override {
     LfPixels full;
     LF_RETURN_IF_ERROR(
-        NoiseStore().Load(ids_[id.value], {0, 0, testing::kWidth, testing::kHeight}, &full));
+        full_.Load(ids_[id.value], {0, 0, testing::kWidth, testing::kHeight}, &full));
     Shrink(full, divisor_, pixels);
     return {};
   }
 
  private:
+  const LfImageStore& full_;
   const int divisor_;
   const std::vector<LfImageId> ids_;
 };
 
+// Noise of which about a third is masked, in blocks of 5 x 5 pixels.
+class MaskedStore : public NoiseStore {
+ public:
+  Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override {
+    LF_RETURN_IF_ERROR(NoiseStore::Load(id, rect, pixels));
+    for (int y = rect.y_begin; y < rect.y_end; ++y)
+      for (int x = rect.x_begin; x < rect.x_end; ++x)
+        if (RandomUnit(17, id.value, static_cast<uint64_t>(y / 5 * 100 + x / 5)) < 0.3)
+          pixels->Mask(x - rect.x_begin, y - rect.y_begin);
+    return {};
+  }
+};
+
+// A mosaic of noise, converted to RGB.
+class MosaicStore : public NoiseStore {
+ public:
+  Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override {
+    const PixelRect whole = {0, 0, testing::kWidth, testing::kHeight};
+    LfPixels noise, mosaic(whole, BayerPattern::kGbrg);
+    LF_RETURN_IF_ERROR(NoiseStore::Load(id, whole, &noise));
+    for (int y = 0; y < testing::kHeight; ++y)
+      for (int x = 0; x < testing::kWidth; ++x)
+        mosaic.radiance.at(x, y) = noise.radiance.at(x, y, BayerChannel(mosaic.bayer, x, y));
+    Demosaic(mosaic, testing::kWidth, testing::kHeight, {2, 1, 1.5}, rect, pixels);
+    return {};
+  }
+};
+
 // Collects the frame as FilmRenderer does (FrameLens, SelectImages(), Collect()), of exactly these
 // LF images in batches of three.
-SensorPlate CollectedOf(const LightField& field, int divisor, const std::vector<LfImageId>& ids,
-                        const RenderCamera& frame, ThreadPool& pool) {
+SensorPlate CollectedOf(const LightField& field, const LfImageStore& store, int divisor,
+                        const std::vector<LfImageId>& ids, const RenderCamera& frame,
+                        ThreadPool& pool) {
   const LightField shrunk = ShrunkField(field, divisor);
   LightField some = shrunk;
   some.cameras.clear();
@@ -61,8 +93,39 @@ SensorPlate CollectedOf(const LightField& field, int divisor, const std::vector<
   const std::vector<SelectedImage> images =
       SelectImages(index, std::span(&taking, 1), select, pool);
   EXPECT_TRUE(
-      Collect(some, ShrunkStore(divisor, ids), {collected}, images, options, pool, nullptr));
+      Collect(some, ShrunkStore(store, divisor, ids), {collected}, images, options, pool, nullptr));
   return plate;
+}
+
+int ElementsWithRays(const SensorPlate& plate) {
+  int count = 0;
+  for (int y = 0; y < plate.height(); ++y)
+    for (int x = 0; x < plate.width(); ++x) count += plate.At(x, y, 0).count > 0 ? 1 : 0;
+  return count;
+}
+
+// Compares live pictures, quick and still ones, of the three frames with collected ones. Frame 1
+// has a pentagon as aperture, and frames 1 and 2 a tilted focus plane.
+void ExpectBitsOfCollected(const LightField& field, const LfImageStore& store, int threads,
+                           double element_px) {
+  const ImageIndex index(field);
+  ThreadPool pool(threads);
+  LiveRenderer live(index, store, {}, pool);
+  for (int i = 0; i < 3; ++i) {
+    SCOPED_TRACE(::testing::Message() << threads << " threads, " << element_px << ", frame " << i);
+    const RenderCamera frame = Frame(i, element_px);
+    ASSERT_TRUE(live.Render(frame, {}));
+    live.images().WaitUntilLoaded();
+    for (const std::optional<double>& budget_s : {std::optional<double>(), {1e-9}}) {
+      const Result<LivePicture> picture = live.Render(frame, {budget_s, false, nullptr});
+      ASSERT_TRUE(picture);
+      EXPECT_GE(picture->images.size(), LiveRenderer::kFewestImages);
+      const int divisor = live.images().status().divisor;
+      EXPECT_TRUE(picture->plate ==
+                  CollectedOf(field, store, divisor, picture->images, frame, pool));
+      EXPECT_GT(ElementsWithRays(picture->plate), picture->plate.width());
+    }
+  }
 }
 
 TEST(LiveRenderer, PicturesHaveTheBitsOfACollectedFrame) {
@@ -71,27 +134,28 @@ TEST(LiveRenderer, PicturesHaveTheBitsOfACollectedFrame) {
   bent.distortion = {DistortionModel::kRadialTangential, {-0.1, 0.02, 0.001}};
   field.intrinsics.push_back(bent);
   for (uint32_t i = 0; i < field.size(); i += 3) field.cameras[i].intrinsics_index = 1;
-  const ImageIndex index(field);
-  const NoiseStore store;
-  for (const int threads : {1, 2, 3}) {
-    ThreadPool pool(threads);
-    LiveRenderer live(index, store, {}, pool);
+  for (const int threads : {1, 2, 3})
     for (const double element_px : {1.0, 1.9, 3.3})
-      for (int i = 0; i < 3; ++i) {
-        const RenderCamera frame = Frame(i, element_px);
-        ASSERT_TRUE(live.Render(frame, {}));
-        live.images().WaitUntilLoaded();
-        for (const std::optional<double>& budget_s : {std::optional<double>(), {1e-9}}) {
-          const Result<LivePicture> picture = live.Render(frame, {budget_s, nullptr});
-          ASSERT_TRUE(picture);
-          EXPECT_GE(picture->images.size(), LiveRenderer::kFewestImages);
-          const int divisor = live.images().status().divisor;
-          EXPECT_TRUE(picture->plate == CollectedOf(field, divisor, picture->images, frame, pool))
-              << threads << " " << element_px << " " << i;
-          EXPECT_GT(picture->plate.At(frame.pinhole.intrinsics.width_px / 2, 3, 0).count, 0U);
-        }
-      }
+      ExpectBitsOfCollected(field, NoiseStore(), threads, element_px);
+}
+
+TEST(LiveRenderer, MasksMosaicsAndCamerasInTheLensPlaneHaveTheBitsOfACollectedFrame) {
+  LightField field = testing::NoiseField();
+  for (const double element_px : {1.0, 3.3})
+    ExpectBitsOfCollected(field, MaskedStore(), 2, element_px);
+  // All LF cameras stand in the lens plane of frame 0, one of them in the middle of its lens.
+  LightField flat = field;
+  for (uint32_t i = 0; i < flat.size(); ++i) {
+    Vec3 centre = field.Camera(LfImageId{i}).CentreWorld();
+    centre.z() = 0;
+    flat.cameras[i].cam_from_world = *LookAlong(centre, {0, 0.02, 1}, {0, -1, 0});
   }
+  flat.cameras[24].cam_from_world = *LookAlong({0, 0, 0}, {0, 0, 1}, {0, -1, 0});
+  ExpectBitsOfCollected(flat, NoiseStore(), 2, 1.9);
+  field.encoding.bayer = BayerPattern::kGbrg;
+  field.encoding.white_balance = {2, 1, 1.5};
+  for (const double element_px : {1.0, 1.9})
+    ExpectBitsOfCollected(field, MosaicStore(), 2, element_px);
 }
 
 TEST(LiveRenderer, ShortTimeTakesFewImagesAndMoreTimeAll) {
@@ -103,8 +167,8 @@ TEST(LiveRenderer, ShortTimeTakesFewImagesAndMoreTimeAll) {
   const RenderCamera frame = Frame(0, 1);
   ASSERT_TRUE(live.Render(frame, {}));
   live.images().WaitUntilLoaded();
-  const Result<LivePicture> quick = live.Render(frame, {1e-9, nullptr});
-  const Result<LivePicture> slow = live.Render(frame, {100.0, nullptr});
+  const Result<LivePicture> quick = live.Render(frame, {1e-9, false, nullptr});
+  const Result<LivePicture> slow = live.Render(frame, {100.0, false, nullptr});
   const Result<LivePicture> still = live.Render(frame, {});
   ASSERT_TRUE(quick && slow && still);
   EXPECT_EQ(quick->images.size(), LiveRenderer::kFewestImages);
@@ -113,6 +177,27 @@ TEST(LiveRenderer, ShortTimeTakesFewImagesAndMoreTimeAll) {
   EXPECT_GT(still->takeable_count, 100U);
   EXPECT_GT(quick->camera_distance_w, 1.5 * still->camera_distance_w);
   EXPECT_LE(still->uncovered_share, quick->uncovered_share);
+}
+
+TEST(LiveRenderer, VirtualImagesCanBeLeftOut) {
+  LightField field = testing::NoiseField();
+  for (uint32_t i = 0; i < field.size(); i += 2) field.cameras[i].is_virtual = true;
+  const ImageIndex index(field);
+  const NoiseStore store;
+  ThreadPool pool(2);
+  LiveRenderer live(index, store, {}, pool);
+  const RenderCamera frame = Frame(0, 1.9);
+  ASSERT_TRUE(live.Render(frame, {}));
+  live.images().WaitUntilLoaded();
+  const Result<LivePicture> all = live.Render(frame, {});
+  const Result<LivePicture> recorded = live.Render(frame, {{}, true, nullptr});
+  ASSERT_TRUE(all && recorded);
+  EXPECT_GT(recorded->images.size(), all->images.size() / 3);
+  EXPECT_LT(recorded->images.size(), all->images.size());
+  EXPECT_EQ(recorded->takeable_count, recorded->images.size());
+  for (const LfImageId id : recorded->images) EXPECT_FALSE(field.cameras[id.value].is_virtual);
+  EXPECT_TRUE(recorded->plate == CollectedOf(field, store, live.images().status().divisor,
+                                             recorded->images, frame, pool));
 }
 
 TEST(LiveRenderer, WithoutImagesThePictureIsBlack) {
@@ -143,7 +228,7 @@ TEST(LiveRenderer, InterruptedPicturesAreErrorsAndLoseNothing) {
   live.images().WaitUntilLoaded();
   const Result<LivePicture> before = live.Render(frame, {});
   const std::atomic<bool> interrupted = true;
-  const Result<LivePicture> none = live.Render(frame, {{}, &interrupted});
+  const Result<LivePicture> none = live.Render(frame, {{}, false, &interrupted});
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().kind, ErrorKind::kInterrupted);
   EXPECT_TRUE(live.Render(frame, {})->plate == before->plate);

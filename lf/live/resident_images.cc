@@ -34,11 +34,13 @@ bool SeeAlike(const RenderCamera& a, const RenderCamera& b) {
 }  // namespace
 
 ResidentImages::ResidentImages(const ImageIndex& index, const LfImageStore& store,
-                               size_t memory_bytes, int threads, std::function<void()> changed)
+                               size_t memory_bytes, int threads, std::function<void()> changed,
+                               double retry_s)
     : index_(index),
       store_(store),
       memory_bytes_(memory_bytes),
       changed_(std::move(changed)),
+      retry_after_(retry_s),
       pool_(threads),
       thread_([this] { Run(); }) {}
 
@@ -54,15 +56,20 @@ ResidentImages::~ResidentImages() {
 void ResidentImages::Aim(const RenderCamera& frame) {
   const std::lock_guard lock(mutex_);
   const std::optional<RenderCamera>& current = aim_ ? aim_ : last_;
-  if (current && SeeAlike(*current, frame)) return;
+  const bool retries = !status_.first_broken.empty() && Clock::now() - failed_at_ >= retry_after_;
+  if (current && SeeAlike(*current, frame) && !retries) return;
   aim_ = frame;
   news_.notify_all();
 }
 
-void ResidentImages::Use(
-    const std::function<void(const LightField*, std::map<uint32_t, Image>&)>& use) {
+std::shared_ptr<const ResidentImages::Snapshot> ResidentImages::TakeSnapshot() const {
   const std::lock_guard lock(images_mutex_);
-  use(field_ ? &*field_ : nullptr, images_);
+  if (snapshot_) return snapshot_;
+  Snapshot snapshot = {field_, {}};
+  snapshot.images.reserve(images_.size());
+  for (const auto& [id, image] : images_) snapshot.images.push_back({LfImageId{id}, image});
+  snapshot_ = std::make_shared<const Snapshot>(std::move(snapshot));
+  return snapshot_;
 }
 
 ResidentImages::Status ResidentImages::status() const {
@@ -91,18 +98,33 @@ void ResidentImages::Run() {
     try {
       LoadFor(frame);
     } catch (const std::exception& error) {  // such as lack of memory
-      Tell([&](Status* status) { status->first_broken = error.what(); });
+      Tell([&](Status* status) {
+        status->first_broken = error.what();
+        failed_at_ = Clock::now();
+      });
     }
   }
+}
+
+// Returns true if LF images that could not be loaded are to be tried again now.
+bool ResidentImages::TakesRetry() {
+  const std::lock_guard lock(mutex_);
+  if (Clock::now() - failed_at_ < retry_after_) return false;
+  failed_at_ = Clock::now();  // if they fail again, or another frame comes first
+  return true;
 }
 
 void ResidentImages::LoadFor(const RenderCamera& frame) {
   UseDivisor(DivisorFor(index_, frame, field_ ? status().divisor : 0));
   const Wanted wanted = WantedBy(frame);
+  const bool retries = TakesRetry();
   std::vector<LfImageId> missing;
   for (const LfImageId id : wanted.ids)
-    if (!images_.contains(id.value) && !broken_.contains(id.value)) missing.push_back(id);
+    if (!images_.contains(id.value) && (retries || !broken_.contains(id.value)))
+      missing.push_back(id);
   Tell([&](Status* status) {
+    status->first_broken = broken_.empty() ? "" : broken_.begin()->second;
+    status->needed_count = wanted.needed_count;
     status->wanted_count = wanted.ids.size();
     status->wanted_done_count = wanted.ids.size() - missing.size();
   });
@@ -115,29 +137,40 @@ void ResidentImages::LoadFor(const RenderCamera& frame) {
     LoadSome(wanted, {missing.begin() + static_cast<ptrdiff_t>(begin),
                       missing.begin() + static_cast<ptrdiff_t>(begin + count)});
   }
+  const std::lock_guard lock(mutex_);
+  spare_.clear();
 }
 
 // Begins anew if the divisor changes.
 void ResidentImages::UseDivisor(int divisor) {
   if (field_ && divisor == status().divisor) return;
+  auto field = std::make_shared<const LightField>(ShrunkField(index_.light_field(), divisor));
+  for (const auto& [id, image] : images_) forgotten_.push_back(image);
   {
     const std::lock_guard lock(images_mutex_);
+    snapshot_ = nullptr;
     images_.clear();
-    field_ = ShrunkField(index_.light_field(), divisor);
+    field_ = std::move(field);
   }
   Tell([&](Status* status) {
     status->divisor = divisor;
+    status->image_bytes = ImageBytes();
     status->resident_count = status->wanted_done_count = 0;
   });
 }
 
-size_t ResidentImages::Capacity() const {
+// Returns the memory of the largest LF image.
+size_t ResidentImages::ImageBytes() const {
   size_t image_bytes = 1;
   for (const Intrinsics& k : field_->intrinsics)
     image_bytes = std::max(image_bytes, static_cast<size_t>(k.width_px) * k.height_px *
                                             LfPixels::kRgbLanes * sizeof(uint16_t));
   if (field_->encoding.HasOpacity()) image_bytes *= 2;
-  return std::max<size_t>(1, memory_bytes_ / image_bytes);
+  return image_bytes;
+}
+
+size_t ResidentImages::Capacity() const {
+  return std::max<size_t>(1, memory_bytes_ / ImageBytes());
 }
 
 ResidentImages::Wanted ResidentImages::WantedBy(const RenderCamera& frame) {
@@ -156,6 +189,7 @@ ResidentImages::Wanted ResidentImages::WantedBy(const RenderCamera& frame) {
   select.interrupted = &is_ending_;
   std::vector<SelectedImage> images = SelectImages(index_, std::span(&wider, 1), select, pool_);
   if (is_ending_) return wanted;
+  wanted.needed_count = images.size();
   const auto rest = std::stable_partition(images.begin(), images.end(), [&](const auto& image) {
     return images_.contains(image.id.value);
   });
@@ -181,7 +215,7 @@ void ResidentImages::LoadSome(const Wanted& wanted, const std::vector<LfImageId>
   std::vector<Result<Image>> loaded(some.size(), Result<Image>(Image()));
   const int divisor = status().divisor;
   pool_.ForEach(some.size(), [&](size_t i) {
-    LfPixels pixels;
+    LfPixels pixels = TakeSpare();
     const Result<int> reduced =
         LoadReducedWithoutThrowing(store_, some[i], divisor, field.Camera(some[i]).intrinsics,
                                    field.image_names[some[i].value], &pixels);
@@ -191,32 +225,69 @@ void ResidentImages::LoadSome(const Wanted& wanted, const std::vector<LfImageId>
     }
     Shrink(pixels, divisor / *reduced, &loaded[i]->pixels);
     loaded[i]->opacity = loaded[i]->pixels.TakeOpacity();
+    const std::lock_guard lock(mutex_);
+    spare_.push_back(std::move(pixels));
   });
-  std::string error;
-  {
-    const std::lock_guard lock(images_mutex_);
-    for (size_t i = 0; i < some.size(); ++i) {
-      if (loaded[i]) {
-        MakeRoom(wanted);
-        images_[some[i].value] = *std::move(loaded[i]);
-      } else {
-        broken_.insert(some[i].value);
-        error = loaded[i].error().message;
-      }
+  MakeRoom(wanted, some.size());
+  WaitForForgotten();
+  bool has_failed = false;
+  for (size_t i = 0; i < some.size(); ++i) {
+    if (!loaded[i]) {
+      broken_[some[i].value] = loaded[i].error().message;
+      has_failed = true;
+      continue;
     }
+    broken_.erase(some[i].value);
+    auto image = std::make_shared<const Image>(*std::move(loaded[i]));
+    const std::lock_guard lock(images_mutex_);
+    snapshot_ = nullptr;
+    images_[some[i].value] = std::move(image);
   }
   Tell([&](Status* status) {
     status->wanted_done_count += some.size();
     status->resident_count = images_.size();
     status->broken_count = broken_.size();
-    if (status->first_broken.empty()) status->first_broken = error;
+    status->first_broken = broken_.empty() ? "" : broken_.begin()->second;
+    if (has_failed) failed_at_ = Clock::now();
   });
 }
 
-// Forgets LF images that are not wanted until there is room for one more.
-void ResidentImages::MakeRoom(const Wanted& wanted) {
-  for (auto image = images_.begin(); images_.size() >= Capacity() && image != images_.end();)
-    image = wanted.set.contains(image->first) ? std::next(image) : images_.erase(image);
+// Returns memory for an LF image in full size. New memory for each of them would leave holes
+// between the shrunken ones, which took as much memory again.
+LfPixels ResidentImages::TakeSpare() {
+  const std::lock_guard lock(mutex_);
+  if (spare_.empty()) return {};
+  LfPixels pixels = std::move(spare_.back());
+  spare_.pop_back();
+  return pixels;
+}
+
+// Forgets LF images that are not wanted until there is room for `count` more.
+void ResidentImages::MakeRoom(const Wanted& wanted, size_t count) {
+  const size_t capacity = Capacity();
+  const std::lock_guard lock(images_mutex_);
+  snapshot_ = nullptr;
+  for (auto image = images_.begin(); images_.size() + count > capacity && image != images_.end();) {
+    if (wanted.set.contains(image->first)) {
+      ++image;
+      continue;
+    }
+    forgotten_.push_back(image->second);
+    image = images_.erase(image);
+  }
+}
+
+// Waits until snapshots hold at most an eighth as many forgotten LF images as there is room for.
+void ResidentImages::WaitForForgotten() {
+  constexpr size_t kForgottenShare = 8;
+  constexpr auto kPause = std::chrono::milliseconds(5);
+  const size_t most = Capacity() / kForgottenShare;
+  std::unique_lock lock(mutex_);
+  while (!is_ending_) {
+    std::erase_if(forgotten_, [](const auto& image) { return image.expired(); });
+    if (forgotten_.size() <= most) return;
+    news_.wait_for(lock, kPause);
+  }
 }
 
 void ResidentImages::Tell(const std::function<void(Status*)>& change) {

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -32,18 +34,30 @@ class ResidentImages {
     LfPixels pixels;
     LfPixels opacity;  // LfPixels::TakeOpacity() of the pixels
   };
+  // The LF images that are in memory at one moment. Whoever holds one of them keeps it in memory,
+  // even if it is forgotten here.
+  struct Snapshot {
+    struct Resident {
+      LfImageId id;  // in `field`
+      std::shared_ptr<const Image> image;
+    };
+    // The shrunken light field (ShrunkField()); null before the first LF image.
+    std::shared_ptr<const LightField> field;
+    std::vector<Resident> images;  // by ascending ids
+  };
   struct Status {
     size_t resident_count = 0;  // LF images in memory
-    // LF images that the frame of the last Aim() needs, as many as memory has room for; 0 until
-    // they are known
+    size_t needed_count = 0;    // LF images that the frame of the last Aim() needs
+    // Number of these for which memory has room. Both numbers are 0 until they are known.
     size_t wanted_count = 0;
-    size_t wanted_done_count = 0;  // those of them that are in memory or broken
+    size_t wanted_done_count = 0;  // number of those that are in memory or broken
     size_t broken_count = 0;       // LF images that could not be loaded
     // The error of one of them, or why loading ended early, such as lack of memory; "" if there is
-    // none.
+    // none. It is "" again once loading has succeeded.
     std::string first_broken;
-    int divisor = 0;       // of ShrunkField(); 0 until it is known
-    uint64_t version = 0;  // differs whenever any other number differs
+    int divisor = 0;         // of ShrunkField(); 0 until it is known
+    size_t image_bytes = 0;  // memory of an LF image; 0 until the divisor is known
+    uint64_t version = 0;    // differs whenever any other number differs
   };
 
   //   index, store  of the whole light field; must outlive this object. The store must load RGB
@@ -51,42 +65,48 @@ class ResidentImages {
   //   memory_bytes  bounds the memory of the shrunken LF images; at least one is kept. While LF
   //                 images are loaded, each of the threads has one more in full size
   //   threads       as ThreadPool
+  //   retry_s       time from a failure to load until Aim() tries again, because some failures
+  //                 pass: lack of memory, a disk that was not mounted
   //   changed       called after the status has changed, by any thread; may be empty
   ResidentImages(const ImageIndex& index, const LfImageStore& store, size_t memory_bytes,
-                 int threads, std::function<void()> changed = {});
+                 int threads, std::function<void()> changed = {}, double retry_s = 5);
   ~ResidentImages();  // stops loading
   ResidentImages(const ResidentImages&) = delete;
   ResidentImages& operator=(const ResidentImages&) = delete;
 
   // Loads the LF images of this frame from now on: those whose rays pass through its lens, or
   // somewhat beside it, in the order of OrderOverLens(). If there are too many for the memory,
-  // those that are loaded already are preferred. Returns at once.
+  // those that are loaded already are preferred. LF images that could not be loaded are tried again
+  // after retry_s. Returns at once.
   void Aim(const RenderCamera& frame);
 
-  // Calls use(field, images), during which nothing is added to or removed from the LF images in
-  // memory.
-  //   field   the shrunken light field (ShrunkField()); null before the first LF image
-  //   images  LF images in memory, by their ids in the light field. use() may move pixels out of
-  //           them, and must put them back
-  void Use(
-      const std::function<void(const LightField* field, std::map<uint32_t, Image>& images)>& use);
+  // Does not wait for LF images that are being loaded, and does not keep others from being loaded.
+  // The bound of the memory is exceeded by at most an eighth for LF images that are forgotten
+  // while snapshots hold them: loading then waits until they are let go.
+  std::shared_ptr<const Snapshot> TakeSnapshot() const;  // is never null
 
   Status status() const;
   // Waits until all LF images that the last Aim() wants are in memory or broken.
   void WaitUntilLoaded();
 
  private:
+  using Clock = std::chrono::steady_clock;
   struct Wanted {
     std::vector<LfImageId> ids;  // in the order in which they are loaded
     std::set<uint32_t> set;      // the same ids
+    size_t needed_count = 0;     // Status::needed_count
   };
   void Run();
   void LoadFor(const RenderCamera& frame);
+  bool TakesRetry();
   void UseDivisor(int divisor);
   Wanted WantedBy(const RenderCamera& frame);
   bool HasNews() const;
   void LoadSome(const Wanted& wanted, const std::vector<LfImageId>& some);
-  void MakeRoom(const Wanted& wanted);
+  LfPixels TakeSpare();
+  void MakeRoom(const Wanted& wanted, size_t count);
+  void WaitForForgotten();
+  size_t ImageBytes() const;
   size_t Capacity() const;
   void Tell(const std::function<void(Status*)>& change);
 
@@ -94,18 +114,26 @@ class ResidentImages {
   const LfImageStore& store_;
   const size_t memory_bytes_;
   const std::function<void()> changed_;
+  const std::chrono::duration<double> retry_after_;
   ThreadPool pool_;
 
-  std::mutex images_mutex_;  // guards the next two members while use() runs; the loader writes them
-  std::optional<LightField> field_;
-  std::map<uint32_t, Image> images_;
-  std::set<uint32_t> broken_;  // only the loader uses it
+  // Held while the loader changes the next three members, or while another thread reads them.
+  mutable std::mutex images_mutex_;
+  std::shared_ptr<const LightField> field_;
+  std::map<uint32_t, std::shared_ptr<const Image>> images_;
+  // Made by TakeSnapshot(); null again once the members above have changed.
+  mutable std::shared_ptr<const Snapshot> snapshot_;
+  // The members up to mutex_ are only for the loader.
+  std::vector<std::weak_ptr<const Image>> forgotten_;  // some may still be in snapshots
+  std::map<uint32_t, std::string> broken_;  // errors of LF images that could not be loaded
 
   mutable std::mutex mutex_;  // guards the members below, except thread_
   std::condition_variable news_;
   std::optional<RenderCamera> aim_;   // the newest frame of Aim() until the loader takes it
   std::optional<RenderCamera> last_;  // the frame that the loader has taken last
   bool is_loading_ = false;
+  std::vector<LfPixels> spare_;  // memory for LF images in full size
+  Clock::time_point failed_at_;  // time of the last failure to load
   std::atomic<bool> is_ending_ = false;
   Status status_;
   std::thread thread_;

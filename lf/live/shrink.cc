@@ -68,7 +68,9 @@ void Shrink(const LfPixels& pixels, int divisor, LfPixels* shrunken) {
 
 int DivisorFor(const ImageIndex& index, const RenderCamera& frame, int current) {
   constexpr size_t kMeasured = 32;
-  constexpr double kNarrowest_px = 0.5;
+  // Elements may become narrower or wider than this before the divisor changes, because all LF
+  // images must then be loaded again: a drag of the focus should not do it.
+  constexpr double kNarrowest_px = 0.5, kWidest_px = 1.3 * kFinerAtMost;
   const std::vector<LfImageId> around = CamerasAroundLens(index, frame);
   if (around.empty()) return std::max(1, current);
   std::vector<double> widths_px;
@@ -76,7 +78,7 @@ int DivisorFor(const ImageIndex& index, const RenderCamera& frame, int current) 
   for (size_t i = 0; i < around.size(); i += step)
     widths_px.push_back(ElementWidth_px(index.light_field().Camera(around[i]), frame));
   const double width_px = Median(std::move(widths_px));
-  if (current > 0 && width_px / current <= kFinerAtMost && width_px / current >= kNarrowest_px)
+  if (current > 0 && width_px / current <= kWidest_px && width_px / current >= kNarrowest_px)
     return current;
   constexpr double kRounding = 1e-3;
   const int least = std::max(1, static_cast<int>(std::ceil(width_px / kFinerAtMost - kRounding)));

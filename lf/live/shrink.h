@@ -25,8 +25,9 @@ void Shrink(const LfPixels& pixels, int divisor, LfPixels* shrunken);
 // kFinerAtMost pixels wide (collection/prefilter/prefilter.h), because wider elements need several
 // samples. Even divisors let JPEG files be decoded at a half, a quarter or an eighth of their size
 // (LfImageStore::LoadReduced()). Measured in some of the LF cameras around the lens.
-//   current  is returned instead if elements are also narrow enough with it, and at least half a
-//            pixel wide, so that a moving camera does not change the divisor all the time; 0: none
+//   current  is returned instead if elements are at least half a pixel wide with it, and at most
+//            1.3 times kFinerAtMost pixels, so that a moving camera or focus does not change the
+//            divisor all the time; 0: none
 int DivisorFor(const ImageIndex& index, const RenderCamera& frame, int current);
 
 // Returns the render camera with a plate of another resolution for the same picture. The plate is

@@ -78,6 +78,11 @@ TEST(Shrink, ElementsAreAboutAPixelWide) {
   EXPECT_EQ(DivisorFor(index, frame, 3), 3);  // the current one still suits
   EXPECT_EQ(DivisorFor(index, frame, 1), 2);
   EXPECT_EQ(DivisorFor(index, frame, 9), 2);
+  // Elements become a little wider, and then much wider.
+  const RenderCamera wider = WithPlateWidth(testing::NoiseFrames()[0], 52, 1000);
+  EXPECT_EQ(DivisorFor(index, wider, 0), 2);
+  EXPECT_EQ(DivisorFor(index, wider, 1), 1);
+  EXPECT_EQ(DivisorFor(index, WithPlateWidth(testing::NoiseFrames()[0], 40, 1000), 1), 2);
 }
 
 TEST(Shrink, PlatesKeepThePictureWithinTheLimits) {

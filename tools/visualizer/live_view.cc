@@ -28,29 +28,11 @@ Json LoadingJson(const ResidentImages::Status& status) {
           {"broken", status.broken_count}};
 }
 
-// Returns the length of the JSON text, the text, and the picture, which begins at a multiple of 4
-// bytes.
-std::string BytesOf(const LivePicture& live, const ResidentImages::Status& status) {
-  Json json = LoadingJson(status);
-  json["images"] = live.images.size();
-  json["takeable"] = live.takeable_count;
-  json["first_broken"] = status.first_broken;
-  json["divisor"] = status.divisor;
-  json["uncovered_share"] = live.uncovered_share;
-  json["camera_distance"] = live.camera_distance_w;
-  json["render_ms"] = 1e3 * live.render_s;
-  std::string text = RecordLine(json);
-  text.resize((text.size() + 3) / 4 * 4, ' ');
-  const auto length = static_cast<uint32_t>(text.size());
-  std::string bytes(sizeof(length), '\0');
-  std::memcpy(bytes.data(), &length, sizeof(length));
-  return bytes + text + PictureBytes(PictureOf(live.picture, kLongestSide_px));
-}
-
 }  // namespace
 
 LiveView::LiveView(PageScene& scene, size_t memory_bytes)
     : scene_(scene),
+      memory_bytes_(memory_bytes),
       pool_(scene.arguments().threads),
       renderer_(scene.index(), scene.store(), OptionsOf(scene.arguments(), memory_bytes), pool_,
                 [this] { Tell(); }) {}
@@ -70,15 +52,39 @@ std::atomic<bool>* LiveView::BreakOffStillPictures(bool is_still) {
   return is_still ? &still_.emplace_back(false) : nullptr;
 }
 
-PageAnswer LiveView::Answer(const RenderCamera& frame, std::optional<double> budget_s) {
+// Returns the length of the JSON text, the text, and the picture, which begins at a multiple of 4
+// bytes.
+std::string LiveView::BytesOf(const LivePicture& live) const {
+  const ResidentImages::Status status = renderer_.images().status();
+  Json json = LoadingJson(status);
+  json["images"] = live.images.size();
+  json["needed"] = status.needed_count;
+  json["image_bytes"] = status.image_bytes;
+  json["memory_bytes"] = memory_bytes_;
+  json["takeable"] = live.takeable_count;
+  json["first_broken"] = status.first_broken;
+  json["divisor"] = status.divisor;
+  json["uncovered_share"] = live.uncovered_share;
+  json["camera_distance"] = live.camera_distance_w;
+  json["render_ms"] = 1e3 * live.render_s;
+  std::string text = RecordLine(json);
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const auto length = static_cast<uint32_t>(text.size());
+  std::string bytes(sizeof(length), '\0');
+  std::memcpy(bytes.data(), &length, sizeof(length));
+  return bytes + text + PictureBytes(PictureOf(live.picture, kLongestSide_px));
+}
+
+PageAnswer LiveView::Answer(const RenderCamera& frame, std::optional<double> budget_s,
+                            bool recorded_only) {
   std::atomic<bool>* const flag = BreakOffStillPictures(!budget_s);
-  const Result<LivePicture> live = renderer_.Render(frame, {budget_s, flag});
+  const Result<LivePicture> live = renderer_.Render(frame, {budget_s, recorded_only, flag});
   if (flag != nullptr) {
     const std::lock_guard lock(mutex_);
     still_.remove_if([&](const std::atomic<bool>& one) { return &one == flag; });
   }
   if (!live) return {200, "application/json", RecordLine({{"superseded", true}})};
-  return {200, "application/octet-stream", BytesOf(*live, renderer_.images().status())};
+  return {200, "application/octet-stream", BytesOf(*live)};
 }
 
 }  // namespace lf

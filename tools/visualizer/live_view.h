@@ -6,6 +6,7 @@
 #include <list>
 #include <mutex>
 #include <optional>
+#include <string>
 
 #include "tools/visualizer/page_answers.h"
 #include "tools/visualizer/page_scene.h"
@@ -24,15 +25,19 @@ class LiveView {
   LiveView(PageScene& scene, size_t memory_bytes);
 
   // Answers with a picture of the frame (doc/formats/page_data.md, POST live).
-  //   budget_s  LiveWish::budget_s. A picture without a budget is a still one: it is broken off by
+  //   budget_s, recorded_only  as in LiveWish. A picture without a budget is a still one: it is
+  //   broken off by
   //             the next call, and then answered with {"superseded": true}
-  PageAnswer Answer(const RenderCamera& frame, std::optional<double> budget_s);
+  PageAnswer Answer(const RenderCamera& frame, std::optional<double> budget_s, bool recorded_only);
 
  private:
   void Tell();
   std::atomic<bool>* BreakOffStillPictures(bool is_still);
 
+  std::string BytesOf(const LivePicture& live) const;
+
   PageScene& scene_;
+  const size_t memory_bytes_;
   ThreadPool pool_;  // separate, so that the page's answers do not wait for pictures
   std::mutex mutex_;
   // For each still picture that is waited for, a flag that breaks it off. Guarded by mutex_.

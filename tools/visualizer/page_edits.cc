@@ -102,7 +102,8 @@ PageAnswer ShowLive(PageScene& scene, LiveView& live, const Json& json) {
   const int width_px = static_cast<int>(std::min<double>(width, kLongestLiveSide_px));
   std::optional<double> budget_s;
   if (budget_ms >= 0) budget_s = budget_ms / 1000;
-  return live.Answer(WithPlateWidth(path->Camera(*frame), width_px, kLongestLiveSide_px), budget_s);
+  return live.Answer(WithPlateWidth(path->Camera(*frame), width_px, kLongestLiveSide_px), budget_s,
+                     IsTrue(json, "recorded"));
 }
 
 PageAnswer PickFocus(PageScene& scene, const Json& json) {

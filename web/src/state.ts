@@ -59,6 +59,7 @@ export class State {
   history!: History;
   invalid: string | null = null; // why the text is no valid path; null if it is valid
   isPlaying = false;
+  addsKeys = false; // PathDocument.addsKeys of all edits
   isLive = false; // true while the live picture is shown
   isDark = true;
 
@@ -151,6 +152,7 @@ export class State {
   //   merge  true: this edit and the previous one with the same label are one undo step
   // Returns false, and shows the error, if `change` threw.
   edit(label: string, change: (document: PathDocument) => void, merge = false): boolean {
+    this.document.addsKeys = this.addsKeys;
     try {
       change(this.document);
     } catch (error) {

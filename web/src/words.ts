@@ -38,6 +38,19 @@ export function millimetres(value: number, unit_m: number): string {
   return `${precise(value * unit_m * 1000, 3)} mm`;
 }
 
+// Returns a number of bytes as options of the programs expect it, rounded up: "512M".
+export function byteSize(count: number): string {
+  const isLarge = count >= 1024 ** 3;
+  const unit = 1024 ** (isLarge ? 3 : 2);
+  const size = isLarge ? Math.ceil((10 * count) / unit) / 10 : Math.ceil(count / unit);
+  return `${size}${isLarge ? "G" : "M"}`;
+}
+
+// Returns a number of bytes for people, rounded up: "512 MiB".
+export function bytes(count: number): string {
+  return byteSize(count).replace(/[MG]$/, " $&iB");
+}
+
 export function vector(v: readonly number[]): string {
   return v.map((x) => precise(Math.abs(x) < 1e-9 ? 0 : x, 4)).join(", ");
 }

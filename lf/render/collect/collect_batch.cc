@@ -102,10 +102,10 @@ void BatchCollector::Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>
     frame_bytes +=
         exposure_count() * PlanBytes(reading_.estimator,
                                      light_field_.Camera(image.id).intrinsics.has_distortion(),
-                                     image.pixels.rect.width(), image.pixels.rect.height(),
+                                     image.Pixels().rect.width(), image.Pixels().rect.height(),
                                      frames_[0].plate->width(), frames_[0].plate->height());
     if (is_guarded() && !light_field_.cameras[image.id.value].is_virtual)
-      frame_bytes += DefocusBytes(image.pixels.rect);
+      frame_bytes += DefocusBytes(image.Pixels().rect);
   }
   const size_t most = std::max<size_t>(1, plan_bytes_ / frame_bytes);
   for (size_t begin = 0, count = 0; begin < takers.size(); begin += count) {
@@ -189,7 +189,7 @@ void BatchCollector::UndoDistortion(std::vector<BatchImage>& batch) {
           light_field_.intrinsics[index].has_distortion()
               ? MakeIdealCells(light_field_.intrinsics[index])
               : std::vector<IdealCell>());
-    if (!image.filtered_by) image.loaded = image.pixels.rect;
+    if (!image.filtered_by) image.loaded = image.Pixels().rect;
     image.cells = shared;
     image.ideal_pixels = ideal_pixels_.Of(index);
     image.overlap.emplace(light_field_.Camera(image.id), *image.cells, ReachOf(reading_));
@@ -378,14 +378,14 @@ void BatchCollector::AddByReference(const std::vector<BatchImage>& batch, BatchF
   const Exposure exposure = ExposureOf(frame->frame, 0);
   for (const BatchImage& image : batch) {
     if (!frame->places.Holds(image.place)) continue;
-    if (is_guarded() && AddChannelsByReference(image, image.pixels, ExposureOf(frame->frame, 1), 3,
-                                               SensorPlate::kAllRaysChannel, &plate) > 0)
+    if (is_guarded() && AddChannelsByReference(image, image.Pixels(), ExposureOf(frame->frame, 1),
+                                               3, SensorPlate::kAllRaysChannel, &plate) > 0)
       frame->rays.virtual_count += IsVirtual(image.id) ? 1 : 0;
     const PixelRect rect = RectOf(image, exposure.camera);
     if (rect.empty() || WeightsOf(exposure, image.id).are_none()) continue;
-    const uint64_t accepted = CollectByReference(image, image.pixels, exposure, &plate);
+    const uint64_t accepted = CollectByReference(image, image.Pixels(), exposure, &plate);
     if (plate.has_opacity())
-      AddChannelsByReference(image, image.opacity, exposure, 1, SensorPlate::kOpacityChannel,
+      AddChannelsByReference(image, image.Opacity(), exposure, 1, SensorPlate::kOpacityChannel,
                              &plate);
     if (is_guarded())
       AddChannelsByReference(image, DefocusIn(frame->frame, image, {}), exposure, 1,

@@ -70,6 +70,10 @@ struct BatchImage {
   // opacity of these pixels (LfPixels::TakeOpacity()); only used by plates with opacity
   LfPixels opacity = {};
   NearbyDepths depths = {};  // of a recorded LF image; only used by guarded plates
+  // Pixels and their opacity that others own and may read at the same time, instead of `pixels` and
+  // `opacity`. BatchCollector::Add() must then keep the pixels. Null: not used.
+  const LfPixels* shared_pixels = nullptr;
+  const LfPixels* shared_opacity = nullptr;
   // BatchCollector sets the members below. If the LF camera has no lens distortion, *cells is
   // empty. `ideal_pixels` is then null, as it always is with kBilinear or kReference.
   std::shared_ptr<const std::vector<IdealCell>> cells = nullptr;
@@ -78,6 +82,9 @@ struct BatchImage {
   PixelRect loaded = {};  // rectangle of the pixels before they were filtered
   // The prefilter whose result has replaced `pixels` and `opacity`; unset if they are as loaded.
   std::optional<Prefilter> filtered_by = std::nullopt;
+
+  const LfPixels& Pixels() const { return shared_pixels ? *shared_pixels : pixels; }
+  const LfPixels& Opacity() const { return shared_pixels ? *shared_opacity : opacity; }
 };
 
 // A frame that takes those LF images of a batch whose places are in `places`.

@@ -58,26 +58,26 @@ void FilteredImages::Filter(std::vector<BatchImage>& batch,
   }
   for_each(items.size(), [&](size_t i) {
     BatchImage& image = *items[i].image;
-    const bool has_opacity = !image.opacity.radiance.empty();
+    const bool has_opacity = !image.Opacity().radiance.empty();
     if (items[i].filtered == nullptr) {
       FilterInPlace(*image.filtered_by, &image.pixels);
       if (has_opacity) FilterInPlace(*image.filtered_by, &image.opacity);
       return;
     }
     Filtered& filtered = *items[i].filtered;
-    FilterPixels(filtered.filter, image.pixels, &filtered.pixels);
-    if (has_opacity) FilterPixels(filtered.filter, image.opacity, &filtered.opacity);
+    FilterPixels(filtered.filter, image.Pixels(), &filtered.pixels);
+    if (has_opacity) FilterPixels(filtered.filter, image.Opacity(), &filtered.opacity);
   });
 }
 
 const LfPixels& FilteredImages::Pixels(const std::vector<BatchImage>& batch, size_t k,
                                        const Prefilter& filter) const {
-  return HasOwn(batch[k], filter) ? batch[k].pixels : Of(k, filter).pixels;
+  return HasOwn(batch[k], filter) ? batch[k].Pixels() : Of(k, filter).pixels;
 }
 
 const LfPixels& FilteredImages::Opacity(const std::vector<BatchImage>& batch, size_t k,
                                         const Prefilter& filter) const {
-  return HasOwn(batch[k], filter) ? batch[k].opacity : Of(k, filter).opacity;
+  return HasOwn(batch[k], filter) ? batch[k].Opacity() : Of(k, filter).opacity;
 }
 
 const FilteredImages::Filtered& FilteredImages::Of(size_t k, const Prefilter& filter) const {

@@ -9,6 +9,7 @@
 
 #include "lf/core/median.h"
 #include "lf/light_field/model/lf_pixels.h"
+#include "lf/render/collect/develop_options.h"
 #include "lf/render/state/run_inputs.h"
 
 namespace lf {
@@ -30,10 +31,7 @@ PlateNotes MakePlateNotes(FrameId frame, const RenderCamera& camera, const Frame
   notes.frame = frame;
   notes.camera = camera;
   notes.rays = rays;
-  notes.develop.pedestal = encoding.pedestal;
-  notes.develop.scale = encoding.Scale();
-  notes.develop.white_balance = encoding.white_balance;
-  notes.develop.linear_srgb_from_camera = encoding.linear_srgb_from_camera;
+  notes.develop = DevelopOptionsOf(encoding);
   if (const std::optional<FrameLens::Facts> facts = lens.facts())
     notes.weighed = PlateNotes::Weighed{facts->hat_share, facts->coverage, lens.EffectiveCounts()};
   return notes;
@@ -46,6 +44,7 @@ RenderedFrame DevelopFrame(const PlateNotes& notes, const SensorPlate& plate,
   DevelopOptions develop = notes.develop;
   develop.is_interrupted = is_interrupted;
   develop.completion = completion;
+  // Notes that were read from a file lack these two.
   develop.transparent = LfPixels::kTransparent;
   develop.opaque = LfPixels::kOpaque;
   RenderedFrame frame;

@@ -6,10 +6,13 @@ export interface LiveFacts {
   images: number; // number of LF images in this picture
   takeable: number; // number of LF images in memory that the frame could take
   resident: number; // number of LF images in memory
-  wanted: number; // number of LF images that the frame needs
+  needed: number; // number of LF images that the frame needs
+  wanted: number; // number of those for which memory has room
   done: number; // number of those that are loaded or broken
   broken: number;
-  first_broken: string;
+  first_broken: string; // why an LF image, or all, could not be loaded; "" if there is no failure
+  memory_bytes: number; // memory for LF images (--live-memory)
+  image_bytes: number; // memory of an LF image
   divisor: number; // factor by which LF images are shrunken
   uncovered_share: number; // share of the lens that was not recorded
   camera_distance: number; // spacing of the LF images of this picture in the lens plane, world units; 0: not known

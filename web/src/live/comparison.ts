@@ -6,6 +6,7 @@ import type { LivePicture } from "../data/live_picture";
 import { element } from "../element";
 import type { State } from "../state";
 import { length } from "../words";
+import { withFocusDistance } from "./lens_changes";
 import type { LiveCamera } from "./live_camera";
 import { apertureText } from "./live_status";
 import type { LiveView } from "./live_view";
@@ -13,6 +14,7 @@ import type { LiveView } from "./live_view";
 const KEY_STEP = 0.02; // share of the picture's width by which an arrow key moves the line
 
 export interface Kept {
+  frame: number;
   camera: FrameCamera;
   shown: LivePicture;
 }
@@ -29,6 +31,7 @@ export class Comparison {
     "aria-valuemin": 0,
     "aria-valuemax": 100,
   });
+  private isAsking = false; // true while a picture A is requested
   private share = 0.5; // share of the width that A covers
   private readonly listeners: (() => void)[] = [];
 
@@ -70,18 +73,40 @@ export class Comparison {
   // Keeps the shown picture and its camera as A. Keeps nothing if there is no picture yet.
   keep(): void {
     const { shown } = this.view;
-    if (shown) this.set({ camera: this.camera.camera, shown });
+    if (shown) this.set({ frame: this.state.frame, camera: this.camera.camera, shown });
   }
 
   end(): void {
     this.set(null);
   }
 
-  // As long as the camera is that of A, better pictures of it follow: of more LF images.
+  // A new picture B has come. As long as its camera is that of A, it is also the new picture A. Otherwise, A follows
+  // still pictures: to another frame, or to more LF images.
   private renew(): void {
-    const { kept, view } = this;
+    const { kept, view, state } = this;
     if (kept && view.shown && kept.camera === this.camera.camera) kept.shown = view.shown;
     this.draw();
+    if (!kept || !view.shown || view.canvas.dataset.still !== "true") return;
+    if (kept.frame !== state.frame || kept.shown.facts.images < view.shown.facts.images) void this.follow(kept);
+  }
+
+  // Shows the frame with the lens of A.
+  private async follow(kept: Kept): Promise<void> {
+    if (this.isAsking) return;
+    this.isAsking = true;
+    const { frame } = this.state;
+    const { radius, rotation, blades, focusDistance, tiltHorizontal, tiltVertical } = kept.camera;
+    const lens = { radius, rotation, blades, tiltHorizontal, tiltVertical };
+    const camera =
+      frame === kept.frame ? kept.camera : { ...withFocusDistance(this.state.camera, focusDistance), ...lens };
+    try {
+      const shown = await this.view.pictureOf(camera);
+      if (shown && this.kept === kept && frame === this.state.frame) this.set({ frame, camera, shown });
+    } catch {
+      // The old picture stays. The view tells why pictures fail.
+    } finally {
+      this.isAsking = false;
+    }
   }
 
   private set(kept: Kept | null): void {

@@ -29,6 +29,7 @@ interface Parts {
 export class LensPanel {
   private readonly lens = document.createElementNS(SVG, "polygon");
   private readonly fills: (() => void)[] = [];
+  private ends: [number, number] = [Infinity, 0]; // nearest and farthest distance of the slider of the focus
 
   constructor(
     private readonly root: HTMLElement,
@@ -42,8 +43,15 @@ export class LensPanel {
     root.append(
       this.switches(),
       this.help(),
+      this.virtualImages(),
       this.backToA(),
-      element("h2", {}, "Lens at this frame"),
+      element(
+        "div",
+        { class: "row" },
+        element("h2", {}, "Lens at this frame"),
+        element("span", { class: "grow" }),
+        this.keys(),
+      ),
       element("div", { class: "lens" }, this.drawing(), element("div", {}, this.focus(), this.aperture())),
       this.blades(),
       this.rotation(),
@@ -154,26 +162,44 @@ export class LensPanel {
     return element("div", { class: "slider" }, element("label", {}, label), words, slider);
   }
 
+  private keys(): HTMLElement {
+    const { state } = this.parts;
+    const title =
+      "Every change in the live picture adds a key at this frame. Otherwise, a quantity without keys changes in the " +
+      "whole film. The number of blades and the exposure have no keys.";
+    const click = () => {
+      state.addsKeys = !state.addsKeys;
+      this.shown();
+    };
+    return this.toggle("◆ Keys", title, () => state.addsKeys, click);
+  }
+
+  // Returns the ends of the slider of the focus: from the nearest to the farthest focus of the film, and further by the
+  // depths of the scene. They stay where they are as long as the focus is between them, so that the slider moves.
+  private focusEnds(): [number, number] {
+    const { state, camera } = this.parts;
+    const all = [camera.camera, ...state.cameras].map((one) => one.focusDistance);
+    const [least, most] = [all.reduce((a, b) => Math.min(a, b)), all.reduce((a, b) => Math.max(a, b))];
+    const [near, far] = this.ends;
+    if (least >= near && most <= far) return this.ends;
+    const factor = depthFactor(state.scene.light_field.depths);
+    this.ends = [Math.min(near, least / factor), Math.max(far, most * factor)];
+    return this.ends;
+  }
+
   private focus(): HTMLElement {
-    const { state, camera, tools } = this.parts;
-    // The slider reaches from the nearest to the farthest focus of the film, and further by the depths of the scene.
-    const range = (): [number, number] => {
-      const factor = depthFactor(state.scene.light_field.depths);
-      const all = [camera.camera, ...state.cameras].map((one) => one.focusDistance);
-      return [all.reduce((a, b) => Math.min(a, b)) / factor, all.reduce((a, b) => Math.max(a, b)) * factor];
-    };
-    const distanceAt = (share: number) => {
-      const [near, far] = range();
-      return near * (far / near) ** share;
-    };
+    const { camera, tools } = this.parts;
     return this.slider(
       "Focus",
       { min: 0, max: 1 },
       ({ focusDistance }) => {
-        const [near, far] = range();
+        const [near, far] = this.focusEnds();
         return Math.log(focusDistance / near) / Math.log(far / near);
       },
-      (share) => tools.showFocus(camera.camera, distanceAt(share)),
+      (share) => {
+        const [near, far] = this.focusEnds();
+        tools.showFocus(camera.camera, near * (far / near) ** share);
+      },
       ({ focusDistance }) => length(focusDistance),
     );
   }
@@ -247,6 +273,25 @@ export class LensPanel {
       );
     });
     return svg;
+  }
+
+  // Returns buttons that take or leave out virtual LF images, if there are some.
+  private virtualImages(): HTMLElement | string {
+    const { state, view } = this.parts;
+    if (!state.scene.light_field.virtual_ranges?.length) return "";
+    const button = (recorded: boolean, label: string, title: string) => {
+      const click = () => {
+        view.setRecordedOnly(recorded);
+        this.shown();
+      };
+      return this.toggle(label, title, () => view.recordedOnly === recorded, click);
+    };
+    return element(
+      "div",
+      { class: "row" },
+      button(false, "Densified", "with virtual LF images"),
+      button(true, "Recorded alone", "without virtual LF images"),
+    );
   }
 
   private backToA(): HTMLElement {

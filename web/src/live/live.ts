@@ -11,6 +11,7 @@ export interface Live {
   view: LiveView;
   camera: LiveCamera;
   panel: LensPanel;
+  comparison: Comparison;
   // Handles a key while the live picture is shown. Returns false if the key has no meaning here.
   key(event: KeyboardEvent): boolean;
 }
@@ -31,5 +32,5 @@ export function startLive(root: HTMLElement, panelRoot: HTMLElement, state: Stat
     else return tools.key(event);
     return true;
   };
-  return { view, camera, panel, key };
+  return { view, camera, panel, comparison, key };
 }

@@ -5,7 +5,7 @@ import { fNumber, type FrameCamera } from "../data/frame_camera";
 import type { LiveFacts } from "../data/live_picture";
 import { element } from "../element";
 import type { State } from "../state";
-import { length, millimetres, percent, plural, precise, shortNumber } from "../words";
+import { bytes, byteSize, length, millimetres, percent, plural, precise, shortNumber } from "../words";
 import { displacements, levelOf, type Displacement, type Level } from "./double_edges";
 
 const LEAST_RECORDED = 0.9; // share of the lens below which the line warns, as the panel of the frame does
@@ -25,8 +25,8 @@ export function statusOf(state: State, camera: FrameCamera, facts: LiveFacts): H
   const isLacking = 1 - facts.uncovered_share < LEAST_RECORDED && !isLoading;
   if (facts.images > 0) parts.push(part("recorded", recordedText(facts), isLacking ? "gentle" : "none"));
   if (isLoading) parts.push(part("loading", `loading ${shortNumber(facts.done)} of ${shortNumber(facts.wanted)}`));
-  if (facts.broken > 0)
-    parts.push(part("broken", `${plural(facts.broken, "LF image")} broken: ${facts.first_broken}`, "loud"));
+  if (facts.wanted < facts.needed) parts.push(part("memory", memoryText(facts), "gentle", MEMORY_HELP));
+  if (facts.first_broken) parts.push(part("broken", brokenText(facts), "loud", BROKEN_HELP));
   if (facts.camera_distance > 0 && camera.radius > 0) {
     const all = displacements(camera, facts.camera_distance, state.scene.light_field.depths);
     const worst = all.reduce((a, b) => (b.elements > a.elements ? b : a));
@@ -40,6 +40,12 @@ const EDGES_HELP =
   "How far apart neighbouring LF images show the same point. Up to about one element looks like blur, more than four " +
   "look like double edges.";
 
+const MEMORY_HELP =
+  "The picture is made of the LF images that fit the memory limit, spread over the lens. Start lfvisualizer with a " +
+  "larger --live-memory, make the window smaller, or close the aperture.";
+
+const BROKEN_HELP = "LF images that could not be loaded are tried again after five seconds, when the picture changes.";
+
 function part(name: string, text: string, level = "none", title: string | null = null): HTMLElement {
   return element("span", { "data-part": name, "data-level": level, title }, text);
 }
@@ -52,6 +58,15 @@ function imagesText({ images, takeable, camera_distance }: LiveFacts, unit_m: nu
 
 function recordedText({ uncovered_share }: LiveFacts): string {
   return `${percent(1 - uncovered_share)} of the lens recorded`;
+}
+
+export function memoryText({ wanted, needed, memory_bytes, image_bytes }: LiveFacts): string {
+  const counts = `${shortNumber(wanted)} of ${shortNumber(needed)} LF images`;
+  return `${counts}: memory limit ${bytes(memory_bytes)}; all need --live-memory ${byteSize(needed * image_bytes)}`;
+}
+
+function brokenText({ broken, first_broken }: LiveFacts): string {
+  return broken > 0 ? `${plural(broken, "LF image")} broken: ${first_broken}` : first_broken;
 }
 
 function edgesText({ elements, depth }: Displacement, level: Level): string {

@@ -1,6 +1,7 @@
 // The live picture: a large picture of the current frame that is rendered anew whenever the camera changes.
 
 import { develop } from "../data/growing_picture";
+import type { FrameCamera } from "../data/frame_camera";
 import { readLivePicture, type LivePicture } from "../data/live_picture";
 import { postForBytes } from "../data/source";
 import { element } from "../element";
@@ -21,6 +22,7 @@ export class LiveView {
   readonly box = element("div", { id: "live-picture" }, this.canvas);
   shown: LivePicture | null = null;
   peaks = false; // true: focus peaking
+  recordedOnly = false; // true: virtual LF images are left out
   private readonly fault = element("p", { id: "live-fault", role: "status", hidden: true });
   private readonly status = element("div", { id: "live-status" });
   private readonly requests = new LiveRequests((isStill, isNewest) => this.ask(isStill, isNewest));
@@ -58,6 +60,11 @@ export class LiveView {
     this.root.hidden = !isShown;
     this.startOrStop();
     if (!isShown) void this.state.askFrame(); // playing may have skipped it
+  }
+
+  setRecordedOnly(recordedOnly: boolean): void {
+    this.recordedOnly = recordedOnly;
+    this.requests.change();
   }
 
   draw(): void {
@@ -100,6 +107,17 @@ export class LiveView {
     return Math.max(WIDTHS[0], Math.min(WIDTHS[1], 16 * Math.round(pixels / 16)));
   }
 
+  // Returns a still picture of another camera, which is not shown; null if another request has superseded it.
+  async pictureOf(camera: FrameCamera): Promise<LivePicture | null> {
+    const answer = await this.post(oneFramePath(camera, this.state.path.unit_m), {});
+    return answer instanceof ArrayBuffer ? readLivePicture(answer) : null;
+  }
+
+  private post(text: string, budget: { budget_ms?: number }): Promise<unknown> {
+    const wish = { text, frame: 1, width: this.width(), recorded: this.recordedOnly, ...budget };
+    return postForBytes<unknown>("live", wish);
+  }
+
   private async ask(isStill: boolean, isNewest: () => boolean): Promise<boolean> {
     const { state } = this;
     const { camera } = this.camera;
@@ -108,7 +126,7 @@ export class LiveView {
       ? {}
       : { budget_ms: state.isPlaying ? Math.min(BUDGET_MS, 800 / state.path.fps) : BUDGET_MS };
     try {
-      const answer = await postForBytes<unknown>("live", { text, frame: 1, width: this.width(), ...budget });
+      const answer = await this.post(text, budget);
       if (!isNewest()) return true;
       if (!(answer instanceof ArrayBuffer)) return false;
       this.shown = readLivePicture(answer);

@@ -127,12 +127,14 @@ test("the path of one frame has the camera of the frame", () => {
   });
   for (const turn of [0, 1, 2, 3, 4]) {
     const camera = orbited(start, [0.2, -1, 0.4], turn * 1.3, turn * 0.25);
-    const [read] = readByPrograms(oneFramePath(camera, 0.01)).cameras;
+    const text = oneFramePath(camera, 0.01);
+    const [read] = readByPrograms(text).cameras;
     assertNear(read.position_w, camera.centre, 1e-9);
     assertNear(read.forward, camera.forward, 1e-9);
     assertNear(read.up, camera.up, 1e-9);
     assertNear([read.focus_distance_w, read.blades], [camera.focusDistance, 5], 1e-9);
     assertNear(read.focus_tilt_deg, [12, -3], 1e-9);
+    assertNear([radians(Number(/blade_rotation_deg: (\S+)/.exec(text)?.[1]))], [0.3], 1e-9);
     assertNear([read.aperture_diameter_mm], [2 * camera.radius * 10], 1e-9);
     assertNear([read.focal_length_mm], [camera.focalLength * 10], 1e-9);
   }

@@ -4,6 +4,7 @@ import assert from "node:assert/strict";
 import { join } from "node:path";
 import { test } from "node:test";
 
+import { allLoaded, openLive } from "./live_case.mjs";
 import { temporary, withPage } from "./page_case.mjs";
 import { run, until } from "./visualizer.mjs";
 
@@ -58,6 +59,26 @@ test("virtual LF cameras have a row of the legend, and are marked and hidden", a
     await page.evaluate(() => window.lfvisualizer.state.select(0));
     await page.waitForSelector("h2:has-text('LF image 0')");
     assert.equal(await page.locator("dd:has-text('Virtual')").count(), 0);
+  });
+});
+
+test("the live picture is made with or without virtual LF images", async () => {
+  const { field, store, path } = await makeStore("live");
+  const images = (page) => page.evaluate("lfvisualizer.live.view.shown.facts.images");
+  await withPage([store, path], async (page) => {
+    await openLive(page);
+    await allLoaded(page);
+    const all = await images(page);
+    await page.click("button:text-is('Recorded alone'):visible");
+    await until(page, `app.live.view.shown.facts.images < ${all}`);
+    await allLoaded(page);
+    assert.ok((await images(page)) <= 16);
+    await page.click("button:text-is('Densified'):visible");
+    await until(page, `app.live.view.shown.facts.images === ${all}`);
+  });
+  await withPage([field, path], async (page) => {
+    await openLive(page);
+    assert.equal(await page.locator("button:text-is('Recorded alone'):visible").count(), 0);
   });
 });
 

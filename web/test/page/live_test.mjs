@@ -5,6 +5,16 @@ import { join } from "node:path";
 import { test } from "node:test";
 
 import { chart, SHOP, temporary, withChart, withPage, withShop, writePath } from "./page_case.mjs";
+import {
+  allLoaded,
+  dragFocus,
+  focusNow,
+  gradientEnergy,
+  labels,
+  openLive,
+  recordRequests,
+  stillPicture,
+} from "./live_case.mjs";
 import { CHART_PATH, SHOP_PATH } from "./paths.mjs";
 import { run, until } from "./visualizer.mjs";
 
@@ -12,72 +22,6 @@ import { run, until } from "./visualizer.mjs";
 const STAR = { x: 56 / 96, y: 40 / 64 };
 const BLURRED = CHART_PATH.replace("time: 0, value: 1}", "time: 0, value: 1.15}");
 const WIDE = BLURRED.replace("time: 0, value: 1.15}", "time: 0, value: 1.3}").replace("_mm: 12", "_mm: 30");
-
-// Records the requests of live pictures.
-function recordRequests(page) {
-  const asked = [];
-  page.on("request", (request) => {
-    if (request.url().endsWith("/live")) asked.push(request.postDataJSON());
-  });
-  return asked;
-}
-
-// Waits until the still picture of the current camera is shown.
-function stillPicture(page) {
-  return until(
-    page,
-    "app.state.isShown && !app.live.camera.isChanging && " +
-      "document.querySelector('#live-picture canvas').dataset.still === 'true' && " +
-      "document.querySelector('#live-picture canvas').dataset.focus === String(app.state.camera.focusDistance)",
-  );
-}
-
-// Waits until the picture is made of all LF images that the frame needs.
-function allLoaded(page) {
-  return until(
-    page,
-    "(({ done, wanted, images, takeable }) => done === wanted && images > 0 && images === takeable)" +
-      "(app.live.view.shown.facts)",
-  );
-}
-
-async function openLive(page) {
-  await page.keyboard.press("l");
-  await stillPicture(page);
-  return page.locator("#live-picture").boundingBox();
-}
-
-// Returns the mean square of the brightness differences around a place of the live picture.
-function gradientEnergy(page, { x, y }, half = 0.05) {
-  return page.evaluate(
-    ([u, v, size]) => {
-      const { picture } = window.lfvisualizer.live.view.shown;
-      const { width, height } = picture;
-      const canvas = document.querySelector("#live-picture canvas");
-      const { data } = canvas.getContext("2d").getImageData(0, 0, width, height);
-      const at = (column, row) => data[4 * (row * width + column) + 1];
-      const [left, right] = [u - size, u + size].map((share) => Math.round(share * width));
-      const [top, bottom] = [v - size, v + size].map((share) => Math.round(share * height));
-      let sum = 0;
-      for (let row = top; row < bottom; ++row)
-        for (let column = left; column < right; ++column)
-          sum += (at(column + 1, row) - at(column, row)) ** 2 + (at(column, row + 1) - at(column, row)) ** 2;
-      return sum / ((right - left) * (bottom - top));
-    },
-    [x, y, half],
-  );
-}
-
-const focusNow = (page) => page.evaluate("lfvisualizer.live.camera.camera.focusDistance");
-const labels = (page) => page.evaluate("lfvisualizer.state.history.labels");
-
-// Drags from the middle of the box until the focus distance is below `wanted`; returns without letting go.
-async function dragFocus(page, box, wanted) {
-  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
-  await page.mouse.move(x, y);
-  await page.mouse.down();
-  for (let i = 1; (await focusNow(page)) > wanted && i < 200; ++i) await page.mouse.move(x - 5 * i, y);
-}
 
 test("a drag in the live picture focuses, and is one undo step", async () => {
   // A chart with LF images that are fine enough to be blurred by this lens.
@@ -303,6 +247,14 @@ test("two settings are compared, and edges in focus are coloured", async () => {
       await page.mouse.move(box.x + box.width / 4, line.y + 20);
       await page.mouse.up();
       assert.equal(await page.getAttribute("#live-line", "aria-valuenow"), "25");
+      const versionOfA = () => page.evaluate("document.querySelector('#live-a').toDataURL()");
+      const ofFrame1 = await versionOfA();
+      await page.evaluate("lfvisualizer.state.setFrame(11)");
+      await until(page, "app.live.comparison.kept.frame === 11");
+      assert.notEqual(await versionOfA(), ofFrame1);
+      assert.match(await page.textContent(".live-side[data-side=A]"), /12 mm, focus 1$/);
+      await page.evaluate("lfvisualizer.state.setFrame(1)");
+      await until(page, "app.live.comparison.kept.frame === 1");
       await page.click("button:text-is('Back to A')");
       await until(page, "app.state.isShown && Math.abs(app.state.camera.radius - 0.006) < 1e-9");
       await page.keyboard.press("a");
@@ -319,7 +271,10 @@ test("two settings are compared, and edges in focus are coloured", async () => {
       await page.keyboard.press("e");
       assert.ok((await greenElements()) > before + 20);
     },
-    CHART_PATH,
+    CHART_PATH.replace(
+      "keyframes:\n",
+      "keyframes:\n  position: [{time: 0, value: [0, 0, -1]}, {time: 1, value: [0.03, 0, -1]}]\n",
+    ),
     ["--max-angle", "45"],
   );
 });

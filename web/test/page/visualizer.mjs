@@ -4,10 +4,10 @@ import { existsSync } from "node:fs";
 import { createServer } from "node:http";
 import { mkdtemp, readFile, rm } from "node:fs/promises";
 import { tmpdir } from "node:os";
-import { extname, join, normalize } from "node:path";
+import { extname, join, normalize, resolve } from "node:path";
 import { chromium } from "playwright-core";
 
-export const BIN = process.env.LF_BIN ?? "";
+export const BIN = process.env.LF_BIN ? resolve(process.env.LF_BIN) : "";
 export const DATA = process.env.LF_TEST_DATA ?? "";
 const BROWSERS = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
 

@@ -1,0 +1,19 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import type { LiveFacts } from "../../src/data/live_picture";
+import { memoryText } from "../../src/live/live_status";
+import { bytes, byteSize } from "../../src/words";
+
+test("sizes are rounded up, and can be given to the programs", () => {
+  assert.equal(byteSize(512 * 1024 ** 2), "512M");
+  assert.equal(byteSize(512 * 1024 ** 2 + 1), "513M");
+  assert.equal(byteSize(1024 ** 3), "1G");
+  assert.equal(byteSize(3.41 * 1024 ** 3), "3.5G");
+  assert.equal(bytes(1.5 * 1024 ** 3), "1.5 GiB");
+});
+
+test("a memory limit is shown with what all LF images need", () => {
+  const facts = { wanted: 109, needed: 729, memory_bytes: 512 * 1024 ** 2, image_bytes: 4_900_000 } as LiveFacts;
+  assert.equal(memoryText(facts), "109 of 729 LF images: memory limit 512 MiB; all need --live-memory 3.4G");
+});
