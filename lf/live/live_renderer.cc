@@ -175,4 +175,21 @@ LivePicture LiveRenderer::RenderOf(const RenderCamera& frame, const LiveWish& wi
   return live;
 }
 
+LiveRenderer::LensPlan LiveRenderer::PlanLens(const RenderCamera& frame, size_t most) {
+  images_.Aim(frame);
+  LensPlan plan;
+  images_.Use([&](const LightField* field, std::map<uint32_t, ResidentImages::Image>& images) {
+    if (field == nullptr) return;
+    size_t inside_count = 0;
+    plan.ids = OrderThroughLens(*field, frame, images, &inside_count);
+    plan.takeable_count = plan.ids.size();
+    if (most < plan.ids.size())
+      plan.ids.resize(std::clamp(inside_count, std::min(kFewestImages, most), most));
+    std::sort(plan.ids.begin(), plan.ids.end());
+    plan.field = FieldOf(*field, plan.ids);
+  });
+  plan.lens = LensOfPicture(plan.field, frame, options_.lens_weights, pool_);
+  return plan;
+}
+
 }  // namespace lf

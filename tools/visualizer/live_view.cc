@@ -1,10 +1,11 @@
 #include "tools/visualizer/live_view.h"
 
+#include <charconv>
 #include <cstdint>
-#include <cstring>
 #include <string>
 
-#include "lf/core/check.h"
+#include "tools/visualizer/live_bytes.h"
+
 #include "lf/render/state/record_fields.h"
 #include "lf/view/scene_bytes.h"
 #include "lf/view/watched_render.h"
@@ -28,8 +29,6 @@ Json LoadingJson(const ResidentImages::Status& status) {
           {"broken", status.broken_count}};
 }
 
-// Returns the length of the JSON text, the text, and the picture, which begins at a multiple of 4
-// bytes.
 std::string BytesOf(const LivePicture& live, const ResidentImages::Status& status) {
   Json json = LoadingJson(status);
   json["images"] = live.images.size();
@@ -39,12 +38,15 @@ std::string BytesOf(const LivePicture& live, const ResidentImages::Status& statu
   json["uncovered_share"] = live.uncovered_share;
   json["camera_distance"] = live.camera_distance_w;
   json["render_ms"] = 1e3 * live.render_s;
-  std::string text = RecordLine(json);
-  text.resize((text.size() + 3) / 4 * 4, ' ');
-  const auto length = static_cast<uint32_t>(text.size());
-  std::string bytes(sizeof(length), '\0');
-  std::memcpy(bytes.data(), &length, sizeof(length));
-  return bytes + text + PictureBytes(PictureOf(live.picture, kLongestSide_px));
+  return WithHead(json) + PictureBytes(PictureOf(live.picture, kLongestSide_px));
+}
+
+// Parses a whole number of digits alone.
+std::optional<int> WholeNumber(std::string_view text) {
+  int number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  return error == std::errc() && rest == end && number >= 0 ? std::optional(number) : std::nullopt;
 }
 
 }  // namespace
@@ -79,6 +81,35 @@ PageAnswer LiveView::Answer(const RenderCamera& frame, std::optional<double> bud
   }
   if (!live) return {200, "application/json", RecordLine({{"superseded", true}})};
   return {200, "application/octet-stream", BytesOf(*live, renderer_.images().status())};
+}
+
+PageAnswer LiveView::AnswerLens(const RenderCamera& frame, size_t most_images) {
+  const LiveRenderer::LensPlan plan = renderer_.PlanLens(frame, most_images);
+  const ResidentImages::Status status = renderer_.images().status();
+  Json json = LoadingJson(status);
+  json["takeable"] = plan.takeable_count;
+  json["first_broken"] = status.first_broken;
+  json["divisor"] = status.divisor;
+  return {200, "application/octet-stream", LensBytes(plan, frame, std::move(json))};
+}
+
+PageAnswer LiveView::AnswerImage(std::string_view name) {
+  constexpr std::string_view kEnding = ".bin";
+  PageAnswer answer = Refusal(404, "this LF image is not in memory");
+  const size_t slash = name.find('/');
+  if (slash == std::string_view::npos || !name.ends_with(kEnding)) return answer;
+  const std::optional<int> divisor = WholeNumber(name.substr(0, slash));
+  const std::optional<int> id =
+      WholeNumber(name.substr(slash + 1, name.size() - kEnding.size() - slash - 1));
+  if (!id || divisor != renderer_.images().status().divisor) return answer;
+  renderer_.images().Use(
+      [&](const LightField* field, const std::map<uint32_t, ResidentImages::Image>& images) {
+        const auto found = images.find(static_cast<uint32_t>(*id));
+        if (field == nullptr || found == images.end()) return;
+        answer = {200, "application/octet-stream",
+                  LfImageBytes(field->Camera(LfImageId{found->first}), found->second.pixels)};
+      });
+  return answer;
 }
 
 }  // namespace lf

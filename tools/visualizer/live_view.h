@@ -6,6 +6,7 @@
 #include <list>
 #include <mutex>
 #include <optional>
+#include <string_view>
 
 #include "tools/visualizer/page_answers.h"
 #include "tools/visualizer/page_scene.h"
@@ -27,6 +28,12 @@ class LiveView {
   //   budget_s  LiveWish::budget_s. A picture without a budget is a still one: it is broken off by
   //             the next call, and then answered with {"superseded": true}
   PageAnswer Answer(const RenderCamera& frame, std::optional<double> budget_s);
+
+  // Answers with the lens of a picture that the browser renders, of at most `most_images` LF images
+  // (doc/formats/page_data.md, POST lens).
+  PageAnswer AnswerLens(const RenderCamera& frame, size_t most_images);
+  // Answers GET live/NAME: the shrunken LF image "DIVISOR/ID.bin". 404 if it is not in memory.
+  PageAnswer AnswerImage(std::string_view name);
 
  private:
   void Tell();
