@@ -2,10 +2,15 @@
 
 import type { State } from "../state";
 import { Comparison } from "./comparison";
+import { ChosenPictures } from "./chosen_pictures";
+import { GlPictures } from "./gl/gl_pictures";
+import { GlRenderer } from "./gl/gl_renderer";
+import { wishOf } from "./gl/wish";
 import { LensPanel } from "./lens_panel";
 import { LiveCamera } from "./live_camera";
 import { LiveTools } from "./live_tools";
 import { LiveView } from "./live_view";
+import { ServerPictures } from "./pictures";
 
 export interface Live {
   view: LiveView;
@@ -20,7 +25,11 @@ export interface Live {
 //   stopPlaying  is called when the camera is changed by hand
 export function startLive(root: HTMLElement, panelRoot: HTMLElement, state: State, stopPlaying: () => void): Live {
   const camera = new LiveCamera(state, stopPlaying);
-  const view = new LiveView(root, state, camera);
+  const unit_m = () => state.path.unit_m;
+  const loaded = () => state.emit("live");
+  const open = (lost: () => void) => new GlPictures(GlRenderer.open(lost), unit_m, loaded);
+  const pictures = new ChosenPictures(new ServerPictures(unit_m), wishOf(location.search), open, loaded);
+  const view = new LiveView(root, state, camera, pictures);
   const comparison = new Comparison(state, view, camera);
   const tools = new LiveTools(state, camera, view.box);
   const panel = new LensPanel(panelRoot, { state, camera, view, tools, comparison });

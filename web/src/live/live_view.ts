@@ -1,8 +1,7 @@
 // The live picture: a large picture of the current frame that is rendered anew whenever the camera changes.
 
 import { develop } from "../data/growing_picture";
-import { readLivePicture, type LivePicture } from "../data/live_picture";
-import { postForBytes } from "../data/source";
+import type { LivePicture } from "../data/live_picture";
 import { element } from "../element";
 import type { State } from "../state";
 import { colourEdges } from "./focus_peaking";
@@ -10,6 +9,7 @@ import type { LiveCamera } from "./live_camera";
 import { LiveRequests } from "./live_requests";
 import { statusOf } from "./live_status";
 import { oneFramePath } from "./one_frame_path";
+import type { Pictures } from "./pictures";
 
 const BUDGET_MS = 40; // time in which a quick picture is to be rendered
 const WIDTHS: [number, number] = [16, 1280]; // smallest and largest width that the server renders
@@ -33,6 +33,7 @@ export class LiveView {
     private readonly root: HTMLElement,
     private readonly state: State,
     private readonly camera: LiveCamera,
+    private readonly pictures: Pictures,
   ) {
     root.append(element("div", { id: "live-room" }, this.box, this.fault), this.status);
     camera.listen(() => this.change());
@@ -103,18 +104,16 @@ export class LiveView {
   private async ask(isStill: boolean, isNewest: () => boolean): Promise<boolean> {
     const { state } = this;
     const { camera } = this.camera;
-    const text = this.path();
-    const budget = isStill
-      ? {}
-      : { budget_ms: state.isPlaying ? Math.min(BUDGET_MS, 800 / state.path.fps) : BUDGET_MS };
+    const quick_ms = state.isPlaying ? Math.min(BUDGET_MS, 800 / state.path.fps) : BUDGET_MS;
+    const budget_ms = isStill ? null : quick_ms;
     try {
-      const answer = await postForBytes<unknown>("live", { text, frame: 1, width: this.width(), ...budget });
+      const picture = await this.pictures.ask({ camera, width: this.width(), budget_ms });
       if (!isNewest()) return true;
-      if (!(answer instanceof ArrayBuffer)) return false;
-      this.shown = readLivePicture(answer);
+      if (!picture) return false;
+      this.shown = picture;
       this.pictureFault = "";
       ++this.version;
-      Object.assign(this.canvas.dataset, { still: isStill, focus: camera.focusDistance });
+      Object.assign(this.canvas.dataset, { still: isStill, focus: camera.focusDistance, by: picture.by });
       this.draw();
       this.status.replaceChildren(...statusOf(state, camera, this.shown.facts));
       for (const listener of this.listeners) listener();
