@@ -21,15 +21,14 @@ Json RowsOf(const Mat3& matrix) {
   return rows;
 }
 
-// Returns why the page's renderer cannot make a picture of these LF images; "" if it can.
-std::string RefusalOf(const LightField& field) {
+}  // namespace
+
+std::string WhyNotInBrowser(const LightField& field) {
   if (field.encoding.HasOpacity()) return "the LF images have opacities";
   const bool is_bent = std::any_of(field.intrinsics.begin(), field.intrinsics.end(),
                                    [](const Intrinsics& k) { return k.has_distortion(); });
   return is_bent ? "the lenses of the LF cameras have distortion" : "";
 }
-
-}  // namespace
 
 std::string WithHead(const Json& json) {
   std::string text = RecordLine(json);
@@ -44,7 +43,7 @@ std::string LensBytes(const LiveRenderer::LensPlan& plan, const RenderCamera& fr
   const PictureLens& lens = plan.lens;
   const RadianceEncoding& encoding = plan.field.encoding;
   const Intrinsics& plate = frame.pinhole.intrinsics;
-  json["refused"] = RefusalOf(plan.field);
+  json["refused"] = WhyNotInBrowser(plan.field);
   json["width"] = plate.width_px;
   json["height"] = plate.height_px;
   json["fx"] = plate.fx_px;
@@ -72,14 +71,17 @@ std::string LensBytes(const LiveRenderer::LensPlan& plan, const RenderCamera& fr
   return WithHead(json) + RawBytes(lens.nodes);
 }
 
-std::string LfImageBytes(const PinholeCamera& camera, const LfPixels& pixels) {
+Json LfCameraJson(const PinholeCamera& camera) {
   const Intrinsics& k = camera.intrinsics;
   const Vec3 centre = camera.CentreWorld();
-  const Json json = {{"width", pixels.rect.width()},
-                     {"height", pixels.rect.height()},
-                     {"matrix", RowsOf(k.Matrix() * camera.cam_from_world.rotation)},
-                     {"centre", {centre.x(), centre.y(), centre.z()}}};
-  return WithHead(json) + RawBytes(pixels.radiance.pixels());
+  return {{"width", k.width_px},
+          {"height", k.height_px},
+          {"matrix", RowsOf(k.Matrix() * camera.cam_from_world.rotation)},
+          {"centre", {centre.x(), centre.y(), centre.z()}}};
+}
+
+std::string LfImageBytes(const PinholeCamera& camera, const LfPixels& pixels) {
+  return WithHead(LfCameraJson(camera)) + RawBytes(pixels.radiance.pixels());
 }
 
 }  // namespace lf

@@ -1,4 +1,4 @@
-// Where live pictures come from: the server, or WebGL in the browser.
+// The sources of live pictures: the server, or WebGL in the browser.
 
 import type { FrameCamera } from "../data/frame_camera";
 import { readLivePicture, type LivePicture } from "../data/live_picture";

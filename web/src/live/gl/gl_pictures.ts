@@ -8,7 +8,7 @@ import { bodyOf, type PictureRequest } from "../pictures";
 import { GlRenderer } from "./gl_renderer";
 import { readLens, type LensAnswer } from "./lens";
 import type { LfImage } from "./lf_textures";
-import type { LfCamera } from "./ray_forms";
+import { matrixOf, type LfCamera } from "./ray_forms";
 import { isSoftware } from "./software";
 
 const AT_A_TIME = 4; // LF images that are requested at the same time
@@ -110,16 +110,7 @@ function readLfImage(bytes: ArrayBuffer): LfImage {
   const [head, begin] = readHead<{ width: number; height: number; matrix: number[]; centre: LfCamera["centre"] }>(
     bytes,
   );
-  const { width, height, matrix: m, centre } = head;
-  return {
-    width,
-    height,
-    matrix: [
-      [m[0], m[1], m[2]],
-      [m[3], m[4], m[5]],
-      [m[6], m[7], m[8]],
-    ],
-    centre,
-    pixels: new Uint16Array(bytes, begin, 4 * width * height),
-  };
+  const { width, height, matrix, centre } = head;
+  const pixels = new Uint16Array(bytes, begin, 4 * width * height);
+  return { width, height, matrix: matrixOf(matrix), centre, pixels };
 }

@@ -34,6 +34,15 @@ export interface RayForms {
 
 const LEAST_RADIUS = 1e-12; // of an opening, in world units, so that a pinhole can be divided by it
 
+// Returns the matrix of nine numbers, row by row.
+export function matrixOf(m: readonly number[]): Matrix {
+  return [
+    [m[0], m[1], m[2]],
+    [m[3], m[4], m[5]],
+    [m[6], m[7], m[8]],
+  ];
+}
+
 const scaled = (a: Vec3, by: number): Vec3 => [a[0] * by, a[1] * by, a[2] * by];
 // Returns the row vector a times a matrix that is given by its columns.
 const timesColumns = (a: Vec3, columns: Matrix): Vec3 => [dot(a, columns[0]), dot(a, columns[1]), dot(a, columns[2])];
@@ -93,6 +102,23 @@ export function recordedAt(forms: RayForms, plate: Plate, x: number, y: number):
   const side = dot(forms.forward, at) < 0 ? -1 : 1;
   const [px, py, pz] = forms.pixel.map((row) => side * dot(row, at));
   return pz > 0 ? [px / pz, py / pz] : null;
+}
+
+// Returns how many LF pixels wide an element in the middle of the plate is; 1 if it has no ray.
+export function elementWidth(forms: RayForms, plate: Plate): number {
+  const [x, y] = [0.5 * plate.width, 0.5 * plate.height];
+  const [left, right, above, below] = [
+    recordedAt(forms, plate, x - 0.5, y),
+    recordedAt(forms, plate, x + 0.5, y),
+    recordedAt(forms, plate, x, y - 0.5),
+    recordedAt(forms, plate, x, y + 0.5),
+  ];
+  if (!left || !right || !above || !below) return 1;
+  const [along, down] = [
+    [right[0] - left[0], right[1] - left[1]],
+    [below[0] - above[0], below[1] - above[1]],
+  ];
+  return Math.sqrt(Math.abs(along[0] * down[1] - along[1] * down[0]));
 }
 
 // Returns an upper bound, a rough one, of the number of LF pixels from one element to the next. Measured at nine points
