@@ -30,7 +30,7 @@ constexpr lf::HelpTexts kHelp = {
         R"(  lfvisualizer capture/ path.yaml                   # open the address that it prints
   lfvisualizer capture/ path.yaml --watch frames    # with the frames that lfrenderer writes there
   lfvisualizer capture/ path.yaml packages/*.lfp --serve 8080
-  lfvisualizer capture/ path.yaml --export site     # as files for any web server
+  lfvisualizer capture/ path.yaml --export site     # as files for any web server or disk
   lfvisualizer capture/ path.yaml --text > scene.txt)",
     .details =
         R"(The page is served until Ctrl-C. It can only be opened on this machine, at an address that contains
@@ -47,7 +47,7 @@ ssh -L 8080:127.0.0.1:8080 HOST, where HOST is the machine that runs lfvisualize
 struct Arguments {
   lf::LightFieldArgument light_field;
   lf::PageArguments page;
-  std::string path, watch, frames, export_folder, live_memory = "512M";
+  std::string path, watch, frames, export_folder, live_memory = "512M", export_live = "32M";
   int port = 0;
   uint64_t max_images = 0, export_images = 400;
   bool text = false;
@@ -94,6 +94,12 @@ void AddOutput(CLI::App& app, Arguments& a) {
       .Add("--export-images N", a.export_images,
            "Maximum number of LF images in the export\n"
            "They are chosen from the LF images that the frames of PATH use.")
+      ->needs(to_files);
+  output
+      .Add("--export-live SIZE", a.export_live,
+           "Size of the LF images for live pictures in the export, such as 32M; 0: none\n"
+           "The exported page renders live pictures of them by WebGL2. They are shrunken, and "
+           "fewer, until they fit.")
       ->needs(to_files);
   a.allow_missing.AddTo(app, "the LF images in the export")->needs(to_files);
   output
@@ -186,14 +192,19 @@ lf::Result<void> Run(Arguments& a, const lf::CommonOptions& common) {
   LF_ASSIGN_OR_RETURN(const auto scene, lf::PageScene::Open(std::move(light_field), a.page));
   if (!a.export_folder.empty()) {
     lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "steps");
+    size_t live_bytes = 0;
+    if (a.export_live != "0") {
+      LF_ASSIGN_OR_RETURN(live_bytes, lf::ParseByteSize(a.export_live, "--export-live"));
+    }
     LF_ASSIGN_OR_RETURN(
         const lf::ExportFacts facts,
-        lf::ExportPage(*scene, a.export_folder, a.export_images, interrupted,
+        lf::ExportPage(*scene, a.export_folder, a.export_images, live_bytes, interrupted,
                        [&](size_t done, size_t total) { meter.Update(done, total, "exporting"); }));
-    LF_RETURN_IF_ERROR(lf::PrintReport(
-        fmt::format("{}: {} files, {}B, {} LF images\n", a.export_folder, facts.file_count,
-                    lf::ShortNumber(static_cast<double>(facts.byte_count)),
-                    facts.image_count - facts.missing_count)));
+    LF_RETURN_IF_ERROR(lf::PrintReport(fmt::format(
+        "{}: {} files, {}B, {} LF images, {} for live pictures ({}B)\n", a.export_folder,
+        facts.file_count, lf::ShortNumber(static_cast<double>(facts.byte_count)),
+        facts.image_count - facts.missing_count, facts.live_count,
+        lf::ShortNumber(static_cast<double>(facts.live_bytes)))));
     return lf::EndWithMissing(MissingOf(facts), limit);
   }
   LF_ASSIGN_OR_RETURN(const auto server, lf::PageServer::Open(*scene, a.port));

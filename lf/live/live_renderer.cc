@@ -43,13 +43,24 @@ std::vector<Resident> ImagesThroughLens(const LightField& field,
     points.push_back(LensPointOfLine(frame, field.Camera(one.id).CentreWorld(), *focus));
   const LensOrder order = OrderOverLens(points, frame.aperture.radius_w, most);
   // LF images beside the lens get a share of it only if those through it are few.
-  const size_t count =
-      std::clamp(order.inside_count, std::min(LiveRenderer::kFewestImages, images.size()), most);
+  const size_t fewest = std::min({LiveRenderer::kFewestImages, images.size(), most});
+  const size_t count = std::clamp(order.inside_count, fewest, most);
   std::vector<Resident> taken;
   for (size_t i = 0; i < count; ++i) taken.push_back(images[order.indices[i]]);
   std::sort(taken.begin(), taken.end(),
             [](const Resident& a, const Resident& b) { return a.id.value < b.id.value; });
   return taken;
+}
+
+// Returns the LF images in memory that a picture may take.
+//   recorded_only  as in LiveWish
+std::vector<Resident> TakeableOf(const ResidentImages::Snapshot& snapshot, bool recorded_only) {
+  if (!recorded_only) return snapshot.images;
+  std::vector<Resident> recorded;
+  std::copy_if(
+      snapshot.images.begin(), snapshot.images.end(), std::back_inserter(recorded),
+      [&](const Resident& one) { return !snapshot.field->cameras[one.id.value].is_virtual; });
+  return recorded;
 }
 
 // Returns the light field of some LF images, given by ascending ids.
@@ -130,15 +141,11 @@ LivePicture LiveRenderer::RenderOf(const RenderCamera& frame, const LiveWish& wi
   static const LightField kNone;
   const std::shared_ptr<const LightField> kept = snapshot->field;
   const LightField& field = kept ? *kept : kNone;
-  std::vector<Resident> recorded;
-  if (wish.recorded_only)
-    std::copy_if(snapshot->images.begin(), snapshot->images.end(), std::back_inserter(recorded),
-                 [&](const Resident& one) { return !field.cameras[one.id.value].is_virtual; });
-  const std::vector<Resident>& takeable = wish.recorded_only ? recorded : snapshot->images;
+  std::vector<Resident> takeable = TakeableOf(*snapshot, wish.recorded_only);
   live.takeable_count = takeable.size();
   const std::vector<Resident> images =
       ImagesThroughLens(field, takeable, frame, CountFor(frame, wish));
-  recorded.clear();
+  takeable.clear();
   snapshot = nullptr;  // LF images that the picture does not take may be forgotten
   for (const Resident& one : images) live.images.push_back(one.id);
 
@@ -166,6 +173,22 @@ LivePicture LiveRenderer::RenderOf(const RenderCamera& frame, const LiveWish& wi
     rest_s_ += kNewest * (live.render_s - collect_s - rest_s_);
   }
   return live;
+}
+
+LiveRenderer::LensPlan LiveRenderer::PlanLens(const RenderCamera& frame, size_t most,
+                                              bool recorded_only) {
+  images_.Aim(frame);
+  LensPlan plan;
+  const std::shared_ptr<const ResidentImages::Snapshot> snapshot = images_.TakeSnapshot();
+  if (snapshot->field) {
+    const std::vector<Resident> takeable = TakeableOf(*snapshot, recorded_only);
+    plan.takeable_count = takeable.size();
+    for (const Resident& one : ImagesThroughLens(*snapshot->field, takeable, frame, most))
+      plan.ids.push_back(one.id);
+    plan.field = FieldOf(*snapshot->field, plan.ids);
+  }
+  plan.lens = LensOfPicture(plan.field, frame, options_.lens_weights, pool_);
+  return plan;
 }
 
 }  // namespace lf

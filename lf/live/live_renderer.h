@@ -23,6 +23,7 @@
 #include "lf/core/result.h"
 #include "lf/film/develop/develop.h"
 #include "lf/film/plate/sensor_plate.h"
+#include "lf/live/picture_lens.h"
 #include "lf/live/resident_images.h"
 #include "lf/selection/image_index.h"
 #include "lf/selection/lens_weights/frame_weights.h"
@@ -72,6 +73,19 @@ class LiveRenderer {
   // The picture is black as long as there are none. Several threads may call it; they wait for each
   // other, but not for LF images that are being loaded.
   Result<LivePicture> Render(const RenderCamera& frame, const LiveWish& wish);
+
+  // A picture that is rendered elsewhere.
+  struct LensPlan {
+    LightField field;            // the shrunken LF images that are taken
+    std::vector<LfImageId> ids;  // their ids in the whole light field
+    PictureLens lens;
+    size_t takeable_count = 0;  // as in LivePicture
+  };
+  // Returns what a renderer elsewhere needs to make the picture of Render(), of at most `most` LF
+  // images, except for their pixels. Loads missing LF images like Render(). Several threads may
+  // call it at the same time.
+  //   recorded_only  as in LiveWish
+  LensPlan PlanLens(const RenderCamera& frame, size_t most, bool recorded_only);
 
   ResidentImages& images() { return images_; }
   const ResidentImages& images() const { return images_; }

@@ -38,6 +38,14 @@ std::array<double, 4> SumOf(const LfPixels& pixels, const PixelRect& square) {
 
 }  // namespace
 
+std::array<uint8_t, 3> DisplayColour(const RadianceEncoding& encoding, const Vec3& value) {
+  Vec3 colour;
+  for (int c = 0; c < 3; ++c)
+    colour[c] = (value[c] - encoding.pedestal) / encoding.Scale() * encoding.white_balance[c];
+  const Vec3 developed = encoding.linear_srgb_from_camera * colour;
+  return {DisplayValue(developed[0]), DisplayValue(developed[1]), DisplayValue(developed[2])};
+}
+
 Result<Image<uint8_t>> LfPicture(const LightField& light_field, const LfImageStore& store,
                                  LfImageId id, int max_side_px) {
   const Intrinsics& k = light_field.Camera(id).intrinsics;
@@ -56,12 +64,9 @@ Result<Image<uint8_t>> LfPicture(const LightField& light_field, const LfImageSto
           Intersection(pixels.rect, {x * factor, y * factor, (x + 1) * factor, (y + 1) * factor});
       const std::array<double, 4> sum = SumOf(pixels, square);
       if (!(sum[3] > 0)) continue;
-      Vec3 colour;
-      for (int c = 0; c < 3; ++c)
-        colour[c] =
-            (sum[c] / sum[3] - encoding.pedestal) / encoding.Scale() * encoding.white_balance[c];
-      const Vec3 developed = encoding.linear_srgb_from_camera * colour;
-      for (int c = 0; c < 3; ++c) picture.at(x, y, c) = DisplayValue(developed[c]);
+      const std::array<uint8_t, 3> colour =
+          DisplayColour(encoding, Vec3(sum[0], sum[1], sum[2]) / sum[3]);
+      std::copy(colour.begin(), colour.end(), &picture.at(x, y, 0));
     }
   return picture;
 }

@@ -1,8 +1,10 @@
 // Makes pictures of LF images for people to look at.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
+#include "lf/core/geometry.h"
 #include "lf/core/ids.h"
 #include "lf/core/image.h"
 #include "lf/core/result.h"
@@ -11,10 +13,13 @@
 
 namespace lf {
 
-// Returns the LF image as sRGB, [height][width][3], developed like frames (white balance, colour
-// matrix, gain). If its longer side exceeds max_side_px, it is reduced: each pixel of the picture
-// is the mean of the unmasked pixels of a square. A pixel is grey if all pixels of its square are
-// masked.
+// Returns the sRGB colour, 0 to 255, of 16-bit values v of R, G and B, developed like frames (white
+// balance, colour matrix, gain).
+std::array<uint8_t, 3> DisplayColour(const RadianceEncoding& encoding, const Vec3& value);
+
+// Returns the LF image as sRGB, [height][width][3], in colours of DisplayColour(). If its longer
+// side exceeds max_side_px, it is reduced: each pixel of the picture is the mean of the unmasked
+// pixels of a square. A pixel is grey if all pixels of its square are masked.
 //   store  must be opened with Mosaics::kToRgb
 // Errors: those of LoadWithoutThrowing().
 Result<Image<uint8_t>> LfPicture(const LightField& light_field, const LfImageStore& store,

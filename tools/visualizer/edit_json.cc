@@ -26,9 +26,9 @@ class EditReader : public nlohmann::json_sax<Json> {
     return true;
   }
   bool key(string_t& name) override {
-    static const std::set<std::string> kKeys = {"text",  "expected",  "force",   "frame",
-                                                "path",  "x",         "y",       "camera",
-                                                "width", "budget_ms", "recorded"};
+    static const std::set<std::string> kKeys = {"text",  "expected",  "force",    "frame",
+                                                "path",  "x",         "y",        "camera",
+                                                "width", "budget_ms", "recorded", "images"};
     key_ = kKeys.contains(name) ? std::move(name) : std::string();
     return true;
   }

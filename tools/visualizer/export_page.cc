@@ -7,9 +7,11 @@
 #include <thread>
 #include <vector>
 
+#include "tools/visualizer/export_live.h"
 #include "tools/visualizer/page_answers.h"
 #include "tools/visualizer/page_files.h"
 
+#include "lf/core/check.h"
 #include "lf/core/file.h"
 #include "lf/core/log.h"
 
@@ -17,6 +19,30 @@ namespace lf {
 namespace {
 
 namespace fs = std::filesystem;
+
+std::string Base64Of(std::string_view bytes) {
+  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    const std::string_view three = bytes.substr(i, 3);
+    uint32_t bits = 0;
+    for (size_t k = 0; k < 3; ++k)
+      bits = bits << 8 | (k < three.size() ? static_cast<unsigned char>(three[k]) : 0U);
+    for (size_t k = 0; k < 4; ++k)
+      text += k <= three.size() ? kDigits[bits >> (18 - 6 * k) & 63] : '=';
+  }
+  return text;
+}
+
+// Returns index.html, marked so that the page loads data as scripts.
+std::string MarkedPage(std::string_view html) {
+  constexpr std::string_view kBefore = "<html lang=\"en\"";
+  std::string marked(html);
+  const size_t at = marked.find(kBefore);
+  LF_CHECK(at != std::string::npos);
+  return marked.insert(at + kBefore.size(), " data-files=\"scripts\"");
+}
 
 Error Interrupted() { return {ErrorKind::kInterrupted, "interrupted; the export is incomplete"}; }
 
@@ -32,10 +58,15 @@ class Exporter {
     facts.byte_count += bytes.size();
     return {};
   }
+  // Writes data as a script that hands them to the page (web/src/data/source.ts).
+  Result<void> WriteData(const std::string& name, std::string_view bytes) {
+    return Write(name + ".js",
+                 fmt::format("lfvisualizerFile(\"{}\",\"{}\")\n", name, Base64Of(bytes)));
+  }
   // Writes the answer that the server would give for this name. Warns if the answer is an error.
   Result<void> WriteAnswer(const std::string& name) {
     const PageAnswer answer = Answer(scene_, name);
-    if (answer.status == 200) return Write(name, answer.body);
+    if (answer.status == 200) return WriteData(name, answer.body);
     LogWarning("{}: {}", name, answer.fault);
     return {};
   }
@@ -48,6 +79,20 @@ class Exporter {
     if (facts.missing_count++ == 0) facts.first_missing = answer.fault;
     return {};
   }
+  // Writes an LF image for live pictures. Returns the name of its data; "" if it cannot be read.
+  Result<std::string> WriteLive(LfImageId id, int divisor) {
+    const auto encoded = EncodeForLive(scene_, id, divisor);
+    if (!encoded) {
+      LogWarning("{}", encoded.error().message);
+      return std::string();
+    }
+    const std::string name = fmt::format("live/{}{}", id.value, encoded->ending);
+    const uint64_t before = facts.byte_count;
+    LF_RETURN_IF_ERROR(WriteData(name, encoded->bytes));
+    facts.live_bytes += facts.byte_count - before;
+    ++facts.live_count;
+    return name;
+  }
 
   ExportFacts facts;
 
@@ -59,7 +104,7 @@ class Exporter {
 }  // namespace
 
 Result<ExportFacts> ExportPage(PageScene& scene, const fs::path& folder, size_t most_images,
-                               const std::atomic<bool>& interrupted,
+                               size_t most_live_bytes, const std::atomic<bool>& interrupted,
                                const std::function<void(size_t, size_t)>& progress) {
   std::error_code error;
   if (fs::exists(folder, error) && !fs::is_empty(folder, error))
@@ -85,7 +130,8 @@ Result<ExportFacts> ExportPage(PageScene& scene, const fs::path& folder, size_t 
     if (frames_of_image[i] > 0) images.push_back(i);
   // The exported LF images are spread evenly over the LF images that the film uses.
   const size_t image_count = std::min(images.size(), most_images);
-  const size_t total = 2 * frame_count + image_count;
+  const LivePlan live = PlanLiveExport(scene, images, most_live_bytes);
+  const size_t total = 2 * frame_count + image_count + live.ids.size();
   size_t done = frame_count;
   const auto step = [&]() -> Result<void> {
     progress(++done, total);
@@ -106,10 +152,19 @@ Result<ExportFacts> ExportPage(PageScene& scene, const fs::path& folder, size_t 
     LF_RETURN_IF_ERROR(exporter.WriteImage(id));
     LF_RETURN_IF_ERROR(step());
   }
+  std::vector<std::string> live_names;
+  for (const LfImageId id : live.ids) {
+    LF_ASSIGN_OR_RETURN(live_names.emplace_back(), exporter.WriteLive(id, live.divisor));
+    LF_RETURN_IF_ERROR(step());
+  }
+  LF_RETURN_IF_ERROR(exporter.WriteData("live.json", LiveJson(scene, live, live_names)));
   // The page is written last, so that an incomplete export does not open.
-  LF_RETURN_IF_ERROR(exporter.Write("scene.json", SceneJson(scene, draft, {.is_server = false})));
+  LF_RETURN_IF_ERROR(
+      exporter.WriteData("scene.json", SceneJson(scene, draft, {.is_server = false})));
   for (const PageFile& file : PageFiles())
-    LF_RETURN_IF_ERROR(exporter.Write(file.name, file.bytes));
+    LF_RETURN_IF_ERROR(exporter.Write(file.name, file.name == std::string_view("index.html")
+                                                     ? MarkedPage(file.bytes)
+                                                     : std::string(file.bytes)));
   return exporter.facts;
 }
 

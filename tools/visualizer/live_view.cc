@@ -1,10 +1,12 @@
 #include "tools/visualizer/live_view.h"
 
+#include <charconv>
 #include <cstdint>
-#include <cstring>
+#include <memory>
 #include <string>
 
-#include "lf/core/check.h"
+#include "tools/visualizer/live_bytes.h"
+
 #include "lf/render/state/record_fields.h"
 #include "lf/view/scene_bytes.h"
 #include "lf/view/watched_render.h"
@@ -26,6 +28,14 @@ Json LoadingJson(const ResidentImages::Status& status) {
           {"wanted", status.wanted_count},
           {"done", status.wanted_done_count},
           {"broken", status.broken_count}};
+}
+
+// Parses a whole number of digits alone.
+std::optional<int> WholeNumber(std::string_view text) {
+  int number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  return error == std::errc() && rest == end && number >= 0 ? std::optional(number) : std::nullopt;
 }
 
 }  // namespace
@@ -52,27 +62,26 @@ std::atomic<bool>* LiveView::BreakOffStillPictures(bool is_still) {
   return is_still ? &still_.emplace_back(false) : nullptr;
 }
 
-// Returns the length of the JSON text, the text, and the picture, which begins at a multiple of 4
-// bytes.
-std::string LiveView::BytesOf(const LivePicture& live) const {
+// Returns the numbers of a live picture that depend on the LF images in memory alone.
+Json LiveView::FactsOfImages() const {
   const ResidentImages::Status status = renderer_.images().status();
   Json json = LoadingJson(status);
-  json["images"] = live.images.size();
   json["needed"] = status.needed_count;
   json["image_bytes"] = status.image_bytes;
   json["memory_bytes"] = memory_bytes_;
-  json["takeable"] = live.takeable_count;
   json["first_broken"] = status.first_broken;
   json["divisor"] = status.divisor;
+  return json;
+}
+
+std::string LiveView::BytesOf(const LivePicture& live) const {
+  Json json = FactsOfImages();
+  json["images"] = live.images.size();
+  json["takeable"] = live.takeable_count;
   json["uncovered_share"] = live.uncovered_share;
   json["camera_distance"] = live.camera_distance_w;
   json["render_ms"] = 1e3 * live.render_s;
-  std::string text = RecordLine(json);
-  text.resize((text.size() + 3) / 4 * 4, ' ');
-  const auto length = static_cast<uint32_t>(text.size());
-  std::string bytes(sizeof(length), '\0');
-  std::memcpy(bytes.data(), &length, sizeof(length));
-  return bytes + text + PictureBytes(PictureOf(live.picture, kLongestSide_px));
+  return WithHead(json) + PictureBytes(PictureOf(live.picture, kLongestSide_px));
 }
 
 PageAnswer LiveView::Answer(const RenderCamera& frame, std::optional<double> budget_s,
@@ -85,6 +94,31 @@ PageAnswer LiveView::Answer(const RenderCamera& frame, std::optional<double> bud
   }
   if (!live) return {200, "application/json", RecordLine({{"superseded", true}})};
   return {200, "application/octet-stream", BytesOf(*live)};
+}
+
+PageAnswer LiveView::AnswerLens(const RenderCamera& frame, size_t most_images, bool recorded_only) {
+  const LiveRenderer::LensPlan plan = renderer_.PlanLens(frame, most_images, recorded_only);
+  Json json = FactsOfImages();
+  json["takeable"] = plan.takeable_count;
+  return {200, "application/octet-stream", LensBytes(plan, frame, std::move(json))};
+}
+
+PageAnswer LiveView::AnswerImage(std::string_view name) {
+  constexpr std::string_view kEnding = ".bin";
+  const PageAnswer refusal = Refusal(404, "this LF image is not in memory");
+  const size_t slash = name.find('/');
+  if (slash == std::string_view::npos || !name.ends_with(kEnding)) return refusal;
+  const std::optional<int> divisor = WholeNumber(name.substr(0, slash));
+  const std::optional<int> id =
+      WholeNumber(name.substr(slash + 1, name.size() - kEnding.size() - slash - 1));
+  if (!id || divisor != renderer_.images().status().divisor) return refusal;
+  const std::shared_ptr<const ResidentImages::Snapshot> snapshot =
+      renderer_.images().TakeSnapshot();
+  for (const ResidentImages::Snapshot::Resident& one : snapshot->images)
+    if (one.id.value == static_cast<uint32_t>(*id))
+      return {200, "application/octet-stream",
+              LfImageBytes(snapshot->field->Camera(one.id), one.image->pixels)};
+  return refusal;
 }
 
 }  // namespace lf

@@ -5,8 +5,10 @@
 #include <cstddef>
 #include <list>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "tools/visualizer/page_answers.h"
 #include "tools/visualizer/page_scene.h"
@@ -26,14 +28,21 @@ class LiveView {
 
   // Answers with a picture of the frame (doc/formats/page_data.md, POST live).
   //   budget_s, recorded_only  as in LiveWish. A picture without a budget is a still one: it is
-  //   broken off by
-  //             the next call, and then answered with {"superseded": true}
+  //                            broken off by the next call, and then answered with
+  //                            {"superseded": true}
   PageAnswer Answer(const RenderCamera& frame, std::optional<double> budget_s, bool recorded_only);
+
+  // Answers with the lens of a picture that the browser renders, of at most `most_images` LF images
+  // (doc/formats/page_data.md, POST lens).
+  //   recorded_only  as in LiveWish
+  PageAnswer AnswerLens(const RenderCamera& frame, size_t most_images, bool recorded_only);
+  // Answers GET live/NAME: the shrunken LF image "DIVISOR/ID.bin". 404 if it is not in memory.
+  PageAnswer AnswerImage(std::string_view name);
 
  private:
   void Tell();
   std::atomic<bool>* BreakOffStillPictures(bool is_still);
-
+  nlohmann::ordered_json FactsOfImages() const;
   std::string BytesOf(const LivePicture& live) const;
 
   PageScene& scene_;

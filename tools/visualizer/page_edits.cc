@@ -90,8 +90,9 @@ PageAnswer StartPreview(PageScene& scene, PreviewRender& preview, const Json& js
   return JsonAnswer(Json::object());
 }
 
+// Answers "live" with a picture, and "lens" with the lens of a picture that the browser renders.
 // The text does not become a draft: drafts are few, and a drag would replace those that pages show.
-PageAnswer ShowLive(PageScene& scene, LiveView& live, const Json& json) {
+PageAnswer ShowLive(PageScene& scene, LiveView& live, const Json& json, bool is_lens) {
   const std::string file = scene.arguments().path.filename().string();
   const auto path = ParsePathYaml(TextOf(json, "text"), file, scene.light_field().unit_m);
   if (!path) return RefusedPath(path.error(), file);
@@ -100,10 +101,15 @@ PageAnswer ShowLive(PageScene& scene, LiveView& live, const Json& json) {
   if (!frame || !(width >= 1))
     return Refusal(422, "expected a frame of the path, and \"width\" from 1 on");
   const int width_px = static_cast<int>(std::min<double>(width, kLongestLiveSide_px));
+  const RenderCamera camera = WithPlateWidth(path->Camera(*frame), width_px, kLongestLiveSide_px);
+  const double images = NumberOf(json, "images");
+  const bool recorded_only = IsTrue(json, "recorded");
+  if (is_lens)
+    return live.AnswerLens(camera, images >= 1 ? static_cast<size_t>(std::min(images, 1e9)) : 1,
+                           recorded_only);
   std::optional<double> budget_s;
   if (budget_ms >= 0) budget_s = budget_ms / 1000;
-  return live.Answer(WithPlateWidth(path->Camera(*frame), width_px, kLongestLiveSide_px), budget_s,
-                     IsTrue(json, "recorded"));
+  return live.Answer(camera, budget_s, recorded_only);
 }
 
 PageAnswer PickFocus(PageScene& scene, const Json& json) {
@@ -155,7 +161,7 @@ PageAnswer Edit(PageScene& scene, PreviewRender& preview, LiveView& live, std::s
   }
   if (name == "save") return Save(scene, json);
   if (name == "preview") return StartPreview(scene, preview, json);
-  if (name == "live") return ShowLive(scene, live, json);
+  if (name == "live" || name == "lens") return ShowLive(scene, live, json, name == "lens");
   if (name == "focus") return PickFocus(scene, json);
   if (name == "preview/stop") {
     preview.Stop();

@@ -64,8 +64,9 @@ struct PageServer::Parts {
 };
 
 PageAnswer PageServer::Parts::Get(std::string_view name) {
-  constexpr std::string_view kPreview = "preview/";
+  constexpr std::string_view kPreview = "preview/", kLive = "live/";
   if (name.starts_with(kPreview)) return preview.Answer(name.substr(kPreview.size()));
+  if (name.starts_with(kLive)) return live.AnswerImage(name.substr(kLive.size()));
   return Answer(scene, name);
 }
 

@@ -5,6 +5,7 @@ import { getBytes, getJson, listen, receivedBytes } from "./data/source";
 import { ask, showCommands, showKeys } from "./dialogs";
 import { byId, element } from "./element";
 import { Legend } from "./legend";
+import type { ExportedLive } from "./live/gl/exported_images";
 import { startLive, type Live } from "./live/live";
 import { EditPanel } from "./panels/edit_panel";
 import { FramePanel } from "./panels/frame_panel";
@@ -30,6 +31,7 @@ interface Panel {
 async function start(): Promise<void> {
   const scene = await getJson<SceneFacts>("scene.json");
   const positions = new Float32Array(await getBytes("cameras.bin"));
+  const exported = scene.server ? null : await getJson<ExportedLive>("live.json");
   const state = new State(scene, positions);
   document.title = `${scene.light_field.name} — lfvisualizer`;
   byId("what").textContent =
@@ -42,7 +44,7 @@ async function start(): Promise<void> {
   });
   new Legend(byId("legend"), state, view);
   const timeline = new Timeline(state);
-  const { show, panels } = makeTabs(state, timeline);
+  const { show, panels } = makeTabs(state, timeline, exported);
   const look = wireViews(state, view, panels.live, show);
   wireSpace(state, view);
   wireButtons(state);
@@ -64,12 +66,16 @@ interface Panels {
   live: Live;
 }
 
-function makeTabs(state: State, timeline: Timeline): { show: (name: string) => void; panels: Panels } {
+function makeTabs(
+  state: State,
+  timeline: Timeline,
+  exported: ExportedLive | null,
+): { show: (name: string) => void; panels: Panels } {
   const section = () => element("section", { role: "tabpanel", hidden: true });
   const roots = { frame: section(), image: section(), edit: section(), lens: section(), render: section() };
   byId("panels").append(...Object.values(roots));
   const render = new RenderPanel(roots.render, state);
-  const live = startLive(byId("live"), roots.lens, state, () => timeline.stop());
+  const live = startLive(byId("live"), roots.lens, state, exported, () => timeline.stop());
   const panels: Record<string, [string, HTMLElement, Panel]> = {
     frame: ["Frame", roots.frame, new FramePanel(roots.frame, state)],
     image: ["LF image", roots.image, new ImagePanel(roots.image, state)],
@@ -99,7 +105,7 @@ type View = Preset | "live" | "space"; // "space": the view in space as it was b
 // Makes the buttons of the views. Returns a function that chooses a view.
 function wireViews(state: State, space: SpaceView, live: Live, show: (name: string) => void): (view: View) => void {
   const views: [View, string][] = [...PRESETS];
-  if (state.scene.server) views.unshift(["live", "Live picture"]);
+  if (live.panel.isUsable) views.unshift(["live", "Live picture"]);
   const buttons = new Map<View, HTMLElement>();
   const look = (view: View) => {
     const isLive = view === "live";
@@ -225,7 +231,8 @@ function wireKeys(
     if (event.altKey || isTyped || byId<HTMLDialogElement>("dialog").open) return;
     // If a button has the focus, the browser presses it with the space bar.
     if (key === " " && target.tagName === "BUTTON") return;
-    if (!state.scene.server && "kpl".includes(key)) return;
+    if (!state.scene.server && "kp".includes(key)) return;
+    if (!live.panel.isUsable && key === "l") return;
     if (state.isLive && live.key(event)) return event.preventDefault();
     const action = plain[key];
     if (!action) return;

@@ -8,12 +8,15 @@
 #include <stdexcept>
 #include <string_view>
 #include <thread>
+#include <utility>
+#include <variant>
 
 #include "lf/pixels/files/file_bytes.h"
 #include "lf/pixels/files/image_probe.h"
 #include "lf/pixels/files/picture_decoder.h"
 #include "lf/pixels/files/picture_encoder.h"
 #include "lf/pixels/files/test_folder.h"
+#include "lf/pixels/files/write_png.h"
 
 namespace lf {
 namespace {
@@ -386,6 +389,27 @@ TEST(PngFile, ManyThreadsReadAndWriteTheSame) {
     });
   for (std::thread& thread : threads) thread.join();
   for (const int failure : failures) EXPECT_EQ(failure, 0);
+}
+
+TEST(PngFile, AViewWithAlphaIsWrittenAndReadAgain) {
+  Image<uint8_t> image(7, 5, 4);
+  for (size_t i = 0; i < image.pixels().size(); ++i)
+    image.pixels()[i] = static_cast<uint8_t>(37 * i + 3);
+  ImageView<const uint8_t> part = std::as_const(image).view();
+  part.data = &image.at(2, 1, 0);
+  part.width = 4;
+  part.height = 3;
+  const auto bytes = EncodePng(part);
+  ASSERT_TRUE(bytes);
+  const auto read = DecodedPng(*bytes);
+  ASSERT_TRUE(read) << read.error().message;
+  const auto& again = std::get<Image<uint8_t>>(*read);
+  ASSERT_EQ(again.width(), 4);
+  ASSERT_EQ(again.height(), 3);
+  ASSERT_EQ(again.channels(), 4);
+  for (int y = 0; y < 3; ++y)
+    for (int x = 0; x < 4; ++x)
+      for (int c = 0; c < 4; ++c) EXPECT_EQ(again.at(x, y, c), image.at(x + 2, y + 1, c));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "lf/pixels/files/picture_encoder.h"
 #include "lf/pixels/files/png_calls.h"
 #include "lf/pixels/files/row_blocks.h"
+#include "lf/pixels/files/write_png.h"
 
 namespace lf {
 namespace {
@@ -142,6 +144,20 @@ Result<std::string> EncodePng(const PictureRows& picture) {
         return encoder.WriteRows(rows, row_bytes, count);
       }));
   return encoder.Finish();
+}
+
+Result<std::string> EncodePng(ImageView<const uint8_t> pixels) {
+  PictureRows rows;
+  rows.name = "a PNG";
+  rows.width = pixels.width;
+  rows.height = pixels.height;
+  rows.channels = pixels.channels;
+  rows.is_srgb = pixels.channels >= 3;
+  rows.pack_row = [&](int y, std::byte* to) {
+    std::memcpy(to, pixels.data + y * pixels.stride,
+                static_cast<size_t>(pixels.width) * pixels.channels);
+  };
+  return EncodePng(rows);
 }
 
 }  // namespace lf

@@ -59,6 +59,14 @@ class FrameLens {
   // Returns true unless WeightsOf() is 0 in all elements.
   bool Takes(LfImageId id) const;
 
+  // weights() returns the weights of the LF cameras of near(), in this order; null if there are no
+  // lens weights. IndexOf() returns the index of an LF camera in them; nullopt if it has none.
+  const FrameWeights* weights() const { return weights_ ? &*weights_ : nullptr; }
+  std::optional<size_t> IndexOf(LfImageId id) const {
+    const auto found = cameras_.find(id.value);
+    return found != cameras_.end() ? std::optional(found->second) : std::nullopt;
+  }
+
   // near() returns the LF images that may get a share of the lens, by ascending ids.
   // camera_distance_w() returns the distance between neighbouring LF cameras around the lens, in
   // world units. Without lens weights, near() is empty and the distance is 0.

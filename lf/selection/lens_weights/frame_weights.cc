@@ -280,8 +280,7 @@ void FrameWeights::SetWeights(const std::vector<Node>& nodes) {
 
 std::optional<uint8_t> FrameWeights::ConstantOf(size_t camera) const {
   if (nodes_begin_[camera] == kNone) return 0;
-  const std::span<const uint16_t> weights =
-      std::span(weights_).subspan(nodes_begin_[camera], static_cast<size_t>(columns_) * rows_);
+  const std::span<const uint16_t> weights = NodesOf(camera);
   if (std::any_of(weights.begin(), weights.end(), [&](uint16_t w) { return w != weights[0]; }))
     return {};
   return static_cast<uint8_t>(At(camera, 0, 0));

@@ -77,6 +77,13 @@ class FrameWeights {
   // True if the LF camera has a share above 0 at some node.
   bool TakesPart(size_t camera) const { return nodes_begin_[camera] != kNone; }
 
+  // Returns the weights of an LF camera at the nodes, [row][column], in 1/256, between which
+  // OfRow() interpolates. Empty if the LF camera takes no part.
+  std::span<const uint16_t> NodesOf(size_t camera) const {
+    if (!TakesPart(camera)) return {};
+    return std::span(weights_).subspan(nodes_begin_[camera], static_cast<size_t>(columns_) * rows_);
+  }
+
   // Returns the weight of all rays of an LF camera, or nullopt if it depends on the element.
   std::optional<uint8_t> ConstantOf(size_t camera) const;
 

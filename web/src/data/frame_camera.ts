@@ -69,6 +69,17 @@ export const add = (a: Vec3, b: Vec3, scale = 1): Vec3 => [
 ];
 export const dot = (a: Vec3, b: Vec3): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
+export const cross = (a: Vec3, b: Vec3): Vec3 => [
+  a[1] * b[2] - a[2] * b[1],
+  a[2] * b[0] - a[0] * b[2],
+  a[0] * b[1] - a[1] * b[0],
+];
+
+export function unit(a: Vec3): Vec3 {
+  const size = Math.hypot(...a);
+  return [a[0] / size, a[1] / size, a[2] / size];
+}
+
 // Returns the direction of an element's ray through the lens centre. Its component along the optical axis is 1.
 export function elementDirection(camera: FrameCamera, x: number, y: number): Vec3 {
   const sideways = add(camera.forward, camera.right, (x - camera.cx) / camera.fx);

@@ -1,5 +1,6 @@
 // The answer to the request of a live picture: facts about the picture, and the picture.
 
+import { readHead } from "./head";
 import { readPicture, type GrowingPicture } from "./growing_picture";
 
 export interface LiveFacts {
@@ -22,10 +23,10 @@ export interface LiveFacts {
 export interface LivePicture {
   facts: LiveFacts;
   picture: GrowingPicture;
+  by: "server" | "webgl"; // who rendered it
 }
 
 export function readLivePicture(bytes: ArrayBuffer): LivePicture {
-  const size = new DataView(bytes).getUint32(0, true);
-  const facts = JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 4, size))) as LiveFacts;
-  return { facts, picture: readPicture(bytes, 4 + size) };
+  const [facts, begin] = readHead<LiveFacts>(bytes);
+  return { facts, picture: readPicture(bytes, begin), by: "server" };
 }

@@ -1,6 +1,8 @@
 // Reads the page's data by their names, relative to the folder of the page. They come from the server of lfvisualizer
 // or from exported files.
 
+import { hasScripts, loadScript } from "./script_files";
+
 export class SourceError extends Error {
   constructor(
     message: string,
@@ -23,6 +25,11 @@ async function refusal(response: Response): Promise<SourceError> {
 }
 
 async function ask(name: string, options?: RequestInit): Promise<Response> {
+  if (hasScripts()) {
+    const bytes = options ? null : await loadScript(name);
+    if (!bytes) throw new SourceError(`the exported files have no ${name}`, 404);
+    return new Response(bytes);
+  }
   let response: Response;
   try {
     response = await fetch(name, options);

@@ -1,19 +1,8 @@
 // Moves the camera of a frame: orbits round a point, slides sideways, dollies along the optical axis.
 
-import { add, dot, type FrameCamera } from "../data/frame_camera";
+import { add, cross, dot, unit, type FrameCamera } from "../data/frame_camera";
 import type { Vec3 } from "../data/scene";
 import { withFocusDistance } from "./lens_changes";
-
-export const cross = (a: Vec3, b: Vec3): Vec3 => [
-  a[1] * b[2] - a[2] * b[1],
-  a[2] * b[0] - a[0] * b[2],
-  a[0] * b[1] - a[1] * b[0],
-];
-
-export function unit(a: Vec3): Vec3 {
-  const size = Math.hypot(...a);
-  return [a[0] / size, a[1] / size, a[2] / size];
-}
 
 // Returns the vector, turned right-handed about an axis of length 1 (Rodrigues' formula).
 function turned(vector: Vec3, axis: Vec3, angle: number): Vec3 {

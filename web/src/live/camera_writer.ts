@@ -1,11 +1,10 @@
 // Writes a moved camera into the path: its position, and its direction in the way in which the path defines it.
 
-import { add, dot, type FrameCamera } from "../data/frame_camera";
+import { add, cross, dot, unit, type FrameCamera } from "../data/frame_camera";
 import type { Vec3 } from "../data/scene";
 import type { PathDocument } from "../path/path_document";
 import type { PathValue } from "../path/path_quantities";
 import { setAtTime } from "../path/set_at_time";
-import { cross, unit } from "./camera_moves";
 import { quaternionOf } from "./one_frame_path";
 
 const DEGREES = 180 / Math.PI;

@@ -1,6 +1,6 @@
 // Changes of the lens of a frame's camera, and how each is written into the path.
 
-import { add, dot, type FrameCamera } from "../data/frame_camera";
+import { add, dot, unit, type FrameCamera } from "../data/frame_camera";
 import type { PathDocument } from "../path/path_document";
 import { setAtTime, setFocusDistance } from "../path/set_at_time";
 import { isBreathing } from "./one_frame_path";
@@ -38,6 +38,23 @@ export function writeAperture(document: PathDocument, time: number, camera: Fram
     document.useAperture(0);
     return "A pinhole has no f-number: aperture_diameter replaces f_number in the whole film.";
   }
+  return "";
+}
+
+// Tilts the focus plane by tiltHorizontal and tiltVertical: a point x to the right of the optical axis and y above it is
+// in the plane if its depth is the focus distance + x tan(horizontal) + y tan(vertical).
+export function withTilt(camera: FrameCamera): FrameCamera {
+  const sideways = add(camera.forward, camera.right, -Math.tan(camera.tiltHorizontal));
+  const normal = unit(add(sideways, camera.up, -Math.tan(camera.tiltVertical)));
+  return withFocusDistance({ ...camera, normal }, camera.focusDistance);
+}
+
+export function writeTilt(document: PathDocument, time: number, camera: FrameCamera): string {
+  const { tiltHorizontal, tiltVertical } = camera;
+  setAtTime(document, "focus_tilt", time, {
+    horizontal: tiltHorizontal * DEGREES,
+    vertical: tiltVertical * DEGREES,
+  });
   return "";
 }
 

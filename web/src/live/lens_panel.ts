@@ -8,7 +8,7 @@ import type { State } from "../state";
 import { extentOf } from "../view/space_view";
 import { length } from "../words";
 import type { Comparison } from "./comparison";
-import { rotationWriter, writeBlades, writeAperture, writeFocusDistance } from "./lens_changes";
+import { rotationWriter, withTilt, writeBlades, writeAperture, writeFocusDistance, writeTilt } from "./lens_changes";
 import type { LiveCamera } from "./live_camera";
 import { apertureText } from "./live_status";
 import { depthFactor, type LiveTools } from "./live_tools";
@@ -17,6 +17,8 @@ import type { LiveView } from "./live_view";
 const SVG = "http://www.w3.org/2000/svg";
 const OPENINGS = 1000; // factor between the largest and the smallest opening of the slider
 const MOST_BLADES = 12;
+const MOST_TILT = (75 * Math.PI) / 180; // of the sliders
+const STRAIGHT = (1.5 * Math.PI) / 180; // tilts below this become 0
 
 interface Parts {
   state: State;
@@ -24,6 +26,7 @@ interface Parts {
   view: LiveView;
   tools: LiveTools;
   comparison: Comparison;
+  refused: string; // why an exported page has no live pictures; "" if there are live pictures
 }
 
 export class LensPanel {
@@ -36,8 +39,9 @@ export class LensPanel {
     private readonly parts: Parts,
   ) {
     const { state, camera, tools, comparison } = parts;
-    if (!state.scene.server) {
-      root.append(element("p", { class: "muted" }, "These are exported files, without live pictures."));
+    if (!this.isUsable) {
+      const text = `These are exported files without live pictures: ${parts.refused}.`;
+      root.append(element("p", { class: "muted" }, text));
       return;
     }
     root.append(
@@ -55,12 +59,18 @@ export class LensPanel {
       element("div", { class: "lens" }, this.drawing(), element("div", {}, this.focus(), this.aperture())),
       this.blades(),
       this.rotation(),
+      this.tilt("horizontal"),
+      this.tilt("vertical"),
       element("h2", {}, "Picture"),
       exposureRow(state),
     );
     camera.listen(() => this.shown());
     tools.listen(() => this.shown());
     comparison.listen(() => this.shown());
+  }
+
+  get isUsable(): boolean {
+    return this.parts.refused === "";
   }
 
   shown(): void {
@@ -130,9 +140,10 @@ export class LensPanel {
   private help(): HTMLElement {
     const text = element("p", { class: "muted" });
     const words = {
-      focus:
-        "In the live picture, click: focus there. Drag: nearer or farther. Wheel or pinch: aperture. Shift-click three " +
-        "places: tilt the focus plane.",
+      focus: this.parts.state.scene.server
+        ? "In the live picture, click: focus there. Drag: nearer or farther. Wheel or pinch: aperture. Shift-click " +
+          "three places: tilt the focus plane."
+        : "In the live picture, drag: focus nearer or farther. Wheel or pinch: aperture. Changes last until the next frame.",
       camera: "In the live picture, drag: orbit round the point in focus. Shift and drag: slide. Wheel: dolly.",
     };
     this.fills.push(() => (text.textContent = words[this.parts.tools.mode]));
@@ -252,6 +263,22 @@ export class LensPanel {
     );
     this.fills.push(() => (row.hidden = camera.camera.blades < 3));
     return row;
+  }
+
+  private tilt(direction: "horizontal" | "vertical"): HTMLElement {
+    const { camera } = this.parts;
+    const [label, of] =
+      direction === "horizontal" ? (["Tilt ↔", "tiltHorizontal"] as const) : (["Tilt ↕", "tiltVertical"] as const);
+    return this.slider(
+      label,
+      { min: -MOST_TILT, max: MOST_TILT },
+      (one) => one[of],
+      (angle) => {
+        const near = Math.abs(angle) < STRAIGHT ? 0 : angle;
+        camera.show("tilt the focus plane", withTilt({ ...camera.camera, [of]: near }), writeTilt);
+      },
+      (one) => `${Math.round((one[of] * 180) / Math.PI)}°`,
+    );
   }
 
   // Draws the opening as seen from behind the lens.

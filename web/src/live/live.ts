@@ -2,10 +2,17 @@
 
 import type { State } from "../state";
 import { Comparison } from "./comparison";
+import { ChosenPictures } from "./chosen_pictures";
+import type { ExportedLive } from "./gl/exported_images";
+import { ExportedPictures } from "./gl/exported_pictures";
+import { GlPictures } from "./gl/gl_pictures";
+import { GlRenderer } from "./gl/gl_renderer";
+import { wishOf } from "./gl/wish";
 import { LensPanel } from "./lens_panel";
 import { LiveCamera } from "./live_camera";
 import { LiveTools } from "./live_tools";
 import { LiveView } from "./live_view";
+import { ServerPictures, type Pictures } from "./pictures";
 
 export interface Live {
   view: LiveView;
@@ -17,14 +24,21 @@ export interface Live {
 }
 
 //   root         receives the picture
+//   exported     the LF images of an exported page; null if there is a server
 //   panelRoot    receives the panel of the lens
 //   stopPlaying  is called when the camera is changed by hand
-export function startLive(root: HTMLElement, panelRoot: HTMLElement, state: State, stopPlaying: () => void): Live {
+export function startLive(
+  root: HTMLElement,
+  panelRoot: HTMLElement,
+  state: State,
+  exported: ExportedLive | null,
+  stopPlaying: () => void,
+): Live {
   const camera = new LiveCamera(state, stopPlaying);
-  const view = new LiveView(root, state, camera);
+  const view = new LiveView(root, state, camera, picturesOf(state, exported));
   const comparison = new Comparison(state, view, camera);
   const tools = new LiveTools(state, camera, view.box);
-  const panel = new LensPanel(panelRoot, { state, camera, view, tools, comparison });
+  const panel = new LensPanel(panelRoot, { state, camera, view, tools, comparison, refused: exported?.refused ?? "" });
   const key = (event: KeyboardEvent): boolean => {
     const name = event.key.toLowerCase();
     if (name === "e") panel.togglePeaking();
@@ -33,4 +47,12 @@ export function startLive(root: HTMLElement, panelRoot: HTMLElement, state: Stat
     return true;
   };
   return { view, camera, panel, comparison, key };
+}
+
+function picturesOf(state: State, exported: ExportedLive | null): Pictures {
+  const loaded = () => state.emit("live");
+  if (exported) return new ExportedPictures(exported, loaded);
+  const unit_m = () => state.path.unit_m;
+  const open = (lost: () => void) => new GlPictures(GlRenderer.open(lost), unit_m, loaded);
+  return new ChosenPictures(new ServerPictures(unit_m), wishOf(location.search), open, loaded);
 }

@@ -76,6 +76,7 @@ export class LiveCamera {
     const { change, changed: camera, state } = this;
     this.change = null;
     if (!change || !camera) return;
+    if (!state.scene.server) return this.tell(); // an exported path cannot be edited: the camera stays changed
     let also = "";
     const isTaken = state.edit(change.label, (document) => {
       document.edit(() => (also = change.write(document, change.time, camera)));

@@ -112,6 +112,8 @@ export class LiveTools {
 
   private click(x: number, y: number, event: PointerEvent): void {
     if (this.movesCamera(event)) return;
+    if (!this.state.scene.server)
+      return this.state.say("The exported page cannot measure distances: drag to focus nearer or farther.");
     if (!this.state.isShown) return; // the server does not know the path of this picture yet
     const { width, height } = this.camera.camera;
     const isOfPlane = event.shiftKey;

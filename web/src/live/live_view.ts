@@ -2,8 +2,7 @@
 
 import { develop } from "../data/growing_picture";
 import type { FrameCamera } from "../data/frame_camera";
-import { readLivePicture, type LivePicture } from "../data/live_picture";
-import { postForBytes } from "../data/source";
+import type { LivePicture } from "../data/live_picture";
 import { element } from "../element";
 import type { State } from "../state";
 import { colourEdges } from "./focus_peaking";
@@ -11,6 +10,7 @@ import type { LiveCamera } from "./live_camera";
 import { LiveRequests } from "./live_requests";
 import { statusOf } from "./live_status";
 import { oneFramePath } from "./one_frame_path";
+import type { PictureRequest, Pictures } from "./pictures";
 
 const BUDGET_MS = 40; // time in which a quick picture is to be rendered
 const WIDTHS: [number, number] = [16, 1280]; // smallest and largest width that the server renders
@@ -35,6 +35,7 @@ export class LiveView {
     private readonly root: HTMLElement,
     private readonly state: State,
     private readonly camera: LiveCamera,
+    private readonly pictures: Pictures,
   ) {
     root.append(element("div", { id: "live-room" }, this.box, this.fault), this.status);
     camera.listen(() => this.change());
@@ -108,31 +109,27 @@ export class LiveView {
   }
 
   // Returns a still picture of another camera, which is not shown; null if another request has superseded it.
-  async pictureOf(camera: FrameCamera): Promise<LivePicture | null> {
-    const answer = await this.post(oneFramePath(camera, this.state.path.unit_m), {});
-    return answer instanceof ArrayBuffer ? readLivePicture(answer) : null;
+  pictureOf(camera: FrameCamera): Promise<LivePicture | null> {
+    return this.pictures.ask(this.requestOf(camera, null));
   }
 
-  private post(text: string, budget: { budget_ms?: number }): Promise<unknown> {
-    const wish = { text, frame: 1, width: this.width(), recorded: this.recordedOnly, ...budget };
-    return postForBytes<unknown>("live", wish);
+  private requestOf(camera: FrameCamera, budget_ms: number | null): PictureRequest {
+    return { camera, width: this.width(), budget_ms, recordedOnly: this.recordedOnly };
   }
 
   private async ask(isStill: boolean, isNewest: () => boolean): Promise<boolean> {
     const { state } = this;
     const { camera } = this.camera;
-    const text = this.path();
-    const budget = isStill
-      ? {}
-      : { budget_ms: state.isPlaying ? Math.min(BUDGET_MS, 800 / state.path.fps) : BUDGET_MS };
+    const quick_ms = state.isPlaying ? Math.min(BUDGET_MS, 800 / state.path.fps) : BUDGET_MS;
+    const budget_ms = isStill ? null : quick_ms;
     try {
-      const answer = await this.post(text, budget);
+      const picture = await this.pictures.ask(this.requestOf(camera, budget_ms));
       if (!isNewest()) return true;
-      if (!(answer instanceof ArrayBuffer)) return false;
-      this.shown = readLivePicture(answer);
+      if (!picture) return false;
+      this.shown = picture;
       this.pictureFault = "";
       ++this.version;
-      Object.assign(this.canvas.dataset, { still: isStill, focus: camera.focusDistance });
+      Object.assign(this.canvas.dataset, { still: isStill, focus: camera.focusDistance, by: picture.by });
       this.draw();
       this.status.replaceChildren(...statusOf(state, camera, this.shown.facts));
       for (const listener of this.listeners) listener();

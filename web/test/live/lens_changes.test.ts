@@ -7,8 +7,10 @@ import {
   rotationWriter,
   withFocusDistance,
   withRadius,
+  withTilt,
   writeAperture,
   writeFocusDistance,
+  writeTilt,
 } from "../../src/live/lens_changes";
 import { oneFramePath } from "../../src/live/one_frame_path";
 import { PathDocument } from "../../src/path/path_document";
@@ -75,4 +77,17 @@ test("blades turn as the lens is stopped down, also while it is dragged", () => 
   // A turn by 3 degrees at the second frame is one of the quantity.
   rotationWriter(cameras)(document, 0.1, { ...cameras[1], rotation: 28 * degrees });
   assert.match(document.text(), /blade_rotation_deg: 8\n/);
+});
+
+test("a tilted focus plane is that of the programs", () => {
+  const document = PathDocument.parse(path("  f_number: 4\n  focus_distance: 2"));
+  const camera = cameraAt([0, 0, 0], { focusDistance: 2, tiltHorizontal: 0.5, tiltVertical: -0.3 });
+  const tilted = withTilt(camera);
+  // A point 0.4 to the right and 0.2 above, at the depth that the definition of the tilt gives.
+  const depth = 2 + 0.4 * Math.tan(0.5) + 0.2 * Math.tan(-0.3);
+  assertNear([0.4 * tilted.normal[0] - 0.2 * tilted.normal[1] + depth * tilted.normal[2]], [tilted.offset]);
+  assertNear([Math.hypot(...tilted.normal)], [1]);
+  assert.equal(writeTilt(document, 0, tilted), "");
+  const read = readByPrograms(document.text()).cameras[0];
+  assertNear(read.focus_tilt_deg, [28.6479, -17.1887], 1e-3);
 });

@@ -1,6 +1,5 @@
 // Cameras of frames for the tests.
-import type { FrameCamera } from "../../src/data/frame_camera";
-import { cross } from "../../src/live/camera_moves";
+import { cross, type FrameCamera } from "../../src/data/frame_camera";
 
 type Vector = [number, number, number];
 

@@ -1,7 +1,13 @@
 // Opens the live picture in tests of the page, and measures it.
 import { readFile } from "node:fs/promises";
 
+import { CHART_PATH } from "./paths.mjs";
 import { until } from "./visualizer.mjs";
+
+// The star of the chart is at the distance 1, and seen here in the frame.
+export const STAR = { x: 56 / 96, y: 40 / 64 };
+export const BLURRED = CHART_PATH.replace("time: 0, value: 1}", "time: 0, value: 1.15}");
+export const WIDE = BLURRED.replace("time: 0, value: 1.15}", "time: 0, value: 1.3}").replace("_mm: 12", "_mm: 30");
 
 // Records the requests of live pictures.
 export function recordRequests(page) {
@@ -18,7 +24,7 @@ export function stillPicture(page) {
     page,
     "app.state.isShown && !app.live.camera.isChanging && " +
       "document.querySelector('#live-picture canvas').dataset.still === 'true' && " +
-      "document.querySelector('#live-picture canvas').dataset.focus === String(app.state.camera.focusDistance)",
+      "document.querySelector('#live-picture canvas').dataset.focus === String(app.live.camera.camera.focusDistance)",
   );
 }
 

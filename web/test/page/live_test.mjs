@@ -7,21 +7,19 @@ import { test } from "node:test";
 import { chart, SHOP, temporary, withChart, withPage, withShop, writePath } from "./page_case.mjs";
 import {
   allLoaded,
+  BLURRED,
   dragFocus,
   focusNow,
   gradientEnergy,
   labels,
   openLive,
   recordRequests,
+  STAR,
   stillPicture,
+  WIDE,
 } from "./live_case.mjs";
 import { CHART_PATH, SHOP_PATH } from "./paths.mjs";
 import { run, until } from "./visualizer.mjs";
-
-// The star of the chart is at the distance 1, and seen here in the frame.
-const STAR = { x: 56 / 96, y: 40 / 64 };
-const BLURRED = CHART_PATH.replace("time: 0, value: 1}", "time: 0, value: 1.15}");
-const WIDE = BLURRED.replace("time: 0, value: 1.15}", "time: 0, value: 1.3}").replace("_mm: 12", "_mm: 30");
 
 test("a drag in the live picture focuses, and is one undo step", async () => {
   // A chart with LF images that are fine enough to be blurred by this lens.

@@ -403,6 +403,9 @@ test("nobody is answered without the token, and nothing outside is given", async
       "camera/-1.json",
       "path/x/use/1.bin",
       "watch/frames.json",
+      "live/1/99999.bin",
+      "live/1/0x1.bin",
+      "live/0.bin",
       "camera/1.yaml",
     ])
       assert.ok([404, 410].includes(await rawStatus(address, pathname + target)), target);

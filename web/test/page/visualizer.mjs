@@ -75,7 +75,8 @@ export function openBrowser() {
 }
 
 // Opens a page and records its error messages and its requests to other hosts.
-export async function openPage(browser, address, options = {}) {
+//   query  is added to the address
+export async function openPage(browser, address, { query = "", ...options } = {}) {
   const context = await browser.newContext({
     viewport: { width: 1280, height: 720 },
     colorScheme: "dark",
@@ -93,7 +94,7 @@ export async function openPage(browser, address, options = {}) {
     const url = request.url();
     if (!url.startsWith(address) && !/^(data|blob):/.test(url)) faults.push(`asks for ${url}`);
   });
-  await page.goto(address);
+  await page.goto(address + query);
   await page.waitForSelector("body[data-ready=yes]", { timeout: 120_000 });
   return { page, faults, close: () => context.close() };
 }

@@ -1,0 +1,70 @@
+// The lens of a picture: which LF images it takes, and the weights of their rays (lf/live/picture_lens.h).
+
+import { readHead } from "../../data/head";
+import type { LiveFacts } from "../../data/live_picture";
+import type { Plate } from "./ray_forms";
+
+export interface LensImage {
+  id: number;
+  shift: [number, number]; // of the blocks of elements that have one weight
+  samples: number; // rays along each edge of an element
+}
+
+export interface Lens {
+  plate: Plate;
+  images: LensImage[]; // those that have a weight somewhere
+  // Weights are interpolated between nodes over the plate; [image][row][column], in 1/256.
+  columns: number;
+  rows: number;
+  nodes: Uint16Array;
+  // Rays must pass through this opening.
+  radius: number;
+  blades: number;
+  rotation: number;
+  hasFeather: boolean;
+  pedestal: number;
+  colours: number[]; // [3][3], from values of LF images less the pedestal to linear light
+}
+
+export interface LensAnswer {
+  lens: Lens;
+  facts: LiveFacts; // without the time of the picture
+  refused: string; // why a picture cannot be rendered here; "" if it can
+}
+
+interface LensHead extends LiveFacts, Plate {
+  refused: string;
+  columns: number;
+  rows: number;
+  radius: number;
+  blades: number;
+  rotation: number;
+  feather: boolean;
+  pedestal: number;
+  colours: number[];
+  lf_images: [number, number, number, number][];
+}
+
+export function readLens(bytes: ArrayBuffer): LensAnswer {
+  const [head, begin] = readHead<LensHead>(bytes);
+  const { columns, rows, radius, blades, rotation, pedestal, colours } = head;
+  const { width, height, fx, fy, cx, cy } = head;
+  const images = head.lf_images.map(([id, x, y, samples]): LensImage => ({ id, shift: [x, y], samples }));
+  return {
+    lens: {
+      plate: { width, height, fx, fy, cx, cy },
+      images,
+      columns,
+      rows,
+      nodes: new Uint16Array(bytes, begin, images.length * columns * rows),
+      radius,
+      blades,
+      rotation,
+      hasFeather: head.feather,
+      pedestal,
+      colours,
+    },
+    facts: { ...head, render_ms: 0 },
+    refused: head.refused,
+  };
+}

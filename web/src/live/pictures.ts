@@ -1,0 +1,34 @@
+// The sources of live pictures: the server, or WebGL in the browser.
+
+import type { FrameCamera } from "../data/frame_camera";
+import { readLivePicture, type LivePicture } from "../data/live_picture";
+import { postForBytes } from "../data/source";
+import { oneFramePath } from "./one_frame_path";
+
+export interface PictureRequest {
+  camera: FrameCamera;
+  width: number; // of the picture, in elements
+  budget_ms: number | null; // time for a quick picture; null: a still picture, of all LF images that are loaded
+  recordedOnly: boolean; // true: without virtual LF images
+}
+
+export interface Pictures {
+  // Returns a picture; null if another page has superseded it.
+  ask(request: PictureRequest): Promise<LivePicture | null>;
+}
+
+// Returns what the server is asked for.
+export function bodyOf({ camera, width, recordedOnly }: PictureRequest, unit_m: number): object {
+  return { text: oneFramePath(camera, unit_m), frame: 1, width, recorded: recordedOnly };
+}
+
+export class ServerPictures implements Pictures {
+  constructor(private readonly unit_m: () => number) {}
+
+  async ask(request: PictureRequest): Promise<LivePicture | null> {
+    const { budget_ms } = request;
+    const body = { ...bodyOf(request, this.unit_m()), ...(budget_ms === null ? {} : { budget_ms }) };
+    const answer = await postForBytes<unknown>("live", body);
+    return answer instanceof ArrayBuffer ? readLivePicture(answer) : null;
+  }
+}
