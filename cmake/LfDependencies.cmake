@@ -49,7 +49,7 @@ target_include_directories(lf_libraw SYSTEM INTERFACE ${LF_LIBRAW_INCLUDE})
 target_link_libraries(lf_libraw INTERFACE ${LF_LIBRAW_LIBRARY})
 
 if(LF_TESTS OR LF_PYTHON)
-  # Debian's Python has the modules that tests use; another one on the PATH has not.
+  # Debian's Python has the modules that tests use; another Python on the PATH may lack them.
   if(NOT Python3_EXECUTABLE AND EXISTS /usr/bin/python3)
     set(Python3_EXECUTABLE /usr/bin/python3)
   endif()

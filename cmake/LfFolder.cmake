@@ -10,7 +10,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LES
                                               -Wno-stringop-overread)
 endif()
 target_include_directories(lf_options INTERFACE ${PROJECT_SOURCE_DIR})
-# Everything alike, and not only what the Python package needs, so that all targets share their precompiled headers.
+# All targets are compiled with -fPIC, although only the Python package needs it: they share precompiled headers.
 target_compile_options(lf_options INTERFACE -fPIC)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   # GCC looks for unused memory less often, which saves a tenth of its time and takes 0.1 GB more: each search goes

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Renders one view through lenses with different numbers of blades, focused in front of the scene.
 
-usage: bokeh_shapes.py LIGHTFIELD PICTURE.png [FOCUS_DISTANCE]
+usage: bokeh_shapes.py LIGHTFIELD PICTURE.png [FOCUS_DISTANCE]      in world units
 """
 import sys
 

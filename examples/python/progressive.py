@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-"""Renders a frame step by step, shows how its error falls, and stops when it is small enough.
+"""Renders a frame step by step, prints how its error falls, and stops when its noise is small enough.
 
 usage: progressive.py LIGHTFIELD PICTURE.png [NOISE]
+
+NOISE  the frame is finished when its noise is at most this, in linear light where white is 1 (0.005)
 """
 import sys
 

@@ -15,7 +15,7 @@ subject = field.camera()
 near, far = 0.75 * subject.focus_distance, 1.5 * subject.focus_distance
 if len(sys.argv) > 3:
     near, far = map(float, sys.argv[3:5])
-# Steps of equal blur are even in 1 / distance.
+# The blur of a point changes in equal steps if 1 / distance does.
 distances = 1 / np.linspace(1 / near, 1 / far, 5)
 path = lf.Path([subject.replace(focus_distance=distance) for distance in distances])
 pictures = [frame.display() for _, frame in lf.film(field, path)]

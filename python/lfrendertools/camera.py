@@ -15,7 +15,7 @@ from .errors import InputError, OutputError, UsageError
 Floats = npt.NDArray[np.float64]
 Vector = Union[Sequence[float], Floats]
 
-# Values that a path file may change from frame to frame, with their key in the file.
+# Names, in a path file, of the values that may change from frame to frame.
 _MOVING = ("position", "quaternion", "field_of_view_deg", "aperture_diameter", "focus_distance", "focus_tilt_deg",
            "blade_rotation_deg")
 
@@ -29,34 +29,35 @@ class Camera:
     Parameters
     ----------
     position : array_like of shape (3,)
-        Centre of the lens.
+        Centre of the lens in the world.
     look_at, quaternion, world_from_cam : array_like
-        The direction: a point on the optical axis; the rotation from camera to world as (w, x, y, z); or this
-        rotation as a matrix (3, 3). One of them is required.
+        The direction of the camera: a point on the optical axis; the rotation from camera to world as (w, x, y, z);
+        or this rotation as a matrix (3, 3). One of them is required.
     up : array_like of shape (3,), optional
-        With `look_at`: a direction that points up in the picture.
+        A world direction that points up in the picture. Used only with `look_at`.
     roll_deg : float, optional
         A turn about the optical axis, clockwise for the photographer.
     resolution : tuple of int
-        Width and height of the frame.
+        Width and height of the frame in elements.
     focal_length_mm, field_of_view_deg : float
         Focal length, or horizontal field of view. One of them is required.
     sensor_width_mm : float, optional
         Width of the sensor plate.
     f_number, aperture_diameter, aperture_diameter_mm : float
         Opening of the lens. One of them is required; a diameter of 0 is a pinhole.
-    focus_distance, focus_point
+    focus_distance, focus_point : float, array_like
         Distance of the focus plane along the optical axis, or a point (3,) on this plane. One of them is required.
     tilt_deg : tuple of float, optional
-        Horizontal and vertical tilt of the focus plane.
+        Horizontal and vertical tilt of the focus plane. If positive, the right and the upper side of the
+        plane are farther away.
     blades : int, optional
         0: the aperture is a circle; 3 to 64: a regular polygon.
     blade_rotation_deg : float, optional
         Rotation of the polygon, counter-clockwise for the photographer.
     breathing : bool, optional
-        True: the field of view narrows as the focus comes near.
+        True: the field of view narrows when the focus comes nearer. False: focusing does not change it.
     unit_m : float, optional
-        Metres per world unit, as in the light field.
+        Metres per world unit. A render requires the value of its light field.
 
     Raises
     ------
@@ -99,7 +100,7 @@ class Camera:
 
     @property
     def resolution(self) -> Tuple[int, int]:
-        """Width and height of the frame."""
+        """Width and height of the frame in elements."""
         return self._core.resolution
 
     @property
@@ -140,7 +141,7 @@ class Camera:
 
     @property
     def focus_plane(self) -> Tuple[Floats, float]:
-        """Normal of length 1 and offset of the focus plane: its points X have normal . X = offset."""
+        """Normal of length 1 and offset of the focus plane: its points X in the world have normal . X = offset."""
         return self._core.focus_plane
 
     @property
@@ -150,7 +151,7 @@ class Camera:
 
     @property
     def blades(self) -> int:
-        """Number of blades; 0 for a circle."""
+        """Number of blades of the aperture; 0 for a circle."""
         return self._core.blades
 
     @property
@@ -176,8 +177,8 @@ class Camera:
     def replace(self, **changes: Any) -> Camera:
         """Return a copy with some arguments of the constructor changed.
 
-        A changed resolution keeps the horizontal field of view. A camera that breathes keeps its present field of
-        view.
+        If only the resolution changes, the horizontal field of view stays. The copy of a camera with `breathing` has
+        its present field of view and does not breathe, unless `breathing` is given.
         """
         if not changes:
             return self
@@ -208,12 +209,12 @@ class Camera:
 
 
 class Path(Sequence[Camera]):
-    """A camera path: one camera for each frame. Frames are numbered from 1; the path's items from 0.
+    """A camera path: one camera for each frame. Frames are numbered from 1, the items of this sequence from 0.
 
     Parameters
     ----------
     cameras : iterable of Camera
-        The cameras of the frames, of one resolution and one `unit_m`.
+        The cameras of the frames. All must have the same resolution and `unit_m`.
     fps : float, optional
         Frames per second.
     """
@@ -237,7 +238,12 @@ class Path(Sequence[Camera]):
         path : path
             The file.
         unit_m : float, optional
-            Metres per world unit of the light field. A path that states another unit is an error.
+            Metres per world unit of the light field.
+
+        Raises
+        ------
+        InputError
+            The file cannot be read, has a mistake, or states another unit than `unit_m`.
         """
         try:
             text = pathlib.Path(path).read_text(encoding="utf-8")
@@ -247,20 +253,23 @@ class Path(Sequence[Camera]):
 
     @classmethod
     def parse(cls, text: str, name: str = "path", unit_m: Optional[float] = None) -> Path:
-        """Read the text of a camera path file, which messages call `name`. As :meth:`load` otherwise."""
+        """Read a camera path as :meth:`load` does, but from the text of a file. Error messages call it `name`."""
         cameras, fps, _ = _core.parse_path(text, name, unit_m)
         return cls((Camera._of(core) for core in cameras), fps)
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Write a camera path file, with a key for every frame.
+        """Write a camera path file. A value that changes during the path gets a key at every frame.
 
-        Positions, apertures and distances are read again as they are; directions and fields of view differ by at most
-        1e-12. The file appears only when it is whole.
+        When the file is read again, directions and fields of view differ by at most 1e-12 (entries of the rotation
+        matrix, and relative), and other values by no more than the rounding of double precision. The file appears only
+        when it is whole.
 
         Raises
         ------
         UsageError
             The cameras have different numbers of blades or sensor widths, which a path file cannot express.
+        OutputError
+            The file cannot be written.
         """
         settings = [camera._settings() for camera in self._cameras]
         for what in ("blades", "sensor_width_mm"):

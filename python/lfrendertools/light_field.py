@@ -36,7 +36,7 @@ class Intrinsics:
     distortion : str
         Model of the lens distortion, or "pinhole" (lf/camera/distortion.h lists the models).
     parameters : tuple of float
-        Its parameters.
+        The parameters of the model, in the order that lf/camera/distortion.h states, with zeros up to 12 numbers.
     """
 
     K: Floats
@@ -53,7 +53,8 @@ class Grid:
     Attributes
     ----------
     ids : ndarray of int of shape (rows, columns)
-        Numbers of the LF cameras. Row 0 is the upper one and column 0 the left one, as the cameras see themselves.
+        Numbers of the LF cameras. Row 0 is the upper one and column 0 the left one, seen in the direction in which the
+        LF cameras look.
     pitch : tuple of float
         Mean distance between neighbouring columns, and between neighbouring rows, in world units.
     """
@@ -68,7 +69,7 @@ class Grid:
 
 
 class LightField:
-    """A recorded light field: calibrated LF images of one scene. :func:`open` makes one.
+    """A recorded light field: calibrated LF images of one scene. :func:`open` returns one.
 
     World axes are those of the calibration. The axes of a camera are x to the right, y down, z forward. Pixel
     positions are continuous: the centre of the upper left pixel is (0.5, 0.5). Arrays of all LF cameras are read-only
@@ -117,7 +118,7 @@ class LightField:
 
     @functools.cached_property
     def intrinsics(self) -> Sequence[Intrinsics]:
-        """Each distinct set of intrinsics once."""
+        """The intrinsics of all LF cameras, each distinct set once."""
         return tuple(Intrinsics(*entry) for entry in self._core.intrinsics())
 
     @property
@@ -127,7 +128,7 @@ class LightField:
 
     @functools.cached_property
     def K(self) -> Floats:
-        """Calibration matrices, of shape (n, 3, 3): one in memory if all LF cameras share it, otherwise copies."""
+        """Calibration matrices in pixels, of shape (n, 3, 3). If all LF cameras share one, memory holds it once."""
         matrices = np.array([k.K for k in self.intrinsics])
         if len(matrices) == 1:
             return np.broadcast_to(matrices[0], (len(self), 3, 3))
@@ -137,7 +138,7 @@ class LightField:
 
     @property
     def gains(self) -> npt.NDArray[np.float32]:
-        """Factors by which recorded light is multiplied, of shape (n, 3): R, G, B."""
+        """Factors by which the light of LF images is multiplied when it is loaded, of shape (n, 3): R, G, B."""
         return self._core.gains
 
     @property
@@ -163,7 +164,7 @@ class LightField:
         Returns
         -------
         ndarray of shape (n, 2)
-            Pixel positions, which may lie outside of the image; NaN for points that the lens cannot see.
+            Pixel positions, which may lie outside of the LF image; NaN for points that the lens cannot see.
         """
         return self._core.project(i, np.asarray(points, dtype=np.float64))
 
@@ -180,14 +181,15 @@ class LightField:
         Returns
         -------
         origins, directions : ndarray of shape (n, 3)
-            The camera's position, n times, and directions in the world of length 1; NaN where no ray arrives.
+            The LF camera's position, n times, and directions of length 1, in world axes. A direction is NaN if no ray
+            arrives at the pixel position.
         """
         positions = np.asarray(pixels, dtype=np.float64)
         directions = self._core.ray_directions(i, positions)
         return np.broadcast_to(self.centres[i], directions.shape), directions
 
     def image(self, i: int, rect: Optional[Tuple[int, int, int, int]] = None, masked: float = float("nan")) -> Picture:
-        """Load an LF image as light, as a render reads it.
+        """Load an LF image as linear light, with the values that a render reads.
 
         Parameters
         ----------
@@ -196,7 +198,7 @@ class LightField:
         rect : tuple of int, optional
             x_begin, y_begin, x_end, y_end of the part to load, in pixels; by default the whole LF image.
         masked : float, optional
-            Value of pixels that send no ray.
+            Value of masked pixels, which send no ray.
 
         Returns
         -------
@@ -206,14 +208,14 @@ class LightField:
         return self._core.image(i, rect, masked)
 
     def images(self, ids: Optional[Iterable[int]] = None, ahead: int = 8) -> Iterator[Tuple[int, Picture]]:
-        """Load LF images one after the other, and `ahead` of them in advance by other threads.
+        """Load LF images one after the other. Other threads load the next ones in advance.
 
         Parameters
         ----------
         ids : iterable of int, optional
             Numbers of LF images; by default all of them.
         ahead : int, optional
-            Number of LF images in memory at most.
+            Largest number of LF images that are in memory at the same time.
 
         Yields
         ------
@@ -244,8 +246,8 @@ class LightField:
         Returns
         -------
         Grid or None
-            None unless every place of one regular grid has exactly one LF camera. Positions may be a quarter of the
-            pitch away from their place.
+            None unless every place of one regular grid has exactly one LF camera. LF cameras may stand up to a quarter
+            of the pitch beside their places.
         """
         return _find_grid(self.centres, self.cam_from_world)
 
@@ -255,9 +257,10 @@ class LightField:
         Parameters
         ----------
         views : tuple of int, optional
-            Number of rows and columns, spread evenly over the grid; by default all of them.
+            Number of rows and columns to load, spread evenly over the grid; by default all of them.
         reduce : int, optional
-            Each pixel of the result is the mean of `reduce` x `reduce` pixels.
+            Each pixel of the result is the mean of `reduce` x `reduce` pixels. Columns and rows that do not fill a
+            square are cut off on the right and below.
         out : array, optional
             Receives the values, such as a `numpy.memmap` or a dataset of h5py, for light fields larger than the memory.
 
@@ -265,6 +268,11 @@ class LightField:
         -------
         ndarray of shape (rows, columns, height, width, 3)
             Linear light; masked pixels are NaN.
+
+        Raises
+        ------
+        UsageError
+            The LF cameras do not stand in a regular grid, their images have several sizes, or an argument is wrong.
         """
         grid = self.grid()
         if grid is None:
@@ -297,7 +305,7 @@ class LightField:
 
     def path(self, move: str = "focus-pull", *, start: Optional[int] = None,
              focus_distance: Optional[float] = None) -> CameraPath:
-        """Return a first camera path, as `lfexample` writes it.
+        """Return the camera path that `lfexample` writes, as a path to start from.
 
         Parameters
         ----------
@@ -306,8 +314,8 @@ class LightField:
         start : int, optional
             Number of the LF camera at which the path begins; by default the one in the middle of the capture.
         focus_distance : float, optional
-            Distance of the subject in world units; by default found by comparing LF images, which takes seconds. A
-            message of the logger says if it is not sure.
+            Distance of the subject in world units. By default it is found by comparing LF images, which takes seconds;
+            if the result is not sure, the logger gets a warning.
 
         Returns
         -------
@@ -325,9 +333,10 @@ class LightField:
     def camera(self, **changes: Any) -> Camera:
         """Return a camera that sees the subject of the light field sharply.
 
-        It stands at the LF camera in the middle of the capture. Its focus is on the subject, and its aperture as wide
-        as the distances between LF cameras allow without double edges (:meth:`path`). Found at the first call, and
-        then kept.
+        The camera is that of the static path (:meth:`path`). It stands at the LF camera in the middle of the capture
+        and is focused on the subject. Its aperture is eight times as wide as the spacing of the LF cameras, or narrower
+        if double edges would be visible; if the distance of the subject is not sure, it is almost a pinhole. The first
+        call takes seconds; later calls use its result.
 
         Parameters
         ----------
@@ -362,17 +371,17 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
     focal_px : float, optional
         Focal length in pixels, for folders with Stanford names.
     fov_deg : float, optional
-        Field of view, for poses of Airborne Optical Sectioning.
+        Field of view of the square LF images, for poses of Airborne Optical Sectioning (AOS).
     images : path, optional
-        Folder in which image files are searched by name.
+        Folder that is searched for the image files by their names, if they are not where the calibration says.
     image_scale, image_alpha, background : str, optional
-        As the options of `lfrenderer` with these names.
+        The options of `lfrenderer` with these names.
     pitch : float or tuple of float, optional
         For folders with Stanford names: distance between columns, and between rows, in world units.
     plane_distance : float, optional
-        For folders with Stanford names: distance of the plane to which the images are rectified.
+        For folders with Stanford names: distance, in world units, of the plane to which the images are rectified.
     flip_x, flip_y : bool, optional
-        For folders with Stanford names: True if columns or rows are counted the other way round.
+        For folders with Stanford names: True if columns or rows are counted in the opposite direction.
 
     Returns
     -------
@@ -429,7 +438,7 @@ def _find_grid(centres: Floats, poses: Floats) -> Optional[Grid]:
 
 
 def _plot_of_rig(centres: Floats, poses: Floats) -> str:
-    """Return a plot of at most 2,000 LF cameras, as they see themselves from behind, as SVG."""
+    """Return a plot of at most 2,000 LF cameras, seen from behind, as SVG."""
     chosen = np.linspace(0, len(centres) - 1, min(len(centres), 2000)).astype(int)
     right, down = poses[:, 0, :3].mean(axis=0), poses[:, 1, :3].mean(axis=0)
     xy = np.stack([centres[chosen] @ right, centres[chosen] @ down], axis=1)

@@ -1,4 +1,4 @@
-"""Frames of light fields: rendered at once, as a film, or step by step."""
+"""Frames of light fields: a single one, those of a film, or frames that are rendered step by step."""
 from __future__ import annotations
 
 import os
@@ -16,7 +16,7 @@ from .camera import Camera, Path
 from .errors import BlackFrameWarning, MissingImagesWarning, UsageError
 from .light_field import LightField
 
-# Called with the number of LF images that were read, and the number that will be read.
+# A function that is called with the number of LF images that were read so far, and the number that will be read in all.
 Progress = Callable[[int, int], None]
 Frames = Union[None, str, Iterable[int]]
 
@@ -24,7 +24,7 @@ _FORMATS = {".exr": "exr", ".png": "png"}
 
 
 class Frame:
-    """A frame of a light field. All arrays are shared with the frame, which saves what they contain.
+    """A frame of a light field. Its arrays share its memory: :meth:`save` writes changes that were made to them.
 
     :func:`render`, :func:`film`, :class:`Renderer` and :meth:`Plate.develop` make frames.
     """
@@ -49,19 +49,19 @@ class Frame:
 
     @property
     def count(self) -> npt.NDArray[np.uint32]:
-        """Number of rays of each channel, of shape (height, width, 3); with lens weights, the sum of their weights."""
+        """Number of rays of each channel, of shape (height, width, 3). With lens weights, sums of weights instead."""
         return self._core.count
 
     @property
     def coverage(self) -> npt.NDArray[np.float32]:
-        """Share of the channels with a ray of their own, of shape (height, width)."""
+        """Share of the channels of each element that have a ray of their own, of shape (height, width)."""
         return self._core.coverage
 
     @property
     def effective(self) -> Optional[npt.NDArray[np.float32]]:
         """Number of LF images of equal weight that would give the same noise, of shape (height, width).
 
-        None without lens weights.
+        None if rays have no lens weights.
         """
         return self._core.effective
 
@@ -77,7 +77,10 @@ class Frame:
 
     @property
     def densified(self) -> Optional[npt.NDArray[np.float32]]:
-        """Share of the light that virtual LF images show too, of shape (height, width). None unless densified."""
+        """Share of the light that virtual LF images contribute to, of shape (height, width).
+
+        None unless the light field is densified and `guard` is True.
+        """
         return self._core.densified
 
     @property
@@ -91,7 +94,7 @@ class Frame:
         return dict(self._core.metadata)
 
     def display(self) -> npt.NDArray[np.uint8]:
-        """Return the picture for a display: sRGB values, of shape (height, width, 3)."""
+        """Return the picture for a display: sRGB values from 0 to 255, of shape (height, width, 3)."""
         linear = np.clip(np.nan_to_num(self.rgb.astype(np.float64)), 0, 1)
         srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
         values: npt.NDArray[np.uint8] = np.floor(255 * srgb + 0.5).astype(np.uint8)
@@ -105,7 +108,8 @@ class Frame:
         path : path
             The file. It appears only when it is whole.
         format : str, optional
-            "exr" (half floats), "exr-float", "png" or "png16"; by default "exr" or "png", by the suffix of `path`.
+            "exr" (half floats), "exr-float" (single precision), "png" or "png16"; by default "exr" or "png", by the
+            suffix of `path`.
         """
         name = os.fspath(path)
         chosen = format or _FORMATS.get(pathlib.Path(name).suffix.lower())
@@ -142,7 +146,7 @@ class Plate:
 
     @property
     def counts(self) -> npt.NDArray[np.uint64]:
-        """Numbers of rays (with lens weights, sums of weights), of shape (height, width, channels): a copy."""
+        """Numbers of rays or, with lens weights, sums of weights, of shape (height, width, channels): a copy."""
         return self._core.counts
 
     def __add__(self, other: Plate) -> Plate:
@@ -154,7 +158,13 @@ class Plate:
     __hash__ = None  # type: ignore[assignment]
 
     def develop(self, threads: int = 0) -> Frame:
-        """Average the rays, fill small gaps, and convert the colours to linear sRGB."""
+        """Average the rays, fill small gaps, and convert the colours to linear sRGB.
+
+        Parameters
+        ----------
+        threads : int
+            Number of threads; 0: one for each processor.
+        """
         return Frame(self._core.develop(threads))
 
 
@@ -170,22 +180,23 @@ class Renderer:
     frames : str or iterable of int, optional
         Frames to render, from 1: "1-10,20", "1-100x10", or numbers; by default all.
     mode : {"collect", "rebin", "hybrid"}
-        How frames are made from recorded rays.
+        How frames are made from recorded rays (doc/rebinning.md).
     estimator, filter, lens_weights, lf_pixels, order : str
-        As the options of `lfrenderer` with these names.
+        The options of `lfrenderer` with these names.
     max_images : int, optional
         Largest number of LF images for each frame.
     max_angle_deg : float, optional
-        Largest angle between the axes of LF camera and frame.
+        Largest angle between the optical axes of LF camera and frame.
     seed : int
-        Seed of the order "shuffle".
+        Seed of the random numbers: of the order "shuffle", and of rebinned rays.
     stop_when : str
-        Finish a frame early: "noise<=X" or "samples>=N".
+        Rule by which a frame is finished early: "noise<=X" or "samples>=N", as `--stop-when` of `lfrenderer`.
     smooth_below, fill : int
-        Smooth elements with fewer rays than `smooth_below`; fill elements without rays from elements up to `fill`
-        elements away.
+        Elements with fewer rays than `smooth_below` are averaged with their neighbours. Elements without rays are
+        filled from elements up to `fill` elements away.
     guard : bool
-        False: show virtual LF images where a frame is in focus.
+        True: where a frame of a densified light field is in focus, it shows recorded LF images alone. False: it shows
+        virtual LF images there, like anywhere else.
     memory : str
         Upper limit of the memory that is used, such as "8G" or "512M".
     strict : bool
@@ -195,8 +206,9 @@ class Renderer:
 
     Notes
     -----
-    All frames must fit in the memory at the same time; :func:`film` renders longer paths. The bits of frames do not
-    depend on `threads`, nor on `memory` unless `mode` rebins. Defaults are those of `lfrenderer`, and so are the bits.
+    All frames must fit in the memory at the same time; :func:`film` renders longer paths. The frames are those of
+    `lfrenderer`, bit for bit, and the defaults are the same. They do not depend on `threads`, and depend on `memory`
+    only if `mode` is "rebin" or "hybrid".
     """
 
     def __init__(self, field: LightField, path: Union[Path, Camera], frames: Frames = None, **options: Any) -> None:
@@ -226,12 +238,12 @@ class Renderer:
 
     @property
     def progress(self) -> Tuple[int, int]:
-        """Number of LF images that were read, and of those that will be read in all."""
+        """Number of LF images that were read so far, and number that will be read in all."""
         return self._film.core.progress()
 
     @property
     def skipped(self) -> Sequence[Tuple[str, str]]:
-        """Names of the LF images that were left out, and why."""
+        """Names of the LF images that were left out because they are missing or broken, each with the reason."""
         return tuple(self._film.core.skipped())
 
     def preview(self, i: int = 0) -> Frame:
@@ -239,11 +251,11 @@ class Renderer:
         return Frame(self._film.core.develop(i))
 
     def plate(self, i: int = 0) -> Plate:
-        """Return a copy of the plate of frame `i`."""
+        """Return a copy of the plate of frame `i` of this renderer, from 0."""
         return Plate(self._film.core.plate(i))
 
     def stop(self, i: int = 0) -> Frame:
-        """Finish frame `i` with the rays that it has, and free its memory."""
+        """Finish frame `i` of this renderer, from 0, with the rays that it has. Returns it, and frees its memory."""
         frame = self.preview(i)
         self._film.core.release(i)
         return frame
@@ -262,7 +274,7 @@ def render(field: LightField, camera: Union[Camera, Path], *, progress: Union[No
     progress : bool or callable, optional
         Called with the number of LF images read so far and in all. True: a progress bar, if tqdm is installed.
     **options
-        As for :class:`Renderer`.
+        Options of :class:`Renderer`.
 
     Returns
     -------
@@ -288,7 +300,7 @@ def render(field: LightField, camera: Union[Camera, Path], *, progress: Union[No
 
 def film(field: LightField, path: Path, frames: Frames = None, *, progress: Union[None, bool, Progress] = None,
          **options: Any) -> Iterator[Tuple[int, Frame]]:
-    """Render the frames of a path, with one read of the LF images for as many frames as fit in the memory.
+    """Render the frames of a path. LF images are read once for all frames that fit in the memory together.
 
     Parameters
     ----------
@@ -301,7 +313,7 @@ def film(field: LightField, path: Path, frames: Frames = None, *, progress: Unio
     progress : bool or callable, optional
         As for :func:`render`.
     **options
-        As for :class:`Renderer`.
+        Options of :class:`Renderer`.
 
     Yields
     ------
@@ -354,7 +366,10 @@ class _Film:
         self.core.begin(list(frames))
 
     def collect_some(self, tell: Progress, number: int, count: int) -> Iterator[int]:
-        """Collect a pass, and yield its frames when they are finished. `number` of `count` passes."""
+        """Collect a pass, and yield the indices of its frames, from 0, when they are finished.
+
+        It tells the progress of all passes: this one is pass `number`, from 0, of `count`.
+        """
         is_going_on = True
         while is_going_on:
             is_going_on = self.core.step()

@@ -1,7 +1,6 @@
 """Builds the Python package for pip (PEP 517): CMake compiles the extension, and a wheel is a zip file.
 
-It needs nothing from a package index. What compiles the library must be installed (scripts/packages/render.txt and
-python.txt).
+It needs nothing from a package index. The packages of scripts/packages/render.txt and python.txt must be installed.
 """
 import base64
 import hashlib

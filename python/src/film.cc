@@ -168,7 +168,9 @@ class Film {
   std::unique_ptr<FilmRenderer> renderer_;
 };
 
-// Shows an image that the object `self` holds; None if the image is empty.
+// Returns an array that shares the memory of an image, which the object `self` holds; None if the
+// image is empty. The array has the shape [height][width] if is_flat is true, otherwise
+// [height][width][channels].
 template <class T>
 py::object Show(Image<T>& image, const py::object& self, bool is_flat = true) {
   if (image.empty()) return py::none();
@@ -223,7 +225,7 @@ std::unique_ptr<Plate> AddPlates(const Plate& a, const Plate& b) {
   sum->sums.Merge(b.sums);
   sum->notes = a.notes;
   sum->notes.rays += b.notes.rays;
-  // Effective numbers of LF images are known of each part alone.
+  // The effective number of LF images of the sum does not follow from those of the parts.
   sum->notes.weighed.reset();
   return sum;
 }

@@ -11,7 +11,8 @@
 
 namespace lf::python {
 
-// Words have the meaning that the options of lfrenderer with these names have.
+// Each member has the meaning and the default of the option of lfrenderer with this name. The
+// default of stop_when is no rule; max_images and max_angle_deg are unset if there is no limit.
 struct FilmWords {
   std::string mode = "collect", estimator = "auto", filter = "auto", lens_weights = "auto",
               lf_pixels = "auto", order = "shuffle", stop_when;
@@ -23,7 +24,8 @@ struct FilmWords {
   bool guard = true;
 };
 
-// Convert the words. kUsage: a word is not one of those that exist, or a number is out of range.
+// Return the options of the film, and the order in which frames take LF images. kUsage: a word is
+// not one of those that exist, or a number is out of range.
 Result<FilmOptions> FilmOptionsOf(const FilmWords& words);
 Result<ImageOrder> OrderOf(const FilmWords& words);
 

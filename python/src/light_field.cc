@@ -65,7 +65,8 @@ py::ssize_t CountOf(const OpenedField& field) {
   return static_cast<py::ssize_t>(field.light_field.size());
 }
 
-// Shows the matrices [R|t] where LF cameras keep them: columns of R, then t.
+// Returns a view [n][3][4] of the matrices [R|t] in the LF cameras, where each is stored column by
+// column.
 py::array CamFromWorld(const py::object& self) {
   const auto& field = self.cast<const OpenedField&>();
   static_assert(sizeof(RigidTransform) == 12 * sizeof(double) && !Mat3::IsRowMajor);

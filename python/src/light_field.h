@@ -10,6 +10,7 @@
 
 namespace lf::python {
 
+// An open light field.
 struct OpenedField {
   LightField light_field;
   std::unique_ptr<LfImageStore> store;  // loads mosaics as RGB

@@ -25,7 +25,7 @@ int LevelOf(LogLevel level) {
   return 40;
 }
 
-// Any thread may call it, also while Python ends.
+// Hands a message to the logger. Any thread may call it, even while Python ends.
 void SendToPython(LogLevel level, std::string_view message) {
   if (Py_IsInitialized() == 0) return;
   const py::gil_scoped_acquire acquire;

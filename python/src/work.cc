@@ -43,8 +43,8 @@ class Ending {
   bool has_ended_ = false;
 };
 
-// Returns true if a handler of a signal has raised an exception, which is then Python's current
-// one.
+// Runs Python's handlers of the signals that have arrived. Returns true if one of them has raised
+// an exception, which is then Python's current one.
 bool HandlerRaises() {
   const py::gil_scoped_acquire acquire;
   return PyErr_CheckSignals() != 0;

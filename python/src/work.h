@@ -26,7 +26,7 @@ struct Interrupts {
 //   interrupts  null: the work cannot be interrupted, and is waited for
 void RunWithoutGil(const std::function<void()>& work, Interrupts* interrupts = nullptr);
 
-// Does the same, and returns what work() returns.
+// Does the same as RunWithoutGil(), and returns what work() returns.
 template <class Work>
 auto CallWithoutGil(const Work& work, Interrupts* interrupts = nullptr) {
   std::optional<decltype(work())> result;
@@ -34,7 +34,7 @@ auto CallWithoutGil(const Work& work, Interrupts* interrupts = nullptr) {
   return *std::move(result);
 }
 
-// Returns the threads of this process, which all calls with the same number of threads share. They
+// Returns threads of this process. All calls with the same thread_count return the same ones, which
 // live until the process ends.
 //   thread_count  0: one for each processor
 // Throws a Failure (kUsage) in a process that was forked from one that already had such threads,

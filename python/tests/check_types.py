@@ -20,7 +20,7 @@ with tempfile.TemporaryDirectory() as cache:
     failed = 0
     for command in (["mypy", "--strict", PACKAGE],
                     ["mypy.stubtest", "lfrendertools._core", "--ignore-missing-stub", "--allowlist", ALLOWED]):
-        # mypy refuses to find a package both where it lies and on the search path.
+        # mypy refuses a package that it finds on the search path as well as in the folder that it is given.
         paths = {"PYTHONPATH": ""} if command[0] == "mypy" else {}
         if command[0] == "mypy.stubtest":
             paths["MYPYPATH"] = os.environ["PYTHONPATH"]

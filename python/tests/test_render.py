@@ -1,4 +1,4 @@
-"""Frames: bits, plates, errors and manners."""
+"""Frames: their bits, plates and errors, and how renders treat the process of the caller."""
 import logging
 import os
 import pickle
