@@ -36,6 +36,7 @@ class LiveServer:
         """Returns the facts of a live picture and the picture, [height][width][3] in linear light.
 
         path       text of a camera path, whose first frame is rendered
+        width      width of the picture, in elements
         budget_ms  time for the picture; None: a still picture, of all LF images in memory
         """
         wish = {"text": path, "frame": 1, "width": width}

@@ -6,12 +6,12 @@ usage: bench/live_speed.py BUILD_DIR [--data ../shared] [--only shop,beer,many] 
        bench/live_speed.py --again JSON [--write doc/visualizer.md]
 
 shop, beer  blender-shop and beer-colmap (photographs), with memory for --count LF images
-many        --cameras LF cameras with image files of 64 x 48 pixels, which are links to a thousand files of lfsynth,
-            with the default memory
+many        as many LF cameras as --cameras says, with image files of 64 x 48 pixels, which are links to a thousand
+            files of lfsynth, and the default memory
 
 Pictures have 480 x 270 elements. First all LF images for which there is room are loaded, while quick pictures are asked
-for. Then the focus is dragged: --pictures pictures, one after the other, each with a budget of 40 ms, and then as many
-of all LF images in memory. Times are those of a client on the same machine, answer included.
+for. Then the focus is dragged twice, for --pictures pictures one after the other: first each has a budget of 40 ms,
+then each is made of all LF images in memory. Times are those of a client on the same machine, answer included.
 """
 import argparse
 import json
@@ -97,8 +97,9 @@ def measure(build, field, case, options, folder):
 
 
 def table(record):
-    lines = ["| capture | LF images | first picture | all in memory | within 40 ms: LF images | pictures per second | "
-             "95 % | of all LF images | 95 % | memory, largest |", "|" + " --- |" * 10]
+    lines = ["| capture | LF images in memory | first picture | all in memory | LF images within 40 ms | "
+             "pictures per second | 95 % take at most | picture of all LF images | 95 % take at most | "
+             "largest memory |", "|" + " --- |" * 10]
     for row in record["rows"]:
         facts, quick, still = row["facts"], row["quick"], row["still"]
         count = f"{facts['resident']:,} of {facts['needed']:,}".replace(",", " ")

@@ -17,7 +17,7 @@ import { openBrowser, openPage, run, serve, temporaryFolder, until } from "../we
 const VIEW = { width: 1000, height: 600 };
 const PER_SECOND = 8;
 const MOST_BYTES = 2e6;
-// Two places on the ball far left, and one on the glass ball near right.
+// Two places on the far ball at the left, and one on the near glass ball at the right, as shares of width and height.
 const PLACES = [
   [0.1, 0.45],
   [0.1, 0.55],
@@ -48,7 +48,7 @@ await run("lfsynth", ["still-life", "-o", "still-life", "--count", "289", "--siz
 const server = await serve(["still-life", "film.yaml"]);
 const { page } = await openPage(browser, server.address, { viewport: VIEW });
 
-// Screenshots do not show the mouse: an arrow stands for it.
+// An arrow stands for the mouse, which screenshots do not show.
 await page.evaluate(() => {
   const space = "http://www.w3.org/2000/svg";
   const mouse = document.createElementNS(space, "svg");
@@ -77,7 +77,7 @@ async function moveTo(x, y) {
   }, mouse);
 }
 
-// Waits until the live picture shows the camera as it is while the mouse is held.
+// Waits until the live picture does not change any more, although a mouse button may still be down.
 async function followed() {
   const version = "document.querySelector('#live-picture canvas').dataset.version";
   let last = "";

@@ -17,8 +17,8 @@ enum class LogLevel { kDebug, kInfo, kWarning, kError };
 void SetLogLevel(LogLevel level);
 
 // Calls `receiver` with every message from now on, instead of writing it to stderr; null: writes to
-// stderr again. Several threads may call it at the same time. Meant for a process that is not ours,
-// such as a Python that has loaded the library.
+// stderr again. Several threads may call `receiver` at the same time. It is meant for a process
+// that is not ours, such as a Python that has loaded the library.
 using LogReceiver = void (*)(LogLevel level, std::string_view message);
 void SetLogReceiver(LogReceiver receiver);
 

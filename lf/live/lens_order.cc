@@ -15,7 +15,7 @@ namespace {
 // Points in the cells of a grid, so that those near a place are found quickly.
 class PointCells {
  public:
-  //   far2  points for which it is negative are left out
+  //   far2  a number for each point; points for which it is negative are left out
   PointCells(std::span<const Vec2> points, const std::vector<double>& far2, double width_w)
       : width_w_(width_w) {
     for (size_t i = 0; i < points.size(); ++i)
@@ -38,7 +38,7 @@ class PointCells {
     constexpr double kMost = 1e15;
     return static_cast<int64_t>(std::floor(std::clamp(coordinate_w / width_w_, -kMost, kMost)));
   }
-  // Cells with equal keys are one cell, which only costs time.
+  // Different cells may have equal keys. They are then searched together, which only costs time.
   static uint64_t KeyOf(int64_t x, int64_t y) {
     constexpr uint64_t kOdd = 0x9e3779b97f4a7c15;
     return static_cast<uint64_t>(x) * kOdd + static_cast<uint64_t>(y);
@@ -66,13 +66,13 @@ std::vector<size_t> FarthestPointOrder(std::span<const Vec2> points, size_t coun
   // Squared distances from the chosen points.
   std::vector<double> far2(points.size(), std::numeric_limits<double>::infinity());
   const auto value_of = [&](size_t i) { return far2[i] * (i < preferred_count ? kPreference : 1); };
-  std::priority_queue<Candidate> queue;  // those whose value has changed since are passed over
+  std::priority_queue<Candidate> queue;  // candidates whose value has changed since are skipped
   const auto nearest = std::min_element(
       points.begin(), points.end(),
       [](const Vec2& a, const Vec2& b) { return a.squaredNorm() < b.squaredNorm(); });
   std::vector<size_t> chosen = {static_cast<size_t>(nearest - points.begin())};
-  // The cells are as wide as the largest distance of a point from the chosen points, or a little
-  // wider: a new one changes the distances of points within them only.
+  // The cells are at least as wide as the largest distance of a point from the chosen points. A
+  // newly chosen point therefore changes only distances of points in its own and adjacent cells.
   std::optional<PointCells> cells;
   while (true) {
     const size_t newest = chosen.back();
@@ -112,7 +112,7 @@ LensOrder OrderOverLens(std::span<const Vec2> points, double radius_w, size_t co
     of_inside.push_back(points[i]);
     preferred_inside += i < preferred_count ? 1 : 0;
   }
-  // Points that are not numbers come last: their LF cameras stand in the focus plane.
+  // A point is not a number if its LF camera stands in the focus plane. Such points come last.
   const auto far2 = [&](size_t i) {
     const double distance2 = points[i].squaredNorm();
     return std::isnan(distance2) ? std::numeric_limits<double>::infinity() : distance2;

@@ -21,8 +21,8 @@ double SecondsSince(Clock::time_point begin) {
 }
 
 constexpr size_t kPlanBytes = size_t{256} << 20;
-// LF images that are collected at once. Their plans take little memory, and a picture can be
-// interrupted between them.
+// Number of LF images that are collected at once, so that their plans take little memory. A picture
+// can be interrupted between two such groups.
 constexpr size_t kTogether = 128;
 // Weight of the newest picture in the mean times.
 constexpr double kNewest = 0.3;

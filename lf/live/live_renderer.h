@@ -74,15 +74,15 @@ class LiveRenderer {
   // other, but not for LF images that are being loaded.
   Result<LivePicture> Render(const RenderCamera& frame, const LiveWish& wish);
 
-  // A picture that is rendered elsewhere.
+  // The facts from which a renderer elsewhere, such as the page in a browser, makes a picture.
   struct LensPlan {
     LightField field;            // the shrunken LF images that are taken
     std::vector<LfImageId> ids;  // their ids in the whole light field
     PictureLens lens;
     size_t takeable_count = 0;  // as in LivePicture
   };
-  // Returns what a renderer elsewhere needs to make the picture of Render(), of at most `most` LF
-  // images, except for their pixels. Loads missing LF images like Render(). Several threads may
+  // Returns the plan of the picture of Render(), with at most `most` LF images. It lacks only their
+  // pixels. Loads missing LF images like Render(). Several threads may
   // call it at the same time.
   //   recorded_only  as in LiveWish
   LensPlan PlanLens(const RenderCamera& frame, size_t most, bool recorded_only);

@@ -40,7 +40,7 @@ class ShrunkStore : public LfImageStore {
   const std::vector<LfImageId> ids_;
 };
 
-// Noise of which about a third is masked, in blocks of 5 x 5 pixels.
+// LF images of noise, about a third of which is masked in blocks of 5 x 5 pixels.
 class MaskedStore : public NoiseStore {
  public:
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override {

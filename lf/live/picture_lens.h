@@ -1,5 +1,6 @@
 // The lens of a live picture as numbers: which LF images the picture takes, and how much their rays
-// count. A renderer elsewhere, such as that of a graphics card, makes the same picture of them.
+// count. With these numbers, a renderer elsewhere, such as that of a graphics card, makes the same
+// picture.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +24,9 @@ struct PictureLens {
     int samples = 1;  // GatherSampling::samples
   };
   std::vector<Image> images;  // LF images with a weight somewhere, ascending
-  // Numbers of columns and rows of nodes. The weight of a block of elements is interpolated between
-  // four nodes as by FrameWeights::OfRow().
+  // Numbers of columns and rows of nodes, the points of the plate at which weights are computed.
+  // The weight of a block of elements is interpolated between four nodes as by
+  // FrameWeights::OfRow().
   int columns = 1;
   int rows = 1;
   std::vector<uint16_t> nodes;  // [image][row][column], weights in 1/256

@@ -110,7 +110,8 @@ void ResidentImages::Run() {
 bool ResidentImages::TakesRetry() {
   const std::lock_guard lock(mutex_);
   if (Clock::now() - failed_at_ < retry_after_) return false;
-  failed_at_ = Clock::now();  // if they fail again, or another frame comes first
+  // The next retry waits again, even if another frame ends this one before it has failed.
+  failed_at_ = Clock::now();
   return true;
 }
 
@@ -252,8 +253,8 @@ void ResidentImages::LoadSome(const Wanted& wanted, const std::vector<LfImageId>
   });
 }
 
-// Returns memory for an LF image in full size. New memory for each of them would leave holes
-// between the shrunken ones, which took as much memory again.
+// Returns memory for an LF image in full size, which is reused. If each LF image got new memory,
+// holes between the shrunken LF images would double the memory that the process takes.
 LfPixels ResidentImages::TakeSpare() {
   const std::lock_guard lock(mutex_);
   if (spare_.empty()) return {};

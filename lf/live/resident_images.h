@@ -34,8 +34,8 @@ class ResidentImages {
     LfPixels pixels;
     LfPixels opacity;  // LfPixels::TakeOpacity() of the pixels
   };
-  // The LF images that are in memory at one moment. Whoever holds one of them keeps it in memory,
-  // even if it is forgotten here.
+  // The LF images that are in memory at one moment. A snapshot keeps them in memory, even if
+  // ResidentImages forgets them.
   struct Snapshot {
     struct Resident {
       LfImageId id;  // in `field`
@@ -65,8 +65,8 @@ class ResidentImages {
   //   memory_bytes  bounds the memory of the shrunken LF images; at least one is kept. While LF
   //                 images are loaded, each of the threads has one more in full size
   //   threads       as ThreadPool
-  //   retry_s       time from a failure to load until Aim() tries again, because some failures
-  //                 pass: lack of memory, a disk that was not mounted
+  //   retry_s       time from a failure to load until Aim() tries again, in seconds, because some
+  //                 failures end: lack of memory, a disk that was not mounted
   //   changed       called after the status has changed, by any thread; may be empty
   ResidentImages(const ImageIndex& index, const LfImageStore& store, size_t memory_bytes,
                  int threads, std::function<void()> changed = {}, double retry_s = 5);
@@ -80,9 +80,10 @@ class ResidentImages {
   // after retry_s. Returns at once.
   void Aim(const RenderCamera& frame);
 
-  // Does not wait for LF images that are being loaded, and does not keep others from being loaded.
-  // The bound of the memory is exceeded by at most an eighth for LF images that are forgotten
-  // while snapshots hold them: loading then waits until they are let go.
+  // Returns the LF images in memory. Does not wait for LF images that are being loaded, and does
+  // not keep others from being loaded. Forgotten LF images that snapshots hold may exceed the bound
+  // of the memory by an eighth; if they exceed it further, loading waits until snapshots release
+  // them.
   std::shared_ptr<const Snapshot> TakeSnapshot() const;  // is never null
 
   Status status() const;
@@ -132,7 +133,7 @@ class ResidentImages {
   std::optional<RenderCamera> aim_;   // the newest frame of Aim() until the loader takes it
   std::optional<RenderCamera> last_;  // the frame that the loader has taken last
   bool is_loading_ = false;
-  std::vector<LfPixels> spare_;  // memory for LF images in full size
+  std::vector<LfPixels> spare_;  // memory that is reused for LF images in full size
   Clock::time_point failed_at_;  // time of the last failure to load
   std::atomic<bool> is_ending_ = false;
   Status status_;

@@ -68,8 +68,8 @@ void Shrink(const LfPixels& pixels, int divisor, LfPixels* shrunken) {
 
 int DivisorFor(const ImageIndex& index, const RenderCamera& frame, int current) {
   constexpr size_t kMeasured = 32;
-  // Elements may become narrower or wider than this before the divisor changes, because all LF
-  // images must then be loaded again: a drag of the focus should not do it.
+  // The divisor stays as long as the width of elements is between these limits, because all LF
+  // images must be loaded again if it changes, and a drag of the focus should not change it.
   constexpr double kNarrowest_px = 0.5, kWidest_px = 1.3 * kFinerAtMost;
   const std::vector<LfImageId> around = CamerasAroundLens(index, frame);
   if (around.empty()) return std::max(1, current);

@@ -24,7 +24,7 @@ void Shrink(const LfPixels& pixels, int divisor, LfPixels* shrunken);
 // wide: the smallest one of 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, ... with which it is at most
 // kFinerAtMost pixels wide (collection/prefilter/prefilter.h), because wider elements need several
 // samples. Even divisors let JPEG files be decoded at a half, a quarter or an eighth of their size
-// (LfImageStore::LoadReduced()). Measured in some of the LF cameras around the lens.
+// (LfImageStore::LoadReduced()). The width is the median in some of the LF cameras around the lens.
 //   current  is returned instead if elements are at least half a pixel wide with it, and at most
 //            1.3 times kFinerAtMost pixels, so that a moving camera or focus does not change the
 //            divisor all the time; 0: none

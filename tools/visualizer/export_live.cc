@@ -18,13 +18,13 @@ namespace {
 
 constexpr int kJpegQuality = 92;
 constexpr int kPictureWidth_px =
-    640;  // width of the live pictures that LF images are fine enough for
+    640;  // widest live pictures for which the LF images have enough pixels
 constexpr int kLeastWidth_px = 120;  // LF images are not made narrower to fit the bound
 // The page keeps 8 bytes for each pixel on the graphics card (web/src/live/gl/gl_renderer.ts).
 constexpr double kMostPixels = (256 << 20) / 8.0;
 constexpr double kFileShare = 4.0 / 3;  // a file has the encoded LF image in base 64
-constexpr size_t kMostOrdered = 2048;   // ordering takes a time that grows with the square
-constexpr size_t kMostForUsed = 2;      // LF images for each that the film uses
+constexpr size_t kMostOrdered = 2048;   // largest number of exported LF images that the film uses
+constexpr size_t kMostForUsed = 2;      // most exported LF images for each that the film uses
 constexpr size_t kMeasured = 4;         // LF images that are encoded to estimate the size of all
 
 Intrinsics ShrunkIntrinsics(const LightField& field, LfImageId id, int divisor) {
@@ -33,8 +33,8 @@ Intrinsics ShrunkIntrinsics(const LightField& field, LfImageId id, int divisor) 
   return ShrunkField(std::move(one), divisor).intrinsics[0];
 }
 
-// Returns the ids so that every beginning is spread evenly over the LF cameras, as seen by the
-// frame in the middle of the film.
+// Returns ids of used LF images, at most kMostOrdered, in an order of which every beginning is
+// spread evenly over their LF cameras, as seen by the frame in the middle of the film.
 std::vector<LfImageId> SpreadOut(const LightField& field, std::span<const uint32_t> used,
                                  const RenderCamera& frame) {
   std::vector<LfImageId> some;
@@ -52,7 +52,7 @@ std::vector<LfImageId> SpreadOut(const LightField& field, std::span<const uint32
 }
 
 // Appends LF images that the film does not use, the nearest to the lens first, until there are
-// `count`: the page opens the lens wider and moves the camera.
+// `count`. Pictures need them if a user opens the lens wider or moves the camera.
 void AddOthers(const LightField& field, const RenderCamera& frame, size_t count,
                std::vector<LfImageId>* ids) {
   std::vector<bool> is_there(field.size(), false);
@@ -68,7 +68,8 @@ void AddOthers(const LightField& field, const RenderCamera& frame, size_t count,
     ids->push_back(others[i].second);
 }
 
-// Returns the mean size of the files of some LF images, in bytes; nullopt if none can be read.
+// Returns the mean size of the files of the first few LF images, in bytes; nullopt if none of them
+// can be read.
 std::optional<double> MeanBytes(const PageScene& scene, std::span<const LfImageId> ids,
                                 int divisor) {
   double sum = 0, count = 0;

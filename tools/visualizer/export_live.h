@@ -1,4 +1,4 @@
-// The LF images that an exported page renders live pictures of.
+// The LF images in an exported page, from which it renders live pictures.
 #pragma once
 
 #include <cstddef>
@@ -14,10 +14,10 @@
 
 namespace lf {
 
-// The choice of LF images that an export has for live pictures.
+// The LF images that are exported for live pictures.
 struct LivePlan {
   std::string refused;         // why there are no live pictures; "" if there are some
-  int divisor = 1;             // LF images are shrunken by it
+  int divisor = 1;             // factor by which LF images are shrunken
   std::vector<LfImageId> ids;  // in the order in which they are loaded, spread over the lens
 };
 
@@ -31,11 +31,12 @@ struct EncodedLfImage {
 //   used  ids of the LF images that the film uses
 LivePlan PlanLiveExport(PageScene& scene, std::span<const uint32_t> used, size_t most_bytes);
 
-// Returns an LF image, shrunken, in sRGB.
+// Returns an LF image, shrunken by the divisor, as the bytes of a picture in sRGB. Errors are those
+// of LoadReducedWithoutThrowing() and of the encoders.
 Result<EncodedLfImage> EncodeForLive(const PageScene& scene, LfImageId id, int divisor);
 
 // Returns live.json (doc/formats/page_data.md).
-//   names  of the files of plan.ids; "" for those that are missing
+//   names  names of the data of plan.ids; "" for LF images that could not be read
 std::string LiveJson(const PageScene& scene, const LivePlan& plan,
                      std::span<const std::string> names);
 

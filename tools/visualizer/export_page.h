@@ -19,7 +19,7 @@ struct ExportFacts {
   size_t image_count = 0;     // number of LF images to be exported
   size_t missing_count = 0;   // number of these that were left out, because they cannot be read
   std::string first_missing;  // reason why the first of them cannot be read
-  size_t live_count = 0;      // number of LF images for live pictures
+  size_t live_count = 0;      // number of exported LF images for live pictures
   uint64_t live_bytes = 0;    // size of their files
 };
 

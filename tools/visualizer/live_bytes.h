@@ -12,22 +12,23 @@
 
 namespace lf {
 
-// Returns the length of the JSON text, and the text, padded to a multiple of 4 bytes.
+// Returns uint32 length of the JSON text, and the text, padded by spaces to a multiple of 4 bytes.
 std::string WithHead(const nlohmann::ordered_json& json);
 
 // Returns why the page cannot render live pictures of these LF images itself; "" if it can.
 std::string WhyNotInBrowser(const LightField& field);
 
-// Returns {"width": of the LF image, "height": ..., "matrix": [3][3] calibration matrix times
-// rotation, "centre": [...]}.
+// Returns {"width", "height": of the LF image in pixels, "matrix": the 9 numbers of calibration
+// matrix times rotation, row by row, "centre": position in the world [x, y, z]}.
 nlohmann::ordered_json LfCameraJson(const PinholeCamera& camera);
 
-// Returns the lens of a picture that is rendered in the browser: `json`, to which the facts of the
-// lens are added, and the weights at the nodes.
+// Returns the lens of a picture that is rendered in the browser: `json` with the facts of the lens
+// added, and then the weights at the nodes.
 std::string LensBytes(const LiveRenderer::LensPlan& plan, const RenderCamera& frame,
                       nlohmann::ordered_json json);
 
-// Returns the LF camera, and the radiances of the pixels of its shrunken LF image.
+// Returns LfCameraJson() of a shrunken LF image, and then its radiances, uint16 R, G, B and 1 (0 if
+// the pixel is masked).
 std::string LfImageBytes(const PinholeCamera& camera, const LfPixels& pixels);
 
 }  // namespace lf

@@ -30,7 +30,7 @@ Json LoadingJson(const ResidentImages::Status& status) {
           {"broken", status.broken_count}};
 }
 
-// Parses a whole number of digits alone.
+// Returns the whole number, from 0, that the text is; nullopt if it is anything else.
 std::optional<int> WholeNumber(std::string_view text) {
   int number = 0;
   const char* const end = text.data() + text.size();

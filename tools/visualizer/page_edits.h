@@ -27,11 +27,11 @@ inline constexpr int kLongestLiveSide_px = 1280;
 //                 "recorded" is true, virtual LF images are left out
 //   preview/stop  {} -> {}
 //   live          {"text", "frame", "width": of the picture, in elements; "budget_ms": time for it,
-//                 or left out for a still picture} -> bytes of a picture
+//                 or left out for a still picture; "recorded" as in preview} -> bytes of a picture
 //                 (doc/formats/page_data.md);
 //                 {"superseded": true} for a still picture that a newer request has broken off
-//   lens          {"text", "frame", "width", "images": largest number of LF images} -> bytes of the
-//                 lens of a picture that the browser renders
+//   lens          {"text", "frame", "width", "recorded", "images": largest number of LF images} ->
+//                 bytes of the lens of a picture that the browser renders
 //   focus         {"path": id, "frame", "x", "y"}; x and y are in elements of the frame or, if
 //                 "camera" names an LF camera, in pixels of its LF image
 //                 -> {"point": position in the world, "focus_distance": in world units,

@@ -12,8 +12,8 @@ export interface LiveFacts {
   done: number; // number of those that are loaded or broken
   broken: number;
   first_broken: string; // why an LF image, or all, could not be loaded; "" if there is no failure
-  memory_bytes: number; // memory for LF images (--live-memory)
-  image_bytes: number; // memory of an LF image
+  memory_bytes: number; // limit of the memory for LF images (--live-memory); 0 in an exported page
+  image_bytes: number; // memory of an LF image; 0 in an exported page
   divisor: number; // factor by which LF images are shrunken
   uncovered_share: number; // share of the lens that was not recorded
   camera_distance: number; // spacing of the LF images of this picture in the lens plane, world units; 0: not known
@@ -23,7 +23,7 @@ export interface LiveFacts {
 export interface LivePicture {
   facts: LiveFacts;
   picture: GrowingPicture;
-  by: "server" | "webgl"; // who rendered it
+  by: "server" | "webgl"; // the renderer of the picture
 }
 
 export function readLivePicture(bytes: ArrayBuffer): LivePicture {

@@ -1,5 +1,5 @@
-// Exported data: each is a script NAME.js that hands its bytes to the page, because a page that was opened from the disk
-// may load scripts, but no other data.
+// The data of an exported page. Each is a script NAME.js that hands its bytes to the page, because a page that was
+// opened from the disk may load scripts, but no other data.
 
 import { element } from "../element";
 
@@ -16,7 +16,7 @@ export function hasScripts(): boolean {
 
 const waiting = new Map<string, ((bytes: Uint8Array<ArrayBuffer>) => void)[]>();
 
-// Returns the bytes; null if there is no such file.
+// Returns the bytes of the data NAME; null if there is no script NAME.js.
 export function loadScript(name: string): Promise<Uint8Array<ArrayBuffer> | null> {
   window.lfvisualizerFile ??= (loaded, base64) => {
     const bytes = bytesOfBase64(base64);

@@ -1,23 +1,25 @@
-// Chooses who renders live pictures: WebGL if a graphics card does it and is faster than the server, else the server.
+// Chooses who renders live pictures: WebGL if it uses a graphics card and is faster than the server, otherwise the
+// server.
 
 import type { LivePicture } from "../data/live_picture";
 import type { Wish } from "./gl/wish";
 import type { PictureRequest, Pictures } from "./pictures";
 
-// Pictures that WebGL renders. ask() returns null as long as LF images are lacking, and throws if it never can.
+// Pictures that WebGL renders. ask() returns null as long as the graphics card lacks LF images, and throws if WebGL
+// cannot render pictures of this light field.
 export interface LocalPictures extends Pictures {
   readonly isSoftware: boolean;
   readonly name: string; // of the graphics card
-  close(): void; // gives back its memory
+  close(): void; // releases the memory of the graphics card
 }
 
 export class ChosenPictures implements Pictures {
-  reason = ""; // why the server renders; "" if it is not decided yet, or if WebGL renders
+  reason = ""; // why the server renders; "" if no renderer has been chosen yet, or if WebGL renders
   private local: LocalPictures | null = null;
   private isDecided = false; // true: `local`, or the server if it is null, renders all pictures
 
-  //   open    opens WebGL; throws if there is none. `lost` is to be called when it has lost its LF images
-  //   loaded  is called when other pictures can be made
+  //   open    opens WebGL; throws if there is none. It must call `lost` when the graphics card has lost its LF images
+  //   loaded  is called when the renderer of later pictures has changed
   //   now     returns the time in milliseconds
   constructor(
     private readonly server: Pictures,

@@ -80,8 +80,8 @@ export class Comparison {
     this.set(null);
   }
 
-  // A new picture B has come. As long as its camera is that of A, it is also the new picture A. Otherwise, A follows
-  // still pictures: to another frame, or to more LF images.
+  // Is called when a new picture B has come. If its camera is that of A, it is also the new picture A. Otherwise, a new
+  // picture A is requested if B is a still picture, and shows another frame or has more LF images.
   private renew(): void {
     const { kept, view, state } = this;
     if (kept && view.shown && kept.camera === this.camera.camera) kept.shown = view.shown;
@@ -90,7 +90,7 @@ export class Comparison {
     if (kept.frame !== state.frame || kept.shown.facts.images < view.shown.facts.images) void this.follow(kept);
   }
 
-  // Shows the frame with the lens of A.
+  // Requests and shows the picture A: this frame with the lens of A.
   private async follow(kept: Kept): Promise<void> {
     if (this.isAsking) return;
     this.isAsking = true;
@@ -103,7 +103,7 @@ export class Comparison {
       const shown = await this.view.pictureOf(camera);
       if (shown && this.kept === kept && frame === this.state.frame) this.set({ frame, camera, shown });
     } catch {
-      // The old picture stays. The view tells why pictures fail.
+      // The old picture A stays. The view says why pictures fail.
     } finally {
       this.isAsking = false;
     }

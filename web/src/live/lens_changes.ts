@@ -41,8 +41,8 @@ export function writeAperture(document: PathDocument, time: number, camera: Fram
   return "";
 }
 
-// Tilts the focus plane by tiltHorizontal and tiltVertical: a point x to the right of the optical axis and y above it is
-// in the plane if its depth is the focus distance + x tan(horizontal) + y tan(vertical).
+// Returns the camera with its focus plane tilted by its tiltHorizontal and tiltVertical: a point x to the right of the
+// optical axis and y above it is in the plane if its depth is the focus distance + x tan(horizontal) + y tan(vertical).
 export function withTilt(camera: FrameCamera): FrameCamera {
   const sideways = add(camera.forward, camera.right, -Math.tan(camera.tiltHorizontal));
   const normal = unit(add(sideways, camera.up, -Math.tan(camera.tiltVertical)));

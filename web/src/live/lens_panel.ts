@@ -17,8 +17,8 @@ import type { LiveView } from "./live_view";
 const SVG = "http://www.w3.org/2000/svg";
 const OPENINGS = 1000; // factor between the largest and the smallest opening of the slider
 const MOST_BLADES = 12;
-const MOST_TILT = (75 * Math.PI) / 180; // of the sliders
-const STRAIGHT = (1.5 * Math.PI) / 180; // tilts below this become 0
+const MOST_TILT = (75 * Math.PI) / 180; // largest tilt of the sliders
+const STRAIGHT = (1.5 * Math.PI) / 180; // smaller tilts of the sliders become 0
 
 interface Parts {
   state: State;
@@ -32,7 +32,7 @@ interface Parts {
 export class LensPanel {
   private readonly lens = document.createElementNS(SVG, "polygon");
   private readonly fills: (() => void)[] = [];
-  private ends: [number, number] = [Infinity, 0]; // nearest and farthest distance of the slider of the focus
+  private ends: [number, number] = [Infinity, 0]; // nearest and farthest distance of the focus slider
 
   constructor(
     private readonly root: HTMLElement,
@@ -185,8 +185,8 @@ export class LensPanel {
     return this.toggle("◆ Keys", title, () => state.addsKeys, click);
   }
 
-  // Returns the ends of the slider of the focus: from the nearest to the farthest focus of the film, and further by the
-  // depths of the scene. They stay where they are as long as the focus is between them, so that the slider moves.
+  // Returns the ends of the focus slider: the nearest and the farthest focus of the film, with a margin by the depths
+  // of the scene. The ends stay as long as the focus is between them, because otherwise its mark would not move.
   private focusEnds(): [number, number] {
     const { state, camera } = this.parts;
     const all = [camera.camera, ...state.cameras].map((one) => one.focusDistance);

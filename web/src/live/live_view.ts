@@ -108,7 +108,7 @@ export class LiveView {
     return Math.max(WIDTHS[0], Math.min(WIDTHS[1], 16 * Math.round(pixels / 16)));
   }
 
-  // Returns a still picture of another camera, which is not shown; null if another request has superseded it.
+  // Returns a still picture of another camera, which is not shown; null if a newer request has superseded it.
   pictureOf(camera: FrameCamera): Promise<LivePicture | null> {
     return this.pictures.ask(this.requestOf(camera, null));
   }

@@ -13,11 +13,11 @@ export interface PictureRequest {
 }
 
 export interface Pictures {
-  // Returns a picture; null if another page has superseded it.
+  // Returns a picture; null if there is none now, for example because a newer request has superseded it.
   ask(request: PictureRequest): Promise<LivePicture | null>;
 }
 
-// Returns what the server is asked for.
+// Returns the body of a request to the server, without its budget.
 export function bodyOf({ camera, width, recordedOnly }: PictureRequest, unit_m: number): object {
   return { text: oneFramePath(camera, unit_m), frame: 1, width, recorded: recordedOnly };
 }

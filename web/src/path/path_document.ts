@@ -21,7 +21,7 @@ const kLeastKeyDistance_s = 1e-6;
 export class PathDocument {
   // Lengths are written with at least this precision, in world units, even far from the origin.
   resolution_w: number;
-  addsKeys = false; // setAtTime() adds keys to quantities that have none
+  addsKeys = false; // true: setAtTime() also adds keys to quantities that have none
 
   private constructor(
     private readonly yaml: YamlText,

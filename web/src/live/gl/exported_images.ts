@@ -8,7 +8,7 @@ import { matrixOf } from "./ray_forms";
 // Data of live.json.
 export interface ExportedLive {
   refused: string; // why there are no live pictures; "" if there are some
-  divisor: number; // LF images are shrunken by it
+  divisor: number; // factor by which LF images are shrunken
   images: { id: number; name: string; width: number; height: number; matrix: number[]; centre: Vec3 }[];
 }
 
@@ -25,7 +25,7 @@ function linearTable(): Uint16Array {
 
 const LINEAR = linearTable();
 
-// Converts pixels of a canvas, R, G, B and alpha, to linear light. Transparent pixels are masked.
+// Converts pixels of a canvas, R, G, B and alpha, to LfImage.pixels. Transparent pixels are masked.
 export function linearPixels(display: Uint8ClampedArray): Uint16Array {
   const pixels = new Uint16Array(display.length);
   for (let i = 0; i < display.length; i += 4) {

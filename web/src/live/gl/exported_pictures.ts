@@ -1,5 +1,6 @@
-// Live pictures of an exported page. There is no server: WebGL renders all of them, of the exported LF images, with lens
-// weights that are made here. Without a graphics card, pictures are coarser, and quick ones have fewer LF images.
+// Live pictures of an exported page. There is no server: WebGL renders all pictures from the exported LF images, with
+// lens weights that are computed here. If there is not enough time, for example without a graphics card, pictures are
+// coarser or have fewer LF images (fitting.ts).
 
 import type { LivePicture } from "../../data/live_picture";
 import type { PictureRequest, Pictures } from "../pictures";
@@ -11,16 +12,16 @@ import { plateOf, type LfCamera } from "./ray_forms";
 
 const AT_A_TIME = 4; // LF images that are decoded at the same time
 const NEWS_MS = 400; // shortest time between two reports that LF images were loaded
-const STILL_MS = 2000; // time for a still picture
-const NEWEST = 0.5; // weight of the newest picture in the mean time
+const STILL_MS = 2000; // longest time for a still picture
+const NEWEST = 0.5; // weight of the newest picture in ray_ms
 
 export class ExportedPictures implements Pictures {
   private renderer: GlRenderer | null = null;
   private readonly cameras = new Map<number, LfCamera>(); // of the loaded LF images, in the order of loading
-  private asked = 0; // LF images that were asked for
+  private asked = 0; // number of LF images whose loading has begun
   private broken = 0;
-  private ray_ms = 2e-6; // mean time of one element of one LF image in earlier pictures
-  private isFirst = true; // the first picture also compiles shaders, and measures nothing
+  private ray_ms = 2e-6; // running mean, over pictures, of the time for one element of one LF image
+  private isFirst = true; // true: the next picture also compiles shaders, so that its time does not count
 
   constructor(
     private readonly live: ExportedLive,
@@ -73,7 +74,7 @@ export class ExportedPictures implements Pictures {
     return renderer;
   }
 
-  // The graphics card has lost the LF images: they are loaded anew at the next picture.
+  // Is called when the graphics card has lost the LF images. The next picture loads them again.
   private forget(): void {
     this.renderer = null;
     this.cameras.clear();
@@ -102,7 +103,7 @@ export class ExportedPictures implements Pictures {
         }
       }
     };
-    // ask() sets `renderer` after open() returns.
+    // Waits until render() has set `renderer`, which it does after open() returns.
     await Promise.resolve();
     await Promise.all(Array.from({ length: AT_A_TIME }, loader));
     this.loaded();

@@ -2,10 +2,11 @@
 
 const LEAST_WIDTH = 160; // elements; coarser pictures do not show what is in focus
 const LEAST_IMAGES = 12;
-const STEP = 16; // widths are multiples, so that few sizes occur
+const STEP = 16; // widths are multiples of this, so that few sizes occur
 
+// Returns the width of the picture, in elements, and its number of LF images.
 //   images  LF images that could be taken
-//   rays    elements times LF images for which there is time
+//   rays    product of the numbers of elements and LF images for which there is time
 export function fitting(
   images: number,
   { width, height }: { width: number; height: number },

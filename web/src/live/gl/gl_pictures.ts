@@ -1,4 +1,4 @@
-// Live pictures that WebGL renders of the LF images and the lens weights of the server.
+// Live pictures that WebGL renders from LF images and lens weights of the server.
 
 import { readHead } from "../../data/head";
 import type { LivePicture } from "../../data/live_picture";
@@ -13,14 +13,14 @@ import { isSoftware } from "./software";
 
 const AT_A_TIME = 4; // LF images that are requested at the same time
 const NEWS_MS = 300; // shortest time between two reports that LF images were loaded
-const MOST_IMAGES = 4096; // LF images of a picture as long as their size is not known
+const MOST_IMAGES = 4096; // largest number of LF images of a picture as long as their size is not known
 
 export class GlPictures implements LocalPictures {
-  private divisor = 0; // by which the LF images on the graphics card are shrunken
+  private divisor = 0; // factor by which the LF images on the graphics card are shrunken
   private most = MOST_IMAGES;
   private wanted: number[] = [];
   private isLoading = false;
-  private readonly absent = new Set<number>(); // LF images that the server did not have, until the next lens
+  private readonly absent = new Set<number>(); // LF images requested since the last lens, which are not requested again
 
   //   loaded  is called when LF images have come to the graphics card
   constructor(
@@ -79,7 +79,7 @@ export class GlPictures implements LocalPictures {
     let told_ms = performance.now();
     const loader = async () => {
       for (let id = this.next(); id !== undefined; id = this.next()) {
-        this.absent.add(id); // no other loader takes it
+        this.absent.add(id); // so that no other loader requests it
         await this.loadOne(id);
         if (performance.now() - told_ms > NEWS_MS) {
           told_ms = performance.now();
@@ -101,7 +101,7 @@ export class GlPictures implements LocalPictures {
       this.most = images.capacity(image);
       images.add(id, image, new Set(this.wanted));
     } catch {
-      // The server has forgotten the LF image: the next lens is without it.
+      // If the server has forgotten the LF image, the next lens does not contain it.
     }
   }
 }

@@ -8,17 +8,17 @@ import { pixelsPerElement, rayForms } from "./ray_forms";
 import { COLLECT, DEVELOP, IMAGES_PER_DRAW, NODES_PER_ROW, TRIANGLE, VECTORS_PER_IMAGE } from "./shaders";
 import { rendererName } from "./software";
 
-const MOST_BYTES = 256 << 20; // of LF images on the graphics card
+const MOST_BYTES = 256 << 20; // limit of the memory for LF images on the graphics card
 const RIM = 1e-6; // relative tolerance of the opening, for single precision
-const FEATHER_SHARE = 1 / 32; // of the shorter side of an LF image
-const BLOCK = 8; // side of a block of elements of one weight
+const FEATHER_SHARE = 1 / 32; // width of the feather, as a share of the shorter side of an LF image
+const BLOCK = 8; // width of a block of elements that have the same weight, in elements
 
 interface Target {
   texture: WebGLTexture;
   frame: WebGLFramebuffer;
 }
 
-// An LF image of the lens with its place on the graphics card and its first weight.
+// An LF image of the lens, where it is on the graphics card, and the index of its first weight.
 interface Drawn extends LensImage {
   placed: Placed;
   node: number;
@@ -62,7 +62,7 @@ export class GlRenderer {
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 2);
   }
 
-  // Gives the memory of the graphics card back.
+  // Releases the memory of the graphics card.
   close(): void {
     this.gl.getExtension("WEBGL_lose_context")?.loseContext();
   }
@@ -89,7 +89,7 @@ export class GlRenderer {
     return this.read(lens, from);
   }
 
-  // Returns the LF images of each draw: of one page, and at most IMAGES_PER_DRAW.
+  // Returns the LF images of each draw: at most IMAGES_PER_DRAW, all of the same page (LfTextures).
   private draws(lens: Lens): Drawn[][] {
     const ofPage = new Map<unknown, Drawn[]>();
     lens.images.forEach((image, i) => {
@@ -110,7 +110,7 @@ export class GlRenderer {
     images.forEach(({ placed, node, shift, samples }, i) => {
       const forms = rayForms(camera, lens.plate, placed, lens.radius);
       const { width, height, layer } = placed;
-      // In this border of the LF image, a corner of the element's block may be feathered.
+      // Width of the border of the LF image in which a corner of an element's block may be feathered, in LF pixels.
       const reach = 2 * BLOCK * pixelsPerElement(forms, lens.plate);
       const border = Math.min(1e6, 1 + FEATHER_SHARE * Math.min(width, height) + reach);
       const rows = [

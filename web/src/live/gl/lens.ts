@@ -6,18 +6,18 @@ import type { Plate } from "./ray_forms";
 
 export interface LensImage {
   id: number;
-  shift: [number, number]; // of the blocks of elements that have one weight
+  shift: [number, number]; // shift of the blocks of elements that have the same weight, in elements
   samples: number; // rays along each edge of an element
 }
 
 export interface Lens {
   plate: Plate;
-  images: LensImage[]; // those that have a weight somewhere
-  // Weights are interpolated between nodes over the plate; [image][row][column], in 1/256.
+  images: LensImage[]; // LF images that have a weight somewhere
+  // Weights in 1/256 at nodes on the plate, [image][row][column], between which they are interpolated.
   columns: number;
   rows: number;
   nodes: Uint16Array;
-  // Rays must pass through this opening.
+  // The opening through which rays must pass: radius in world units, rotation in radians.
   radius: number;
   blades: number;
   rotation: number;

@@ -1,6 +1,6 @@
-// Lens weights made in the browser, for exported pages. The server's weights (doc/lens-integral.md) are areas of cells;
-// these are counts of points of the opening, each of which belongs to the nearest LF camera, or in narrow lenses to the
-// few around it.
+// Lens weights that the browser computes for exported pages. The server's weights (doc/lens-integral.md) are areas of
+// cells. These weights are counts of points of the opening instead: each point counts for the nearest LF camera, or in
+// narrow lenses for the few LF cameras around it (hat weights).
 
 import { add, dot, type FrameCamera } from "../../data/frame_camera";
 import type { Vec3 } from "../../data/scene";
@@ -12,22 +12,23 @@ type Vec2 = [number, number];
 const WEIGHT_ONE = 256;
 const MOST_WEIGHT = 255;
 const STEP_OF_SPACING = 1 / 3; // largest movement of lens points from node to node
-const MOST_NODES = 8; // in a row or column
-const AT_REST = 1e-6; // movement, as a share of the spacing, below which LF cameras are in the lens plane
-const COUNTED = 12; // LF cameras around the lens that the spacing is measured with
-const POINTS_PER_CAMERA = 24; // of the opening, ...
+const MOST_NODES = 8; // largest number of nodes in a row or column
+const AT_REST = 1e-6; // movement of lens points, in spacings, below which LF cameras are in the lens plane
+const COUNTED = 12; // least number of LF cameras around the lens from which the spacing is measured
+const POINTS_PER_CAMERA = 24; // number of points of the opening for each LF camera in it
 const LEAST_POINTS = 64;
-const MOST_POINTS = 40_000; // ... but at most these at all nodes together, which take about 20 ms
+const MOST_POINTS = 40_000; // largest number of points at all nodes together, which take about 20 ms
 const REACH = 1.5; // distance, in spacings, beyond which an LF camera does not stand for a point of the opening
 const CELLS = 65536; // largest number of cells across in which points are sought
-const HATS = { upTo: 1, until: 1.75 }; // diameters, in spacings, of lenses with hats alone, and of those without
+// Lens diameters, in spacings: up to the first one all weights are hat weights, from the second one on none are.
+const HATS = { upTo: 1, until: 1.75 };
 const FINER_AT_MOST = 1.25; // LF pixels along an element that need no more than one ray
 const MOST_SAMPLES = 3;
 
 export interface LensOfCameras {
   lens: Lens;
-  spacing: number; // of the LF cameras around the lens, world units
-  uncoveredShare: number; // of the opening
+  spacing: number; // distance between LF cameras around the lens, in world units
+  uncoveredShare: number; // share of the opening for which no LF camera stands
 }
 
 // Returns the point of the focus plane that a position on the plate sees; null beyond the horizon of a tilted plane.
@@ -38,7 +39,8 @@ export function focusPointAt(camera: FrameCamera, plate: Plate, x: number, y: nu
   return depth > 0 && Number.isFinite(depth) ? add(camera.centre, direction, depth) : null;
 }
 
-// Returns where the line through an LF camera and a point meets the lens plane, from the lens centre.
+// Returns where the line through an LF camera and a point meets the lens plane: how far to the right of the lens centre
+// and above it, in world units.
 export function lensPoint(camera: FrameCamera, centre: Vec3, point: Vec3): Vec2 {
   const along = add(centre, point, -1);
   const toLens = add(camera.centre, point, -1);
@@ -47,7 +49,8 @@ export function lensPoint(camera: FrameCamera, centre: Vec3, point: Vec3): Vec2 
   return [dot(camera.right, offset), dot(camera.up, offset)];
 }
 
-// Returns points spread evenly over the opening: a spiral, without its points outside of a polygon.
+// Returns at most `count` points that are spread evenly over the opening: the points of a spiral that are inside of the
+// polygon of blades.
 export function pointsOfOpening({ radius, blades, rotation }: FrameCamera, count: number): Vec2[] {
   const golden = Math.PI * (3 - Math.sqrt(5));
   const half = Math.PI / Math.max(3, blades);
@@ -75,7 +78,7 @@ export function spacingAround(points: readonly Vec2[], radius: number): number {
 
 // Returns the shares of the opening for which LF cameras stand, and the share for which none does.
 //   of      points of the opening
-//   points  where the LF cameras see the lens
+//   points  lens points of the LF cameras
 export function sharesOf(of: readonly Vec2[], points: readonly Vec2[], spacing: number, hatShare: number) {
   const shares = new Float64Array(points.length);
   const reach = REACH * spacing;
@@ -111,14 +114,15 @@ export function sharesOf(of: readonly Vec2[], points: readonly Vec2[], spacing: 
   return { shares, uncovered: uncovered / of.length };
 }
 
-// Returns the share of the hats, which falls smoothly while a lens opens.
+// Returns the share of hat weights in the lens weights. It falls smoothly from 1 to 0 while a lens opens.
 function hatShareOf(radius: number, spacing: number): number {
   const t = (HATS.until - (2 * radius) / spacing) / (HATS.until - HATS.upTo);
   const s = Math.max(0, Math.min(1, t));
   return s * s * (3 - 2 * s);
 }
 
-// Returns numbers of columns and rows of nodes: the more, the farther lens points move over the plate.
+// Returns the numbers of columns and rows of nodes. They grow with the movement of lens points from one edge of the
+// plate to the other.
 function gridOf(camera: FrameCamera, plate: Plate, centres: readonly Vec3[], spacing: number): [number, number] {
   const focus = (u: number, v: number) => focusPointAt(camera, plate, u * plate.width, v * plate.height);
   const moved = (centre: Vec3, a: Vec3 | null, b: Vec3 | null): number => {

@@ -1,4 +1,4 @@
-// The LF images on the graphics card: layers of array textures, under a bound of their memory.
+// The LF images on the graphics card: layers of array textures, whose memory is limited.
 
 import type { LfCamera } from "./ray_forms";
 import { IMAGES_PER_DRAW } from "./shaders";
@@ -9,12 +9,12 @@ export interface LfImage extends LfCamera {
 
 const BYTES_PER_PIXEL = 8;
 
-// LF images of one size; a draw reads those of one page.
+// An array texture with LF images of one size. A draw reads the LF images of one page.
 interface Page {
   texture: WebGLTexture;
   width: number;
   height: number;
-  ids: (number | null)[]; // of the LF image in each layer
+  ids: (number | null)[]; // id of the LF image in each layer; null if the layer is free
 }
 
 export interface Placed extends LfCamera {

@@ -22,9 +22,9 @@ export interface LfCamera {
   centre: Vec3;
 }
 
-// Forms on (x, y, 1), where x and y count from the middle of the plate.
+// Linear forms on (x, y, 1), where x and y count from the middle of the plate, in elements.
 export interface RayForms {
-  pixel: Matrix; // homogeneous position in the LF image, which is to be turned so that the ray runs forward
+  pixel: Matrix; // homogeneous position in the LF image, whose sign is to be chosen so that the ray runs forward
   front: Vec3; // > 0: the focus point is in front of the lens
   forward: Vec3; // >= 0: from the LF camera to the focus point is forward for the frame
   // The ray meets the lens plane at (right / forward, up / forward), in radii of the opening.
@@ -121,7 +121,7 @@ export function elementWidth(forms: RayForms, plate: Plate): number {
   return Math.sqrt(Math.abs(along[0] * down[1] - along[1] * down[0]));
 }
 
-// Returns an upper bound, a rough one, of the number of LF pixels from one element to the next. Measured at nine points
+// Returns a rough upper bound of the number of LF pixels from one element to the next, which is measured at nine points
 // of the plate; Infinity if one of them has no ray.
 export function pixelsPerElement(forms: RayForms, plate: Plate): number {
   let most = 0;

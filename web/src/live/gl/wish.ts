@@ -1,4 +1,5 @@
-// Who is to render live pictures, by the address of the page: ?live=webgl or ?live=server, for tests and measurements.
+// The renderer of live pictures that the address of the page asks for, ?live=webgl or ?live=server, for tests and
+// measurements; "auto" if it asks for none.
 
 export type Wish = "auto" | "webgl" | "server";
 
