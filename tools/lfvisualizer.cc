@@ -97,9 +97,9 @@ void AddOutput(CLI::App& app, Arguments& a) {
       ->needs(to_files);
   output
       .Add("--export-live SIZE", a.export_live,
-           "Total size of LF images for live pictures, such as 32M; 0: none\n"
-           "The exported page renders live pictures from these LF images by WebGL2. They are "
-           "shrunken, and then some are left out, until they fit into SIZE.")
+           "Total size of LF images for live pictures\n"
+           "Such as 32M; 0: none. The exported page renders live pictures from these LF images by "
+           "WebGL2. They are shrunken, and then some are left out, until they fit into SIZE.")
       ->needs(to_files);
   a.allow_missing.AddTo(app, "the LF images in the export")->needs(to_files);
   output
