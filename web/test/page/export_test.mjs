@@ -4,7 +4,7 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { pathToFileURL } from "node:url";
 
-import { allLoaded, dragFocus, focusNow, gradientEnergy, openLive, STAR, stillPicture, WIDE } from "./live_case.mjs";
+import { dragFocus, focusNow, gradientEnergy, openLive, STAR, stillPicture, WIDE } from "./live_case.mjs";
 import { browser, temporary, writePath } from "./page_case.mjs";
 import { openPage, run, until } from "./visualizer.mjs";
 
@@ -24,6 +24,11 @@ async function withExport(made, words, body) {
   await close();
 }
 
+// Waits until all LF images of the export are decoded. On a busy machine, pictures are then made of some of them.
+function allDecoded(page) {
+  return until(page, "(({ done, wanted, images }) => done === wanted && images > 0)(app.live.view.shown.facts)");
+}
+
 // Waits until the page shows another picture than the one with this number, and returns its number.
 async function nextPicture(page, version) {
   await until(page, `app.live.view.canvas.dataset.version > ${version}`);
@@ -37,7 +42,7 @@ test("an exported page on the disk refocuses, and opens, tilts and moves its cam
   await withExport([], [], async (page, output) => {
     assert.match(output, /81 for live pictures \([\d.]+ [kM]?B\)/);
     const box = await openLive(page);
-    await allLoaded(page);
+    await allDecoded(page);
     await stillPicture(page);
     assert.equal(await page.evaluate("lfvisualizer.live.view.shown.by"), "webgl");
     const before = await gradientEnergy(page, STAR);
@@ -82,7 +87,7 @@ test("an export keeps to the size of its live pictures, and masks pixels", async
     assert.ok(Number(count) > 5 && Number(count) < 81, output);
     assert.ok(Number(size) < 110, output);
     await openLive(page);
-    await allLoaded(page);
+    await allDecoded(page);
     const shares = await page.evaluate(() => {
       const { halves } = window.lfvisualizer.live.view.shown.picture;
       let covered = 0;
