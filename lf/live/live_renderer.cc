@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <iterator>
+#include <map>
 #include <memory>
 #include <utility>
 
@@ -63,14 +64,22 @@ std::vector<Resident> TakeableOf(const ResidentImages::Snapshot& snapshot, bool 
   return recorded;
 }
 
-// Returns the light field of some LF images, given by ascending ids.
+// Returns the light field of some LF images, given by ascending ids. It has only the intrinsics
+// that these LF images have, because finding the angle that a distorted lens sees takes long.
 LightField FieldOf(const LightField& field, std::span<const LfImageId> ids) {
   LightField some;
-  some.intrinsics = field.intrinsics;
   some.encoding = field.encoding;
   some.unit_m = field.unit_m;
   some.depth_range = field.depth_range;
-  for (const LfImageId id : ids) some.cameras.push_back(field.cameras[id.value]);
+  std::map<uint32_t, uint32_t> index_of;  // index into some.intrinsics by index into those of field
+  for (const LfImageId id : ids) {
+    LfCamera camera = field.cameras[id.value];
+    const auto [found, is_new] = index_of.try_emplace(
+        camera.intrinsics_index, static_cast<uint32_t>(some.intrinsics.size()));
+    if (is_new) some.intrinsics.push_back(field.intrinsics[camera.intrinsics_index]);
+    camera.intrinsics_index = found->second;
+    some.cameras.push_back(camera);
+  }
   some.image_names.resize(ids.size());
   return some;
 }
