@@ -23,6 +23,13 @@ const char* ExceptionOf(ErrorKind kind) {
 
 }  // namespace
 
+py::str TextOf(const std::string& text) {
+  PyObject* const decoded =
+      PyUnicode_DecodeFSDefaultAndSize(text.data(), static_cast<py::ssize_t>(text.size()));
+  if (decoded == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(decoded);
+}
+
 void TranslateFailures() {
   py::register_exception_translator([](std::exception_ptr pointer) {
     try {
@@ -30,7 +37,7 @@ void TranslateFailures() {
     } catch (const Failure& failure) {
       const py::object type =
           py::module_::import("lfrendertools.errors").attr(ExceptionOf(failure.error().kind));
-      PyErr_SetString(type.ptr(), failure.what());
+      PyErr_SetObject(type.ptr(), TextOf(failure.what()).ptr());
     }
   });
 }

@@ -4,6 +4,7 @@
 #include <pybind11/pybind11.h>
 
 #include <exception>
+#include <string>
 #include <utility>
 
 #include "lf/core/result.h"
@@ -30,6 +31,10 @@ T Take(Result<T> result) {
 inline void Take(const Result<void>& result) {
   if (!result) throw Failure(result.error());
 }
+
+// Returns a text for Python. Bytes of file names that are not UTF-8 become what os.fsdecode makes
+// of them.
+pybind11::str TextOf(const std::string& text);
 
 // Makes the module translate each Failure into the exception of its kind.
 void TranslateFailures();

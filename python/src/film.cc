@@ -142,10 +142,10 @@ class Film {
   void CheckAnyContributes() { Take(renderer().CheckAnyContributes()); }
   void CheckNotAllBroken() { Take(renderer().CheckNotAllBroken()); }
 
-  std::vector<std::pair<std::string, std::string>> Skipped() {
-    std::vector<std::pair<std::string, std::string>> skipped;
+  py::list Skipped() {
+    py::list skipped;
     for (const SkippedImage& image : renderer().skipped())
-      skipped.emplace_back(image.name, image.reason);
+      skipped.append(py::make_tuple(TextOf(image.name), TextOf(image.reason)));
     return skipped;
   }
 

@@ -246,10 +246,15 @@ void AddLightField(py::module_& module) {
                                return range ? std::optional(std::pair(range->near_w, range->far_w))
                                             : std::nullopt;
                              })
-      .def_property_readonly("folder",
-                             [](const OpenedField& f) { return f.light_field.folder.string(); })
+      .def_property_readonly(
+          "folder", [](const OpenedField& f) { return TextOf(f.light_field.folder.string()); })
       .def_property_readonly("names",
-                             [](const OpenedField& f) { return f.light_field.image_names; })
+                             [](const OpenedField& f) {
+                               py::list names;
+                               for (const std::string& name : f.light_field.image_names)
+                                 names.append(TextOf(name));
+                               return names;
+                             })
       .def_property_readonly("cam_from_world", &CamFromWorld)
       .def_property_readonly("intrinsics_index", &IntrinsicsIndex)
       .def_property_readonly("gains", &Gains)
