@@ -1,19 +1,24 @@
 """Thin-lens cameras, and paths of them."""
 from __future__ import annotations
 
+import contextlib
 import math
 import os
 import pathlib
+import re
 from typing import Any, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple, Union, overload
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
+from . import _core, arguments
 from .errors import InputError, OutputError, UsageError
 
 Floats = npt.NDArray[np.float64]
 Vector = Union[Sequence[float], Floats]
+
+# Path files have no more bytes than this.
+_MOST_BYTES = 8 << 20
 
 # Names, in a path file, of the values that may change from frame to frame.
 _MOVING = ("position", "quaternion", "field_of_view_deg", "aperture_diameter", "focus_distance", "focus_tilt_deg",
@@ -61,7 +66,7 @@ class Camera:
 
     Raises
     ------
-    UsageError, InputError
+    UsageError
         Arguments are missing, contradict each other, or are out of range.
     """
 
@@ -80,16 +85,21 @@ class Camera:
         _one_of(f_number=f_number, aperture_diameter=aperture_diameter, aperture_diameter_mm=aperture_diameter_mm)
         _one_of(focus_distance=focus_distance, focus_point=focus_point)
         if world_from_cam is not None:
-            quaternion = _quaternion_of(np.asarray(world_from_cam, dtype=np.float64))
+            quaternion = _quaternion_of(arguments.reals("world_from_cam", world_from_cam))
         camera = {"position": position, "look_at": look_at, "quaternion": quaternion, "roll_deg": roll_deg or None,
                   "up": up if look_at is not None else None, "focal_length_mm": focal_length_mm,
                   "field_of_view_deg": field_of_view_deg, "sensor_width_mm": sensor_width_mm}
         lens = {"f_number": f_number, "aperture_diameter": aperture_diameter,
                 "aperture_diameter_mm": aperture_diameter_mm, "focus_distance": focus_distance,
                 "focus_point": focus_point, "focus_tilt_deg": tilt_deg, "blades": blades,
-                "blade_rotation_deg": blade_rotation_deg, "breathing": breathing}
+                "blade_rotation_deg": blade_rotation_deg, "breathing": arguments.flag("breathing", breathing)}
         text = _text_of_path(1, 1, unit_m, resolution, camera, lens, {})
-        cameras, _, _ = _core.parse_path(text, "camera", None)
+        try:
+            cameras, _, _ = _core.parse_path(text, "camera", None)
+        except InputError as error:
+            # A position in this text would say nothing to the caller.
+            words = re.sub(r"^camera:\d+:\d+: (?:camera\.|lens\.)?| \(also wrong: line.*\)$", "", str(error))
+            raise UsageError(words.replace("focus_tilt_deg", "tilt_deg")) from None
         self._core: _core.RenderCamera = cameras[0]
 
     @classmethod
@@ -221,7 +231,12 @@ class Path(Sequence[Camera]):
 
     def __init__(self, cameras: Iterable[Camera], fps: float = 24) -> None:
         self._cameras: List[Camera] = list(cameras)
-        self.fps = float(fps)
+        self.fps = arguments.real("fps", fps)
+        if not 0.001 <= self.fps <= 1e6:
+            raise UsageError(f"fps={fps!r}: expected a number from 0.001 to 1000000")
+        for camera in self._cameras:
+            if not isinstance(camera, Camera):
+                raise TypeError(f"a path consists of lf.Camera objects, found {camera!r}")
         if not self._cameras:
             raise UsageError("a path needs at least one camera")
         for what in ("resolution", "unit_m"):
@@ -246,15 +261,22 @@ class Path(Sequence[Camera]):
             The file cannot be read, has a mistake, or states another unit than `unit_m`.
         """
         try:
-            text = pathlib.Path(path).read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError) as error:
-            raise InputError(f"{os.fspath(path)}: cannot be read: {error}") from None
-        return cls.parse(text, os.fspath(path), unit_m)
+            with open(os.fsdecode(path), encoding="utf-8") as file:
+                text = file.read(_MOST_BYTES + 1)
+        except (OSError, ValueError) as error:
+            raise InputError(f"{os.fsdecode(path)}: cannot be read: {error}") from None
+        if len(text) > _MOST_BYTES:
+            raise InputError(f"{os.fsdecode(path)}: has more than {_MOST_BYTES >> 20} MiB, and is no camera path")
+        return cls.parse(text, os.fsdecode(path), unit_m)
 
     @classmethod
     def parse(cls, text: str, name: str = "path", unit_m: Optional[float] = None) -> Path:
         """Read a camera path as :meth:`load` does, but from the text of a file. Error messages call it `name`."""
-        cameras, fps, _ = _core.parse_path(text, name, unit_m)
+        # Text that is not Unicode cannot be in a path, and stands in messages with question marks.
+        utf8, utf8_name = (arguments.text(what, value).encode("utf-8", "replace")
+                           for what, value in (("text", text), ("name", name)))
+        cameras, fps, _ = _core.parse_path(utf8, utf8_name,
+                                           None if unit_m is None else arguments.positive("unit_m", unit_m))
         return cls((Camera._of(core) for core in cameras), fps)
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
@@ -272,9 +294,12 @@ class Path(Sequence[Camera]):
             The file cannot be written.
         """
         settings = [camera._settings() for camera in self._cameras]
+        target = pathlib.Path(os.fsdecode(path))
         for what in ("blades", "sensor_width_mm"):
-            if len({setting[what] for setting in settings}) > 1:
-                raise UsageError(f"{os.fspath(path)}: the cameras have different {what}, which a path file cannot say")
+            values = [setting[what] for setting in settings]
+            # A width that was converted from world units and back differs by its rounding.
+            if max(values) - min(values) > 1e-9 * max(values):
+                raise UsageError(f"{target}: the cameras have different {what}, which a path file cannot say")
         for setting in settings:
             setting["quaternion"] = _quaternion_of(setting.pop("world_from_cam"))
             setting["focus_tilt_deg"] = setting.pop("tilt_deg")
@@ -286,17 +311,17 @@ class Path(Sequence[Camera]):
         lens = {key: first[key] for key in ("aperture_diameter", "focus_distance", "focus_tilt_deg", "blades",
                                             "blade_rotation_deg")}
         text = _text_of_path(len(settings), self.fps, first["unit_m"], first["resolution"], camera, lens, keys)
-        target = pathlib.Path(path)
-        temporary = target.with_name(f".{target.name}.{os.getpid()}")
+        temporary = target.parent / f".{target.name}.{os.getpid()}"
         try:
             with temporary.open("w", encoding="utf-8") as file:
                 file.write(text)
                 file.flush()
                 os.fsync(file.fileno())
             temporary.replace(target)
-        except OSError as error:
-            temporary.unlink(missing_ok=True)
-            raise OutputError(f"{os.fspath(path)}: cannot be written: {error}") from None
+        except (OSError, ValueError) as error:
+            with contextlib.suppress(OSError, ValueError):
+                temporary.unlink(missing_ok=True)
+            raise OutputError(f"{target}: cannot be written: {error}") from None
 
     @property
     def cameras(self) -> Sequence[Camera]:
@@ -359,26 +384,36 @@ def _quaternion_of(rotation: Floats) -> Floats:
 
 
 def _value_text(value: Any) -> str:
+    if isinstance(value, (np.ndarray, np.generic)):
+        value = value.tolist()
     if isinstance(value, bool):
         return "true" if value else "false"
-    if isinstance(value, (int, np.integer)):
-        return str(int(value))
-    if isinstance(value, (float, np.floating)):
-        return repr(float(value))
+    if isinstance(value, (int, float)):
+        return repr(value)
+    if isinstance(value, (str, bytes)):
+        raise TypeError("text is no number")
     return "[" + ", ".join(_value_text(entry) for entry in value) + "]"
 
 
 def _entry_text(key: str, value: Any) -> str:
-    if key == "focus_tilt_deg":
-        return f"{{horizontal: {_value_text(value[0])}, vertical: {_value_text(value[1])}}}"
-    return _value_text(value)
+    try:
+        if key != "focus_tilt_deg":
+            return _value_text(value)
+        horizontal, vertical = value
+        return f"{{horizontal: {_value_text(horizontal)}, vertical: {_value_text(vertical)}}}"
+    except TypeError:
+        name = key.replace("focus_tilt_deg", "tilt_deg")
+        raise TypeError(f"{name}={value!r}: expected a number, or as many numbers as it has") from None
+    except ValueError:
+        raise UsageError(f"tilt_deg={value!r}: expected two numbers") from None
 
 
 def _text_of_path(count: int, fps: float, unit_m: float, resolution: Tuple[int, int], camera: Dict[str, Any],
                   lens: Dict[str, Any], keys: Dict[str, List[Tuple[float, Any]]]) -> str:
     """Return the text of a path file (doc/formats/path.md). Values that are None are left out."""
-    lines = ["format: lfpath 1", f"fps: {_value_text(fps)}", f"frames: {count}", f"unit_m: {_value_text(unit_m)}",
-             f"resolution: {_value_text(resolution)}"]
+    lines = ["format: lfpath 1", f"fps: {_value_text(fps)}", f"frames: {count}",
+             f"unit_m: {_entry_text('unit_m', unit_m)}",
+             f"resolution: {_entry_text('resolution', resolution)}"]
     for section, values in (("camera", camera), ("lens", lens)):
         lines.append(f"{section}:")
         lines += [f"  {key}: {_entry_text(key, value)}" for key, value in values.items()

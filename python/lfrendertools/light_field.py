@@ -13,17 +13,19 @@ from typing import Any, Iterable, Iterator, Optional, Sequence, Tuple, Union
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
+from . import _core, arguments
+from .arguments import FilePath
 from .camera import Camera
 from .camera import Path as CameraPath
 from .errors import UsageError
 
-FilePath = Union[str, "os.PathLike[str]"]
 Floats = npt.NDArray[np.float64]
 Picture = npt.NDArray[np.float32]
 
+_ALPHAS = ("auto", "mask", "straight", "premultiplied")
 
-@dataclasses.dataclass(frozen=True)
+
+@dataclasses.dataclass(frozen=True, eq=False)
 class Intrinsics:
     """How LF cameras map directions to pixels.
 
@@ -46,7 +48,7 @@ class Intrinsics:
     parameters: Tuple[float, ...]
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, eq=False)
 class Grid:
     """LF cameras that stand in rows and columns.
 
@@ -166,7 +168,7 @@ class LightField:
         ndarray of shape (n, 2)
             Pixel positions, which may lie outside of the LF image; NaN for points that the lens cannot see.
         """
-        return self._core.project(i, np.asarray(points, dtype=np.float64))
+        return self._core.project(arguments.whole("i", i), arguments.reals("points", points))
 
     def rays(self, i: int, pixels: npt.ArrayLike) -> Tuple[Floats, Floats]:
         """Return the rays that LF camera `i` records at pixel positions.
@@ -184,8 +186,8 @@ class LightField:
             The LF camera's position, n times, and directions of length 1, in world axes. A direction is NaN if no ray
             arrives at the pixel position.
         """
-        positions = np.asarray(pixels, dtype=np.float64)
-        directions = self._core.ray_directions(i, positions)
+        i = arguments.whole("i", i)
+        directions = self._core.ray_directions(i, arguments.reals("pixels", pixels))
         return np.broadcast_to(self.centres[i], directions.shape), directions
 
     def image(self, i: int, rect: Optional[Tuple[int, int, int, int]] = None, masked: float = float("nan")) -> Picture:
@@ -205,7 +207,13 @@ class LightField:
         ndarray of shape (height, width, 3)
             Linear light with sRGB primaries, where 1 is display white. Mosaics are demosaicked.
         """
-        return self._core.image(i, rect, masked)
+        part = None
+        if rect is not None:
+            # Positions that need more than 32 bits are outside of every LF image, as are their nearest ones.
+            x0, y0, x1, y1 = (min(max(at, -2**31), 2**31 - 1) for at in arguments.whole_numbers("rect", rect, 4))
+            part = (x0, y0, x1, y1)
+        with arguments.naming_arguments():
+            return self._core.image(arguments.whole("i", i), part, arguments.real("masked", masked))
 
     def images(self, ids: Optional[Iterable[int]] = None, ahead: int = 8) -> Iterator[Tuple[int, Picture]]:
         """Load LF images one after the other. Other threads load the next ones in advance.
@@ -222,13 +230,14 @@ class LightField:
         i, picture : int, ndarray
             Number of the LF image, and what :meth:`image` returns.
         """
+        ahead = arguments.whole("ahead", ahead)
         if ahead < 1:
             raise UsageError(f"ahead={ahead}: expected 1 or more")
         wanted = iter(range(len(self)) if ids is None else ids)
         loading: "collections.deque[Tuple[int, concurrent.futures.Future[Picture]]]" = collections.deque()
         with concurrent.futures.ThreadPoolExecutor(min(ahead, os.cpu_count() or 1)) as threads:
             try:
-                for i in wanted:
+                for i in (arguments.whole("ids", one) for one in wanted):
                     loading.append((i, threads.submit(self.image, i)))
                     if len(loading) == ahead:
                         first, future = loading.popleft()
@@ -281,7 +290,8 @@ class LightField:
             sizes = {(k.width, k.height) for k in self.intrinsics}
             if len(sizes) != 1:
                 raise UsageError(f"the LF images have {len(sizes)} sizes: use images() instead of array()")
-        rows, columns = views or grid.shape
+        rows, columns = grid.shape if views is None else arguments.whole_numbers("views", views, 2)
+        reduce = arguments.whole("reduce", reduce)
         if not (1 <= rows <= grid.shape[0] and 1 <= columns <= grid.shape[1]):
             raise UsageError(f"views=({rows}, {columns}): the grid has {grid.shape[0]} rows, {grid.shape[1]} columns")
         k = self.intrinsics[0]
@@ -291,6 +301,10 @@ class LightField:
         shape = (rows, columns, *size, 3)
         if out is None:
             out = np.empty(shape, np.float32)
+        elif not hasattr(out, "shape"):
+            raise TypeError(f"out={out!r}: expected an array")
+        elif isinstance(out, np.ndarray) and not (out.flags.writeable and np.issubdtype(out.dtype, np.floating)):
+            raise UsageError(f"out: expected an array of floats that can be written to, found {out.dtype}")
         elif tuple(out.shape) != shape:
             raise UsageError(f"out has the shape {tuple(out.shape)}, expected {shape}")
         v = np.linspace(0, grid.shape[0] - 1, rows).round().astype(int)
@@ -321,7 +335,10 @@ class LightField:
         -------
         Path
         """
-        text, doubt = self._core.example(self._path, move, start, focus_distance)
+        text, doubt = self._core.example(
+            os.fsencode(self._path), arguments.text("move", move),
+            None if start is None else arguments.whole("start", start),
+            None if focus_distance is None else arguments.positive("focus_distance", focus_distance))
         if doubt:
             logging.getLogger("lfrendertools").warning("%s: the focus distance is not sure: %s", self._path, doubt)
         return CameraPath.parse(text, self._path, self.unit_m)
@@ -392,12 +409,23 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
     InputError
         There is no light field at `path`, or its calibration is wrong.
     """
-    name = os.fspath(path)
-    core = _core.open_light_field(name, focal_px or 0.0, fov_deg or 0.0,
-                                  "" if images is None else os.fspath(images), image_scale, image_alpha, background,
-                                  pitch if pitch is None or isinstance(pitch, tuple) else (pitch, pitch),
-                                  plane_distance, (flip_x, flip_y))
-    return LightField(core, str(pathlib.Path(name)))
+    name = arguments.file_name(path)
+    if pitch is not None:
+        pair = (pitch, pitch) if np.ndim(pitch) == 0 else tuple(pitch)  # type: ignore[arg-type]
+        if len(pair) != 2:
+            raise UsageError(f"pitch={pitch!r}: expected one or two numbers")
+        pitch = (arguments.real("pitch", pair[0]), arguments.real("pitch", pair[1]))
+    if image_alpha not in _ALPHAS:
+        raise UsageError(f"image_alpha={image_alpha!r}: expected one of {', '.join(_ALPHAS)}")
+    with arguments.naming_arguments():
+        core = _core.open_light_field(
+            name, 0.0 if focal_px is None else arguments.positive("focal_px", focal_px),
+            0.0 if fov_deg is None else arguments.positive("fov_deg", fov_deg),
+            b"" if images is None else arguments.file_name(images), arguments.text("image_scale", image_scale),
+            image_alpha, arguments.text("background", background), pitch,
+            None if plane_distance is None else arguments.real("plane_distance", plane_distance),
+            (arguments.flag("flip_x", flip_x), arguments.flag("flip_y", flip_y)))
+    return LightField(core, str(pathlib.Path(os.fsdecode(name))))
 
 
 def _lines(values: Floats, tolerance: float) -> Tuple[npt.NDArray[np.int64], Floats]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 import os
 import pathlib
 import re
+import threading
 import types
 import warnings
 from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple, Type, Union
@@ -11,7 +12,7 @@ from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Sequ
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
+from . import _core, arguments
 from .camera import Camera, Path
 from .errors import BlackFrameWarning, MissingImagesWarning, UsageError
 from .light_field import LightField
@@ -111,11 +112,12 @@ class Frame:
             "exr" (half floats), "exr-float" (single precision), "png" or "png16"; by default "exr" or "png", by the
             suffix of `path`.
         """
-        name = os.fspath(path)
-        chosen = format or _FORMATS.get(pathlib.Path(name).suffix.lower())
+        name = os.fsdecode(arguments.file_name(path))
+        chosen = _FORMATS.get(pathlib.Path(name).suffix.lower()) if format is None else arguments.text("format", format)
         if chosen is None:
             raise UsageError(f"{name}: expected a name that ends in .exr or .png, or a format")
-        self._core.save(name, chosen)
+        with arguments.naming_arguments():
+            self._core.save(os.fsencode(name), chosen)
 
     def _repr_png_(self) -> bytes:
         return _png_of(self.display())
@@ -137,7 +139,8 @@ class Plate:
     @classmethod
     def load(cls, path: Union[str, "os.PathLike[str]"]) -> Plate:
         """Read a plate that `lfrenderer --keep-plates` or `--shard` has written."""
-        return cls(_core.Plate.load(os.fspath(path)))
+        with arguments.naming_arguments():
+            return cls(_core.Plate.load(arguments.file_name(path)))
 
     @property
     def sums(self) -> npt.NDArray[np.uint64]:
@@ -150,6 +153,8 @@ class Plate:
         return self._core.counts
 
     def __add__(self, other: Plate) -> Plate:
+        if not isinstance(other, Plate):
+            return NotImplemented
         return Plate(self._core + other._core)
 
     def __eq__(self, other: object) -> bool:
@@ -165,7 +170,7 @@ class Plate:
         threads : int
             Number of threads; 0: one for each processor.
         """
-        return Frame(self._core.develop(threads))
+        return Frame(self._core.develop(_threads_of(threads)))
 
 
 class Renderer:
@@ -212,53 +217,76 @@ class Renderer:
     """
 
     def __init__(self, field: LightField, path: Union[Path, Camera], frames: Frames = None, **options: Any) -> None:
-        self._film = _Film(field, path, frames, options)
-        passes = self._film.core.passes()
+        film_of_all = _Film(field, path, frames, options)
+        passes = film_of_all.core.passes()
         if len(passes) != 1:
             raise UsageError(f"{sum(map(len, passes))} frames need {len(passes)} passes in this memory: render at most "
                              f"{len(passes[0])} frames at once, give more memory, or use film()")
-        self._film.begin(passes[0])
+        film_of_all.begin(passes[0])
+        self._film: Optional[_Film] = film_of_all
         self._is_done = False
+        # One thread at a time: frames must not be looked at, or freed, while a batch is added to them.
+        self._lock = threading.RLock()
 
     def __enter__(self) -> Renderer:
         return self
 
     def __exit__(self, kind: Optional[Type[BaseException]], value: Optional[BaseException],
                  trace: Optional[types.TracebackType]) -> None:
-        del self._film
+        with self._lock:
+            self._film = None
+
+    def _core_of(self, i: Any = 0) -> Tuple[_core.Film, int]:
+        """Return the film, unless it is closed, and the number of a frame in it."""
+        if self._film is None:
+            raise UsageError("this Renderer is closed: its with statement has ended")
+        number = arguments.whole("i", i)
+        if number < 0:
+            raise IndexError(f"frame {number}: frames of a Renderer are numbered from 0")
+        return self._film.core, number
 
     def step(self) -> bool:
         """Read the next batch of LF images. Returns False if no LF image is left.
 
         Ctrl-C (KeyboardInterrupt) interrupts the batch; another call then repeats it.
         """
-        if not self._is_done:
-            self._is_done = not self._film.core.step()
-        return not self._is_done
+        with self._lock:
+            core, _ = self._core_of()
+            if not self._is_done:
+                self._is_done = not core.step()
+            return not self._is_done
 
     @property
     def progress(self) -> Tuple[int, int]:
         """Number of LF images that were read so far, and number that will be read in all."""
-        return self._film.core.progress()
+        with self._lock:
+            return self._core_of()[0].progress()
 
     @property
     def skipped(self) -> Sequence[Tuple[str, str]]:
         """Names of the LF images that were left out because they are missing or broken, each with the reason."""
-        return tuple(self._film.core.skipped())
+        with self._lock:
+            return tuple(self._core_of()[0].skipped())
 
     def preview(self, i: int = 0) -> Frame:
         """Return frame `i` of this renderer, from 0, with the rays that it has so far."""
-        return Frame(self._film.core.develop(i))
+        with self._lock:
+            core, number = self._core_of(i)
+            return Frame(core.develop(number))
 
     def plate(self, i: int = 0) -> Plate:
         """Return a copy of the plate of frame `i` of this renderer, from 0."""
-        return Plate(self._film.core.plate(i))
+        with self._lock:
+            core, number = self._core_of(i)
+            return Plate(core.plate(number))
 
     def stop(self, i: int = 0) -> Frame:
         """Finish frame `i` of this renderer, from 0, with the rays that it has. Returns it, and frees its memory."""
-        frame = self.preview(i)
-        self._film.core.release(i)
-        return frame
+        with self._lock:
+            core, number = self._core_of(i)
+            frame = Frame(core.develop(number))
+            core.release(number)
+            return frame
 
 
 def render(field: LightField, camera: Union[Camera, Path], *, progress: Union[None, bool, Progress] = None,
@@ -339,7 +367,11 @@ class _Film:
     """Some frames of a path with their options."""
 
     def __init__(self, field: LightField, path: Union[Path, Camera], frames: Frames, options: Dict[str, Any]) -> None:
+        if not isinstance(field, LightField):
+            raise TypeError(f"expected a light field of lf.open(), found {field!r}")
         cameras = Path([path]) if isinstance(path, Camera) else path
+        if not isinstance(cameras, Path):
+            raise TypeError(f"expected an lf.Camera or an lf.Path, found {path!r}")
         for camera in cameras:
             if camera.unit_m != field.unit_m:
                 raise UsageError(f"the camera has unit_m={camera.unit_m:g}, and the light field {field.unit_m:g}: give "
@@ -357,13 +389,19 @@ class _Film:
             else:
                 known = sorted([*own, *(word for word in dir(words) if not word.startswith("_"))])
                 raise UsageError(f"unknown option {name}: expected one of {', '.join(known)}")
-        self.core = _core.Film(field._core, [camera._core for camera in cameras], cameras.fps,
-                               _numbers_of(frames, len(cameras)), words, str(own["memory"]), bool(own["strict"]),
-                               int(own["threads"]))
+        angle = words.max_angle_deg
+        if angle is not None and not 0 < angle <= 180:
+            raise UsageError(f"max_angle_deg={angle:g}: expected a number above 0 and up to 180")
+        with arguments.naming_arguments():
+            self.core = _core.Film(field._core, [camera._core for camera in cameras],
+                                   arguments.positive("fps", cameras.fps), _numbers_of(frames, len(cameras)), words,
+                                   str(own["memory"]), arguments.flag("strict", own["strict"]),
+                                   _threads_of(own["threads"]))
         self._warned: List[str] = []
 
     def begin(self, frames: Sequence[int]) -> None:
-        self.core.begin(list(frames))
+        with arguments.naming_arguments():
+            self.core.begin(list(frames))
 
     def collect_some(self, tell: Progress, number: int, count: int) -> Iterator[int]:
         """Collect a pass, and yield the indices of its frames, from 0, when they are finished.
@@ -399,18 +437,30 @@ def _numbers_of(frames: Frames, count: int) -> List[int]:
     if frames is None:
         return []
     if not isinstance(frames, str):
-        numbers = {int(number) for number in frames}
+        try:
+            numbers = {arguments.whole("frames", number) for number in frames}
+        except TypeError:
+            raise TypeError(f"frames={frames!r}: expected a list of numbers, or text such as \"1-10,20\"") from None
     else:
         numbers = set()
         for part in frames.split(","):
-            found = re.fullmatch(r"\s*(\d+)(?:-(\d+)(?:x(\d+))?)?\s*", part)
+            found = re.fullmatch(r"\s*([0-9]{1,9})(?:-([0-9]{1,9})(?:x([0-9]{1,9}))?)?\s*", part)
             if not found:
                 raise UsageError(f"frames=\"{frames}\": expected numbers and ranges such as 1-10,20 or 1-100x10")
             first, last, step = found.groups()
-            numbers.update(range(int(first), int(last or first) + 1, max(1, int(step or 1))))
+            some = range(int(first), int(last or first) + 1, max(1, int(step or 1)))
+            # The last number suffices to refuse a range, which may be too large for the memory.
+            numbers.update(some[-1:] if some and some[-1] > count else some)
     if not numbers or min(numbers) < 1 or max(numbers) > count:
         raise UsageError(f"frames={frames!r}: the path has the frames 1 to {count}")
     return sorted(numbers)
+
+
+def _threads_of(value: Any) -> int:
+    number = arguments.whole("threads", value)
+    if not 0 <= number <= 512:
+        raise UsageError(f"threads={value!r}: expected 0 to 512")
+    return number
 
 
 def _teller(progress: Union[None, bool, Progress]) -> Progress:

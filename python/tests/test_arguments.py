@@ -1,0 +1,159 @@
+"""Wrong arguments: errors name the argument, and never the types of C++ or the options of programs."""
+import os
+import threading
+
+import numpy as np
+import pytest
+
+import lfrendertools as lf
+
+CAMERA = {"position": (0.1, -0.2, -1), "look_at": (0, 0, 1), "resolution": (120, 80), "focal_length_mm": 50,
+          "f_number": 4, "focus_distance": 2.5}
+
+
+def refuses(action, words, *kinds):
+    """Asserts that the action raises an error of one of these kinds whose message has these words."""
+    with pytest.raises(kinds or TypeError, match=words) as error:
+        action()
+    for foreign in ("incompatible", "lfrendertools._core", "--"):
+        assert foreign not in str(error.value), error.value
+
+
+@pytest.mark.parametrize("words", ["focal_px", "fov_deg", "plane_distance", "flip_x"])
+def test_types_of_open(words, capture):
+    refuses(lambda: lf.open(capture, **{words: "x"}), words)
+    for name in ("image_scale", "background"):
+        refuses(lambda: lf.open(capture, **{name: 3}), name)
+
+
+def test_values_of_open(capture):
+    for changes in ({"focal_px": -1}, {"focal_px": float("nan")}, {"fov_deg": -5}, {"image_alpha": "zz"},
+                    {"pitch": (1, 2, 3)}, {"pitch": 1}, {"focal_px": 500}, {"image_scale": "x"}, {"flip_x": True}):
+        refuses(lambda: lf.open(capture, **changes), next(iter(changes)), lf.UsageError)
+    refuses(lambda: lf.open("a\0b"), "character 0", lf.UsageError)
+
+
+def test_pairs_of_numpy_are_a_pitch(tmp_path, field, capture):
+    from PIL import Image
+    for row in range(2):
+        for column in range(2):
+            Image.new("RGB", (16, 12)).save(tmp_path / f"out_{row:02}_{column:02}.png")
+    for pitch in ([1, 2], np.array([1, 2]), (np.float32(1), 2)):
+        opened = lf.open(tmp_path, pitch=pitch, focal_px=np.int64(20), plane_distance=np.float32(5))
+        assert opened.grid().pitch == pytest.approx((1, 2))
+
+
+def test_names_that_are_not_utf8(tmp_path, capture, path):
+    folder = os.fsdecode(os.fsencode(tmp_path) + b"/\xff")
+    refuses(lambda: lf.open(folder), "no such", lf.InputError)
+    os.symlink(capture, folder)
+    field = lf.open(folder)
+    assert len(field) == 49 and lf.render(field, path).image_count > 0
+    path.save(folder + ".yaml")
+    assert len(lf.Path.load(folder + ".yaml", field.unit_m)) == 3
+    lf.render(field, path).save(folder + ".png")
+    assert os.path.getsize(folder + ".png") > 100
+    assert all(isinstance(name, str) for name in field.names)
+    refuses(lambda: lf.Plate.load(folder + ".plate"), "cannot be read", lf.InputError)
+
+
+def test_numbers_of_lf_images(field):
+    for action in (lambda i: field.project(i, [[0, 0, 1]]), lambda i: field.rays(i, [[1, 1]]), field.image,
+                   lambda i: list(field.images([i])), lambda i: field.path("static", start=i, focus_distance=1)):
+        for wrong in ("0", 1.5, [0]):
+            refuses(lambda: action(wrong), "whole number")
+        for wrong in (-1, 49, 10**30):
+            refuses(lambda: action(wrong), "from 0 to 48", IndexError)
+    assert np.array_equal(field.image(np.uint8(3)), field.image(3))
+    assert field.rays(True, [[1, 1]])[0].shape == (1, 3)
+
+
+def test_arrays_as_arguments(field):
+    for wrong in ("abc", [["a", "b", "c"]], [[0, 0, 1], [0, 0]]):
+        refuses(lambda: field.project(0, wrong), "points: expected an array of numbers")
+    for wrong in ("0,0,1,1", 5, (0.5, 0, 1, 1)):
+        refuses(lambda: field.image(0, wrong), "rect")
+    for wrong in ((0, 0, 1), (0, 0, 2**40, 1)):
+        refuses(lambda: field.image(0, wrong), "rect", lf.UsageError)
+    refuses(lambda: field.image(0, masked="x"), "masked")
+    refuses(lambda: field.array((2, 2, 2)), "views", lf.UsageError)
+    refuses(lambda: field.array(out=5), "out")
+    refuses(lambda: field.array((1, 2), out=np.empty((1, 2, 120, 160, 3), np.uint8)), "uint8", lf.UsageError)
+    assert field.array(np.array([1, 2])).shape == (1, 2, 120, 160, 3)
+    assert (field.grid() == field.grid()) is False
+
+
+@pytest.mark.parametrize("name", [name for name in CAMERA] + ["tilt_deg", "blades", "unit_m", "breathing", "up"])
+def test_text_is_no_value_of_a_camera(name):
+    refuses(lambda: lf.Camera(**{**CAMERA, name: "xy"}), name)
+
+
+def test_values_of_cameras():
+    refuses(lambda: lf.Camera(**CAMERA, tilt_deg=(1,)), "tilt_deg", lf.UsageError)
+    refuses(lambda: lf.Camera(**CAMERA, tilt_deg=(91, 0)), "^tilt_deg.horizontal: expected", lf.UsageError)
+    refuses(lambda: lf.Camera(**{**CAMERA, "f_number": 0}), "^f_number: expected", lf.UsageError)
+    numpy = lf.Camera(**{**CAMERA, "resolution": np.array([120, 80]), "focal_length_mm": np.array(50)},
+                      breathing=np.bool_(False), blades=np.int64(5))
+    assert numpy == lf.Camera(**CAMERA, blades=5)
+
+
+def test_values_of_paths(tmp_path):
+    camera = lf.Camera(**CAMERA)
+    refuses(lambda: lf.Path([camera, 1]), "lf.Camera")
+    for fps in (0, -1, float("nan"), 1e300):
+        refuses(lambda: lf.Path([camera], fps), "fps", lf.UsageError)
+    refuses(lambda: lf.Path([camera], "24"), "fps")
+    for name in ("", "/", str(tmp_path / "a\0b"), str(tmp_path / ("n" * 255))):
+        refuses(lambda: lf.Path([camera]).save(name), "cannot be written", lf.OutputError)
+    refuses(lambda: lf.Path.load("a\0b"), "cannot be read", lf.InputError)
+    refuses(lambda: lf.Path.load("/dev/zero"), "MiB", lf.InputError)
+    refuses(lambda: lf.Path.parse(5), "text")
+    refuses(lambda: lf.Path.parse("\udcff"), "path:1", lf.InputError)
+
+
+def test_replaced_cameras_are_saved_together(tmp_path):
+    camera = lf.Camera(**CAMERA)
+    lf.Path([camera, camera.replace(focus_distance=3), camera.replace(f_number=5)]).save(tmp_path / "path.yaml")
+    assert [one.focus_distance for one in lf.Path.load(tmp_path / "path.yaml")] == [2.5, 3, 2.5]
+
+
+def test_frames_of_a_path(field, path):
+    numbers = [number for number, _ in lf.film(field, path, np.arange(1, 4), seed=np.int64(3), threads=np.int64(1))]
+    assert numbers == [1, 2, 3]
+    for wrong in ([1.5], ["1"], [float("nan")], 2, np.int64(2), np.arange(1.0, 3.0)):
+        refuses(lambda: lf.render(field, path, frames=wrong), "frames")
+    # This range would fill the memory if its numbers were made.
+    for wrong in ("1-999999999", "999999999", "1-100000000000", "1-10x4"):
+        refuses(lambda: lf.render(field, path, frames=wrong), "frames", lf.UsageError)
+
+
+def test_what_is_rendered(field, path):
+    refuses(lambda: lf.render("field", path), "lf.open")
+    refuses(lambda: lf.render(field, [path[0]]), "lf.Path")
+    for name, wrong in (("threads", -1), ("threads", 10**30), ("max_angle_deg", -1), ("max_angle_deg", float("nan"))):
+        refuses(lambda: lf.render(field, path, **{name: wrong}), name, lf.UsageError)
+    for name, wrong in (("threads", "no"), ("strict", "no"), ("strict", np.array([1, 2]))):
+        refuses(lambda: lf.render(field, path, **{name: wrong}), name)
+    refuses(lambda: lf.render(field, path, memory="1M"), "^memory 1 MiB is too small", lf.OutputError)
+
+
+def test_a_closed_renderer_says_so(field, path):
+    with lf.Renderer(field, path) as renderer:
+        refuses(lambda: renderer.preview("x"), "whole number")
+        refuses(lambda: renderer.preview(-1), "from 0", IndexError)
+        refuses(lambda: renderer.plate() + 5, "operand")
+        refuses(lambda: renderer.plate().develop("x"), "threads")
+    for action in (renderer.step, renderer.preview, renderer.plate, renderer.stop, lambda: renderer.progress):
+        refuses(action, "closed", lf.UsageError)
+
+
+def test_threads_share_a_renderer(field, path):
+    renderer = lf.Renderer(field, path)
+    thread = threading.Thread(target=renderer.step)
+    thread.start()
+    counts = [renderer.preview(i).image_count for i in range(3)]
+    thread.join()
+    whole = [lf.render(field, path, frames=[i]) for i in (1, 2, 3)]
+    # One step reads all LF images. A frame has them either all or not at all.
+    assert all(count in (0, frame.image_count) for count, frame in zip(counts, whole))
+    assert all(np.array_equal(renderer.preview(i).rgb, frame.rgb) for i, frame in enumerate(whole))
