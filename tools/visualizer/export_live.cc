@@ -8,6 +8,7 @@
 
 #include "lf/live/lens_order.h"
 #include "lf/live/shrink.h"
+#include "lf/live/undistort.h"
 #include "lf/pixels/files/write_jpeg.h"
 #include "lf/pixels/files/write_png.h"
 #include "lf/render/state/record_fields.h"
@@ -31,6 +32,24 @@ Intrinsics ShrunkIntrinsics(const LightField& field, LfImageId id, int divisor) 
   LightField one;
   one.intrinsics = {field.Camera(id).intrinsics};
   return ShrunkField(std::move(one), divisor).intrinsics[0];
+}
+
+// Returns the intrinsics of an exported LF image.
+Intrinsics ExportedIntrinsics(const LightField& field, const LivePlan& plan, LfImageId id) {
+  return plan.pinhole ? *plan.pinhole : ShrunkIntrinsics(field, id, plan.divisor);
+}
+
+// Sets LivePlan::pinhole, or LivePlan::refused.
+void PlanUndistorted(const LightField& field, LivePlan* plan) {
+  plan->pinhole.reset();
+  const bool is_distorted = std::any_of(field.intrinsics.begin(), field.intrinsics.end(),
+                                        [](const Intrinsics& k) { return k.has_distortion(); });
+  if (!is_distorted) return;
+  LightField lenses;
+  lenses.intrinsics = field.intrinsics;
+  plan->pinhole = CommonPinhole(ShrunkField(std::move(lenses), plan->divisor).intrinsics);
+  if (!plan->pinhole)
+    plan->refused = "the LF cameras have distorted lenses that see too different regions";
 }
 
 // Returns ids of used LF images, at most kMostOrdered, in an order of which every beginning is
@@ -70,11 +89,11 @@ void AddOthers(const LightField& field, const RenderCamera& frame, size_t count,
 
 // Returns the mean size of the files of the first few LF images, in bytes; nullopt if none of them
 // can be read.
-std::optional<double> MeanBytes(const PageScene& scene, std::span<const LfImageId> ids,
-                                int divisor) {
+std::optional<double> MeanBytes(const PageScene& scene, const LivePlan& plan) {
   double sum = 0, count = 0;
+  const std::span<const LfImageId> ids = plan.ids;
   for (const LfImageId id : ids.first(std::min(ids.size(), kMeasured)))
-    if (const auto encoded = EncodeForLive(scene, id, divisor)) {
+    if (const auto encoded = EncodeForLive(scene, plan, id)) {
       sum += kFileShare * static_cast<double>(encoded->bytes.size());
       ++count;
     }
@@ -86,7 +105,7 @@ std::optional<double> MeanBytes(const PageScene& scene, std::span<const LfImageI
 LivePlan PlanLiveExport(PageScene& scene, std::span<const uint32_t> used, size_t most_bytes) {
   LivePlan plan;
   const LightField& field = scene.light_field();
-  plan.refused = WhyNotInBrowser(field);
+  if (field.encoding.HasOpacity()) plan.refused = "the LF images have opacities";
   if (plan.refused.empty() && used.empty()) plan.refused = "the film uses no LF images";
   if (plan.refused.empty() && most_bytes == 0) plan.refused = "--export-live 0 leaves them out";
   if (!plan.refused.empty()) return plan;
@@ -97,8 +116,10 @@ LivePlan PlanLiveExport(PageScene& scene, std::span<const uint32_t> used, size_t
   plan.divisor =
       DivisorFor(scene.index(), WithPlateWidth(frame, kPictureWidth_px, 2 * kPictureWidth_px), 0);
   while (true) {
-    const Intrinsics k = ShrunkIntrinsics(field, plan.ids.front(), plan.divisor);
-    const std::optional<double> mean_bytes = MeanBytes(scene, plan.ids, plan.divisor);
+    PlanUndistorted(field, &plan);
+    if (!plan.refused.empty()) return plan;
+    const Intrinsics k = ExportedIntrinsics(field, plan, plan.ids.front());
+    const std::optional<double> mean_bytes = MeanBytes(scene, plan);
     if (!mean_bytes) break;  // the export reports that they cannot be read
     const double room = std::min(static_cast<double>(most_bytes) / *mean_bytes,
                                  kMostPixels / (static_cast<double>(k.width_px) * k.height_px));
@@ -118,14 +139,18 @@ LivePlan PlanLiveExport(PageScene& scene, std::span<const uint32_t> used, size_t
   return plan;
 }
 
-Result<EncodedLfImage> EncodeForLive(const PageScene& scene, LfImageId id, int divisor) {
+Result<EncodedLfImage> EncodeForLive(const PageScene& scene, const LivePlan& plan, LfImageId id) {
   const LightField& field = scene.light_field();
   LfPixels full, pixels;
   LF_ASSIGN_OR_RETURN(
       const int reduced,
-      LoadReducedWithoutThrowing(scene.store(), id, divisor, field.Camera(id).intrinsics,
+      LoadReducedWithoutThrowing(scene.store(), id, plan.divisor, field.Camera(id).intrinsics,
                                  field.ImagePath(id).string(), &full));
-  Shrink(full, divisor / reduced, &pixels);
+  Shrink(full, plan.divisor / reduced, &pixels);
+  if (plan.pinhole) {
+    LfPixels distorted = std::move(pixels);
+    Undistort(distorted, ShrunkIntrinsics(field, id, plan.divisor), *plan.pinhole, &pixels);
+  }
   const int channels = pixels.any_masked ? 4 : 3;
   Image<uint8_t> picture(pixels.rect.width(), pixels.rect.height(), channels, 0);
   for (int y = 0; y < picture.height(); ++y)
@@ -150,7 +175,7 @@ std::string LiveJson(const PageScene& scene, const LivePlan& plan,
   for (size_t i = 0; i < plan.ids.size(); ++i) {
     if (names[i].empty()) continue;
     PinholeCamera camera = field.Camera(plan.ids[i]);
-    camera.intrinsics = ShrunkIntrinsics(field, plan.ids[i], plan.divisor);
+    camera.intrinsics = ExportedIntrinsics(field, plan, plan.ids[i]);
     Json image = LfCameraJson(camera);
     image["id"] = plan.ids[i].value;
     image["name"] = names[i];

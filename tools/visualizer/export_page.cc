@@ -80,8 +80,8 @@ class Exporter {
     return {};
   }
   // Writes an LF image for live pictures. Returns the name of its data; "" if it cannot be read.
-  Result<std::string> WriteLive(LfImageId id, int divisor) {
-    const auto encoded = EncodeForLive(scene_, id, divisor);
+  Result<std::string> WriteLive(const LivePlan& plan, LfImageId id) {
+    const auto encoded = EncodeForLive(scene_, plan, id);
     if (!encoded) {
       LogWarning("{}", encoded.error().message);
       return std::string();
@@ -154,7 +154,7 @@ Result<ExportFacts> ExportPage(PageScene& scene, const fs::path& folder, size_t 
   }
   std::vector<std::string> live_names;
   for (const LfImageId id : live.ids) {
-    LF_ASSIGN_OR_RETURN(live_names.emplace_back(), exporter.WriteLive(id, live.divisor));
+    LF_ASSIGN_OR_RETURN(live_names.emplace_back(), exporter.WriteLive(live, id));
     LF_RETURN_IF_ERROR(step());
   }
   LF_RETURN_IF_ERROR(exporter.WriteData("live.json", LiveJson(scene, live, live_names)));

@@ -98,10 +98,27 @@ test("an export keeps to the size of its live pictures, and masks pixels", async
   });
 });
 
+test("an export of distorted LF images refocuses", async () => {
+  await withExport(["--distortion", "0.12,-0.25,0.001,-0.002"], [], async (page, output) => {
+    assert.match(output, /81 for live pictures/);
+    const box = await openLive(page);
+    await allDecoded(page);
+    await stillPicture(page);
+    const before = await gradientEnergy(page, STAR);
+    const version = await nextPicture(page, 0);
+    await dragFocus(page, box, 1.003);
+    await page.mouse.up();
+    await nextPicture(page, version);
+    const after = await gradientEnergy(page, STAR);
+    assert.ok(after > 1.3 * before, `${before} to ${after}`);
+  });
+});
+
 test("an export without live pictures says why", async () => {
-  await withExport(["--distortion", "0.12,-0.25,0.001,-0.002"], [], async (page) => {
+  const made = ["--alpha", "straight", "--format", "png"];
+  await withExport(made, ["--background", "none"], async (page) => {
     assert.equal(await page.isVisible("[data-view=live]"), false);
     await page.click("[data-tab=lens]");
-    assert.match(await page.textContent("aside"), /without live pictures: .*distortion/);
+    assert.match(await page.textContent("aside"), /without live pictures: .*opacities/);
   });
 });
