@@ -14,7 +14,6 @@
 #include "lf/core/log.h"
 #include "lf/core/shell_word.h"
 #include "lf/focus/example_path.h"
-#include "lf/light_field/model/capture_geometry.h"
 #include "lf/light_field/model/keep_images.h"
 #include "lf/storage/load/open_store.h"
 
@@ -33,38 +32,12 @@ a COLMAP model. A warning says when the depth is uncertain, and what to try. Ren
   lfrenderer LIGHTFIELD PATH.yaml -o DIR)",
 };
 
-// Returns the LF camera nearest to the middle of the capture whose LF image can be read and that is
-// level within 3 degrees, because levelling a picture crops it. If no LF camera is both, returns
-// the nearest one whose LF image can be read; if none can be read, the nearest one. kOutput: the
-// machine lacks memory or open files.
-lf::Result<lf::LfImageId> FindMiddleCamera(const lf::LightField& light_field,
-                                           const lf::LfImageStore& store) {
-  lf::MachineFailure failure;
-  const auto is_readable = [&](lf::LfImageId id) {
-    const lf::Result<lf::LfPixels> pixel = lf::LoadWithoutThrowing(
-        store, id, {0, 0, 1, 1}, light_field.image_names[id.value], lf::LfPixels());
-    if (!pixel) failure.Note(pixel.error());
-    return pixel.has_value();
-  };
-  const lf::Vec3 up = lf::MeanUpWorld(light_field);
-  const double most_rad = lf::RadiansFromDegrees(3);
-  const auto is_level = [&](lf::LfImageId id) {
-    return lf::RollOf(light_field.Camera(id), up) <= most_rad;
-  };
-  const lf::LfImageId level = lf::MiddleCamera(
-      light_field, [&](lf::LfImageId id) { return is_level(id) && is_readable(id); });
-  const lf::LfImageId found =
-      is_level(level) && is_readable(level) ? level : lf::MiddleCamera(light_field, is_readable);
-  LF_RETURN_IF_ERROR(failure.Check());
-  return found;
-}
-
 // Finds an LF camera by its number, or by the name of its image: the whole name, its last part, or
-// the last part without the suffix. "-1" is FindMiddleCamera(). The caller must check that a camera
+// the last part without the suffix. "-1" is FirstCamera(). The caller must check that a camera
 // of the number exists.
 lf::Result<lf::LfImageId> FindCamera(const lf::LightField& light_field,
                                      const lf::LfImageStore& store, const std::string& text) {
-  if (text == "-1") return FindMiddleCamera(light_field, store);
+  if (text == "-1") return lf::FirstCamera(light_field, store);
   const auto matches = [&](const std::string& name) {
     const std::filesystem::path path(name);
     return name == text || path.filename() == text || path.stem() == text;

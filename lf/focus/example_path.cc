@@ -145,6 +145,27 @@ std::optional<ExampleMove> ParseExampleMove(std::string_view name) {
   return std::nullopt;
 }
 
+Result<LfImageId> FirstCamera(const LightField& light_field, const LfImageStore& store) {
+  MachineFailure failure;
+  const auto is_readable = [&](LfImageId id) {
+    const Result<LfPixels> pixel =
+        LoadWithoutThrowing(store, id, {0, 0, 1, 1}, light_field.image_names[id.value], LfPixels());
+    if (!pixel) failure.Note(pixel.error());
+    return pixel.has_value();
+  };
+  const Vec3 up = MeanUpWorld(light_field);
+  const double most_rad = RadiansFromDegrees(3);
+  const auto is_level = [&](LfImageId id) {
+    return RollOf(light_field.Camera(id), up) <= most_rad;
+  };
+  const LfImageId level =
+      MiddleCamera(light_field, [&](LfImageId id) { return is_level(id) && is_readable(id); });
+  const LfImageId found =
+      is_level(level) && is_readable(level) ? level : MiddleCamera(light_field, is_readable);
+  LF_RETURN_IF_ERROR(failure.Check());
+  return found;
+}
+
 Result<ExamplePath> MakeExamplePath(const LightField& light_field, const LfImageStore& store,
                                     const ExampleOptions& options, ThreadPool& pool) {
   if (light_field.size() < 2)

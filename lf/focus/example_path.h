@@ -42,6 +42,12 @@ struct ExamplePath {
   std::vector<double> candidates_w;
 };
 
+// Returns the LF camera nearest to the middle of the capture whose LF image can be read and that is
+// level within 3 degrees, because levelling a picture crops it. If no LF camera is both, returns
+// the nearest one whose LF image can be read; if none can be read, the nearest one. kOutput: the
+// machine lacks memory or open files. The light field must have a camera.
+Result<LfImageId> FirstCamera(const LightField& light_field, const LfImageStore& store);
+
 // Returns a path that shows something of the scene: one frame if nothing moves, otherwise 50.
 // - Focus: at options.focus_distance_w if it is set, otherwise on the subject
 //   (focus/find_subject.h). If the subject is not sure, or the points of a reconstruction
