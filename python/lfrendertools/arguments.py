@@ -85,6 +85,8 @@ def text(name: str, value: Any) -> str:
 def file_name(path: FilePath) -> bytes:
     """Return the bytes of a path, whose name need not be UTF-8."""
     name = os.fsencode(path)
+    if not name:
+        raise UsageError("expected a path, found an empty text")
     if b"\0" in name:
         raise UsageError(f"{os.fsdecode(name)!r}: a path has no character 0")
     return name

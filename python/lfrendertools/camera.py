@@ -1,10 +1,8 @@
 """Thin-lens cameras, and paths of them."""
 from __future__ import annotations
 
-import contextlib
 import math
 import os
-import pathlib
 import re
 from typing import Any, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple, Union, overload
 
@@ -12,13 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core, arguments
-from .errors import InputError, OutputError, UsageError
+from .errors import InputError, UsageError
 
 Floats = npt.NDArray[np.float64]
 Vector = Union[Sequence[float], Floats]
 
 # Path files have no more bytes than this.
-_MOST_BYTES = 8 << 20
 
 # Names, in a path file, of the values that may change from frame to frame.
 _MOVING = ("position", "quaternion", "field_of_view_deg", "aperture_diameter", "focus_distance", "focus_tilt_deg",
@@ -260,14 +257,9 @@ class Path(Sequence[Camera]):
         InputError
             The file cannot be read, has a mistake, or states another unit than `unit_m`.
         """
-        try:
-            with open(os.fsdecode(path), encoding="utf-8") as file:
-                text = file.read(_MOST_BYTES + 1)
-        except (OSError, ValueError) as error:
-            raise InputError(f"{os.fsdecode(path)}: cannot be read: {error}") from None
-        if len(text) > _MOST_BYTES:
-            raise InputError(f"{os.fsdecode(path)}: has more than {_MOST_BYTES >> 20} MiB, and is no camera path")
-        return cls.parse(text, os.fsdecode(path), unit_m)
+        unit = None if unit_m is None else arguments.positive("unit_m", unit_m)
+        cameras, fps, _ = _core.read_path(arguments.file_name(path), unit)
+        return cls((Camera._of(core) for core in cameras), fps)
 
     @classmethod
     def parse(cls, text: str, name: str = "path", unit_m: Optional[float] = None) -> Path:
@@ -294,12 +286,12 @@ class Path(Sequence[Camera]):
             The file cannot be written.
         """
         settings = [camera._settings() for camera in self._cameras]
-        target = pathlib.Path(os.fsdecode(path))
         for what in ("blades", "sensor_width_mm"):
             values = [setting[what] for setting in settings]
             # A width that was converted from world units and back differs by its rounding.
             if max(values) - min(values) > 1e-9 * max(values):
-                raise UsageError(f"{target}: the cameras have different {what}, which a path file cannot say")
+                raise UsageError(
+                    f"{os.fsdecode(path)}: the cameras have different {what}, which a path file cannot say")
         for setting in settings:
             setting["quaternion"] = _quaternion_of(setting.pop("world_from_cam"))
             setting["focus_tilt_deg"] = setting.pop("tilt_deg")
@@ -311,17 +303,7 @@ class Path(Sequence[Camera]):
         lens = {key: first[key] for key in ("aperture_diameter", "focus_distance", "focus_tilt_deg", "blades",
                                             "blade_rotation_deg")}
         text = _text_of_path(len(settings), self.fps, first["unit_m"], first["resolution"], camera, lens, keys)
-        temporary = target.parent / f".{target.name}.{os.getpid()}"
-        try:
-            with temporary.open("w", encoding="utf-8") as file:
-                file.write(text)
-                file.flush()
-                os.fsync(file.fileno())
-            temporary.replace(target)
-        except (OSError, ValueError) as error:
-            with contextlib.suppress(OSError, ValueError):
-                temporary.unlink(missing_ok=True)
-            raise OutputError(f"{target}: cannot be written: {error}") from None
+        _core.write_text(arguments.file_name(path), text)
 
     @property
     def cameras(self) -> Sequence[Camera]:

@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import os
 import pathlib
-import re
 import threading
 import types
 import warnings
@@ -120,7 +119,7 @@ class Frame:
             self._core.save(os.fsencode(name), chosen)
 
     def _repr_png_(self) -> bytes:
-        return _png_of(self.display())
+        return _core.encode_png(self.display())
 
     def __repr__(self) -> str:
         height, width = self.rgb.shape[:2]
@@ -436,21 +435,12 @@ def _numbers_of(frames: Frames, count: int) -> List[int]:
     """Return ascending numbers of frames."""
     if frames is None:
         return []
-    if not isinstance(frames, str):
-        try:
-            numbers = {arguments.whole("frames", number) for number in frames}
-        except TypeError:
-            raise TypeError(f"frames={frames!r}: expected a list of numbers, or text such as \"1-10,20\"") from None
-    else:
-        numbers = set()
-        for part in frames.split(","):
-            found = re.fullmatch(r"\s*([0-9]{1,9})(?:-([0-9]{1,9})(?:x([0-9]{1,9}))?)?\s*", part)
-            if not found:
-                raise UsageError(f"frames=\"{frames}\": expected numbers and ranges such as 1-10,20 or 1-100x10")
-            first, last, step = found.groups()
-            some = range(int(first), int(last or first) + 1, max(1, int(step or 1)))
-            # The last number suffices to refuse a range, which may be too large for the memory.
-            numbers.update(some[-1:] if some and some[-1] > count else some)
+    if isinstance(frames, str):
+        return _core.parse_frames(frames, count)
+    try:
+        numbers = {arguments.whole("frames", number) for number in frames}
+    except TypeError:
+        raise TypeError(f"frames={frames!r}: expected a list of numbers, or text such as \"1-10,20\"") from None
     if not numbers or min(numbers) < 1 or max(numbers) > count:
         raise UsageError(f"frames={frames!r}: the path has the frames 1 to {count}")
     return sorted(numbers)
@@ -470,7 +460,8 @@ def _teller(progress: Union[None, bool, Progress]) -> Progress:
         try:
             import tqdm.auto
         except ImportError:
-            pass
+            warnings.warn("progress=True shows nothing, because tqdm is not installed: give a function instead",
+                          stacklevel=3)
         else:
             bar = tqdm.auto.tqdm(unit=" LF images")
 
@@ -481,17 +472,3 @@ def _teller(progress: Union[None, bool, Progress]) -> Progress:
                     bar.close()
             return show
     return lambda done, total: None
-
-
-def _png_of(picture: npt.NDArray[np.uint8]) -> bytes:
-    """Return an 8-bit RGB picture as the bytes of a PNG file."""
-    import struct
-    import zlib
-    height, width = picture.shape[:2]
-    rows = np.zeros((height, 1 + 3 * width), np.uint8)
-    rows[:, 1:] = picture.reshape(height, -1)
-
-    def chunk(kind: bytes, body: bytes) -> bytes:
-        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)) +
-            chunk(b"sRGB", b"\0") + chunk(b"IDAT", zlib.compress(rows.tobytes(), 6)) + chunk(b"IEND", b""))

@@ -10,9 +10,11 @@
 #include <vector>
 
 #include "python/src/errors.h"
+#include "python/src/work.h"
 
 #include "lf/camera/path/path_yaml.h"
 #include "lf/camera/render_camera.h"
+#include "lf/core/file.h"
 
 namespace lf::python {
 namespace {
@@ -62,9 +64,21 @@ RenderCamera CameraOf(const py::tuple& numbers) {
   return camera;
 }
 
-py::tuple ReadPath(const std::string& text, const std::string& name, std::optional<double> unit_m) {
-  const CameraPath path = Take(ParsePathYaml(text, name, unit_m));
+py::tuple TupleOf(const CameraPath& path) {
   return py::make_tuple(path.cameras, path.fps, path.unit_m);
+}
+
+py::tuple ParsePath(const std::string& text, const std::string& name,
+                    std::optional<double> unit_m) {
+  return TupleOf(Take(ParsePathYaml(text, name, unit_m)));
+}
+
+py::tuple ReadPath(const std::string& file, std::optional<double> unit_m) {
+  return TupleOf(CallWithoutGil([&] { return Take(ReadPathYaml(file, unit_m)); }));
+}
+
+void WriteText(const std::string& file, const std::string& text) {
+  RunWithoutGil([&] { Take(WriteFileAtomically(file, text)); });
 }
 
 }  // namespace
@@ -111,7 +125,9 @@ void AddCameras(py::module_& module) {
                         const RenderCamera& b) { return NumbersOf(a).equal(NumbersOf(b)); })
       .def("__hash__", [](const RenderCamera& c) { return py::hash(NumbersOf(c)); })
       .def(py::pickle(&NumbersOf, &CameraOf));
-  module.def("parse_path", &ReadPath);
+  module.def("parse_path", &ParsePath);
+  module.def("read_path", &ReadPath);
+  module.def("write_text", &WriteText);
 }
 
 }  // namespace lf::python

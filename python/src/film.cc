@@ -21,10 +21,12 @@
 
 #include "lf/film/develop/frame_file.h"
 #include "lf/film/plate/plate_file.h"
+#include "lf/pixels/files/write_png.h"
 #include "lf/render/pipeline/develop_frame.h"
 #include "lf/render/pipeline/film_renderer.h"
 #include "lf/render/pipeline/film_setup.h"
 #include "lf/render/pipeline/frame_metadata.h"
+#include "lf/render/pipeline/frame_range.h"
 #include "lf/render/pipeline/render.h"
 
 namespace lf::python {
@@ -240,6 +242,22 @@ py::array_t<uint64_t> WordsOf(const Plate& plate, uint64_t ElementSum::*member) 
   return out;
 }
 
+std::vector<uint32_t> ParseFrames(const std::string& text, size_t frame_count) {
+  std::vector<uint32_t> numbers;
+  for (const FrameId frame : Take(ParseFrameRange(text, frame_count, "frames")))
+    numbers.push_back(frame.value);
+  return numbers;
+}
+
+// Returns a picture [height][width][3] as the bytes of a PNG file.
+py::bytes PngOf(const py::array_t<uint8_t, py::array::c_style | py::array::forcecast>& picture) {
+  const auto width = static_cast<int>(picture.shape(1)),
+             height = static_cast<int>(picture.shape(0));
+  const ImageView<const uint8_t> view{picture.data(), width, height, 3,
+                                      static_cast<size_t>(width) * 3};
+  return CallWithoutGil([&] { return Take(EncodePng(view)); });
+}
+
 void AddWords(py::module_& module) {
   py::class_<FilmWords>(module, "FilmWords")
       .def(py::init<>())
@@ -262,6 +280,8 @@ void AddWords(py::module_& module) {
 
 void AddFilm(py::module_& module) {
   AddWords(module);
+  module.def("parse_frames", &ParseFrames);
+  module.def("encode_png", &PngOf);
   py::class_<Frame>(module, "Frame")
       .def_property_readonly("number", [](const Frame& f) { return f.notes.frame.value; })
       .def_property_readonly("camera", [](const Frame& f) { return f.notes.camera; })

@@ -226,7 +226,7 @@ py::tuple ExampleOf(const OpenedField& field, const std::string& path, const std
     const std::unique_ptr<LfImageStore> store = Take(OpenStore(recorded, Mosaics::kToRgb));
     ExampleOptions options;
     options.move = *known;
-    options.camera = start ? *start : MiddleCamera(recorded);
+    options.camera = start ? *start : Take(FirstCamera(recorded, *store));
     options.focus_distance_w = focus_distance_w;
     options.points_world = [&] { return PointsSeenBy(path, recorded, options.camera); };
     return Take(MakeExamplePath(recorded, *store, options, pool));

@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "python/src/errors.h"
+
 #include "lf/core/log.h"
 
 namespace lf::python {
@@ -32,7 +34,7 @@ void SendToPython(LogLevel level, std::string_view message) {
   try {
     py::module_::import("logging")
         .attr("getLogger")("lfrendertools")
-        .attr("log")(LevelOf(level), "%s", std::string(message));
+        .attr("log")(LevelOf(level), "%s", TextOf(std::string(message)));
   } catch (py::error_already_set& error) {
     error.discard_as_unraisable("a handler of the logger lfrendertools");
   }
