@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/codec_words.h"
 #include "tools/common/allow_missing.h"
 #include "tools/common/byte_size.h"
 #include "tools/common/interrupt.h"
@@ -49,9 +50,8 @@ again with --overwrite.)",
 struct Arguments {
   std::vector<std::string> inputs;
   lf::LightFieldArgument light_field;
-  std::string output, profile = "default", quantizer = "8bit", shard_size;
-  int levels = 0;
-  double threshold = -1, target_psnr = 0;
+  lf::CodecWords codec;
+  std::string output, shard_size;
   bool needed_pixels = false, resume = false, overwrite = false, verify = false;
   lf::AllowMissing allow_missing;
 };
@@ -93,19 +93,19 @@ void AddOutput(CLI::App& app, Arguments& a) {
 void AddQuality(CLI::App& app, Arguments& a) {
   lf::OptionGroup quality(app, lf::kQualityGroup);
   quality.AddChoice(
-      "--profile", a.profile, {"default", "thesis", "lossless"},
+      "--profile", a.codec.profile, {"default", "thesis", "lossless"},
       "How LF images are encoded\n"
       "default: lossy, wavelets with a dead-zone quantiser for each subband\n"
       "thesis: lossy, Haar wavelets with one threshold and one range of values for all subbands\n"
       "lossless: the decoded pixels equal those of the image files bit by bit");
   quality
-      .Add("--levels N", a.levels,
+      .Add("--levels N", a.codec.levels,
            "Levels of the wavelet transform (4, thesis: 1)\n"
            "Each level halves the resolution of the approximation. 0: 4 levels, or 1 level with "
            "--profile thesis.")
       ->check(CLI::Range(0, 5));
   auto* threshold = quality
-                        .Add("--threshold X", a.threshold,
+                        .Add("--threshold X", a.codec.threshold,
                              "Drop details below this (3, thesis: 8)\n"
                              "Wavelet coefficients smaller than X become 0. The unit of X is 1/255 "
                              "of the range from black to white. If the option is not given, X is "
@@ -113,13 +113,13 @@ void AddQuality(CLI::App& app, Arguments& a) {
                         ->check(CLI::Range(0., 255.));
   quality
       .Add(
-          "--target-psnr DB", a.target_psnr,
+          "--target-psnr DB", a.codec.target_psnr,
           "Find the threshold for this quality (off)\n"
           "The value of --threshold is chosen so that a sample of the LF images, when decoded, has "
           "at least this peak signal-to-noise ratio (PSNR), in dB. Not for --profile lossless.")
       ->check(CLI::Range(10., 90.))
       ->excludes(threshold);
-  quality.Add("--quantizer N", a.quantizer,
+  quality.Add("--quantizer N", a.codec.quantizer,
               "Values per coefficient, for --profile thesis\n"
               "Wavelet coefficients are rounded to N values, 2 to 65536. 8bit: 256 values, which "
               "take one byte per coefficient. More than 256 values take two bytes.");
@@ -153,26 +153,7 @@ lf::Result<lf::CompressOptions> MakeOptions(const Arguments& a, const lf::Common
   if (options.store.extension() != lf::kStoreExtension)
     return lf::UsageError(
         fmt::format("-o {}: expected a file name that ends in {}", a.output, lf::kStoreExtension));
-  const bool is_thesis = a.profile == "thesis", is_lossless = a.profile == "lossless";
-  options.codec.profile = is_thesis     ? lf::CodecProfile::kThesis
-                          : is_lossless ? lf::CodecProfile::kLossless
-                                        : lf::CodecProfile::kDefault;
-  options.codec.levels = a.levels > 0 ? a.levels : is_thesis ? 1 : 4;
-  options.codec.threshold = a.threshold >= 0 ? a.threshold : is_thesis ? 8 : 3;
-  if (is_lossless && (a.threshold >= 0 || a.target_psnr > 0))
-    return lf::UsageError(
-        "--threshold and --target-psnr cannot be used with --profile lossless, which drops no "
-        "details: leave them out");
-  if (a.quantizer != "8bit") {
-    if (!is_thesis)
-      return lf::UsageError(
-          "--quantizer can only be used with --profile thesis: leave it out, or add --profile "
-          "thesis");
-    if (!CLI::detail::lexical_cast(a.quantizer, options.codec.quantizer))
-      return lf::UsageError(fmt::format(
-          "--quantizer {}: expected 8bit, or a whole number from 2 to 65536", a.quantizer));
-  }
-  if (a.target_psnr > 0) options.target_psnr_db = a.target_psnr;
+  LF_RETURN_IF_ERROR(lf::SetCodec(a.codec, &options));
   if (!a.shard_size.empty()) {
     LF_ASSIGN_OR_RETURN(options.shard_bytes, lf::ParseByteSize(a.shard_size, "--shard-size"));
   }

@@ -14,12 +14,11 @@
 #include "tools/common/progress.h"
 #include "tools/common/validators.h"
 #include "tools/forecast_report.h"
+#include "tools/known_depths.h"
 
 #include "lf/camera/path/path_yaml.h"
 #include "lf/distribute/preprocess/preprocess.h"
-#include "lf/focus/swept_depths.h"
 #include "lf/render/pipeline/frame_range.h"
-#include "lf/storage/load/open_store.h"
 
 namespace {
 
@@ -197,20 +196,6 @@ lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::Comm
   return options;
 }
 
-// Returns the source of the scene's depths, as ForecastFacts::depths_from. LF images are read only
-// if there is no other source; options->depths is set if depths are found in them.
-std::string KnowDepths(const lf::LightField& light_field, const lf::CameraPath& path,
-                       lf::ThreadPool& pool, lf::PreprocessOptions* options) {
-  if (options->depths) return "--depths";
-  if (light_field.depth_range) return "the calibration";
-  const lf::FrameId first = options->frames.empty() ? lf::FrameId{1} : options->frames.front();
-  const auto store = lf::OpenStore(light_field, lf::Mosaics::kToRgb);
-  if (!store || path.frame_count() == 0) return "";
-  options->depths =
-      lf::SweptDepths(light_field, **store, path.Camera(first).pinhole.CentreWorld(), pool);
-  return options->depths ? "LF images" : "";
-}
-
 lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   const std::atomic<bool>& interrupted = lf::CatchInterrupts();
   LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, a.allow_missing.Limit());
@@ -223,7 +208,7 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
                       MakeOptions(a, common, path, light_field.encoding));
   options.interrupted = &interrupted;
   lf::ThreadPool pool(common.threads);
-  const std::string depths_from = KnowDepths(light_field, path, pool, &options);
+  const std::string depths_from = lf::KnowDepths(light_field, path, pool, &options);
   lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "frames");
   LF_ASSIGN_OR_RETURN(
       const lf::PreprocessReport report,

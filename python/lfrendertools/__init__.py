@@ -3,9 +3,13 @@
 A light field is opened, looked at as arrays, and rendered through a lens:
 
 >>> import lfrendertools as lf
->>> field = lf.open("capture/")                                         # doctest: +SKIP
->>> frame = lf.render(field, field.camera(focus_distance=2.5))         # doctest: +SKIP
->>> frame.save("frame.exr")                                             # doctest: +SKIP
+>>> field = lf.open("capture/")
+>>> frame = lf.render(field, field.camera(focus_distance=2.5))
+>>> frame.save("frame.exr")
+>>> field
+<LightField capture: 49 LF images>
+>>> frame
+<Frame 1: 160 x 120 of ... LF images>
 
 Lengths are world units unless a name ends in `_mm`. The axes of cameras are x to the right, y down, z forward. Light is
 linear, with sRGB primaries. Messages go to the logger "lfrendertools".
@@ -16,15 +20,20 @@ import logging
 
 from . import _core
 from .camera import Camera, Path
+from .captures import compress, forecast, report, synth, write_packages
+from .display import display_values
 from .errors import (BelowRequired, BlackFrameWarning, Error, InputError, InterruptedRender, MissingImagesWarning,
                      OutputError, UsageError)
-from .light_field import Grid, Intrinsics, LightField, open
-from .rendering import Frame, Plate, Renderer, film, render
+from .frames import Frame, Plate
+from .light_field import Intrinsics, LightField, open, read_image
+from .rendering import Renderer, Selection, film, render, select
+from .rig import Grid
 
 __version__: str = _core.version
 
-__all__ = ["BelowRequired", "BlackFrameWarning", "Camera", "Error", "Frame", "Grid", "InputError", "InterruptedRender",
-           "Intrinsics", "LightField", "MissingImagesWarning", "OutputError", "Path", "Plate", "Renderer", "UsageError",
-           "film", "open", "render"]
+__all__ = ["BelowRequired", "BlackFrameWarning", "Camera", "Error", "Frame", "Grid", "InputError",
+           "InterruptedRender", "Intrinsics", "LightField", "MissingImagesWarning", "OutputError", "Path", "Plate",
+           "Renderer", "Selection", "UsageError", "compress", "display_values", "film", "forecast", "open",
+           "read_image", "render", "report", "select", "synth", "write_packages"]
 
 logging.getLogger("lfrendertools").addHandler(logging.NullHandler())

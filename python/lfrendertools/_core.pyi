@@ -1,9 +1,12 @@
-from typing import List, Optional, Sequence, Tuple, Union
+from typing import Callable, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
 
 version: str
+
+_Stored = Union[npt.NDArray[np.uint8], npt.NDArray[np.uint16], npt.NDArray[np.float32]]
+_Tell = Callable[[int, int], None]
 
 class LightField:
     def __len__(self) -> int: ...
@@ -30,6 +33,8 @@ class LightField:
     def ray_directions(self, arg0: int, arg1: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]: ...
     def image(self, arg0: int, arg1: Optional[Tuple[int, int, int, int]],
               arg2: float) -> npt.NDArray[np.float32]: ...
+    def image_file(self, arg0: int) -> str: ...
+    def thumbnail(self, arg0: int, arg1: int) -> npt.NDArray[np.float32]: ...
     def example(self, arg0: Union[str, bytes], arg1: str, arg2: Optional[int],
                 arg3: Optional[float]) -> Tuple[str, str]: ...
 
@@ -37,6 +42,8 @@ class LightField:
 def open_light_field(arg0: Union[str, bytes], arg1: float, arg2: float, arg3: Union[str, bytes], arg4: str, arg5: str,
                      arg6: str, arg7: Optional[Tuple[float, float]], arg8: Optional[float],
                      arg9: Tuple[bool, bool]) -> LightField: ...
+
+def read_image(arg0: Union[str, bytes]) -> _Stored: ...
 
 class RenderCamera:
     @property
@@ -125,6 +132,7 @@ class Plate:
     def sums(self) -> npt.NDArray[np.uint64]: ...
     @property
     def counts(self) -> npt.NDArray[np.uint64]: ...
+    def save(self, arg0: Union[str, bytes]) -> None: ...
     def __add__(self, arg0: Plate) -> Plate: ...
     def develop(self, arg0: int) -> Frame: ...
 
@@ -132,6 +140,8 @@ class Film:
     def __init__(self, arg0: LightField, arg1: Sequence[RenderCamera], arg2: float, arg3: Sequence[int],
                  arg4: FilmWords, arg5: str, arg6: bool, arg7: int) -> None: ...
     def passes(self) -> List[List[int]]: ...
+    def needs(self, arg0: int) -> Tuple[npt.NDArray[np.uint32], npt.NDArray[np.int32], npt.NDArray[np.uint64],
+                                        npt.NDArray[np.uint32]]: ...
     def begin(self, arg0: Sequence[int]) -> None: ...
     def step(self) -> bool: ...
     def progress(self) -> Tuple[int, int]: ...
@@ -144,3 +154,64 @@ class Film:
     def check_any_contributes(self) -> None: ...
     def check_not_all_broken(self) -> None: ...
     def skipped(self) -> List[Tuple[str, str]]: ...
+
+def report(arg0: LightField, arg1: str, arg2: str, arg3: Optional[float], arg4: int, arg5: _Tell) -> str: ...
+
+class PackageWords:
+    output: str
+    memory: str
+    balance: str
+    packages: Optional[int]
+    frames_per_package: Optional[int]
+    depths: Optional[Tuple[float, float]]
+    overwrite: bool
+    strict: bool
+    def __init__(self) -> None: ...
+
+def preprocess(arg0: LightField, arg1: str, arg2: Sequence[RenderCamera], arg3: float, arg4: Sequence[int],
+               arg5: FilmWords, arg6: PackageWords, arg7: int, arg8: _Tell) -> str: ...
+
+class CodecWords:
+    profile: str
+    quantizer: str
+    levels: int
+    threshold: float
+    target_psnr: float
+    def __init__(self) -> None: ...
+
+class StoreWords:
+    output: str
+    shard_size: str
+    resume: bool
+    overwrite: bool
+    verify: bool
+    strict: bool
+    def __init__(self) -> None: ...
+
+def compress(arg0: LightField, arg1: str, arg2: CodecWords, arg3: StoreWords, arg4: int, arg5: _Tell) -> str: ...
+
+class SyntheticFieldOptions:
+    scene: str
+    output: str
+    capture: str
+    format: str
+    alpha: str
+    truth: str
+    size: Optional[Tuple[int, int]]
+    count: int
+    spacing: Optional[float]
+    distance: Optional[float]
+    jitter: float
+    noise: float
+    distortion: List[float]
+    fisheye: List[float]
+    fov: float
+    samples: int
+    truth_samples: int
+    bayer: bool
+    calibration_only: bool
+    overwrite: bool
+    seed: int
+    def __init__(self) -> None: ...
+
+def synth(arg0: SyntheticFieldOptions, arg1: int, arg2: _Tell) -> None: ...

@@ -6,7 +6,7 @@ import math
 import operator
 import os
 import re
-from typing import Any, Iterator, Tuple, Union
+from typing import Any, Dict, Iterator, Mapping, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -16,9 +16,13 @@ from .errors import Error, UsageError
 FilePath = Union[str, "os.PathLike[str]"]
 
 # Options of the programs whose values are arguments here.
-_OPTION = re.compile(r"--(focal-px|fov-deg|images|image-scale|image-alpha|background|pitch|plane-distance|flip-x|"
-                     r"flip-y|memory|max-images|max-angle|max-angle-deg|stop-when|smooth-below|lens-weights|lf-pixels|"
-                     r"filter|estimator|mode|order|fill|seed|strict|threads|frames)\b")
+_OPTION = re.compile(r"--(alpha|balance|bayer|background|calibration-only|capture|count|depths|distance|"
+                     r"distortion|estimator|fill|filter|fisheye|flip-x|flip-y|focal-px|format|fov|"
+                     r"fov-deg|frames|frames-per-package|image-alpha|image-scale|images|jitter|"
+                     r"lens-weights|levels|lf-pixels|max-angle|max-angle-deg|max-images|memory|mode|noise|"
+                     r"order|overwrite|packages|pitch|plane-distance|profile|quantizer|resume|samples|"
+                     r"seed|shard-size|smooth-below|spacing|stop-when|strict|target-psnr|threads|"
+                     r"threshold|truth|truth-samples|verify)\b")
 
 
 def whole(name: str, value: Any) -> int:
@@ -68,6 +72,21 @@ def whole_numbers(name: str, value: Any, count: int) -> Tuple[int, ...]:
     return numbers
 
 
+def choice(name: str, value: Any, words: Sequence[str]) -> str:
+    """Return one of these words."""
+    if value not in words:
+        raise UsageError(f"{name}={value!r}: expected one of {', '.join(words)}")
+    return str(value)
+
+
+def thread_count(value: Any) -> int:
+    """Return a number of threads; 0: one for each processor."""
+    number = whole("threads", value)
+    if not 0 <= number <= 512:
+        raise UsageError(f"threads={value!r}: expected 0 to 512")
+    return number
+
+
 def flag(name: str, value: Any) -> bool:
     """Return True or False."""
     if value is not None and not (isinstance(value, (int, np.bool_)) and value in (0, 1)):
@@ -90,6 +109,31 @@ def file_name(path: FilePath) -> bytes:
     if b"\0" in name:
         raise UsageError(f"{os.fsdecode(name)!r}: a path has no character 0")
     return name
+
+
+def set_words(words: object, options: Mapping[str, Any], own: Dict[str, Any]) -> None:
+    """Set members of `words`, or entries of `own`, to the options with these names.
+
+    Parameters
+    ----------
+    words : object of the extension
+        Its members are the options of the library.
+    options : mapping
+        Names and values as the caller gave them.
+    own : dict
+        The caller's own options with their defaults, which are replaced.
+    """
+    for name, value in options.items():
+        if name in own:
+            own[name] = value
+        elif hasattr(words, name) and not name.startswith("_"):
+            try:
+                setattr(words, name, value)
+            except TypeError:
+                raise UsageError(f"{name}={value!r}: a value of this type is not possible") from None
+        else:
+            known = sorted([*own, *(word for word in dir(words) if not word.startswith("_"))])
+            raise UsageError(f"unknown option {name}: expected one of {', '.join(known)}")
 
 
 @contextlib.contextmanager

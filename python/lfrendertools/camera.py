@@ -65,6 +65,16 @@ class Camera:
     ------
     UsageError
         Arguments are missing, contradict each other, or are out of range.
+
+    Examples
+    --------
+    >>> import lfrendertools as lf
+    >>> camera = lf.Camera((0, 0, -1), look_at=(0, 0, 0), resolution=(640, 360), focal_length_mm=50, f_number=2,
+    ...                    focus_distance=1)
+    >>> camera.aperture_diameter
+    0.025
+    >>> round(camera.replace(f_number=4).aperture_diameter, 6)
+    0.0125
     """
 
     __slots__ = ("_core",)
@@ -224,6 +234,15 @@ class Path(Sequence[Camera]):
         The cameras of the frames. All must have the same resolution and `unit_m`.
     fps : float, optional
         Frames per second.
+
+    Examples
+    --------
+    >>> import lfrendertools as lf
+    >>> near = lf.open("capture/").camera(focus_distance=0.8)
+    >>> path = lf.Path([near, near.replace(focus_distance=1.6)], fps=25)
+    >>> path.save("path.yaml")
+    >>> [round(camera.focus_distance, 3) for camera in lf.Path.load("path.yaml")]
+    [0.8, 1.6]
     """
 
     def __init__(self, cameras: Iterable[Camera], fps: float = 24) -> None:

@@ -1,10 +1,12 @@
 """Light fields: their LF cameras and LF images as arrays."""
 from __future__ import annotations
 
+import base64
 import collections
 import concurrent.futures
 import dataclasses
 import functools
+import html
 import logging
 import os
 import pathlib
@@ -17,7 +19,9 @@ from . import _core, arguments
 from .arguments import FilePath
 from .camera import Camera
 from .camera import Path as CameraPath
-from .errors import UsageError
+from .display import display_values
+from .errors import Error, UsageError
+from .rig import Grid, find_grid, plot_of_rig
 
 Floats = npt.NDArray[np.float64]
 Picture = npt.NDArray[np.float32]
@@ -46,28 +50,6 @@ class Intrinsics:
     height: int
     distortion: str
     parameters: Tuple[float, ...]
-
-
-@dataclasses.dataclass(frozen=True, eq=False)
-class Grid:
-    """LF cameras that stand in rows and columns.
-
-    Attributes
-    ----------
-    ids : ndarray of int of shape (rows, columns)
-        Numbers of the LF cameras. Row 0 is the upper one and column 0 the left one, seen in the direction in which the
-        LF cameras look.
-    pitch : tuple of float
-        Mean distance between neighbouring columns, and between neighbouring rows, in world units.
-    """
-
-    ids: npt.NDArray[np.int64]
-    pitch: Tuple[float, float]
-
-    @property
-    def shape(self) -> Tuple[int, int]:
-        """Number of rows and columns."""
-        return self.ids.shape[0], self.ids.shape[1]
 
 
 class LightField:
@@ -190,8 +172,9 @@ class LightField:
         directions = self._core.ray_directions(i, arguments.reals("pixels", pixels))
         return np.broadcast_to(self.centres[i], directions.shape), directions
 
-    def image(self, i: int, rect: Optional[Tuple[int, int, int, int]] = None, masked: float = float("nan")) -> Picture:
-        """Load an LF image as linear light, with the values that a render reads.
+    def image(self, i: int, rect: Optional[Tuple[int, int, int, int]] = None, masked: float = float("nan"), *,
+              stored: bool = False) -> npt.NDArray[Any]:
+        """Load an LF image as linear light, with the values that a render reads, or as its file stores it.
 
         Parameters
         ----------
@@ -201,19 +184,32 @@ class LightField:
             x_begin, y_begin, x_end, y_end of the part to load, in pixels; by default the whole LF image.
         masked : float, optional
             Value of masked pixels, which send no ray.
+        stored : bool, optional
+            True: return what the image file stores (:func:`read_image`), without `masked`. If its orientation tag
+            turns the picture, rows and columns of `rect` are those of the file.
 
         Returns
         -------
-        ndarray of shape (height, width, 3)
+        ndarray of shape (height, width, 3), or (height, width, channels) if `stored`
             Linear light with sRGB primaries, where 1 is display white. Mosaics are demosaicked.
+
+        Raises
+        ------
+        InputError
+            The LF image is missing or broken.
+        UsageError
+            `rect` is not within the LF image, or `stored` is asked of a packed store, which has no image files.
         """
-        part = None
+        i, part = arguments.whole("i", i), None
         if rect is not None:
             # Positions that need more than 32 bits are outside of every LF image, as are their nearest ones.
             x0, y0, x1, y1 = (min(max(at, -2**31), 2**31 - 1) for at in arguments.whole_numbers("rect", rect, 4))
             part = (x0, y0, x1, y1)
+        if arguments.flag("stored", stored):
+            values = read_image(self._core.image_file(i))
+            return values if part is None else values[_part_of(values, part)]
         with arguments.naming_arguments():
-            return self._core.image(arguments.whole("i", i), part, arguments.real("masked", masked))
+            return self._core.image(i, part, arguments.real("masked", masked))
 
     def images(self, ids: Optional[Iterable[int]] = None, ahead: int = 8) -> Iterator[Tuple[int, Picture]]:
         """Load LF images one after the other. Other threads load the next ones in advance.
@@ -258,7 +254,7 @@ class LightField:
             None unless every place of one regular grid has exactly one LF camera. LF cameras may stand up to a quarter
             of the pitch beside their places.
         """
-        return _find_grid(self.centres, self.cam_from_world)
+        return find_grid(self.centres, self.cam_from_world)
 
     def array(self, views: Optional[Tuple[int, int]] = None, reduce: int = 1, out: Any = None) -> Any:
         """Load LF images of a grid into one array.
@@ -371,7 +367,20 @@ class LightField:
             ("LF images", len(self)),
             ("sizes", ", ".join(sorted({f"{k.width} x {k.height}" for k in self.intrinsics}))),
             ("spacing", f"{self.spacing:.4g} units of {self.unit_m:.4g} m")))
-        return f"<table>{rows}</table>{_plot_of_rig(self.centres, self.cam_from_world)}"
+        return f"<table>{rows}</table>{plot_of_rig(self.centres, self.cam_from_world)}{self._contact_sheet()}"
+
+    def _contact_sheet(self, count: int = 8, width: int = 120) -> str:
+        """Return small pictures of LF images, spread over the light field, as HTML. Leaves out those that fail."""
+        pictures = []
+        for i in np.linspace(0, len(self) - 1, min(count, len(self))).astype(int):
+            try:
+                light = self._core.thumbnail(int(i), width)
+            except Error:
+                continue
+            png = base64.b64encode(_core.encode_png(display_values(light))).decode()
+            pictures.append(f'<img width="{width}" title="{html.escape(self.names[i])}" '
+                            f'src="data:image/png;base64,{png}">')
+        return f"<div>{''.join(pictures)}</div>"
 
 
 def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[float] = None,
@@ -408,6 +417,17 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
     ------
     InputError
         There is no light field at `path`, or its calibration is wrong.
+
+    Examples
+    --------
+    >>> import lfrendertools as lf
+    >>> field = lf.open("capture/")
+    >>> field.cam_from_world.shape, field.K.shape, field.cam_from_world.flags.writeable
+    ((49, 3, 4), (49, 3, 3), False)
+    >>> field.image(0).shape, field.image(0, stored=True).dtype
+    ((120, 160, 3), dtype('uint8'))
+    >>> field.array(views=(3, 3), reduce=2).shape
+    (3, 3, 60, 80, 3)
     """
     name = arguments.file_name(path)
     if pitch is not None:
@@ -428,50 +448,31 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
     return LightField(core, str(pathlib.Path(os.fsdecode(name))))
 
 
-def _lines(values: Floats, tolerance: float) -> Tuple[npt.NDArray[np.int64], Floats]:
-    """Group values that are closer than the tolerance. Returns the group of each value, and the mean of each group."""
-    order = np.argsort(values)
-    steps = np.diff(values[order]) > tolerance
-    groups = np.empty(len(values), np.int64)
-    groups[order] = np.concatenate([[0], np.cumsum(steps)])
-    return groups, np.bincount(groups, values) / np.bincount(groups)
+def read_image(path: FilePath) -> npt.NDArray[Any]:
+    """Read a picture (EXR, PNG, JPEG, TIFF or camera raw) as the programs do.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+
+    Returns
+    -------
+    ndarray of shape (height, width, channels)
+        The stored values: uint8, uint16 or, for floats, float32. Channels of EXR files are in the order R, G, B, A,
+        then the others.
+
+    Raises
+    ------
+    InputError
+        The file is missing, damaged or of another kind.
+    """
+    return _core.read_image(arguments.file_name(path))
 
 
-def _find_grid(centres: Floats, poses: Floats) -> Optional[Grid]:
-    if len(centres) == 0:
-        return None
-    right, down = poses[:, 0, :3].mean(axis=0), poses[:, 1, :3].mean(axis=0)
-    if min(np.linalg.norm(right), np.linalg.norm(down)) < 0.5:
-        return None
-    x, y = centres @ (right / np.linalg.norm(right)), centres @ (down / np.linalg.norm(down))
-    extent = max(np.ptp(x), np.ptp(y))
-    if extent == 0:
-        return Grid(np.zeros((1, 1), np.int64), (0.0, 0.0)) if len(centres) == 1 else None
-    tolerance = 0.25 * extent / max(1, len(centres) - 1) if min(np.ptp(x), np.ptp(y)) == 0 else \
-        0.35 * np.sqrt(np.ptp(x) * np.ptp(y) / len(centres))
-    columns, at_x = _lines(x, tolerance)
-    rows, at_y = _lines(y, tolerance)
-    if len(at_x) * len(at_y) != len(centres):
-        return None
-    ids = np.full((len(at_y), len(at_x)), -1, np.int64)
-    ids[rows, columns] = np.arange(len(centres))
-    if (ids < 0).any():
-        return None
-    pitch = tuple(float(np.ptp(at) / max(1, len(at) - 1)) for at in (at_x, at_y))
-    for at, step, values, groups in ((at_x, pitch[0], x, columns), (at_y, pitch[1], y, rows)):
-        places = at[0] + step * np.arange(len(at))
-        if len(at) > 1 and np.abs(values - places[groups]).max() > 0.25 * step:
-            return None
-    return Grid(ids, (pitch[0], pitch[1]))
-
-
-def _plot_of_rig(centres: Floats, poses: Floats) -> str:
-    """Return a plot of at most 2,000 LF cameras, seen from behind, as SVG."""
-    chosen = np.linspace(0, len(centres) - 1, min(len(centres), 2000)).astype(int)
-    right, down = poses[:, 0, :3].mean(axis=0), poses[:, 1, :3].mean(axis=0)
-    xy = np.stack([centres[chosen] @ right, centres[chosen] @ down], axis=1)
-    xy -= xy.min(axis=0)
-    xy *= 280 / max(float(xy.max()), 1e-300)
-    dots = "".join(f'<circle cx="{x + 10:.1f}" cy="{y + 10:.1f}" r="2"/>' for x, y in xy)
-    height = float(xy[:, 1].max()) + 20
-    return f'<svg width="300" height="{height:.0f}" fill="currentColor">{dots}</svg>'
+def _part_of(values: npt.NDArray[Any], rect: Tuple[int, int, int, int]) -> Tuple[slice, slice]:
+    x_begin, y_begin, x_end, y_end = rect
+    height, width = values.shape[:2]
+    if not (0 <= x_begin < x_end <= width and 0 <= y_begin < y_end <= height):
+        raise UsageError(f"rect={rect!r}: expected x_begin, y_begin, x_end, y_end within {width} x {height} pixels")
+    return slice(y_begin, y_end), slice(x_begin, x_end)

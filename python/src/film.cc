@@ -56,8 +56,8 @@ class Film {
     options.film = Take(FilmOptionsOf(words));
     options.work.memory_bytes = Take(ParseByteSize(memory, "memory"));
     options.work.strict = strict;
-    options.work.interrupted = &interrupts_.interrupted;
-    options.work.stop = &interrupts_.stop;
+    options.work.interrupted = &signals_.interrupted;
+    options.work.stop = &signals_.stop;
     const ImageOrder order = Take(OrderOf(words));
     std::vector<FrameId> ids;
     for (const uint32_t frame : frames) ids.push_back(FrameId{frame});
@@ -96,7 +96,7 @@ class Film {
   }
 
   bool Step() {
-    return CallWithoutGil([&] { return Take(renderer().Step()); }, &interrupts_);
+    return CallWithoutGil([&] { return Take(renderer().Step()); }, &signals_);
   }
 
   std::pair<size_t, size_t> Progress() {
@@ -115,13 +115,13 @@ class Film {
     return CallWithoutGil(
         [&] {
           const std::optional<Completion> completion = renderer().Complete(f);
-          const auto is_interrupted = [&] { return interrupts_.stop.load(); };
+          const auto is_interrupted = [&] { return signals_.stop.load(); };
           RenderedFrame rendered = renderer().Develop(f, completion, true, is_interrupted);
           PlateNotes notes = renderer().NotesOf(f);
           notes.version = LF_VERSION;
           return Frame{std::move(rendered.picture), std::move(notes)};
         },
-        &interrupts_);
+        &signals_);
   }
 
   std::unique_ptr<Plate> PlateOf(size_t f) {
@@ -135,6 +135,32 @@ class Film {
     plate->notes = renderer().NotesOf(f);
     plate->notes.version = LF_VERSION;
     return plate;
+  }
+
+  // Returns the LF images that a frame reads, by ascending ranks, as numbers [n], pixel rectangles
+  // [n][4] and numbers of rays [n], and the numbers of its neighbours.
+  py::tuple Needs(uint32_t frame) {
+    const FrameNeeds needs = CallWithoutGil(
+        [&] {
+          return NeedsOf(setup_->index(), setup_->path().Camera(FrameId{frame}), setup_->Needs(),
+                         pool_);
+        },
+        &signals_);
+    const auto count = static_cast<py::ssize_t>(needs.images.size());
+    py::array_t<uint32_t> ids(count), neighbours(static_cast<py::ssize_t>(needs.neighbours.size()));
+    py::array_t<int> rects({count, py::ssize_t{4}});
+    py::array_t<uint64_t> rays(count);
+    for (py::ssize_t i = 0; i < count; ++i) {
+      const FrameNeeds::Image& image = needs.images[static_cast<size_t>(i)];
+      ids.mutable_at(i) = image.id.value;
+      rays.mutable_at(i) = image.ray_count;
+      const int sides[] = {image.rect.x_begin, image.rect.y_begin, image.rect.x_end,
+                           image.rect.y_end};
+      std::copy_n(sides, 4, rects.mutable_data(i, 0));
+    }
+    for (size_t i = 0; i < needs.neighbours.size(); ++i)
+      neighbours.mutable_at(static_cast<py::ssize_t>(i)) = needs.neighbours[i].value;
+    return py::make_tuple(ids, rects, rays, neighbours);
   }
 
   void Release(size_t f) {
@@ -157,14 +183,14 @@ class Film {
   }
 
  private:
-  void Run(const std::function<void()>& work) { RunWithoutGil(work, &interrupts_); }
+  void Run(const std::function<void()>& work) { RunWithoutGil(work, &signals_); }
   void Check(size_t f) {
     if (f >= renderer().frame_count() || renderer().IsReleased(f))
       throw py::index_error(fmt::format("frame {} of {}: does not exist, or was stopped", f,
                                         renderer().frame_count()));
   }
 
-  Interrupts interrupts_;
+  WorkSignals signals_;
   ThreadPool& pool_;
   std::unique_ptr<FilmSetup> setup_;
   std::unique_ptr<FilmRenderer> renderer_;
@@ -211,6 +237,11 @@ std::unique_ptr<Plate> LoadPlate(const std::string& path) {
     Take(reader.AddTo(&plate->sums));
   });
   return plate;
+}
+
+void SavePlate(const Plate& plate, const std::string& path) {
+  ThreadPool& pool = PoolOf(0);
+  RunWithoutGil([&] { Take(WritePlate(path, TextOf(plate.notes), plate.sums, pool)); });
 }
 
 // Returns the sum of two plates of the same camera, such as those of two parts of a light field.
@@ -318,6 +349,7 @@ void AddFilm(py::module_& module) {
                              [](const Plate& plate) { return WordsOf(plate, &ElementSum::sum); })
       .def_property_readonly("counts",
                              [](const Plate& plate) { return WordsOf(plate, &ElementSum::count); })
+      .def("save", &SavePlate)
       .def("__add__", &AddPlates)
       .def("__eq__", [](const Plate& a, const Plate& b) { return a.sums == b.sums; })
       .def("develop", &DevelopPlate);
@@ -326,6 +358,7 @@ void AddFilm(py::module_& module) {
           py::init<const OpenedField&, std::vector<RenderCamera>, double,
                    const std::vector<uint32_t>&, const FilmWords&, const std::string&, bool, int>())
       .def("passes", &Film::Passes)
+      .def("needs", &Film::Needs)
       .def("begin", &Film::Begin)
       .def("step", &Film::Step)
       .def("progress", &Film::Progress)

@@ -4,11 +4,15 @@
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "python/src/arrays.h"
@@ -21,7 +25,9 @@
 #include "lf/focus/example_path.h"
 #include "lf/light_field/model/capture_geometry.h"
 #include "lf/light_field/model/keep_images.h"
+#include "lf/pixels/files/image_file.h"
 #include "lf/storage/load/open_store.h"
+#include "lf/storage/packed/packed_store_file.h"
 
 namespace lf::python {
 namespace {
@@ -180,6 +186,23 @@ Image<float> LightOf(const LfPixels& pixels, const RadianceEncoding& encoding, f
   return light;
 }
 
+// Returns the means of squares of `side` x `side` pixels. Pixels that fill no square are cut off.
+Image<float> MeansOfSquares(const Image<float>& image, int side) {
+  Image<float> means(std::max(1, image.width() / side), std::max(1, image.height() / side),
+                     image.channels());
+  for (int y = 0; y < means.height(); ++y)
+    for (int x = 0; x < means.width() * means.channels(); ++x) {
+      const int column = x / means.channels() * side, channel = x % means.channels();
+      float sum = 0;
+      int count = 0;
+      for (int v = y * side; v < std::min(image.height(), (y + 1) * side); ++v)
+        for (int u = column; u < std::min(image.width(), column + side); ++u, ++count)
+          sum += image.row(v)[u * image.channels() + channel];
+      means.row(y)[x] = sum / static_cast<float>(std::max(1, count));
+    }
+  return means;
+}
+
 py::array LoadImage(const OpenedField& field, py::ssize_t i,
                     const std::optional<std::array<int, 4>>& part, float masked) {
   const LfImageId id = IdOf(field, i);
@@ -210,6 +233,64 @@ py::array LoadImage(const OpenedField& field, py::ssize_t i,
   return ArrayOf(std::move(light));
 }
 
+// Returns an LF image [height][width][3] in linear light, reduced to a width of at most
+// `width_px`, or as near to it as squares of whole pixels allow. For a quick look: its light is
+// about the mean of the pixels.
+py::array Thumbnail(const OpenedField& field, py::ssize_t i, int width_px) {
+  const LfImageId id = IdOf(field, i);
+  const Intrinsics& k = field.light_field.Camera(id).intrinsics;
+  Image<float> small = CallWithoutGil([&] {
+    const int square = std::max(1, (k.width_px + width_px - 1) / width_px);
+    LfPixels pixels;
+    int divisor = 1;
+    while (divisor < 8 && 2 * divisor <= square) divisor *= 2;
+    divisor = Take(LoadReducedWithoutThrowing(*field.store, id, divisor, k,
+                                              field.light_field.image_names[id.value], &pixels));
+    const Image<float> light = LightOf(pixels, field.light_field.encoding, 0);
+    return MeansOfSquares(light, std::max(1, square / divisor));
+  });
+  return ArrayOf(std::move(small));
+}
+
+// Returns the values of an image file as it stores them, [height][width][channels].
+py::array ReadFile(const std::string& path) {
+  StoredImage image = CallWithoutGil([&] { return Take(ReadImage(path)); });
+  return std::visit([](auto& stored) -> py::array { return ArrayOf(std::move(stored)); }, image);
+}
+
+std::string ImageFileOf(const OpenedField& field, py::ssize_t i) {
+  const LfImageId id = IdOf(field, i);
+  if (HoldsPackedStore(field.light_field))
+    throw Failure(UsageError(
+        fmt::format("LF image {}: has no file with stored values, because {} is a packed store", i,
+                    field.light_field.folder.string())));
+  return field.light_field.ImagePath(id).string();
+}
+
+// A store that loads nothing any more once it is interrupted, so that work on many LF images ends
+// soon: kOutput is the only error after which such work tries no other LF image.
+class InterruptibleStore : public LfImageStore {
+ public:
+  InterruptibleStore(std::unique_ptr<LfImageStore> store, const std::atomic<bool>& interrupted)
+      : store_(std::move(store)), interrupted_(interrupted) {}
+  Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override {
+    if (interrupted_) return OutputError("interrupted");
+    return store_->Load(id, rect, pixels);
+  }
+  Result<int> LoadReduced(LfImageId id, int divisor, const Intrinsics& k,
+                          LfPixels* pixels) const override {
+    if (interrupted_) return OutputError("interrupted");
+    return store_->LoadReduced(id, divisor, k, pixels);
+  }
+  bool IsThere(LfImageId id) const override { return store_->IsThere(id); }
+  uint64_t StoredBytes(LfImageId id) const override { return store_->StoredBytes(id); }
+  void Announce(LfImageId id) const override { store_->Announce(id); }
+
+ private:
+  std::unique_ptr<LfImageStore> store_;
+  const std::atomic<bool>& interrupted_;
+};
+
 // Returns the text of a first camera path, and why its focus may be wrong ("" if it is sure).
 py::tuple ExampleOf(const OpenedField& field, const std::string& path, const std::string& move,
                     std::optional<py::ssize_t> camera, std::optional<double> focus_distance_w) {
@@ -220,17 +301,21 @@ py::tuple ExampleOf(const OpenedField& field, const std::string& path, const std
   const std::optional<LfImageId> start =
       camera ? std::optional(IdOf(field, *camera)) : std::nullopt;
   ThreadPool& pool = PoolOf(0);
-  const ExamplePath example = CallWithoutGil([&] {
-    // Focus and aperture are chosen for what was recorded.
-    const LightField recorded = RecordedPart(field.light_field);
-    const std::unique_ptr<LfImageStore> store = Take(OpenStore(recorded, Mosaics::kToRgb));
-    ExampleOptions options;
-    options.move = *known;
-    options.camera = start ? *start : Take(FirstCamera(recorded, *store));
-    options.focus_distance_w = focus_distance_w;
-    options.points_world = [&] { return PointsSeenBy(path, recorded, options.camera); };
-    return Take(MakeExamplePath(recorded, *store, options, pool));
-  });
+  WorkSignals signals;
+  const ExamplePath example = CallWithoutGil(
+      [&] {
+        // Focus and aperture are chosen for what was recorded.
+        const LightField recorded = RecordedPart(field.light_field);
+        const InterruptibleStore store(Take(OpenStore(recorded, Mosaics::kToRgb)),
+                                       signals.interrupted);
+        ExampleOptions options;
+        options.move = *known;
+        options.camera = start ? *start : Take(FirstCamera(recorded, store));
+        options.focus_distance_w = focus_distance_w;
+        options.points_world = [&] { return PointsSeenBy(path, recorded, options.camera); };
+        return Take(MakeExamplePath(recorded, store, options, pool));
+      },
+      &signals);
   return py::make_tuple(example.yaml, example.doubt);
 }
 
@@ -267,8 +352,12 @@ void AddLightField(py::module_& module) {
       .def("project", &ProjectPoints)
       .def("ray_directions", &RayDirections)
       .def("image", &LoadImage)
+      .def("thumbnail", &Thumbnail)
+      .def("image_file",
+           [](const OpenedField& f, py::ssize_t i) { return TextOf(ImageFileOf(f, i)); })
       .def("example", &ExampleOf);
   module.def("open_light_field", &Open);
+  module.def("read_image", &ReadFile);
 }
 
 }  // namespace lf::python

@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 
 #include "python/src/cameras.h"
+#include "python/src/captures.h"
 #include "python/src/errors.h"
 #include "python/src/film.h"
 #include "python/src/light_field.h"
@@ -15,5 +16,6 @@ PYBIND11_MODULE(_core, module) {
   lf::python::AddLightField(module);
   lf::python::AddCameras(module);
   lf::python::AddFilm(module);
+  lf::python::AddCaptures(module);
   module.attr("version") = LF_VERSION;
 }

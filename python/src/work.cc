@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "python/src/errors.h"
 
@@ -43,18 +44,40 @@ class Ending {
   bool has_ended_ = false;
 };
 
-// Runs Python's handlers of the signals that have arrived. Returns true if one of them has raised
-// an exception, which is then Python's current one.
-bool HandlerRaises() {
+// Tells how far the work has come, if that is news.
+class Teller {
+ public:
+  explicit Teller(WorkSignals* signals) : signals_(signals) {}
+  void Tell() {
+    if (signals_ == nullptr || !signals_->tell) return;
+    const std::pair now(signals_->done.load(), signals_->total.load());
+    if (now == told_) return;
+    told_ = now;
+    signals_->tell(now.first, now.second);
+  }
+
+ private:
+  WorkSignals* signals_;
+  std::pair<size_t, size_t> told_{0, 0};
+};
+
+// Runs Python's handlers of the signals that have arrived, and the teller. Returns what they raise.
+std::exception_ptr Look(Teller& teller) {
   const py::gil_scoped_acquire acquire;
-  return PyErr_CheckSignals() != 0;
+  try {
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    teller.Tell();
+  } catch (...) {
+    return std::current_exception();
+  }
+  return nullptr;
 }
 
 }  // namespace
 
-void RunWithoutGil(const std::function<void()>& work, Interrupts* interrupts) {
-  std::exception_ptr failure;
-  bool raised = false;
+void RunWithoutGil(const std::function<void()>& work, WorkSignals* signals) {
+  std::exception_ptr failure, raised;
+  Teller teller(signals);
   {
     const py::gil_scoped_release release;
     Ending ending;
@@ -67,21 +90,23 @@ void RunWithoutGil(const std::function<void()>& work, Interrupts* interrupts) {
       ending.Tell();
     });
     while (!ending.WaitFor(kPatience)) {
-      if (interrupts == nullptr || !HandlerRaises()) continue;
-      raised = true;
-      interrupts->stop = true;
-      interrupts->interrupted = true;
+      if (signals == nullptr) continue;
+      raised = Look(teller);
+      if (!raised) continue;
+      signals->stop = true;
+      signals->interrupted = true;
       ending.Wait();
       break;
     }
     worker.join();
   }
   if (raised) {
-    interrupts->stop = false;
-    interrupts->interrupted = false;
-    throw py::error_already_set();
+    signals->stop = false;
+    signals->interrupted = false;
+    std::rethrow_exception(raised);
   }
   if (failure) std::rethrow_exception(failure);
+  teller.Tell();
 }
 
 ThreadPool& PoolOf(int thread_count) {

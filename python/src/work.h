@@ -12,25 +12,33 @@
 
 namespace lf::python {
 
-// Requests that end work soon. Work that can be interrupted reads them (WorkOptions::interrupted,
-// WorkOptions::stop).
-struct Interrupts {
+// Signals between the thread of Python that waits and the work on another thread.
+struct WorkSignals {
+  // Requests that end work soon. Work that can be interrupted reads them
+  // (WorkOptions::interrupted, WorkOptions::stop).
   std::atomic<bool> interrupted = false;
   std::atomic<bool> stop = false;
+
+  // The work states here how far it has come.
+  std::atomic<size_t> done = 0;
+  std::atomic<size_t> total = 0;
+  // If set, called with the GIL after `done` or `total` has changed, by the thread that waits. It
+  // may throw what a function of Python has raised, which ends the work as Ctrl-C does.
+  std::function<void(size_t done, size_t total)> tell = {};
 };
 
 // Calls work() on another thread and waits for its end. The calling thread holds the GIL before and
-// after, and runs Python's signal handlers meanwhile: if one of them raises, as that of Ctrl-C does
-// in Python's main thread, sets both requests, waits for the end of the work, clears them, and
-// throws what was raised. Otherwise throws what work() threw.
-//   interrupts  null: the work cannot be interrupted, and is waited for
-void RunWithoutGil(const std::function<void()>& work, Interrupts* interrupts = nullptr);
+// after. Meanwhile it runs Python's signal handlers and signals->tell(): if one of them raises, as
+// the handler of Ctrl-C does in Python's main thread, sets both requests, waits for the end of the
+// work, clears them, and throws what was raised. Otherwise throws what work() threw.
+//   signals  null: the work cannot be interrupted, and is waited for
+void RunWithoutGil(const std::function<void()>& work, WorkSignals* signals = nullptr);
 
 // Does the same as RunWithoutGil(), and returns what work() returns.
 template <class Work>
-auto CallWithoutGil(const Work& work, Interrupts* interrupts = nullptr) {
+auto CallWithoutGil(const Work& work, WorkSignals* signals = nullptr) {
   std::optional<decltype(work())> result;
-  RunWithoutGil([&] { result.emplace(work()); }, interrupts);
+  RunWithoutGil([&] { result.emplace(work()); }, signals);
   return *std::move(result);
 }
 

@@ -20,3 +20,18 @@ def test_example(script, words, parts, capture, tmp_path):
     image = Image.open(picture)
     assert image.size[0] % parts[0] == image.size[1] % parts[1] == 0 and min(image.size) > 80
     assert np.asarray(image).std() > 10
+
+
+@pytest.mark.parametrize("script, count, size", [("aperture_sweep.py", 49, (960, 480)),
+                                                 ("million_cameras.py", 3000, (900, 900))])
+def test_example_with_its_own_scene(script, count, size, tmp_path):
+    picture = tmp_path / "picture.png"
+    for _ in range(2):
+        end = subprocess.run([sys.executable, FOLDER / script, tmp_path / "field", picture, str(count)],
+                             capture_output=True, text=True)
+        assert end.returncode == 0, end.stderr
+    image = Image.open(picture)
+    assert image.size == size and np.asarray(image).std() > 10
+    if script == "aperture_sweep.py":
+        psnr = [float(line.split(",")[1].split()[0]) for line in end.stdout.splitlines()]
+        assert len(psnr) == 4 and min(psnr) > 28, psnr

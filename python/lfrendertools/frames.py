@@ -1,0 +1,174 @@
+"""Finished and unfinished frames, and their sensor plates."""
+from __future__ import annotations
+
+import os
+import pathlib
+from typing import Dict, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core, arguments
+from .arguments import FilePath
+from .camera import Camera
+from .display import display_values
+from .errors import UsageError
+
+_FORMATS = {".exr": "exr", ".png": "png"}
+
+
+class Frame:
+    """A frame of a light field. Its arrays share its memory: :meth:`save` writes changes that were made to them.
+
+    :func:`render`, :func:`film`, :class:`Renderer` and :meth:`Plate.develop` make frames.
+    """
+
+    def __init__(self, core: _core.Frame) -> None:
+        self._core = core
+
+    @property
+    def number(self) -> int:
+        """Number of the frame in its path, from 1."""
+        return self._core.number
+
+    @property
+    def camera(self) -> Camera:
+        """The camera that took the frame."""
+        return Camera._of(self._core.camera)
+
+    @property
+    def rgb(self) -> npt.NDArray[np.float32]:
+        """Linear light with sRGB primaries, of shape (height, width, 3); 1 is display white."""
+        return self._core.rgb
+
+    @property
+    def count(self) -> npt.NDArray[np.uint32]:
+        """Number of rays of each channel, of shape (height, width, 3). With lens weights, sums of weights instead."""
+        return self._core.count
+
+    @property
+    def coverage(self) -> npt.NDArray[np.float32]:
+        """Share of the channels of each element that have a ray of their own, of shape (height, width)."""
+        return self._core.coverage
+
+    @property
+    def effective(self) -> Optional[npt.NDArray[np.float32]]:
+        """Number of LF images of equal weight that would give the same noise, of shape (height, width).
+
+        None if rays have no lens weights.
+        """
+        return self._core.effective
+
+    @property
+    def opacity(self) -> Optional[npt.NDArray[np.float32]]:
+        """Opacity, by which `rgb` is multiplied, of shape (height, width). None unless the light field keeps it."""
+        return self._core.opacity
+
+    @property
+    def interpolated(self) -> Optional[npt.NDArray[np.float32]]:
+        """Share of the light that is interpolated, of shape (height, width). None unless rays are rebinned."""
+        return self._core.interpolated
+
+    @property
+    def densified(self) -> Optional[npt.NDArray[np.float32]]:
+        """Share of the light that virtual LF images contribute to, of shape (height, width).
+
+        None unless the light field is densified and `guard` is True.
+        """
+        return self._core.densified
+
+    @property
+    def image_count(self) -> int:
+        """Number of recorded LF images with a ray in the frame."""
+        return self._core.image_count
+
+    @property
+    def metadata(self) -> Dict[str, Union[str, float, int]]:
+        """The facts about the frame that its files state."""
+        return dict(self._core.metadata)
+
+    def display(self) -> npt.NDArray[np.uint8]:
+        """Return the picture for a display: sRGB values from 0 to 255, of shape (height, width, 3)."""
+        return display_values(self.rgb)
+
+    def save(self, path: FilePath, format: Optional[str] = None) -> None:
+        """Write the frame as `lfrenderer` does: EXR with linear light and all other channels, or PNG for display.
+
+        Parameters
+        ----------
+        path : path
+            The file. It appears only when it is whole.
+        format : str, optional
+            "exr" (half floats), "exr-float" (single precision), "png" or "png16"; by default "exr" or "png", by the
+            suffix of `path`.
+        """
+        name = os.fsdecode(arguments.file_name(path))
+        chosen = _FORMATS.get(pathlib.Path(name).suffix.lower()) if format is None else arguments.text("format", format)
+        if chosen is None:
+            raise UsageError(f"{name}: expected a name that ends in .exr or .png, or a format")
+        with arguments.naming_arguments():
+            self._core.save(os.fsencode(name), chosen)
+
+    def _repr_png_(self) -> bytes:
+        return _core.encode_png(self.display())
+
+    def __repr__(self) -> str:
+        height, width = self.rgb.shape[:2]
+        return f"<Frame {self.number}: {width} x {height} of {self.image_count} LF images>"
+
+
+class Plate:
+    """The sensor plate of a frame: exact sums and counts of rays, as integers.
+
+    The sum of plates of different LF images is the plate of all of them, with the same bits in any order.
+    """
+
+    def __init__(self, core: _core.Plate) -> None:
+        self._core = core
+
+    @classmethod
+    def load(cls, path: FilePath) -> Plate:
+        """Read a plate that :meth:`save`, `lfrenderer --keep-plates` or `lfrenderer --shard` has written."""
+        with arguments.naming_arguments():
+            return cls(_core.Plate.load(arguments.file_name(path)))
+
+    def save(self, path: FilePath) -> None:
+        """Write the plate with all that :meth:`load` and :meth:`develop` need (doc/formats/plate.md).
+
+        Parameters
+        ----------
+        path : path
+            The file. It appears only when it is whole.
+        """
+        with arguments.naming_arguments():
+            self._core.save(arguments.file_name(path))
+
+    @property
+    def sums(self) -> npt.NDArray[np.uint64]:
+        """Sums of 16-bit values of rays, of shape (height, width, channels): a copy."""
+        return self._core.sums
+
+    @property
+    def counts(self) -> npt.NDArray[np.uint64]:
+        """Numbers of rays or, with lens weights, sums of weights, of shape (height, width, channels): a copy."""
+        return self._core.counts
+
+    def __add__(self, other: Plate) -> Plate:
+        if not isinstance(other, Plate):
+            return NotImplemented
+        return Plate(self._core + other._core)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Plate) and bool(self._core == other._core)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def develop(self, threads: int = 0) -> Frame:
+        """Average the rays, fill small gaps, and convert the colours to linear sRGB.
+
+        Parameters
+        ----------
+        threads : int
+            Number of threads; 0: one for each processor.
+        """
+        return Frame(self._core.develop(arguments.thread_count(threads)))

@@ -1,0 +1,40 @@
+"""Checks of the arguments `path` and `frames`, which several functions share."""
+from __future__ import annotations
+
+from typing import Iterable, List, Union
+
+from . import _core, arguments
+from .camera import Camera, Path
+from .errors import UsageError
+from .light_field import LightField
+
+Frames = Union[None, str, Iterable[int]]
+
+
+def path_in(field: LightField, path: Union[Path, Camera]) -> Path:
+    """Return the path, or the path of one camera, if it can film this light field."""
+    if not isinstance(field, LightField):
+        raise TypeError(f"expected a light field of lf.open(), found {field!r}")
+    cameras = Path([path]) if isinstance(path, Camera) else path
+    if not isinstance(cameras, Path):
+        raise TypeError(f"expected an lf.Camera or an lf.Path, found {path!r}")
+    for camera in cameras:
+        if camera.unit_m != field.unit_m:
+            raise UsageError(f"the camera has unit_m={camera.unit_m:g}, and the light field {field.unit_m:g}: give "
+                             f"the camera unit_m=field.unit_m, or make it by field.camera()")
+    return cameras
+
+
+def frame_numbers(frames: Frames, count: int) -> List[int]:
+    """Return ascending numbers of frames."""
+    if frames is None:
+        return []
+    if isinstance(frames, str):
+        return _core.parse_frames(frames, count)
+    try:
+        numbers = {arguments.whole("frames", number) for number in frames}
+    except TypeError:
+        raise TypeError(f"frames={frames!r}: expected a list of numbers, or text such as \"1-10,20\"") from None
+    if not numbers or min(numbers) < 1 or max(numbers) > count:
+        raise UsageError(f"frames={frames!r}: the path has the frames 1 to {count}")
+    return sorted(numbers)

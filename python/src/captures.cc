@@ -1,0 +1,250 @@
+#include "python/src/captures.h"
+
+#include <fmt/format.h>
+#include <pybind11/functional.h>
+#include <pybind11/stl.h>
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "python/src/errors.h"
+#include "python/src/film_words.h"
+#include "python/src/light_field.h"
+#include "python/src/work.h"
+#include "tools/codec_words.h"
+#include "tools/common/byte_size.h"
+#include "tools/compress_report.h"
+#include "tools/forecast_report.h"
+#include "tools/import_report.h"
+#include "tools/known_depths.h"
+#include "tools/synthetic_field.h"
+
+#include "lf/storage/load/measure_footprint.h"
+#include "lf/storage/packed/packed_store_file.h"
+
+namespace lf::python {
+namespace {
+
+namespace py = pybind11;
+
+using Tell = std::function<void(size_t done, size_t total)>;
+
+// Work whose progress is told to a function of Python.
+struct ToldWork {
+  explicit ToldWork(Tell tell) { signals.tell = std::move(tell); }
+  std::function<void(size_t, size_t)> Progress() {
+    return [this](size_t done, size_t total) {
+      signals.done = done;
+      signals.total = total;
+    };
+  }
+  WorkSignals signals;
+};
+
+// Returns the report of lfimport as JSON.
+//   check  "none", "headers" or "pixels"
+std::string Report(const OpenedField& field, const std::string& name, const std::string& check,
+                   std::optional<double> distance_w, int threads, const Tell& tell) {
+  ThreadPool& pool = PoolOf(threads);
+  ToldWork work(tell);
+  return CallWithoutGil(
+      [&] {
+        const LightField& light_field = field.light_field;
+        ImportReport report;
+        report.light_field = name;
+        report.first_image = light_field.ImagePath({0}).lexically_normal().string();
+        report.capture = ReportCapture(light_field, {distance_w}, pool);
+        if (check == "none") return ReportJson(report);
+        CheckOptions options;
+        options.check = check == "pixels" ? ImageCheck::kPixels : ImageCheck::kHeaders;
+        options.interrupted = &work.signals.interrupted;
+        options.progress = work.Progress();
+        report.faults = Take(CheckImages(light_field, options, pool));
+        WarnOfFaults(light_field, &report);
+        if (report.faults->missing.size() + report.faults->broken.size() < light_field.size())
+          report.pixels = FootprintFacts{Take(FootprintOf(light_field, *field.store)),
+                                         light_field.encoding.footprint.has_value()};
+        return ReportJson(report);
+      },
+      &work.signals);
+}
+
+// The options of packages as Python's keyword arguments; members have the meaning and the default
+// of the options of lfpreprocessor with these names.
+struct PackageWords {
+  std::string output, memory = "8G", balance = "rays";
+  std::optional<size_t> packages, frames_per_package;
+  std::optional<std::pair<double, double>> depths;
+  bool overwrite = false, strict = false;
+};
+
+PreprocessOptions PreprocessOptionsOf(const PackageWords& words, const FilmWords& film_words,
+                                      const RadianceEncoding& encoding) {
+  const FilmOptions film = Take(FilmOptionsOf(film_words));
+  PreprocessOptions options;
+  if (!words.output.empty()) options.output_folder = words.output;
+  options.overwrite = words.overwrite;
+  options.order = Take(OrderOf(film_words));
+  options.seed = film_words.seed;
+  options.max_image_count = film_words.max_images;
+  if (film_words.max_angle_deg)
+    options.max_angle_rad = RadiansFromDegrees(*film_words.max_angle_deg);
+  options.reading.estimator = film.reading.estimator;
+  options.reading.filter = FilterOf(film.reading.filter, encoding, false);
+  options.mode = film.mode;
+  // As for renders, auto means none with rebinned rays alone, which are not weighted.
+  options.lens_weights = film.mode == RenderMode::kRebin && film.lens_weights == LensWeights::kAuto
+                             ? LensWeights::kNone
+                             : film.lens_weights;
+  options.guard = film.guard;
+  options.memory_bytes = Take(ParseByteSize(words.memory, "memory"));
+  options.package_count = words.packages;
+  options.frames_per_package = words.frames_per_package;
+  options.balance = words.balance == "frames" ? PackageBalance::kFrames : PackageBalance::kRays;
+  if (words.depths) options.depths = DepthRange{words.depths->first, words.depths->second};
+  options.strict = words.strict;
+  options.version = LF_VERSION;
+  return options;
+}
+
+// Makes packages, or only forecasts their render. Returns the report of lfpreprocessor as JSON.
+std::string Preprocess(const OpenedField& field, const std::string& name,
+                       std::vector<RenderCamera> cameras, double fps,
+                       const std::vector<uint32_t>& frames, const FilmWords& film,
+                       const PackageWords& words, int threads, const Tell& tell) {
+  ThreadPool& pool = PoolOf(threads);
+  ToldWork work(tell);
+  const LightField& light_field = field.light_field;
+  PreprocessOptions options = PreprocessOptionsOf(words, film, light_field.encoding);
+  for (const uint32_t frame : frames) options.frames.push_back(FrameId{frame});
+  options.light_field_name = name;
+  options.interrupted = &work.signals.interrupted;
+  return CallWithoutGil(
+      [&] {
+        const CameraPath path{fps, light_field.unit_m, std::move(cameras)};
+        ForecastFacts facts;
+        facts.light_field = name;
+        facts.output = words.output;
+        facts.order = options.order;
+        facts.seed = options.seed;
+        facts.thread_count = pool.thread_count();
+        facts.rebins = Rebins(options.mode);
+        facts.depths_from = KnowDepths(light_field, path, pool, &options);
+        const PreprocessReport report =
+            Take(lf::Preprocess(light_field, path, options, pool, work.Progress()));
+        return ForecastJson(report, path, facts);
+      },
+      &work.signals);
+}
+
+// The options of a packed store that are not those of its codec, with the names of lfcompressor.
+struct StoreWords {
+  std::string output, shard_size;
+  bool resume = false, overwrite = false, verify = false, strict = false;
+};
+
+// Compresses all LF images. Returns the report of lfcompressor as JSON.
+std::string CompressField(const OpenedField& field, const std::string& name,
+                          const CodecWords& codec, const StoreWords& words, int threads,
+                          const Tell& tell) {
+  ThreadPool& pool = PoolOf(threads);
+  ToldWork work(tell);
+  CompressOptions options;
+  options.store = words.output;
+  Take(SetCodec(codec, &options));
+  if (!words.shard_size.empty())
+    options.shard_bytes = Take(ParseByteSize(words.shard_size, "shard_size"));
+  options.resume = words.resume;
+  options.overwrite = words.overwrite;
+  options.verify = words.verify;
+  options.strict = words.strict;
+  options.source_name = name;
+  options.version = LF_VERSION;
+  options.interrupted = &work.signals.interrupted;
+  return CallWithoutGil(
+      [&] {
+        const auto progress = [&](const CompressProgress& now) {
+          work.Progress()(now.done, now.total);
+        };
+        const CompressReport report =
+            Take(Compress(Take(SourceOfAll(field.light_field)), options, pool, progress));
+        return CompressJson(report, options);
+      },
+      &work.signals);
+}
+
+void Synthesise(const SyntheticFieldOptions& options, int threads, const Tell& tell) {
+  ThreadPool& pool = PoolOf(threads);
+  ToldWork work(tell);
+  RunWithoutGil(
+      [&] {
+        Take(WriteSyntheticField(options, pool, [&](size_t done, size_t total, bool) {
+          work.Progress()(done, total);
+          return !work.signals.interrupted;
+        }));
+      },
+      &work.signals);
+}
+
+}  // namespace
+
+void AddCaptures(py::module_& module) {
+  module.def("report", &Report);
+  py::class_<PackageWords>(module, "PackageWords")
+      .def(py::init<>())
+      .def_readwrite("output", &PackageWords::output)
+      .def_readwrite("memory", &PackageWords::memory)
+      .def_readwrite("balance", &PackageWords::balance)
+      .def_readwrite("packages", &PackageWords::packages)
+      .def_readwrite("frames_per_package", &PackageWords::frames_per_package)
+      .def_readwrite("depths", &PackageWords::depths)
+      .def_readwrite("overwrite", &PackageWords::overwrite)
+      .def_readwrite("strict", &PackageWords::strict);
+  module.def("preprocess", &Preprocess);
+  py::class_<CodecWords>(module, "CodecWords")
+      .def(py::init<>())
+      .def_readwrite("profile", &CodecWords::profile)
+      .def_readwrite("quantizer", &CodecWords::quantizer)
+      .def_readwrite("levels", &CodecWords::levels)
+      .def_readwrite("threshold", &CodecWords::threshold)
+      .def_readwrite("target_psnr", &CodecWords::target_psnr);
+  py::class_<StoreWords>(module, "StoreWords")
+      .def(py::init<>())
+      .def_readwrite("output", &StoreWords::output)
+      .def_readwrite("shard_size", &StoreWords::shard_size)
+      .def_readwrite("resume", &StoreWords::resume)
+      .def_readwrite("overwrite", &StoreWords::overwrite)
+      .def_readwrite("verify", &StoreWords::verify)
+      .def_readwrite("strict", &StoreWords::strict);
+  module.def("compress", &CompressField);
+  py::class_<SyntheticFieldOptions>(module, "SyntheticFieldOptions")
+      .def(py::init<>())
+      .def_readwrite("scene", &SyntheticFieldOptions::scene)
+      .def_readwrite("output", &SyntheticFieldOptions::output)
+      .def_readwrite("capture", &SyntheticFieldOptions::capture)
+      .def_readwrite("format", &SyntheticFieldOptions::format)
+      .def_readwrite("alpha", &SyntheticFieldOptions::alpha)
+      .def_readwrite("truth", &SyntheticFieldOptions::truth)
+      .def_readwrite("size", &SyntheticFieldOptions::size_px)
+      .def_readwrite("count", &SyntheticFieldOptions::count)
+      .def_readwrite("spacing", &SyntheticFieldOptions::spacing)
+      .def_readwrite("distance", &SyntheticFieldOptions::distance)
+      .def_readwrite("jitter", &SyntheticFieldOptions::jitter)
+      .def_readwrite("noise", &SyntheticFieldOptions::noise)
+      .def_readwrite("distortion", &SyntheticFieldOptions::distortion)
+      .def_readwrite("fisheye", &SyntheticFieldOptions::fisheye)
+      .def_readwrite("fov", &SyntheticFieldOptions::fov)
+      .def_readwrite("samples", &SyntheticFieldOptions::samples)
+      .def_readwrite("truth_samples", &SyntheticFieldOptions::truth_samples)
+      .def_readwrite("bayer", &SyntheticFieldOptions::bayer)
+      .def_readwrite("calibration_only", &SyntheticFieldOptions::calibration_only)
+      .def_readwrite("overwrite", &SyntheticFieldOptions::overwrite)
+      .def_readwrite("seed", &SyntheticFieldOptions::seed);
+  module.def("synth", &Synthesise);
+}
+
+}  // namespace lf::python

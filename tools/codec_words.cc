@@ -1,0 +1,41 @@
+#include "tools/codec_words.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+namespace lf {
+namespace {
+
+Result<CodecProfile> ProfileOf(const std::string& word) {
+  if (word == "default") return CodecProfile::kDefault;
+  if (word == "thesis") return CodecProfile::kThesis;
+  if (word == "lossless") return CodecProfile::kLossless;
+  return UsageError(fmt::format("--profile {}: expected one of default, thesis, lossless", word));
+}
+
+}  // namespace
+
+Result<void> SetCodec(const CodecWords& words, CompressOptions* options) {
+  LF_ASSIGN_OR_RETURN(options->codec.profile, ProfileOf(words.profile));
+  const bool is_thesis = words.profile == "thesis", is_lossless = words.profile == "lossless";
+  options->codec.levels = words.levels > 0 ? words.levels : is_thesis ? 1 : 4;
+  options->codec.threshold = words.threshold >= 0 ? words.threshold : is_thesis ? 8 : 3;
+  if (is_lossless && (words.threshold >= 0 || words.target_psnr > 0))
+    return UsageError(
+        "--threshold and --target-psnr cannot be used with --profile lossless, which drops no "
+        "details: leave them out");
+  if (words.quantizer != "8bit") {
+    if (!is_thesis)
+      return UsageError(
+          "--quantizer can only be used with --profile thesis: leave it out, or add --profile "
+          "thesis");
+    if (!CLI::detail::lexical_cast(words.quantizer, options->codec.quantizer))
+      return UsageError(fmt::format(
+          "--quantizer {}: expected 8bit, or a whole number from 2 to 65536", words.quantizer));
+  }
+  if (words.target_psnr > 0) options->target_psnr_db = words.target_psnr;
+  return {};
+}
+
+}  // namespace lf

@@ -1,0 +1,135 @@
+#include "tools/synthetic_field.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "lf/camera/path/path_yaml.h"
+#include "lf/core/file.h"
+#include "lf/core/file_lock.h"
+#include "lf/core/log.h"
+#include "lf/light_field/synthetic/built_in_scenes.h"
+#include "lf/light_field/synthetic/write_light_field.h"
+#include "lf/light_field/synthetic/write_truth.h"
+#include "lf/light_field/transforms_json/transforms_json.h"
+
+namespace lf {
+namespace {
+
+Result<RigOptions> RigOf(const SyntheticFieldOptions& a, const BuiltInScene& scene) {
+  RigOptions rig = scene.rig;
+  if (a.capture == "band") rig.shape = RigShape::kBand;
+  if (a.capture == "hemisphere") rig.shape = RigShape::kHemisphere;
+  if (rig.shape == RigShape::kHemisphere && a.spacing)
+    return UsageError(
+        "--spacing cannot be used with --capture hemisphere, where --count and --distance "
+        "determine it: leave it out");
+  if (a.count > 0) rig.count = a.count;
+  rig.spacing_w = a.spacing.value_or(rig.spacing_w);
+  rig.distance_w = a.distance.value_or(rig.distance_w);
+  rig.jitter = a.jitter;
+  rig.seed = a.seed;
+  return rig;
+}
+
+Distortion DistortionOf(const SyntheticFieldOptions& a) {
+  Distortion distortion;
+  const auto set = [&](DistortionModel model, const std::vector<double>& parameters) {
+    if (parameters.empty()) return;
+    distortion.model = model;
+    std::copy(parameters.begin(), parameters.end(), distortion.parameters.begin());
+  };
+  set(DistortionModel::kRadialTangential, a.distortion);
+  set(DistortionModel::kFisheye, a.fisheye);
+  if (a.fov > 0) set(DistortionModel::kFov, {a.fov});
+  return distortion;
+}
+
+Result<LfImageFormat> FormatOf(const SyntheticFieldOptions& a) {
+  if (a.bayer && a.format != "exr")
+    return UsageError(
+        "--bayer and --format cannot be combined, because mosaics are always 16-bit PNG: leave one "
+        "out");
+  if (a.alpha != "none" && a.bayer)
+    return UsageError(
+        "--bayer and --alpha cannot be combined, because mosaics have no alpha: leave one out");
+  if (a.alpha != "none" && a.scene == "lights")
+    return UsageError(
+        "--alpha cannot be used with the scene lights, which has no surfaces: use another scene, "
+        "or leave --alpha out");
+  if (a.noise > 0 && !a.bayer)
+    return UsageError("--noise can only be used with mosaics: add --bayer, or leave --noise out");
+  if (a.bayer) return LfImageFormat::kBayer;
+  if (a.format == "png") return LfImageFormat::kPng;
+  return a.format == "png16" ? LfImageFormat::kPng16 : LfImageFormat::kExr;
+}
+
+std::filesystem::path CalibrationIn(const SyntheticFieldOptions& a) {
+  return std::filesystem::path(a.output) / "transforms.json";
+}
+
+Result<FileLock> LockFolder(const std::filesystem::path& folder) {
+  LF_RETURN_IF_ERROR(CreateFolder(folder));
+  LF_ASSIGN_OR_RETURN(FileLock lock, FileLock::Take(folder / ".lfsynth.lock"));
+  lock.RemoveInTheEnd();
+  return lock;
+}
+
+// Refuses to overwrite a light field that lfsynth did not write, or that was edited since.
+Result<void> CheckMayWrite(const SyntheticFieldOptions& a) {
+  std::error_code error;
+  if (a.overwrite || !std::filesystem::exists(CalibrationIn(a), error)) return {};
+  LF_ASSIGN_OR_RETURN(const bool is_ours, IsAsWritten(CalibrationIn(a), kSynthProgram));
+  if (is_ours) return {};
+  return UsageError(
+      fmt::format("{}: was not written by lfsynth, or was changed afterwards: give another folder, "
+                  "or replace this "
+                  "light field with --overwrite",
+                  CalibrationIn(a).string()));
+}
+
+}  // namespace
+
+Result<void> WriteSyntheticField(const SyntheticFieldOptions& options, ThreadPool& pool,
+                                 const SyntheticProgress& keep_going) {
+  const BuiltInScene* const built_in = FindBuiltInScene(options.scene);
+  if (built_in == nullptr)
+    return UsageError(
+        fmt::format("scene {}: expected one of still-life, lights, chart", options.scene));
+  LF_ASSIGN_OR_RETURN(const LfImageFormat format, FormatOf(options));
+  LF_ASSIGN_OR_RETURN(const RigOptions rig, RigOf(options, *built_in));
+  LF_ASSIGN_OR_RETURN(const std::vector<RigidTransform> poses, MakeRig(rig));
+  CameraPath path;
+  if (!options.truth.empty()) {
+    LF_ASSIGN_OR_RETURN(path, ReadPathYaml(options.truth, 1.0));
+  }
+  // The lock keeps two processes from mixing their scenes in one folder.
+  LF_ASSIGN_OR_RETURN(const FileLock lock, LockFolder(options.output));
+  LF_RETURN_IF_ERROR(CheckMayWrite(options));
+  const auto [width_px, height_px] =
+      options.size_px.value_or(std::pair(built_in->width_px, built_in->height_px));
+  Intrinsics intrinsics = IntrinsicsFor(*built_in, width_px, height_px);
+  intrinsics.distortion = DistortionOf(options);
+  LightField light_field =
+      DescribeLightField(poses, intrinsics, format, built_in->max_radiance, options.output);
+  light_field.encoding.alpha = AlphaMeaningOf(options.alpha);
+  const Surroundings surroundings =
+      light_field.encoding.AlphaIsLight() ? Surroundings::kTransparent : Surroundings::kShown;
+  const Scene scene(built_in->describe());
+  if (options.calibration_only) {
+    LF_RETURN_IF_ERROR(WriteTransformsJson(light_field, CalibrationIn(options), kSynthProgram));
+  } else {
+    const int samples = options.samples > 0 ? options.samples : built_in->samples;
+    const auto tell = [&](size_t done) { return keep_going(done, poses.size(), false); };
+    LF_RETURN_IF_ERROR(WriteLightField(scene, light_field,
+                                       {format, samples, options.noise, options.seed, tell}, pool));
+  }
+  LogInfo("{}: {} LF cameras, {:.4g} apart", options.output, poses.size(), RigPitch(rig));
+  if (options.truth.empty()) return {};
+  return WriteTruth(scene, path.cameras, {options.truth_samples, 0}, light_field.folder / "truth",
+                    pool, surroundings,
+                    [&](size_t done) { return keep_going(done, path.frame_count(), true); });
+}
+
+}  // namespace lf
