@@ -1,5 +1,5 @@
-// The opening of the lens: a disk, or the regular polygon of a few blades inscribed in it
-// (thesis 4.3.3, "Simulating Aperture Shapes").
+// The opening of the lens: a disk, an ellipse, or a polygon of straight or rounded blades inscribed
+// in it (thesis 4.3.3, "Simulating Aperture Shapes").
 //
 // Lens coordinates: origin at the lens centre, right and up as the photographer behind the camera
 // sees them, world units.
@@ -13,10 +13,29 @@
 namespace lf {
 
 struct Aperture {
-  double radius_w = 0;      // radius of the circumscribed circle; 0: a pinhole
-  int blades = 0;           // 0: disk; >= 3: polygon with a vertex straight up at rotation 0
+  double radius_w = 0;      // radius of the circle around the opening; 0: a pinhole
+  int blades = 0;           // 0: round; >= 3: polygon with a vertex straight up at rotation 0
   double rotation_rad = 0;  // counter-clockwise as the photographer sees it (right towards up)
+  // Height of the opening divided by its width, as of an anamorphic lens: above 1, the opening is
+  // narrower by this factor; below 1, it is lower.
+  double ratio = 1;
+  // 0: blades are straight; 1: they form the circle; between: their edges are arcs through the
+  // vertices, whose middles are this share of the way from the chord to the circle.
+  double roundness = 0;
+
+  bool IsDisk() const { return ratio == 1 && (blades == 0 || roundness == 1); }
+  // True if the edges are straight, so that there is one for each blade.
+  bool IsPlainPolygon() const { return blades > 0 && ratio == 1 && roundness == 0; }
 };
+
+// The limits of Aperture::ratio are 1 / kMostRatio and kMostRatio.
+inline constexpr double kMostRatio = 10;
+// Returns true if the ratio or the roundness is not the default. Files state them only then.
+inline bool HasShape(const Aperture& aperture) {
+  return aperture.ratio != 1 || aperture.roundness != 0;
+}
+// Returns true if the ratio and the roundness are within their limits.
+bool IsShape(double ratio, double roundness);
 
 // Relative tolerance of the rim. The rim counts as inside, because LF cameras of regular grids
 // often lie exactly on it. In a disk, the squared length of a point may exceed the squared radius
@@ -31,7 +50,9 @@ struct ApertureEdge {
   double distance_w = 0;
 };
 
-// Returns the vertices of the polygon in lens coordinates, counter-clockwise; empty for a disk.
+// Returns the vertices of the polygon in lens coordinates, counter-clockwise; empty for a disk. An
+// opening with curved edges is the convex polygon of up to 64 vertices that is returned
+// (doc/ray.md).
 std::vector<Vec2> Vertices(const Aperture& aperture);
 
 // Returns the edges of the polygon. For a disk, returns the edges of the regular polygon with
@@ -62,7 +83,7 @@ double Area(const Aperture& aperture);
 // Returns `count` points spread uniformly over the opening: the R2 low-discrepancy sequence,
 // shifted by random offsets that depend on `seed`. A point (a, b) of the sequence is mapped to the
 // disk by radius_w sqrt(a) (cos 2 pi b, sin 2 pi b) (thesis Eq. 4.7), or to the polygon by
-// triangles of equal area. Equal arguments give equal points on every machine.
+// triangles around its centre. Equal arguments give equal points on every machine.
 std::vector<Vec2> SampleLens(const Aperture& aperture, int count, uint64_t seed = 0);
 
 }  // namespace lf

@@ -83,5 +83,98 @@ TEST(Aperture, LensSamplesAreInsideAndUniform) {
   }
 }
 
+// Openings with curved or squeezed edges.
+std::vector<Aperture> Shapes() {
+  return {{1.5, 0, 0.3, 2, 0},   {1.5, 0, 0, 0.4, 0},     {1.5, 5, 0.2, 1, 0.5},
+          {1.5, 3, 0, 1, 0.01},  {1.5, 8, 0.1, 1.7, 0.8}, {1.5, 6, 0, 0.6, 0},
+          {1.5, 7, 0.2, 1, 0.9}, {1.5, 40, 0, 1, 0.5},    {1.5, 6, 0.3, 3, 1}};
+}
+
+// Returns true if the point lies in the opening by its definition: a disk, or the part of a disk in
+// front of the arcs of its blades, squeezed.
+bool LiesInside(const Aperture& aperture, const Vec2& point) {
+  const Vec2 squeeze(std::min(1.0, 1 / aperture.ratio), std::min(1.0, aperture.ratio));
+  const Vec2 p = point.cwiseQuotient(squeeze) / aperture.radius_w;
+  if (aperture.blades == 0 || aperture.roundness == 1) return p.norm() <= 1;
+  const double half = kPi / aperture.blades;
+  const double from = std::atan2(p.y(), p.x()) - kPi / 2 - aperture.rotation_rad - half;
+  const double folded = from - 2 * half * std::round(from / (2 * half));
+  const Vec2 q(p.norm() * std::cos(folded), p.norm() * std::sin(folded));
+  if (aperture.roundness == 0) return q.x() <= std::cos(half);
+  // The circle through the two vertices and the middle of the arc.
+  const double top = std::cos(half) + aperture.roundness * (1 - std::cos(half));
+  const double centre = (top * top - 1) / (2 * (top - std::cos(half)));
+  return (q - Vec2(centre, 0)).norm() <= top - centre;
+}
+
+TEST(Aperture, CurvedEdgesAreThoseOfTheShape) {
+  for (const Aperture& shape : Shapes()) {
+    size_t differing = 0, inside = 0;
+    constexpr size_t kCount = 20000;
+    for (uint64_t i = 0; i < kCount; ++i) {
+      const Vec2 p(3 * RandomUnit(3, 0, i) - 1.5, 3 * RandomUnit(3, 1, i) - 1.5);
+      inside += Contains(shape, p);
+      differing += Contains(shape, p) != LiesInside(shape, p);
+    }
+    EXPECT_LT(differing, 0.002 * kCount) << shape.blades << " " << shape.ratio;
+    EXPECT_NEAR(9.0 * inside / kCount, Area(shape), 0.03 * 9);
+    EXPECT_FALSE(shape.IsDisk() ||
+                 shape.IsPlainPolygon() != (shape.ratio == 1 && !shape.roundness));
+  }
+}
+
+TEST(Aperture, ShapesHaveAtMostSixtyFourEdgesWithinTheirCircle) {
+  for (const Aperture& shape : Shapes()) {
+    const std::vector<Vec2> vertices = Vertices(shape);
+    EXPECT_EQ(Edges(shape).size(), vertices.size());
+    EXPECT_LE(vertices.size(), 64u);
+    double farthest = 0;
+    for (const Vec2& v : vertices) {
+      farthest = std::max(farthest, v.norm());
+      EXPECT_TRUE(Contains(shape, v));
+      EXPECT_FALSE(Contains(shape, 1.0001 * v));
+    }
+    // A polygon that has the area of a circle reaches a little beyond it.
+    EXPECT_LE(farthest, 1.5 * 1.001);
+  }
+}
+
+TEST(Aperture, FullRoundnessIsADisk) {
+  const Aperture round{1, 6, 0.4, 1, 1};
+  EXPECT_TRUE(round.IsDisk());
+  EXPECT_TRUE(Vertices(round).empty());
+  EXPECT_EQ(Area(round), Area({1, 0, 0}));
+}
+
+TEST(Aperture, SamplesFillShapesEvenly) {
+  for (const Aperture& shape : Shapes()) {
+    constexpr int kCount = 4000;
+    Vec2 mean = Vec2::Zero();
+    int upper = 0, in_half_size = 0;
+    Aperture half = shape;
+    half.radius_w /= 2;
+    for (const Vec2& p : SampleLens(shape, kCount)) {
+      EXPECT_TRUE(LiesInside(shape, p / 1.003));
+      mean += p / kCount;
+      upper += p.y() > 0;
+      in_half_size += Contains(half, p);
+    }
+    EXPECT_LT(mean.norm(), shape.blades == 3 ? 0.02 : 0.01);
+    EXPECT_NEAR(in_half_size, 0.25 * kCount, 0.02 * kCount);
+    if (shape.blades % 2 == 0) {
+      EXPECT_NEAR(upper, 0.5 * kCount, 0.02 * kCount);
+    }
+  }
+}
+
+TEST(Aperture, APinholeOfAnyShapeHasOnePoint) {
+  for (Aperture shape : Shapes()) {
+    shape.radius_w = 0;
+    EXPECT_TRUE(Contains(shape, Vec2::Zero()));
+    EXPECT_FALSE(Contains(shape, Vec2(1e-9, 0)));
+    EXPECT_EQ(SampleLens(shape, 1)[0], Vec2::Zero());
+  }
+}
+
 }  // namespace
 }  // namespace lf

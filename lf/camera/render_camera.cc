@@ -14,6 +14,13 @@ Plane FocusPlane(const PinholeCamera& camera, double focus_distance_w, const Foc
   return {normal_world, normal_world.dot(on_axis)};
 }
 
+Vec2 ShiftOf(const RenderCamera& camera) {
+  const Intrinsics& plate = camera.pinhole.intrinsics;
+  const double w_per_px = camera.sensor_width_w / plate.width_px;
+  return {(0.5 * plate.width_px - plate.cx_px) * w_per_px,
+          (plate.cy_px - 0.5 * plate.height_px) * w_per_px};
+}
+
 Vec3 LensPointWorld(const RenderCamera& camera, const Vec2& point_lens) {
   return camera.pinhole.CentreWorld() + point_lens.x() * camera.pinhole.RightWorld() +
          point_lens.y() * camera.pinhole.UpWorld();

@@ -34,6 +34,11 @@ struct RenderCamera {
 // Returns the focus plane at distance g > 0 in front of `camera`, with tilts within +-90 degrees.
 Plane FocusPlane(const PinholeCamera& camera, double focus_distance_w, const FocusTilt& tilt);
 
+// Returns the distances from the optical axis to the middle of the picture, to the right and
+// upwards, in world units on a plate that does not turn the picture around. They are exactly 0 if
+// the principal point is the centre of the plate.
+Vec2 ShiftOf(const RenderCamera& camera);
+
 // Converts a point of the lens from lens coordinates (right, up) to world coordinates.
 Vec3 LensPointWorld(const RenderCamera& camera, const Vec2& point_lens);
 

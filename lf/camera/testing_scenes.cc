@@ -30,6 +30,9 @@ CameraPair RandomCameraPair(uint64_t seed) {
       Pose(Vector(&random, 0.1), Vec3(0, 0, 1) + Vector(&random, 0.2), random.Uniform(-0.3, 0.3));
   constexpr int kBlades[] = {0, 5, 0, 3, 0, 8};
   render.aperture = {random.Uniform(0.05, 0.6), kBlades[seed % 6], random.Uniform(-1, 1)};
+  // Every seventh opening is squeezed, and the blades of every seventh are rounded.
+  if (seed % 7 == 2) render.aperture.ratio = seed % 2 == 0 ? 1.9 : 0.4;
+  if (seed % 7 == 4) render.aperture.roundness = 0.6;
   const bool tilted = seed % 4 >= 2;
   const double reach = tilted ? 1.45 : 0;
   render.focus_distance_w = random.Uniform(0.5, 3);

@@ -70,7 +70,7 @@ std::vector<PixelForm> HalfPlanes(const GatherForms& forms, const Intrinsics& k,
     half_planes.push_back(sign * (0.5 * forms.depth - forms.across_y));
     half_planes.push_back(sign * (forms.across_y - (k.height_px - 0.5) * forms.depth));
   }
-  if (aperture.blades > 0)
+  if (!aperture.IsDisk())
     for (const ApertureEdge& edge : Edges(aperture))
       half_planes.push_back(sign *
                             (edge.normal.x() * forms.lens_right + edge.normal.y() * forms.lens_up -
@@ -96,7 +96,7 @@ class GatherPlanner {
       rows_.half_planes[side] = HalfPlanes(forms_, k_, finer.aperture, side == 0 ? -1 : 1);
     // All rays of an LF camera in the lens plane cross this plane at one point. Unless the point is
     // surely inside the disk, the ray model decides about each span by its ends.
-    const bool is_disk = finer.aperture.blades == 0;
+    const bool is_disk = finer.aperture.IsDisk();
     if (is_disk && LiesInLensPlane(lf_camera, finer))
       rows_.model_decides = !IsSurelyInDisk(lf_camera, finer);
     else if (is_disk)

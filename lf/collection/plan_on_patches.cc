@@ -56,11 +56,11 @@ class PatchPlanner {
       const auto plate = PlateHalfPlanes(forms_, render_camera, side == 0 ? -1 : 1, 0);
       plate_half_planes_[side].assign(plate.begin(), plate.end());
     }
-    if (render_camera.aperture.blades > 0)
+    if (!render_camera.aperture.IsDisk())
       lens_half_planes_ = LensHalfPlanes(forms_, render_camera, 0);
     for (const int side : {0, 1}) all_conditions_.plate[side] = BitsOf(plate_half_planes_[side]);
     all_conditions_.lens = BitsOf(lens_half_planes_);
-    all_conditions_.disk = render_camera.aperture.blades == 0;
+    all_conditions_.disk = render_camera.aperture.IsDisk();
   }
 
   void Run() {

@@ -18,7 +18,7 @@ void PlanOnLines(const PinholeCamera& lf_camera, const RenderCamera& render_came
                  const PixelRect& rect, std::vector<Segment>* segments) {
   const RayModel model(lf_camera, render_camera);
   const RayForms forms = MakeRayForms(lf_camera, render_camera);
-  const bool is_disk = render_camera.aperture.blades == 0;
+  const bool is_disk = render_camera.aperture.IsDisk();
   RowSpans rows;
   for (const int side : {0, 1}) {
     const auto plate = PlateHalfPlanes(forms, render_camera, side == 0 ? -1 : 1, 0);

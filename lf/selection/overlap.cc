@@ -254,7 +254,7 @@ bool ImageOverlap::PlainlyMisses(const RenderCamera& render_camera) const {
 FrameOutline::FrameOutline(const RenderCamera& render_camera) : camera(render_camera) {
   // A lens with very many blades is treated as a disk, whose 16-gon contains it.
   constexpr int kMostBlades = 64;
-  if (camera.aperture.blades > kMostBlades) camera.aperture.blades = 0;
+  if (camera.aperture.blades > kMostBlades) camera.aperture = {camera.aperture.radius_w, 0, 0};
   lens_edges = Edges(camera.aperture);
   lens_inner_w = camera.aperture.radius_w;
   for (const ApertureEdge& edge : lens_edges)

@@ -64,7 +64,7 @@ TEST(Overlap, NoContributingRayOfADistortedImageLiesOutsideTheRectangle) {
     pixels += static_cast<size_t>(rect.pixel_count());
   }
   EXPECT_GT(contributing_images, 120u);
-  EXPECT_LE(selected_images, contributing_images + contributing_images / 4);
+  EXPECT_LE(selected_images, contributing_images + contributing_images * 3 / 10);
   EXPECT_LE(pixels, 4 * rays);
 }
 

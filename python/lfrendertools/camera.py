@@ -18,8 +18,8 @@ Vector = Union[Sequence[float], Floats]
 # Path files have no more bytes than this.
 
 # Names, in a path file, of the values that may change from frame to frame.
-_MOVING = ("position", "quaternion", "field_of_view_deg", "aperture_diameter", "focus_distance", "focus_tilt_deg",
-           "blade_rotation_deg")
+_MOVING = ("position", "quaternion", "field_of_view_deg", "shift_mm", "aperture_diameter", "focus_distance",
+           "focus_tilt_deg", "blade_rotation_deg")
 
 
 class Camera:
@@ -45,6 +45,9 @@ class Camera:
         Focal length, or horizontal field of view. One of them is required.
     sensor_width_mm : float, optional
         Width of the sensor plate.
+    shift_mm : tuple of float, optional
+        How far the middle of the picture is to the right of the optical axis and above it, on the sensor plate. A
+        positive shift shows more of what is on the right and above, without turning the camera.
     f_number, aperture_diameter, aperture_diameter_mm : float
         Opening of the lens. One of them is required; a diameter of 0 is a pinhole.
     focus_distance, focus_point : float, array_like
@@ -56,6 +59,11 @@ class Camera:
         0: the aperture is a circle; 3 to 64: a regular polygon.
     blade_rotation_deg : float, optional
         Rotation of the polygon, counter-clockwise for the photographer.
+    blade_roundness : float, optional
+        0: blades are straight; 1: they form the circle; between: arcs.
+    ratio : float, optional
+        Height of the opening divided by its width, from 0.1 to 10, as of an anamorphic lens. The longer side has the
+        diameter of the aperture.
     breathing : bool, optional
         True: the field of view narrows when the focus comes nearer. False: focusing does not change it.
     unit_m : float, optional
@@ -83,10 +91,11 @@ class Camera:
                  world_from_cam: Optional[npt.ArrayLike] = None, up: Vector = (0, -1, 0), roll_deg: float = 0,
                  resolution: Tuple[int, int], focal_length_mm: Optional[float] = None,
                  field_of_view_deg: Optional[float] = None, sensor_width_mm: float = 36,
-                 f_number: Optional[float] = None, aperture_diameter: Optional[float] = None,
-                 aperture_diameter_mm: Optional[float] = None, focus_distance: Optional[float] = None,
-                 focus_point: Optional[Vector] = None, tilt_deg: Tuple[float, float] = (0, 0), blades: int = 0,
-                 blade_rotation_deg: float = 0, breathing: bool = False, unit_m: float = 1) -> None:
+                 shift_mm: Tuple[float, float] = (0, 0), f_number: Optional[float] = None,
+                 aperture_diameter: Optional[float] = None, aperture_diameter_mm: Optional[float] = None,
+                 focus_distance: Optional[float] = None, focus_point: Optional[Vector] = None,
+                 tilt_deg: Tuple[float, float] = (0, 0), blades: int = 0, blade_rotation_deg: float = 0,
+                 blade_roundness: float = 0, ratio: float = 1, breathing: bool = False, unit_m: float = 1) -> None:
         _one_of(look_at=look_at, quaternion=quaternion, world_from_cam=world_from_cam)
         _one_of(focal_length_mm=focal_length_mm, field_of_view_deg=field_of_view_deg)
         _one_of(f_number=f_number, aperture_diameter=aperture_diameter, aperture_diameter_mm=aperture_diameter_mm)
@@ -95,11 +104,12 @@ class Camera:
             quaternion = _quaternion_of(arguments.reals("world_from_cam", world_from_cam))
         camera = {"position": position, "look_at": look_at, "quaternion": quaternion, "roll_deg": roll_deg or None,
                   "up": up if look_at is not None else None, "focal_length_mm": focal_length_mm,
-                  "field_of_view_deg": field_of_view_deg, "sensor_width_mm": sensor_width_mm}
+                  "field_of_view_deg": field_of_view_deg, "sensor_width_mm": sensor_width_mm, "shift_mm": shift_mm}
         lens = {"f_number": f_number, "aperture_diameter": aperture_diameter,
                 "aperture_diameter_mm": aperture_diameter_mm, "focus_distance": focus_distance,
                 "focus_point": focus_point, "focus_tilt_deg": tilt_deg, "blades": blades,
-                "blade_rotation_deg": blade_rotation_deg, "breathing": arguments.flag("breathing", breathing)}
+                "blade_rotation_deg": blade_rotation_deg, "blade_roundness": blade_roundness, "ratio": ratio,
+                "breathing": arguments.flag("breathing", breathing)}
         text = _text_of_path(1, 1, unit_m, resolution, camera, lens, {})
         try:
             cameras, _, _ = _core.parse_path(text, "camera", None)
@@ -177,6 +187,22 @@ class Camera:
         return self._core.blade_rotation_deg
 
     @property
+    def blade_roundness(self) -> float:
+        """0: blades are straight; 1: they form a circle."""
+        return self._core.blade_roundness
+
+    @property
+    def ratio(self) -> float:
+        """Height of the opening divided by its width."""
+        return self._core.ratio
+
+    @property
+    def shift_mm(self) -> Tuple[float, float]:
+        """How far the middle of the picture is to the right of the optical axis, and above it, on the sensor plate."""
+        right, up = self._core.shift
+        return right * self._core.unit_m * 1000, up * self._core.unit_m * 1000
+
+    @property
     def unit_m(self) -> float:
         """Metres per world unit."""
         return self._core.unit_m
@@ -187,9 +213,11 @@ class Camera:
         return {"position": core.position, "world_from_cam": core.cam_from_world[:, :3].T,
                 "resolution": core.resolution,
                 "field_of_view_deg": math.degrees(2 * math.atan(width / (2 * core.K[0, 0]))),
-                "sensor_width_mm": core.sensor_width * core.unit_m * 1000, "aperture_diameter": core.aperture_diameter,
+                "sensor_width_mm": core.sensor_width * core.unit_m * 1000, "shift_mm": self.shift_mm,
+                "aperture_diameter": core.aperture_diameter,
                 "focus_distance": core.focus_distance, "tilt_deg": core.tilt_deg, "blades": core.blades,
-                "blade_rotation_deg": core.blade_rotation_deg, "unit_m": core.unit_m}
+                "blade_rotation_deg": core.blade_rotation_deg, "blade_roundness": core.blade_roundness,
+                "ratio": core.ratio, "unit_m": core.unit_m}
 
     def replace(self, **changes: Any) -> Camera:
         """Return a copy with some arguments of the constructor changed.
@@ -300,12 +328,13 @@ class Path(Sequence[Camera]):
         Raises
         ------
         UsageError
-            The cameras have different numbers of blades or sensor widths, which a path file cannot express.
+            The cameras have different openings (apart from size and rotation) or sensor widths, which a path file
+            cannot express.
         OutputError
             The file cannot be written.
         """
         settings = [camera._settings() for camera in self._cameras]
-        for what in ("blades", "sensor_width_mm"):
+        for what in ("blades", "blade_roundness", "ratio", "sensor_width_mm"):
             values = [setting[what] for setting in settings]
             # A width that was converted from world units and back differs by its rounding.
             if max(values) - min(values) > 1e-9 * max(values):
@@ -318,9 +347,10 @@ class Path(Sequence[Camera]):
         moving = {key for key in _MOVING if any(not np.array_equal(s[key], first[key]) for s in settings)}
         keys = {key: [(i / self.fps, setting[key]) for i, setting in enumerate(settings)] for key in _MOVING
                 if key in moving}
-        camera = {key: first[key] for key in ("position", "quaternion", "field_of_view_deg", "sensor_width_mm")}
+        camera = {key: first[key] for key in ("position", "quaternion", "field_of_view_deg", "sensor_width_mm",
+                                              "shift_mm")}
         lens = {key: first[key] for key in ("aperture_diameter", "focus_distance", "focus_tilt_deg", "blades",
-                                            "blade_rotation_deg")}
+                                            "blade_rotation_deg", "blade_roundness", "ratio")}
         text = _text_of_path(len(settings), self.fps, first["unit_m"], first["resolution"], camera, lens, keys)
         _core.write_text(arguments.file_name(path), text)
 
@@ -398,7 +428,7 @@ def _value_text(value: Any) -> str:
 
 def _entry_text(key: str, value: Any) -> str:
     try:
-        if key != "focus_tilt_deg":
+        if key not in ("focus_tilt_deg", "shift_mm"):
             return _value_text(value)
         horizontal, vertical = value
         return f"{{horizontal: {_value_text(horizontal)}, vertical: {_value_text(vertical)}}}"
@@ -406,7 +436,8 @@ def _entry_text(key: str, value: Any) -> str:
         name = key.replace("focus_tilt_deg", "tilt_deg")
         raise TypeError(f"{name}={value!r}: expected a number, or as many numbers as it has") from None
     except ValueError:
-        raise UsageError(f"tilt_deg={value!r}: expected two numbers") from None
+        name = key.replace("focus_tilt_deg", "tilt_deg")
+        raise UsageError(f"{name}={value!r}: expected two numbers") from None
 
 
 def _text_of_path(count: int, fps: float, unit_m: float, resolution: Tuple[int, int], camera: Dict[str, Any],

@@ -45,6 +45,8 @@ void VisitNumbers(RenderCamera& c, const Visit& visit) {
        {&c.focus_plane.offset_w, &c.time_s, &c.focal_length_w, &c.sensor_width_w,
         &c.focus_distance_w, &c.focus_tilt.horizontal_rad, &c.focus_tilt.vertical_rad, &c.unit_m})
     visit(*number);
+  visit(c.aperture.ratio);
+  visit(c.aperture.roundness);
 }
 
 py::tuple NumbersOf(const RenderCamera& camera) {
@@ -107,6 +109,10 @@ void AddCameras(py::module_& module) {
       .def_property_readonly(
           "blade_rotation_deg",
           [](const RenderCamera& c) { return DegreesFromRadians(c.aperture.rotation_rad); })
+      .def_property_readonly("blade_roundness",
+                             [](const RenderCamera& c) { return c.aperture.roundness; })
+      .def_property_readonly("ratio", [](const RenderCamera& c) { return c.aperture.ratio; })
+      .def_property_readonly("shift", &ShiftOf)
       .def_property_readonly("focus_distance",
                              [](const RenderCamera& c) { return c.focus_distance_w; })
       .def_property_readonly("focus_plane",

@@ -55,6 +55,8 @@ std::string LensBytes(const LiveRenderer::LensPlan& plan, const RenderCamera& fr
   json["radius"] = lens.opening.radius_w;
   json["blades"] = lens.opening.blades;
   json["rotation"] = lens.opening.rotation_rad;
+  json["ratio"] = lens.opening.ratio;
+  json["roundness"] = lens.opening.roundness;
   json["feather"] = lens.has_feather;
   json["uncovered_share"] = lens.uncovered_share;
   json["camera_distance"] = lens.camera_distance_w;

@@ -17,8 +17,13 @@ CameraFact Vector(std::string name, const Vec3& v) {
   return {std::move(name), {"x", "y", "z"}, {v.x(), v.y(), v.z()}};
 }
 
-double ViewDeg(int size_px, double focal_length_px) {
-  return DegreesFromRadians(2 * std::atan(size_px / (2 * focal_length_px)));
+// Returns the angle under which the plate is seen from the lens centre along one axis.
+//   centre_px  principal point
+double ViewDeg(int size_px, double centre_px, double focal_length_px) {
+  if (2 * centre_px == size_px)
+    return DegreesFromRadians(2 * std::atan(size_px / (2 * focal_length_px)));
+  return DegreesFromRadians(std::atan(centre_px / focal_length_px) +
+                            std::atan((size_px - centre_px) / focal_length_px));
 }
 
 }  // namespace
@@ -32,6 +37,7 @@ std::vector<CameraFact> CameraFacts(const RenderCamera& camera, FrameId frame) {
   // Width of an element on the focus plane.
   const double element_w = camera.focus_distance_w / k.fx_px;
   const DepthRange depth = DepthOfField(diameter_w, camera.focus_distance_w, element_w);
+  const Vec2 shift_mm = mm_per_w * ShiftOf(camera);
   return {
       Number("frame", frame.value),
       Number("time_s", camera.time_s),
@@ -39,8 +45,8 @@ std::vector<CameraFact> CameraFacts(const RenderCamera& camera, FrameId frame) {
       Vector("forward", pinhole.ForwardWorld()),
       Vector("up", pinhole.UpWorld()),
       Number("focal_length_mm", mm_per_w * camera.focal_length_w),
-      Pair("field_of_view_deg", "horizontal", "vertical", ViewDeg(k.width_px, k.fx_px),
-           ViewDeg(k.height_px, k.fy_px)),
+      Pair("field_of_view_deg", "horizontal", "vertical", ViewDeg(k.width_px, k.cx_px, k.fx_px),
+           ViewDeg(k.height_px, k.cy_px, k.fy_px)),
       Number("aperture_diameter_mm", mm_per_w * diameter_w),
       Number("f_number", FNumber(camera.focal_length_w, diameter_w)),
       Number("blades", aperture.blades),
@@ -50,6 +56,9 @@ std::vector<CameraFact> CameraFacts(const RenderCamera& camera, FrameId frame) {
            DegreesFromRadians(camera.focus_tilt.horizontal_rad),
            DegreesFromRadians(camera.focus_tilt.vertical_rad)),
       Pair("depth_of_field_w", "near", "far", depth.near_w, depth.far_w),
+      Pair("shift_mm", "horizontal", "vertical", shift_mm.x(), shift_mm.y()),
+      Number("ratio", aperture.ratio),
+      Number("blade_roundness", aperture.roundness),
   };
 }
 

@@ -28,6 +28,8 @@ struct CameraFact {
 //   focus_tilt_deg     horizontal, vertical
 //   depth_of_field_w   near, far: the depths along the optical axis between which the blur stays
 //                      within one element of the plate; far may be infinite
+//   shift_mm           horizontal, vertical (ShiftOf())
+//   ratio, blade_roundness
 std::vector<CameraFact> CameraFacts(const RenderCamera& camera, FrameId frame);
 
 }  // namespace lf

@@ -154,8 +154,15 @@ Result<void> SetIntrinsics(const Moment& moment, RenderCamera* camera) {
                                camera->focal_length_w, camera->sensor_width_w,
                                DegreesFromRadians(2 * std::atan(half_view))));
   const double f_px = path.width_px / (2 * half_view);
-  camera->pinhole.intrinsics = {f_px, f_px,          path.width_px / 2.0, path.height_px / 2.0,
-                                0,    path.width_px, path.height_px};
+  LF_ASSIGN_OR_RETURN(const MotionValue shift_w, ValueOf(moment, path.shift_w));
+  const double px_per_w = path.width_px / camera->sensor_width_w;
+  camera->pinhole.intrinsics = {f_px,
+                                f_px,
+                                path.width_px / 2.0 - shift_w[0] * px_per_w,
+                                path.height_px / 2.0 + shift_w[1] * px_per_w,
+                                0,
+                                path.width_px,
+                                path.height_px};
   return {};
 }
 
@@ -184,7 +191,7 @@ Result<RenderCamera> CameraAt(const Moment& moment) {
   LF_RETURN_IF_ERROR(SetIntrinsics(moment, &camera));
   LF_ASSIGN_OR_RETURN(const double diameter_w, ApertureDiameterAt(moment, camera.focal_length_w));
   LF_ASSIGN_OR_RETURN(const double rotation_rad, NumberOf(moment, path.blade_rotation_rad));
-  camera.aperture = {diameter_w / 2, path.blades, rotation_rad};
+  camera.aperture = {diameter_w / 2, path.blades, rotation_rad, path.ratio, path.roundness};
   return camera;
 }
 

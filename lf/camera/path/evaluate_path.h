@@ -8,8 +8,8 @@
 namespace lf {
 
 // Returns the cameras of frames 1, 2, ...: the camera of frame i has the state at time (i - 1) /
-// fps, without motion blur. Elements are squares, and the principal point is the centre of the
-// plate.
+// fps, without motion blur. Elements are squares. The principal point is
+// the centre of the plate, unless camera.shift moves the plate.
 //
 // kInput, with frame, time, quantity and its position in the file, if at some frame
 //   a quantity is out of its range: an aperture below 0, a focus distance of 0, a tilt of 90

@@ -39,6 +39,45 @@ TEST(Path, TheCentreOfAnOddPlateIsTheMiddleOfAnElement) {
   EXPECT_EQ(k.cy_px, 49.5);
 }
 
+TEST(Path, AShiftMovesThePictureAndNotTheCamera) {
+  TestPath shifted;
+  shifted.optics += ", shift_mm: {horizontal: 9, vertical: -4.5}";
+  const RenderCamera camera = shifted.At(1), straight = TestPath{}.At(1);
+  // The plate is 36 mm and 200 elements wide: 9 mm are 50 elements.
+  EXPECT_DOUBLE_EQ(camera.pinhole.intrinsics.cx_px, 50);
+  EXPECT_DOUBLE_EQ(camera.pinhole.intrinsics.cy_px, 25);
+  EXPECT_EQ(camera.pinhole.cam_from_world.rotation, straight.pinhole.cam_from_world.rotation);
+  EXPECT_EQ(camera.focus_plane.offset_w, straight.focus_plane.offset_w);
+  EXPECT_NEAR((ShiftOf(camera) - Vec2(0.009, -0.0045)).norm(), 0, 1e-15);
+  EXPECT_EQ(ShiftOf(straight), Vec2::Zero());
+  // A point on the right and below moves to the middle of the picture, which shows more of it.
+  const auto right = Project(camera.pinhole, {2 * 0.009 / 0.05, 2 * 0.0045 / 0.05, 0});
+  EXPECT_NEAR((*right - Vec2(100, 50)).norm(), 0, 1e-9);
+}
+
+TEST(Path, AShiftMayMove) {
+  TestPath path;
+  path.more =
+      "keyframes: {shift_mm: [{time: 0, value: {horizontal: 0}}, {time: 2, value: "
+      "{horizontal: 18}, interpolation: linear}]}\n";
+  EXPECT_DOUBLE_EQ(path.At(11).pinhole.intrinsics.cx_px, 50);
+}
+
+TEST(Path, TheOpeningHasAShape) {
+  TestPath path;
+  path.aperture += ", blades: 6, ratio: 1.8, blade_roundness: 0.25";
+  const Aperture aperture = path.At(1).aperture;
+  EXPECT_EQ(aperture.ratio, 1.8);
+  EXPECT_EQ(aperture.roundness, 0.25);
+  EXPECT_EQ(aperture.radius_w, 0.002);
+  EXPECT_FALSE(HasShape(TestPath{}.At(1).aperture));
+  path.aperture = "aperture_diameter_mm: 4, ratio: 0";
+  EXPECT_NE(path.Error().find("lens.ratio"), std::string::npos) << path.Error();
+  EXPECT_NE(path.Error().find("from 0.1 to 10"), std::string::npos) << path.Error();
+  path.aperture = "aperture_diameter_mm: 4, blade_roundness: 1.5";
+  EXPECT_NE(path.Error().find("lens.blade_roundness"), std::string::npos) << path.Error();
+}
+
 TEST(Path, UpIsMinusYUnlessSaid) {
   ExpectNear(TestPath{}.At(1).pinhole.UpWorld(), {0, -1, 0});
   TestPath path;

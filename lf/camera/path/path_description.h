@@ -42,6 +42,9 @@ struct PathDescription {
   std::optional<double> sensor_width_w;
   std::optional<Quantity> focal_length_w;
   std::optional<Quantity> field_of_view_rad;  // horizontal, when focused at infinity
+  // From the optical axis to the middle of the picture, horizontally (to the right) and vertically
+  // (upwards), in world units on a plate that does not turn the picture around.
+  Quantity shift_w;
 
   std::optional<Quantity> aperture_diameter_w;  // set unless `f_number` is set
   std::optional<Quantity> f_number;
@@ -52,6 +55,8 @@ struct PathDescription {
   int blades = 0;
   Quantity blade_rotation_rad;
   double blade_rotation_per_stop_rad = 0;
+  double ratio = 1;      // Aperture::ratio
+  double roundness = 0;  // Aperture::roundness
 };
 
 }  // namespace lf

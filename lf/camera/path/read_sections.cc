@@ -25,6 +25,8 @@ const QuantitySpec kFocalLength{
     .name = "focal_length", .unit = kLength, .range = NumberRange::Above(0)};
 const QuantitySpec kFieldOfView{
     .name = "field_of_view", .unit = kDegrees, .range = NumberRange::Between(0, 180)};
+const QuantitySpec kShift{
+    .name = "shift", .shape = kTilt, .unit = kLength, .zero_if_not_given = true};
 const QuantitySpec kApertureDiameter{
     .name = "aperture_diameter", .unit = kLength, .range = NumberRange::AtLeast(0)};
 const QuantitySpec kFNumber{.name = "f_number", .range = NumberRange::Above(0)};
@@ -101,6 +103,7 @@ void ReadOptics(YamlMap* camera, QuantityReader* quantities, PathDescription* pa
   path->sensor_width_w = quantities->ReadFixedLength(camera, "sensor_width", NumberRange::Above(0));
   path->focal_length_w = quantities->Read(camera, kFocalLength);
   path->field_of_view_rad = quantities->Read(camera, kFieldOfView);
+  if (const auto shift = quantities->Read(camera, kShift)) path->shift_w = *shift;
   if (path->sensor_width_w && path->focal_length_w && path->field_of_view_rad)
     errors->Add(path->field_of_view_rad->place,
                 "sensor width, focal length and field of view are all given, but two of them "
@@ -113,13 +116,22 @@ void ReadOptics(YamlMap* camera, QuantityReader* quantities, PathDescription* pa
     path->sensor_width_w = kDefaultSensorWidth_mm * 1e-3 / path->unit_m;
 }
 
-void ReadBlades(YamlMap* lens, QuantityReader* quantities, PathDescription* path) {
+// Reads a number that does not change over time, unless the key is missing.
+void ReadFixedNumber(YamlMap* section, std::string_view key, const NumberRange& range,
+                     double* number) {
+  if (const YamlEntry* entry = section->Find(key))
+    *number =
+        ReadNumber(*entry->value, section->Label(key), range, section->errors()).value_or(*number);
+}
+
+void ReadShape(YamlMap* lens, QuantityReader* quantities, PathDescription* path) {
   if (const auto rotation = quantities->Read(lens, kBladeRotation))
     path->blade_rotation_rad = *rotation;
-  if (const YamlEntry* entry = lens->Find("blade_rotation_per_stop_deg"))
-    path->blade_rotation_per_stop_rad = RadiansFromDegrees(
-        ReadNumber(*entry->value, lens->Label(entry->key), NumberRange::Any(), lens->errors())
-            .value_or(0));
+  double per_stop_deg = 0;
+  ReadFixedNumber(lens, "blade_rotation_per_stop_deg", NumberRange::Any(), &per_stop_deg);
+  path->blade_rotation_per_stop_rad = RadiansFromDegrees(per_stop_deg);
+  ReadFixedNumber(lens, "ratio", NumberRange::Within(1 / kMostRatio, kMostRatio), &path->ratio);
+  ReadFixedNumber(lens, "blade_roundness", NumberRange::Within(0, 1), &path->roundness);
   const YamlEntry* blades = lens->Find("blades");
   if (!blades) return;
   path->blades =
@@ -155,7 +167,7 @@ void ReadLensSection(const YamlNode& node, QuantityReader* quantities, PathDescr
   if (const auto tilt = quantities->Read(&lens, kFocusTilt)) path->focus_tilt_rad = *tilt;
   if (const YamlEntry* breathing = lens.Find("breathing"))
     path->breathing = ReadBool(*breathing->value, "lens.breathing", errors).value_or(false);
-  ReadBlades(&lens, quantities, path);
+  ReadShape(&lens, quantities, path);
   lens.CheckKeys();
 }
 

@@ -196,6 +196,8 @@ TEST_F(PackageFileTest, ReadsWhatWasWrittenToTheBit) {
     EXPECT_EQ(c.aperture.radius_w, d.aperture.radius_w);
     EXPECT_EQ(c.aperture.blades, d.aperture.blades);
     EXPECT_EQ(c.aperture.rotation_rad, d.aperture.rotation_rad);
+    EXPECT_EQ(c.aperture.ratio, d.aperture.ratio);
+    EXPECT_EQ(c.aperture.roundness, d.aperture.roundness);
     EXPECT_EQ(c.focus_plane.normal, d.focus_plane.normal);
     EXPECT_EQ(c.focus_plane.offset_w, d.focus_plane.offset_w);
     EXPECT_EQ(c.focus_tilt.vertical_rad, d.focus_tilt.vertical_rad);

@@ -1,13 +1,13 @@
 #include "lf/render/package/package_format.h"
 
-#include <algorithm>
+#include <array>
 
 #include "lf/camera/intrinsics_numbers.h"
 #include "lf/storage/tables/stored_numbers.h"
 
 namespace lf {
 
-std::array<double, kCameraNumbers> NumbersOfCamera(const RenderCamera& camera) {
+std::vector<double> NumbersOfCamera(const RenderCamera& camera) {
   const auto plate = NumbersOfIntrinsics(camera.pinhole.intrinsics);
   const auto pose = NumbersOfPose(camera.pinhole.cam_from_world);
   const Vec3& normal = camera.focus_plane.normal;
@@ -25,15 +25,16 @@ std::array<double, kCameraNumbers> NumbersOfCamera(const RenderCamera& camera) {
                              camera.focus_tilt.horizontal_rad,
                              camera.focus_tilt.vertical_rad,
                              camera.unit_m};
-  std::array<double, kCameraNumbers> numbers;
   static_assert(plate.size() + pose.size() + others.size() == kCameraNumbers);
-  auto end = std::copy(plate.begin(), plate.end(), numbers.begin());
-  end = std::copy(pose.begin(), pose.end(), end);
-  std::copy(others.begin(), others.end(), end);
+  std::vector<double> numbers(plate.begin(), plate.end());
+  numbers.insert(numbers.end(), pose.begin(), pose.end());
+  numbers.insert(numbers.end(), others.begin(), others.end());
+  if (HasShape(camera.aperture))
+    numbers.insert(numbers.end(), {camera.aperture.ratio, camera.aperture.roundness});
   return numbers;
 }
 
-RenderCamera CameraOfNumbers(std::span<const double, kCameraNumbers> numbers) {
+RenderCamera CameraOfNumbers(std::span<const double> numbers) {
   RenderCamera camera;
   Intrinsics& k = camera.pinhole.intrinsics;
   k.fx_px = numbers[0];
@@ -56,6 +57,10 @@ RenderCamera CameraOfNumbers(std::span<const double, kCameraNumbers> numbers) {
   camera.focus_tilt.horizontal_rad = numbers[30];
   camera.focus_tilt.vertical_rad = numbers[31];
   camera.unit_m = numbers[32];
+  if (numbers.size() > kCameraNumbers) {
+    camera.aperture.ratio = numbers[33];
+    camera.aperture.roundness = numbers[34];
+  }
   return camera;
 }
 

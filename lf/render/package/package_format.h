@@ -1,8 +1,8 @@
 // Definitions that the writer and the reader of package files share. Internal to this folder.
 #pragma once
 
-#include <array>
 #include <span>
+#include <vector>
 
 #include "lf/camera/render_camera.h"
 #include "lf/storage/sqlite/database.h"
@@ -25,12 +25,16 @@ create table frames (frame integer primary key, time_s real, x real, y real, z r
 inline constexpr const char* kVirtualTable =
     "create table virtual_images (id integer primary key);";
 
-// Number of values that describe a frame's camera exactly: fx, fy, cx, cy, skew, width, height;
-// pose; radius, blades and rotation of the aperture; normal and offset of the focus plane; time,
-// focal length, sensor width, focus distance, horizontal and vertical tilt, unit_m.
+// Number of values that describe a frame's camera exactly, unless its opening has a shape: fx, fy,
+// cx, cy, skew, width, height; pose; radius, blades and rotation of the aperture; normal and offset
+// of the focus plane; time, focal length, sensor width, focus distance, horizontal and vertical
+// tilt, unit_m.
 inline constexpr size_t kCameraNumbers = 33;
-std::array<double, kCameraNumbers> NumbersOfCamera(const RenderCamera& camera);
-RenderCamera CameraOfNumbers(std::span<const double, kCameraNumbers> numbers);
+// Number of values that follow if HasShape(camera.aperture): ratio and roundness.
+inline constexpr size_t kShapeNumbers = 2;
+std::vector<double> NumbersOfCamera(const RenderCamera& camera);
+//   numbers  kCameraNumbers of them, or kCameraNumbers + kShapeNumbers
+RenderCamera CameraOfNumbers(std::span<const double> numbers);
 
 // Number of values that describe a FrameSurroundings, in the order of its members, of which
 // middle_world has three values. One more if recorded_distance_w is set.

@@ -21,6 +21,7 @@ bool IsRenderCamera(const RenderCamera& camera) {
   return IsCamera(camera.pinhole.intrinsics) && IsPose(camera.pinhole.cam_from_world) &&
          IsWithin(camera.aperture.radius_w, 0, kMostNumber) &&
          (blades == 0 || (blades >= 3 && blades <= 1000)) &&
+         IsShape(camera.aperture.ratio, camera.aperture.roundness) &&
          std::abs(camera.focus_plane.normal.norm() - 1) < 1e-6 && camera.unit_m > 0;
 }
 
@@ -234,16 +235,15 @@ Result<void> Reader::ReadFrames() {
           return Damaged(fmt::format("frame {} is missing", film.frame_count() + 1));
         LF_ASSIGN_OR_RETURN(const std::string_view bytes, row.Blob(1));
         const std::vector<double> numbers = NumbersOf<double>(bytes);
-        if (numbers.size() != kCameraNumbers)
-          return Damaged(fmt::format("the camera of frame {} has {} bytes, expected {}", number,
-                                     bytes.size(), kCameraNumbers * sizeof(double)));
+        if (numbers.size() != kCameraNumbers && numbers.size() != kCameraNumbers + kShapeNumbers)
+          return Damaged(fmt::format("the camera of frame {} has {} bytes, expected {} or {}",
+                                     number, bytes.size(), kCameraNumbers * sizeof(double),
+                                     (kCameraNumbers + kShapeNumbers) * sizeof(double)));
         const bool are_finite = std::all_of(numbers.begin(), numbers.end(),
                                             [](double x) { return std::abs(x) <= kMostNumber; }) &&
                                 IsWithin(numbers[5], 1, kMostSide_px) &&
                                 IsWithin(numbers[6], 1, kMostSide_px);
-        const RenderCamera camera =
-            are_finite ? CameraOfNumbers(std::span<const double>(numbers).first<kCameraNumbers>())
-                       : RenderCamera();
+        const RenderCamera camera = are_finite ? CameraOfNumbers(numbers) : RenderCamera();
         const Intrinsics& plate = camera.pinhole.intrinsics;
         const bool has_size =
             film.cameras.empty() ||

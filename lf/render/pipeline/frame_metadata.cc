@@ -42,6 +42,15 @@ ImageMetadata FrameMetadata(FrameId frame, const RenderCamera& camera, const Fra
       {"lf:lf_images", fmt::format("{}", rays.image_count)},
       {"lf:rays_accepted", fmt::format("{}", rays.accepted_count)},
   };
+  if (HasShape(camera.aperture)) {
+    metadata.emplace_back("lf:aperture_ratio", camera.aperture.ratio);
+    metadata.emplace_back("lf:blade_roundness", camera.aperture.roundness);
+  }
+  const Vec2 shift_w = ShiftOf(camera);
+  if (!shift_w.isZero(0)) {
+    metadata.emplace_back("lf:shift_horizontal_mm", shift_w.x() * mm_per_w);
+    metadata.emplace_back("lf:shift_vertical_mm", shift_w.y() * mm_per_w);
+  }
   if (rays.virtual_count > 0)
     metadata.emplace_back("lf:virtual_lf_images", fmt::format("{}", rays.virtual_count));
   const double f_number = FNumber(camera.focal_length_w, diameter_w);

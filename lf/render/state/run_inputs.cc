@@ -71,6 +71,10 @@ std::string CameraHash(const RenderCamera& camera) {
   hasher.Add(camera.aperture.radius_w);
   hasher.Add(camera.aperture.blades);
   hasher.Add(camera.aperture.rotation_rad);
+  if (HasShape(camera.aperture)) {
+    hasher.Add(camera.aperture.ratio);
+    hasher.Add(camera.aperture.roundness);
+  }
   hasher.AddMatrix(camera.focus_plane.normal);
   hasher.Add(camera.focus_plane.offset_w);
   return hasher.Text();

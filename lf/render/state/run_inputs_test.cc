@@ -66,7 +66,9 @@ TEST(RunInputs, EveryInputMakesADifferenceAndItsKeyNamesIt) {
       {"frame.blades", [](Inputs& i) { i.camera.aperture.blades = 7; }},
       {"frame.focus_plane", [](Inputs& i) { i.camera.focus_plane.offset_w += 1e-12; }},
       {"frame.camera", [](Inputs& i) { i.camera.pinhole.intrinsics.cy_px += 0.5; }},
-      {"frame.camera", [](Inputs& i) { i.camera.aperture.rotation_rad = 0.1; }}};
+      {"frame.camera", [](Inputs& i) { i.camera.aperture.rotation_rad = 0.1; }},
+      {"frame.camera", [](Inputs& i) { i.camera.aperture.ratio = 1.1; }},
+      {"frame.camera", [](Inputs& i) { i.camera.aperture.roundness = 0.1; }}};
   for (const auto& [key, change] : changes) {
     Inputs inputs;
     change(inputs);

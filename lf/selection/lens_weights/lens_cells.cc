@@ -119,7 +119,7 @@ std::optional<Vec2> PointAtRim(const Vec2& point, std::span<const Vec2> points,
 std::vector<double> CellShares(std::span<const Vec2> points, const Aperture& aperture,
                                const CoveredRegion& covered) {
   LF_CHECK(aperture.radius_w > 0);
-  const bool is_disk = aperture.blades == 0;
+  const bool is_disk = aperture.IsDisk();
   ConvexPolygon opening = is_disk ? ConvexPolygon::SquareAround(Vec2::Zero(), aperture.radius_w)
                                   : ConvexPolygon(Vertices(aperture));
   covered.Clip(&opening);

@@ -1,11 +1,12 @@
 // The thin-lens camera of a frame, and the directions of its rays. Lengths are in world units, angles in radians; fx,
 // fy, cx, cy, width and height are in elements.
 
+import { rimAt, squeezeOf, type Opening } from "./opening";
 import type { Vec3 } from "./scene";
 
-const NUMBERS = 31;
+const NUMBERS = 33;
 
-export interface FrameCamera {
+export interface FrameCamera extends Opening {
   centre: Vec3;
   right: Vec3;
   up: Vec3;
@@ -14,9 +15,6 @@ export interface FrameCamera {
   fy: number;
   cx: number;
   cy: number;
-  radius: number;
-  rotation: number;
-  blades: number;
   normal: Vec3;
   offset: number;
   time: number;
@@ -57,6 +55,8 @@ export function readFrames(bytes: ArrayBuffer): FrameCamera[] {
       tiltVertical: n[28],
       width: n[29],
       height: n[30],
+      ratio: n[31],
+      roundness: n[32],
     });
   }
   return frames;
@@ -97,15 +97,19 @@ export function focusPoint(camera: FrameCamera, x: number, y: number, mostDepths
   return add(camera.centre, direction, depth);
 }
 
-// Returns the corners of the aperture (if it is a disk, `diskPoints` points of its rim), counter-clockwise as seen from
-// behind the lens. At rotation 0, the first corner is at the top.
-export function lensRim(camera: FrameCamera, diskPoints = 48): Vec3[] {
-  const count = camera.blades >= 3 ? camera.blades : diskPoints;
+// Returns the corners of the aperture (if it has curved edges, at least `curvePoints` points of its rim),
+// counter-clockwise as seen from behind the lens. At rotation 0, the first corner is at the top.
+export function lensRim(camera: FrameCamera, curvePoints = 48): Vec3[] {
+  const corners = camera.blades >= 3 ? camera.blades : 1;
+  const isStraight = camera.blades >= 3 && camera.roundness === 0;
+  const count = isStraight ? corners : corners * Math.ceil(curvePoints / corners);
+  const [width, height] = squeezeOf(camera);
   const rim: Vec3[] = [];
   for (let i = 0; i < count; ++i) {
-    const angle = camera.rotation + (2 * Math.PI * i) / count;
-    const sideways = add(camera.centre, camera.right, -camera.radius * Math.sin(angle));
-    rim.push(add(sideways, camera.up, camera.radius * Math.cos(angle)));
+    const angle = Math.PI / 2 + camera.rotation + (2 * Math.PI * i) / count;
+    const radius = camera.radius * rimAt(camera, angle);
+    const sideways = add(camera.centre, camera.right, width * radius * Math.cos(angle));
+    rim.push(add(sideways, camera.up, height * radius * Math.sin(angle)));
   }
   return rim;
 }

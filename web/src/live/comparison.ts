@@ -95,8 +95,8 @@ export class Comparison {
     if (this.isAsking) return;
     this.isAsking = true;
     const { frame } = this.state;
-    const { radius, rotation, blades, focusDistance, tiltHorizontal, tiltVertical } = kept.camera;
-    const lens = { radius, rotation, blades, tiltHorizontal, tiltVertical };
+    const { radius, rotation, blades, ratio, roundness, focusDistance, tiltHorizontal, tiltVertical } = kept.camera;
+    const lens = { radius, rotation, blades, ratio, roundness, tiltHorizontal, tiltVertical };
     const camera =
       frame === kept.frame ? kept.camera : { ...withFocusDistance(this.state.camera, focusDistance), ...lens };
     try {

@@ -37,6 +37,8 @@ export function isBreathing({ fx, sensorWidth, width, focalLength }: FrameCamera
 
 export function oneFramePath(camera: FrameCamera, unit_m: number): string {
   const list = (numbers: readonly number[]): string => `[${numbers.join(", ")}]`;
+  const perElement = camera.sensorWidth / camera.width;
+  const shift = [(camera.width / 2 - camera.cx) * perElement, (camera.cy - camera.height / 2) * perElement];
   return `format: lfpath 1
 fps: 1
 frames: 1
@@ -45,6 +47,7 @@ resolution: ${list([camera.width, camera.height])}
 camera:
   sensor_width: ${camera.sensorWidth}
   focal_length: ${camera.focalLength}
+  shift: {horizontal: ${shift[0]}, vertical: ${shift[1]}}
   position: ${list(camera.centre)}
   quaternion: ${list(quaternionOf(camera))}
 lens:
@@ -54,5 +57,7 @@ lens:
   breathing: ${isBreathing(camera)}
   blades: ${camera.blades}
   blade_rotation_deg: ${camera.rotation * DEGREES}
+  blade_roundness: ${camera.roundness}
+  ratio: ${camera.ratio}
 `;
 }

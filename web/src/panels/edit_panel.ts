@@ -351,8 +351,8 @@ export class EditPanel {
 
   private constants(): HTMLElement {
     const { state } = this;
-    const constant = (label: string, name: string, now: () => number) => {
-      const input = element("input", { type: "number", min: 0, step: 1, "aria-label": label });
+    const constant = (label: string, name: string, now: () => number, step = 1) => {
+      const input = element("input", { type: "number", min: 0, step, "aria-label": label });
       const fill = () => (input.value = String(now()));
       input.addEventListener("change", () => {
         const wanted = input.valueAsNumber;
@@ -365,6 +365,13 @@ export class EditPanel {
       "div",
       {},
       element("div", { class: "row" }, ...constant("Blades", "blades", () => state.camera.blades), "0: a disk"),
+      element(
+        "div",
+        { class: "row" },
+        ...constant("Roundness of blades", "blade_roundness", () => state.camera.roundness, 0.1),
+        "0: straight, 1: a disk",
+      ),
+      element("div", { class: "row" }, ...constant("Height / width", "ratio", () => state.camera.ratio, 0.1)),
       element("div", { class: "row" }, ...constant("Frames", "frames", () => state.path.frames)),
     );
   }

@@ -3,7 +3,8 @@
 import { fNumber } from "../data/frame_camera";
 import { element } from "../element";
 import type { State } from "../state";
-import { length, millimetres, percent, plural, precise, shortNumber, vector } from "../words";
+import { shapeText } from "../data/opening";
+import { length, millimetres, percent, precise, shortNumber, vector } from "../words";
 
 type Rows = [string, string | Node][];
 
@@ -45,14 +46,19 @@ export class FramePanel {
         "Aperture",
         opening === 0 ? "0, a pinhole" : `${millimetres(opening, path.unit_m)}, f/${precise(fNumber(camera), 3)}`,
       ],
-      ["Shape", camera.blades >= 3 ? plural(camera.blades, "blade") : "a disk"],
+      ["Shape", shapeText(camera)],
       ["Focus distance", length(camera.focusDistance)],
     ];
     if (camera.tiltHorizontal !== 0 || camera.tiltVertical !== 0) {
       const degrees = (radians: number) => `${precise((radians * 180) / Math.PI, 3)}°`;
       rows.push(["Focus tilt", `${degrees(camera.tiltHorizontal)}, ${degrees(camera.tiltVertical)}`]);
     }
-    const view = (2 * Math.atan(camera.width / 2 / camera.fx) * 180) / Math.PI;
+    const shift = (camera.sensorWidth / camera.width) * (camera.width / 2 - camera.cx);
+    const rise = (camera.sensorWidth / camera.width) * (camera.cy - camera.height / 2);
+    if (shift !== 0 || rise !== 0)
+      rows.push(["Shift", `${millimetres(shift, path.unit_m)}, ${millimetres(rise, path.unit_m)}`]);
+    const { cx, fx, width } = camera;
+    const view = ((Math.atan(cx / fx) + Math.atan((width - cx) / fx)) * 180) / Math.PI;
     rows.push(["Horizontal field of view", `${precise(view, 3)}°`]);
     rows.push(["Plate", `${camera.width} × ${camera.height}`]);
     return list(rows);

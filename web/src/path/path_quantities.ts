@@ -55,6 +55,7 @@ export const kQuantities: readonly QuantitySpec[] = [
   degrees("camera", "roll", { zeroIfNotGiven: true }),
   length("camera", "focal_length", true, { above: 0, rivals: ["field_of_view"], freeWithoutSensor: true }),
   degrees("camera", "field_of_view", { above: 0, below: 180, rivals: ["focal_length"], freeWithoutSensor: true }),
+  length("camera", "shift", true, { shape: "tilt", zeroIfNotGiven: true }),
   length("lens", "aperture_diameter", true, { least: 0, rivals: ["f_number"] }),
   plain("lens", "f_number", { above: 0, rivals: ["aperture_diameter"] }),
   length("lens", "focus_distance", false, { above: 0, rivals: ["focus_point"] }),
@@ -83,6 +84,8 @@ export const kConstants: Readonly<Record<string, ConstantSpec>> = {
   follow: { keys: ["follow"], section: "camera", unit: "none", kind: "word" },
   breathing: { keys: ["breathing"], section: "lens", unit: "none", kind: "boolean" },
   blades: { keys: ["blades"], section: "lens", unit: "none", kind: "integer" },
+  blade_roundness: { keys: ["blade_roundness"], section: "lens", unit: "none", kind: "number" },
+  ratio: { keys: ["ratio"], section: "lens", unit: "none", kind: "number" },
   blade_rotation_per_stop: { keys: ["blade_rotation_per_stop_deg"], section: "lens", unit: "none", kind: "number" },
 };
 

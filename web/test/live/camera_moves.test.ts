@@ -120,6 +120,9 @@ test("the path of one frame has the camera of the frame", () => {
   const start = cameraAt([0.1, 0.2, -1e-7], {
     radius: 0.0123,
     blades: 5,
+    ratio: 1.5,
+    roundness: 0.25,
+    cx: 40,
     rotation: 0.3,
     tiltHorizontal: radians(12),
     tiltVertical: radians(-3),
@@ -133,6 +136,9 @@ test("the path of one frame has the camera of the frame", () => {
     assertNear(read.forward, camera.forward, 1e-9);
     assertNear(read.up, camera.up, 1e-9);
     assertNear([read.focus_distance_w, read.blades], [camera.focusDistance, 5], 1e-9);
+    assertNear([read.ratio, read.blade_roundness], [1.5, 0.25], 1e-9);
+    // The plate is 0.36 mm and 96 elements wide.
+    assertNear(read.shift_mm, [(8 / 96) * 0.36, 0], 1e-9);
     assertNear(read.focus_tilt_deg, [12, -3], 1e-9);
     assertNear([radians(Number(/blade_rotation_deg: (\S+)/.exec(text)?.[1]))], [0.3], 1e-9);
     assertNear([read.aperture_diameter_mm], [2 * camera.radius * 10], 1e-9);

@@ -56,6 +56,23 @@ test("the points of an opening fill a disk and a polygon evenly", () => {
   assert.ok(turned.some(([x]) => x < -1.6));
 });
 
+test("squeezed and rounded openings have the areas and the sides of their shapes", () => {
+  const upright = pointsOfOpening(cameraAt([0, 0, 0], { radius: 2, ratio: 2 }), 1000);
+  assert.equal(upright.length, 1000);
+  assert.ok(upright.every(([x, y]) => Math.hypot(2 * x, y) <= 2));
+  assert.ok(upright.some(([, y]) => y > 1.9));
+  const lying = pointsOfOpening(cameraAt([0, 0, 0], { radius: 2, ratio: 0.5 }), 1000);
+  assert.ok(lying.every(([x, y]) => Math.hypot(x, 2 * y) <= 2));
+  // The arcs of a rounded triangle lie between its edges and the circle.
+  const counts = [0, 0.5, 1].map(
+    (roundness) => pointsOfOpening(cameraAt([0, 0, 0], { radius: 2, blades: 3, roundness }), 1000).length,
+  );
+  assert.ok(counts[0] < 440 && counts[1] > 640 && counts[1] < 800 && counts[2] === 1000, counts.join(" "));
+  const lowest = (roundness: number) =>
+    Math.min(...pointsOfOpening(cameraAt([0, 0, 0], { radius: 2, blades: 3, roundness }), 4000).map(([, y]) => y));
+  assert.ok(Math.abs(lowest(0.5) + 1.5) < 0.03, `${lowest(0.5)}`);
+});
+
 test("the spacing of a grid is known", () => {
   const { spacing } = lensAt({ radius: 0.05 });
   assert.ok(Math.abs(spacing - SPACING) < 0.1 * SPACING, `${spacing}`);

@@ -17,6 +17,8 @@ export function cameraAt(centre: Vector, changes: Partial<FrameCamera> = {}): Fr
     radius: 0.006,
     rotation: 0,
     blades: 0,
+    ratio: 1,
+    roundness: 0,
     normal: [0, 0, 1],
     offset: 0,
     time: 0,

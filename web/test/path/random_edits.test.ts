@@ -39,6 +39,8 @@ function drawValue(name: string, random: (below: number) => number): PathValue {
       return { yaw: 20 * spread(), pitch: 20 * spread(), roll: 20 * spread() };
     case "focus_tilt":
       return { horizontal: 20 * spread(), vertical: 20 * spread() };
+    case "shift":
+      return { horizontal: 0.01 * spread(), vertical: 0.01 * spread() };
     case "quaternion":
       return [1, 0, 0, 0];
     default:

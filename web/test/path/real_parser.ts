@@ -17,6 +17,9 @@ export interface Camera {
   focus_distance_w: number;
   focus_tilt_deg: number[];
   blades: number;
+  shift_mm: number[];
+  ratio: number;
+  blade_roundness: number;
 }
 
 export interface Film {

@@ -1,5 +1,6 @@
 // Renders live pictures by WebGL2: each element of the picture reads every LF image of the lens.
 
+import { arcOf, squeezeOf } from "../../data/opening";
 import type { FrameCamera } from "../../data/frame_camera";
 import type { GrowingPicture } from "../../data/growing_picture";
 import type { Lens, LensImage } from "./lens";
@@ -136,7 +137,11 @@ export class GlRenderer {
     gl.uniform1i(at("nodes"), 2);
     gl.uniform2i(at("plate"), plate.width, plate.height);
     gl.uniform2i(at("grid"), lens.columns, lens.rows);
-    gl.uniform1i(at("blades"), lens.blades);
+    const isRound = lens.blades < 3 || lens.roundness === 1;
+    const arc = isRound || lens.roundness === 0 ? null : arcOf(Math.PI / lens.blades, lens.roundness);
+    gl.uniform1i(at("blades"), isRound ? 0 : lens.blades);
+    gl.uniform2f(at("squeeze"), ...squeezeOf(lens));
+    gl.uniform2f(at("arc"), arc?.radius ?? 0, arc?.centre ?? 0);
     gl.uniform1f(at("rotation"), lens.rotation);
     gl.uniform1i(at("hasFeather"), lens.hasFeather ? 1 : 0);
     gl.uniform1f(at("rim"), RIM);

@@ -1,6 +1,7 @@
 // The lens of a picture: which LF images it takes, and the weights of their rays (lf/live/picture_lens.h).
 
 import { readHead } from "../../data/head";
+import type { Opening } from "../../data/opening";
 import type { LiveFacts } from "../../data/live_picture";
 import type { Plate } from "./ray_forms";
 
@@ -10,17 +11,14 @@ export interface LensImage {
   samples: number; // rays along each edge of an element
 }
 
-export interface Lens {
+// The radius and shape of a lens are those of the opening through which rays must pass.
+export interface Lens extends Opening {
   plate: Plate;
   images: LensImage[]; // LF images that have a weight somewhere
   // Weights in 1/256 at nodes on the plate, [image][row][column], between which they are interpolated.
   columns: number;
   rows: number;
   nodes: Uint16Array;
-  // The opening through which rays must pass: radius in world units, rotation in radians.
-  radius: number;
-  blades: number;
-  rotation: number;
   hasFeather: boolean;
   pedestal: number;
   colours: number[]; // [3][3], from values of LF images less the pedestal to linear light
@@ -32,13 +30,10 @@ export interface LensAnswer {
   refused: string; // why a picture cannot be rendered here; "" if it can
 }
 
-interface LensHead extends LiveFacts, Plate {
+interface LensHead extends LiveFacts, Plate, Opening {
   refused: string;
   columns: number;
   rows: number;
-  radius: number;
-  blades: number;
-  rotation: number;
   feather: boolean;
   pedestal: number;
   colours: number[];
@@ -47,7 +42,7 @@ interface LensHead extends LiveFacts, Plate {
 
 export function readLens(bytes: ArrayBuffer): LensAnswer {
   const [head, begin] = readHead<LensHead>(bytes);
-  const { columns, rows, radius, blades, rotation, pedestal, colours } = head;
+  const { columns, rows, radius, blades, rotation, ratio, roundness, pedestal, colours } = head;
   const { width, height, fx, fy, cx, cy } = head;
   const images = head.lf_images.map(([id, x, y, samples]): LensImage => ({ id, shift: [x, y], samples }));
   return {
@@ -60,6 +55,8 @@ export function readLens(bytes: ArrayBuffer): LensAnswer {
       radius,
       blades,
       rotation,
+      ratio,
+      roundness,
       hasFeather: head.feather,
       pedestal,
       colours,

@@ -2,6 +2,7 @@
 // cells. These weights are counts of points of the opening instead: each point counts for the nearest LF camera, or in
 // narrow lenses for the few LF cameras around it (hat weights).
 
+import { rimAt, squeezeOf, type Opening } from "../../data/opening";
 import { add, dot, type FrameCamera } from "../../data/frame_camera";
 import type { Vec3 } from "../../data/scene";
 import type { Lens } from "./lens";
@@ -49,20 +50,16 @@ export function lensPoint(camera: FrameCamera, centre: Vec3, point: Vec3): Vec2 
   return [dot(camera.right, offset), dot(camera.up, offset)];
 }
 
-// Returns at most `count` points that are spread evenly over the opening: the points of a spiral that are inside of the
-// polygon of blades.
-export function pointsOfOpening({ radius, blades, rotation }: FrameCamera, count: number): Vec2[] {
+// Returns at most `count` points that are spread evenly over the opening: the points of a spiral that are inside of its
+// rim.
+export function pointsOfOpening(opening: Opening, count: number): Vec2[] {
   const golden = Math.PI * (3 - Math.sqrt(5));
-  const half = Math.PI / Math.max(3, blades);
+  const [width, height] = squeezeOf(opening).map((squeeze) => squeeze * opening.radius);
   const points: Vec2[] = [];
   for (let i = 0; i < count; ++i) {
     const size = Math.sqrt((i + 0.5) / count);
     const angle = i * golden;
-    // The polygon has a corner straight up at rotation 0, and turns from right towards up.
-    const fromEdge = angle - Math.PI / 2 - rotation - half;
-    const folded = fromEdge - 2 * half * Math.round(fromEdge / (2 * half));
-    if (blades < 3 || size * Math.cos(folded) <= Math.cos(half))
-      points.push([radius * size * Math.cos(angle), radius * size * Math.sin(angle)]);
+    if (size <= rimAt(opening, angle)) points.push([width * size * Math.cos(angle), height * size * Math.sin(angle)]);
   }
   return points;
 }
@@ -192,7 +189,7 @@ function weighted(
     images.push({ id, shift: [(5 * i) % 8, (3 * i) % 8], samples });
   });
   const colours = [1, 0, 0, 0, 1, 0, 0, 0, 1].map((x) => x / 65535);
-  const disk = { radius: 0, blades: 0, rotation: 0 };
+  const disk: Opening = { radius: 0, blades: 0, rotation: 0, ratio: 1, roundness: 0 };
   return {
     plate,
     images,

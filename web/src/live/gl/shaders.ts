@@ -24,8 +24,10 @@ uniform ivec2 plate;              // columns and rows of elements
 uniform ivec2 grid;               // columns and rows of nodes
 uniform int count;                // LF images of this draw
 uniform vec3 front;
-uniform int blades;               // 0: a disk
+uniform int blades;               // 0: round
 uniform float rotation;
+uniform vec2 squeeze;             // of the opening's width and height, by an anamorphic lens
+uniform vec2 arc;                 // radius of the arcs of the blades, and their centres; (0, 0): straight
 uniform bool hasFeather;
 uniform float rim;                // relative tolerance of the opening
 layout(std140) uniform Images {
@@ -42,11 +44,13 @@ const float kPi = 3.14159265358979;
 vec4 part(int image, int i) { return images[image * ${VECTORS_PER_IMAGE} + i]; }
 
 // The opening has the radius 1. A polygon has a corner straight up at rotation 0, and turns from right towards up.
-bool passes(vec2 at) {
+bool passes(vec2 onLens) {
+  vec2 at = onLens / squeeze;
   if (blades == 0) return dot(at, at) <= 1.0 + 2.0 * rim;
   float between = 2.0 * kPi / float(blades);
   float angle = atan(at.y, at.x) - 0.5 * kPi - rotation - 0.5 * between;
   float fromEdge = angle - between * round(angle / between);
+  if (arc.x > 0.0) return length(length(at) * vec2(cos(fromEdge), sin(fromEdge)) - vec2(arc.y, 0.0)) <= arc.x + rim;
   return length(at) * cos(fromEdge) <= cos(0.5 * between) * (1.0 + rim);
 }
 

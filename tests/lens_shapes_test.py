@@ -1,0 +1,111 @@
+#!/usr/bin/python3
+"""Tests lenses that are shifted, squeezed or rounded: frames are those of true lenses, whatever makes them.
+
+usage: lens_shapes_test.py LFSYNTH LFRENDERER LFPREPROCESSOR LFMERGE
+"""
+import os
+import sys
+import tempfile
+import unittest
+
+os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # must be set before cv2 is imported
+import cv2
+import numpy as np
+
+from program_test_case import ProgramTestCase
+
+SYNTH = RENDERER = PREPROCESSOR = MERGE = None
+PATH = """format: lfpath 1
+fps: 25
+frames: 1
+resolution: [160, 106]
+camera:
+  focal_length_mm: 50
+  position: [0, -0.125, -0.799]
+  look_at: [0, -0.085, 0]
+  {camera}
+lens:
+  aperture_diameter: 0.04
+  focus_distance: 0.62
+  {lens}
+"""
+# Each lens, and a similar one that must give another picture.
+LENSES = {
+    "shift": (("shift_mm: {horizontal: 2, vertical: -1.5}", ""), ("shift_mm: {horizontal: 2, vertical: -1}", "")),
+    "upright": (("", "ratio: 2"), ("", "ratio: 1.6")),
+    "lying": (("", "ratio: 0.5"), ("", "ratio: 0.65")),
+    "rounded": (("", "blades: 3\n  blade_roundness: 0.4"), ("", "blades: 3")),
+    "all": (("shift_mm: {vertical: 1}", "blades: 5\n  blade_roundness: 0.3\n  ratio: 1.8\n  blade_rotation_deg: 20"),
+            ("shift_mm: {vertical: 1}", "blades: 5\n  blade_roundness: 0.3\n  ratio: 1.8\n  blade_rotation_deg: 56")),
+}
+
+
+def picture(file):
+    return np.clip(cv2.imread(str(file), cv2.IMREAD_UNCHANGED)[..., :3], 0, 1)
+
+
+def psnr_db(a, b):
+    return -10 * np.log10(np.mean((a.astype(float) - b) ** 2))
+
+
+class LensShapesTest(ProgramTestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.captured = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.captured.cleanup)
+
+    @property
+    def field(self):
+        field = os.path.join(self.captured.name, "field")
+        if not os.path.exists(field):
+            self.succeeds(SYNTH, "still-life", "-o", field, "--count", 225, "--size", "320x212", "--spacing", 0.0032,
+                          "-q")
+        return field
+
+    def path(self, name, lens):
+        file = self.folder / f"{name}.yaml"
+        file.write_text(PATH.format(camera=lens[0], lens=lens[1]))
+        return file
+
+    def frame(self, path, *options, source=None):
+        out = self.folder / f"frames-{path.stem}-{len(list(self.folder.iterdir()))}"
+        self.succeeds(RENDERER, *(source or [self.field, path]), "-o", out, "--format", "exr-float",
+                      "--no-contact-sheet", "-q", *options)
+        return out / "frame_0001.exr"
+
+    def truth(self, path):
+        out = self.folder / f"truth-{path.stem}"
+        self.succeeds(SYNTH, "still-life", "-o", out, "--calibration-only", "--truth", path, "--truth-samples", 400,
+                      "-q")
+        return picture(out / "truth/frame_0001.exr")
+
+    def test_frames_are_those_of_true_lenses(self):
+        for name, (right, wrong) in LENSES.items():
+            with self.subTest(name):
+                path = self.path(name, right)
+                truth = self.truth(path)
+                of_default = psnr_db(picture(self.frame(path)), truth)
+                self.assertGreater(of_default, 40)
+                self.assertLess(psnr_db(picture(self.frame(self.path("wrong", wrong))), truth), of_default - 3)
+                plain = self.frame(path, "--lens-weights", "none")
+                self.assertGreater(psnr_db(picture(plain), truth), 36)
+                hybrid = self.frame(path, "--mode", "hybrid")
+                self.assertGreater(psnr_db(picture(hybrid), truth), 36)
+
+    def test_packages_and_plates_keep_the_lens(self):
+        path = self.path("all", LENSES["all"][0])
+        expected = self.frame(path).read_bytes()
+        self.succeeds(PREPROCESSOR, self.field, path, "-o", self.folder / "packages", "-q")
+        package = self.folder / "packages/package-0000.lfp"
+        self.assertEqual(self.frame(path, source=[package]).read_bytes(), expected)
+        for shard in (1, 2):
+            self.succeeds(RENDERER, self.field, path, "-o", self.folder / "shards", "--shard", f"{shard}/2", "-q")
+        self.succeeds(MERGE, self.folder / "shards/partial/shards", "-o", self.folder / "merged", "--format",
+                      "exr-float", "-q")
+        merged = self.folder / "merged/frame_0001.exr"
+        self.assertEqual(picture(merged).tobytes(), picture(self.frame(path)).tobytes())
+
+
+if __name__ == "__main__":
+    SYNTH, RENDERER, PREPROCESSOR, MERGE = sys.argv[1:5]
+    unittest.main(argv=sys.argv[:1])
