@@ -35,6 +35,7 @@ LENSES = {
     "upright": (("", "ratio: 2"), ("", "ratio: 1.6")),
     "lying": (("", "ratio: 0.5"), ("", "ratio: 0.65")),
     "rounded": (("", "blades: 3\n  blade_roundness: 0.4"), ("", "blades: 3")),
+    "cat's eye": (("", "hood_distance: 0.05\n  hood_diameter: 0.042"), ("", "")),
     "all": (("shift_mm: {vertical: 1}", "blades: 5\n  blade_roundness: 0.3\n  ratio: 1.8\n  blade_rotation_deg: 20"),
             ("shift_mm: {vertical: 1}", "blades: 5\n  blade_roundness: 0.3\n  ratio: 1.8\n  blade_rotation_deg: 56")),
 }
@@ -89,20 +90,34 @@ class LensShapesTest(ProgramTestCase):
                 self.assertLess(psnr_db(picture(self.frame(self.path("wrong", wrong))), truth), of_default - 3)
                 plain = self.frame(path, "--lens-weights", "none")
                 self.assertGreater(psnr_db(picture(plain), truth), 36)
-                hybrid = self.frame(path, "--mode", "hybrid")
-                self.assertGreater(psnr_db(picture(hybrid), truth), 36)
+                if "hood" not in right[1]:
+                    hybrid = self.frame(path, "--mode", "hybrid")
+                    self.assertGreater(psnr_db(picture(hybrid), truth), 36)
+
+    def test_rebinned_rays_refuse_a_hood(self):
+        path = self.path("hood", LENSES["cat's eye"][0])
+        for mode in ("rebin", "hybrid"):
+            for program, output in ((RENDERER, "frames"), (PREPROCESSOR, "packages")):
+                self.fails(2, ["hood", "--mode collect"], program, self.field, path, "-o", self.folder / output,
+                           "--mode", mode)
 
     def test_packages_and_plates_keep_the_lens(self):
-        path = self.path("all", LENSES["all"][0])
+        for name in ("all", "cat's eye"):
+            with self.subTest(name):
+                self.check_packages_and_plates(self.path(name.replace("'", ""), LENSES[name][0]))
+
+    def check_packages_and_plates(self, path):
+        folder = self.folder / path.stem
         expected = self.frame(path).read_bytes()
-        self.succeeds(PREPROCESSOR, self.field, path, "-o", self.folder / "packages", "-q")
-        package = self.folder / "packages/package-0000.lfp"
+        self.assertEqual(self.frame(path, "--threads", 3).read_bytes(), expected)
+        self.succeeds(PREPROCESSOR, self.field, path, "-o", folder / "packages", "-q")
+        package = folder / "packages/package-0000.lfp"
         self.assertEqual(self.frame(path, source=[package]).read_bytes(), expected)
         for shard in (1, 2):
-            self.succeeds(RENDERER, self.field, path, "-o", self.folder / "shards", "--shard", f"{shard}/2", "-q")
-        self.succeeds(MERGE, self.folder / "shards/partial/shards", "-o", self.folder / "merged", "--format",
+            self.succeeds(RENDERER, self.field, path, "-o", folder / "shards", "--shard", f"{shard}/2", "-q")
+        self.succeeds(MERGE, folder / "shards/partial/shards", "-o", folder / "merged", "--format",
                       "exr-float", "-q")
-        merged = self.folder / "merged/frame_0001.exr"
+        merged = folder / "merged/frame_0001.exr"
         self.assertEqual(picture(merged).tobytes(), picture(self.frame(path)).tobytes())
 
 

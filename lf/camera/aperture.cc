@@ -12,7 +12,7 @@ namespace {
 
 // The largest number of vertices of an opening with curved edges; planners keep a bit for each
 // edge.
-constexpr int kCurveVertices = 64;
+constexpr int kCurveVertices = 40;
 
 Vec2 Direction(double angle_rad) { return {std::cos(angle_rad), std::sin(angle_rad)}; }
 
@@ -122,10 +122,6 @@ class PolygonSampler {
 
 }  // namespace
 
-bool IsShape(double ratio, double roundness) {
-  return ratio >= 1 / kMostRatio && ratio <= kMostRatio && roundness >= 0 && roundness <= 1;
-}
-
 bool Contains(const Aperture& aperture, const Vec2& point_lens) {
   return ApertureTest(aperture).Contains(point_lens);
 }
@@ -146,6 +142,13 @@ std::vector<Vec2> Vertices(const Aperture& aperture) {
   LF_CHECK(aperture.blades == 0 || aperture.blades >= 3);
   if (aperture.IsDisk()) return {};
   std::vector<Vec2> vertices = UnitVertices(aperture);
+  for (Vec2& vertex : vertices) vertex *= aperture.radius_w;
+  return vertices;
+}
+
+std::vector<Vec2> RimVertices(const Aperture& aperture) {
+  if (!aperture.IsDisk()) return Vertices(aperture);
+  std::vector<Vec2> vertices = RoundVertices();
   for (Vec2& vertex : vertices) vertex *= aperture.radius_w;
   return vertices;
 }

@@ -30,12 +30,9 @@ struct Aperture {
 
 // The limits of Aperture::ratio are 1 / kMostRatio and kMostRatio.
 inline constexpr double kMostRatio = 10;
-// Returns true if the ratio or the roundness is not the default. Files state them only then.
-inline bool HasShape(const Aperture& aperture) {
-  return aperture.ratio != 1 || aperture.roundness != 0;
-}
-// Returns true if the ratio and the roundness are within their limits.
-bool IsShape(double ratio, double roundness);
+// The largest number of blades of a lens with a hood (render_camera.h), because planners keep a bit
+// for each edge of both.
+inline constexpr int kMostBladesInHood = 40;
 
 // Relative tolerance of the rim. The rim counts as inside, because LF cameras of regular grids
 // often lie exactly on it. In a disk, the squared length of a point may exceed the squared radius
@@ -51,9 +48,11 @@ struct ApertureEdge {
 };
 
 // Returns the vertices of the polygon in lens coordinates, counter-clockwise; empty for a disk. An
-// opening with curved edges is the convex polygon of up to 64 vertices that is returned
+// opening with curved edges is the convex polygon of up to 40 vertices that is returned
 // (doc/ray.md).
 std::vector<Vec2> Vertices(const Aperture& aperture);
+// Returns the same or, for a disk, the vertices of a polygon that has its area.
+std::vector<Vec2> RimVertices(const Aperture& aperture);
 
 // Returns the edges of the polygon. For a disk, returns the edges of the regular polygon with
 // `disk_edge_count` edges that is circumscribed about the disk.

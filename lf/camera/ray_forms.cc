@@ -1,5 +1,6 @@
 #include "lf/camera/ray_forms.h"
 
+#include "lf/camera/hood.h"
 #include "lf/core/check.h"
 
 namespace lf {
@@ -35,6 +36,12 @@ RayForms MakeRayForms(const Mat3& direction, const Vec3& centre_world,
   forms.front = sensor.row(2);
   forms.lens_right = plate.RightWorld().transpose() * lens * direction;
   forms.lens_up = plate.UpWorld().transpose() * lens * direction;
+  if (render_camera.hood.exists()) {
+    const Vec3 beyond = offset - render_camera.hood.distance_w * f;
+    const Mat3 hood = beyond * f.transpose() - f.dot(beyond) * Mat3::Identity();
+    forms.hood_right = plate.RightWorld().transpose() * hood * direction;
+    forms.hood_up = plate.UpWorld().transpose() * hood * direction;
+  }
   return forms;
 }
 
@@ -61,6 +68,16 @@ std::vector<PixelForm> LensHalfPlanes(const RayForms& forms, const RenderCamera&
   std::vector<PixelForm> half_planes;
   for (const ApertureEdge& edge : Edges(render_camera.aperture))
     half_planes.push_back(LensHalfPlane(forms, edge, margin_w));
+  return half_planes;
+}
+
+std::vector<PixelForm> HoodHalfPlanes(const RayForms& forms, const RenderCamera& render_camera,
+                                      double relative_margin) {
+  const double margin_w = relative_margin * render_camera.hood.radius_w;
+  std::vector<PixelForm> half_planes;
+  for (const ApertureEdge& edge : Edges(render_camera.hood))
+    half_planes.push_back(edge.normal.x() * forms.hood_right + edge.normal.y() * forms.hood_up -
+                          (edge.distance_w + margin_w) * forms.forward);
   return half_planes;
 }
 

@@ -37,6 +37,9 @@ struct RayForms {
   // units from the lens centre.
   PixelForm lens_right;
   PixelForm lens_up;
+  // The ray meets the plane of the hood likewise, from its centre; unset if there is no hood.
+  PixelForm hood_right;
+  PixelForm hood_up;
 };
 
 RayForms MakeRayForms(const PinholeCamera& lf_camera, const RenderCamera& render_camera);
@@ -71,6 +74,10 @@ inline PixelForm LensHalfPlane(const RayForms& forms, const ApertureEdge& edge, 
          (edge.distance_w + margin_w) * forms.forward;
 }
 std::vector<PixelForm> LensHalfPlanes(const RayForms& forms, const RenderCamera& render_camera,
+                                      double relative_margin);
+// Returns the half-planes of the edges of the hood likewise, with `relative_margin` times its
+// radius; none if there is no hood.
+std::vector<PixelForm> HoodHalfPlanes(const RayForms& forms, const RenderCamera& render_camera,
                                       double relative_margin);
 
 }  // namespace lf

@@ -21,6 +21,23 @@ Vec2 ShiftOf(const RenderCamera& camera) {
           (plate.cy_px - 0.5 * plate.height_px) * w_per_px};
 }
 
+void OpenUpTo(double radius_w, RenderCamera* camera) {
+  camera->aperture = {radius_w, 0, 0};
+  camera->hood = {};
+}
+
+bool HasShape(const RenderCamera& camera) {
+  return camera.aperture.ratio != 1 || camera.aperture.roundness != 0 || camera.hood.exists();
+}
+
+bool IsShape(const RenderCamera& camera) {
+  const Aperture& aperture = camera.aperture;
+  const Hood& hood = camera.hood;
+  return aperture.ratio >= 1 / kMostRatio && aperture.ratio <= kMostRatio &&
+         aperture.roundness >= 0 && aperture.roundness <= 1 && hood.distance_w >= 0 &&
+         hood.radius_w >= 0 && (!hood.exists() || aperture.blades <= kMostBladesInHood);
+}
+
 Vec3 LensPointWorld(const RenderCamera& camera, const Vec2& point_lens) {
   return camera.pinhole.CentreWorld() + point_lens.x() * camera.pinhole.RightWorld() +
          point_lens.y() * camera.pinhole.UpWorld();

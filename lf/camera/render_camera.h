@@ -17,10 +17,19 @@ struct FocusTilt {
   double vertical_rad = 0;
 };
 
+// A round opening of this radius around the optical axis, in a plane in front of the lens
+// (camera/hood.h).
+struct Hood {
+  double distance_w = 0;  // from the lens centre
+  double radius_w = 0;    // 0: there is no hood
+  bool exists() const { return radius_w > 0; }
+};
+
 struct RenderCamera {
   PinholeCamera pinhole;  // projects points through the lens centre to elements of the sensor plate
   Aperture aperture;      // in the plane through the lens centre normal to the optical axis
   Plane focus_plane;      // in world coordinates
+  Hood hood;
 
   // The settings that the members above were computed from, for people and metadata.
   double time_s = 0;
@@ -38,6 +47,15 @@ Plane FocusPlane(const PinholeCamera& camera, double focus_distance_w, const Foc
 // upwards, in world units on a plate that does not turn the picture around. They are exactly 0 if
 // the principal point is the centre of the plate.
 Vec2 ShiftOf(const RenderCamera& camera);
+
+// Replaces the opening by a disk of this radius, and removes the hood, so that rays that pass
+// near the lens are accepted.
+void OpenUpTo(double radius_w, RenderCamera* camera);
+// Returns true if the opening has a shape or the camera a hood. Files state their numbers only
+// then.
+bool HasShape(const RenderCamera& camera);
+// Returns true if these numbers are within their limits.
+bool IsShape(const RenderCamera& camera);
 
 // Converts a point of the lens from lens coordinates (right, up) to world coordinates.
 Vec3 LensPointWorld(const RenderCamera& camera, const Vec2& point_lens);

@@ -13,6 +13,7 @@ GatherModel::GatherModel(const PinholeCamera& lf_camera, const RenderCamera& ren
       ray_(lf_camera, forward_),
       offset_(ray_.centre_world() - render_camera.pinhole.CentreWorld()),
       aperture_(render_camera.aperture),
+      hood_(render_camera),
       may_lack_rays_(MayLackRays(lf_camera.intrinsics)) {}
 
 std::optional<Vec3> GatherModel::Direction(int x, int y) const {
@@ -23,6 +24,7 @@ std::optional<Vec3> GatherModel::Direction(int x, int y) const {
   if (!(forward_.dot(d) > 0)) return std::nullopt;
   const Vec3 on_lens = offset_ - d * (forward_.dot(offset_) / forward_.dot(d));
   if (!aperture_.Contains({right_.dot(on_lens), up_.dot(on_lens)})) return std::nullopt;
+  if (!hood_.LetsThrough(*focus_point, d)) return std::nullopt;
   return d;
 }
 

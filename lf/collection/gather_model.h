@@ -6,6 +6,7 @@
 
 #include <optional>
 
+#include "lf/camera/hood.h"
 #include "lf/camera/pinhole.h"
 #include "lf/camera/ray_through.h"
 #include "lf/camera/render_camera.h"
@@ -38,6 +39,7 @@ class GatherModel {
   RayThrough ray_;
   Vec3 offset_;  // vector from the lens centre to the LF camera, in the world
   ApertureTest aperture_;
+  HoodTest hood_;
   bool may_lack_rays_ = false;
 };
 

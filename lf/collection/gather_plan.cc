@@ -22,6 +22,8 @@ struct GatherForms {
   PixelForm forward;     // f.(X - c) times a positive number: > 0 if d = X - c
   PixelForm lens_right;  // lens position = (lens_right e, lens_up e) / (forward e)
   PixelForm lens_up;
+  PixelForm hood_right;  // the same on the plane of the hood, if there is one
+  PixelForm hood_up;
   // X - c in axes of the LF camera, times a positive number. Without lens distortion also
   // multiplied by the camera's intrinsic matrix, which yields homogeneous pixel positions.
   PixelForm across_x;
@@ -49,6 +51,12 @@ GatherForms MakeForms(const PinholeCamera& lf_camera, const RenderCamera& render
   forms.forward = f.transpose() * to_focus;
   forms.lens_right = lens.RightWorld().transpose() * to_lens * to_focus;
   forms.lens_up = lens.UpWorld().transpose() * to_lens * to_focus;
+  if (render_camera.hood.exists()) {
+    const Vec3 beyond = offset - render_camera.hood.distance_w * f;
+    const Mat3 to_hood = beyond * f.transpose() - f.dot(beyond) * Mat3::Identity();
+    forms.hood_right = lens.RightWorld().transpose() * to_hood * to_focus;
+    forms.hood_up = lens.UpWorld().transpose() * to_hood * to_focus;
+  }
   Mat3 across = lf_camera.cam_from_world.rotation * to_focus;
   if (!lf_camera.intrinsics.has_distortion()) across = lf_camera.intrinsics.Matrix() * across;
   forms.across_x = across.row(0);
@@ -61,7 +69,7 @@ GatherForms MakeForms(const PinholeCamera& lf_camera, const RenderCamera& render
 // has the sign `sign`. There are no forms for the borders of the LF image if it has lens
 // distortion, and none for a lens that is a disk.
 std::vector<PixelForm> HalfPlanes(const GatherForms& forms, const Intrinsics& k,
-                                  const Aperture& aperture, int sign) {
+                                  const RenderCamera& render_camera, int sign) {
   std::vector<PixelForm> half_planes = {-forms.plane, -sign * forms.forward};
   if (!k.has_distortion()) {
     half_planes.push_back(-sign * forms.depth);
@@ -70,11 +78,15 @@ std::vector<PixelForm> HalfPlanes(const GatherForms& forms, const Intrinsics& k,
     half_planes.push_back(sign * (0.5 * forms.depth - forms.across_y));
     half_planes.push_back(sign * (forms.across_y - (k.height_px - 0.5) * forms.depth));
   }
-  if (!aperture.IsDisk())
-    for (const ApertureEdge& edge : Edges(aperture))
-      half_planes.push_back(sign *
-                            (edge.normal.x() * forms.lens_right + edge.normal.y() * forms.lens_up -
-                             edge.distance_w * (1 + kRimTolerance) * forms.forward));
+  const auto add = [&](const ApertureEdge& edge, const PixelForm& right, const PixelForm& up) {
+    half_planes.push_back(sign * (edge.normal.x() * right + edge.normal.y() * up -
+                                  edge.distance_w * (1 + kRimTolerance) * forms.forward));
+  };
+  if (!render_camera.aperture.IsDisk())
+    for (const ApertureEdge& edge : Edges(render_camera.aperture))
+      add(edge, forms.lens_right, forms.lens_up);
+  for (const ApertureEdge& edge : Edges(render_camera.hood))
+    add(edge, forms.hood_right, forms.hood_up);
   return half_planes;
 }
 
@@ -93,7 +105,7 @@ class GatherPlanner {
             PositionPatches([this](double x, double y) { return DistortedPosition(-1, x, y); })},
         plan_(std::move(memory)) {
     for (const int side : {0, 1})
-      rows_.half_planes[side] = HalfPlanes(forms_, k_, finer.aperture, side == 0 ? -1 : 1);
+      rows_.half_planes[side] = HalfPlanes(forms_, k_, finer, side == 0 ? -1 : 1);
     // All rays of an LF camera in the lens plane cross this plane at one point. Unless the point is
     // surely inside the disk, the ray model decides about each span by its ends.
     const bool is_disk = finer.aperture.IsDisk();

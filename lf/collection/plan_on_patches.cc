@@ -58,6 +58,8 @@ class PatchPlanner {
     }
     if (!render_camera.aperture.IsDisk())
       lens_half_planes_ = LensHalfPlanes(forms_, render_camera, 0);
+    const std::vector<PixelForm> hood = HoodHalfPlanes(forms_, render_camera, 0);
+    lens_half_planes_.insert(lens_half_planes_.end(), hood.begin(), hood.end());
     for (const int side : {0, 1}) all_conditions_.plate[side] = BitsOf(plate_half_planes_[side]);
     all_conditions_.lens = BitsOf(lens_half_planes_);
     all_conditions_.disk = render_camera.aperture.IsDisk();
@@ -86,7 +88,7 @@ class PatchPlanner {
   };
 
   static uint64_t BitsOf(const std::vector<PixelForm>& forms) {
-    LF_CHECK(forms.size() <= 64);  // one form for each blade, or kPlateHalfPlanes
+    LF_CHECK(forms.size() <= 64);  // a form for each edge of lens and hood, or kPlateHalfPlanes
     return forms.empty() ? 0 : ~uint64_t{0} >> (64 - forms.size());
   }
 

@@ -33,6 +33,7 @@ RayModel::RayModel(const PinholeCamera& lf_camera, const RenderCamera& render_ca
       plate_from_world_(render_camera.pinhole.intrinsics.Matrix() *
                         render_camera.pinhole.cam_from_world.rotation),
       aperture_(render_camera.aperture),
+      hood_(render_camera),
       width_px_(render_camera.pinhole.intrinsics.width_px),
       height_px_(render_camera.pinhole.intrinsics.height_px) {
   if (intrinsics_.has_distortion()) distortion_.emplace(intrinsics_.distortion);
@@ -63,6 +64,7 @@ std::optional<PlateElement> RayModel::CollectIdeal(const Vec3& position) const {
   const Vec3 offset = centre_ - lens_centre_;
   const Vec3 on_lens = offset - ray.direction * (forward_.dot(offset) / along);
   if (!aperture_.Contains({right_.dot(on_lens), up_.dot(on_lens)})) return std::nullopt;
+  if (!hood_.LetsThrough(centre_, ray.direction)) return std::nullopt;
 
   // 4. The element: coordinates are rounded down, never truncated.
   const Vec3 p = plate_from_world_ * (*focus_point - lens_centre_);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "lf/camera/distortion.h"
+#include "lf/camera/hood.h"
 #include "lf/camera/pinhole.h"
 #include "lf/camera/render_camera.h"
 #include "lf/core/geometry.h"
@@ -46,6 +47,7 @@ class RayModel {
   Plane focus_plane_;
   Mat3 plate_from_world_;  // K' R' of doc/ray.md: maps X - c' to the plate, for a focus point X
   ApertureTest aperture_;
+  HoodTest hood_;
   int width_px_, height_px_;
 };
 

@@ -23,6 +23,8 @@ void PlanOnLines(const PinholeCamera& lf_camera, const RenderCamera& render_came
   for (const int side : {0, 1}) {
     const auto plate = PlateHalfPlanes(forms, render_camera, side == 0 ? -1 : 1, 0);
     rows.half_planes[side].assign(plate.begin(), plate.end());
+    const std::vector<PixelForm> hood = HoodHalfPlanes(forms, render_camera, kLensMargin);
+    rows.half_planes[side].insert(rows.half_planes[side].end(), hood.begin(), hood.end());
     if (is_disk) continue;
     const std::vector<PixelForm> lens = LensHalfPlanes(forms, render_camera, kLensMargin);
     rows.half_planes[side].insert(rows.half_planes[side].end(), lens.begin(), lens.end());

@@ -64,7 +64,7 @@ std::string FramesBytes(const CameraPath& path) {
         {camera.focus_plane.offset_w, camera.time_s, camera.focal_length_w, camera.sensor_width_w,
          camera.focus_distance_w, camera.focus_tilt.horizontal_rad, camera.focus_tilt.vertical_rad,
          static_cast<double>(k.width_px), static_cast<double>(k.height_px), camera.aperture.ratio,
-         camera.aperture.roundness});
+         camera.aperture.roundness, camera.hood.distance_w, camera.hood.radius_w});
   }
   std::string bytes;
   Append<double>(&bytes, numbers);

@@ -26,9 +26,10 @@ std::string CamerasBytes(const LightField& light_field);
 // FramesBytes() returns kFrameNumbers doubles for each frame, about its camera: centre, right, up,
 // forward (12); fx, fy, cx, cy; radius, rotation and blades of the aperture; normal and offset of
 // the focus plane (4); time, focal length, sensor width, focus distance, horizontal and vertical
-// tilt; width and height of the plate; ratio and roundness of the aperture. Units are as in
+// tilt; width and height of the plate; ratio and roundness of the aperture;
+// distance and radius of the hood. Units are as in
 // RenderCamera.
-inline constexpr size_t kFrameNumbers = 33;
+inline constexpr size_t kFrameNumbers = 35;
 std::string FramesBytes(const CameraPath& path);
 
 // Returns a head of 16 bytes: uint32 number of LF cameras; uint32 number of LF images that are

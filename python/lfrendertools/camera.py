@@ -64,6 +64,9 @@ class Camera:
     ratio : float, optional
         Height of the opening divided by its width, from 0.1 to 10, as of an anamorphic lens. The longer side has the
         diameter of the aperture.
+    hood : tuple of float, optional
+        Distance from the lens, and diameter, of a round opening in front of the lens, which cuts off oblique rays:
+        lights in the corners have the shape of a cat's eye. (0, 0): there is none.
     breathing : bool, optional
         True: the field of view narrows when the focus comes nearer. False: focusing does not change it.
     unit_m : float, optional
@@ -95,7 +98,8 @@ class Camera:
                  aperture_diameter: Optional[float] = None, aperture_diameter_mm: Optional[float] = None,
                  focus_distance: Optional[float] = None, focus_point: Optional[Vector] = None,
                  tilt_deg: Tuple[float, float] = (0, 0), blades: int = 0, blade_rotation_deg: float = 0,
-                 blade_roundness: float = 0, ratio: float = 1, breathing: bool = False, unit_m: float = 1) -> None:
+                 blade_roundness: float = 0, ratio: float = 1, hood: Tuple[float, float] = (0, 0),
+                 breathing: bool = False, unit_m: float = 1) -> None:
         _one_of(look_at=look_at, quaternion=quaternion, world_from_cam=world_from_cam)
         _one_of(focal_length_mm=focal_length_mm, field_of_view_deg=field_of_view_deg)
         _one_of(f_number=f_number, aperture_diameter=aperture_diameter, aperture_diameter_mm=aperture_diameter_mm)
@@ -109,7 +113,7 @@ class Camera:
                 "aperture_diameter_mm": aperture_diameter_mm, "focus_distance": focus_distance,
                 "focus_point": focus_point, "focus_tilt_deg": tilt_deg, "blades": blades,
                 "blade_rotation_deg": blade_rotation_deg, "blade_roundness": blade_roundness, "ratio": ratio,
-                "breathing": arguments.flag("breathing", breathing)}
+                "breathing": arguments.flag("breathing", breathing), **_hood_of(hood)}
         text = _text_of_path(1, 1, unit_m, resolution, camera, lens, {})
         try:
             cameras, _, _ = _core.parse_path(text, "camera", None)
@@ -197,6 +201,11 @@ class Camera:
         return self._core.ratio
 
     @property
+    def hood(self) -> Tuple[float, float]:
+        """Distance from the lens, and diameter, of the hood in world units; (0, 0): there is none."""
+        return self._core.hood
+
+    @property
     def shift_mm(self) -> Tuple[float, float]:
         """How far the middle of the picture is to the right of the optical axis, and above it, on the sensor plate."""
         right, up = self._core.shift
@@ -217,7 +226,7 @@ class Camera:
                 "aperture_diameter": core.aperture_diameter,
                 "focus_distance": core.focus_distance, "tilt_deg": core.tilt_deg, "blades": core.blades,
                 "blade_rotation_deg": core.blade_rotation_deg, "blade_roundness": core.blade_roundness,
-                "ratio": core.ratio, "unit_m": core.unit_m}
+                "ratio": core.ratio, "hood": core.hood, "unit_m": core.unit_m}
 
     def replace(self, **changes: Any) -> Camera:
         """Return a copy with some arguments of the constructor changed.
@@ -334,10 +343,10 @@ class Path(Sequence[Camera]):
             The file cannot be written.
         """
         settings = [camera._settings() for camera in self._cameras]
-        for what in ("blades", "blade_roundness", "ratio", "sensor_width_mm"):
-            values = [setting[what] for setting in settings]
+        for what in ("blades", "blade_roundness", "ratio", "hood", "sensor_width_mm"):
+            values = np.array([setting[what] for setting in settings])
             # A width that was converted from world units and back differs by its rounding.
-            if max(values) - min(values) > 1e-9 * max(values):
+            if (np.ptp(values, axis=0) > 1e-9 * values.max(axis=0)).any():
                 raise UsageError(
                     f"{os.fsdecode(path)}: the cameras have different {what}, which a path file cannot say")
         for setting in settings:
@@ -351,6 +360,7 @@ class Path(Sequence[Camera]):
                                               "shift_mm")}
         lens = {key: first[key] for key in ("aperture_diameter", "focus_distance", "focus_tilt_deg", "blades",
                                             "blade_rotation_deg", "blade_roundness", "ratio")}
+        lens.update(_hood_of(first["hood"]))
         text = _text_of_path(len(settings), self.fps, first["unit_m"], first["resolution"], camera, lens, keys)
         _core.write_text(arguments.file_name(path), text)
 
@@ -383,6 +393,14 @@ class Path(Sequence[Camera]):
 
     def __repr__(self) -> str:
         return f"<Path of {len(self)} frames, {self.fps:g} per second>"
+
+
+def _hood_of(hood: Tuple[float, float]) -> Dict[str, float]:
+    """Return the entries of a path file."""
+    values = arguments.reals("hood", hood)
+    if values.shape != (2,):
+        raise UsageError(f"hood={hood!r}: expected a distance and a diameter")
+    return {"hood_distance": float(values[0]), "hood_diameter": float(values[1])} if values.any() else {}
 
 
 def _one_of(**arguments: Any) -> None:

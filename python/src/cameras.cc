@@ -47,6 +47,8 @@ void VisitNumbers(RenderCamera& c, const Visit& visit) {
     visit(*number);
   visit(c.aperture.ratio);
   visit(c.aperture.roundness);
+  visit(c.hood.distance_w);
+  visit(c.hood.radius_w);
 }
 
 py::tuple NumbersOf(const RenderCamera& camera) {
@@ -112,6 +114,9 @@ void AddCameras(py::module_& module) {
       .def_property_readonly("blade_roundness",
                              [](const RenderCamera& c) { return c.aperture.roundness; })
       .def_property_readonly("ratio", [](const RenderCamera& c) { return c.aperture.ratio; })
+      .def_property_readonly(
+          "hood",
+          [](const RenderCamera& c) { return std::pair(c.hood.distance_w, 2 * c.hood.radius_w); })
       .def_property_readonly("shift", &ShiftOf)
       .def_property_readonly("focus_distance",
                              [](const RenderCamera& c) { return c.focus_distance_w; })

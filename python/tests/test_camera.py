@@ -120,7 +120,7 @@ def test_first_paths(field, capture, run, tmp_path):
 
 def test_shift_and_shape_survive_files_and_pickle(tmp_path):
     camera = lf.Camera((0, 0, -1), look_at=(0, 0, 0), resolution=(120, 80), focal_length_mm=50, f_number=4,
-                       focus_distance=1, shift_mm=(6, -3), blades=6, blade_roundness=0.3, ratio=1.8)
+                       focus_distance=1, shift_mm=(6, -3), blades=6, blade_roundness=0.3, ratio=1.8, hood=(0.1, 0.05))
     assert np.allclose(camera.shift_mm, (6, -3)) and camera.blade_roundness == 0.3 and camera.ratio == 1.8
     assert np.allclose(camera.K[:2, 2], (60 - 20, 40 - 10))
     assert pickle.loads(pickle.dumps(camera)) == camera
@@ -128,8 +128,8 @@ def test_shift_and_shape_survive_files_and_pickle(tmp_path):
     lf.Path([camera, moved]).save(tmp_path / "path.yaml")
     first, second = lf.Path.load(tmp_path / "path.yaml")
     assert np.allclose(first.shift_mm, (6, -3)) and np.allclose(second.shift_mm, 0)
-    assert first.ratio == second.ratio == 1.8
-    for wrong in ({"shift_mm": 3}, {"ratio": 0}, {"blade_roundness": 2}):
+    assert first.ratio == second.ratio == 1.8 and first.hood == second.hood == (0.1, 0.05)
+    for wrong in ({"shift_mm": 3}, {"ratio": 0}, {"blade_roundness": 2}, {"hood": 3}, {"hood": (0.1, -1)}):
         with pytest.raises((TypeError, lf.UsageError), match=next(iter(wrong))):
             camera.replace(**wrong)
     with pytest.raises(lf.UsageError, match="ratio"):

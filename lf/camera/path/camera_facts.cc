@@ -59,6 +59,8 @@ std::vector<CameraFact> CameraFacts(const RenderCamera& camera, FrameId frame) {
       Pair("shift_mm", "horizontal", "vertical", shift_mm.x(), shift_mm.y()),
       Number("ratio", aperture.ratio),
       Number("blade_roundness", aperture.roundness),
+      Pair("hood_mm", "distance", "diameter", mm_per_w * camera.hood.distance_w,
+           mm_per_w * 2 * camera.hood.radius_w),
   };
 }
 

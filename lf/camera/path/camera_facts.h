@@ -30,6 +30,7 @@ struct CameraFact {
 //                      within one element of the plate; far may be infinite
 //   shift_mm           horizontal, vertical (ShiftOf())
 //   ratio, blade_roundness
+//   hood_mm            distance, diameter; 0 if there is no hood
 std::vector<CameraFact> CameraFacts(const RenderCamera& camera, FrameId frame);
 
 }  // namespace lf

@@ -70,7 +70,7 @@ TEST(Path, TheOpeningHasAShape) {
   EXPECT_EQ(aperture.ratio, 1.8);
   EXPECT_EQ(aperture.roundness, 0.25);
   EXPECT_EQ(aperture.radius_w, 0.002);
-  EXPECT_FALSE(HasShape(TestPath{}.At(1).aperture));
+  EXPECT_FALSE(HasShape(TestPath{}.At(1)));
   path.aperture = "aperture_diameter_mm: 4, ratio: 0";
   EXPECT_NE(path.Error().find("lens.ratio"), std::string::npos) << path.Error();
   EXPECT_NE(path.Error().find("from 0.1 to 10"), std::string::npos) << path.Error();

@@ -57,6 +57,8 @@ struct PathDescription {
   double blade_rotation_per_stop_rad = 0;
   double ratio = 1;      // Aperture::ratio
   double roundness = 0;  // Aperture::roundness
+  double hood_distance_w = 0;
+  double hood_diameter_w = 0;  // 0: there is no hood
 };
 
 }  // namespace lf

@@ -143,6 +143,21 @@ void ReadShape(YamlMap* lens, QuantityReader* quantities, PathDescription* path)
                                     path->blades));
 }
 
+void ReadHood(YamlMap* lens, QuantityReader* quantities, PathDescription* path) {
+  const auto distance_w =
+      quantities->ReadFixedLength(lens, "hood_distance", NumberRange::AtLeast(0));
+  const auto diameter_w = quantities->ReadFixedLength(lens, "hood_diameter", NumberRange::Above(0));
+  YamlErrors* errors = lens->errors();
+  if (distance_w.has_value() != diameter_w.has_value() && errors->empty())
+    errors->Add(lens->place(), "lens.hood_distance and lens.hood_diameter are only given together");
+  if (diameter_w && path->blades > kMostBladesInHood)
+    errors->Add(lens->place(), fmt::format("lens.blades: {} blades, but a lens with a hood has at "
+                                           "most {}",
+                                           path->blades, kMostBladesInHood));
+  if (distance_w) path->hood_distance_w = *distance_w;
+  if (diameter_w) path->hood_diameter_w = *diameter_w;
+}
+
 }  // namespace
 
 void ReadCameraSection(const YamlNode& node, QuantityReader* quantities, PathDescription* path,
@@ -168,6 +183,7 @@ void ReadLensSection(const YamlNode& node, QuantityReader* quantities, PathDescr
   if (const YamlEntry* breathing = lens.Find("breathing"))
     path->breathing = ReadBool(*breathing->value, "lens.breathing", errors).value_or(false);
   ReadShape(&lens, quantities, path);
+  ReadHood(&lens, quantities, path);
   lens.CheckKeys();
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "lf/camera/hood.h"
 #include "lf/camera/ideal_pixels.h"
 
 namespace lf {
@@ -213,6 +214,7 @@ Image<float> ThinLensPhotograph(const Scene& scene, const RenderCamera& camera,
   std::vector<Vec3> lens_points;
   for (const Vec2& point : SampleLens(camera.aperture, sample_count, sampling.seed))
     lens_points.push_back(LensPointWorld(camera, point));
+  const HoodTest hood(camera);
   const double element_spread = PixelRays(camera.pinhole).FootprintOf(sample_count).spread;
   const double lens_cell_w = kFootprintPerSide * std::sqrt(Area(camera.aperture) / sample_count);
   Image<float> picture(intrinsics.width_px, intrinsics.height_px, ChannelsOf(surroundings));
@@ -220,17 +222,22 @@ Image<float> ThinLensPhotograph(const Scene& scene, const RenderCamera& camera,
     const int y = static_cast<int>(row);
     for (int x = 0; x < intrinsics.width_px; ++x) {
       Rgba sum = Rgba::Zero();
+      int cut_off = 0;  // number of samples whose ray the hood cuts off
       for (size_t i = 0; i < lens_points.size(); ++i) {
         const std::optional<Vec3> focus_point =
             FocusPointOfElement(camera, x + element_points[i].x(), y + element_points[i].y());
         if (!focus_point) continue;
         const Vec3 direction = *focus_point - lens_points[i];
+        if (!hood.LetsThrough(lens_points[i], direction)) {
+          ++cut_off;
+          continue;
+        }
         // The footprint is as wide at the lens as the part of the lens that the sample represents,
         // and as wide at the focus plane as the part of the element that the sample represents.
         const Footprint footprint{lens_cell_w, -lens_cell_w / direction.norm() - element_spread};
         sum += LightOf(scene.SightAlong({lens_points[i], direction}, footprint), surroundings);
       }
-      Store(sum / sample_count, x, y, &picture);
+      Store(sum / std::max(1, sample_count - cut_off), x, y, &picture);
     }
   });
   return picture;

@@ -24,7 +24,7 @@ std::vector<LfImageId> CamerasAroundLens(const ImageIndex& index, const RenderCa
       std::max(frame.aperture.radius_w, 1e-3 * (*focus - frame.pinhole.CentreWorld()).norm());
   std::vector<LfImageId> ids;
   for (int i = 0; i < kDoublings; ++i, radius_w *= 2) {
-    middle.aperture = {radius_w, 0, 0};
+    OpenUpTo(radius_w, &middle);
     ids.clear();
     size_t count = 0;
     tree.ForEachLeaf(SeenRegion(middle), [&](size_t leaf, bool /*all_inside*/) {

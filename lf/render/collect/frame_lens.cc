@@ -32,7 +32,7 @@ FrameLens::FrameLens(const ImageIndex& index, const RenderCamera& frame, LensWei
   if (kind == LensWeights::kNone) return;
   camera_distance_w_ = camera_distance_w ? *camera_distance_w : CameraDistanceAround(index, frame);
   RenderCamera grown = frame;
-  grown.aperture = {frame.aperture.radius_w + kReach_distances * camera_distance_w_, 0, 0};
+  OpenUpTo(frame.aperture.radius_w + kReach_distances * camera_distance_w_, &grown);
   for (const SelectedImage& image : SelectImages(index, std::span(&grown, 1), select, pool))
     cameras_[image.id.value] = 0;
   // LF cameras are passed to FrameWeights in the order of their ids, because weights must not
@@ -46,7 +46,7 @@ FrameLens::FrameLens(const ImageIndex& index, const RenderCamera& frame, LensWei
   if (weights_->keeps_opening()) return;
   // The disk that replaces the aperture is made slightly larger, so that rays on its border count
   // as inside.
-  camera_.aperture = {weights_->reach_w() * (1 + 1e-6), 0, 0};
+  OpenUpTo(weights_->reach_w() * (1 + 1e-6), &camera_);
 }
 
 RayWeights FrameLens::WeightsOf(LfImageId id) const {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "lf/camera/distortion.h"
+#include "lf/camera/hood.h"
 #include "lf/camera/ray_through.h"
 #include "lf/render/collect/collect.h"
 #include "lf/selection/ideal_cells.h"
@@ -42,6 +43,7 @@ bool Sees(const Viewer& viewer, const RenderCamera& camera, const Vec3& point_wo
   const Vec3 on_lens = offset - d * (forward.dot(offset) / forward.dot(d));
   if (!Contains(camera.aperture, {lens.RightWorld().dot(on_lens), lens.UpWorld().dot(on_lens)}))
     return false;
+  if (camera.hood.exists() && !HoodTest(camera).LetsThrough(point_world, d)) return false;
   const std::optional<Vec2> p = viewer.ray.RecordedAt(d);
   const Intrinsics& k = viewer.ray.intrinsics();
   const double border_px = viewer.border_px;

@@ -59,7 +59,7 @@ std::vector<SelectedImage> ImagesNearLens(const ImageIndex& index, const RenderC
                                           double camera_distance_w, const SelectOptions& select,
                                           ThreadPool& pool) {
   RenderCamera grown = frame;
-  grown.aperture = {frame.aperture.radius_w + kFarthestDistances * camera_distance_w, 0, 0};
+  OpenUpTo(frame.aperture.radius_w + kFarthestDistances * camera_distance_w, &grown);
   return SelectImages(index, std::span(&grown, 1), select, pool);
 }
 

@@ -183,7 +183,7 @@ bool LensGaps::AsksAt(uint32_t place) const {
 RenderCamera LensGaps::ReachedCamera() const {
   RenderCamera camera = all_.camera;
   const FrameReach reach = ReachOf(all_.kernel, all_.points);
-  camera.aperture = {camera.aperture.radius_w + reach.lens_w, 0, 0};
+  OpenUpTo(camera.aperture.radius_w + reach.lens_w, &camera);
   const int margin_px = static_cast<int>(std::ceil(reach.plate_px));
   Intrinsics& plate = camera.pinhole.intrinsics;
   plate.width_px += 2 * margin_px;

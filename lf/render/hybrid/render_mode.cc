@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "lf/core/value_named.h"
 
 namespace lf {
@@ -22,6 +24,17 @@ Result<void> CheckOpacity(const RadianceEncoding& encoding, RenderMode mode) {
                   "lf_background in the calibration): use --mode collect, or --background black, "
                   "which gives the same colours (for packages, give it to lfpreprocessor)",
                   NameOf(mode)));
+}
+
+Result<void> CheckHoods(std::span<const RenderCamera> cameras, RenderMode mode) {
+  if (!Rebins(mode) || std::none_of(cameras.begin(), cameras.end(), [](const RenderCamera& camera) {
+        return camera.hood.exists();
+      }))
+    return {};
+  return UsageError(fmt::format(
+      "--mode {} cannot render a lens with a hood (lens.hood_diameter in the path): use "
+      "--mode collect, or leave the hood out",
+      NameOf(mode)));
 }
 
 }  // namespace lf

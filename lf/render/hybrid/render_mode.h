@@ -2,8 +2,10 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string_view>
 
+#include "lf/camera/render_camera.h"
 #include "lf/core/result.h"
 #include "lf/light_field/model/radiance.h"
 
@@ -24,5 +26,9 @@ inline bool Rebins(RenderMode mode) { return mode != RenderMode::kCollect; }
 // Returns kUsage if the mode rebins and the LF images have opacity
 // (RadianceEncoding::HasOpacity()), because rebinned rays do not keep it.
 Result<void> CheckOpacity(const RadianceEncoding& encoding, RenderMode mode);
+
+// Returns kUsage if the mode rebins and a camera has a hood, because rebinned rays are queried at
+// the same lens points for all elements.
+Result<void> CheckHoods(std::span<const RenderCamera> cameras, RenderMode mode);
 
 }  // namespace lf

@@ -198,6 +198,8 @@ TEST_F(PackageFileTest, ReadsWhatWasWrittenToTheBit) {
     EXPECT_EQ(c.aperture.rotation_rad, d.aperture.rotation_rad);
     EXPECT_EQ(c.aperture.ratio, d.aperture.ratio);
     EXPECT_EQ(c.aperture.roundness, d.aperture.roundness);
+    EXPECT_EQ(c.hood.distance_w, d.hood.distance_w);
+    EXPECT_EQ(c.hood.radius_w, d.hood.radius_w);
     EXPECT_EQ(c.focus_plane.normal, d.focus_plane.normal);
     EXPECT_EQ(c.focus_plane.offset_w, d.focus_plane.offset_w);
     EXPECT_EQ(c.focus_tilt.vertical_rad, d.focus_tilt.vertical_rad);

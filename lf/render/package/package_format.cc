@@ -29,8 +29,9 @@ std::vector<double> NumbersOfCamera(const RenderCamera& camera) {
   std::vector<double> numbers(plate.begin(), plate.end());
   numbers.insert(numbers.end(), pose.begin(), pose.end());
   numbers.insert(numbers.end(), others.begin(), others.end());
-  if (HasShape(camera.aperture))
-    numbers.insert(numbers.end(), {camera.aperture.ratio, camera.aperture.roundness});
+  if (HasShape(camera))
+    numbers.insert(numbers.end(), {camera.aperture.ratio, camera.aperture.roundness,
+                                   camera.hood.distance_w, camera.hood.radius_w});
   return numbers;
 }
 
@@ -60,6 +61,7 @@ RenderCamera CameraOfNumbers(std::span<const double> numbers) {
   if (numbers.size() > kCameraNumbers) {
     camera.aperture.ratio = numbers[33];
     camera.aperture.roundness = numbers[34];
+    camera.hood = {numbers[35], numbers[36]};
   }
   return camera;
 }

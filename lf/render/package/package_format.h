@@ -25,13 +25,14 @@ create table frames (frame integer primary key, time_s real, x real, y real, z r
 inline constexpr const char* kVirtualTable =
     "create table virtual_images (id integer primary key);";
 
-// Number of values that describe a frame's camera exactly, unless its opening has a shape: fx, fy,
+// Number of values that describe a frame's camera exactly, unless HasShape(camera): fx, fy,
 // cx, cy, skew, width, height; pose; radius, blades and rotation of the aperture; normal and offset
 // of the focus plane; time, focal length, sensor width, focus distance, horizontal and vertical
 // tilt, unit_m.
 inline constexpr size_t kCameraNumbers = 33;
-// Number of values that follow if HasShape(camera.aperture): ratio and roundness.
-inline constexpr size_t kShapeNumbers = 2;
+// Number of values that follow if HasShape(camera): ratio and roundness of the aperture, distance
+// and radius of the hood.
+inline constexpr size_t kShapeNumbers = 4;
 std::vector<double> NumbersOfCamera(const RenderCamera& camera);
 //   numbers  kCameraNumbers of them, or kCameraNumbers + kShapeNumbers
 RenderCamera CameraOfNumbers(std::span<const double> numbers);

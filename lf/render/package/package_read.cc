@@ -20,8 +20,7 @@ bool IsRenderCamera(const RenderCamera& camera) {
   const int blades = camera.aperture.blades;
   return IsCamera(camera.pinhole.intrinsics) && IsPose(camera.pinhole.cam_from_world) &&
          IsWithin(camera.aperture.radius_w, 0, kMostNumber) &&
-         (blades == 0 || (blades >= 3 && blades <= 1000)) &&
-         IsShape(camera.aperture.ratio, camera.aperture.roundness) &&
+         (blades == 0 || (blades >= 3 && blades <= 1000)) && IsShape(camera) &&
          std::abs(camera.focus_plane.normal.norm() - 1) < 1e-6 && camera.unit_m > 0;
 }
 

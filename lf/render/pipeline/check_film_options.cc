@@ -51,6 +51,7 @@ Result<void> CheckRebinnedRays(const Package& package, const FilmOptions& film,
         "--smooth-below would count: leave these options out, use \"noise<=X\", or use --mode "
         "hybrid");
   LF_RETURN_IF_ERROR(CheckOpacity(package.light_field.encoding, film.mode));
+  LF_RETURN_IF_ERROR(CheckHoods(package.path.cameras, film.mode));
   LF_RETURN_IF_ERROR(CheckSlab(package, film, frames));
   if (film.Rebins() && !package.choices.has_neighbours)
     return UsageError(fmt::format(

@@ -42,9 +42,13 @@ ImageMetadata FrameMetadata(FrameId frame, const RenderCamera& camera, const Fra
       {"lf:lf_images", fmt::format("{}", rays.image_count)},
       {"lf:rays_accepted", fmt::format("{}", rays.accepted_count)},
   };
-  if (HasShape(camera.aperture)) {
+  if (HasShape(camera)) {
     metadata.emplace_back("lf:aperture_ratio", camera.aperture.ratio);
     metadata.emplace_back("lf:blade_roundness", camera.aperture.roundness);
+  }
+  if (camera.hood.exists()) {
+    metadata.emplace_back("lf:hood_distance_mm", camera.hood.distance_w * mm_per_w);
+    metadata.emplace_back("lf:hood_diameter_mm", 2 * camera.hood.radius_w * mm_per_w);
   }
   const Vec2 shift_w = ShiftOf(camera);
   if (!shift_w.isZero(0)) {

@@ -167,9 +167,9 @@ PlateEntries TextOf(const PlateNotes& notes) {
       {"sheet.rays_tested", fmt::format("{}", notes.rays.tested_count)},
       {"sheet.rays_accepted", fmt::format("{}", notes.rays.accepted_count)},
   };
-  if (HasShape(camera.aperture))
-    text.emplace_back("sheet.aperture_shape",
-                      words({camera.aperture.ratio, camera.aperture.roundness}));
+  if (HasShape(camera))
+    text.emplace_back("sheet.lens_shape", words({camera.aperture.ratio, camera.aperture.roundness,
+                                                 camera.hood.distance_w, camera.hood.radius_w}));
   if (notes.rays.virtual_count > 0)
     text.emplace_back("sheet.virtual_lf_images", fmt::format("{}", notes.rays.virtual_count));
   if (notes.places_done)
@@ -214,12 +214,15 @@ Result<PlateNotes> PlateNotesOf(const PlateEntries& entries, int width_px, int h
                  "a radius of at least 0, 0 or 3 to 1000 blades, and the rotation of the blades");
   else
     notes.camera.aperture = {aperture[0], static_cast<int>(aperture[1]), aperture[2]};
-  if (FindEntry(entries, "sheet.aperture_shape") != nullptr) {
-    const std::vector<double> shape = reader.Numbers("sheet.aperture_shape", 2);
-    if (!IsShape(shape[0], shape[1]))
-      reader.Fault("sheet.aperture_shape", "a ratio from 0.1 to 10 and a roundness from 0 to 1");
+  if (FindEntry(entries, "sheet.lens_shape") != nullptr) {
+    const std::vector<double> shape = reader.Numbers("sheet.lens_shape", 4);
     notes.camera.aperture.ratio = shape[0];
     notes.camera.aperture.roundness = shape[1];
+    notes.camera.hood = {shape[2], shape[3]};
+    if (!IsShape(notes.camera))
+      reader.Fault(
+          "sheet.lens_shape",
+          "a ratio from 0.1 to 10, a roundness from 0 to 1, distance and radius of a hood");
   }
   const std::vector<double> focus = reader.Numbers("sheet.focus_plane", 4);
   notes.camera.focus_plane = {Vec3Of(focus), focus[3]};

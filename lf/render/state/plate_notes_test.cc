@@ -16,6 +16,7 @@ PlateNotes Notes() {
   camera.pinhole.intrinsics = {100.1, 1.0 / 3, 50, 40.7, 1e-9, 96, 64};
   camera.pinhole.cam_from_world = *LookAlong({0.1, 0.2, 0.3}, {1, 2, 3}, {0, -1, 0});
   camera.aperture = {0.1, 5, 0.3, 1.0 / 3, 0.7};
+  camera.hood = {0.2, 1.0 / 7};
   camera.focus_plane = FocusPlane(camera.pinhole, 2.2, {0.1, 0.2});
   camera.time_s = 0.1;
   camera.focal_length_w = 0.05;
@@ -130,9 +131,9 @@ TEST(PlateNotes, FaultsAreNamed) {
           << key << " " << value;
   }
   EXPECT_NE(fault("sheet.aperture", "1 2 0"), "");
-  EXPECT_NE(fault("sheet.aperture_shape", "11 0"), "");
-  EXPECT_NE(fault("sheet.aperture_shape", "1 -0.1"), "");
-  EXPECT_EQ(fault("sheet.aperture_shape", {}), "");  // valid: an opening with straight edges
+  EXPECT_NE(fault("sheet.lens_shape", "11 0 0 0"), "");
+  EXPECT_NE(fault("sheet.lens_shape", "1 0 0 -0.1"), "");
+  EXPECT_EQ(fault("sheet.lens_shape", {}), "");  // valid: a lens without a shape
   EXPECT_NE(fault("sheet.develop", "0 0 1 1 1 1 0 0 0 1 0 0 0 1"), "");
   EXPECT_EQ(fault("sheet.weights", {}), "");  // valid: a frame without lens weights
 }

@@ -71,9 +71,11 @@ std::string CameraHash(const RenderCamera& camera) {
   hasher.Add(camera.aperture.radius_w);
   hasher.Add(camera.aperture.blades);
   hasher.Add(camera.aperture.rotation_rad);
-  if (HasShape(camera.aperture)) {
+  if (HasShape(camera)) {
     hasher.Add(camera.aperture.ratio);
     hasher.Add(camera.aperture.roundness);
+    hasher.Add(camera.hood.distance_w);
+    hasher.Add(camera.hood.radius_w);
   }
   hasher.AddMatrix(camera.focus_plane.normal);
   hasher.Add(camera.focus_plane.offset_w);

@@ -68,7 +68,10 @@ TEST(RunInputs, EveryInputMakesADifferenceAndItsKeyNamesIt) {
       {"frame.camera", [](Inputs& i) { i.camera.pinhole.intrinsics.cy_px += 0.5; }},
       {"frame.camera", [](Inputs& i) { i.camera.aperture.rotation_rad = 0.1; }},
       {"frame.camera", [](Inputs& i) { i.camera.aperture.ratio = 1.1; }},
-      {"frame.camera", [](Inputs& i) { i.camera.aperture.roundness = 0.1; }}};
+      {"frame.camera", [](Inputs& i) { i.camera.aperture.roundness = 0.1; }},
+      {"frame.camera", [](Inputs& i) {
+         i.camera.hood = {0.1, 0.2};
+       }}};
   for (const auto& [key, change] : changes) {
     Inputs inputs;
     change(inputs);

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 
+#include "lf/camera/hood.h"
 #include "lf/core/check.h"
 #include "lf/core/random.h"
 #include "lf/core/value_named.h"
@@ -83,20 +84,25 @@ Movement MovementOf(const RenderCamera& frame, std::span<const Vec3> centres_wor
     return std::isfinite(d) ? d : 0.0;
   };
   Movement most;
-  for (const Vec3& centre : centres_world)
+  const auto add = [&](const Vec3& centre) {
     for (int k = 0; k < 3; ++k) {
       most.across = std::max(most.across, moved(centre, focus[k][0], focus[k][1]) +
                                               moved(centre, focus[k][1], focus[k][2]));
       most.down = std::max(most.down, moved(centre, focus[0][k], focus[1][k]) +
                                           moved(centre, focus[1][k], focus[2][k]));
     }
+  };
+  for (const Vec3& centre : centres_world) add(centre);
+  // The part of the lens that the hood leaves moves like the lens point of the hood's centre.
+  if (frame.hood.exists())
+    add(frame.pinhole.CentreWorld() + frame.hood.distance_w * frame.pinhole.ForwardWorld());
   return most;
 }
 
-int NodeCount(double movement, double distance, int size_px) {
+int NodeCount(double movement, double distance, int size_px, int least_step_px) {
   if (!(movement > kAtRest * distance)) return 1;
   const double steps = movement / (kStepOfDistance * distance);
-  const int most = std::clamp(size_px / kLeastNodeStep_px, 2, kMostNodes);
+  const int most = std::clamp(size_px / least_step_px, 2, kMostNodes);
   return static_cast<int>(std::min(2 + steps, static_cast<double>(most)));
 }
 
@@ -121,6 +127,23 @@ double ShareOfFirstTenth(std::vector<double> shares) {
     if ((sum += share) >= tenth) return share;
   return 0;
 }
+
+// The part of the opening that the hood leaves to rays through a focus point.
+struct HoodedLens {
+  HoodedLens(const RenderCamera& frame, const Vec3& focus_world)
+      : opening(RimVertices(frame.aperture)) {
+    const std::vector<ApertureEdge> edges = HoodOnLens(frame, focus_world);
+    for (const ApertureEdge& edge : edges) opening.Clip(edge.normal, edge.distance_w);
+    constexpr int kSamples = 256;
+    for (const Vec2& place : SampleLens(frame.aperture, frame.aperture.radius_w > 0 ? kSamples : 1))
+      if (std::all_of(edges.begin(), edges.end(), [&](const ApertureEdge& edge) {
+            return edge.normal.dot(place) <= edge.distance_w;
+          }))
+        places.push_back(place);
+  }
+  ConvexPolygon opening;
+  std::vector<Vec2> places;  // spread evenly over the opening
+};
 
 double NodePosition(int index, int count, int size_px) {
   return count == 1 ? 0.5 * size_px : static_cast<double>(index) * size_px / (count - 1);
@@ -205,12 +228,15 @@ void FrameWeights::SetGrid(const RenderCamera& frame, std::span<const Vec3> cent
                            double distance_w, size_t in_opening_count) {
   if (distance_w == 0) return;
   const Movement movement = MovementOf(frame, centres_world);
-  columns_ = NodeCount(movement.across, distance_w, width_px_);
-  rows_ = NodeCount(movement.down, distance_w, height_px_);
+  // Weights have a sharp edge where the hood cuts the lens, which moves from node to node.
+  const int step_px = frame.hood.exists() ? kWeightBlock : kLeastNodeStep_px;
+  columns_ = NodeCount(movement.across, distance_w, width_px_, step_px);
+  rows_ = NodeCount(movement.down, distance_w, height_px_, step_px);
   const size_t most_nodes = kMostShares / centres_world.size();
   if (static_cast<size_t>(columns_) * rows_ > most_nodes && hat_share_ == 0 &&
       in_opening_count >= kManyInOpening && !HasHorizon(frame)) {
-    keeps_opening_ = true;
+    // With a hood, the opening is another one at every element, and the weights state it.
+    keeps_opening_ = !frame.hood.exists();
     CoarsenTo(most_nodes);
   }
   if (columns_ > 1) step_w_ += movement.across / (columns_ - 1);
@@ -237,10 +263,20 @@ FrameWeights::Node FrameWeights::MakeNode(const RenderCamera& frame,
   const auto mix = [&](const std::vector<double>& part, double by) {
     for (size_t k = 0; k < shares.size(); ++k) shares[k] += by * part[k];
   };
-  const auto cell_shares = keeps_opening_ ? WholeCellShares : CellShares;
-  if (hat_share_ < 1)
-    mix(cell_shares(seen.points, frame.aperture, CoveredBy(seen.points)), 1 - hat_share_);
-  if (hat_share_ > 0) mix(HatShares(seen.points, frame.aperture), hat_share_);
+  if (frame.hood.exists()) {
+    const HoodedLens lens(frame, *focus);
+    if (hat_share_ < 1)
+      mix(CellShares(seen.points, lens.opening, CoveredBy(seen.points)), 1 - hat_share_);
+    if (hat_share_ > 0) mix(HatShares(seen.points, lens.places), hat_share_);
+  } else {
+    if (hat_share_ < 1) {
+      const CoveredRegion covered = CoveredBy(seen.points);
+      mix(keeps_opening_ ? WholeCellShares(seen.points, frame.aperture, covered)
+                         : CellShares(seen.points, frame.aperture, covered),
+          1 - hat_share_);
+    }
+    if (hat_share_ > 0) mix(HatShares(seen.points, frame.aperture), hat_share_);
+  }
   for (size_t k = 0; k < shares.size(); ++k) {
     if (!(shares[k] > kLeastShare)) continue;
     node.push_back({seen.cameras[k], shares[k], seen.points[k].norm()});

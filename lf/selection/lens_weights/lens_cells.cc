@@ -114,35 +114,54 @@ std::optional<Vec2> PointAtRim(const Vec2& point, std::span<const Vec2> points,
   return nearest;
 }
 
-}  // namespace
-
-std::vector<double> CellShares(std::span<const Vec2> points, const Aperture& aperture,
-                               const CoveredRegion& covered) {
-  LF_CHECK(aperture.radius_w > 0);
-  const bool is_disk = aperture.IsDisk();
-  ConvexPolygon opening = is_disk ? ConvexPolygon::SquareAround(Vec2::Zero(), aperture.radius_w)
-                                  : ConvexPolygon(Vertices(aperture));
-  covered.Clip(&opening);
+// Returns the shares of the points in an opening.
+//   around    a polygon that contains the opening
+//   radius_w  of a circle around the lens centre that contains the opening
+//   area_of   returns the area of the part of a cell that lies in the opening
+template <class AreaOf>
+std::vector<double> SharesOf(std::span<const Vec2> points, ConvexPolygon around,
+                             const CoveredRegion& covered, double radius_w, double opening_area,
+                             const AreaOf& area_of) {
+  covered.Clip(&around);
   const PointGrid grid(points);
   std::vector<double> shares;
   shares.reserve(points.size());
   for (const Vec2& point : points) {
     // Most points beside the opening have no cell in it, because a single other point near the rim
     // is nearer to every place of the opening. Clipping by that point first is quick.
-    ConvexPolygon around = opening;
-    if (const std::optional<Vec2> rival = PointAtRim(point, points, grid, aperture.radius_w)) {
+    ConvexPolygon left = around;
+    if (const std::optional<Vec2> rival = PointAtRim(point, points, grid, radius_w)) {
       const Vec2 across = *rival - point;
-      around.Clip(across, across.dot(0.5 * (point + *rival)));
-      if (around.empty()) {
+      left.Clip(across, across.dot(0.5 * (point + *rival)));
+      if (left.empty()) {
         shares.push_back(0);
         continue;
       }
     }
-    const auto [cell, sharing] = SharedCellOf(point, points, grid, around);
-    const double area = is_disk ? cell.AreaInDisk(aperture.radius_w) : cell.Area();
-    shares.push_back(area / Area(aperture) / std::max(1, sharing));
+    const auto [cell, sharing] = SharedCellOf(point, points, grid, left);
+    shares.push_back(area_of(cell) / opening_area / std::max(1, sharing));
   }
   return shares;
+}
+
+}  // namespace
+
+std::vector<double> CellShares(std::span<const Vec2> points, const Aperture& aperture,
+                               const CoveredRegion& covered) {
+  LF_CHECK(aperture.radius_w > 0);
+  if (!aperture.IsDisk())
+    return SharesOf(points, ConvexPolygon(Vertices(aperture)), covered, aperture.radius_w,
+                    Area(aperture), [](const ConvexPolygon& cell) { return cell.Area(); });
+  return SharesOf(points, ConvexPolygon::SquareAround(Vec2::Zero(), aperture.radius_w), covered,
+                  aperture.radius_w, Area(aperture),
+                  [&](const ConvexPolygon& cell) { return cell.AreaInDisk(aperture.radius_w); });
+}
+
+std::vector<double> CellShares(std::span<const Vec2> points, const ConvexPolygon& opening,
+                               const CoveredRegion& covered) {
+  if (opening.empty()) return std::vector<double>(points.size(), 0);
+  return SharesOf(points, opening, covered, opening.FarthestFrom(Vec2::Zero()), opening.Area(),
+                  [](const ConvexPolygon& cell) { return cell.Area(); });
 }
 
 std::vector<double> WholeCellShares(std::span<const Vec2> points, const Aperture& aperture,
@@ -165,12 +184,15 @@ std::vector<double> WholeCellShares(std::span<const Vec2> points, const Aperture
 std::vector<double> HatShares(std::span<const Vec2> points, const Aperture& aperture,
                               int sample_count) {
   LF_CHECK(aperture.radius_w >= 0 && sample_count > 0);
+  return HatShares(points, SampleLens(aperture, aperture.radius_w == 0 ? 1 : sample_count));
+}
+
+std::vector<double> HatShares(std::span<const Vec2> points, std::span<const Vec2> places) {
   std::vector<double> shares(points.size(), 0);
-  if (points.empty()) return shares;
+  if (points.empty() || places.empty()) return shares;
   HatMaker hats(points);
-  if (aperture.radius_w == 0) sample_count = 1;
-  for (const Vec2& place : SampleLens(aperture, sample_count))
-    hats.AddAt(place, 1.0 / sample_count, &shares);
+  for (const Vec2& place : places)
+    hats.AddAt(place, 1.0 / static_cast<double>(places.size()), &shares);
   return shares;
 }
 

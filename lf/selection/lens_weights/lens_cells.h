@@ -7,6 +7,7 @@
 
 #include "lf/camera/aperture.h"
 #include "lf/core/geometry.h"
+#include "lf/selection/lens_weights/convex_polygon.h"
 #include "lf/selection/lens_weights/covered_region.h"
 
 namespace lf {
@@ -21,6 +22,10 @@ namespace lf {
 //             finite, in any number and arrangement
 //   aperture  its radius_w must be above 0
 std::vector<double> CellShares(std::span<const Vec2> points, const Aperture& aperture,
+                               const CoveredRegion& covered = {});
+
+// Does the same for an opening that is any convex polygon. If it is empty, all shares are 0.
+std::vector<double> CellShares(std::span<const Vec2> points, const ConvexPolygon& opening,
                                const CoveredRegion& covered = {});
 
 // Returns, for each point, the area of its whole Voronoi cell, which may extend beyond the opening,
@@ -41,5 +46,8 @@ std::vector<double> WholeCellShares(std::span<const Vec2> points, const Aperture
 //   aperture  its radius_w must be at least 0; if it is 0, only one sample is used
 std::vector<double> HatShares(std::span<const Vec2> points, const Aperture& aperture,
                               int sample_count = 64);
+// Returns the natural-neighbour weights as a mean over these places of the opening; 0 if there are
+// none.
+std::vector<double> HatShares(std::span<const Vec2> points, std::span<const Vec2> places);
 
 }  // namespace lf

@@ -4,7 +4,7 @@
 import { rimAt, squeezeOf, type Opening } from "./opening";
 import type { Vec3 } from "./scene";
 
-const NUMBERS = 33;
+const NUMBERS = 35;
 
 export interface FrameCamera extends Opening {
   centre: Vec3;
@@ -25,6 +25,9 @@ export interface FrameCamera extends Opening {
   tiltVertical: number;
   width: number;
   height: number;
+  // A round opening in front of the lens that cuts off oblique rays; radius 0: there is none.
+  hoodDistance: number;
+  hoodRadius: number;
 }
 
 export function readFrames(bytes: ArrayBuffer): FrameCamera[] {
@@ -57,6 +60,8 @@ export function readFrames(bytes: ArrayBuffer): FrameCamera[] {
       height: n[30],
       ratio: n[31],
       roundness: n[32],
+      hoodDistance: n[33],
+      hoodRadius: n[34],
     });
   }
   return frames;

@@ -96,7 +96,18 @@ export class Comparison {
     this.isAsking = true;
     const { frame } = this.state;
     const { radius, rotation, blades, ratio, roundness, focusDistance, tiltHorizontal, tiltVertical } = kept.camera;
-    const lens = { radius, rotation, blades, ratio, roundness, tiltHorizontal, tiltVertical };
+    const { hoodDistance, hoodRadius } = kept.camera;
+    const lens = {
+      radius,
+      rotation,
+      blades,
+      ratio,
+      roundness,
+      tiltHorizontal,
+      tiltVertical,
+      hoodDistance,
+      hoodRadius,
+    };
     const camera =
       frame === kept.frame ? kept.camera : { ...withFocusDistance(this.state.camera, focusDistance), ...lens };
     try {

@@ -38,6 +38,8 @@ export function isBreathing({ fx, sensorWidth, width, focalLength }: FrameCamera
 export function oneFramePath(camera: FrameCamera, unit_m: number): string {
   const list = (numbers: readonly number[]): string => `[${numbers.join(", ")}]`;
   const perElement = camera.sensorWidth / camera.width;
+  const hood =
+    camera.hoodRadius > 0 ? `  hood_distance: ${camera.hoodDistance}\n  hood_diameter: ${2 * camera.hoodRadius}\n` : "";
   const shift = [(camera.width / 2 - camera.cx) * perElement, (camera.cy - camera.height / 2) * perElement];
   return `format: lfpath 1
 fps: 1
@@ -59,5 +61,5 @@ lens:
   blade_rotation_deg: ${camera.rotation * DEGREES}
   blade_roundness: ${camera.roundness}
   ratio: ${camera.ratio}
-`;
+${hood}`;
 }

@@ -55,6 +55,11 @@ export class FramePanel {
     }
     const shift = (camera.sensorWidth / camera.width) * (camera.width / 2 - camera.cx);
     const rise = (camera.sensorWidth / camera.width) * (camera.cy - camera.height / 2);
+    if (camera.hoodRadius > 0)
+      rows.push([
+        "Hood",
+        `${millimetres(2 * camera.hoodRadius, path.unit_m)} wide, ${length(camera.hoodDistance)} in front`,
+      ]);
     if (shift !== 0 || rise !== 0)
       rows.push(["Shift", `${millimetres(shift, path.unit_m)}, ${millimetres(rise, path.unit_m)}`]);
     const { cx, fx, width } = camera;

@@ -86,6 +86,8 @@ export const kConstants: Readonly<Record<string, ConstantSpec>> = {
   blades: { keys: ["blades"], section: "lens", unit: "none", kind: "integer" },
   blade_roundness: { keys: ["blade_roundness"], section: "lens", unit: "none", kind: "number" },
   ratio: { keys: ["ratio"], section: "lens", unit: "none", kind: "number" },
+  hood_distance: { keys: ["hood_distance", "hood_distance_mm"], section: "lens", unit: "length", kind: "number" },
+  hood_diameter: { keys: ["hood_diameter_mm", "hood_diameter"], section: "lens", unit: "length", kind: "number" },
   blade_rotation_per_stop: { keys: ["blade_rotation_per_stop_deg"], section: "lens", unit: "none", kind: "number" },
 };
 

@@ -123,6 +123,8 @@ test("the path of one frame has the camera of the frame", () => {
     ratio: 1.5,
     roundness: 0.25,
     cx: 40,
+    hoodDistance: 0.2,
+    hoodRadius: 0.03,
     rotation: 0.3,
     tiltHorizontal: radians(12),
     tiltVertical: radians(-3),
@@ -137,6 +139,7 @@ test("the path of one frame has the camera of the frame", () => {
     assertNear(read.up, camera.up, 1e-9);
     assertNear([read.focus_distance_w, read.blades], [camera.focusDistance, 5], 1e-9);
     assertNear([read.ratio, read.blade_roundness], [1.5, 0.25], 1e-9);
+    assertNear(read.hood_mm, [2, 0.6], 1e-9);
     // The plate is 0.36 mm and 96 elements wide.
     assertNear(read.shift_mm, [(8 / 96) * 0.36, 0], 1e-9);
     assertNear(read.focus_tilt_deg, [12, -3], 1e-9);

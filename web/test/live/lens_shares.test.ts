@@ -10,6 +10,7 @@ import {
   focusPointAt,
   lensOf,
   lensPoint,
+  passesHood,
   pointsOfOpening,
   sharesOf,
   spacingAround,
@@ -71,6 +72,17 @@ test("squeezed and rounded openings have the areas and the sides of their shapes
   const lowest = (roundness: number) =>
     Math.min(...pointsOfOpening(cameraAt([0, 0, 0], { radius: 2, blades: 3, roundness }), 4000).map(([, y]) => y));
   assert.ok(Math.abs(lowest(0.5) + 1.5) < 0.03, `${lowest(0.5)}`);
+});
+
+test("a hood cuts off the outer side of the lens towards the edges of the picture", () => {
+  const camera = cameraAt([0, 0, 0], { radius: 0.05, hoodDistance: 0.5, hoodRadius: 0.05, focusDistance: 1 });
+  // Towards a focus point 0.1 to the right, the ray from the lens point x is at x / 2 + 0.05 at the hood.
+  const focus: [number, number, number] = [0.1, 0, 1];
+  assert.ok(passesHood(camera, [-0.02, 0], focus));
+  assert.ok(!passesHood(camera, [0.02, 0], focus));
+  assert.ok(passesHood({ ...camera, hoodRadius: 0 }, [0.02, 0], focus));
+  const { lens } = lensAt({ radius: 0.05, hoodDistance: 0.5, hoodRadius: 0.05 });
+  assert.ok(lens.columns > 1 && lens.rows > 1);
 });
 
 test("the spacing of a grid is known", () => {

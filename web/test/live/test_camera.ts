@@ -29,6 +29,8 @@ export function cameraAt(centre: Vector, changes: Partial<FrameCamera> = {}): Fr
     tiltVertical: 0,
     width: 96,
     height: 64,
+    hoodDistance: 0,
+    hoodRadius: 0,
     ...changes,
   };
   camera.offset = camera.centre[2] + camera.focusDistance;

@@ -18,6 +18,7 @@ export interface Camera {
   focus_tilt_deg: number[];
   blades: number;
   shift_mm: number[];
+  hood_mm: number[];
   ratio: number;
   blade_roundness: number;
 }

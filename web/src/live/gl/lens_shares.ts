@@ -64,6 +64,15 @@ export function pointsOfOpening(opening: Opening, count: number): Vec2[] {
   return points;
 }
 
+// Returns true if the hood lets the ray from a lens point to a focus point through.
+export function passesHood(camera: FrameCamera, [right, up]: Vec2, focus: Vec3 | null): boolean {
+  if (!(camera.hoodRadius > 0) || !focus) return true;
+  const offset = add(focus, camera.centre, -1);
+  const share = camera.hoodDistance / dot(camera.forward, offset);
+  const at = (axis: Vec3, start: number) => start + (dot(axis, offset) - start) * share;
+  return Math.hypot(at(camera.right, right), at(camera.up, up)) <= camera.hoodRadius;
+}
+
 // Returns the approximate distance between neighbouring points around the lens, by their density.
 export function spacingAround(points: readonly Vec2[], radius: number): number {
   const distances = points.map(([x, y]) => Math.hypot(x, y)).sort((a, b) => a - b);
@@ -127,8 +136,11 @@ function gridOf(camera: FrameCamera, plate: Plate, centres: readonly Vec3[], spa
     const [p, q] = [lensPoint(camera, centre, a), lensPoint(camera, centre, b)];
     return Math.hypot(p[0] - q[0], p[1] - q[1]);
   };
+  // The part of the lens that a hood leaves moves like the lens point of the hood's centre.
+  const hood = add(camera.centre, camera.forward, camera.hoodDistance);
+  const moving = camera.hoodRadius > 0 ? [...centres, hood] : centres;
   const count = (a: Vec3 | null, b: Vec3 | null): number => {
-    const most = centres.reduce((all, centre) => Math.max(all, moved(centre, a, b)), 0);
+    const most = moving.reduce((all, centre) => Math.max(all, moved(centre, a, b)), 0);
     if (!(most > AT_REST * spacing)) return 1;
     return Math.min(MOST_NODES, Math.floor(2 + most / (STEP_OF_SPACING * spacing)));
   };
@@ -158,8 +170,10 @@ export function lensOf(camera: FrameCamera, plate: Plate, cameras: ReadonlyMap<n
   let uncoveredShare = 1;
   for (let row = 0; row < rows; ++row)
     for (let column = 0; column < columns; ++column) {
-      const points = pointsSeen(nodePlace(column, columns, plate.width), nodePlace(row, rows, plate.height));
-      const found = points && spacing > 0 ? sharesOf(of, points, spacing, hatShare) : null;
+      const [x, y] = [nodePlace(column, columns, plate.width), nodePlace(row, rows, plate.height)];
+      const points = pointsSeen(x, y);
+      const through = of.filter((point) => passesHood(camera, point, focusPointAt(camera, plate, x, y)));
+      const found = points && spacing > 0 && through.length > 0 ? sharesOf(through, points, spacing, hatShare) : null;
       perNode.push(found?.shares ?? new Float64Array(ids.length));
       if (found) uncoveredShare = Math.min(uncoveredShare, found.uncovered);
     }
