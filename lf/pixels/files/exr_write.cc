@@ -1,15 +1,22 @@
 #include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfChromaticitiesAttribute.h>
 #include <OpenEXR/ImfDoubleAttribute.h>
+#include <OpenEXR/ImfFloatAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfFramesPerSecond.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfMatrixAttribute.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfRationalAttribute.h>
 #include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfVecAttribute.h>
 #include <fmt/format.h>
 #include <half.h>
 
 #include <algorithm>
+#include <array>
 #include <exception>
 #include <new>
 #include <vector>
@@ -49,6 +56,33 @@ Imf::PixelType TypeOf(const ExrChannel& channel) {
   return channel.as_half ? Imf::HALF : Imf::FLOAT;
 }
 
+// Inserts an entry of the metadata into a header, with the type that the entry has in EXR files.
+struct AttributeStep {
+  Imf::Header& header;
+  const std::string& key;
+
+  void operator()(const std::string& text) const { Insert(Imf::StringAttribute(text)); }
+  void operator()(double number) const { Insert(Imf::DoubleAttribute(number)); }
+  void operator()(int number) const { Insert(Imf::IntAttribute(number)); }
+  void operator()(float number) const { Insert(Imf::FloatAttribute(number)); }
+  void operator()(const FrameRate& rate) const {
+    Insert(Imf::RationalAttribute(Imf::guessExactFps(rate.per_second)));
+  }
+  void operator()(const std::array<float, 2>& v) const { Insert(Imf::V2fAttribute({v[0], v[1]})); }
+  void operator()(const std::array<float, 8>& xy) const {
+    Insert(Imf::ChromaticitiesAttribute(
+        {{xy[0], xy[1]}, {xy[2], xy[3]}, {xy[4], xy[5]}, {xy[6], xy[7]}}));
+  }
+  void operator()(const std::array<float, 16>& rows) const {
+    Imath::M44f matrix;
+    std::copy(rows.begin(), rows.end(), matrix.getValue());
+    Insert(Imf::M44fAttribute(matrix));
+  }
+
+ private:
+  void Insert(const Imf::Attribute& attribute) const { header.insert(key, attribute); }
+};
+
 Imf::Header HeaderOf(int width, int height, std::span<const ExrChannel> channels,
                      const ImageMetadata& metadata) {
   Imf::Header header(width, height);
@@ -56,14 +90,7 @@ Imf::Header HeaderOf(int width, int height, std::span<const ExrChannel> channels
   header.zipCompressionLevel() = kZipLevel;
   for (const ExrChannel& channel : channels)
     header.channels().insert(channel.name, Imf::Channel(TypeOf(channel)));
-  for (const auto& [key, value] : metadata) {
-    if (const auto* text = std::get_if<std::string>(&value))
-      header.insert(key, Imf::StringAttribute(*text));
-    else if (const auto* number = std::get_if<double>(&value))
-      header.insert(key, Imf::DoubleAttribute(*number));
-    else
-      header.insert(key, Imf::IntAttribute(std::get<int>(value)));
-  }
+  for (const auto& [key, value] : metadata) std::visit(AttributeStep{header, key}, value);
   return header;
 }
 

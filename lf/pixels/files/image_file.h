@@ -110,9 +110,21 @@ Result<void> ReadImagePartBytes(std::string_view bytes, const std::string& name,
 
 enum class PixelType { kUint8, kUint16, kHalf, kFloat };
 
+// A frame rate. EXR files store the nearest fraction, and 30000/1001 for 29.97 (likewise for the
+// other rates of NTSC).
+struct FrameRate {
+  double per_second = 0;
+};
+
+// Value of an entry of the metadata. Standard attributes of EXR files have the types from float on:
+// 2 floats are a V2f; 8 are chromaticities (x and y of red, green, blue and white); 16 are an M44f,
+// row by row, which row vectors are multiplied by.
+using MetadataValue = std::variant<std::string, double, int, float, FrameRate, std::array<float, 2>,
+                                   std::array<float, 8>, std::array<float, 16>>;
+
 // Keys and values that are written into the file: in EXR with their types, in PNG, TIFF and JPEG as
 // text. PNG cuts keys to 79 characters.
-using ImageMetadata = std::vector<std::pair<std::string, std::variant<std::string, double, int>>>;
+using ImageMetadata = std::vector<std::pair<std::string, MetadataValue>>;
 
 // Writes `pixels` atomically (core/file.h); the extension of `path` chooses the format. For integer
 // types, the values are sRGB values for display: they are clipped to [0, 1] (NaN becomes 0), scaled

@@ -1,5 +1,8 @@
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
 #include <sys/resource.h>
 
+#include <array>
 #include <cmath>
 #include <csignal>
 #include <limits>
@@ -177,6 +180,33 @@ TEST_F(WriteImageTest, MetadataIsInTheFile) {
         WriteImage(folder_ / name, image.view(), {"R", "G", "B"}, PixelType::kUint8, metadata));
     EXPECT_TRUE(FileContains(name, "lf.time_s: 0.25\n")) << name;
   }
+}
+
+TEST_F(WriteImageTest, ExrKeepsTheTypesOfStandardAttributes) {
+  const Image<float> image(2, 2, 3);
+  std::array<float, 16> matrix = {};
+  for (size_t i = 0; i < 16; ++i) matrix[i] = static_cast<float>(i);
+  const std::array<float, 8> primaries = {0.64F, 0.33F, 0.3F, 0.6F, 0.15F, 0.06F, 0.3127F, 0.329F};
+  const ImageMetadata metadata = {{"focus", 0.75F},
+                                  {"framesPerSecond", FrameRate{29.97}},
+                                  {"screenWindowCenter", std::array<float, 2>{0.25F, -0.5F}},
+                                  {"chromaticities", primaries},
+                                  {"worldToNDC", matrix}};
+  ASSERT_TRUE(
+      WriteImage(folder_ / "a.exr", image.view(), {"R", "G", "B"}, PixelType::kHalf, metadata));
+  const Imf::InputFile file((folder_ / "a.exr").c_str());
+  const Imf::Header& header = file.header();
+  EXPECT_EQ(Imf::focus(header), 0.75F);
+  EXPECT_EQ(Imf::framesPerSecond(header).n, 30000);
+  EXPECT_EQ(Imf::framesPerSecond(header).d, 1001U);
+  EXPECT_EQ(header.screenWindowCenter(), Imath::V2f(0.25F, -0.5F));
+  EXPECT_EQ(Imf::chromaticities(header).green, Imath::V2f(0.3F, 0.6F));
+  EXPECT_EQ(Imf::chromaticities(header).white, Imath::V2f(0.3127F, 0.329F));
+  EXPECT_EQ(Imf::worldToNDC(header)[3][1], 13);
+  ASSERT_TRUE(
+      WriteImage(folder_ / "a.png", image.view(), {"R", "G", "B"}, PixelType::kUint8, metadata));
+  EXPECT_TRUE(FileContains("a.png", std::string("tEXtfocus\0", 10) + "0.75"));
+  EXPECT_TRUE(FileContains("a.png", std::string("tEXtworldToNDC\0", 15) + "0 1 2 3 4 5 "));
 }
 
 TEST_F(WriteImageTest, OnlyPicturesForDisplaySayThatTheyAreSrgb) {

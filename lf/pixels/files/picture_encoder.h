@@ -53,7 +53,7 @@ Result<std::string> EncodeExr(const std::string& name, std::span<const ExrChanne
                               const std::function<bool()>& is_interrupted);
 
 // Returns the value of an entry of the metadata as text.
-std::string TextOf(const std::variant<std::string, double, int>& value);
+std::string TextOf(const MetadataValue& value);
 
 // Returns one line for each entry of the metadata: "lf.frame: 12\nlf.time_s: 0.25\n".
 std::string LinesOf(const ImageMetadata& metadata);
