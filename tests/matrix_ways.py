@@ -14,7 +14,8 @@ os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # must be set before cv2 is import
 import cv2
 import numpy as np
 
-from matrix_world import (BROKEN, FRAMES, MISSING, MODES, MOST_IMAGES, Difference,
+from exr_file import read_header
+from matrix_world import (BROKEN, FRAMES, MISSING, MODES, MOST_IMAGES, OF_FILES, Difference,
                           ProgramFailed, World, is_of_packages, last_line, once,
                           packaged_input, run)
 
@@ -86,13 +87,15 @@ class Matrix(World):
             words = [self.program("lfsubmit"), *inputs, "-o", out, "--no-contact-sheet",
                      "--lfrenderer", self.program("lfrenderer"), "--jobs", 2, "--", *moved, *options]
             return [Step(words, [self.program("lfsubmit"), "--resume", out])]
-        words = [self.program("lfrenderer"), *inputs, "-o", out, *moved, *options]
+        words = [self.program("lfrenderer"), *inputs, "-o", out, *moved]
         if "shards" not in cell.cut:
-            words += ["--no-contact-sheet"]
+            words += [*options, "--no-contact-sheet"]
             return [Step(words, [*words, "--resume"])]
+        of_files = MODES[cell.mode] if cell.mode in OF_FILES else []  # options of lfmerge, which writes the files
+        words += [word for word in options if word not in of_files]
         parts = [[*words, "--shard", f"{k}/{SHARDS}"] for k in range(1, SHARDS + 1)]
         merge = [self.program("lfmerge"), out / "partial" / "shards", "-o", out,
-                 "--no-contact-sheet"]
+                 "--no-contact-sheet", *of_files]
         return [*(Step(part, [*part, "--resume"]) for part in parts),
                 Step(merge, [*merge, "--resume"])]
 
@@ -396,12 +399,8 @@ class Matrix(World):
 def pixels_of(path):
     """Returns the SHA-256 of all channels of an EXR file, without its header."""
     exr = path.read_bytes()
-    at = 8
-    while exr[at]:  # name, type, size and value of each attribute
-        for _ in range(2):
-            at = exr.index(b"\0", at) + 1
-        at += 4 + int.from_bytes(exr[at:at + 4], "little")
-    first_chunk = int.from_bytes(exr[at + 1:at + 9], "little")  # the start of the table of offsets
+    _, at = read_header(exr)
+    first_chunk = int.from_bytes(exr[at:at + 8], "little")  # the start of the table of offsets
     return hashlib.sha256(exr[first_chunk:]).hexdigest()
 
 

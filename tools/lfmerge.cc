@@ -52,6 +52,7 @@ std::vector<std::filesystem::path> LfImagesIn(const std::filesystem::path& folde
 struct Arguments {
   std::vector<std::string> plates;
   std::string output, format = "exr", video;
+  lf::PictureArguments picture;
   bool no_contact_sheet = false;
   lf::AllowMissing allow_missing;
 };
@@ -67,6 +68,7 @@ void AddOptions(CLI::App& app, Arguments& a, lf::MergeOptions& options) {
       ->required()
       ->check(lf::NotEmpty());
   lf::AddFrameFormat(output, a.format);
+  a.picture.AddTo(output);
   lf::AddFilmFiles(output, a.video, a.no_contact_sheet);
   running.AddFlag("--resume", options.resume,
                   "Keep the frames that are in DIR, and write the others");
@@ -94,6 +96,8 @@ int main(int argc, char** argv) {
     options.output_folder = arguments.output;
     options.kept_files = LfImagesIn(arguments.output);
     options.format = *lf::ParseFrameFormat(arguments.format);
+    options.adds_opacity = arguments.picture.alpha;
+    LF_ASSIGN_OR_RETURN(options.picture, arguments.picture.Make(options.format));
     if (!arguments.video.empty()) options.video = arguments.video;
     options.contact_sheet = !arguments.no_contact_sheet;
     lf::ThreadPool pool(common.threads);

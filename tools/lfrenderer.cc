@@ -44,7 +44,8 @@ constexpr lf::HelpTexts kHelp = {
 of their weights), and the share of channels with a ray (coverage). With lens weights they also
 contain the number of LF images of equal weight that would give the same noise (effective); with
 rebinned rays, the share of light that is interpolated (interpolated). With --background none they
-also have premultiplied alpha (A); PNG frames have straight alpha.
+also have premultiplied alpha (A); PNG frames have straight alpha. EXR frames state their camera, lens
+and primaries as standard attributes of OpenEXR (doc/formats/frame.md).
 
 Each package has its own report, report-package-0000.json, and a package that is rendered alone has
 its own contact sheet. Many machines can therefore render packages into one DIR at the same time.

@@ -7,7 +7,6 @@
 
 #include "tools/common/byte_size.h"
 #include "tools/common/duration.h"
-#include "tools/common/frame_options.h"
 #include "tools/common/help.h"
 #include "tools/common/validators.h"
 
@@ -59,6 +58,7 @@ void AddOutput(CLI::App& app, RenderArguments& a) {
   output.Add("-o,--output DIR", a.output, "Folder of the frames")->required();
   AddFrameRange(output, a.frames);
   AddFrameFormat(output, a.format);
+  a.picture.AddTo(output);
   AddFilmFiles(output, a.video, a.no_contact_sheet);
   output.AddFlag("--keep-plates", a.keep_plates,
                  "Also write the ray sums and counts of each frame\n"
@@ -316,6 +316,7 @@ Result<FilmOptions> RenderArguments::MakeFilm(uint64_t seed) const {
   film.lens_weights = *LensWeightsOf(lens_weights);
   film.mode = *RenderModeOf(mode);
   film.guard = !no_guard;
+  film.adds_opacity = picture.alpha;
   LF_ASSIGN_OR_RETURN(film.rebin, rebin.Make(seed));
   if (back_end == "reference") film.back_end = CollectBackEnd::kReference;
   LF_RETURN_IF_ERROR(
@@ -338,6 +339,7 @@ Result<FolderOptions> RenderArguments::MakeFolder(size_t frame_count) const {
   FolderOptions folder;
   folder.output_folder = output;
   folder.format = *ParseFrameFormat(format);
+  LF_ASSIGN_OR_RETURN(folder.picture, picture.Make(folder.format));
   if (!video.empty()) folder.video = video;
   folder.contact_sheet = !no_contact_sheet;
   folder.keep_plates = keep_plates;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tools/common/allow_missing.h"
+#include "tools/common/frame_options.h"
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
 #include "tools/rebin_arguments.h"
@@ -26,6 +27,7 @@ struct RenderArguments {
               lf_pixels = "auto";
   std::string order = "shuffle", rectangles = "on", dump_every = "30s", stop_when, require, shard,
               finish, fill = "2";
+  PictureArguments picture;
   RebinArguments rebin;
   AllowMissing allow_missing;
   int64_t max_images = 0;    // 0: no limit

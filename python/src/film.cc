@@ -217,7 +217,10 @@ void SaveFrame(const Frame& frame, const std::string& path, const std::string& f
   if (!known)
     throw Failure(
         UsageError(fmt::format("format=\"{}\": expected exr, exr-float, png or png16", format)));
-  RunWithoutGil([&] { Take(WriteFrame(path, frame.picture, *known, MetadataOf(frame.notes))); });
+  RunWithoutGil([&] {
+    Take(WriteFrame(path, frame.picture, *known,
+                    FileMetadata(frame.notes, *known, ColourSpace::kRec709)));
+  });
 }
 
 Frame DevelopPlate(const Plate& plate, int threads) {

@@ -1,5 +1,7 @@
 #include "tools/common/frame_options.h"
 
+#include <fmt/format.h>
+
 #include "tools/common/program.h"
 #include "tools/common/validators.h"
 
@@ -20,6 +22,38 @@ void AddFrameFormat(OptionGroup& output, std::string& format) {
                    "exr-float: linear light as 32-bit floating-point numbers\n"
                    "png: 8-bit sRGB\n"
                    "png16: 16-bit sRGB");
+}
+
+void PictureArguments::AddTo(OptionGroup& output) {
+  output.AddChoice("--colour-space", colour_space, {"rec709", "rec2020", "acescg"},
+                   "Primaries of EXR frames (rec709)\n"
+                   "The light stays linear. The attribute chromaticities of the file names the "
+                   "primaries.\n"
+                   "rec709: those of sRGB displays, white D65\n"
+                   "rec2020: those of ITU-R BT.2020, white D65\n"
+                   "acescg: AP1, with white adapted from D65 to that of ACES (Bradford)");
+  output.AddFlag("--frame-alpha", alpha,
+                 "Give frames alpha\n"
+                 "Alpha is 1 where light was recorded or filled, and 0 where nothing was recorded. "
+                 "Frames that have alpha without this option, because their LF images have, keep "
+                 "it. Colours are multiplied by alpha in EXR frames, and are not in PNG frames.");
+  output.AddFlag("--z", z,
+                 "Give EXR frames the depth of the focus plane\n"
+                 "The channel Z is the depth at which each element is in focus, along the optical "
+                 "axis, in world units. It varies if the focus plane is tilted, and is infinite "
+                 "where an element does not see the plane.");
+}
+
+Result<PictureOptions> PictureArguments::Make(FrameFormat format) const {
+  PictureOptions options;
+  options.has_focus_depth = z;
+  if (colour_space) options.colours = *ParseColourSpace(*colour_space);
+  if (!IsExr(format) && (z || options.colours != ColourSpace::kRec709))
+    return UsageError(fmt::format(
+        "--format {}: cannot be used with {}, because PNG frames are sRGB pictures for display: "
+        "leave one of them out, or use --format exr",
+        NameOf(format), z ? "--z" : "--colour-space " + *colour_space));
+  return options;
 }
 
 void AddFilmFiles(OptionGroup& output, std::string& video, bool& no_contact_sheet) {

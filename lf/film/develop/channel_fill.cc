@@ -136,6 +136,7 @@ int64_t ChannelFill::SmallestDisk(Scratch& scratch) const {
 float ChannelFill::At(int x, int y, Scratch& scratch) const {
   const int most = RadiusAt(x, y);
   const int square = SmallestSquare(x, y, most);
+  scratch.neighbours_.clear();
   if (square > most && InSquare(x, y, most).elements == 0) return 0;
   // A square of half side k lies within the disk of radius k sqrt(2). This disk therefore contains
   // enough neighbours if the square does.

@@ -33,6 +33,8 @@ class ChannelFill {
   // counts in squares, each in constant time, and then visits only collected elements, so that
   // empty surroundings cost almost nothing.
   float At(int x, int y, Scratch& scratch) const;
+  // Returns true if the last call of At() with this scratch took light from a collected element.
+  static bool Found(const Scratch& scratch);
 
  private:
   struct Collected {
@@ -81,8 +83,10 @@ class ChannelFill::Scratch {
     int64_t distance2;
     uint64_t rays;
   };
-  std::vector<Neighbour> neighbours_;
-  std::vector<Ring> nearest_first_;  // heap of the neighbours, the nearest on top
+  std::vector<Neighbour> neighbours_;  // empty if the last call of At() found no collected element
+  std::vector<Ring> nearest_first_;    // heap of the neighbours, the nearest on top
 };
+
+inline bool ChannelFill::Found(const Scratch& scratch) { return !scratch.neighbours_.empty(); }
 
 }  // namespace lf

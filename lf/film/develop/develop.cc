@@ -124,7 +124,9 @@ DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, 
       fills[c].emplace(mean, count, static_cast<int>(c), rays_needed, options.fill_radius_px, ends);
   });
   if (is_ended) return frame;
+  const bool adds_opacity = options.adds_opacity && !plate.has_opacity();
   if (plate.has_opacity()) frame.opacity = DevelopOpacity(plate, options, ends, pool);
+  if (adds_opacity) frame.opacity = Image<float>(width, height);
 
   const Mat3 srgb_from_camera =
       options.linear_srgb_from_camera *
@@ -137,14 +139,18 @@ DevelopedFrame Develop(const SensorPlate& plate, const DevelopOptions& options, 
     if (ends()) return;
     for (int x = 0; x < width; ++x) {
       Vec3 camera_rgb;
+      bool has_light = false;
       for (int c = 0; c < kChannels; ++c) {
+        has_light |= count.at(x, y, c) > 0;
         if (count.at(x, y, c) >= rays_needed) {
           camera_rgb[c] = mean.at(x, y, c);
           continue;
         }
         if (++filled % ChannelFill::kFillsPerQuestion == 0 && ends()) return;
         camera_rgb[c] = fills[c]->At(x, y, scratch);
+        has_light |= ChannelFill::Found(scratch);
       }
+      if (adds_opacity) frame.opacity.at(x, y) = has_light ? 1 : 0;
       const Vec3 srgb = srgb_from_camera * camera_rgb;
       for (int c = 0; c < kChannels; ++c) frame.rgb.at(x, y, c) = static_cast<float>(srgb[c]);
     }

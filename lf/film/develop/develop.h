@@ -44,6 +44,9 @@ struct DevelopOptions {
   // recorded must not be invented. 0: nothing is filled.
   int fill_radius_px = kFillRadius_px;
 
+  // True: a frame whose plate has no opacities gets an opacity nevertheless, which is 1 where light
+  // was recorded, filled or interpolated in some channel, and 0 elsewhere.
+  bool adds_opacity = false;
   // For a plate with opacities: opacity = (mean - transparent) / (opaque - transparent), where mean
   // is the sum of values / number of rays of the opacity channel. Likewise for the defocus of a
   // guarded plate.
@@ -72,7 +75,8 @@ struct DevelopedFrame {
   // are some
   Image<uint32_t> ray_count;
   Image<float> coverage;  // [height][width] share of the channels with a ray of their own
-  // [height][width] in [0, 1]; empty for a plate without opacities. rgb is multiplied by it.
+  // [height][width] in [0, 1]; empty for a plate without opacities, unless they were added
+  // (DevelopOptions::adds_opacity). rgb is multiplied by it.
   Image<float> opacity = {};
   // [height][width] number of LF images of equal weight that would give the same noise; empty
   // without lens weights. Develop() leaves it empty: callers fill it. With lens weights, ray_count
@@ -84,6 +88,9 @@ struct DevelopedFrame {
   // [height][width] share of each element that shows the rays of all LF images, virtual ones
   // included, instead of those of recorded LF images alone; empty unless the plate is guarded
   Image<float> densified = {};
+  // [height][width] depth, along the optical axis, at which each element is in focus. Develop()
+  // leaves it empty: callers fill it.
+  Image<float> focus_depth_w = {};
 };
 
 // Averages the rays of every element and channel, and mixes (1 - share) of the average with share

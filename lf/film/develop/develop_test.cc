@@ -210,6 +210,52 @@ TEST(Develop, LightIsNotInventedFarFromWhereItWasRecorded) {
   for (int x = 0; x < 41; ++x) EXPECT_EQ(frame.rgb.at(x, 0, 1), 0);
 }
 
+TEST(Develop, AnAddedOpacityTellsWhereLightWasRecordedOrFilled) {
+  ThreadPool pool(2);
+  for (const int radius_px : {0, 3}) {
+    const SensorPlate plate = RandomPlate(50, 37, 0.02, 6, 5);
+    DevelopOptions options;
+    options.fill_radius_px = radius_px;
+    options.adds_opacity = true;
+    const DevelopedFrame frame = Develop(plate, options, pool);
+    size_t covered = 0;
+    for (int y = 0; y < 37; ++y)
+      for (int x = 0; x < 50; ++x) {
+        bool has_light = false;
+        for (int v = std::max(0, y - radius_px); v < std::min(37, y + radius_px + 1); ++v)
+          for (int u = std::max(0, x - radius_px); u < std::min(50, x + radius_px + 1); ++u)
+            for (int c = 0; c < 3; ++c)
+              has_light |= plate.At(u, v, c).count > 0 &&
+                           (u - x) * (u - x) + (v - y) * (v - y) <= radius_px * radius_px;
+        ASSERT_EQ(frame.opacity.at(x, y), has_light ? 1 : 0) << x << ", " << y;
+        covered += has_light;
+      }
+    EXPECT_GT(covered, 50u);
+    EXPECT_LT(covered, 1800u);
+  }
+}
+
+TEST(Develop, AnAddedOpacityLeavesThatOfThePlateAsItIs) {
+  ThreadPool pool(1);
+  const SensorPlate plate = WithRedOpacity(RandomPlate(20, 10, 0.3, 6, 5));
+  DevelopOptions options;
+  const DevelopedFrame plain = Develop(plate, options, pool);
+  options.adds_opacity = true;
+  EXPECT_EQ(Develop(plate, options, pool).opacity.pixels(), plain.opacity.pixels());
+}
+
+TEST(Develop, AnAddedOpacityCountsInterpolatedLight) {
+  ThreadPool pool(1);
+  Completion completion{Image<float>(3, 1, 3), Image<float>(3, 1)};
+  completion.share.at(1, 0) = 0.25F;
+  DevelopOptions options;
+  options.fill_radius_px = 0;
+  options.adds_opacity = true;
+  options.completion = &completion;
+  const DevelopedFrame frame = Develop(SensorPlate(3, 1), options, pool);
+  for (int x = 0; x < 3; ++x) EXPECT_EQ(frame.opacity.at(x, 0), x == 1 ? 1 : 0);
+}
+
 TEST(Develop, ThinElementsBorrowFromTheirNeighboursAndKeepAShare) {
   SensorPlate plate(3, 3);
   for (int y = 0; y < 3; ++y)

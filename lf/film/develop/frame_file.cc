@@ -106,6 +106,8 @@ Result<void> WriteExrFrame(const std::filesystem::path& path, const DevelopedFra
     channels.push_back({"interpolated", frame.interpolated.view(), 0, as_half});
   if (!frame.densified.empty())
     channels.push_back({"densified", frame.densified.view(), 0, as_half});
+  // Depths are never half, which has only 11 significant bits.
+  if (!frame.focus_depth_w.empty()) channels.push_back({"Z", frame.focus_depth_w.view(), 0, false});
   return WriteExr(path, channels, metadata, is_interrupted);
 }
 
@@ -121,10 +123,13 @@ const char* NameOf(FrameFormat format) {
   return kNames[static_cast<int>(format)];
 }
 
+bool IsExr(FrameFormat format) {
+  return format == FrameFormat::kExrHalf || format == FrameFormat::kExrFloat;
+}
+
 std::filesystem::path FramePath(const std::filesystem::path& folder, FrameId frame,
                                 FrameFormat format) {
-  const bool exr = format == FrameFormat::kExrHalf || format == FrameFormat::kExrFloat;
-  return folder / fmt::format("frame_{:04}.{}", frame.value, exr ? "exr" : "png");
+  return folder / fmt::format("frame_{:04}.{}", frame.value, IsExr(format) ? "exr" : "png");
 }
 
 Result<void> WriteFrame(const std::filesystem::path& path, const DevelopedFrame& frame,
@@ -154,13 +159,15 @@ Result<void> WriteFrame(const std::filesystem::path& path, const DevelopedFrame&
                     is_interrupted);
 }
 
-Result<Image<uint8_t>> ReadDisplayImage(const std::filesystem::path& path) {
-  LF_ASSIGN_OR_RETURN(const StoredImage stored, ReadImage(path));
+Result<Image<uint8_t>> ReadDisplayImage(const std::filesystem::path& path, ColourSpace colours) {
+  LF_ASSIGN_OR_RETURN(StoredImage stored, ReadImage(path));
   return std::visit(
-      [&](const auto& image) -> Result<Image<uint8_t>> {
+      [&](auto& image) -> Result<Image<uint8_t>> {
         if (image.channels() < 3)
           return InputError(fmt::format("{}: has {} channels, expected at least R, G and B",
                                         path.string(), image.channels()));
+        if constexpr (std::is_same_v<decltype(image), Image<float>&>)
+          ConvertToRec709(colours, &image);
         return Picture(image);
       },
       stored);

@@ -74,6 +74,30 @@ TEST_F(FrameFileTest, ExrHoldsEffectiveCountsWhereThereAreSome) {
   EXPECT_EQ(read.at(10, 5, ChannelNamed(info, "effective")), 12.5F);
 }
 
+TEST_F(FrameFileTest, ExrHoldsFocusDepthsAsFloats) {
+  DevelopedFrame frame = RandomFrame(11, 6);
+  frame.focus_depth_w = Image<float>(11, 6, 1, 1234.5678F);
+  const auto path = folder_ / "z.exr";
+  ASSERT_TRUE(WriteFrame(path, frame, FrameFormat::kExrHalf, {}));
+  const auto read = std::get<Image<float>>(ReadImage(path).value());
+  EXPECT_EQ(read.at(10, 5, ChannelNamed(ReadImageInfo(path).value(), "Z")), 1234.5678F);
+}
+
+TEST_F(FrameFileTest, AFrameOfAnotherColourSpaceShowsTheSamePicture) {
+  DevelopedFrame frame = RandomFrame(11, 6);
+  const Image<uint8_t> picture = OverBlack(frame);
+  for (const ColourSpace colours : {ColourSpace::kRec2020, ColourSpace::kAcesCg}) {
+    DevelopedFrame converted = frame;
+    ConvertFromRec709(colours, &converted.rgb);
+    const auto path = folder_ / "c.exr";
+    ASSERT_TRUE(WriteFrame(path, converted, FrameFormat::kExrFloat, {}));
+    const Image<uint8_t> read = ReadDisplayImage(path, colours).value();
+    for (size_t i = 0; i < picture.pixels().size(); ++i)
+      ASSERT_NEAR(read.pixels()[i], picture.pixels()[i], 1);
+    EXPECT_NE(ReadDisplayImage(path).value().pixels(), read.pixels());
+  }
+}
+
 TEST_F(FrameFileTest, PngHoldsDisplayValuesRoundedToTheNearestStep) {
   const DevelopedFrame frame = RandomFrame(40, 30);
   ASSERT_TRUE(WriteFrame(folder_ / "a.png", frame, FrameFormat::kPng8, {}));

@@ -24,6 +24,11 @@ Result<void> CheckRenderOptions(const Package& package, const RenderOptions& opt
     return UsageError(
         "--keep-plates and --video cannot be used with --shard, which writes no frames: leave them "
         "out, and give --video to lfmerge");
+  if (film.shard && (film.adds_opacity || folder.picture != PictureOptions()))
+    return UsageError(
+        "--frame-alpha, --colour-space and --z cannot be used with --shard, which writes no "
+        "frames: "
+        "leave them out, and give them to lfmerge");
   return {};
 }
 

@@ -64,6 +64,8 @@ struct FilmOptions {
   // smooth_below and fill_radius_px: see DevelopOptions in film/develop/develop.h.
   uint32_t smooth_below = 0;
   int fill_radius_px = kFillRadius_px;
+  // True: all frames have an opacity (DevelopOptions::adds_opacity).
+  bool adds_opacity = false;
 
   bool Collects() const { return lf::Collects(mode); }
   bool Rebins() const { return lf::Rebins(mode); }

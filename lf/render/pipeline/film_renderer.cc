@@ -340,6 +340,7 @@ PlateNotes FilmRenderer::NotesOf(size_t f) const {
   notes.estimator = film_.reading.estimator;
   notes.develop.smooth_below = film_.smooth_below;
   notes.develop.fill_radius_px = film_.fill_radius_px;
+  notes.develop.adds_opacity = film_.adds_opacity;
   if (frames_[f].is_early) notes.places_done = frames_[f].places.end;
   return notes;
 }

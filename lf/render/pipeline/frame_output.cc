@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -15,32 +16,45 @@
 namespace lf {
 namespace {
 
-ImageMetadata MetadataOf(const PlateNotes& notes) {
-  ImageMetadata metadata = FrameMetadata(notes.frame, notes.camera, notes.rays, notes.estimator,
-                                         notes.fps, notes.version);
-  if (notes.places_done)
-    metadata.emplace_back("lf:finished_early_before_place", static_cast<int>(*notes.places_done));
-  return metadata;
+// Returns the depth, along the optical axis, at which each element is in focus; infinity where the
+// line through its centre and the lens centre does not meet the focus plane in front of the lens.
+// Its inverse is a linear form on element positions.
+Image<float> FocusDepths(const RenderCamera& camera) {
+  const Intrinsics& sensor = camera.pinhole.intrinsics;
+  const Plane& plane = camera.focus_plane;
+  const double distance_w = plane.offset_w - plane.normal.dot(camera.pinhole.CentreWorld());
+  const PixelForm inverse_depth = plane.normal.transpose() *
+                                  camera.pinhole.cam_from_world.rotation.transpose() *
+                                  sensor.InverseMatrix() / distance_w;
+  Image<float> depths(sensor.width_px, sensor.height_px);
+  for (int y = 0; y < depths.height(); ++y)
+    for (int x = 0; x < depths.width(); ++x) {
+      const double inverse = Value(inverse_depth, x + 0.5, y + 0.5);
+      depths.at(x, y) =
+          inverse > 0 ? static_cast<float>(1 / inverse) : std::numeric_limits<float>::infinity();
+    }
+  return depths;
 }
 
 }  // namespace
 
-bool HasEffectiveCounts(FrameFormat format) {
-  return format == FrameFormat::kExrHalf || format == FrameFormat::kExrFloat;
-}
-
-Result<void> WritePicture(const PlateNotes& notes, const DevelopedFrame& picture,
+Result<void> WritePicture(const PlateNotes& notes, DevelopedFrame picture,
                           const std::filesystem::path& to, FrameFormat format,
+                          const PictureOptions& options,
                           const std::function<bool()>& is_interrupted) {
   if (is_interrupted && is_interrupted())
     return Error{ErrorKind::kInterrupted, fmt::format("{}: interrupted", to.string())};
-  return WriteFrame(to, picture, format, MetadataOf(notes), is_interrupted);
+  ConvertFromRec709(options.colours, &picture.rgb);
+  if (options.has_focus_depth) picture.focus_depth_w = FocusDepths(notes.camera);
+  return WriteFrame(to, picture, format, FileMetadata(notes, format, options.colours),
+                    is_interrupted);
 }
 
 FilmFiles FilesOfFilm(const CameraPath& path, const RenderOptions& options) {
   const Intrinsics& plate = path.Camera(FrameId{1}).pinhole.intrinsics;
   return {options.folder.output_folder,
           options.folder.format,
+          options.folder.picture.colours,
           plate.width_px,
           plate.height_px,
           path.fps,
@@ -52,7 +66,7 @@ std::filesystem::path FilmFiles::PathOf(FrameId frame) const {
 }
 
 Result<Image<uint8_t>> FilmFiles::ReadPicture(FrameId frame) const {
-  LF_ASSIGN_OR_RETURN(Image<uint8_t> picture, ReadDisplayImage(PathOf(frame)));
+  LF_ASSIGN_OR_RETURN(Image<uint8_t> picture, ReadDisplayImage(PathOf(frame), colours));
   if (picture.width() != width_px || picture.height() != height_px)
     return InputError(fmt::format(
         "{}: has {} x {} pixels, expected {} x {}: remove the file, and render this frame again "

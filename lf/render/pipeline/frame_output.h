@@ -18,16 +18,14 @@
 
 namespace lf {
 
-// Returns true if a file of the format contains DevelopedFrame::effective_count.
-bool HasEffectiveCounts(FrameFormat format);
-
-// Writes a developed picture with its notes to the file `to`.
+// Writes a developed picture with its notes to the file `to`. Adds what PictureOptions requests.
 //   is_interrupted  called often, by any thread; empty: nothing interrupts. If it returns true at
 //                   once, nothing is written, so that `picture` may be the unusable result of an
 //                   interrupted DevelopFrame().
 // kOutput: the file cannot be written. kInterrupted: nothing is written.
-Result<void> WritePicture(const PlateNotes& notes, const DevelopedFrame& picture,
+Result<void> WritePicture(const PlateNotes& notes, DevelopedFrame picture,
                           const std::filesystem::path& to, FrameFormat format,
+                          const PictureOptions& options,
                           const std::function<bool()>& is_interrupted);
 
 inline constexpr const char* kContactSheet = "contact_sheet.png";
@@ -37,6 +35,7 @@ inline constexpr const char* kContactSheet = "contact_sheet.png";
 struct FilmFiles {
   std::filesystem::path folder;
   FrameFormat format = FrameFormat::kExrHalf;
+  ColourSpace colours = ColourSpace::kRec709;
   int width_px = 0;
   int height_px = 0;
   double fps = 0;

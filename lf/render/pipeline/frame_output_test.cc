@@ -19,7 +19,7 @@ class FilmFilesTest : public FolderTest {
  protected:
   void SetUp() override {
     FolderTest::SetUp();
-    film_ = {folder_, FrameFormat::kPng8, 32, 16, 25, nullptr};
+    film_ = {folder_, FrameFormat::kPng8, ColourSpace::kRec709, 32, 16, 25, nullptr};
     for (const FrameId frame : frames_) {
       const Image<uint8_t> picture = NoiseImage<uint8_t>(32, 16, 3);
       ASSERT_TRUE(WriteImage(FramePath(folder_, frame, film_.format), picture.view()));

@@ -309,6 +309,7 @@ class Merger {
     const ShardPlate& first = plates.front();
     PlateNotes notes = first.notes;
     notes.rays = {};
+    notes.develop.adds_opacity = options_.adds_opacity;
     for (const ShardPlate& plate : plates) notes.rays += plate.notes.rays;
     SensorPlate sum(0, 0);
     if (!frame->is_kept) sum = SensorPlate(first.width_px, first.height_px, first.kind);
@@ -327,10 +328,10 @@ class Merger {
     }
     if (!frame->is_kept) {
       const auto is_stopped = [this] { return IsStopped(); };
-      const RenderedFrame made =
-          DevelopFrame(notes, sum, nullptr, HasEffectiveCounts(options_.format), pool_, is_stopped);
-      const Result<void> written =
-          WritePicture(notes, made.picture, PathOf(notes.frame), options_.format, is_stopped);
+      RenderedFrame made =
+          DevelopFrame(notes, sum, nullptr, IsExr(options_.format), pool_, is_stopped);
+      const Result<void> written = WritePicture(notes, std::move(made.picture), PathOf(notes.frame),
+                                                options_.format, options_.picture, is_stopped);
       if (!written && written.error().kind == ErrorKind::kInterrupted) return Interrupted();
       LF_RETURN_IF_ERROR(written);
       frame->report = made.report;
@@ -354,6 +355,8 @@ class Merger {
     picture.format = NameOf(options_.format);
     picture.smooth_below = first.notes.develop.smooth_below;
     picture.fill_radius_px = first.notes.develop.fill_radius_px;
+    picture.adds_opacity = options_.adds_opacity;
+    picture.look = options_.picture;
     for (auto& entry : InputsOfPicture(picture)) inputs.push_back(std::move(entry));
     return inputs;
   }
@@ -400,10 +403,13 @@ class Merger {
     const ShardPlate& first = First();
     std::vector<FrameId> frames;
     for (const auto& [id, frame] : frames_) frames.push_back(id);
-    const FilmFiles film = {
-        options_.output_folder, options_.format,
-        first.width_px,         first.height_px,
-        first.notes.fps,        options_.signals == nullptr ? nullptr : &options_.signals->stop};
+    const FilmFiles film = {options_.output_folder,
+                            options_.format,
+                            options_.picture.colours,
+                            first.width_px,
+                            first.height_px,
+                            first.notes.fps,
+                            options_.signals == nullptr ? nullptr : &options_.signals->stop};
     RenderReport report = Report();
     LF_RETURN_IF_ERROR(WriteReport(report, ReportPath()));
     if (options_.contact_sheet) LF_RETURN_IF_ERROR(film.WriteContactSheet(frames, 2, pool_));

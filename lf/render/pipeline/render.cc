@@ -87,6 +87,8 @@ RunStateOptions StateOptions(const FilmSetup& setup, const FolderOptions& folder
   choices.format = NameOf(folder.format);
   choices.smooth_below = film.smooth_below;
   choices.fill_radius_px = film.fill_radius_px;
+  choices.adds_opacity = film.adds_opacity;
+  choices.look = folder.picture;
   const std::string cameras = HashOfCameras(package.path);
   RunInputs picture = InputsOfPicture(choices);
   if (!package.name.empty()) picture.emplace_back(kFilmOfPackage, cameras);

@@ -36,6 +36,7 @@ struct FolderOptions {
   // output may replace them.
   std::vector<std::filesystem::path> inputs;
   FrameFormat format = FrameFormat::kExrHalf;
+  PictureOptions picture;
   // Path of an mp4 of the frames to write. Must be unset for a shard.
   std::optional<std::filesystem::path> video;
   bool contact_sheet = true;  // true: writes contact_sheet.png beside the frames

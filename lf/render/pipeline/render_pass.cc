@@ -226,9 +226,9 @@ Result<FrameReport> RenderPass::WritePicture(size_t f, const std::optional<Compl
                                              const std::filesystem::path& to,
                                              const std::function<bool()>& is_interrupted) const {
   const FrameFormat format = context_.folder.format;
-  const RenderedFrame frame =
-      renderer_.Develop(f, completion, HasEffectiveCounts(format), is_interrupted);
-  LF_RETURN_IF_ERROR(lf::WritePicture(NotesOf(f), frame.picture, to, format, is_interrupted));
+  RenderedFrame frame = renderer_.Develop(f, completion, IsExr(format), is_interrupted);
+  LF_RETURN_IF_ERROR(lf::WritePicture(NotesOf(f), std::move(frame.picture), to, format,
+                                      context_.folder.picture, is_interrupted));
   return frame.report;
 }
 

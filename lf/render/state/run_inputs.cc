@@ -135,9 +135,14 @@ RunInputs InputsOfCamera(FrameId frame, const RenderCamera& camera) {
 }
 
 RunInputs InputsOfPicture(const RunChoices& choices) {
-  return {{"picture.format", choices.format},
-          {"picture.smooth_below", fmt::format("{}", choices.smooth_below)},
-          {"picture.fill_radius", fmt::format("{}", choices.fill_radius_px)}};
+  RunInputs inputs = {{"picture.format", choices.format},
+                      {"picture.smooth_below", fmt::format("{}", choices.smooth_below)},
+                      {"picture.fill_radius", fmt::format("{}", choices.fill_radius_px)}};
+  if (choices.adds_opacity) inputs.emplace_back("picture.alpha", "on");
+  if (choices.look.colours != ColourSpace::kRec709)
+    inputs.emplace_back("picture.colour_space", NameOf(choices.look.colours));
+  if (choices.look.has_focus_depth) inputs.emplace_back("picture.z", "on");
+  return inputs;
 }
 
 std::string HashOfCameras(const CameraPath& path) {

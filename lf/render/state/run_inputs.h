@@ -11,6 +11,7 @@
 #include "lf/camera/render_camera.h"
 #include "lf/core/ids.h"
 #include "lf/film/develop/develop.h"
+#include "lf/film/develop/frame_file.h"
 #include "lf/light_field/model/light_field_identity.h"
 #include "lf/light_field/model/radiance.h"
 #include "lf/render/collect/collect_batch.h"
@@ -23,8 +24,8 @@ namespace lf {
 // film/plate/plate_file.h describes.
 using RunInputs = std::vector<std::pair<std::string, std::string>>;
 
-// The options that decide the rays of a frame. The last three options decide only how its picture
-// is made from the rays.
+// The options that decide the rays of a frame. The last ones, from `format` on, decide only how its
+// picture is made from the rays.
 struct RunChoices {
   RayReading reading;
   CollectBackEnd back_end = CollectBackEnd::kFast;
@@ -40,6 +41,8 @@ struct RunChoices {
   std::string format = "exr";
   uint32_t smooth_below = 0;
   int fill_radius_px = kFillRadius_px;
+  bool adds_opacity = false;
+  PictureOptions look;
 };
 
 // The version of the ray model (doc/ray.md). A change of the code that gives other rays for the

@@ -1,0 +1,89 @@
+"""Reads EXR files as lfrenderer writes them, for tests: written from the description of the file layout
+(openexr.com, "OpenEXR File Layout"), without OpenEXR."""
+import struct
+import zlib
+
+import numpy as np
+
+BLOCK_ROWS = 16  # rows that are compressed together
+PIXEL_TYPES = [np.dtype("<u4"), np.dtype("<f2"), np.dtype("<f4")]
+
+# Formats of attribute values by type; other types, such as channel lists, stay bytes.
+FORMATS = {"int": "<i", "float": "<f", "double": "<d", "v2f": "<2f", "rational": "<iI",
+           "chromaticities": "<8f", "m44f": "<16f", "box2i": "<4i", "compression": "<B"}
+
+
+def read_header(data):
+    """Returns the attributes of the first part, {name: (type, value)}, and the index of the byte after its header.
+
+    A matrix is an array [row][column]; a value of one number is that number, other values are tuples, texts or bytes.
+    """
+    attributes, at = {}, 8
+    while data[at]:
+        words = []
+        for _ in range(2):
+            end = data.index(b"\0", at)
+            words.append(data[at:end].decode())
+            at = end + 1
+        size, = struct.unpack_from("<i", data, at)
+        name, kind = words
+        attributes[name] = kind, _value(kind, data[at + 4:at + 4 + size])
+        at += 4 + size
+    return attributes, at + 1
+
+
+def channels_of(path):
+    """Returns {name: array [height][width]} of a file of rows that are compressed by zip."""
+    data = path.read_bytes()
+    header, at = read_header(data)
+    assert header["compression"][1] == 3, "expected zip compression"
+    left, top, right, bottom = header["dataWindow"][1]
+    width, height = right - left + 1, bottom - top + 1
+    types = _channel_types(header["channels"][1])
+    row = np.dtype([(name, kind, width) for name, kind in types.items()])
+    rows = np.empty(height, row)
+    for block, offset in enumerate(np.frombuffer(data, "<u8", -(-height // BLOCK_ROWS), at)):
+        begin, size = struct.unpack_from("<ii", data, offset)
+        assert begin - top == block * BLOCK_ROWS
+        count = min(BLOCK_ROWS, height - block * BLOCK_ROWS)
+        packed = data[int(offset) + 8:int(offset) + 8 + size]
+        rows[begin - top:begin - top + count] = np.frombuffer(
+            packed if size == count * row.itemsize else _unpacked(packed), row)
+    return {name: rows[name] for name in types}
+
+
+def _channel_types(data):
+    """Returns {name: type of pixels}, in the order of the file."""
+    types, at = {}, 0
+    while data[at]:
+        end = data.index(b"\0", at)
+        types[data[at:end].decode()] = PIXEL_TYPES[data[end + 1]]
+        at = end + 17  # type, linearity and two samplings follow the name
+    return types
+
+
+def _unpacked(packed):
+    """Undoes the three steps of zip compression: deflation, differences and the sorting of bytes."""
+    differences = np.frombuffer(zlib.decompress(packed), np.uint8).astype(np.int64)
+    differences[1:] -= 128
+    sorted_bytes = np.cumsum(differences).astype(np.uint8)
+    half = (len(sorted_bytes) + 1) // 2
+    result = np.empty_like(sorted_bytes)
+    result[::2], result[1::2] = sorted_bytes[:half], sorted_bytes[half:]
+    return result.tobytes()
+
+
+def attributes_of(path):
+    """Returns {name: value} of a file."""
+    return {name: value for name, (_, value) in read_header(path.read_bytes())[0].items()}
+
+
+def _value(kind, data):
+    if kind == "string":
+        return data.decode()
+    if kind not in FORMATS:
+        return data
+    numbers = struct.unpack(FORMATS[kind], data)
+    if kind == "m44f":
+        return np.reshape(numbers, (4, 4))
+    return numbers[0] if len(numbers) == 1 else numbers
