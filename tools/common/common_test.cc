@@ -207,9 +207,22 @@ TEST_F(HelpTest, ErrorsNameTheAllowedValues) {
   EXPECT_EQ(Parse("a --slab-position 1 nan 2"), "--slab-position: expected a number, found 'nan'");
 }
 
+TEST(Progress, FarmsGetTheLinesThatTheyLookFor) {
+  EXPECT_EQ(FarmLines(ProgressStyle::kOpenJd, 0.42, "frame 3/10"),
+            (std::vector<std::string>{"openjd_progress: 42.0", "openjd_status: frame 3/10"}));
+  EXPECT_EQ(FarmLines(ProgressStyle::kOpenJd, 0.99999, "").front(), "openjd_progress: 99.9");
+  EXPECT_EQ(FarmLines(ProgressStyle::kOpenJd, 1, ""),
+            (std::vector<std::string>{"openjd_progress: 100.0"}));
+  EXPECT_EQ(FarmLines(ProgressStyle::kDeadline, 0.429, "x").front(), "Progress: 42%");
+  EXPECT_EQ(FarmLines(ProgressStyle::kAlfred, 2, "x").front(), "ALF_PROGRESS 100%");
+}
+
 TEST(Progress, StylesHaveNames) {
   EXPECT_EQ(ParseProgressStyle("json"), ProgressStyle::kJson);
   EXPECT_EQ(ParseProgressStyle("none"), ProgressStyle::kNone);
+  EXPECT_EQ(ParseProgressStyle("openjd"), ProgressStyle::kOpenJd);
+  EXPECT_EQ(ParseProgressStyle("deadline"), ProgressStyle::kDeadline);
+  EXPECT_EQ(ParseProgressStyle("alfred"), ProgressStyle::kAlfred);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "tools/common/process_start.h"
+#include "tools/common/progress.h"
 #include "tools/common/validators.h"
 
 #include "lf/core/log.h"
@@ -45,13 +46,18 @@ void Program::AddCommonOptions(const OfferedOptions& offered) {
     running.Add("--threads N", common_.threads, "Number of threads (as many as the machine has)")
         ->check(CLI::Range(0, 512));
   if (offered.progress)
-    running.AddChoice("--progress", common_.progress, {"auto", "bar", "plain", "json", "none"},
-                      "How progress is shown on stderr\n"
-                      "auto: a bar on a terminal, otherwise plain\n"
-                      "bar: one line that is updated\n"
-                      "plain: a new line every few seconds\n"
-                      "json: a line with a JSON object about every second\n"
-                      "none: no progress");
+    running.AddChoice(
+        "--progress", common_.progress,
+        {"auto", "bar", "plain", "json", "openjd", "deadline", "alfred", "none"},
+        "How progress is shown on stderr\n"
+        "auto: a bar on a terminal, otherwise plain\n"
+        "bar: one line that is updated\n"
+        "plain: a new line every few seconds\n"
+        "json: a line with a JSON object about every second\n"
+        "openjd, deadline, alfred: lines that render farms understand, about every "
+        "second: Open Job Description (openjd_progress: 42.0), Deadline 10 (Progress: "
+        "42%), and Tractor or HQueue (ALF_PROGRESS 42%)\n"
+        "none: no progress");
   if (offered.verbose)
     running.AddFlag("-v,--verbose", verbosity_, "Also print details, to find out what went wrong");
   if (offered.quiet) running.AddFlag("-q,--quiet", quiet_, "Print only warnings and errors");
@@ -85,6 +91,7 @@ int Program::Run(int argc, char** argv, const std::function<Result<void>()>& bod
   SetLogLevel(quiet_ ? LogLevel::kWarning : verbosity_ > 0 ? LogLevel::kDebug : LogLevel::kInfo);
   try {
     const Result<void> result = body();
+    TellFarmTheEnd(ParseProgressStyle(common_.progress), result);
     if (!result) {
       LogMessage(LogLevel::kError, result.error().message);
       return static_cast<int>(result.error().kind);

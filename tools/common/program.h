@@ -29,7 +29,7 @@ struct CommonOptions {
   uint64_t seed = 0;
   bool strict = false;
   std::string progress =
-      "auto";  // auto, bar, plain, json, none; auto: bar on a terminal, else plain
+      "auto";  // auto (bar on a terminal, else plain), bar, plain, json, none, or of a farm
   bool json = false;
 };
 

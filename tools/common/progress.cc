@@ -17,10 +17,18 @@ ProgressStyle ParseProgressStyle(const std::string& name) {
   if (name == "plain") return ProgressStyle::kPlain;
   if (name == "json") return ProgressStyle::kJson;
   if (name == "none") return ProgressStyle::kNone;
+  if (name == "openjd") return ProgressStyle::kOpenJd;
+  if (name == "deadline") return ProgressStyle::kDeadline;
+  if (name == "alfred") return ProgressStyle::kAlfred;
   return ::isatty(STDERR_FILENO) ? ProgressStyle::kBar : ProgressStyle::kPlain;
 }
 
 namespace {
+
+bool IsOfFarm(ProgressStyle style) {
+  return style == ProgressStyle::kOpenJd || style == ProgressStyle::kDeadline ||
+         style == ProgressStyle::kAlfred;
+}
 
 size_t TerminalWidth() {
   winsize size{};
@@ -40,9 +48,9 @@ ProgressMeter::~ProgressMeter() {
 // Returns true if it is time to print. Cheap, so that callers can test it before they format texts.
 bool ProgressMeter::IsDue() const {
   if (style_ == ProgressStyle::kNone) return false;
-  const double interval_s = style_ == ProgressStyle::kBar    ? 0.2
-                            : style_ == ProgressStyle::kJson ? 1
-                                                             : 5;
+  const double interval_s = style_ == ProgressStyle::kBar                        ? 0.2
+                            : style_ == ProgressStyle::kJson || IsOfFarm(style_) ? 1
+                                                                                 : 5;
   return std::chrono::duration<double>(Clock::now() - last_).count() >= interval_s;
 }
 
@@ -68,6 +76,11 @@ void ProgressMeter::Print(uint64_t done, uint64_t total, const std::string& deta
   last_ = Clock::now();
   const double elapsed_s = std::chrono::duration<double>(last_ - start_).count();
   const double share = std::min(1.0, static_cast<double>(done) / static_cast<double>(total));
+  if (IsOfFarm(style_)) {
+    for (const std::string& line : FarmLines(style_, share, detail))
+      LogMessage(LogLevel::kInfo, line);
+    return;
+  }
   const double rate = static_cast<double>(done) / elapsed_s;
   const double left_s = share > 0 ? elapsed_s * (1 - share) / share : 0;
   if (style_ == ProgressStyle::kJson) {
@@ -84,6 +97,26 @@ void ProgressMeter::Print(uint64_t done, uint64_t total, const std::string& deta
     return;
   }
   LogProgressLine(ProgressLine(share, numbers, TerminalWidth()));
+}
+
+std::vector<std::string> FarmLines(ProgressStyle style, double share, const std::string& detail) {
+  const double percent = 100 * std::clamp(share, 0.0, 1.0);
+  // The percentage is rounded down, because a farm may take 100 % for the end.
+  const auto whole = static_cast<int>(percent);
+  if (style == ProgressStyle::kDeadline) return {fmt::format("Progress: {}%", whole)};
+  if (style == ProgressStyle::kAlfred) return {fmt::format("ALF_PROGRESS {}%", whole)};
+  std::vector<std::string> lines = {
+      fmt::format("openjd_progress: {:.1f}", std::floor(10 * percent) / 10)};
+  if (!detail.empty()) lines.push_back("openjd_status: " + detail);
+  return lines;
+}
+
+void TellFarmTheEnd(ProgressStyle style, const Result<void>& result) {
+  if (!IsOfFarm(style)) return;
+  if (result)
+    LogMessage(LogLevel::kInfo, FarmLines(style, 1, "").front());
+  else if (style == ProgressStyle::kOpenJd)
+    LogMessage(LogLevel::kInfo, "openjd_fail: " + result.error().message);
 }
 
 std::string ProgressLine(double share, const std::string& numbers, size_t width) {

@@ -1,5 +1,6 @@
 // Shows progress for people and for programs: one line that is updated (bar), lines now and then
-// (plain), or JSON objects (json). Each has the rate and an estimate of the time left.
+// (plain), or JSON objects (json), each with the rate and an estimate of the time left; or lines
+// that render farms look for (openjd, deadline, alfred).
 #pragma once
 
 #include <chrono>
@@ -7,9 +8,19 @@
 #include <string>
 #include <vector>
 
+#include "lf/core/result.h"
+
 namespace lf {
 
-enum class ProgressStyle { kBar, kPlain, kJson, kNone };
+enum class ProgressStyle {
+  kBar,
+  kPlain,
+  kJson,
+  kNone,
+  kOpenJd,    // "openjd_progress: 42.0" and "openjd_status: frame 3/10": Open Job Description
+  kDeadline,  // "Progress: 42%": plug-ins of Deadline 10
+  kAlfred,    // "ALF_PROGRESS 42%": Tractor, HQueue, and plug-ins of Deadline
+};
 
 // Parses the value of --progress; "auto" becomes a bar if stderr is a terminal, otherwise plain.
 ProgressStyle ParseProgressStyle(const std::string& name);
@@ -45,6 +56,13 @@ class ProgressMeter {
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_;
 };
+
+// Returns the lines that tell a farm the progress. The style must be that of a farm.
+//   detail  text of the line openjd_status; empty: the line is left out
+std::vector<std::string> FarmLines(ProgressStyle style, double share, const std::string& detail);
+// Prints what a farm expects at the end: that all is done, or with kOpenJd why it failed. Prints
+// nothing with the other styles.
+void TellFarmTheEnd(ProgressStyle style, const Result<void>& result);
 
 // Returns a bar and numbers for a terminal line of `width` characters, or the numbers alone, cut to
 // fit, if the line is too short for a bar.
