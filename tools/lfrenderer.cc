@@ -20,6 +20,7 @@
 
 #include "lf/camera/path/path_yaml.h"
 #include "lf/core/geometry.h"
+#include "lf/core/log.h"
 #include "lf/render/pipeline/render.h"
 #include "lf/render/pipeline/render_packages.h"
 
@@ -65,6 +66,14 @@ struct Rendered {
   lf::MissingImages missing = {};  // LF images that --densify left out
 };
 
+// Tells that --clamp-frames has left out all frames. Returns an empty report.
+Rendered NoFrames(const lf::RenderArguments& arguments, lf::RenderOptions options) {
+  lf::LogInfo(
+      "--frames {}: all of these frames are beyond the end of the path: nothing is rendered",
+      arguments.frames);
+  return {lf::RenderReport(), std::move(options)};
+}
+
 lf::Result<Rendered> RenderLightField(const lf::RenderArguments& arguments,
                                       const lf::CommonOptions& common, lf::RenderSignals* signals,
                                       lf::ThreadPool& pool, const Progress& progress) {
@@ -74,6 +83,7 @@ lf::Result<Rendered> RenderLightField(const lf::RenderArguments& arguments,
   LF_ASSIGN_OR_RETURN(lf::CameraPath path,
                       lf::ReadPathYaml(arguments.inputs[1], light_field.unit_m));
   LF_ASSIGN_OR_RETURN(lf::RenderOptions options, arguments.MakeOptions(common, path.frame_count()));
+  if (arguments.HasNoFrame(options)) return NoFrames(arguments, std::move(options));
   options.signals = signals;
   options.folder.inputs.assign(arguments.inputs.begin(), arguments.inputs.end());
   lf::MissingImages missing;
@@ -104,6 +114,7 @@ lf::Result<Rendered> RenderPackageFiles(const lf::RenderArguments& arguments,
       lf::OpenPackages({arguments.inputs.begin(), arguments.inputs.end()}, std::move(place)));
   LF_ASSIGN_OR_RETURN(lf::RenderOptions options,
                       arguments.MakeOptions(common, film.first.path.frame_count()));
+  if (arguments.HasNoFrame(options)) return NoFrames(arguments, std::move(options));
   options.signals = signals;
   return Rendered{lf::RenderPackages(std::move(film), options, pool, progress), options};
 }
@@ -135,6 +146,8 @@ int main(int argc, char** argv) {
                         render(arguments, common, &signals, pool, progress));
     if (!rendered.report) return lf::WithResumeCommand(rendered.report.error(), argc, argv);
     const lf::RenderReport& report = *rendered.report;
+    if (arguments.HasNoFrame(rendered.options))
+      return common.json ? lf::PrintReport(lf::ToJson(report)) : lf::Result<void>();
     std::filesystem::path look_at = arguments.output;
     if (rendered.options.film.shard)
       look_at /= "partial/shards/" + rendered.options.film.shard->Name();

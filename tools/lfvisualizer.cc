@@ -79,7 +79,7 @@ void AddOutput(CLI::App& app, Arguments& a) {
   output
       .Add("--frames RANGE", a.frames,
            "Frames to print, such as 1-100x2, 7 or 3-5,9 (all)\n"
-           "1-100x2: every second frame of 1 to 100. Frames are counted from 1.")
+           "1-100x2, 1-100:2: every second frame of 1 to 100. Frames are counted from 1.")
       ->needs(text)
       ->check(lf::NotEmpty());
   auto* to_files = output

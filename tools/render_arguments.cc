@@ -57,6 +57,10 @@ void AddOutput(CLI::App& app, RenderArguments& a) {
   OptionGroup output(app, kOutputGroup);
   output.Add("-o,--output DIR", a.output, "Folder of the frames")->required();
   AddFrameRange(output, a.frames);
+  output.AddFlag("--clamp-frames", a.clamp_frames,
+                 "Leave out frames of --frames beyond the end of the path\n"
+                 "Without this option they are an error. If none is left, nothing is rendered, and "
+                 "the exit code is 0. Farms need this whose last chunk may be too long.");
   AddFrameFormat(output, a.format);
   a.picture.AddTo(output);
   AddFilmFiles(output, a.video, a.no_contact_sheet);
@@ -357,7 +361,9 @@ Result<RenderOptions> RenderArguments::MakeOptions(const CommonOptions& common,
                                                    size_t frame_count) const {
   RenderOptions options;
   if (!frames.empty()) {
-    LF_ASSIGN_OR_RETURN(options.frames, ParseFrameRange(frames, frame_count));
+    LF_ASSIGN_OR_RETURN(options.frames, ParseFrameRange(frames, frame_count, "--frames",
+                                                        clamp_frames ? FramesBeyondEnd::kLeftOut
+                                                                     : FramesBeyondEnd::kError));
   }
   LF_ASSIGN_OR_RETURN(options.film, MakeFilm(common.seed));
   LF_ASSIGN_OR_RETURN(options.work.memory_bytes, ParseByteSize(memory, "--memory"));

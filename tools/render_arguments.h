@@ -33,8 +33,8 @@ struct RenderArguments {
   int64_t max_images = 0;    // 0: no limit
   double max_angle_deg = 0;  // 0: no limit
   uint32_t smooth_below = 0;
-  bool densify = false, no_guard = false, no_contact_sheet = false, resume = false,
-       overwrite = false, keep_plates = false;
+  bool clamp_frames = false, densify = false, no_guard = false, no_contact_sheet = false,
+       resume = false, overwrite = false, keep_plates = false;
 
   void AddTo(CLI::App& app);
   // Returns the common options of lfrenderer.
@@ -48,9 +48,13 @@ struct RenderArguments {
   //   seed_given  true if --seed is given; packages contain a seed of their own
   Result<void> Check(bool seed_given) const;
 
-  // Converts the arguments to options.
+  // Converts the arguments to options. If --clamp-frames leaves out all frames, which
+  // HasNoFrame() tells, they must not be used, because they would mean all frames.
   //   frame_count  number of frames of the film
   Result<RenderOptions> MakeOptions(const CommonOptions& common, size_t frame_count) const;
+  bool HasNoFrame(const RenderOptions& options) const {
+    return !frames.empty() && options.frames.empty();
+  }
 
  private:
   Result<FilmOptions> MakeFilm(uint64_t seed) const;

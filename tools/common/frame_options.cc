@@ -11,7 +11,7 @@ void AddFrameRange(OptionGroup& output, std::string& frames) {
   output
       .Add("--frames RANGE", frames,
            "Frames to render, such as 1-100x2, 7 or 3-5,9 (all)\n"
-           "1-100x2: every second frame of 1 to 100. Frames are counted from 1.")
+           "1-100x2, 1-100:2: every second frame of 1 to 100. Frames are counted from 1.")
       ->check(NotEmpty());
 }
 

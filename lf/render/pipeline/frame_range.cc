@@ -30,7 +30,7 @@ bool TakeCharacter(std::string_view* text, char character) {
 }  // namespace
 
 Result<std::vector<FrameId>> ParseFrameRange(std::string_view text, size_t frame_count,
-                                             const char* option) {
+                                             const char* option, FramesBeyondEnd beyond_end) {
   std::vector<FrameId> frames;
   std::string_view rest = text;
   do {
@@ -38,7 +38,8 @@ Result<std::vector<FrameId>> ParseFrameRange(std::string_view text, size_t frame
     bool good = TakeNumber(&rest, &first);
     last = first;
     if (good && TakeCharacter(&rest, '-')) good = TakeNumber(&rest, &last);
-    if (good && TakeCharacter(&rest, 'x')) good = TakeNumber(&rest, &step);
+    if (good && (TakeCharacter(&rest, 'x') || TakeCharacter(&rest, ':')))
+      good = TakeNumber(&rest, &step);
     if (!good || (!rest.empty() && rest.front() != ','))
       return UsageError(
           fmt::format("{} \'{}\': expected a range such as 1-100, 1-100x2 or 3,7,9", option, text));
@@ -47,8 +48,12 @@ Result<std::vector<FrameId>> ParseFrameRange(std::string_view text, size_t frame
           fmt::format("{} \'{}\': the first frame of a range must be at most the last: write {}-{}",
                       option, text, last, first));
     if (step < 1)
-      return UsageError(fmt::format(
-          "{} \'{}\': the step is 0, expected at least 1 after x, as in 1-100x2", option, text));
+      return UsageError(
+          fmt::format("{} \'{}\': the step is 0, expected at least 1 after x or :, as in 1-100x2",
+                      option, text));
+    if (beyond_end == FramesBeyondEnd::kLeftOut && first > frame_count) continue;
+    if (beyond_end == FramesBeyondEnd::kLeftOut)
+      last = static_cast<uint32_t>(std::min<size_t>(last, frame_count));
     if (first < 1 || last > frame_count)
       return UsageError(fmt::format("{} \'{}\': expected frames from 1 to {}, the last frame",
                                     option, text, frame_count));

@@ -21,6 +21,25 @@ TEST(FrameRange, ReadsRangesStepsAndLists) {
   EXPECT_EQ(Numbers("1-100x2").size(), 50u);
 }
 
+TEST(FrameRange, AStepMayFollowAColon) {
+  EXPECT_EQ(Numbers("1-8:3,20"), (std::vector<uint32_t>{1, 4, 7, 20}));
+  EXPECT_EQ(Numbers("7-20:2"), Numbers("7-20x2"));
+  EXPECT_TRUE(Numbers("1-8:").empty());
+  EXPECT_TRUE(Numbers("1-8:0").empty());
+}
+
+TEST(FrameRange, FramesBeyondTheEndMayBeLeftOut) {
+  const auto clamped = [](std::string_view text) {
+    return ParseFrameRange(text, 72, "--frames", FramesBeyondEnd::kLeftOut);
+  };
+  EXPECT_EQ(clamped("71-80").value(), (std::vector<FrameId>{FrameId{71}, FrameId{72}}));
+  EXPECT_EQ(clamped("99,70-90:5,80-85").value(), (std::vector<FrameId>{FrameId{70}}));
+  EXPECT_TRUE(clamped("73-80,4000000000").value().empty());
+  EXPECT_FALSE(clamped("0-3"));
+  EXPECT_FALSE(clamped("80-73"));
+  EXPECT_FALSE(clamped("80-90x0"));
+}
+
 TEST(FrameRange, RefusesWhatItDoesNotUnderstand) {
   for (const char* text : {"", "x", "0", "5-", "-5", "5-3", "1-101", "1-9x0", "1,", "1 2", "1-9x",
                            "99999999999", "1.5"}) {
