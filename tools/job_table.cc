@@ -16,6 +16,7 @@ constexpr size_t kMostMessage = 72;  // longest shown message, in characters; th
 std::string EngineText(const ClusterJob& job) {
   if (job.engine == ClusterEngine::kLocal)
     return fmt::format("on this machine, {} at a time", job.at_once);
+  if (job.engine != ClusterEngine::kSlurm) return fmt::format("on a farm ({})", NameOf(job.engine));
   return fmt::format("on slurm (array {}, finishing {})", fmt::join(job.slurm_array_ids, ", "),
                      job.slurm_finishing_id.empty() ? "-" : job.slurm_finishing_id);
 }

@@ -8,6 +8,7 @@
 
 #include "tools/common/interrupt.h"
 #include "tools/common/program.h"
+#include "tools/common/progress.h"
 #include "tools/job_table.h"
 #include "tools/run_job.h"
 #include "tools/submit_arguments.h"
@@ -32,6 +33,8 @@ constexpr lf::HelpTexts kHelp = {
   lfsubmit packages/*.lfp -o film --jobs 2 --video film.mp4              # on this machine
   lfsubmit packages/*.lfp -o film --engine slurm --threads 8 --time-limit 2h
   lfsubmit packages/*.lfp -o film --engine slurm --sbatch=--partition=long
+  lfsubmit packages/*.lfp -o film --engine openjd --write bundle         # for AWS Deadline Cloud
+  lfsubmit packages/*.lfp -o film --engine array --write scripts         # for any batch system
   lfsubmit packages/*.lfp -o film -- --format png16 --lens-weights area  # options of lfrenderer
   lfsubmit --status film
   lfsubmit --finish film 10-20     # finish these frames as they are now
@@ -65,7 +68,7 @@ Result<void> Submit(const lf::SubmitArguments& arguments, const lf::CommonOption
   LF_RETURN_IF_ERROR(lf::WriteJob(job));
   std::vector<size_t> numbers(job.packages.size());
   std::iota(numbers.begin(), numbers.end(), size_t{0});
-  return lf::RunJob(job, std::move(lock), numbers, arguments.wait, common);
+  return lf::RunJob(job, std::move(lock), numbers, {arguments.wait, arguments.write}, common);
 }
 
 Result<void> Resume(const lf::SubmitArguments& arguments, const lf::CommonOptions& common) {
@@ -83,7 +86,7 @@ Result<void> Resume(const lf::SubmitArguments& arguments, const lf::CommonOption
     return lf::OutcomeOf("the film", status.finishing.state);
   }
   LF_ASSIGN_OR_RETURN(const std::vector<size_t> numbers, lf::PrepareResume(job));
-  return lf::RunJob(job, std::move(lock), numbers, arguments.wait, common);
+  return lf::RunJob(job, std::move(lock), numbers, {arguments.wait, arguments.write}, common);
 }
 
 Result<void> Finish(const std::string& folder, const std::string& frames) {
@@ -124,8 +127,16 @@ Result<void> Act(const lf::SubmitArguments& arguments, const lf::CommonOptions& 
       return lf::UsageError(
           fmt::format("--run-package {}: expected the number of a package, 0 to {}",
                       arguments.run_package[0], job.packages.size() - 1));
+    // Batch systems keep what a task prints. Only farms that ask for progress get it.
+    lf::ProgressMeter meter(common.progress == "auto" ? lf::ProgressStyle::kNone
+                                                      : lf::ParseProgressStyle(common.progress),
+                            "px");
+    const auto look = [&, log = lf::PackageTask(job, number).log] {
+      const lf::TaskProgress now = lf::ReadProgress(log);
+      meter.Update(now.done, now.total, {{"LF image", now.image_done, now.image_total}});
+    };
     LF_ASSIGN_OR_RETURN(const lf::TaskState state,
-                        lf::RunPackage(job, number, lf::NodeName(), lf::CatchInterrupts()));
+                        lf::RunPackage(job, number, lf::NodeName(), lf::CatchInterrupts(), look));
     const Result<void> outcome = lf::OutcomeOf(job.packages[number].name, state);
     if (state.phase != lf::TaskPhase::kDone || outcome) return outcome;
     // The package is done, but not as required. Slurm must see it as done, because the finishing

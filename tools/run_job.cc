@@ -1,5 +1,6 @@
 #include "tools/run_job.h"
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,6 +11,7 @@
 
 #include "lf/core/log.h"
 #include "lf/core/shell_word.h"
+#include "lf/distribute/cluster/farm_files.h"
 #include "lf/distribute/cluster/job_status.h"
 #include "lf/distribute/cluster/resume_job.h"
 #include "lf/distribute/cluster/run_locally.h"
@@ -24,10 +26,34 @@ void Show(const ClusterJob& job, ProgressMeter& meter) {
   meter.Update(status.rays_done(), status.ray_total(), JobSummary(status));
 }
 
+bool IsForFarm(const ClusterJob& job) {
+  return job.engine == ClusterEngine::kOpenJd || job.engine == ClusterEngine::kArray;
+}
+
+Result<void> WriteForFarm(const ClusterJob& job, const std::vector<size_t>& numbers,
+                          const std::string& write) {
+  const std::string folder = ShellWord(job.output_folder.string());
+  const auto to = write.empty() ? job.Folder() / NameOf(job.engine) : std::filesystem::path(write);
+  LF_ASSIGN_OR_RETURN(const std::filesystem::path file, WriteFarmFiles(job, numbers, to));
+  if (job.engine == ClusterEngine::kOpenJd)
+    LogInfo(
+        "{}: written, for {} packages; submit its folder, for example with deadline bundle "
+        "submit {}; lfsubmit --status {} shows the progress",
+        file.string(), numbers.size(), ShellWord(to.string()), folder);
+  else
+    LogInfo(
+        "{}: written; its first lines say how to submit it as an array of {} tasks, and "
+        "finish.sh makes the video when all have ended; lfsubmit --status {} shows the "
+        "progress",
+        file.string(), job.packages.size(), folder);
+  return {};
+}
+
 }  // namespace
 
-Result<void> RunJob(ClusterJob job, FileLock lock, const std::vector<size_t>& numbers, bool waits,
-                    const CommonOptions& common) {
+Result<void> RunJob(ClusterJob job, FileLock lock, const std::vector<size_t>& numbers,
+                    const RunJobOptions& options, const CommonOptions& common) {
+  if (IsForFarm(job)) return WriteForFarm(job, numbers, options.write);
   std::optional<FileLock> held = std::move(lock);
   const std::string folder = ShellWord(job.output_folder.string());
   const auto& stop = CatchInterrupts();
@@ -48,7 +74,7 @@ Result<void> RunJob(ClusterJob job, FileLock lock, const std::vector<size_t>& nu
         "progress",
         numbers.size(), numbers.empty() ? "-" : job.slurm_array_ids.back(), job.slurm_finishing_id,
         folder);
-    if (!waits) return {};
+    if (!options.waits) return {};
     outcome = WaitForJob(job, stop, [&] { Show(job, meter); });
   }
   if (!outcome && outcome.error().kind != ErrorKind::kBelowRequired) return outcome.error();

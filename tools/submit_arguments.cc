@@ -179,10 +179,18 @@ void AddExistingJob(CLI::App& app, SubmitArguments& a) {
 
 void AddResources(CLI::App& app, SubmitArguments& a) {
   OptionGroup running(app, kRunningGroup);
-  running.AddChoice("--engine", a.engine, {"local", "slurm"},
+  running.AddChoice("--engine", a.engine, {"local", "slurm", "openjd", "array"},
                     "System that starts the lfrenderer processes (local)\n"
                     "local: processes on this machine; lfsubmit runs until the film is done\n"
-                    "slurm: tasks of Slurm; lfsubmit ends when they are submitted (see --wait)");
+                    "slurm: tasks of Slurm; lfsubmit ends when they are submitted (see --wait)\n"
+                    "openjd: writes a job bundle of Open Job Description, which you submit, for "
+                    "example to AWS Deadline Cloud\n"
+                    "array: writes scripts, which you submit as an array to Grid Engine, PBS, LSF, "
+                    "HTCondor, Kubernetes, AWS Batch or another batch system");
+  running
+      .Add("--write FOLDER", a.write,
+           "Folder of the files of --engine openjd and array (in DIR/cluster)")
+      ->check(NotEmpty());
   running
       .Add("--jobs N", a.at_once,
            "Packages rendered at the same time\n"
@@ -263,10 +271,19 @@ Result<void> SubmitArguments::TakeResources(ClusterJob* job, const CommonOptions
       return UsageError(fmt::format(
           "--sbatch={}: expected an option of sbatch in one line, such as --partition=long",
           option));
-  if (is_local && (!time_limit.empty() || !sbatch_options.empty()))
+  const bool is_slurm = job->engine == ClusterEngine::kSlurm;
+  if (!is_slurm && (!time_limit.empty() || !sbatch_options.empty()))
     return UsageError(
         "--time-limit and --sbatch can only be used with --engine slurm: leave them out, or add "
         "--engine slurm");
+  if ((is_local || is_slurm) && !write.empty())
+    return UsageError(
+        "--write can only be used with --engine openjd and --engine array, which write files for a "
+        "farm: leave it out, or add such an engine");
+  if (!is_local && !is_slurm && (at_once || wait))
+    return UsageError(
+        "--jobs and --wait cannot be used with --engine openjd and --engine array, because the "
+        "farm starts the tasks: leave them out");
   const bool is_anew = is_new || engine || at_once;
   if (is_anew) {
     job->at_once = at_once.value_or(0);
@@ -276,8 +293,8 @@ Result<void> SubmitArguments::TakeResources(ClusterJob* job, const CommonOptions
   if (common.threads > 0)
     job->thread_count = common.threads;
   else if (is_anew)
-    job->thread_count =
-        is_local ? std::max(1, MachineThreads() / static_cast<int>(job->at_once)) : 1;
+    job->thread_count = is_local ? std::max(1, MachineThreads() / static_cast<int>(job->at_once))
+                                 : static_cast<int>(job->engine != ClusterEngine::kOpenJd);
   if (!memory.empty()) {
     LF_ASSIGN_OR_RETURN(job->memory_bytes, ParseByteSize(memory, "--memory"));
   } else if (is_anew) {

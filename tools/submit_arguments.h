@@ -16,7 +16,7 @@ namespace lf {
 
 struct SubmitArguments {
   std::vector<std::string> words;  // PACKAGES, and after "--" the arguments of lfrenderer
-  std::string output, frames, video, memory, time_limit, renderer;
+  std::string output, frames, video, memory, time_limit, renderer, write;
   std::optional<std::string> engine;  // unset: local for a new job, unchanged for a resumed one
   std::optional<uint64_t> at_once;
   std::optional<uint32_t> most_crashes;

@@ -90,11 +90,13 @@ JobPackage PackageFromJson(const Json& json, std::string* fault) {
 }  // namespace
 
 const char* NameOf(ClusterEngine engine) {
-  return engine == ClusterEngine::kLocal ? "local" : "slurm";
+  constexpr const char* kNames[] = {"local", "slurm", "openjd", "array"};
+  return kNames[static_cast<int>(engine)];
 }
 
 std::optional<ClusterEngine> ClusterEngineOf(std::string_view name) {
-  return ValueNamed(name, {ClusterEngine::kLocal, ClusterEngine::kSlurm});
+  return ValueNamed(name, {ClusterEngine::kLocal, ClusterEngine::kSlurm, ClusterEngine::kOpenJd,
+                           ClusterEngine::kArray});
 }
 
 bool ClusterJob::IsCancelled() const {
@@ -185,7 +187,8 @@ Result<ClusterJob> ParseJob(std::string_view text, const std::string& name) {
     const auto known = ClusterEngineOf(engine);
     if (known) job.engine = *known;
     if (fault.empty() && !known)
-      fault = fmt::format("\"engine\": expected local or slurm, found \"{}\"", engine);
+      fault =
+          fmt::format("\"engine\": expected local, slurm, openjd or array, found \"{}\"", engine);
     if (fault.empty() && job.packages.empty())
       fault = "\"packages\": expected at least one package, found none";
     if (fault.empty()) fault = FaultOf(job);

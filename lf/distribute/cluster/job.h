@@ -26,7 +26,12 @@
 
 namespace lf {
 
-enum class ClusterEngine { kLocal, kSlurm };
+enum class ClusterEngine {
+  kLocal,
+  kSlurm,
+  kOpenJd,  // the user submits a job bundle of Open Job Description (farm_files.h)
+  kArray,   // the user submits a script as an array to any batch system (farm_files.h)
+};
 const char* NameOf(ClusterEngine engine);
 std::optional<ClusterEngine> ClusterEngineOf(std::string_view name);  // nullopt: no engine's name
 
@@ -52,7 +57,7 @@ struct ClusterJob {
   ClusterEngine engine = ClusterEngine::kLocal;
   // number of packages rendered at the same time; 0: no limit (slurm), one (local)
   size_t at_once = 0;
-  int thread_count = 1;        // number of threads of each task
+  int thread_count = 1;        // number of threads of each task; 0: all of the machine
   uint64_t memory_bytes = 0;   // --memory of lfrenderer in each task; 0: lfrenderer's default
   uint32_t most_crashes = 10;  // a package that crashes more often fails
   double time_limit_s = 0;     // time limit of a task (slurm); 0: the partition's limit

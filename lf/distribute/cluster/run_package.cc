@@ -237,7 +237,7 @@ Result<void> OutcomeOf(const std::string& name, const TaskState& state) {
 }
 
 Result<TaskState> RunPackage(const ClusterJob& job, size_t number, const std::string& node,
-                             const std::atomic<bool>& stop) {
+                             const std::atomic<bool>& stop, const std::function<void()>& look) {
   const JobPackage& package = job.packages[number];
   TaskRun run(job, PackageTask(job, number), node, stop);
   LF_RETURN_IF_ERROR(run.Begin());
@@ -264,6 +264,7 @@ Result<TaskState> RunPackage(const ClusterJob& job, size_t number, const std::st
     }
     LF_ASSIGN_OR_RETURN(const std::vector<FrameId> finish, FramesToFinish(job, package));
     const auto wants_restart = [&] {
+      if (look) look();
       const auto now = FramesToFinish(job, package);
       return now && *now != finish;
     };

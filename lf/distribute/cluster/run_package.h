@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <string>
 
 #include "lf/core/result.h"
@@ -19,6 +20,7 @@ namespace lf {
 //   number  index of the package in job.packages
 //   node    the name of this machine, for the state, the log and messages
 //   stop    true: lfrenderer writes a checkpoint and ends
+//   look    called about once a second while lfrenderer runs; may be empty
 //
 // The phase of the result is kDone; kInterrupted, because of `stop` or because the job was
 // cancelled; or kFailed, because lfrenderer could not be started, ended with an exit code other
@@ -27,7 +29,7 @@ namespace lf {
 // kOutput: another process holds the task's lock for two minutes, or until `stop` is true; the
 // state cannot be written. kInput: the state or the list of frames to finish is damaged.
 Result<TaskState> RunPackage(const ClusterJob& job, size_t number, const std::string& node,
-                             const std::atomic<bool>& stop);
+                             const std::atomic<bool>& stop, const std::function<void()>& look = {});
 
 // Converts the state of a task that has ended to a result. No error if the task is done and
 // lfrenderer succeeded; kBelowRequired if the task is done, but lfrenderer ended with
