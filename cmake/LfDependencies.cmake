@@ -48,6 +48,19 @@ add_library(lf_libraw INTERFACE)
 target_include_directories(lf_libraw SYSTEM INTERFACE ${LF_LIBRAW_INCLUDE})
 target_link_libraries(lf_libraw INTERFACE ${LF_LIBRAW_LIBRARY})
 
+# Optional: display views of frames (--view).
+find_path(LF_OCIO_INCLUDE OpenColorIO/OpenColorIO.h)
+find_library(LF_OCIO_LIBRARY OpenColorIO)
+add_library(lf_ocio INTERFACE)
+if(LF_OCIO_INCLUDE AND LF_OCIO_LIBRARY)
+  target_include_directories(lf_ocio SYSTEM INTERFACE ${LF_OCIO_INCLUDE})
+  target_link_libraries(lf_ocio INTERFACE ${LF_OCIO_LIBRARY})
+  target_compile_definitions(lf_ocio INTERFACE LF_HAS_OCIO)
+  set(LF_OCIO_NAME OpenColorIO)
+else()
+  message(STATUS "OpenColorIO is missing: lfrenderer and lfmerge are built without --view")
+endif()
+
 if(LF_TESTS OR LF_PYTHON)
   # Debian's Python has the modules that tests use; another Python on the PATH may lack them.
   if(NOT Python3_EXECUTABLE AND EXISTS /usr/bin/python3)

@@ -17,7 +17,7 @@ target_sources(lf_installed PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_D
 # name, so that their user needs no CMake packages of them.
 target_link_libraries(lf_installed PUBLIC Eigen3::Eigen fmt::fmt TBB::tbb Threads::Threads yaml-cpp
                                           hwy::hwy OpenEXR::OpenEXR OpenEXR::OpenEXRCore png tiff z raw_r jpeg
-                                          simdjson zstd xxhash sqlite3)
+                                          simdjson zstd xxhash sqlite3 ${LF_OCIO_NAME})
 install(TARGETS lf_installed EXPORT lfrendertoolsTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
         FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
@@ -34,6 +34,9 @@ install(FILES ${PROJECT_BINARY_DIR}/lfrendertoolsConfig.cmake
         DESTINATION ${package_folder})
 # The path from the .pc file to the prefix, so that an installation can be moved.
 string(REGEX REPLACE "[^/]+" ".." LF_PC_UP "${CMAKE_INSTALL_LIBDIR}")
+if(LF_OCIO_NAME)
+  set(LF_PC_OCIO -l${LF_OCIO_NAME})
+endif()
 configure_file(cmake/lfrendertools.pc.in lfrendertools.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/lfrendertools.pc
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

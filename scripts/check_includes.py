@@ -15,6 +15,7 @@ from folder_list import room_of
 # Third-party headers, and the only folders that may include them (doc/design.md, "Dependencies").
 OWNERS = {
     "OpenEXR/": {"pixels/files"},
+    "OpenColorIO/": {"film/develop"},
     "png.h": {"pixels/files"},
     "tiff": {"pixels/files"},
     "jpeglib.h": {"pixels/files"},

@@ -24,6 +24,23 @@ void AddFrameFormat(OptionGroup& output, std::string& format) {
                    "png16: 16-bit sRGB");
 }
 
+namespace {
+
+void AddViews(OptionGroup& output, PictureArguments& a) {
+  output
+      .Add(
+          "--view VIEW", a.view,
+          "Make PNG frames by a view of OpenColorIO (sRGB)\n"
+          "VIEW: a view of the configuration that the environment variable OCIO names, such as the "
+          "output transform of ACES. Contact sheet and video show the same picture.")
+      ->check(NotEmpty());
+  output.Add("--display DISPLAY", a.display, "Display of --view (that of the configuration)")
+      ->needs("--view")
+      ->check(NotEmpty());
+}
+
+}  // namespace
+
 void PictureArguments::AddTo(OptionGroup& output) {
   output.AddChoice("--colour-space", colour_space, {"rec709", "rec2020", "acescg"},
                    "Primaries of EXR frames (rec709)\n"
@@ -42,6 +59,7 @@ void PictureArguments::AddTo(OptionGroup& output) {
                  "The channel Z is the depth at which each element is in focus, along the optical "
                  "axis, in world units. It varies if the focus plane is tilted, and is infinite "
                  "where an element does not see the plane.");
+  AddViews(output, *this);
 }
 
 Result<PictureOptions> PictureArguments::Make(FrameFormat format) const {
@@ -53,6 +71,13 @@ Result<PictureOptions> PictureArguments::Make(FrameFormat format) const {
         "--format {}: cannot be used with {}, because PNG frames are sRGB pictures for display: "
         "leave one of them out, or use --format exr",
         NameOf(format), z ? "--z" : "--colour-space " + *colour_space));
+  if (view.empty()) return options;
+  if (IsExr(format))
+    return UsageError(fmt::format(
+        "--view {}: cannot be used with --format {}, which holds linear light: use --format png or "
+        "png16, or leave it out and give compositing programs the linear light",
+        view, NameOf(format)));
+  LF_ASSIGN_OR_RETURN(options.view, DisplayView::Open(display, view));
   return options;
 }
 

@@ -21,9 +21,10 @@ void AddFrameFormat(OptionGroup& output, std::string& format);
 struct PictureArguments {
   bool alpha = false, z = false;
   std::optional<std::string> colour_space;
+  std::string view, display;
 
   void AddTo(OptionGroup& output);
-  // kUsage: an option needs EXR files, and the format is PNG.
+  // kUsage: an option needs files of another format. Other errors are those of DisplayView::Open().
   Result<PictureOptions> Make(FrameFormat format) const;
 };
 

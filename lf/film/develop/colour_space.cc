@@ -27,16 +27,6 @@ Mat3 BradfordMatrix() {
   return cones;
 }
 
-void Multiply(const Mat3& matrix, Image<float>* rgb) {
-  LF_CHECK(rgb->channels() >= 3);
-  for (int y = 0; y < rgb->height(); ++y)
-    for (int x = 0; x < rgb->width(); ++x) {
-      const Vec3 before(rgb->at(x, y, 0), rgb->at(x, y, 1), rgb->at(x, y, 2));
-      const Vec3 after = matrix * before;
-      for (int c = 0; c < 3; ++c) rgb->at(x, y, c) = static_cast<float>(after[c]);
-    }
-}
-
 }  // namespace
 
 std::optional<ColourSpace> ParseColourSpace(std::string_view name) {
@@ -67,6 +57,16 @@ Mat3 LinearFromLinear(const Primaries& to, const Primaries& from) {
   const Mat3 adapted =
       bradford.inverse() * to_white.cwiseQuotient(from_white).asDiagonal() * bradford;
   return XyzFromRgb(to).inverse() * adapted * XyzFromRgb(from);
+}
+
+void Multiply(const Mat3& matrix, Image<float>* rgb) {
+  LF_CHECK(rgb->channels() >= 3);
+  for (int y = 0; y < rgb->height(); ++y)
+    for (int x = 0; x < rgb->width(); ++x) {
+      const Vec3 before(rgb->at(x, y, 0), rgb->at(x, y, 1), rgb->at(x, y, 2));
+      const Vec3 after = matrix * before;
+      for (int c = 0; c < 3; ++c) rgb->at(x, y, c) = static_cast<float>(after[c]);
+    }
 }
 
 void ConvertFromRec709(ColourSpace to, Image<float>* rgb) {

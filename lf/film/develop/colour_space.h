@@ -38,6 +38,9 @@ Primaries PrimariesOf(ColourSpace space);
 // cone matrix (Lam 1985; ICC.1:2022, Annex E).
 Mat3 LinearFromLinear(const Primaries& to, const Primaries& from);
 
+// Multiplies the first three channels of every pixel by a matrix.
+void Multiply(const Mat3& matrix, Image<float>* rgb);
+
 // Converts linear light [height][width][3] from kRec709 to another space; to kRec709 it stays as it
 // is.
 void ConvertFromRec709(ColourSpace to, Image<float>* rgb);

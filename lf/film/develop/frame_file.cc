@@ -134,7 +134,7 @@ std::filesystem::path FramePath(const std::filesystem::path& folder, FrameId fra
 
 Result<void> WriteFrame(const std::filesystem::path& path, const DevelopedFrame& frame,
                         FrameFormat format, const ImageMetadata& metadata,
-                        const std::function<bool()>& is_interrupted) {
+                        const std::function<bool()>& is_interrupted, const DisplayView* view) {
   switch (format) {
     case FrameFormat::kExrHalf:
       return WriteExrFrame(path, frame, true, metadata, is_interrupted);
@@ -146,7 +146,11 @@ Result<void> WriteFrame(const std::filesystem::path& path, const DevelopedFrame&
   }
   const bool has_alpha = !frame.opacity.empty();
   std::optional<Image<float>> display =
-      DisplayValues(has_alpha ? StraightOf(frame.rgb, frame.opacity) : frame.rgb, is_interrupted);
+      has_alpha ? StraightOf(frame.rgb, frame.opacity) : frame.rgb;
+  if (view != nullptr)
+    view->Apply(&*display);
+  else
+    display = DisplayValues(*display, is_interrupted);
   if (!display)
     return Error{ErrorKind::kInterrupted, fmt::format("{}: interrupted", path.string())};
   std::vector<std::string> names = {"R", "G", "B"};
@@ -156,7 +160,7 @@ Result<void> WriteFrame(const std::filesystem::path& path, const DevelopedFrame&
   }
   return WriteImage(path, display->view(), names,
                     format == FrameFormat::kPng8 ? PixelType::kUint8 : PixelType::kUint16, metadata,
-                    is_interrupted);
+                    is_interrupted, view == nullptr || view->is_srgb());
 }
 
 Result<Image<uint8_t>> ReadDisplayImage(const std::filesystem::path& path, ColourSpace colours) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "lf/core/result.h"
 #include "lf/film/develop/colour_space.h"
 #include "lf/film/develop/develop.h"
+#include "lf/film/develop/display_view.h"
 #include "lf/pixels/files/image_file.h"
 
 namespace lf {
@@ -40,6 +42,8 @@ struct PictureOptions {
   // True: EXR files get the channel Z, the depth at which each element is in focus. Must be false
   // for PNG files.
   bool has_focus_depth = false;
+  // The view that gives the values of PNG files; null: the sRGB curve. Must be null for EXR files.
+  std::shared_ptr<const DisplayView> view = nullptr;
   friend bool operator==(const PictureOptions&, const PictureOptions&) = default;
 };
 
@@ -49,10 +53,12 @@ std::filesystem::path FramePath(const std::filesystem::path& folder, FrameId fra
 
 // Writes a frame atomically, with its metadata in the file (EXR attributes, PNG text).
 //   is_interrupted  called every few rows; may be empty
+//   view            value of PictureOptions::view
 // kOutput: the folder or the disk cannot be written. kInterrupted: nothing is written.
 Result<void> WriteFrame(const std::filesystem::path& path, const DevelopedFrame& frame,
                         FrameFormat format, const ImageMetadata& metadata,
-                        const std::function<bool()>& is_interrupted = {});
+                        const std::function<bool()>& is_interrupted = {},
+                        const DisplayView* view = nullptr);
 
 // Returns the picture in a frame's file of any format, composited over black, as 8-bit sRGB
 // [height][width][3], for contact sheet and video. kInput: as for ReadImage(), or the file has

@@ -135,6 +135,7 @@ using ImageMetadata = std::vector<std::pair<std::string, MetadataValue>>;
 //   type           kUint8 (PNG, JPEG, TIFF), kUint16 (PNG, TIFF), kHalf (EXR), kFloat (EXR, TIFF)
 //   is_interrupted is called before every 32 rows are encoded, if given; it cannot interrupt the
 //                  writing to the disk
+//   is_srgb        false: a PNG file does not state that its values are sRGB
 // JPEG has quality 95 and full chroma resolution. EXR is compressed without loss (zip).
 // kOutput: the folder or the disk fails, no format has the extension, the picture has no pixel, or
 // the format cannot hold the type or the number of channels (PNG: 1 to 4, JPEG: 1 or 3).
@@ -142,7 +143,7 @@ using ImageMetadata = std::vector<std::pair<std::string, MetadataValue>>;
 Result<void> WriteImage(const std::filesystem::path& path, ImageView<const float> pixels,
                         const std::vector<std::string>& channel_names, PixelType type,
                         const ImageMetadata& metadata = {},
-                        const std::function<bool()>& is_interrupted = {});
+                        const std::function<bool()>& is_interrupted = {}, bool is_srgb = true);
 
 // These functions write integers of 8 or 16 bits without converting them (JPEG holds only 8 bits,
 // and is not exact). The file states no colour space. Otherwise they do as WriteImage() above.

@@ -132,8 +132,8 @@ Result<void> WriteStored(const fs::path& path, ImageView<const T> pixels, PixelT
 
 Result<void> WriteImage(const fs::path& path, ImageView<const float> pixels,
                         const std::vector<std::string>& channel_names, PixelType type,
-                        const ImageMetadata& metadata,
-                        const std::function<bool()>& is_interrupted) {
+                        const ImageMetadata& metadata, const std::function<bool()>& is_interrupted,
+                        bool is_srgb) {
   LF_CHECK(channel_names.size() == static_cast<size_t>(pixels.channels));
   LF_ASSIGN_OR_RETURN(const ImageFormat format, FormatOf(path));
   LF_RETURN_IF_ERROR(CheckHolds(path, format, type, pixels.channels));
@@ -143,7 +143,7 @@ Result<void> WriteImage(const fs::path& path, ImageView<const float> pixels,
         type == PixelType::kUint8    ? RowsOf<uint8_t>(path, pixels, type, IntegerOf<uint8_t>)
         : type == PixelType::kUint16 ? RowsOf<uint16_t>(path, pixels, type, IntegerOf<uint16_t>)
                                      : RowsOf<float>(path, pixels, type, [](float v) { return v; });
-    picture.is_srgb = type != PixelType::kFloat;
+    picture.is_srgb = is_srgb && type != PixelType::kFloat;
     picture.metadata = metadata;
     picture.is_interrupted = is_interrupted;
     return Save(path, Encode(format, picture));

@@ -26,9 +26,9 @@ Result<void> CheckRenderOptions(const Package& package, const RenderOptions& opt
         "out, and give --video to lfmerge");
   if (film.shard && (film.adds_opacity || folder.picture != PictureOptions()))
     return UsageError(
-        "--frame-alpha, --colour-space and --z cannot be used with --shard, which writes no "
-        "frames: "
-        "leave them out, and give them to lfmerge");
+        "--frame-alpha, --colour-space, --z and --view cannot be used with --shard, which writes "
+        "no "
+        "frames: leave them out, and give them to lfmerge");
   return {};
 }
 

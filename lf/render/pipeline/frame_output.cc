@@ -47,7 +47,7 @@ Result<void> WritePicture(const PlateNotes& notes, DevelopedFrame picture,
   ConvertFromRec709(options.colours, &picture.rgb);
   if (options.has_focus_depth) picture.focus_depth_w = FocusDepths(notes.camera);
   return WriteFrame(to, picture, format, FileMetadata(notes, format, options.colours),
-                    is_interrupted);
+                    is_interrupted, options.view.get());
 }
 
 FilmFiles FilesOfFilm(const CameraPath& path, const RenderOptions& options) {

@@ -142,6 +142,7 @@ RunInputs InputsOfPicture(const RunChoices& choices) {
   if (choices.look.colours != ColourSpace::kRec709)
     inputs.emplace_back("picture.colour_space", NameOf(choices.look.colours));
   if (choices.look.has_focus_depth) inputs.emplace_back("picture.z", "on");
+  if (choices.look.view) inputs.emplace_back("picture.view", choices.look.view->identity());
   return inputs;
 }
 
