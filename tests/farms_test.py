@@ -6,6 +6,7 @@ usage: farms_test.py LFRENDERER LFPREPROCESSOR LFSUBMIT
 """
 import json
 import os
+import signal
 import subprocess
 import sys
 import unittest
@@ -198,13 +199,16 @@ class InterruptedTest(FarmTestCase):
         self.assertRegex(log, r"continuing: \d frames are finished, \d begun")
 
     def test_signals_of_batch_systems_write_the_state(self):
-        for sign in ("TERM", "USR1", "USR2", "XCPU"):
+        for sign in (signal.SIGTERM, signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU):
             scripts = self.scripts("--overwrite", "--lfrenderer", self.held_renderer([2]), *OFTEN)
-            process = subprocess.Popen([scripts / "packages.sh", "2"], stderr=subprocess.PIPE, text=True)
+            process = subprocess.Popen([scripts / "packages.sh", "2"], stderr=subprocess.PIPE, text=True,
+                                       start_new_session=True)
             self.wait_for(lambda: self.is_held(2))
-            subprocess.run(["kill", f"-{sign}", str(process.pid)], check=True)
+            os.killpg(process.pid, sign)  # Grid Engine sends signals to all processes of a task
             process.communicate()
             self.assertEqual(process.returncode, 5, sign)
+            state = json.loads((self.film / "cluster" / "packages" / "package-0002.json").read_text())
+            self.assertEqual((state["phase"], state["crashes"]), ("interrupted", 0))
             for number in range(3):
                 self.run_task(scripts, str(number))
             self.assertEqual(digests(self.film), self.expected)

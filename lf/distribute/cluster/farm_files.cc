@@ -150,9 +150,10 @@ if [[ ! $number ]]; then
   exit 2
 fi
 
-# Schedulers announce the end of a task by different signals; lfsubmit writes its state on SIGTERM.
+# Schedulers announce the end of a task by different signals, some of them to all processes of the task. Only
+# SIGTERM makes lfsubmit write its state; the others must not end it.
 trap 'kill -TERM $task' TERM INT USR1 USR2 XCPU
-{submitter} --run-package "$number" {folder} &
+(trap '' USR1 USR2 XCPU; exec {submitter} --run-package "$number" {folder}) &
 task=$!
 wait $task
 code=$?
