@@ -32,7 +32,7 @@ OFFERED = {
     "lfsynth": {"--threads", "--seed", "--progress", "--quiet"},
     "lfimport": set(COMMON) - {"--seed"},
     "lfexample": {"--threads", "--verbose", "--quiet"},
-    "lfcammvminfo": {"--json"},
+    "lfcammvminfo": {"--quiet", "--json"},
     "lfpreprocessor": set(COMMON),
     "lfcompressor": set(COMMON) - {"--seed"},
     "lfdensify": set(COMMON) - {"--seed"},

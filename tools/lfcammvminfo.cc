@@ -1,4 +1,4 @@
-// lfcammvminfo PATH.yaml: prints the camera of each frame of a path.
+// lfcammvminfo PATH: prints the camera of each frame of a path.
 #include <optional>
 #include <string>
 #include <vector>
@@ -6,8 +6,8 @@
 #include "tools/camera_table.h"
 #include "tools/common/program.h"
 
-#include "lf/camera/path/path_yaml.h"
 #include "lf/core/log.h"
+#include "lf/import/paths/open_path.h"
 
 namespace {
 
@@ -47,7 +47,7 @@ lf::Result<std::vector<lf::FrameId>> ChooseFrames(const Arguments& arguments,
 
 lf::Result<void> Report(const Arguments& arguments, bool json) {
   LF_ASSIGN_OR_RETURN(const lf::CameraPath path,
-                      lf::ReadPathYaml(arguments.path, arguments.unit_m));
+                      lf::OpenPath(arguments.path, {.light_field_unit_m = arguments.unit_m}));
   LF_ASSIGN_OR_RETURN(const auto frames, ChooseFrames(arguments, path));
   if (json) return lf::PrintReport(lf::CameraJson(path, frames));
   if (arguments.csv) return lf::PrintReport(lf::CameraCsv(path, frames));
@@ -64,7 +64,8 @@ int main(int argc, char** argv) {
   input
       .Add("PATH", arguments.path,
            "Camera path\n"
-           "doc/formats/path.md describes the file.")
+           "Our own YAML (doc/formats/path.md), or a path of nerfstudio or instant-ngp "
+           "(doc/formats/foreign_paths.md).")
       ->required();
   input
       .Add("--unit-m METRES", arguments.unit_m, "Metres per world unit, if PATH does not state it")
@@ -74,7 +75,8 @@ int main(int argc, char** argv) {
   CLI::Option* const csv = output.AddFlag(
       "--csv", arguments.csv, "Print a comma-separated table, with all digits of numbers");
   program.AddCommonOptions({.json = "Print JSON with all digits\n"
-                                    "Infinite numbers are null."});
+                                    "Infinite numbers are null.",
+                            .quiet = true});
   csv->excludes("--json");
   return program.Run(argc, argv, [&] { return Report(arguments, program.common().json); });
 }

@@ -1,0 +1,168 @@
+#!/usr/bin/python3
+"""Reads camera paths in the formats of other programs. The files are written here, with NumPy and from the formats'
+documentation alone (doc/formats/foreign_paths.md); the cameras must be those they were written of.
+
+usage: foreign_paths_test.py LFCAMMVMINFO
+"""
+import json
+import sys
+import unittest
+
+import numpy as np
+
+from program_test_case import ProgramTestCase
+
+INFO = None
+OPENGL = np.diag([1.0, -1.0, -1.0])  # turns the camera axes right, down, forward to right, up, backward
+CYCLE = np.array([[0.0, 1, 0], [0, 0, 1], [1, 0, 0]])  # instant-ngp's coordinates are y, z, x
+
+
+def rotation(generator):
+    """Returns a random rotation."""
+    q, r = np.linalg.qr(generator.normal(size=(3, 3)))
+    q = q @ np.diag(np.sign(np.diag(r)))
+    return q if np.linalg.det(q) > 0 else q @ np.diag([1, 1, -1.0])
+
+
+def quaternion(matrix):
+    """Returns x, y, z, w of a rotation: the eigenvector of the matrix of Bar-Itzhack."""
+    m = matrix
+    k = np.array([[m[0, 0] - m[1, 1] - m[2, 2], m[1, 0] + m[0, 1], m[2, 0] + m[0, 2], m[2, 1] - m[1, 2]],
+                  [m[1, 0] + m[0, 1], m[1, 1] - m[0, 0] - m[2, 2], m[2, 1] + m[1, 2], m[0, 2] - m[2, 0]],
+                  [m[2, 0] + m[0, 2], m[2, 1] + m[1, 2], m[2, 2] - m[0, 0] - m[1, 1], m[1, 0] - m[0, 1]],
+                  [m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1], np.trace(m)]]) / 3
+    return np.linalg.eigh(k)[1][:, -1]
+
+
+def matrix_of(q):
+    """Returns the rotation of a quaternion x, y, z, w."""
+    (x, y, z), w = q[:3] / np.linalg.norm(q), q[3] / np.linalg.norm(q)
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + 2 * w * cross + 2 * cross @ cross
+
+
+class Camera:
+    """A random camera: `axes` has the columns right, down, forward in the world."""
+
+    def __init__(self, generator):
+        self.axes = rotation(generator)
+        self.centre = generator.uniform(-3, 3, 3)
+        self.vertical_deg = generator.uniform(20, 90)
+        self.focus, self.diameter = generator.uniform(1, 5), generator.uniform(0, 0.2)
+
+
+def pose_of(fact):
+    """Returns axes and centre that lfcammvminfo tells."""
+    forward, up = np.array(fact["forward"]), np.array(fact["up"])
+    return np.column_stack([np.cross(forward, up), -up, forward]), np.array(fact["position_w"])
+
+
+class ForeignPathsTest(ProgramTestCase):
+    def setUp(self):
+        super().setUp()
+        generator = np.random.default_rng(5)
+        self.generator = generator
+        self.cameras = [Camera(generator) for _ in range(6)]
+
+    def facts(self, path, *options):
+        return json.loads(self.succeeds(INFO, path, "--json", *options))
+
+    def agrees(self, facts, axes, centre, vertical_deg, tolerance=1e-9):
+        found_axes, found_centre = pose_of(facts)
+        self.assertLessEqual(np.abs(found_axes - axes).max(), tolerance)
+        self.assertLessEqual(np.abs(found_centre - centre).max(), tolerance)
+        self.assertLessEqual(abs(facts["field_of_view_deg"][1] - vertical_deg), tolerance)
+
+    def write(self, name, value):
+        (self.folder / name).write_text(json.dumps(value))
+        return self.folder / name
+
+    def nerfstudio(self, scale=1, turn=np.eye(3), shift=np.zeros(3), **keys):
+        """Returns a file whose cameras are in the trained space scale (turn x + shift)."""
+        frames = []
+        for camera in self.cameras:
+            matrix = np.eye(4)
+            matrix[:3, :3] = turn @ camera.axes @ OPENGL
+            matrix[:3, 3] = scale * (turn @ camera.centre + shift)
+            frames.append({"camera_to_world": matrix.ravel().tolist(), "fov": camera.vertical_deg, "aspect": 1.5})
+        return self.write("camera_path.json", {
+            "camera_type": "perspective", "render_width": 300, "render_height": 200, "fps": 12,
+            "seconds": len(frames) / 12, "keyframes": [], "camera_path": frames, **keys})
+
+    def test_nerfstudio_in_the_world(self):
+        path = self.facts(self.nerfstudio())
+        self.assertEqual((path["fps"], path["frames"], path["resolution"]), (12, 6, [300, 200]))
+        for camera, facts in zip(self.cameras, path["cameras"]):
+            self.agrees(facts, camera.axes, camera.centre, camera.vertical_deg)
+
+    def test_nerfstudio_in_the_trained_space(self):
+        scale, turn, shift = 0.37, rotation(self.generator), np.array([1, -2, 0.5])
+        path = self.nerfstudio(scale, turn, shift)
+        transform = np.column_stack([turn, shift]).tolist()
+        self.write("dataparser_transforms.json", {"transform": transform, "scale": scale})
+        for camera, facts in zip(self.cameras, self.facts(path)["cameras"]):
+            self.agrees(facts, camera.axes, camera.centre, camera.vertical_deg)
+
+    def ngp_key(self, camera, scale=0.33, offset=0.5, timestamp=None):
+        key = {"R": quaternion(CYCLE @ camera.axes).tolist(),
+               "T": (CYCLE @ (scale * camera.centre + offset)).tolist(), "slice": -0.5,
+               "scale": scale * camera.focus + 0.5, "fov": camera.vertical_deg,
+               "aperture_size": scale * camera.diameter / 2}
+        return key if timestamp is None else {**key, "timestamp": timestamp}
+
+    def test_instant_ngp_with_its_lens(self):
+        """With order 0 and a loop, six frames are the six keyframes."""
+        path = self.write("base_cam.json", {"path": [self.ngp_key(c) for c in self.cameras], "spline_order": 0,
+                                            "loop": True, "duration_seconds": 6 / 30})
+        found = self.facts(path)
+        self.assertEqual((found["fps"], found["frames"], found["resolution"]), (30, 6, [1920, 1080]))
+        for camera, facts in zip(self.cameras, found["cameras"]):
+            self.agrees(facts, camera.axes, camera.centre, camera.vertical_deg)
+            self.assertAlmostEqual(facts["focus_distance_w"], camera.focus, delta=1e-9)
+            self.assertAlmostEqual(facts["aperture_diameter_mm"] / 1000, camera.diameter, delta=1e-9)
+
+    def test_instant_ngp_curves(self):
+        def basis(order, u):
+            if order == 0:
+                return 1.0 * ((u >= 0) & (u < 1))
+            return (u * basis(order - 1, u) + (order + 1 - u) * basis(order - 1, u - 1)) / order
+
+        ends = np.cumsum(self.generator.uniform(0.2, 1, 6))
+        keys = [self.ngp_key(c, timestamp=end) for c, end in zip(self.cameras, ends)]
+        for order in 1, 2, 3:
+            path = self.write("base_cam.json", {"path": keys, "spline_order": order, "loop": False,
+                                                "duration_seconds": 2})
+            found = self.facts(path)["cameras"]
+            self.assertEqual(len(found), 60)
+            for i, facts in enumerate(found):
+                place = np.interp(i / 60 * ends[4], [0, *ends[:5]], range(6))
+                sum_q, sum_t, sum_fov = np.zeros(4), np.zeros(3), 0
+                for k in range(-2, 9):
+                    weight = basis(order, place - k + (order + 1) // 2)
+                    key = keys[min(max(k, 0), 5)]
+                    q = np.array(key["R"])
+                    sum_q = sum_q + weight * (q if q @ sum_q >= 0 else -q)
+                    sum_t, sum_fov = sum_t + weight * np.array(key["T"]), sum_fov + weight * key["fov"]
+                centre = (CYCLE.T @ sum_t - 0.5) / 0.33
+                self.agrees(facts, CYCLE.T @ matrix_of(sum_q), centre, sum_fov, 1e-8)
+
+    def test_instant_ngp_in_the_space_of_a_transforms_json(self):
+        path = self.write("base_cam.json", {"path": [self.ngp_key(self.cameras[0], 0.8, 0.1)]})
+        self.write("transforms.json", {"scale": 0.8, "offset": [0.1, 0.1, 0.1], "frames": []})
+        camera = self.cameras[0]
+        self.agrees(self.facts(path)["cameras"][0], camera.axes, camera.centre, camera.vertical_deg)
+
+    def test_other_views_and_files_are_refused(self):
+        self.fails(3, ["camera_type", "fisheye", "Perspective"], INFO, self.nerfstudio(camera_type="fisheye"))
+        self.fails(3, ["other.json", "found 'cameras'", "camera_path (nerfstudio)"], INFO,
+                   self.write("other.json", {"cameras": []}))
+
+    def test_what_is_missing_is_told(self):
+        result = self.call(INFO, self.nerfstudio())
+        for words in "no aperture (a pinhole", "no focus distance (1 world unit", "36 mm", "dataparser_transforms":
+            self.assertIn(words, result.stderr)
+
+
+if __name__ == "__main__":
+    INFO = sys.argv[1]
+    unittest.main(argv=sys.argv[:1], verbosity=2)
