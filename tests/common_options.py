@@ -33,6 +33,7 @@ OFFERED = {
     "lfimport": set(COMMON) - {"--seed"},
     "lfexample": {"--threads", "--verbose", "--quiet"},
     "lfcammvminfo": {"--quiet", "--json"},
+    "lfpath": {"--verbose", "--quiet", "--json"},
     "lfpreprocessor": set(COMMON),
     "lfcompressor": set(COMMON) - {"--seed"},
     "lfdensify": set(COMMON) - {"--seed"},

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """Reads camera paths in the formats of other programs. The files are written here, with NumPy and from the formats'
-documentation alone (doc/formats/foreign_paths.md); the cameras must be those they were written of.
+documentation alone (doc/formats/foreign_paths.md); the cameras must be those they were written of. Writes such paths with
+lfpath, and reads them here; rendered again, they must give the same frames.
 
-usage: foreign_paths_test.py LFCAMMVMINFO
+usage: foreign_paths_test.py LFCAMMVMINFO LFPATH LFSYNTH LFRENDERER
 """
 import json
 import sys
@@ -12,7 +13,7 @@ import numpy as np
 
 from program_test_case import ProgramTestCase
 
-INFO = None
+INFO = PATH = SYNTH = RENDERER = None
 OPENGL = np.diag([1.0, -1.0, -1.0])  # turns the camera axes right, down, forward to right, up, backward
 CYCLE = np.array([[0.0, 1, 0], [0, 0, 1], [1, 0, 0]])  # instant-ngp's coordinates are y, z, x
 
@@ -39,6 +40,18 @@ def matrix_of(q):
     (x, y, z), w = q[:3] / np.linalg.norm(q), q[3] / np.linalg.norm(q)
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     return np.eye(3) + 2 * w * cross + 2 * cross @ cross
+
+
+# A film in which everything moves; the sensor of a breathing lens stands farther away than its focal length.
+LIVELY = """format: lfpath 1
+fps: 12.5
+frames: 4
+resolution: [60, 40]
+camera: {sensor_width_mm: 36, focal_length_mm: 40, focal_length_speed_mm: 20, position: [-0.002, -0.127, -0.8],
+         speed: [0.01, 0.005, -0.002], look_at: [0, -0.1, 0], up: [0.1, -1, 0]}
+lens: {aperture_diameter: 0.02, aperture_diameter_speed: -0.01, focus_distance: 0.6, focus_distance_speed: 0.5, blades: 5,
+       blade_rotation_deg: 12, breathing: true, focus_tilt_deg: {horizontal: 4, vertical: -7}}
+"""
 
 
 class Camera:
@@ -152,6 +165,116 @@ class ForeignPathsTest(ProgramTestCase):
         camera = self.cameras[0]
         self.agrees(self.facts(path)["cameras"][0], camera.axes, camera.centre, camera.vertical_deg)
 
+    def lively(self):
+        """Returns the file of the lively path and what lfcammvminfo tells about it."""
+        path = self.folder / "lively.yaml"
+        path.write_text(LIVELY)
+        return path, self.facts(path)
+
+    def convert(self, path, name, *options):
+        self.succeeds(PATH, path, "-o", self.folder / name, *options)
+        return self.folder / name
+
+    def test_what_is_written_for_nerfstudio_is_as_its_documentation_says(self):
+        path, facts = self.lively()
+        scale, turn, shift = 0.37, rotation(self.generator), np.array([1, -2, 0.5])
+        trained = self.write("t.json", {"transform": np.column_stack([turn, shift]).tolist(), "scale": scale})
+        world = json.loads(self.convert(path, "w.json").read_text())
+        moved = json.loads(self.convert(path, "m.json", "--out-dataparser-transforms", trained).read_text())
+        self.assertEqual((world["fps"], world["render_width"], world["render_height"]), (12.5, 60, 40))
+        self.assertEqual(len(world["camera_path"]), 4)
+        for fact, frame, other in zip(facts["cameras"], world["camera_path"], moved["camera_path"]):
+            axes, centre = pose_of(fact)
+            matrix, trained_matrix = (np.reshape(f["camera_to_world"], (4, 4)) for f in (frame, other))
+            self.assertLessEqual(np.abs(matrix[:3, :3] @ OPENGL - axes).max(), 1e-9)
+            self.assertLessEqual(np.abs(matrix[:3, 3] - centre).max(), 1e-9)
+            self.assertLessEqual(np.abs(trained_matrix[:3, :3] @ OPENGL - turn @ axes).max(), 1e-9)
+            self.assertLessEqual(np.abs(trained_matrix[:3, 3] - scale * (turn @ centre + shift)).max(), 1e-9)
+            self.assertAlmostEqual(frame["fov"], fact["field_of_view_deg"][1], delta=1e-9)
+
+    def test_what_is_written_for_instant_ngp_is_as_its_source_says(self):
+        path, facts = self.lively()
+        keys = json.loads(self.convert(path, "b.json", "--format", "instant-ngp").read_text())
+        # instant-ngp films n frames at i / n, where the last but one timestamp ends the film.
+        ends = [key["timestamp"] for key in keys["path"]]
+        self.assertEqual((keys["spline_order"], len(ends)), (1, 5))
+        for i, fact in enumerate(facts["cameras"]):
+            self.assertAlmostEqual(i / 4 * ends[3], ends[i - 1] if i else 0, delta=1e-12)
+            key, (axes, centre) = keys["path"][i], pose_of(fact)
+            self.assertLessEqual(np.abs(CYCLE.T @ matrix_of(np.array(key["R"])) - axes).max(), 1e-9)
+            self.assertLessEqual(np.abs((CYCLE.T @ key["T"] - 0.5) / 0.33 - centre).max(), 1e-9)
+            self.assertAlmostEqual((key["slice"] + key["scale"]) / 0.33, fact["focus_distance_w"], delta=1e-9)
+            self.assertAlmostEqual(key["aperture_size"] / 0.33 * 2000, fact["aperture_diameter_mm"], delta=1e-9)
+            self.assertAlmostEqual(key["fov"], fact["field_of_view_deg"][1], delta=1e-9)
+
+    def test_json_renders_to_the_same_bits(self):
+        path, _ = self.lively()
+        field = self.folder / "field"
+        self.succeeds(SYNTH, "still-life", "-o", field, "--count", 9, "--size", "60x40", "--format", "png",
+                      "--jitter", 0.4)
+        films = {}
+        for name, options in (("lively.yaml", None), ("n.json", []), ("b.json", ["--format", "instant-ngp"])):
+            written = path if options is None else self.convert(path, name, *options)
+            film = self.folder / f"film of {name}"
+            self.succeeds(RENDERER, field, written, "-o", film, "--no-contact-sheet")
+            films[name] = [(film / f"frame_{i:04d}.exr").read_bytes() for i in (1, 2, 3, 4)]
+        self.assertEqual(len(set(films["lively.yaml"])), 4)
+        self.assertEqual(films["n.json"], films["lively.yaml"])
+        self.assertEqual(films["b.json"], films["lively.yaml"])
+
+    def test_our_own_format_holds_every_camera(self):
+        path, facts = self.lively()
+        again = self.facts(self.convert(self.convert(path, "n.json"), "again.yaml"))
+        self.assertEqual((again["fps"], again["frames"], again["resolution"]), (12.5, 4, [60, 40]))
+        for old, new in zip(facts["cameras"], again["cameras"]):
+            for name, values in old.items():
+                self.assertLessEqual(np.abs(np.subtract(values, new[name])).max(), 1e-9, name)
+
+    def test_paths_are_moved_scaled_and_resampled(self):
+        path, facts = self.lively()
+        turn, shift = rotation(self.generator), np.array([3, 1, -2])
+        matrix = np.eye(4)
+        matrix[:3] = np.column_stack([2 * turn, shift])
+        moved = self.convert(path, "moved.json", "--transform", " ".join(map(str, matrix.ravel())), "--scale", 0.25)
+        for old, new in zip(facts["cameras"], self.facts(moved)["cameras"]):
+            (axes, centre), (new_axes, new_centre) = pose_of(old), pose_of(new)
+            self.assertLessEqual(np.abs(turn @ axes - new_axes).max(), 1e-9)
+            self.assertLessEqual(np.abs(0.25 * (2 * turn @ centre + shift) - new_centre).max(), 1e-9)
+            self.assertAlmostEqual(new["focus_distance_w"], old["focus_distance_w"] / 2, delta=1e-9)
+        fine = self.facts(self.convert(path, "fine.yaml", "--fps", 25))
+        self.assertEqual((fine["fps"], fine["frames"]), (25, 7))
+        slow = self.facts(self.convert(path, "slow.yaml", "--frames", 7))
+        self.assertEqual((slow["fps"], slow["frames"]), (12.5, 7))
+        for new in fine, slow:
+            for old, frame in zip(facts["cameras"], new["cameras"][::2]):
+                self.assertLessEqual(np.abs(np.subtract(old["position_w"], frame["position_w"])).max(), 1e-9)
+
+    def test_options_state_what_a_path_lacks(self):
+        path = self.nerfstudio(lf_space="world")
+        full = self.convert(path, "full.yaml", "--f-number", 2, "--focus-distance", 3, "--sensor-width-mm", 24,
+                            "--resolution", "150x100")
+        self.assertEqual(self.call(INFO, full).stderr, "")
+        facts = self.facts(full)
+        self.assertEqual(facts["resolution"], [150, 100])
+        for camera, fact in zip(self.cameras, facts["cameras"]):
+            self.agrees(fact, camera.axes, camera.centre, camera.vertical_deg)
+            self.assertAlmostEqual(fact["f_number"], 2, delta=1e-9)
+            self.assertAlmostEqual(fact["focus_distance_w"], 3, delta=1e-9)
+            focal_mm = 12 / np.tan(np.radians(fact["field_of_view_deg"][0] / 2))
+            self.assertAlmostEqual(fact["focal_length_mm"], focal_mm, delta=1e-9)
+
+    def test_without_an_output_the_cameras_are_told(self):
+        path, facts = self.lively()
+        self.assertEqual(self.succeeds(PATH, path), self.succeeds(INFO, path))
+        self.assertEqual(json.loads(self.succeeds(PATH, path, "--json")), facts)
+
+    def test_files_are_replaced_on_demand_only(self):
+        path, _ = self.lively()
+        self.fails(2, ["lively.yaml: exists", "--overwrite"], PATH, path, "-o", path)
+        self.fails(2, ["out.xyz", "--format"], PATH, path, "-o", self.folder / "out.xyz")
+        self.succeeds(PATH, path, "-o", path, "--overwrite", "--frames", 2)
+        self.assertEqual(self.facts(path)["frames"], 2)
+
     def test_other_views_and_files_are_refused(self):
         self.fails(3, ["camera_type", "fisheye", "Perspective"], INFO, self.nerfstudio(camera_type="fisheye"))
         self.fails(3, ["other.json", "found 'cameras'", "camera_path (nerfstudio)"], INFO,
@@ -164,5 +287,5 @@ class ForeignPathsTest(ProgramTestCase):
 
 
 if __name__ == "__main__":
-    INFO = sys.argv[1]
+    INFO, PATH, SYNTH, RENDERER = sys.argv[1:5]
     unittest.main(argv=sys.argv[:1], verbosity=2)

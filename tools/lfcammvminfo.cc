@@ -40,9 +40,7 @@ lf::Result<std::vector<lf::FrameId>> ChooseFrames(const Arguments& arguments,
     return lf::UsageError(fmt::format("--frame {}: {} has no such frame; expected 1 to {}",
                                       arguments.frame, arguments.path, path.frame_count()));
   if (arguments.frame > 0) return std::vector<lf::FrameId>{{arguments.frame}};
-  std::vector<lf::FrameId> frames;
-  for (uint32_t frame = 1; frame <= path.frame_count(); ++frame) frames.push_back({frame});
-  return frames;
+  return lf::AllFrames(path);
 }
 
 lf::Result<void> Report(const Arguments& arguments, bool json) {

@@ -176,6 +176,10 @@ Intrinsics IntrinsicsOfFov(double fov_deg, const std::array<int, 2>& resolution_
           resolution_px[1]};
 }
 
+double VerticalFov_deg(const Intrinsics& k) {
+  return DegreesFromRadians(2 * std::atan(k.height_px / (2 * k.fy_px)));
+}
+
 void MoveInto(const Similarity& b_from_a, ForeignCamera* camera) {
   camera->pinhole.cam_from_world = PoseIn(b_from_a, camera->pinhole.cam_from_world);
   for (std::optional<double>* length : {&camera->sensor_width_w, &camera->focal_length_w,

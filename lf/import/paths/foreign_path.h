@@ -48,6 +48,9 @@ std::array<int, 2> ResolutionOr(const PathOptions& options, ForeignPath* path);
 // fov_deg is the vertical field of view, above 0 and below 180.
 Intrinsics IntrinsicsOfFov(double fov_deg, const std::array<int, 2>& resolution_px);
 
+// Returns the vertical field of view of a plate in degrees, as IntrinsicsOfFov() takes it.
+double VerticalFov_deg(const Intrinsics& k);
+
 // Moves the camera into world b, its lens included.
 void MoveInto(const Similarity& b_from_a, ForeignCamera* camera);
 

@@ -1,4 +1,4 @@
-// Reads camera paths of nerfstudio's viewer, camera_path.json
+// Reads and writes camera paths of nerfstudio's viewer, camera_path.json
 // (doc/formats/foreign_paths.md):
 //
 //   {"camera_type": "perspective", "render_width": 1920, "render_height": 1080, "fps": 24,
@@ -36,5 +36,10 @@ Result<ForeignPath> ReadNerfstudioPath(const std::filesystem::path& file,
 //   light_field  PathOptions::light_field
 Result<Similarity> WorldFromTrained(const std::filesystem::path& dataparser,
                                     const std::filesystem::path& light_field);
+
+// Returns the text of a file: its cameras are those of the path, in the world of the light field
+// or, if `space` is "trained", in the trained space, to which the caller has moved them. nerfstudio
+// ignores our keys, and takes the middle of the image for the principal point.
+std::string NerfstudioText(const CameraPath& path, std::string_view space);
 
 }  // namespace lf

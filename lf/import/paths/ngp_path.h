@@ -1,4 +1,4 @@
-// Reads camera paths of instant-ngp, base_cam.json (doc/formats/foreign_paths.md):
+// Reads and writes camera paths of instant-ngp, base_cam.json (doc/formats/foreign_paths.md):
 //
 //   {"path": [{"R": [x, y, z, w], "T": [x, y, z], "slice": 0, "scale": 1.5, "fov": 50.625,
 //              "aperture_size": 0, "timestamp": 0.5}, ...],
@@ -39,5 +39,10 @@ Result<NgpSpace> NgpSpaceFor(const std::filesystem::path& file, const PathOption
 Result<ForeignPath> ParseNgpPath(std::string_view text, const std::filesystem::path& file,
                                  const PathOptions& options, const NgpSpace& space);
 Result<ForeignPath> ReadNgpPath(const std::filesystem::path& file, const PathOptions& options);
+
+// Returns the text of a file whose keyframes are the cameras of the frames: instant-ngp films them
+// if it is asked for as many frames. Focus and diameter of the lens are kept; blades and tilt,
+// which instant-ngp does not have, stand in our keys only.
+std::string NgpText(const CameraPath& path, const NgpSpace& space);
 
 }  // namespace lf
