@@ -6,6 +6,7 @@ lfpath, and reads them here; rendered again, they must give the same frames.
 usage: foreign_paths_test.py LFCAMMVMINFO LFPATH LFSYNTH LFRENDERER
 """
 import json
+import re
 import sys
 import unittest
 
@@ -206,6 +207,63 @@ class ForeignPathsTest(ProgramTestCase):
             self.assertAlmostEqual((key["slice"] + key["scale"]) / 0.33, fact["focus_distance_w"], delta=1e-9)
             self.assertAlmostEqual(key["aperture_size"] / 0.33 * 2000, fact["aperture_diameter_mm"], delta=1e-9)
             self.assertAlmostEqual(key["fov"], fact["field_of_view_deg"][1], delta=1e-9)
+
+    def test_chan_in_any_order_of_rotations(self):
+        def about(axis, degrees):
+            c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+            turn = np.eye(3)
+            i, j = (axis + 1) % 3, (axis + 2) % 3
+            turn[[i, j], [i, j]], turn[i, j], turn[j, i] = c, -s, s
+            return turn
+
+        path, facts = self.lively()
+        for order in "xyz", "xzy", "yxz", "yzx", "zxy", "zyx":
+            words = () if order == "zxy" else ("--rotation-order", order)  # zxy is the default
+            angles = self.generator.uniform(-200, 200, (3, 3))
+            places = self.generator.uniform(-3, 3, (3, 3))
+            file = self.folder / "in.chan"
+            file.write_text("".join(f"{frame}\t" + "\t".join(map(str, [*places[i], *angles[i], 30 + i])) + "\n"
+                                    for i, frame in enumerate((1001, 1002, 1003))))
+            read = json.loads(self.succeeds(PATH, file, "--json", "--resolution", "90x60", *words))
+            for place, turns, fov, fact in zip(places, angles, (30, 31, 32), read["cameras"]):
+                axes = np.eye(3)
+                for letter in order:
+                    axes = about("xyz".index(letter), turns["xyz".index(letter)]) @ axes
+                self.agrees(fact, axes @ OPENGL, place, fov)
+            self.convert(path, f"{order}.chan", *words)
+            for line, fact in zip(np.loadtxt(self.folder / f"{order}.chan"), facts["cameras"]):
+                axes = np.eye(3)
+                for letter in order:
+                    axes = about("xyz".index(letter), line[4 + "xyz".index(letter)]) @ axes
+                self.agrees(fact, axes @ OPENGL, line[1:4], line[7], 1e-5)
+
+    def test_usda_states_the_camera_in_its_units(self):
+        path, facts = self.lively()
+        text = self.convert(path, "camera.usda", "--unit-m", 0.5).read_text()
+        self.assertTrue(text.startswith("#usda 1.0"))
+        for words in "timeCodesPerSecond = 12.5", "endTimeCode = 4", "metersPerUnit = 0.5":
+            self.assertIn(words, text)
+        facts = self.facts(path, "--unit-m", 0.5)
+
+        def samples(name):
+            match = re.search(rf" {name}(?:\.timeSamples = {{(.*?)}}| = (.*?)\n)", text, re.S)
+            if match[2]:
+                return [eval(match[2])] * 4
+            return list(eval("{" + match[1] + "}").values())
+
+        names = ("focalLength", "horizontalAperture", "verticalAperture", "focusDistance", "fStop", "xformOp:transform",
+                 "horizontalApertureOffset")
+        for fact, focal, width, height, focus, stop, matrix, offset in zip(facts["cameras"], *map(samples, names)):
+            matrix, (axes, centre) = np.array(matrix), pose_of(fact)
+            self.assertLessEqual(np.abs(matrix[:3, :3].T @ OPENGL - axes).max(), 1e-9)  # rows are the axes
+            self.assertLessEqual(np.abs(matrix[3] - [*centre, 1]).max(), 1e-9)
+            self.assertLessEqual(np.abs(matrix[:3, 3]).max(), 0)
+            self.assertAlmostEqual(focal / 10 * 0.5 * 1000, fact["focal_length_mm"], delta=1e-9)
+            view = np.degrees(2 * np.arctan(np.divide([width, height], 2 * focal)))
+            self.assertLessEqual(np.abs(view - fact["field_of_view_deg"]).max(), 1e-9)
+            self.assertAlmostEqual(focus, fact["focus_distance_w"], delta=1e-9)
+            self.assertAlmostEqual(stop, fact["f_number"], delta=1e-9)
+            self.assertEqual(offset, 0)
 
     def test_json_renders_to_the_same_bits(self):
         path, _ = self.lively()

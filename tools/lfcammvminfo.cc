@@ -62,7 +62,7 @@ int main(int argc, char** argv) {
   input
       .Add("PATH", arguments.path,
            "Camera path\n"
-           "Our own YAML (doc/formats/path.md), or a path of nerfstudio or instant-ngp "
+           "Our own YAML (doc/formats/path.md), or a path of nerfstudio, instant-ngp or Nuke "
            "(doc/formats/foreign_paths.md).")
       ->required();
   input

@@ -31,11 +31,12 @@ constexpr lf::HelpTexts kHelp = {
     .examples = R"(  lfpath camera_path.json                       # what is in it
   lfpath camera_path.json -o path.yaml --f-number 2 --focus-distance 1.5
   lfpath path.yaml -o base_cam.json --format instant-ngp
+  lfpath nuke.chan -o path.yaml --fps 24 --resolution 1920x1080 --f-number 2 --focus-distance 3
   lfpath path.yaml -o slow.yaml --frames 240
   lfpath path.yaml -o moved.yaml --transform upright.txt --scale 0.5)",
     .details =
-        R"(PATH is our own YAML, or a path of nerfstudio or instant-ngp; doc/formats/foreign_paths.md has their
-conventions. A warning lists what PATH does not state, and the value that is used; the options of
+        R"(PATH is our own YAML, or a path of nerfstudio, instant-ngp or Nuke; doc/formats/foreign_paths.md has
+their conventions. A warning lists what PATH does not state, and the value that is used; the options of
 "Picture" state it, and replace what PATH states. Without -o, the program prints the camera of every
 frame, as lfcammvminfo does.
 
@@ -46,8 +47,9 @@ everything: frames that are rendered with such a file have the same bits.)",
 
 struct Arguments {
   std::string path, light_field, dataparser, output, format, out_dataparser, transform;
+  std::string rotation_order = "zxy";
   std::optional<double> unit_m, ngp_scale, sensor_width_mm, f_number, aperture_diameter_mm;
-  std::optional<double> focus_distance, fps;
+  std::optional<double> focal_length_mm, focus_distance, fps;
   std::optional<std::pair<int, int>> resolution;
   std::vector<double> ngp_offset;
   std::optional<uint32_t> frames;
@@ -60,7 +62,7 @@ void AddInput(CLI::App& app, Arguments& a) {
   input
       .Add("PATH", a.path,
            "Camera path\n"
-           "Our own YAML (doc/formats/path.md), or a path of nerfstudio or instant-ngp "
+           "Our own YAML (doc/formats/path.md), or a path of nerfstudio, instant-ngp or Nuke "
            "(doc/formats/foreign_paths.md).")
       ->required();
   input
@@ -97,15 +99,20 @@ void AddInput(CLI::App& app, Arguments& a) {
       ->delimiter(',')
       ->expected(3)
       ->check(CLI::Range(-1e6, 1e6));
+  spaces.AddChoice(
+      "--rotation-order", a.rotation_order, {"xyz", "xzy", "yxz", "yzx", "zxy", "zyx"},
+      "Order of the rotations in .chan files\n"
+      "zxy: first about z, then about x, then about y. A .chan does not state its order; "
+      "zxy is Nuke's default. It is used for PATH and for OUT.");
 }
 
 void AddOutput(CLI::App& app, Arguments& a) {
   lf::OptionGroup output(app, lf::kOutputGroup);
   auto* out = output.Add("-o,--output OUT", a.output, "Path to write")->check(lf::NotEmpty());
   output
-      .AddChoice("--format", a.format, {"yaml", "nerfstudio", "instant-ngp"},
+      .AddChoice("--format", a.format, {"yaml", "nerfstudio", "instant-ngp", "chan", "usda"},
                  "Format of OUT (by its extension)\n"
-                 ".yaml is our own format, .json nerfstudio's.")
+                 ".yaml is our own format, .json nerfstudio's, .chan Nuke's, .usda a scene of USD.")
       ->needs(out);
   output
       .Add(
@@ -158,6 +165,11 @@ void AddPicture(CLI::App& app, Arguments& a) {
            "Width of the sensor (as PATH states, else 36)\n"
            "The field of view is kept; the focal length follows.")
       ->check(CLI::Range(1e-6, 1e9));
+  picture
+      .Add("--focal-length-mm MM", a.focal_length_mm,
+           "Focal length, for a .chan without field of view (50)\n"
+           "Together with the width of the sensor, it gives the field of view.")
+      ->check(CLI::Range(1e-6, 1e9));
 }
 
 // Returns the options for reading PATH.
@@ -173,6 +185,8 @@ lf::Result<lf::PathOptions> OptionsOf(const Arguments& a) {
   if (!a.ngp_offset.empty()) options.ngp_offset = lf::Vec3(a.ngp_offset.data());
   if (a.resolution) options.resolution_px = {a.resolution->first, a.resolution->second};
   options.sensor_width_mm = a.sensor_width_mm;
+  options.focal_length_mm = a.focal_length_mm;
+  options.rotation_order = *lf::RotationOrderOf(a.rotation_order);
   options.f_number = a.f_number;
   options.aperture_diameter_mm = a.aperture_diameter_mm;
   options.focus_distance_w = a.focus_distance;
@@ -199,7 +213,8 @@ lf::Result<lf::PathFormat> FormatOf(const Arguments& a) {
   if (!a.format.empty()) return *lf::PathFormatOf(a.format);
   if (const std::optional<lf::PathFormat> format = lf::PathFormatOfFile(a.output)) return *format;
   return lf::UsageError(fmt::format(
-      "-o {}: its extension stands for no format: expected .yaml or .json, or give --format",
+      "-o {}: its extension stands for no format: expected .yaml, .json, .chan or .usda, or give "
+      "--format",
       a.output));
 }
 

@@ -58,7 +58,7 @@ void AddInputAndOutput(CLI::App& app, Arguments& a) {
   input
       .Add("PATH", a.path,
            "Camera path\n"
-           "Our own YAML (doc/formats/path.md), or a path of nerfstudio or instant-ngp "
+           "Our own YAML (doc/formats/path.md), or a path of nerfstudio, instant-ngp or Nuke "
            "(doc/formats/foreign_paths.md).")
       ->required();
   a.allow_missing.AddTo(app, "the LF images that packages need");

@@ -60,7 +60,7 @@ void AddInput(CLI::App& app, Arguments& a) {
   input
       .Add("PATH", a.path,
            "Camera path\n"
-           "Our own YAML (doc/formats/path.md), or a path of nerfstudio or instant-ngp "
+           "Our own YAML (doc/formats/path.md), or a path of nerfstudio, instant-ngp or Nuke "
            "(doc/formats/foreign_paths.md), which the page converts to YAML and saves beside it.")
       ->required();
   input.Add("PACKAGE", a.page.packages, "Packages that lfpreprocessor made for this path");

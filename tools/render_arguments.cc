@@ -40,7 +40,8 @@ void AddInput(CLI::App& app, RenderArguments& a) {
            "LIGHTFIELD PATH, or PACKAGE... of lfpreprocessor\n"
            "LIGHTFIELD: a calibration file or its folder (transforms.json, COLMAP, Middlebury, "
            "LLFF, HCI, AOS), a packed store, or a folder of images with Stanford names\n"
-           "PATH: a camera path of our own (doc/formats/path.md), or of nerfstudio or instant-ngp "
+           "PATH: a camera path of our own (doc/formats/path.md), or of nerfstudio, instant-ngp or "
+           "Nuke "
            "(doc/formats/foreign_paths.md)\n"
            "PACKAGE: a file that lfpreprocessor has written")
       ->required();

@@ -1,9 +1,12 @@
 #include "lf/import/paths/open_path.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "lf/camera/path/path_yaml.h"
 #include "lf/core/byte_stream.h"
+#include "lf/import/paths/chan_path.h"
 #include "lf/import/paths/foreign_path.h"
 #include "lf/import/paths/nerfstudio_path.h"
 #include "lf/import/paths/ngp_path.h"
@@ -21,11 +24,32 @@ Result<PathKind> PathKindOfFile(const fs::path& path) {
   return PathKindOf(stream->Window(), path);
 }
 
-Result<CameraPath> ReadOf(PathKind kind, const fs::path& path, const PathOptions& options) {
-  if (kind == PathKind::kYaml) return ReadPathYaml(path, options.light_field_unit_m);
-  LF_ASSIGN_OR_RETURN(ForeignPath read, kind == PathKind::kNgp ? ReadNgpPath(path, options)
-                                                               : ReadNerfstudioPath(path, options));
-  return CompletePath(std::move(read), path, options);
+Result<ForeignPath> ReadForeign(PathKind kind, const fs::path& path, const PathOptions& options) {
+  switch (kind) {
+    case PathKind::kNerfstudio:
+      return ReadNerfstudioPath(path, options);
+    case PathKind::kNgp:
+      return ReadNgpPath(path, options);
+    case PathKind::kYaml:
+    case PathKind::kChan:
+      break;
+  }
+  return ReadChan(path, options);
+}
+
+// Refuses options that would have no effect.
+Result<void> CheckOptions(PathKind kind, const fs::path& path, const PathOptions& options) {
+  if (!options.dataparser_transforms.empty() && kind != PathKind::kNerfstudio)
+    return UsageError(
+        fmt::format("--dataparser-transforms is only for camera paths of nerfstudio, but {} is of "
+                    "another kind: leave the option out",
+                    path.string()));
+  if (options.focal_length_mm && kind != PathKind::kChan)
+    return UsageError(
+        fmt::format("--focal-length-mm is only for .chan files without a field of view, but {} "
+                    "states it: leave the option out",
+                    path.string()));
+  return {};
 }
 
 }  // namespace
@@ -45,7 +69,14 @@ Result<bool> IsPathYaml(const fs::path& path) {
 
 Result<CameraPath> OpenPath(const fs::path& path, const PathOptions& options) {
   LF_ASSIGN_OR_RETURN(const PathKind kind, PathKindOfFile(path));
-  LF_ASSIGN_OR_RETURN(CameraPath opened, ReadOf(kind, path, options));
+  LF_RETURN_IF_ERROR(CheckOptions(kind, path, options));
+  CameraPath opened;
+  if (kind == PathKind::kYaml) {
+    LF_ASSIGN_OR_RETURN(opened, ReadPathYaml(path, options.light_field_unit_m));
+  } else {
+    LF_ASSIGN_OR_RETURN(ForeignPath read, ReadForeign(kind, path, options));
+    LF_ASSIGN_OR_RETURN(opened, CompletePath(std::move(read), path, options));
+  }
   LF_RETURN_IF_ERROR(ReplaceQuantities(options, path, &opened));
   return opened;
 }

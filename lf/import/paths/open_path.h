@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 
 #include "lf/camera/path/camera_path.h"
 #include "lf/core/geometry.h"
@@ -12,6 +13,13 @@
 #include "lf/light_field/model/light_field.h"
 
 namespace lf {
+
+// Order in which the rotations about the axes of a .chan file are applied: with kZxy, first about
+// z, then about x, then about y.
+enum class RotationOrder { kXyz, kXzy, kYxz, kYzx, kZxy, kZyx };
+
+// Returns the order of a name such as "zxy"; nullopt if the name is unknown.
+std::optional<RotationOrder> RotationOrderOf(std::string_view name);
 
 // Values for which the file of the path has no place, or that replace those of the file.
 struct PathOptions {
@@ -34,6 +42,8 @@ struct PathOptions {
   std::optional<double> fps = {};  // 30 by default
   // Frames of an instant-ngp curve; by default fps times the duration.
   std::optional<uint32_t> frame_count = {};
+  std::optional<double> focal_length_mm = {};  // gives the field of view; 50 by default
+  RotationOrder rotation_order = RotationOrder::kZxy;
   // The dataparser_transforms.json of nerfstudio; by default the one beside the path.
   std::filesystem::path dataparser_transforms = {};
   // Scale and offset of instant-ngp's space; by default those of the light field's transforms.json,
@@ -52,6 +62,7 @@ Result<bool> IsPathYaml(const std::filesystem::path& path);
 // - our own YAML: camera/path/path_yaml.h
 // - JSON with the key "camera_path": import/paths/nerfstudio_path.h
 // - JSON with the key "path": import/paths/ngp_path.h
+// - lines of numbers, a .chan of Nuke: import/paths/chan_path.h
 // doc/formats/foreign_paths.md lists the conventions. A warning lists each quantity that the file
 // does not state, and the value that is used.
 //

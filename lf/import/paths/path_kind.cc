@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "lf/camera/path/yaml_tree.h"
+#include "lf/light_field/model/parse_number.h"
 
 namespace lf {
 namespace {
@@ -35,6 +36,15 @@ bool LooksLikeJson(std::string_view text) {
   return inner.empty() || std::string_view("\"{}[]").find(inner.front()) != std::string_view::npos;
 }
 
+// Returns true if the first line that is neither blank nor a comment begins with a number, as in a
+// .chan. YAML paths begin with a key.
+bool LooksLikeLinesOfNumbers(std::string_view text) {
+  text = WithoutStart(text);
+  while (text.starts_with('#'))
+    text = WithoutStart(text.substr(std::min(text.find('\n'), text.size())));
+  return ParseNumber(text.substr(0, text.find_first_of(kWhiteSpace))).has_value();
+}
+
 }  // namespace
 
 std::vector<std::string> TopLevelKeys(std::string_view text) {
@@ -57,7 +67,8 @@ std::vector<std::string> TopLevelKeys(std::string_view text) {
 }
 
 Result<PathKind> PathKindOf(std::string_view text, const std::filesystem::path& file) {
-  if (!LooksLikeJson(text)) return PathKind::kYaml;
+  if (!LooksLikeJson(text))
+    return LooksLikeLinesOfNumbers(text) ? PathKind::kChan : PathKind::kYaml;
   std::vector<std::string> keys = TopLevelKeys(text);
   const auto has = [&](const char* key) {
     return std::find(keys.begin(), keys.end(), key) != keys.end();

@@ -10,7 +10,7 @@
 
 namespace lf {
 
-enum class PathKind { kYaml, kNerfstudio, kNgp };
+enum class PathKind { kYaml, kNerfstudio, kNgp, kChan };
 
 // Returns the keys of the top level of a JSON object, in the order of the text; those before the
 // first error if the text is not JSON. Empty if the text begins with something other than {.

@@ -31,6 +31,9 @@ TEST(PathKind, TheContentTellsTheForm) {
   EXPECT_EQ(kind("{format: lfpath 1}"), PathKind::kYaml);
   EXPECT_EQ(kind(R"({"format": "lfpath 1"})"), PathKind::kYaml);
   EXPECT_EQ(kind(""), PathKind::kYaml);
+  EXPECT_EQ(kind("# nothing"), PathKind::kYaml);
+  EXPECT_EQ(kind("# of Nuke\n\n  1\t0 0 0 0 0 0\n"), PathKind::kChan);
+  EXPECT_EQ(kind("-3 1"), PathKind::kChan);
 }
 
 TEST(PathKind, OtherJsonIsRefusedWithTheKeysFound) {

@@ -9,9 +9,11 @@
 #include "lf/camera/path/path_yaml_write.h"
 #include "lf/core/file.h"
 #include "lf/core/value_named.h"
+#include "lf/import/paths/chan_path.h"
 #include "lf/import/paths/foreign_path.h"
 #include "lf/import/paths/nerfstudio_path.h"
 #include "lf/import/paths/ngp_path.h"
+#include "lf/import/paths/usda_path.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -22,25 +24,58 @@ bool AnyCamera(const CameraPath& path, const Holds& holds) {
   return std::any_of(path.cameras.begin(), path.cameras.end(), holds);
 }
 
-// Adds what the programs of others will not see, because only our keys state it.
-void AddUnseen(const CameraPath& path, bool has_lens, std::vector<std::string>* lost) {
-  if (!has_lens &&
-      AnyCamera(path, [](const RenderCamera& camera) { return camera.aperture.radius_w > 0; }))
-    lost->push_back("the lens (only our programs read its lf_ keys)");
-  if (AnyCamera(path, [](const RenderCamera& camera) {
-        const Intrinsics& k = camera.pinhole.intrinsics;
-        return std::abs(k.cx_px - k.width_px / 2.0) > 1e-9 ||
-               std::abs(k.cy_px - k.height_px / 2.0) > 1e-9 ||
-               std::abs(k.fx_px - k.fy_px) > 1e-12 * k.fx_px || k.skew_px != 0;
-      }))
-    lost->push_back(
-        "the principal point and elements that are no squares (only our programs read their lf_ "
-        "keys)");
-  if (has_lens && AnyCamera(path, [](const RenderCamera& camera) {
-        return camera.aperture.blades > 0 || camera.focus_tilt.horizontal_rad != 0 ||
-               camera.focus_tilt.vertical_rad != 0;
-      }))
-    lost->push_back("the blades and the tilt of the focus (only our programs read their lf_ keys)");
+bool HasLens(const RenderCamera& camera) { return camera.aperture.radius_w > 0; }
+
+bool IsOffCentre(const RenderCamera& camera) {
+  const Intrinsics& k = camera.pinhole.intrinsics;
+  return std::abs(k.cx_px - k.width_px / 2.0) > 1e-9 ||
+         std::abs(k.cy_px - k.height_px / 2.0) > 1e-9 ||
+         std::abs(k.fx_px - k.fy_px) > 1e-12 * k.fx_px || k.skew_px != 0;
+}
+
+bool HasBladesOrTilt(const RenderCamera& camera) {
+  return camera.aperture.blades > 0 || camera.focus_tilt.horizontal_rad != 0 ||
+         camera.focus_tilt.vertical_rad != 0;
+}
+
+bool IsSkewed(const RenderCamera& camera) { return camera.pinhole.intrinsics.skew_px != 0; }
+
+// Returns what programs of others do not find in a file. Our programs restore it from JSON.
+std::vector<std::string> LostIn(PathFormat format, const CameraPath& path) {
+  std::vector<std::string> lost;
+  const bool is_json = format == PathFormat::kNerfstudio || format == PathFormat::kNgp;
+  const char* const note = is_json ? " (only our programs read its lf_ keys)" : "";
+  const auto add = [&](bool holds, const char* what) {
+    if (holds) lost.push_back(fmt::format("{}{}", what, note));
+  };
+  if (format == PathFormat::kUsda) {
+    lost.push_back("the resolution");
+    add(AnyCamera(path, IsSkewed), "skew");
+  } else {
+    add(AnyCamera(path, IsOffCentre), "the principal point and elements that are no squares");
+  }
+  if (format == PathFormat::kChan)
+    lost.push_back("resolution, frame rate, unit and order of the rotations");
+  if (format == PathFormat::kNgp || format == PathFormat::kUsda)
+    add(AnyCamera(path, HasBladesOrTilt), "the blades and the tilt of the focus");
+  else
+    add(AnyCamera(path, HasLens), "the lens");
+  return lost;
+}
+
+Result<std::string> NerfstudioTextFor(const CameraPath& path, const fs::path& file,
+                                      const PathOptions& options) {
+  if (options.dataparser_transforms.empty()) return NerfstudioText(path, "world");
+  LF_ASSIGN_OR_RETURN(const Similarity world_from_trained,
+                      WorldFromTrained(options.dataparser_transforms, options.light_field));
+  CameraPath trained = path;
+  LF_RETURN_IF_ERROR(MovePath(InverseOf(world_from_trained), file, &trained));
+  return NerfstudioText(trained, "trained");
+}
+
+Result<std::string> NgpTextFor(const CameraPath& path, const PathOptions& options) {
+  LF_ASSIGN_OR_RETURN(const NgpSpace space, NgpSpaceFor("", options));
+  return NgpText(path, space);
 }
 
 Result<std::string> TextOf(const CameraPath& path, const fs::path& file, PathFormat format,
@@ -50,17 +85,11 @@ Result<std::string> TextOf(const CameraPath& path, const fs::path& file, PathFor
     *lost = std::move(yaml.lost);
     return yaml.text;
   }
-  AddUnseen(path, format == PathFormat::kNgp, lost);
-  if (format == PathFormat::kNgp) {
-    LF_ASSIGN_OR_RETURN(const NgpSpace space, NgpSpaceFor("", options));
-    return NgpText(path, space);
-  }
-  if (options.dataparser_transforms.empty()) return NerfstudioText(path, "world");
-  LF_ASSIGN_OR_RETURN(const Similarity world_from_trained,
-                      WorldFromTrained(options.dataparser_transforms, options.light_field));
-  CameraPath trained = path;
-  LF_RETURN_IF_ERROR(MovePath(InverseOf(world_from_trained), file, &trained));
-  return NerfstudioText(trained, "trained");
+  *lost = LostIn(format, path);
+  if (format == PathFormat::kNgp) return NgpTextFor(path, options);
+  if (format == PathFormat::kChan) return ChanText(path, options.rotation_order);
+  if (format == PathFormat::kUsda) return UsdaText(path);
+  return NerfstudioTextFor(path, file, options);
 }
 
 }  // namespace
@@ -72,19 +101,26 @@ std::string_view NameOf(PathFormat format) {
     case PathFormat::kNerfstudio:
       return "nerfstudio";
     case PathFormat::kNgp:
+      return "instant-ngp";
+    case PathFormat::kChan:
+      return "chan";
+    case PathFormat::kUsda:
       break;
   }
-  return "instant-ngp";
+  return "usda";
 }
 
 std::optional<PathFormat> PathFormatOf(std::string_view name) {
-  return ValueNamed(name, {PathFormat::kYaml, PathFormat::kNerfstudio, PathFormat::kNgp});
+  return ValueNamed(name, {PathFormat::kYaml, PathFormat::kNerfstudio, PathFormat::kNgp,
+                           PathFormat::kChan, PathFormat::kUsda});
 }
 
 std::optional<PathFormat> PathFormatOfFile(const fs::path& file) {
   const fs::path extension = file.extension();
   if (extension == ".yaml" || extension == ".yml") return PathFormat::kYaml;
   if (extension == ".json") return PathFormat::kNerfstudio;
+  if (extension == ".chan") return PathFormat::kChan;
+  if (extension == ".usda") return PathFormat::kUsda;
   return std::nullopt;
 }
 

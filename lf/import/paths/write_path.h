@@ -14,20 +14,21 @@
 
 namespace lf {
 
-enum class PathFormat { kYaml, kNerfstudio, kNgp };
+enum class PathFormat { kYaml, kNerfstudio, kNgp, kChan, kUsda };
 
-// Returns the name of a format in options: yaml, nerfstudio, instant-ngp.
+// Returns the name of a format in options: yaml, nerfstudio, instant-ngp, chan, usda.
 std::string_view NameOf(PathFormat format);
 std::optional<PathFormat> PathFormatOf(std::string_view name);
 
 // Returns the format that the extension of a file stands for: .yaml and .yml for our own, .json for
-// nerfstudio. nullopt for other extensions.
+// nerfstudio, .chan and .usda for Nuke and USD. nullopt for other extensions.
 std::optional<PathFormat> PathFormatOfFile(const std::filesystem::path& file);
 
 // Writes a path.
 //   options  nerfstudio: if dataparser_transforms is set, the cameras are moved into that trained
 //            space; light_field as for OpenPath(). instant-ngp: ngp_scale and ngp_offset; by
-//            default those of the light field's transforms.json, otherwise 0.33 and 0.5
+//            default those of the light field's transforms.json, otherwise 0.33 and 0.5. .chan:
+//            rotation_order
 // Returns phrases about what the format cannot hold, such as "blades"; our own programs restore
 // from JSON what is not named. kInput: an error of the dataparser_transforms. kOutput: the file
 // cannot be written.
