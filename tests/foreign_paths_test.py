@@ -6,10 +6,13 @@ lfpath, and reads them here; rendered again, they must give the same frames.
 usage: foreign_paths_test.py LFCAMMVMINFO LFPATH LFSYNTH LFRENDERER
 """
 import json
+import os
 import re
 import sys
 import unittest
 
+os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # must be set before cv2 is imported
+import cv2
 import numpy as np
 
 from program_test_case import ProgramTestCase
@@ -237,6 +240,69 @@ class ForeignPathsTest(ProgramTestCase):
                     axes = about("xyz".index(letter), line[4 + "xyz".index(letter)]) @ axes
                 self.agrees(fact, axes @ OPENGL, line[1:4], line[7], 1e-5)
 
+    def calibration(self, form):
+        """Returns a transforms.json, a COLMAP model or a cameras.json of the cameras, 300 x 200 pixels each."""
+        focal = [100 / np.tan(np.radians(camera.vertical_deg / 2)) for camera in self.cameras]
+        if form == "transforms.json":
+            frames = []
+            for number, (camera, f) in enumerate(zip(self.cameras, focal)):
+                matrix = np.eye(4)
+                matrix[:3, :3], matrix[:3, 3] = camera.axes @ OPENGL, camera.centre
+                frames.append({"file_path": f"{number}.png", "transform_matrix": matrix.tolist(), "fl_x": f})
+            return self.write(form, {"w": 300, "h": 200, "cx": 170, "cy": 90, "frames": frames})
+        if form == "cameras.json":
+            return self.write(form, [{"id": 0, "img_name": "a", "width": 300, "height": 200, "fx": f, "fy": f,
+                                      "position": camera.centre.tolist(), "rotation": camera.axes.tolist()}
+                                     for camera, f in zip(self.cameras, focal)])
+        model = self.folder / "colmap" / "sparse" / "0"
+        model.mkdir(parents=True)
+        (model / "cameras.txt").write_text("".join(f"{i} PINHOLE 300 200 {f} {f} 150 100\n"
+                                                   for i, f in enumerate(focal, 1)))
+        lines = []
+        for i, camera in enumerate(self.cameras, 1):
+            x, y, z, w = quaternion(camera.axes.T)
+            t = " ".join(map(str, -camera.axes.T @ camera.centre))
+            lines.append(f"{i} {w} {x} {y} {z} {t} {i} image{i}.png\n\n")
+        (model / "images.txt").write_text("".join(lines))
+        return self.folder / "colmap"
+
+    def test_cameras_of_calibrations_are_frames(self):
+        for form in "transforms.json", "cameras.json", "colmap":
+            path = self.facts(self.calibration(form))
+            self.assertEqual((path["frames"], path["resolution"]), (6, [300, 200]))
+            for camera, facts in zip(self.cameras, path["cameras"]):
+                self.agrees(facts, camera.axes, camera.centre, camera.vertical_deg)
+
+    def test_off_centre_frames_show_their_part_of_the_picture(self):
+        """The left half of a frame is the frame whose principal point is at its right edge."""
+        path, _ = self.lively()
+        whole = json.loads(self.convert(path, "whole.json", "--frames", 1).read_text())
+        half = json.loads(json.dumps(whole))
+        half["render_width"] = 30
+        half["camera_path"][0]["lf_intrinsics"][2] = 30
+        field = self.folder / "field"
+        self.succeeds(SYNTH, "still-life", "-o", field, "--count", 25, "--size", "60x40", "--format", "png")
+        pictures = []
+        for name, value in ("whole", whole), ("half", half):
+            film = self.folder / f"film of {name}"
+            self.succeeds(RENDERER, field, self.write(f"{name}.json", value), "-o", film, "--format", "exr-float")
+            pictures.append(cv2.imread(str(film / "frame_0001.exr"), cv2.IMREAD_UNCHANGED)[..., :3])
+        self.assertEqual(pictures[1].shape, (40, 30, 3))
+        self.assertGreater(pictures[1].max(), 0.1)
+        self.assertLessEqual(np.abs(pictures[0][:, :30] - pictures[1]).max(), 0.005)
+
+    def test_usda_holds_an_off_centre_principal_point(self):
+        text = self.convert(self.calibration("transforms.json"), "frames.usda", "--focus-distance", 2).read_text()
+        focal = [float(value) for value in re.search(r"focalLength.timeSamples = {(.*?)}", text, re.S)[1].replace(
+            ",", " ").replace(":", " ").split()[1::2]]
+        for axis, size, offset in ("horizontal", 300, 150 - 170), ("vertical", 200, 90 - 100):
+            apertures, offsets = (list(eval("{" + re.search(rf" {axis}{name}.timeSamples = {{(.*?)}}", text, re.S)[1]
+                                            + "}").values()) for name in ("Aperture", "ApertureOffset"))
+            for camera, f, aperture, moved in zip(self.cameras, focal, apertures, offsets):
+                focal_px = 100 / np.tan(np.radians(camera.vertical_deg / 2))
+                self.assertAlmostEqual(aperture / f, size / focal_px, delta=1e-9)
+                self.assertAlmostEqual(moved / f, offset / focal_px, delta=1e-9)
+
     def test_usda_states_the_camera_in_its_units(self):
         path, facts = self.lively()
         text = self.convert(path, "camera.usda", "--unit-m", 0.5).read_text()
@@ -337,6 +403,7 @@ class ForeignPathsTest(ProgramTestCase):
         self.fails(3, ["camera_type", "fisheye", "Perspective"], INFO, self.nerfstudio(camera_type="fisheye"))
         self.fails(3, ["other.json", "found 'cameras'", "camera_path (nerfstudio)"], INFO,
                    self.write("other.json", {"cameras": []}))
+        self.fails(3, ["holds no camera path", "COLMAP"], INFO, self.folder)
 
     def test_what_is_missing_is_told(self):
         result = self.call(INFO, self.nerfstudio())

@@ -59,12 +59,7 @@ int main(int argc, char** argv) {
   Arguments arguments;
   lf::Program program("lfcammvminfo", kHelp);
   lf::OptionGroup input(program.app(), lf::kInputGroup), output(program.app(), lf::kOutputGroup);
-  input
-      .Add("PATH", arguments.path,
-           "Camera path\n"
-           "Our own YAML (doc/formats/path.md), or a path of nerfstudio, instant-ngp or Nuke "
-           "(doc/formats/foreign_paths.md).")
-      ->required();
+  input.Add("PATH", arguments.path, lf::kPathHelp)->required();
   input
       .Add("--unit-m METRES", arguments.unit_m, "Metres per world unit, if PATH does not state it")
       ->check(CLI::Range(1e-9, 1e9));

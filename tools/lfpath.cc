@@ -35,8 +35,8 @@ constexpr lf::HelpTexts kHelp = {
   lfpath path.yaml -o slow.yaml --frames 240
   lfpath path.yaml -o moved.yaml --transform upright.txt --scale 0.5)",
     .details =
-        R"(PATH is our own YAML, or a path of nerfstudio, instant-ngp or Nuke; doc/formats/foreign_paths.md has
-their conventions. A warning lists what PATH does not state, and the value that is used; the options of
+        R"(PATH is our own YAML, a path of nerfstudio, instant-ngp or Nuke, or a calibration whose cameras become
+frames; doc/formats/foreign_paths.md has their conventions. A warning lists what PATH does not state, and the value that is used; the options of
 "Picture" state it, and replace what PATH states. Without -o, the program prints the camera of every
 frame, as lfcammvminfo does.
 
@@ -59,12 +59,7 @@ struct Arguments {
 
 void AddInput(CLI::App& app, Arguments& a) {
   lf::OptionGroup input(app, lf::kInputGroup);
-  input
-      .Add("PATH", a.path,
-           "Camera path\n"
-           "Our own YAML (doc/formats/path.md), or a path of nerfstudio, instant-ngp or Nuke "
-           "(doc/formats/foreign_paths.md).")
-      ->required();
+  input.Add("PATH", a.path, lf::kPathHelp)->required();
   input
       .Add("--lightfield LIGHTFIELD", a.light_field,
            "Light field that the path is for (none)\n"

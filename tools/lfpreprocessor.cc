@@ -55,12 +55,7 @@ struct Arguments {
 void AddInputAndOutput(CLI::App& app, Arguments& a) {
   lf::OptionGroup input(app, lf::kInputGroup), output(app, lf::kOutputGroup);
   a.light_field.AddTo(app);
-  input
-      .Add("PATH", a.path,
-           "Camera path\n"
-           "Our own YAML (doc/formats/path.md), or a path of nerfstudio, instant-ngp or Nuke "
-           "(doc/formats/foreign_paths.md).")
-      ->required();
+  input.Add("PATH", a.path, lf::kPathHelp)->required();
   a.allow_missing.AddTo(app, "the LF images that packages need");
   auto* plan = output.AddFlag("--plan", a.plan,
                               "Print the forecast of the render, write no packages\n"

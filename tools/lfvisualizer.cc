@@ -59,9 +59,8 @@ void AddInput(CLI::App& app, Arguments& a) {
   lf::OptionGroup input(app, lf::kInputGroup);
   input
       .Add("PATH", a.path,
-           "Camera path\n"
-           "Our own YAML (doc/formats/path.md), or a path of nerfstudio, instant-ngp or Nuke "
-           "(doc/formats/foreign_paths.md), which the page converts to YAML and saves beside it.")
+           std::string(lf::kPathHelp) +
+               " The page converts all but our own to YAML, which it saves beside PATH.")
       ->required();
   input.Add("PACKAGE", a.page.packages, "Packages that lfpreprocessor made for this path");
 }

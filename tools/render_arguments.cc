@@ -40,9 +40,9 @@ void AddInput(CLI::App& app, RenderArguments& a) {
            "LIGHTFIELD PATH, or PACKAGE... of lfpreprocessor\n"
            "LIGHTFIELD: a calibration file or its folder (transforms.json, COLMAP, Middlebury, "
            "LLFF, HCI, AOS), a packed store, or a folder of images with Stanford names\n"
-           "PATH: a camera path of our own (doc/formats/path.md), or of nerfstudio, instant-ngp or "
-           "Nuke "
-           "(doc/formats/foreign_paths.md)\n"
+           "PATH: a camera path of our own (doc/formats/path.md), of another program, or the "
+           "cameras of a "
+           "calibration (doc/formats/foreign_paths.md)\n"
            "PACKAGE: a file that lfpreprocessor has written")
       ->required();
   input

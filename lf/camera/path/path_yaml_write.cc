@@ -140,9 +140,9 @@ void AddKeyframes(const CameraPath& path, const std::vector<YamlQuantity>& secti
     if (!quantity.Moves()) continue;
     *text += fmt::format("  {}:\n", quantity.key);
     for (size_t i = 0; i < quantity.values.size(); ++i)
-      *text +=
-          fmt::format("  - {{time: {}, value: {}{}}}\n", path.cameras[i].time_s, quantity.values[i],
-                      !quantity.jumps.empty() && quantity.jumps[i] ? ", interpolation: step" : "");
+      *text += fmt::format(
+          "  - {{time: {}, value: {}{}}}\n", static_cast<double>(i) / path.fps, quantity.values[i],
+          !quantity.jumps.empty() && quantity.jumps[i] ? ", interpolation: step" : "");
   }
 }
 

@@ -49,7 +49,7 @@ TEST(ChanPath, AnglesAndRotationsAreInverseInEveryOrder) {
       const Mat3 rotation = RotationOfAngles(angles, order);
       const Vec3 found = AnglesOfRotation(rotation, order, Vec3::Zero());
       EXPECT_LT((RotationOfAngles(found, order) - rotation).norm(), 1e-12);
-      // Of all triples that give the rotation, the one nearest to the frame before is taken.
+      // The triple of angles that is nearest to the frame before is taken.
       const Vec3 turned = angles + 2 * kPi * Vec3(1, -2, 3);
       EXPECT_LT((AnglesOfRotation(rotation, order, turned + Vec3(0.1, 0.1, -0.1)) - turned).norm(),
                 1e-9);

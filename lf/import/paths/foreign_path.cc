@@ -36,15 +36,16 @@ Result<double> UnitOf(const ForeignPath& path, const std::filesystem::path& file
 double DefaultFocus(const PathOptions& options, ForeignPath* path) {
   double distance_w = 1;
   std::string source;
-  if (options.depth_range) {
+  if (const auto& range = options.depth_range ? options.depth_range : path->depth_range) {
     // The middle of the inverse depths, because blur is proportional to their differences.
-    distance_w = 2 / (1 / options.depth_range->near_w + 1 / options.depth_range->far_w);
+    distance_w = 2 / (1 / range->near_w + 1 / range->far_w);
     source = ", the middle of the scene's depths,";
   }
   path->lacks.push_back(
-      fmt::format("no focus distance ({:.4g} world units{} are used: "
-                  "--focus-distance)",
-                  distance_w, source));
+      distance_w == 1
+          ? "no focus distance (1 world unit is used: --focus-distance)"
+          : fmt::format("no focus distance ({:.4g} world units{} are used: --focus-distance)",
+                        distance_w, source));
   return distance_w;
 }
 

@@ -29,6 +29,7 @@ struct ForeignPath {
   double fps = 30;
   std::optional<double> unit_m;  // metres per world unit
   std::vector<ForeignCamera> cameras;
+  std::optional<DepthRange> depth_range;  // depths of the scene, if the file states them
   // Phrases of the warning, such as "no frames per second (30 are used: --fps)".
   std::vector<std::string> lacks;
 };

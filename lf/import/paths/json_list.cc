@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <string>
 
 #include "lf/camera/path/camera_path.h"
 #include "lf/core/byte_stream.h"
@@ -41,9 +42,17 @@ Result<void> CheckList(const JsonFields& top, const char* key, size_t count) {
 Result<void> ReadJsonList(std::string_view text, const std::filesystem::path& file,
                           const char* list_key, const ReadFields& read_top,
                           const ReadFields& read_entry) {
+  // The parts of the text: a list is wrapped into an object.
+  const bool is_list = text.find_first_not_of(" \t\r\n") == text.find('[');
+  const std::string opening = is_list ? fmt::format("{{\"{}\":", list_key) : "";
+  const auto add_to = [&](FrameCutter* cutter) {
+    cutter->Add(opening);
+    cutter->Add(text);
+    if (is_list) cutter->Add("}");
+  };
   size_t count = 0;
   FrameCutter counter(list_key, [&](const std::string&) { ++count; });
-  counter.Add(text);
+  add_to(&counter);
   JsonObject object;
   if (counter.is_in_frame() || !object.Parse(counter.rest())) return SyntaxErrorIn(text, file);
   const JsonFields top(object, file);
@@ -61,7 +70,7 @@ Result<void> ReadJsonList(std::string_view text, const std::filesystem::path& fi
     const Result<void> read = read_entry(JsonFields(entry, file, index++, "", list_key));
     if (!read) first_error = read.error();
   });
-  cutter.Add(text);
+  add_to(&cutter);
   if (!is_json) return SyntaxErrorIn(text, file);
   if (first_error) return *first_error;
   return {};

@@ -14,6 +14,8 @@ namespace lf {
 
 using ReadFields = std::function<Result<void>(const JsonFields&)>;
 
+// A text that is a list itself is read as an object with this list alone.
+//
 // Calls read_top() with the top level without the entries of the list with the key `list_key`, and
 // then read_entry() for each of these entries. Memory holds one entry at a time.
 //   file  for messages

@@ -190,10 +190,7 @@ Result<ForeignPath> ReadNerfstudioPath(const fs::path& file, const PathOptions& 
   return path;
 }
 
-Result<Similarity> WorldFromTrained(const fs::path& dataparser, const fs::path& light_field) {
-  JsonObject object;
-  LF_RETURN_IF_ERROR(ReadTopLevel(dataparser, "", &object));
-  const JsonFields top(object, dataparser);
+Result<Similarity> TrainedFromOriginal(const JsonFields& top) {
   LF_ASSIGN_OR_RETURN(const std::optional<std::vector<double>> matrix,
                       top.Matrix("transform", 3, 3, 4, kAnyNumber));
   LF_ASSIGN_OR_RETURN(const std::optional<double> scale, top.Number("scale", kScale));
@@ -203,13 +200,20 @@ Result<Similarity> WorldFromTrained(const fs::path& dataparser, const fs::path& 
   const Eigen::Matrix<double, 3, 4, Eigen::RowMajor> rows(matrix->data());
   const Result<Mat3> rotation = NearestRotation(rows.leftCols<3>(), kTransformTolerance);
   if (!rotation) return top.Fault("\"transform\" " + rotation.error().message);
+  return Similarity{*scale, *rotation, *scale * rows.col(3)};
+}
+
+Result<Similarity> WorldFromTrained(const fs::path& dataparser, const fs::path& light_field) {
+  JsonObject object;
+  LF_RETURN_IF_ERROR(ReadTopLevel(dataparser, "", &object));
+  LF_ASSIGN_OR_RETURN(Similarity trained_from_original,
+                      TrainedFromOriginal(JsonFields(object, dataparser)));
   double applied_scale = 1;
   LF_ASSIGN_OR_RETURN(const Similarity saved_from_original,
                       SavedFromOriginal(light_field, &applied_scale));
-  // nerfstudio moves a point x of the original poses to scale (R x + t). Its scale includes
-  // applied_scale, by which the saved poses were scaled already.
-  const double trained_scale = *scale / applied_scale;
-  const Similarity trained_from_original{trained_scale, *rotation, trained_scale * rows.col(3)};
+  // The scale includes applied_scale, by which the saved poses were scaled already.
+  trained_from_original.scale /= applied_scale;
+  trained_from_original.translation /= applied_scale;
   return Composed(saved_from_original, InverseOf(trained_from_original));
 }
 

@@ -14,6 +14,7 @@
 
 #include "lf/core/result.h"
 #include "lf/import/paths/foreign_path.h"
+#include "lf/light_field/transforms_json/json_fields.h"
 
 namespace lf {
 
@@ -27,6 +28,12 @@ Result<ForeignPath> ParseNerfstudioPath(std::string_view text, const std::filesy
 // or by a dataparser_transforms.json beside the file.
 Result<ForeignPath> ReadNerfstudioPath(const std::filesystem::path& file,
                                        const PathOptions& options);
+
+// Returns the similarity that a dataparser_transforms.json states: nerfstudio moves a point x of
+// the world of the original poses to scale (R x + t) in the trained space.
+//   top  the keys of the file
+// kInput: a key is missing, of a wrong type or out of range; a transform that is no rotation.
+Result<Similarity> TrainedFromOriginal(const JsonFields& top);
 
 // Returns the similarity from the space in which nerfstudio trained to the world of the light
 // field. The file states the similarity from the world of the original poses to the trained space.

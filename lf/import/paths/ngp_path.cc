@@ -45,7 +45,7 @@ constexpr NumberRule kNgpFrames = {
     "the number of frames, which are the first entries of \"path\"",
     [](double x) { return x >= 1 && x <= kMostFrames && x == std::floor(x); }};
 
-// What the file states besides its keyframes.
+// The quantities that the file states besides its keyframes.
 struct NgpHead {
   NgpCurve curve;  // without keys
   double duration_s = 0;

@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "lf/camera/path/path_yaml.h"
-#include "lf/core/byte_stream.h"
 #include "lf/import/paths/chan_path.h"
 #include "lf/import/paths/foreign_path.h"
+#include "lf/import/paths/frames_path.h"
 #include "lf/import/paths/nerfstudio_path.h"
 #include "lf/import/paths/ngp_path.h"
 #include "lf/import/paths/path_kind.h"
@@ -16,25 +16,23 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// Returns the form of a file. A file that cannot be opened counts as our own, whose reader reports
-// the error.
-Result<PathKind> PathKindOfFile(const fs::path& path) {
-  Result<ByteStream> stream = ByteStream::Open(path);
-  if (!stream) return PathKind::kYaml;
-  return PathKindOf(stream->Window(), path);
-}
-
-Result<ForeignPath> ReadForeign(PathKind kind, const fs::path& path, const PathOptions& options) {
-  switch (kind) {
+Result<ForeignPath> ReadForeign(const PathPlace& place, const PathOptions& options) {
+  switch (place.kind) {
     case PathKind::kNerfstudio:
-      return ReadNerfstudioPath(path, options);
+      return ReadNerfstudioPath(place.path, options);
     case PathKind::kNgp:
-      return ReadNgpPath(path, options);
+      return ReadNgpPath(place.path, options);
+    case PathKind::kTransforms:
+      return ReadTransformsFrames(place.path, options);
+    case PathKind::kSplatCameras:
+      return ReadSplatCameras(place.path, options);
+    case PathKind::kColmap:
+      return ReadColmapFrames(place.path, options);
     case PathKind::kYaml:
     case PathKind::kChan:
       break;
   }
-  return ReadChan(path, options);
+  return ReadChan(place.path, options);
 }
 
 // Refuses options that would have no effect.
@@ -63,18 +61,18 @@ PathOptions PathOptionsFor(const LightField& light_field, const fs::path& path) 
 }
 
 Result<bool> IsPathYaml(const fs::path& path) {
-  LF_ASSIGN_OR_RETURN(const PathKind kind, PathKindOfFile(path));
-  return kind == PathKind::kYaml;
+  LF_ASSIGN_OR_RETURN(const PathPlace place, FindPath(path));
+  return place.kind == PathKind::kYaml;
 }
 
 Result<CameraPath> OpenPath(const fs::path& path, const PathOptions& options) {
-  LF_ASSIGN_OR_RETURN(const PathKind kind, PathKindOfFile(path));
-  LF_RETURN_IF_ERROR(CheckOptions(kind, path, options));
+  LF_ASSIGN_OR_RETURN(const PathPlace place, FindPath(path));
+  LF_RETURN_IF_ERROR(CheckOptions(place.kind, path, options));
   CameraPath opened;
-  if (kind == PathKind::kYaml) {
+  if (place.kind == PathKind::kYaml) {
     LF_ASSIGN_OR_RETURN(opened, ReadPathYaml(path, options.light_field_unit_m));
   } else {
-    LF_ASSIGN_OR_RETURN(ForeignPath read, ReadForeign(kind, path, options));
+    LF_ASSIGN_OR_RETURN(ForeignPath read, ReadForeign(place, options));
     LF_ASSIGN_OR_RETURN(opened, CompletePath(std::move(read), path, options));
   }
   LF_RETURN_IF_ERROR(ReplaceQuantities(options, path, &opened));

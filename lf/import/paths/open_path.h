@@ -63,6 +63,8 @@ Result<bool> IsPathYaml(const std::filesystem::path& path);
 // - JSON with the key "camera_path": import/paths/nerfstudio_path.h
 // - JSON with the key "path": import/paths/ngp_path.h
 // - lines of numbers, a .chan of Nuke: import/paths/chan_path.h
+// - a transforms.json, the folder of one or of a COLMAP model, or a cameras.json of 3D Gaussian
+//   splatting, whose cameras become the frames: import/paths/frames_path.h
 // doc/formats/foreign_paths.md lists the conventions. A warning lists each quantity that the file
 // does not state, and the value that is used.
 //

@@ -4,8 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <optional>
+#include <system_error>
 
 #include "lf/camera/path/yaml_tree.h"
+#include "lf/core/byte_stream.h"
+#include "lf/light_field/colmap/read_colmap.h"
 #include "lf/light_field/model/parse_number.h"
 
 namespace lf {
@@ -34,6 +38,12 @@ bool LooksLikeJson(std::string_view text) {
   if (!text.starts_with('{') && !text.starts_with('[')) return false;
   const std::string_view inner = WithoutStart(text.substr(1));
   return inner.empty() || std::string_view("\"{}[]").find(inner.front()) != std::string_view::npos;
+}
+
+// Returns true if a list of objects states cameras as programs of 3D Gaussian splatting do.
+bool HoldsSplatCameras(std::string_view text) {
+  const auto has = [text](std::string_view key) { return text.find(key) != text.npos; };
+  return WithoutStart(text).starts_with('[') && has("\"rotation\"") && has("\"position\"");
 }
 
 // Returns true if the first line that is neither blank nor a comment begins with a number, as in a
@@ -75,16 +85,38 @@ Result<PathKind> PathKindOf(std::string_view text, const std::filesystem::path& 
   };
   if (has("camera_path")) return PathKind::kNerfstudio;
   if (has("path")) return PathKind::kNgp;
+  if (has("frames")) return PathKind::kTransforms;
   if (has("format")) return PathKind::kYaml;
+  if (HoldsSplatCameras(text)) return PathKind::kSplatCameras;
   constexpr size_t kMostShown = 8;
   const size_t count = keys.size();
   keys.resize(std::min(count, kMostShown));
   for (std::string& key : keys) key = QuoteForMessage(key);
   return InputError(fmt::format(
-      "{}: is JSON, but no camera path: expected the key camera_path (nerfstudio) or path "
-      "(instant-ngp) at its top level, found {}{}",
+      "{}: is JSON, but no camera path: expected the key camera_path (nerfstudio), path "
+      "(instant-ngp) or frames (transforms.json) at its top level, or a list of cameras with "
+      "position and rotation (3D Gaussian splatting); found {}{}",
       file.string(), keys.empty() ? "no key" : fmt::format("{}", fmt::join(keys, ", ")),
       count > kMostShown ? ", ..." : ""));
+}
+
+Result<PathPlace> FindPath(const std::filesystem::path& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) {
+    const std::filesystem::path transforms = path / "transforms.json";
+    if (std::filesystem::exists(transforms, error))
+      return PathPlace{PathKind::kTransforms, transforms};
+    LF_ASSIGN_OR_RETURN(const std::optional<std::filesystem::path> model, FindColmapModel(path));
+    if (model) return PathPlace{PathKind::kColmap, *model};
+    return InputError(
+        fmt::format("{}: holds no camera path: looked for transforms.json, and for a COLMAP model "
+                    "in it or in sparse/0, whose cameras become frames; give the file of the path",
+                    path.string()));
+  }
+  Result<ByteStream> stream = ByteStream::Open(path);
+  if (!stream) return PathPlace{PathKind::kYaml, path};
+  LF_ASSIGN_OR_RETURN(const PathKind kind, PathKindOf(stream->Window(), path));
+  return PathPlace{kind, path};
 }
 
 }  // namespace lf
