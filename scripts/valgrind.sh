@@ -43,4 +43,6 @@ check lfmerge "shard 1" "shard 2" -o merged
 check lfvisualizer field path.yaml --text
 check lfvisualizer field path.yaml --export page
 check lfcammvminfo path.yaml --csv
+check lfpath path.yaml -o path.json
+check lfpath path.json -o path-again.yaml --fps 12
 ((failed == 0)) || { echo "$failed failed"; exit 1; }

@@ -75,7 +75,7 @@ class InstallTest(unittest.TestCase):
         self.film(program)
 
     def test_programs_and_documents_are_installed(self):
-        for name in ("lfrenderer", "lfexample", "lfsynth", "lfimport", "lfcammvminfo",
+        for name in ("lfrenderer", "lfexample", "lfsynth", "lfimport", "lfcammvminfo", "lfpath",
                      "lfpreprocessor", "lfcompressor", "lfdensify", "lfmerge", "lfsubmit", "lfvisualizer"):
             self.run_tool(self.prefix / "bin" / name, "--version")
         for name in ("README.md", "LICENSE", "CITATION.cff", "doc/conventions.md"):

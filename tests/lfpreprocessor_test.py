@@ -254,8 +254,8 @@ class PackagesTest(ProgramTestCase):
         self.fails(2, ["--seed"], RENDERER, *files, "-o", out, "--seed", "1", *none)
         self.fails(2, ["frame 1"], RENDERER, files[0], files[1],
                    self.again(files[0]), "-o", out, *none)
-        self.fails(2, ["LIGHTFIELD PATH.yaml"], RENDERER, files[0], path, "-o", out)
-        self.fails(2, ["LIGHTFIELD PATH.yaml"], RENDERER, field, "-o", out)
+        self.fails(2, ["LIGHTFIELD PATH"], RENDERER, files[0], path, "-o", out)
+        self.fails(2, ["LIGHTFIELD PATH"], RENDERER, field, "-o", out)
         self.fails(2, ["--lightfield"], RENDERER, field, path, "-o", out, "--lightfield", field)
         self.fails(2, ["--lightfield"], RENDERER, *files, "-o", out, "--images", "x", *none)
         self.fails(2, [".lfp"], RENDERER, self.folder / "packages", "-o", out)

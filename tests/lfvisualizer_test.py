@@ -168,6 +168,20 @@ class VisualizerTest(ProgramTestCase):
         self.fails(2, ["--allow-missing", "--export"], VISUALIZER, self.field, self.path, "--text",
                    "--allow-missing", 1)
 
+    @unittest.skipIf("pageless" in sys.argv, "it has no page")
+    def test_a_path_of_another_program_becomes_yaml(self):
+        path = self.folder / "camera_path.json"
+        path.write_text(json.dumps({
+            "render_width": 80, "render_height": 60, "fps": 25, "lf_space": "world", "camera_path": [
+                {"camera_to_world": [1, 0, 0, x, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1], "fov": 40,
+                 "lf_aperture_diameter": 0.04, "lf_focus_distance": 0.8} for x in (0, 0.01)]}))
+        self.succeeds(VISUALIZER, self.field, path, "--export", self.folder / "site")
+        pages = [file.read_text(errors="replace") for file in (self.folder / "site").rglob("*") if file.is_file()]
+        self.assertTrue(any("format: lfpath 1" in page for page in pages))
+        self.assertFalse((self.folder / "camera_path.json.yaml").exists())
+        (self.folder / "camera_path.json.yaml").write_text("")
+        self.fails(2, ["camera_path.json.yaml: exists"], VISUALIZER, self.field, path, "--export", self.folder / "b")
+
     def test_what_is_missing_or_wrong_is_told(self):
         self.fails(2, ["--text", "packages"], VISUALIZER, self.field, self.path, "no.lfp", "--text")
         self.fails(2, ["--export", "--watch"], VISUALIZER, self.field, self.path, "--export", "x",
@@ -175,7 +189,9 @@ class VisualizerTest(ProgramTestCase):
         self.fails(2, ["--frames", "--text"], VISUALIZER, self.field, self.path, "--frames", 1)
         self.fails(2, ["--serve", "--text"], VISUALIZER, self.field, self.path, "--text", "--serve",
                    0)
-        self.fails(3, ["lfpath"], VISUALIZER, self.field, self.field)
+        other = self.folder / "other.json"
+        other.write_text("{}")
+        self.fails(3, ["no camera path"], VISUALIZER, self.field, other)
         self.fails(2, ["--frames '7'"], VISUALIZER, self.field, self.path, "--text", "--frames", 7)
         self.fails(3, ["nowhere"], VISUALIZER, self.folder / "nowhere", self.path, "--text")
 

@@ -77,6 +77,8 @@ class OddNames:
         yield "lfexample"
         self.call("lfcammvminfo", path)
         yield "lfcammvminfo"
+        self.call("lfpath", path, "-o", here / f"{name}.json")
+        yield "lfpath"
         self.same("lfvisualizer", self.call("lfvisualizer", field, path, "--text") == self.expected["text"])
         self.call("lfvisualizer", field, path, "--export", here / f"{name} page")
         yield "lfvisualizer"

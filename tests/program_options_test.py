@@ -22,6 +22,7 @@ VALUES = {"--threads": ["1"], "--seed": ["1"], "--progress": ["none"], "--allow-
 # Calls whose only fault is that their files do not exist.
 CALLS = {
     "lfcammvminfo": ["no.yaml"],
+    "lfpath": ["no.yaml"],
     "lfcompressor": ["no", "-o", "no.lfs"],
     "lfdensify": ["no", "-o", "no.lfs"],
     "lfexample": ["no", "-o", "no.yaml"],
@@ -137,6 +138,7 @@ class ProgramOptionsTest(ProgramTestCase):
         yield "lfdensify", [field, "-o", out / "b.lfs", "--overwrite", "--depths", 0.2, 10, "--force"], "divisor 1"
         yield "lfsubmit", [out / "packages/package-0000.lfp", "-o", out / "film",
                            "--overwrite"], "--resume --progress json"
+        yield "lfpath", [path, "-o", out / "a.json", "--overwrite", "--lightfield", field], "transforms.json: opened"
         yield "lfvisualizer", [field, path, "--text"], "transforms.json"
 
     def test_v_says_more(self):

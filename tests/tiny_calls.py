@@ -80,10 +80,12 @@ class TinyCalls:
         dense = self.words("lfdensify", self.field, "-o", out.with_suffix(".lfs"), "--depths", 0.2, 10,
                            "--spacing", 0.25, "--force", "--most", 60)
         packages = self.preprocess(self.path, out)
+        convert_path = [self.programs / "lfpath", str(self.path), "-o", str(out.with_suffix(".json")), "-q"]
         merge = self.words("lfmerge", self.shards / "partial" / "shards", "-o", out)
         return [Call("lfsynth", synth, [[*synth, "--overwrite"]]),
                 Call("lfimport", convert, [[*convert, "--force"]]),
                 Call("lfexample", self.words("lfexample", self.field, "-o", out.with_suffix(".yaml"))),
+                Call("lfpath", convert_path, [[*convert_path, "--overwrite"]]),
                 Call("lfpreprocessor", packages, [[*packages, "--overwrite"]]),
                 Call("lfcompressor", store, [[*store, "--resume"], [*store, "--overwrite"]]),
                 Call("lfcompressor, shards", shards, [[*shards, "--resume"], [*shards, "--overwrite"]]),

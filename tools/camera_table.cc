@@ -94,6 +94,12 @@ nlohmann::ordered_json JsonOf(const CameraFact& fact) {
 
 }  // namespace
 
+std::vector<FrameId> AllFrames(const CameraPath& path) {
+  std::vector<FrameId> frames;
+  for (uint32_t frame = 1; frame <= path.frame_count(); ++frame) frames.push_back({frame});
+  return frames;
+}
+
 std::string CameraTable(const CameraPath& path, const std::vector<FrameId>& frames) {
   std::string constants;
   std::vector<std::string> lines(2 + frames.size());

@@ -1,4 +1,4 @@
-// Shows the cameras of a path as text, for lfcammvminfo.
+// Shows the cameras of a path as text, for lfcammvminfo and lfpath.
 #pragma once
 
 #include <string>
@@ -8,6 +8,9 @@
 #include "lf/core/ids.h"
 
 namespace lf {
+
+// Returns the frames 1, 2, ... of a path.
+std::vector<FrameId> AllFrames(const CameraPath& path);
 
 // Returns one line for each fact about the camera (such as its position) that is the same in all
 // frames, then a table of the other facts: one line per frame, with aligned columns below two

@@ -1,4 +1,4 @@
-// lfcammvminfo PATH.yaml: prints the camera of each frame of a path.
+// lfcammvminfo PATH: prints the camera of each frame of a path.
 #include <optional>
 #include <string>
 #include <vector>
@@ -6,8 +6,8 @@
 #include "tools/camera_table.h"
 #include "tools/common/program.h"
 
-#include "lf/camera/path/path_yaml.h"
 #include "lf/core/log.h"
+#include "lf/import/paths/open_path.h"
 
 namespace {
 
@@ -40,14 +40,12 @@ lf::Result<std::vector<lf::FrameId>> ChooseFrames(const Arguments& arguments,
     return lf::UsageError(fmt::format("--frame {}: {} has no such frame; expected 1 to {}",
                                       arguments.frame, arguments.path, path.frame_count()));
   if (arguments.frame > 0) return std::vector<lf::FrameId>{{arguments.frame}};
-  std::vector<lf::FrameId> frames;
-  for (uint32_t frame = 1; frame <= path.frame_count(); ++frame) frames.push_back({frame});
-  return frames;
+  return lf::AllFrames(path);
 }
 
 lf::Result<void> Report(const Arguments& arguments, bool json) {
   LF_ASSIGN_OR_RETURN(const lf::CameraPath path,
-                      lf::ReadPathYaml(arguments.path, arguments.unit_m));
+                      lf::OpenPath(arguments.path, {.light_field_unit_m = arguments.unit_m}));
   LF_ASSIGN_OR_RETURN(const auto frames, ChooseFrames(arguments, path));
   if (json) return lf::PrintReport(lf::CameraJson(path, frames));
   if (arguments.csv) return lf::PrintReport(lf::CameraCsv(path, frames));
@@ -61,11 +59,7 @@ int main(int argc, char** argv) {
   Arguments arguments;
   lf::Program program("lfcammvminfo", kHelp);
   lf::OptionGroup input(program.app(), lf::kInputGroup), output(program.app(), lf::kOutputGroup);
-  input
-      .Add("PATH", arguments.path,
-           "Camera path\n"
-           "doc/formats/path.md describes the file.")
-      ->required();
+  input.Add("PATH", arguments.path, lf::kPathHelp)->required();
   input
       .Add("--unit-m METRES", arguments.unit_m, "Metres per world unit, if PATH does not state it")
       ->check(CLI::Range(1e-9, 1e9));
@@ -74,7 +68,8 @@ int main(int argc, char** argv) {
   CLI::Option* const csv = output.AddFlag(
       "--csv", arguments.csv, "Print a comma-separated table, with all digits of numbers");
   program.AddCommonOptions({.json = "Print JSON with all digits\n"
-                                    "Infinite numbers are null."});
+                                    "Infinite numbers are null.",
+                            .quiet = true});
   csv->excludes("--json");
   return program.Run(argc, argv, [&] { return Report(arguments, program.common().json); });
 }

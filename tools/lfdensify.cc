@@ -1,4 +1,4 @@
-// lfdensify LIGHTFIELD [PATH.yaml] -o STORE.lfs: puts virtual LF images between recorded ones.
+// lfdensify LIGHTFIELD [PATH] -o STORE.lfs: puts virtual LF images between recorded ones.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -14,8 +14,8 @@
 #include "tools/common/validators.h"
 #include "tools/densify_report.h"
 
-#include "lf/camera/path/path_yaml.h"
 #include "lf/densify/densify.h"
+#include "lf/import/paths/open_path.h"
 #include "lf/storage/packed/packed_store_file.h"
 
 namespace {
@@ -25,7 +25,7 @@ constexpr lf::HelpTexts kHelp = {
         "Puts virtual LF images between the recorded ones of a sparse light field, so that blur "
         "is smooth.",
     .usage = R"(  lfdensify LIGHTFIELD -o STORE.lfs [OPTIONS]
-  lfdensify LIGHTFIELD PATH.yaml -o STORE.lfs [OPTIONS])",
+  lfdensify LIGHTFIELD PATH -o STORE.lfs [OPTIONS])",
     .examples = R"(  lfdensify capture/ -o dense.lfs                 # for any camera path
   lfdensify capture/ path.yaml -o film.lfs        # only what the frames of a film look at
   lfdensify capture/ -o dense.lfs --divisor 2     # photographs with more pixels than frames
@@ -64,7 +64,7 @@ void AddInput(CLI::App& app, Arguments& a) {
       ->required()
       ->check(lf::NotEmpty());
   input
-      .Add("PATH.yaml", a.path,
+      .Add("PATH", a.path,
            "Camera path of a film (none)\n"
            "Only virtual LF images that contribute to its frames are made, as densely as these "
            "frames need. If it is not given, virtual LF images are made wherever LF cameras are "
@@ -92,7 +92,7 @@ void AddQuality(CLI::App& app, Arguments& a) {
       .Add("--spacing PX", a.choices.spacing_px,
            "Largest distance between copies (1.5)\n"
            "What is out of focus is made of copies, one for each LF image. The unit is an element "
-           "of the frames if PATH.yaml is given, otherwise a pixel of the virtual LF images.")
+           "of the frames if PATH is given, otherwise a pixel of the virtual LF images.")
       ->check(CLI::Range(0.25, 16.));
   quality
       .Add("--most N", a.choices.most_virtual,
@@ -144,7 +144,8 @@ lf::Result<lf::DensifyOptions> MakeOptions(const Arguments& a, const lf::LightFi
     options.choices.depths = lf::DepthRange{a.depths[0], a.depths[1]};
   }
   if (!a.path.empty()) {
-    LF_ASSIGN_OR_RETURN(const lf::CameraPath path, lf::ReadPathYaml(a.path, light_field.unit_m));
+    LF_ASSIGN_OR_RETURN(const lf::CameraPath path,
+                        lf::OpenPath(a.path, lf::PathOptionsFor(light_field, a.light_field.path)));
     options.choices.frames = path.cameras;
   }
   LF_ASSIGN_OR_RETURN(options.memory_bytes, lf::ParseByteSize(a.memory, "--memory"));

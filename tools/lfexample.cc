@@ -29,7 +29,7 @@ constexpr lf::HelpTexts kHelp = {
         R"(The path starts at an LF camera and focuses on the depth that most of its image shows. The program
 finds this depth by comparing the image with the images around it; if that fails, from the points of
 a COLMAP model. A warning says when the depth is uncertain, and what to try. Render the path with:
-  lfrenderer LIGHTFIELD PATH.yaml -o DIR)",
+  lfrenderer LIGHTFIELD PATH -o DIR)",
 };
 
 // Finds an LF camera by its number, or by the name of its image: the whole name, its last part, or

@@ -1,4 +1,4 @@
-// lfpreprocessor LIGHTFIELD PATH.yaml -o DIR: makes packages to be rendered by many machines.
+// lfpreprocessor LIGHTFIELD PATH -o DIR: makes packages to be rendered by many machines.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -16,8 +16,8 @@
 #include "tools/forecast_report.h"
 #include "tools/known_depths.h"
 
-#include "lf/camera/path/path_yaml.h"
 #include "lf/distribute/preprocess/preprocess.h"
+#include "lf/import/paths/open_path.h"
 #include "lf/render/pipeline/frame_range.h"
 
 namespace {
@@ -26,8 +26,8 @@ constexpr lf::HelpTexts kHelp = {
     .summary =
         "Selects the part of a light field that a film needs, and divides it into packages for "
         "many machines.",
-    .usage = R"(  lfpreprocessor LIGHTFIELD PATH.yaml --plan [OPTIONS]
-  lfpreprocessor LIGHTFIELD PATH.yaml -o DIR [OPTIONS])",
+    .usage = R"(  lfpreprocessor LIGHTFIELD PATH --plan [OPTIONS]
+  lfpreprocessor LIGHTFIELD PATH -o DIR [OPTIONS])",
     .examples =
         R"(  lfpreprocessor capture/ path.yaml --plan           # forecast of cost and picture quality
   lfpreprocessor capture/ path.yaml -o packages --packages 4
@@ -38,7 +38,7 @@ constexpr lf::HelpTexts kHelp = {
 cameras of a section of the film, and the LF cameras that its frames need, with their pixel
 rectangles and their order. With --frames 1-4 the names are package-0000-of-frames-1-4.lfp, ..., so
 that packages of several parts of a film fit into one DIR. Frames that are rendered from packages are
-bit-identical to those of lfrenderer LIGHTFIELD PATH.yaml.)",
+bit-identical to those of lfrenderer LIGHTFIELD PATH.)",
 };
 
 struct Arguments {
@@ -55,11 +55,7 @@ struct Arguments {
 void AddInputAndOutput(CLI::App& app, Arguments& a) {
   lf::OptionGroup input(app, lf::kInputGroup), output(app, lf::kOutputGroup);
   a.light_field.AddTo(app);
-  input
-      .Add("PATH.yaml", a.path,
-           "Camera path\n"
-           "doc/formats/path.md describes the file.")
-      ->required();
+  input.Add("PATH", a.path, lf::kPathHelp)->required();
   a.allow_missing.AddTo(app, "the LF images that packages need");
   auto* plan = output.AddFlag("--plan", a.plan,
                               "Print the forecast of the render, write no packages\n"
@@ -203,7 +199,8 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   LF_ASSIGN_OR_RETURN(const lf::LightField light_field, a.light_field.Open());
   const double read_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  LF_ASSIGN_OR_RETURN(const lf::CameraPath path, lf::ReadPathYaml(a.path, light_field.unit_m));
+  LF_ASSIGN_OR_RETURN(const lf::CameraPath path,
+                      lf::OpenPath(a.path, lf::PathOptionsFor(light_field, a.light_field.path)));
   LF_ASSIGN_OR_RETURN(lf::PreprocessOptions options,
                       MakeOptions(a, common, path, light_field.encoding));
   options.interrupted = &interrupted;

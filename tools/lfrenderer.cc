@@ -1,4 +1,4 @@
-// lfrenderer LIGHTFIELD PATH.yaml -o DIR, or PACKAGE... -o DIR: films a light field with a
+// lfrenderer LIGHTFIELD PATH -o DIR, or PACKAGE... -o DIR: films a light field with a
 // thin-lens camera.
 #include <fmt/format.h>
 
@@ -18,9 +18,9 @@
 #include "tools/render_end.h"
 #include "tools/render_summary.h"
 
-#include "lf/camera/path/path_yaml.h"
 #include "lf/core/geometry.h"
 #include "lf/core/log.h"
+#include "lf/import/paths/open_path.h"
 #include "lf/render/pipeline/render.h"
 #include "lf/render/pipeline/render_packages.h"
 
@@ -28,7 +28,7 @@ namespace {
 
 constexpr lf::HelpTexts kHelp = {
     .summary = "Films a densely recorded light field with a thin-lens camera on a path.",
-    .usage = R"(  lfrenderer LIGHTFIELD PATH.yaml -o DIR [OPTIONS]
+    .usage = R"(  lfrenderer LIGHTFIELD PATH -o DIR [OPTIONS]
   lfrenderer PACKAGE... -o DIR [OPTIONS])",
     .examples = R"(  lfrenderer capture/transforms.json path.yaml -o frames
   lfrenderer capture/ path.yaml -o frames --format png16 --video film.mp4
@@ -80,8 +80,9 @@ lf::Result<Rendered> RenderLightField(const lf::RenderArguments& arguments,
   lf::LightFieldArgument argument = arguments.light_field;
   argument.path = arguments.inputs[0];
   LF_ASSIGN_OR_RETURN(lf::LightField light_field, argument.Open());
-  LF_ASSIGN_OR_RETURN(lf::CameraPath path,
-                      lf::ReadPathYaml(arguments.inputs[1], light_field.unit_m));
+  LF_ASSIGN_OR_RETURN(
+      lf::CameraPath path,
+      lf::OpenPath(arguments.inputs[1], lf::PathOptionsFor(light_field, arguments.inputs[0])));
   LF_ASSIGN_OR_RETURN(lf::RenderOptions options, arguments.MakeOptions(common, path.frame_count()));
   if (arguments.HasNoFrame(options)) return NoFrames(arguments, std::move(options));
   options.signals = signals;

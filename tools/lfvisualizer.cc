@@ -1,4 +1,4 @@
-// lfvisualizer LIGHTFIELD PATH.yaml: shows what was captured and what a camera path needs of it.
+// lfvisualizer LIGHTFIELD PATH: shows what was captured and what a camera path needs of it.
 #include <fmt/format.h>
 
 #include <string>
@@ -14,8 +14,8 @@
 #include "tools/visualizer/export_page.h"
 #include "tools/visualizer/page_server.h"
 
-#include "lf/camera/path/path_yaml.h"
 #include "lf/core/log.h"
+#include "lf/import/paths/open_path.h"
 #include "lf/render/pipeline/frame_range.h"
 #include "lf/view/scene_text.h"
 
@@ -59,8 +59,8 @@ void AddInput(CLI::App& app, Arguments& a) {
   lf::OptionGroup input(app, lf::kInputGroup);
   input
       .Add("PATH", a.path,
-           "Camera path\n"
-           "doc/formats/path.md describes the file.")
+           std::string(lf::kPathHelp) +
+               " The page converts all but our own to YAML, which it saves beside PATH.")
       ->required();
   input.Add("PACKAGE", a.page.packages, "Packages that lfpreprocessor made for this path");
 }
@@ -154,7 +154,8 @@ lf::NeedsOptions Needs(const Arguments& a) {
 
 lf::Result<void> PrintText(const Arguments& a, const lf::CommonOptions& common) {
   LF_ASSIGN_OR_RETURN(const lf::LightField light_field, a.light_field.Open());
-  LF_ASSIGN_OR_RETURN(const lf::CameraPath path, lf::ReadPathYaml(a.path, light_field.unit_m));
+  LF_ASSIGN_OR_RETURN(const lf::CameraPath path,
+                      lf::OpenPath(a.path, lf::PathOptionsFor(light_field, a.light_field.path)));
   LF_ASSIGN_OR_RETURN(
       const std::vector<lf::FrameId> frames,
       lf::ParseFrameRange(a.frames.empty() ? fmt::format("1-{}", path.frame_count()) : a.frames,

@@ -36,10 +36,12 @@ void AddInput(CLI::App& app, RenderArguments& a) {
   OptionGroup input(app, kInputGroup);
   input
       .Add("INPUT", a.inputs,
-           "LIGHTFIELD PATH.yaml, or PACKAGE... of lfpreprocessor\n"
+           "LIGHTFIELD PATH, or PACKAGE... of lfpreprocessor\n"
            "LIGHTFIELD: a calibration file or its folder (transforms.json, COLMAP, Middlebury, "
            "LLFF, HCI, AOS), a packed store, or a folder of images with Stanford names\n"
-           "PATH.yaml: a camera path (doc/formats/path.md)\n"
+           "PATH: a camera path of our own (doc/formats/path.md), of another program, or the "
+           "cameras of a "
+           "calibration (doc/formats/foreign_paths.md)\n"
            "PACKAGE: a file that lfpreprocessor has written")
       ->required();
   input
@@ -288,21 +290,21 @@ Result<void> RenderArguments::Check(bool seed_given) const {
   if (densify && !shard.empty())
     return UsageError(
         "--densify cannot be used with --shard, because all shards need the same virtual LF "
-        "images: make them first with lfdensify LIGHTFIELD PATH.yaml -o STORE.lfs, and give "
+        "images: make them first with lfdensify LIGHTFIELD PATH -o STORE.lfs, and give "
         "STORE.lfs to the shards");
   if (std::any_of(inputs.begin(), inputs.end(), IsPackageName))
     return UsageError(
-        "packages and other inputs are given: expected LIGHTFIELD PATH.yaml, or only packages "
+        "packages and other inputs are given: expected LIGHTFIELD PATH, or only packages "
         "(files that end in .lfp)");
   if (inputs.size() != 2)
     return UsageError(fmt::format(
-        "{} {} given, expected LIGHTFIELD PATH.yaml, or packages (files that end in .lfp, such as "
+        "{} {} given, expected LIGHTFIELD PATH, or packages (files that end in .lfp, such as "
         "packages/package-0000.lfp)",
         inputs.size(), inputs.size() == 1 ? "input is" : "inputs are"));
   if (!light_field.path.empty())
     return UsageError(
         "--lightfield can only be used with packages: give the light field as the first argument "
-        "instead, before PATH.yaml");
+        "instead, before PATH");
   return {};
 }
 

@@ -20,7 +20,7 @@
 namespace lf {
 
 struct RenderArguments {
-  std::vector<std::string> inputs;  // the words LIGHTFIELD PATH.yaml, or PACKAGE...
+  std::vector<std::string> inputs;  // the words LIGHTFIELD PATH, or PACKAGE...
   LightFieldArgument light_field;   // its options; its `path` is the value of --lightfield
   std::string output, video, frames, memory = "8G", format = "exr", mode = "collect";
   std::string estimator = "auto", filter = "auto", lens_weights = "auto", back_end = "fast",
@@ -42,7 +42,7 @@ struct RenderArguments {
 
   // Returns true if all inputs are packages: files that end in .lfp.
   bool HasPackages() const;
-  // Must be called before MakeOptions(). kUsage if the inputs are neither LIGHTFIELD PATH.yaml nor
+  // Must be called before MakeOptions(). kUsage if the inputs are neither LIGHTFIELD PATH nor
   // packages, if --allow-missing cannot be parsed, or if an option cannot be used with these
   // inputs.
   //   seed_given  true if --seed is given; packages contain a seed of their own

@@ -74,7 +74,7 @@ Result<Words> SplitWords(const std::vector<std::string>& words) {
     if (!IsPackageName(*word))
       return UsageError(
           fmt::format("{}: is not a package (a file that ends in .lfp): make packages with "
-                      "lfpreprocessor LIGHTFIELD PATH.yaml -o packages --packages 8",
+                      "lfpreprocessor LIGHTFIELD PATH -o packages --packages 8",
                       *word));
     split.files.push_back(fs::absolute(*word).lexically_normal());
   }

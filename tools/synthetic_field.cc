@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "lf/camera/path/path_yaml.h"
 #include "lf/core/file.h"
 #include "lf/core/file_lock.h"
 #include "lf/core/log.h"
+#include "lf/import/paths/open_path.h"
 #include "lf/light_field/synthetic/built_in_scenes.h"
 #include "lf/light_field/synthetic/write_light_field.h"
 #include "lf/light_field/synthetic/write_truth.h"
@@ -102,7 +102,7 @@ Result<void> WriteSyntheticField(const SyntheticFieldOptions& options, ThreadPoo
   LF_ASSIGN_OR_RETURN(const std::vector<RigidTransform> poses, MakeRig(rig));
   CameraPath path;
   if (!options.truth.empty()) {
-    LF_ASSIGN_OR_RETURN(path, ReadPathYaml(options.truth, 1.0));
+    LF_ASSIGN_OR_RETURN(path, OpenPath(options.truth, {.light_field_unit_m = 1.0}));
   }
   // The lock keeps two processes from mixing their scenes in one folder.
   LF_ASSIGN_OR_RETURN(const FileLock lock, LockFolder(options.output));

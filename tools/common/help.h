@@ -29,6 +29,14 @@ inline constexpr const char* kRunningGroup = "Running";
 inline constexpr const char* kMeasuringGroup = "Measuring";
 inline constexpr const char* kHelpGroup = "Help";
 
+// The help of the argument PATH, which many programs have.
+inline constexpr const char* kPathHelp =
+    "Camera path\n"
+    "Our own YAML (doc/formats/path.md); a path of nerfstudio, instant-ngp or Nuke; or a "
+    "transforms.json, a COLMAP model or a cameras.json of 3D Gaussian splatting, whose cameras "
+    "become "
+    "the frames (doc/formats/foreign_paths.md).";
+
 // The texts of one program. Lines that begin with two spaces, such as commands, are printed as they
 // are; other lines are wrapped, in `details` after the lines of a paragraph are joined.
 struct HelpTexts {

@@ -6,9 +6,11 @@
 #include <utility>
 
 #include "lf/camera/path/path_yaml.h"
+#include "lf/camera/path/path_yaml_write.h"
 #include "lf/core/file.h"
 #include "lf/core/hash.h"
 #include "lf/core/log.h"
+#include "lf/import/paths/open_path.h"
 #include "lf/render/package/package_file.h"
 #include "lf/render/state/run_inputs.h"
 #include "lf/storage/load/open_store.h"
@@ -33,10 +35,37 @@ Result<std::unique_ptr<PageScene>> PageScene::Open(LightField light_field,
                                                    PageArguments arguments) {
   std::unique_ptr<PageScene> scene(new PageScene(std::move(light_field), std::move(arguments)));
   LF_ASSIGN_OR_RETURN(scene->store_, OpenStore(scene->light_field_, Mosaics::kToRgb));
-  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(scene->arguments_.path));
-  LF_ASSIGN_OR_RETURN(scene->first_draft_, scene->AddDraft(text));
+  LF_RETURN_IF_ERROR(scene->OpenFirstDraft());
   LF_RETURN_IF_ERROR(scene->OpenPackages());
   return scene;
+}
+
+// The page edits YAML. A path of another form is converted, and saved beside it.
+Result<void> PageScene::OpenFirstDraft() {
+  std::filesystem::path& path = arguments_.path;
+  LF_ASSIGN_OR_RETURN(const bool is_yaml, IsPathYaml(path));
+  if (is_yaml) {
+    LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path));
+    LF_ASSIGN_OR_RETURN(first_draft_, AddDraft(text));
+    return {};
+  }
+  LF_ASSIGN_OR_RETURN(CameraPath opened,
+                      OpenPath(path, PathOptionsFor(light_field_, arguments_.light_field)));
+  LF_ASSIGN_OR_RETURN(const PathYaml yaml, PathYamlOf(opened));
+  for (const std::string& lost : yaml.lost)
+    LogWarning("{}: the page, which edits YAML, does not show {}", path.string(), lost);
+  path = path.lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();
+  path += ".yaml";
+  std::error_code error;
+  if (std::filesystem::exists(path, error))
+    return UsageError(
+        fmt::format("{}: exists, but the page would save the converted path there: give this file "
+                    "as PATH, or remove it",
+                    path.string()));
+  LogInfo("the path is converted to YAML; the page saves it as {}", path.string());
+  first_draft_ = KeepDraft(yaml.text, std::move(opened));
+  return {};
 }
 
 Result<void> PageScene::OpenPackages() {
@@ -69,8 +98,12 @@ Result<std::shared_ptr<PathDraft>> PageScene::AddDraft(const std::string& text) 
   if (std::shared_ptr<PathDraft> known = FindDraft(id)) return known;
   LF_ASSIGN_OR_RETURN(CameraPath path, ParsePathYaml(text, arguments_.path.filename().string(),
                                                      light_field_.unit_m));
+  return KeepDraft(text, std::move(path));
+}
+
+std::shared_ptr<PathDraft> PageScene::KeepDraft(const std::string& text, CameraPath path) {
   auto draft = std::make_shared<PathDraft>();
-  draft->id = id;
+  draft->id = IdOfText(text);
   draft->text = text;
   draft->path = std::make_shared<const CameraPath>(std::move(path));
   draft->cameras_hash = HashOfCameras(*draft->path);

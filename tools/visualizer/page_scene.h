@@ -29,7 +29,7 @@ namespace lf {
 struct PageArguments {
   std::string light_field;                       // LIGHTFIELD as it was given
   std::vector<std::string> light_field_options;  // words, such as --fov-deg 60
-  std::filesystem::path path;                    // PATH.yaml
+  std::filesystem::path path;  // PATH; if it is not YAML, the scene replaces it by PATH.yaml
   std::vector<std::string> packages;
   std::filesystem::path watch;  // folder of the watched render; empty if none is watched
   NeedsOptions needs;
@@ -83,12 +83,15 @@ class PageScene {
   // stopped.
   std::shared_ptr<FilmUse> FilmOf(PathDraft& draft);
 
-  // Returns the current content of PATH.yaml.
+  // Returns the current content of PATH.yaml. kInput while the file that Save writes does not
+  // exist, because PATH has another form.
   Result<std::string> TextOnDisk() const;
 
  private:
   PageScene(LightField light_field, PageArguments arguments);
+  Result<void> OpenFirstDraft();
   Result<void> OpenPackages();
+  std::shared_ptr<PathDraft> KeepDraft(const std::string& text, CameraPath path);
 
   PageArguments arguments_;
   LightField light_field_;

@@ -9,6 +9,11 @@
 
 namespace lf {
 
+// Limits of a path, which its readers check before memory is allocated.
+inline constexpr int kMostFrames = 1'000'000;
+inline constexpr int kLargestPlateSide_px = 65536;
+inline constexpr long long kMostPlateElements = 1LL << 30;
+
 struct CameraPath {
   double fps = 30;
   double unit_m = 1;                  // metres per world unit

@@ -18,10 +18,6 @@
 namespace lf {
 namespace {
 
-constexpr int kMostFrames = 1'000'000;
-constexpr int kLargestSide_px = 65536;
-constexpr long long kMostElements = 1LL << 30;
-
 // Reads the keys `fps` and `frames`.
 void ReadClock(YamlMap* file, PathDescription* path) {
   if (const YamlEntry* fps = file->Require("fps", "fps: 30"))
@@ -41,13 +37,14 @@ void ReadResolution(YamlMap* file, PathDescription* path) {
     return;
   }
   const auto read = [&](size_t i, const char* label) {
-    return ReadInteger(*node.items[i], label, 1, kLargestSide_px, file->errors()).value_or(1);
+    return ReadInteger(*node.items[i], label, 1, kLargestPlateSide_px, file->errors()).value_or(1);
   };
   path->width_px = read(0, "resolution width");
   path->height_px = read(1, "resolution height");
-  if (static_cast<long long>(path->width_px) * path->height_px > kMostElements)
-    file->errors()->Add(node.place, fmt::format("resolution: {} x {} is more than {} elements",
-                                                path->width_px, path->height_px, kMostElements));
+  if (static_cast<long long>(path->width_px) * path->height_px > kMostPlateElements)
+    file->errors()->Add(node.place,
+                        fmt::format("resolution: {} x {} is more than {} elements", path->width_px,
+                                    path->height_px, kMostPlateElements));
 }
 
 void ReadUnit(YamlMap* file, std::optional<double> light_field_unit_m, PathDescription* path) {

@@ -94,14 +94,25 @@ Result<Similarity> ReadSimilarity(const std::string& text_or_file) {
   return similarity;
 }
 
+RigidTransform PoseIn(const Similarity& b_from_a, const RigidTransform& cam_from_a) {
+  // With the old pose R, t a point of world a is at x_cam = R x_a + t. Camera coordinates grow by
+  // s, the scale of b_from_a, whose rotation and translation are Q and q. Insertion of x_a = Q^T
+  // (x_b - q) / s gives s x_cam = R Q^T x_b + s t - R Q^T q.
+  RigidTransform pose;
+  pose.rotation = cam_from_a.rotation * b_from_a.rotation.transpose();
+  pose.translation = b_from_a.scale * cam_from_a.translation - pose.rotation * b_from_a.translation;
+  return pose;
+}
+
+Similarity InverseOf(const Similarity& b_from_a) {
+  const Mat3 rotation = b_from_a.rotation.transpose();
+  return {1 / b_from_a.scale, rotation, -(rotation * b_from_a.translation) / b_from_a.scale};
+}
+
 Result<void> Transform(const Similarity& b_from_a, LightField* light_field) {
   for (size_t i = 0; i < light_field->size(); ++i) {
-    // With the old pose R, t a point of world a is at x_cam = R x_a + t. Camera coordinates grow by
-    // s, the scale of b_from_a, whose rotation and translation are Q and q. Insertion of
-    // x_a = Q^T (x_b - q) / s gives s x_cam = R Q^T x_b + s t - R Q^T q.
     RigidTransform& pose = light_field->cameras[i].cam_from_world;
-    pose.rotation = pose.rotation * b_from_a.rotation.transpose();
-    pose.translation = b_from_a.scale * pose.translation - pose.rotation * b_from_a.translation;
+    pose = PoseIn(b_from_a, pose);
     if (!(pose.translation.cwiseAbs().maxCoeff() <= kLargest_w))
       return InputError(
           fmt::format("{}: the transform would move this LF camera beyond +-1e12 world units: "

@@ -31,6 +31,13 @@ Result<Similarity> ParseSimilarity(std::string_view text);
 // name, which may have at most 64 KiB.
 Result<Similarity> ReadSimilarity(const std::string& text_or_file);
 
+// Returns the pose in world b of a camera whose pose in world a is given. Camera coordinates grow
+// by the scale, so that the camera still sees every point at the same pixel.
+RigidTransform PoseIn(const Similarity& b_from_a, const RigidTransform& cam_from_a);
+
+// Returns the similarity that maps world b back to world a.
+Similarity InverseOf(const Similarity& b_from_a);
+
 // Transforms poses and depth range from world a to world b, so that pixels still see the same
 // points. unit_m is unchanged. kInput: a camera position beyond 1e12.
 Result<void> Transform(const Similarity& b_from_a, LightField* light_field);

@@ -1,5 +1,5 @@
-// Splits a text file into lines of words, block by block: lines may have any length. Internal to
-// this folder.
+// Splits a text file into lines of words, block by block: lines may have any length. Used by the
+// readers of models and camera paths.
 #pragma once
 
 #include <cstdint>

@@ -26,17 +26,18 @@ size_t Find(const Characters& characters, std::string_view text) {
   return i;
 }
 
-// Returns true if the key is "frames". `key` is the text between the quotation marks, escapes
+// Returns true if the key is `wanted`. `key` is the text between the quotation marks, escapes
 // included.
-bool IsFrames(std::string_view key) {
-  if (key.find('\\') == std::string_view::npos) return key == "frames";
+bool IsKey(std::string_view key, std::string_view wanted) {
+  if (key.find('\\') == std::string_view::npos) return key == wanted;
   const std::string quoted = '"' + std::string(key) + '"';
-  return nlohmann::json::parse(quoted, nullptr, false) == "frames";
+  return nlohmann::json::parse(quoted, nullptr, false) == wanted;
 }
 
 }  // namespace
 
-FrameCutter::FrameCutter(std::function<void(const std::string&)> take) : take_(std::move(take)) {}
+FrameCutter::FrameCutter(std::string_view list_key, std::function<void(const std::string&)> take)
+    : list_key_(list_key), take_(std::move(take)) {}
 
 void FrameCutter::Add(std::string_view piece) {
   while (!piece.empty()) {
@@ -117,7 +118,7 @@ void FrameCutter::Enter(char bracket) {
   if (depth_ == 0 && bracket == '[') is_over_ = true;
   if (depth_ == 1)
     is_frames_list_ = bracket == '[' && !is_over_ &&
-                      IsFrames(std::string_view(rest_).substr(key_begin_, key_size_));
+                      IsKey(std::string_view(rest_).substr(key_begin_, key_size_), list_key_);
   ++depth_;
 }
 

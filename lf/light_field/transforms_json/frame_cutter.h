@@ -1,5 +1,6 @@
-// Splits the text of a transforms.json into its frames and the rest. It only looks at brackets and
-// quotation marks and does not parse values. Internal to this folder.
+// Splits the text of a JSON file, such as a transforms.json, into the objects of one long list and
+// the rest. It only looks at brackets and quotation marks and does not parse values. Used by the
+// readers of calibrations and camera paths.
 #pragma once
 
 #include <cstddef>
@@ -9,12 +10,13 @@
 
 namespace lf {
 
-// If the text is JSON, the frames are the objects {...} in all lists with the key "frames" of the
-// top level. Conversely, the whole text is JSON if the rest and every frame are JSON.
+// If the text is JSON, the frames are the objects {...} in all lists with the given key of the top
+// level, such as "frames". Conversely, the whole text is JSON if the rest and every frame are JSON.
 class FrameCutter {
  public:
   // Calls `take` with each frame as soon as its text is complete.
-  explicit FrameCutter(std::function<void(const std::string& frame)> take);
+  //   list_key  key of the list; must outlive this object
+  FrameCutter(std::string_view list_key, std::function<void(const std::string& frame)> take);
 
   // Adds the next piece of the text, of any size.
   void Add(std::string_view piece);
@@ -34,16 +36,18 @@ class FrameCutter {
   void Enter(char bracket);
   bool BeginsFrame() const { return depth_ == 2 && is_frames_list_; }
 
+  std::string_view list_key_;
   std::function<void(const std::string&)> take_;
   std::string rest_, frame_;
   bool in_string_ = false;
-  bool is_escaped_ = false;      // true if a backslash in a string precedes the next character
-  size_t frame_depth_ = 0;       // number of open brackets { in the frame; 0 outside frames
-  size_t depth_ = 0;             // number of open brackets { and [ in rest_
-  size_t key_begin_ = 0;         // index in rest_ at which the last string of the top level begins
-  size_t key_size_ = 0;          // size of this string without quotation marks, in bytes
-  bool is_frames_list_ = false;  // true if the last bracket that opened depth 2 is that of "frames"
-  bool is_over_ = false;         // true if no frame can follow: the top level ended or is no object
+  bool is_escaped_ = false;  // true if a backslash in a string precedes the next character
+  size_t frame_depth_ = 0;   // number of open brackets { in the frame; 0 outside frames
+  size_t depth_ = 0;         // number of open brackets { and [ in rest_
+  size_t key_begin_ = 0;     // index in rest_ at which the last string of the top level begins
+  size_t key_size_ = 0;      // size of this string without quotation marks, in bytes
+  bool is_frames_list_ =
+      false;              // true if the last bracket that opened depth 2 is that of list_key_
+  bool is_over_ = false;  // true if no frame can follow: the top level ended or is no object
 };
 
 }  // namespace lf

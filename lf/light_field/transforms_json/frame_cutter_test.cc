@@ -17,7 +17,7 @@ struct Parts {
 
 Parts Cut(std::string_view text, size_t piece_size) {
   Parts parts;
-  FrameCutter cutter([&](const std::string& frame) { parts.frames.push_back(frame); });
+  FrameCutter cutter("frames", [&](const std::string& frame) { parts.frames.push_back(frame); });
   for (size_t i = 0; i < text.size(); i += piece_size) cutter.Add(text.substr(i, piece_size));
   parts.rest = cutter.rest();
   parts.is_in_frame = cutter.is_in_frame();

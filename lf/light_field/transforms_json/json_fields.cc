@@ -83,9 +83,13 @@ std::optional<element> JsonFields::Find(const char* key) const {
 
 bool JsonFields::Has(const char* key) const { return Find(key).has_value(); }
 
-bool JsonFields::HasList(const char* key) const {
+std::optional<size_t> JsonFields::ListSize(const char* key) const {
   const std::optional<element> value = Find(key);
-  return value && value->is<array>();
+  array list;
+  if (!value || value->get(list) != simdjson::SUCCESS) return std::nullopt;
+  size_t count = 0;  // list.size() stops at 0xFFFFFF entries
+  for (auto entry = list.begin(); entry != list.end(); ++entry) ++count;
+  return count;
 }
 
 Result<std::optional<double>> JsonFields::Number(const char* key, const NumberRule& rule) const {
@@ -182,7 +186,7 @@ Result<void> JsonFields::CheckLfKeys(std::span<const char* const> known,
 
 Error JsonFields::Fault(std::string_view message) const {
   std::string place = file_.string();
-  if (frame_index_) place += fmt::format(": frames[{}]", *frame_index_);
+  if (frame_index_) place += fmt::format(": {}[{}]", list_, *frame_index_);
   if (!file_path_.empty()) place += fmt::format(" ({})", file_path_);
   return InputError(fmt::format("{}: {}", place, message));
 }

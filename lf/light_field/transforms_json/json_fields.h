@@ -1,5 +1,5 @@
 // Reads the keys of a JSON object as checked values. Errors name the file, the frame, the key, the
-// value and what was expected. Used by the readers of calibrations.
+// value and what was expected. Used by the readers of calibrations and camera paths.
 #pragma once
 
 #include <cstddef>
@@ -31,13 +31,19 @@ class JsonFields {
   // Views the top level of the file.
   JsonFields(const JsonObject& object, const std::filesystem::path& file)
       : object_(object), file_(file) {}
-  // Views frames[frame_index], which describes the image file_path ("" until that is known).
+  // Views frames[frame_index], which describes the image file_path ("" until that is known). `list`
+  // is the name of the list in messages.
   JsonFields(const JsonObject& object, const std::filesystem::path& file, size_t frame_index,
-             std::string_view file_path)
-      : object_(object), file_(file), frame_index_(frame_index), file_path_(file_path) {}
+             std::string_view file_path, std::string_view list = "frames")
+      : object_(object),
+        file_(file),
+        frame_index_(frame_index),
+        file_path_(file_path),
+        list_(list) {}
 
-  bool Has(const char* key) const;      // false if the key is missing or its value is null
-  bool HasList(const char* key) const;  // true if the value of the key is a list
+  bool Has(const char* key) const;  // false if the key is missing or its value is null
+  // Returns the number of entries of the list; nullopt if the value of the key is no list.
+  std::optional<size_t> ListSize(const char* key) const;
   // Number() and the functions below up to Matrix() return nullopt if the key is missing or null,
   // and kInput if the value has another type or violates the rule.
   Result<std::optional<double>> Number(const char* key, const NumberRule& rule) const;
@@ -77,6 +83,7 @@ class JsonFields {
   const std::filesystem::path& file_;
   std::optional<size_t> frame_index_;
   std::string_view file_path_;
+  std::string_view list_;
 };
 
 }  // namespace lf

@@ -1,4 +1,5 @@
-// Parses one object {...} of a JSON text fast. Used by the readers of calibrations.
+// Parses one object {...} of a JSON text fast. Used by the readers of calibrations and camera
+// paths.
 #pragma once
 
 #include <memory>

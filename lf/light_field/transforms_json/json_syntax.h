@@ -1,4 +1,5 @@
-// Makes error messages about files that are not JSON. Used by the readers of calibrations.
+// Makes error messages about files that are not JSON. Used by the readers of calibrations and
+// camera paths.
 #pragma once
 
 #include <filesystem>

@@ -94,7 +94,7 @@ Result<void> ReadAlpha(const JsonFields& top, RadianceEncoding* encoding) {
         "\"lf_background\" cannot be used with lf_alpha \"mask\", whose pixels are either used or "
         "left out: remove lf_background, or state lf_alpha \"straight\" or \"premultiplied\"");
   encoding->background.emplace();
-  if (!top.HasList("lf_background")) {
+  if (!top.ListSize("lf_background")) {
     const Result<std::optional<std::string>> word = top.Text("lf_background");
     if (!word || *word != kNoBackground)
       return top.Wrong("lf_background", "three radiances, or \"none\"");

@@ -105,7 +105,7 @@ class Reader {
   }
 
   Result<LightField> Finish(const JsonFields& top) {
-    if (!top.HasList("frames")) return top.Wrong("frames", "a list of objects");
+    if (!top.ListSize("frames")) return top.Wrong("frames", "a list of objects");
     if (frame_count() == 0)
       return top.Fault(
           "\"frames\" is empty: expected at least one frame, because a light field needs images");
@@ -297,7 +297,8 @@ Result<LightField> Read(const fs::path& path, const StreamSource& open,
                         const ImageSizeSource& image_size, const RawFactsSource& raw_facts) {
   Reader reader(path, image_size, raw_facts);
   bool is_json = true;
-  FrameCutter cutter([&](const std::string& frame) { is_json &= reader.TakeFrame(frame); });
+  FrameCutter cutter("frames",
+                     [&](const std::string& frame) { is_json &= reader.TakeFrame(frame); });
   LF_ASSIGN_OR_RETURN(ByteStream stream, open());
   for (std::string_view piece = stream.Window(); is_json && !piece.empty();
        piece = stream.Window()) {

@@ -16,7 +16,7 @@ namespace {
 // Returns the frames, one per line, followed by the rest.
 std::string Cut(std::string_view text, size_t piece_size) {
   std::string frames;
-  lf::FrameCutter cutter([&](const std::string& frame) { frames += frame + '\n'; });
+  lf::FrameCutter cutter("frames", [&](const std::string& frame) { frames += frame + '\n'; });
   for (size_t i = 0; i < text.size(); i += piece_size) cutter.Add(text.substr(i, piece_size));
   return frames + cutter.rest();
 }

@@ -1,16 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <iterator>
-#include <nlohmann/json.hpp>
-#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "lf/core/file.h"
 #include "lf/light_field/transforms_json/distortion_keys.h"
+#include "lf/light_field/transforms_json/json_text.h"
 #include "lf/light_field/transforms_json/lf_keys.h"
 #include "lf/light_field/transforms_json/opengl_pose.h"
 #include "lf/light_field/transforms_json/transforms_json.h"
@@ -18,53 +15,6 @@
 namespace lf {
 namespace fs = std::filesystem;
 namespace {
-
-// The text of a file, to which the functions append. Numbers are written with the fewest digits (at
-// most 17) that are read back as the same double.
-class JsonText {
- public:
-  template <class... Args>
-  void Add(fmt::format_string<Args...> format, Args&&... args) {
-    fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
-  }
-  void AddNumber(double x) {
-    // "-0" would be read as an integer and lose its sign.
-    if (x == 0 && std::signbit(x))
-      Add("-0.0");
-    else
-      Add("{}", x);
-  }
-  void AddNumbers(std::span<const double> list) {
-    Add("[");
-    for (size_t i = 0; i < list.size(); ++i) {
-      if (i > 0) Add(", ");
-      AddNumber(list[i]);
-    }
-    Add("]");
-  }
-  // Adds rows of `columns` numbers.
-  void AddMatrix(std::span<const double> values, size_t columns) {
-    Add("[");
-    for (size_t i = 0; i < values.size(); i += columns) {
-      if (i > 0) Add(", ");
-      AddNumbers(values.subspan(i, columns));
-    }
-    Add("]");
-  }
-  // Adds a string in quotation marks. kOutput if it is not UTF-8, which JSON requires.
-  Result<void> AddString(const std::string& string) {
-    try {
-      text_ += nlohmann::json(string).dump();
-    } catch (const nlohmann::json::exception&) {
-      return OutputError(fmt::format("the name \"{}\" is not UTF-8: rename the file", string));
-    }
-    return {};
-  }
-  const std::string& text() const { return text_; }
-
- private:
-  std::string text_;
-};
 
 // Writes camera_model and its parameters. Parameters that only `top` has are written as 0, because
 // a reader would otherwise take them from `top`.

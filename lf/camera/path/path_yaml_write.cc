@@ -1,0 +1,197 @@
+#include "lf/camera/path/path_yaml_write.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "lf/camera/path/path_yaml.h"
+
+namespace lf {
+namespace {
+
+constexpr double kEqualOptics = 1e-12;  // relative difference of field of view and focal length
+
+// A quantity of the file, with the text of its value in each frame.
+struct YamlQuantity {
+  std::string key;
+  std::vector<std::string> values;
+  std::vector<bool> jumps = {};  // true where the value cannot be interpolated; may be empty
+
+  bool Moves() const {
+    return std::any_of(values.begin(), values.end(),
+                       [&](const std::string& value) { return value != values[0]; });
+  }
+};
+
+using ValueText = std::function<std::string(const RenderCamera&)>;
+
+YamlQuantity QuantityOf(const CameraPath& path, const char* key, const ValueText& text) {
+  YamlQuantity quantity{key, {}};
+  quantity.values.reserve(path.frame_count());
+  for (const RenderCamera& camera : path.cameras) quantity.values.push_back(text(camera));
+  return quantity;
+}
+
+std::string PointText(const Vec3& point) {
+  // The sum with 0 makes 0 of -0.
+  return fmt::format("[{}, {}, {}]", point.x() + 0.0, point.y() + 0.0, point.z() + 0.0);
+}
+
+Eigen::Quaterniond WorldFromCamOf(const RenderCamera& camera) {
+  return Eigen::Quaterniond(Mat3(camera.pinhole.cam_from_world.rotation.transpose()));
+}
+
+YamlQuantity Orientation(const CameraPath& path) {
+  YamlQuantity quantity = QuantityOf(path, "quaternion", [](const RenderCamera& camera) {
+    const Eigen::Quaterniond q = WorldFromCamOf(camera);
+    return fmt::format("[{}, {}, {}, {}]", q.w(), q.x(), q.y(), q.z());
+  });
+  // Half a turn between two frames has no shorter arc.
+  constexpr double kHalfTurn = 1e-6;
+  quantity.jumps.assign(path.frame_count(), false);
+  for (size_t i = 1; i < path.frame_count(); ++i)
+    quantity.jumps[i] =
+        std::abs(WorldFromCamOf(path.cameras[i - 1]).dot(WorldFromCamOf(path.cameras[i]))) <
+        kHalfTurn;
+  return quantity;
+}
+
+// Width of the sensor that gives the field of view with the focal length.
+double EffectiveSensorWidth(const RenderCamera& camera) {
+  const Intrinsics& k = camera.pinhole.intrinsics;
+  return k.width_px * camera.focal_length_w / k.fx_px;
+}
+
+// Returns focal length and sensor width if the latter is the same in all frames and gives the field
+// of view, otherwise focal length and field of view, which together imply the sensor width.
+std::vector<YamlQuantity> Optics(const CameraPath& path) {
+  std::vector<YamlQuantity> optics = {QuantityOf(
+      path, "focal_length",
+      [](const RenderCamera& camera) { return fmt::format("{}", camera.focal_length_w); })};
+  const double width_w = path.cameras[0].sensor_width_w;
+  const bool is_one_sensor =
+      std::all_of(path.cameras.begin(), path.cameras.end(), [&](const RenderCamera& camera) {
+        return camera.sensor_width_w == width_w &&
+               std::abs(EffectiveSensorWidth(camera) - width_w) <= kEqualOptics * width_w;
+      });
+  if (is_one_sensor)
+    optics.push_back(QuantityOf(path, "sensor_width", [](const RenderCamera& camera) {
+      return fmt::format("{}", camera.sensor_width_w);
+    }));
+  else
+    optics.push_back(QuantityOf(path, "field_of_view_deg", [](const RenderCamera& camera) {
+      const Intrinsics& k = camera.pinhole.intrinsics;
+      return fmt::format("{}", DegreesFromRadians(2 * std::atan(k.width_px / (2 * k.fx_px))));
+    }));
+  return optics;
+}
+
+std::vector<YamlQuantity> CameraSection(const CameraPath& path) {
+  std::vector<YamlQuantity> section = Optics(path);
+  section.push_back(QuantityOf(path, "position", [](const RenderCamera& camera) {
+    return PointText(camera.pinhole.CentreWorld());
+  }));
+  section.push_back(Orientation(path));
+  return section;
+}
+
+std::vector<YamlQuantity> LensSection(const CameraPath& path) {
+  std::vector<YamlQuantity> section = {
+      QuantityOf(path, "aperture_diameter",
+                 [](const RenderCamera& c) { return fmt::format("{}", 2 * c.aperture.radius_w); }),
+      QuantityOf(path, "focus_distance",
+                 [](const RenderCamera& c) { return fmt::format("{}", c.focus_distance_w); })};
+  const auto add_if_used = [&](YamlQuantity quantity, std::string_view unused) {
+    if (quantity.Moves() || quantity.values[0] != unused) section.push_back(std::move(quantity));
+  };
+  add_if_used(QuantityOf(path, "focus_tilt_deg",
+                         [](const RenderCamera& c) {
+                           return fmt::format("{{horizontal: {}, vertical: {}}}",
+                                              DegreesFromRadians(c.focus_tilt.horizontal_rad),
+                                              DegreesFromRadians(c.focus_tilt.vertical_rad));
+                         }),
+              "{horizontal: 0, vertical: 0}");
+  add_if_used(QuantityOf(path, "blade_rotation_deg",
+                         [](const RenderCamera& c) {
+                           return fmt::format("{}", DegreesFromRadians(c.aperture.rotation_rad));
+                         }),
+              "0");
+  return section;
+}
+
+// Adds the quantities that rest. `more` are further lines.
+void AddSection(const char* name, const std::vector<YamlQuantity>& section, const std::string& more,
+                std::string* text) {
+  std::string lines;
+  for (const YamlQuantity& quantity : section)
+    if (!quantity.Moves()) lines += fmt::format("  {}: {}\n", quantity.key, quantity.values[0]);
+  lines += more;
+  *text += fmt::format("{}:{}\n{}", name, lines.empty() ? " {}" : "", lines);
+}
+
+void AddKeyframes(const CameraPath& path, const std::vector<YamlQuantity>& section,
+                  std::string* text) {
+  for (const YamlQuantity& quantity : section) {
+    if (!quantity.Moves()) continue;
+    *text += fmt::format("  {}:\n", quantity.key);
+    for (size_t i = 0; i < quantity.values.size(); ++i)
+      *text += fmt::format(
+          "  - {{time: {}, value: {}{}}}\n", static_cast<double>(i) / path.fps, quantity.values[i],
+          !quantity.jumps.empty() && quantity.jumps[i] ? ", interpolation: step" : "");
+  }
+}
+
+bool AnyMoves(const std::vector<YamlQuantity>& section) {
+  return std::any_of(section.begin(), section.end(),
+                     [](const YamlQuantity& quantity) { return quantity.Moves(); });
+}
+
+std::vector<std::string> LostOf(const CameraPath& path) {
+  size_t shifted = 0, stretched = 0, blades = 0;
+  for (const RenderCamera& camera : path.cameras) {
+    const Intrinsics& k = camera.pinhole.intrinsics;
+    if (std::abs(k.cx_px - k.width_px / 2.0) > 1e-9 || std::abs(k.cy_px - k.height_px / 2.0) > 1e-9)
+      ++shifted;
+    if (std::abs(k.fx_px - k.fy_px) > kEqualOptics * k.fx_px || k.skew_px != 0) ++stretched;
+    if (camera.aperture.blades != path.cameras[0].aperture.blades) ++blades;
+  }
+  std::vector<std::string> lost;
+  const auto add = [&](size_t count, const char* what) {
+    if (count > 0)
+      lost.push_back(fmt::format("{} of {} frame{}", what, count, count == 1 ? "" : "s"));
+  };
+  add(shifted, "the principal point, which is away from the centre of the plate,");
+  add(stretched, "the shape of the elements, which are no squares,");
+  add(blades, "the number of blades, which changes,");
+  return lost;
+}
+
+}  // namespace
+
+Result<PathYaml> PathYamlOf(const CameraPath& path) {
+  const Intrinsics& plate = path.cameras.front().pinhole.intrinsics;
+  const std::vector<YamlQuantity> camera = CameraSection(path), lens = LensSection(path);
+  PathYaml yaml;
+  yaml.text =
+      fmt::format("format: lfpath 1\nfps: {}\nframes: {}\nunit_m: {}\nresolution: [{}, {}]\n",
+                  path.fps, path.frame_count(), path.unit_m, plate.width_px, plate.height_px);
+  const int blades = path.cameras[0].aperture.blades;
+  AddSection("camera", camera, "", &yaml.text);
+  AddSection("lens", lens, blades > 0 ? fmt::format("  blades: {}\n", blades) : "", &yaml.text);
+  if (AnyMoves(camera) || AnyMoves(lens)) yaml.text += "keyframes:\n";
+  AddKeyframes(path, camera, &yaml.text);
+  AddKeyframes(path, lens, &yaml.text);
+  if (const auto read = ParsePathYaml(yaml.text, "the written path", std::nullopt); !read)
+    return OutputError(
+        fmt::format("the path cannot be written as YAML; write another format, such as JSON: {}",
+                    read.error().message));
+  yaml.lost = LostOf(path);
+  return yaml;
+}
+
+}  // namespace lf

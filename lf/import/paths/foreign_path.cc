@@ -1,0 +1,224 @@
+#include "lf/import/paths/foreign_path.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <utility>
+
+#include "lf/camera/resolution.h"
+#include "lf/core/log.h"
+
+namespace lf {
+namespace {
+
+// Limits of the quantities, as those of our own paths.
+constexpr double kLargestLength_w = 1e9;
+constexpr double kLeastHalfView = 1e-6, kMostHalfView = 1e4;
+
+Error FrameError(const std::filesystem::path& file, size_t index, const std::string& message) {
+  return InputError(fmt::format("{}: frame {}: {}", file.string(), index + 1, message));
+}
+
+Result<double> UnitOf(const ForeignPath& path, const std::filesystem::path& file,
+                      const PathOptions& options) {
+  const std::optional<double>& of_field = options.light_field_unit_m;
+  if (of_field && path.unit_m && std::abs(*path.unit_m - *of_field) > 1e-6 * *of_field)
+    return InputError(
+        fmt::format("{}: \"lf_unit_m\" is {}, but a world unit of the light field is {} m; remove "
+                    "the key, and check the lengths of the path",
+                    file.string(), *path.unit_m, *of_field));
+  return of_field ? *of_field : path.unit_m.value_or(1);
+}
+
+// Returns the focus distance of cameras that state none. Without a range of depths, 1 world unit is
+// used, because it is easily recognised as a number that nobody has measured.
+double DefaultFocus(const PathOptions& options, ForeignPath* path) {
+  double distance_w = 1;
+  std::string source;
+  if (const auto& range = options.depth_range ? options.depth_range : path->depth_range) {
+    // The middle of the inverse depths, because blur is proportional to their differences.
+    distance_w = 2 / (1 / range->near_w + 1 / range->far_w);
+    source = ", the middle of the scene's depths,";
+  }
+  path->lacks.push_back(
+      distance_w == 1
+          ? "no focus distance (1 world unit is used: --focus-distance)"
+          : fmt::format("no focus distance ({:.4g} world units{} are used: --focus-distance)",
+                        distance_w, source));
+  return distance_w;
+}
+
+template <class Member>
+bool AllState(const ForeignPath& path, Member member) {
+  for (const ForeignCamera& camera : path.cameras)
+    if (!(camera.*member)) return false;
+  return true;
+}
+
+// The values that complete a camera.
+struct Defaults {
+  double sensor_width_w = 0;
+  double focus_distance_w = 0;
+};
+
+Defaults DefaultsFor(double unit_m, const PathOptions& options, ForeignPath* path) {
+  Defaults defaults;
+  defaults.sensor_width_w = kDefaultSensorWidth_mm * (1e-3 / unit_m);
+  if (!AllState(*path, &ForeignCamera::aperture_diameter_w) && !options.f_number &&
+      !options.aperture_diameter_mm)
+    path->lacks.push_back("no aperture (a pinhole is used: --f-number or --aperture-diameter-mm)");
+  if (!AllState(*path, &ForeignCamera::focus_distance_w))
+    defaults.focus_distance_w =
+        options.focus_distance_w ? *options.focus_distance_w : DefaultFocus(options, path);
+  if (!AllState(*path, &ForeignCamera::sensor_width_w) && !options.sensor_width_mm)
+    path->lacks.push_back(
+        fmt::format("no sensor width ({} mm are used: --sensor-width-mm)", kDefaultSensorWidth_mm));
+  return defaults;
+}
+
+RenderCamera CameraOf(const ForeignCamera& from, const Defaults& defaults) {
+  RenderCamera camera;
+  camera.pinhole = from.pinhole;
+  const Intrinsics& k = from.pinhole.intrinsics;
+  camera.sensor_width_w = from.sensor_width_w.value_or(defaults.sensor_width_w);
+  camera.focal_length_w =
+      from.focal_length_w.value_or(camera.sensor_width_w * k.fx_px / k.width_px);
+  camera.aperture = {from.aperture_diameter_w.value_or(0) / 2, from.blades,
+                     from.blade_rotation_rad};
+  camera.focus_distance_w = from.focus_distance_w.value_or(defaults.focus_distance_w);
+  camera.focus_tilt = from.focus_tilt;
+  camera.focus_plane = FocusPlane(camera.pinhole, camera.focus_distance_w, camera.focus_tilt);
+  return camera;
+}
+
+// Returns the fault of a camera whose quantities are out of their ranges; "" if there is none.
+std::string FaultOf(const RenderCamera& camera) {
+  const Intrinsics& k = camera.pinhole.intrinsics;
+  const auto is_length = [](double x) { return x > 0 && x <= kLargestLength_w; };
+  for (const double f_px : {k.fx_px, k.fy_px}) {
+    const double half_view = k.width_px / (2 * f_px);
+    if (!(half_view >= kLeastHalfView && half_view <= kMostHalfView))
+      return fmt::format("the field of view is {:.4g} degrees: expected above 0 and below 180",
+                         DegreesFromRadians(2 * std::atan(half_view)));
+  }
+  if (!is_length(camera.focal_length_w) || !is_length(camera.sensor_width_w))
+    return fmt::format(
+        "focal length {:g} and sensor width {:g} in world units: expected above 0, "
+        "at most {:g}",
+        camera.focal_length_w, camera.sensor_width_w, kLargestLength_w);
+  if (!is_length(camera.focus_distance_w))
+    return fmt::format("the focus distance is {:g} world units: expected above 0, at most {:g}",
+                       camera.focus_distance_w, kLargestLength_w);
+  if (!(camera.aperture.radius_w >= 0 && 2 * camera.aperture.radius_w <= kLargestLength_w))
+    return fmt::format("the aperture is {:g} world units wide: expected 0 to {:g}",
+                       2 * camera.aperture.radius_w, kLargestLength_w);
+  return "";
+}
+
+void TellWhatIsLacking(const std::vector<std::string>& lacks, const std::filesystem::path& file) {
+  if (lacks.empty()) return;
+  LogWarning(
+      "{}: states {}; lfpath has these options, and writes a path that states every quantity",
+      file.string(), fmt::join(lacks, ", "));
+}
+
+// Keeps the horizontal field of view, and the elements square if they are. The principal point
+// keeps its distance from the centre of the plate.
+void Resize(const std::array<int, 2>& resolution_px, Intrinsics* k) {
+  if (k->width_px == resolution_px[0] && k->height_px == resolution_px[1]) return;
+  const double old_height_px = k->height_px;
+  const double factor = static_cast<double>(resolution_px[0]) / k->width_px;
+  ScaleResolution(factor, k);
+  k->cy_px += (resolution_px[1] - factor * old_height_px) / 2;
+  k->width_px = resolution_px[0];
+  k->height_px = resolution_px[1];
+}
+
+void Replace(const PathOptions& options, RenderCamera* camera) {
+  if (options.resolution_px) Resize(*options.resolution_px, &camera->pinhole.intrinsics);
+  const double world_units_per_mm = 1e-3 / camera->unit_m;
+  if (options.sensor_width_mm) {
+    const double width_w = *options.sensor_width_mm * world_units_per_mm;
+    camera->focal_length_w *= width_w / camera->sensor_width_w;
+    camera->sensor_width_w = width_w;
+  }
+  if (options.aperture_diameter_mm)
+    camera->aperture.radius_w = *options.aperture_diameter_mm * world_units_per_mm / 2;
+  if (options.f_number) camera->aperture.radius_w = camera->focal_length_w / *options.f_number / 2;
+  if (!options.focus_distance_w) return;
+  camera->focus_distance_w = *options.focus_distance_w;
+  camera->focus_plane = FocusPlane(camera->pinhole, camera->focus_distance_w, camera->focus_tilt);
+}
+
+}  // namespace
+
+double FpsOr(const PathOptions& options, ForeignPath* path) {
+  if (!options.fps)
+    path->lacks.push_back(fmt::format("no frames per second ({} are used: --fps)", kDefaultFps));
+  return options.fps.value_or(kDefaultFps);
+}
+
+std::array<int, 2> ResolutionOr(const PathOptions& options, ForeignPath* path) {
+  if (!options.resolution_px)
+    path->lacks.push_back(fmt::format("no resolution ({}x{} is used: --resolution)",
+                                      kDefaultResolution_px[0], kDefaultResolution_px[1]));
+  return options.resolution_px.value_or(kDefaultResolution_px);
+}
+
+Intrinsics IntrinsicsOfFov(double fov_deg, const std::array<int, 2>& resolution_px) {
+  const double f_px = resolution_px[1] / (2 * std::tan(RadiansFromDegrees(fov_deg) / 2));
+  return {f_px,
+          f_px,
+          resolution_px[0] / 2.0,
+          resolution_px[1] / 2.0,
+          0,
+          resolution_px[0],
+          resolution_px[1]};
+}
+
+double VerticalFov_deg(const Intrinsics& k) {
+  return DegreesFromRadians(2 * std::atan(k.height_px / (2 * k.fy_px)));
+}
+
+void MoveInto(const Similarity& b_from_a, ForeignCamera* camera) {
+  camera->pinhole.cam_from_world = PoseIn(b_from_a, camera->pinhole.cam_from_world);
+  for (std::optional<double>* length : {&camera->sensor_width_w, &camera->focal_length_w,
+                                        &camera->aperture_diameter_w, &camera->focus_distance_w})
+    if (*length) **length *= b_from_a.scale;
+}
+
+Result<CameraPath> CompletePath(ForeignPath&& path, const std::filesystem::path& file,
+                                const PathOptions& options) {
+  LF_CHECK(!path.cameras.empty());
+  CameraPath complete;
+  complete.fps = path.fps;
+  LF_ASSIGN_OR_RETURN(complete.unit_m, UnitOf(path, file, options));
+  const Defaults defaults = DefaultsFor(complete.unit_m, options, &path);
+  complete.cameras.reserve(path.cameras.size());
+  for (size_t i = 0; i < path.cameras.size(); ++i) {
+    RenderCamera camera = CameraOf(path.cameras[i], defaults);
+    camera.time_s = static_cast<double>(i) / path.fps;
+    camera.unit_m = complete.unit_m;
+    if (const std::string fault = FaultOf(camera); !fault.empty())
+      return FrameError(file, i, fault);
+    complete.cameras.push_back(camera);
+  }
+  TellWhatIsLacking(path.lacks, file);
+  return complete;
+}
+
+Result<void> ReplaceQuantities(const PathOptions& options, const std::filesystem::path& file,
+                               CameraPath* path) {
+  if (options.f_number && options.aperture_diameter_mm)
+    return UsageError(
+        "--f-number and --aperture-diameter-mm state the same quantity: leave one of them out");
+  for (size_t i = 0; i < path->cameras.size(); ++i) {
+    Replace(options, &path->cameras[i]);
+    if (const std::string fault = FaultOf(path->cameras[i]); !fault.empty())
+      return FrameError(file, i, fault);
+  }
+  return {};
+}
+
+}  // namespace lf

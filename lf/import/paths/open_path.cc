@@ -1,0 +1,82 @@
+#include "lf/import/paths/open_path.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "lf/camera/path/path_yaml.h"
+#include "lf/import/paths/chan_path.h"
+#include "lf/import/paths/foreign_path.h"
+#include "lf/import/paths/frames_path.h"
+#include "lf/import/paths/nerfstudio_path.h"
+#include "lf/import/paths/ngp_path.h"
+#include "lf/import/paths/path_kind.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+Result<ForeignPath> ReadForeign(const PathPlace& place, const PathOptions& options) {
+  switch (place.kind) {
+    case PathKind::kNerfstudio:
+      return ReadNerfstudioPath(place.path, options);
+    case PathKind::kNgp:
+      return ReadNgpPath(place.path, options);
+    case PathKind::kTransforms:
+      return ReadTransformsFrames(place.path, options);
+    case PathKind::kSplatCameras:
+      return ReadSplatCameras(place.path, options);
+    case PathKind::kColmap:
+      return ReadColmapFrames(place.path, options);
+    case PathKind::kYaml:
+    case PathKind::kChan:
+      break;
+  }
+  return ReadChan(place.path, options);
+}
+
+// Refuses options that would have no effect.
+Result<void> CheckOptions(PathKind kind, const fs::path& path, const PathOptions& options) {
+  if (!options.dataparser_transforms.empty() && kind != PathKind::kNerfstudio)
+    return UsageError(
+        fmt::format("--dataparser-transforms is only for camera paths of nerfstudio, but {} is of "
+                    "another kind: leave the option out",
+                    path.string()));
+  if (options.focal_length_mm && kind != PathKind::kChan)
+    return UsageError(
+        fmt::format("--focal-length-mm is only for .chan files without a field of view, but {} "
+                    "states it: leave the option out",
+                    path.string()));
+  return {};
+}
+
+}  // namespace
+
+PathOptions PathOptionsFor(const LightField& light_field, const fs::path& path) {
+  PathOptions options;
+  options.light_field_unit_m = light_field.unit_m;
+  options.depth_range = light_field.depth_range;
+  options.light_field = path;
+  return options;
+}
+
+Result<bool> IsPathYaml(const fs::path& path) {
+  LF_ASSIGN_OR_RETURN(const PathPlace place, FindPath(path));
+  return place.kind == PathKind::kYaml;
+}
+
+Result<CameraPath> OpenPath(const fs::path& path, const PathOptions& options) {
+  LF_ASSIGN_OR_RETURN(const PathPlace place, FindPath(path));
+  LF_RETURN_IF_ERROR(CheckOptions(place.kind, path, options));
+  CameraPath opened;
+  if (place.kind == PathKind::kYaml) {
+    LF_ASSIGN_OR_RETURN(opened, ReadPathYaml(path, options.light_field_unit_m));
+  } else {
+    LF_ASSIGN_OR_RETURN(ForeignPath read, ReadForeign(place, options));
+    LF_ASSIGN_OR_RETURN(opened, CompletePath(std::move(read), path, options));
+  }
+  LF_RETURN_IF_ERROR(ReplaceQuantities(options, path, &opened));
+  return opened;
+}
+
+}  // namespace lf

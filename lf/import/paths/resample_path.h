@@ -1,0 +1,23 @@
+// Changes the number of frames of a camera path.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "lf/camera/path/camera_path.h"
+#include "lf/core/result.h"
+
+namespace lf {
+
+// Returns the path with another frame rate, another number of frames, or both.
+//   fps          alone, keeps the duration: the last frame is the last one that the old path
+//   reaches frame_count  spreads the frames evenly from the first camera to the last; the frame
+//   rate is kept
+//                unless fps is set
+// A new frame at the time of an old one has the same camera, bit for bit. Between old frames,
+// positions follow a Catmull-Rom curve, rotations the shorter arc, and other numbers monotone
+// cubics, as keyframes do (motion.h). kUsage: more than kMostFrames frames.
+Result<CameraPath> ResamplePath(const CameraPath& path, std::optional<double> fps,
+                                std::optional<uint32_t> frame_count);
+
+}  // namespace lf

@@ -1,0 +1,86 @@
+#include "lf/import/paths/resample_path.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lf/camera/path/test_path.h"
+
+namespace lf {
+namespace {
+
+CameraPath MovingPath() {
+  const Result<CameraPath> path =
+      TestPath{.clock = "fps: 10\nframes: 11\nresolution: [200, 100]\n",
+               .pose =
+                   "position: [0, 0, -2], speed: [1, 0, 0], orientation: {yaw: 0}, "
+                   "orientation_speed: {yaw: 20}",
+               .focus = "focus_distance: 2, focus_distance_speed: 1"}
+          .Parse();
+  EXPECT_TRUE(path) << path.error().message;
+  return path ? *path : CameraPath{};
+}
+
+// Expects the camera of MovingPath() at a time.
+void ExpectMovedTo(const RenderCamera& camera, double time_s) {
+  EXPECT_LT((camera.pinhole.CentreWorld() - Vec3(time_s, 0, -2)).norm(), 1e-9) << time_s;
+  const double yaw_rad = RadiansFromDegrees(20 * time_s);
+  EXPECT_LT((camera.pinhole.ForwardWorld() - Vec3(std::sin(yaw_rad), 0, std::cos(yaw_rad))).norm(),
+            1e-9);
+  EXPECT_NEAR(camera.focus_distance_w, 2 + time_s, 1e-9);
+  EXPECT_NEAR(
+      camera.focus_plane.normal.dot(camera.pinhole.CentreWorld() +
+                                    camera.focus_distance_w * camera.pinhole.ForwardWorld()),
+      camera.focus_plane.offset_w, 1e-9);
+}
+
+TEST(ResamplePath, AnotherRateKeepsTheDuration) {
+  const CameraPath path = MovingPath();
+  const Result<CameraPath> fine = ResamplePath(path, 24, std::nullopt);
+  ASSERT_TRUE(fine);
+  EXPECT_EQ(fine->fps, 24);
+  ASSERT_EQ(fine->frame_count(), 25u);
+  for (size_t i = 0; i < 25; ++i) {
+    EXPECT_EQ(fine->cameras[i].time_s, static_cast<double>(i) / 24);
+    ExpectMovedTo(fine->cameras[i], static_cast<double>(i) / 24);
+  }
+  EXPECT_EQ(ResamplePath(path, 7, std::nullopt)->frame_count(), 8u);
+  EXPECT_EQ(ResamplePath(path, 0.9, std::nullopt)->frame_count(), 1u);
+}
+
+TEST(ResamplePath, FramesAreSpreadFromTheFirstToTheLastCamera) {
+  const CameraPath path = MovingPath();
+  const Result<CameraPath> few = ResamplePath(path, std::nullopt, 4);
+  ASSERT_TRUE(few);
+  EXPECT_EQ(few->fps, 10);
+  ASSERT_EQ(few->frame_count(), 4u);
+  for (size_t i = 0; i < 4; ++i) ExpectMovedTo(few->cameras[i], static_cast<double>(i) / 3);
+  EXPECT_EQ(few->cameras[1].time_s, 0.1);
+  const Result<CameraPath> one = ResamplePath(path, 5, 1);
+  ASSERT_TRUE(one);
+  EXPECT_EQ(one->fps, 5);
+  ExpectMovedTo(one->cameras[0], 0);
+}
+
+TEST(ResamplePath, FramesAtOldTimesAreTheOldOnes) {
+  const CameraPath path = MovingPath();
+  for (const auto& same : {ResamplePath(path, 10, std::nullopt), ResamplePath(path, 20, 21)}) {
+    ASSERT_TRUE(same);
+    const size_t step = (same->frame_count() - 1) / 10;
+    for (size_t i = 0; i < 11; ++i) {
+      const RenderCamera &a = path.cameras[i], &b = same->cameras[step * i];
+      EXPECT_EQ(a.pinhole.cam_from_world.rotation, b.pinhole.cam_from_world.rotation);
+      EXPECT_EQ(a.pinhole.cam_from_world.translation, b.pinhole.cam_from_world.translation);
+      EXPECT_EQ(a.focus_plane.offset_w, b.focus_plane.offset_w);
+    }
+  }
+}
+
+TEST(ResamplePath, TooManyFramesAreRefused) {
+  const Result<CameraPath> many = ResamplePath(MovingPath(), 2e6, std::nullopt);
+  ASSERT_FALSE(many);
+  EXPECT_EQ(many.error().kind, ErrorKind::kUsage);
+}
+
+}  // namespace
+}  // namespace lf

@@ -1,0 +1,156 @@
+#include "lf/import/paths/write_path.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "lf/camera/path/path_yaml_write.h"
+#include "lf/core/file.h"
+#include "lf/core/value_named.h"
+#include "lf/import/paths/chan_path.h"
+#include "lf/import/paths/foreign_path.h"
+#include "lf/import/paths/nerfstudio_path.h"
+#include "lf/import/paths/ngp_path.h"
+#include "lf/import/paths/usda_path.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+template <class Holds>
+bool AnyCamera(const CameraPath& path, const Holds& holds) {
+  return std::any_of(path.cameras.begin(), path.cameras.end(), holds);
+}
+
+bool HasLens(const RenderCamera& camera) { return camera.aperture.radius_w > 0; }
+
+bool IsOffCentre(const RenderCamera& camera) {
+  const Intrinsics& k = camera.pinhole.intrinsics;
+  return std::abs(k.cx_px - k.width_px / 2.0) > 1e-9 ||
+         std::abs(k.cy_px - k.height_px / 2.0) > 1e-9 ||
+         std::abs(k.fx_px - k.fy_px) > 1e-12 * k.fx_px || k.skew_px != 0;
+}
+
+bool HasBladesOrTilt(const RenderCamera& camera) {
+  return camera.aperture.blades > 0 || camera.focus_tilt.horizontal_rad != 0 ||
+         camera.focus_tilt.vertical_rad != 0;
+}
+
+bool IsSkewed(const RenderCamera& camera) { return camera.pinhole.intrinsics.skew_px != 0; }
+
+// Returns what programs of others do not find in a file. Our programs restore it from JSON.
+std::vector<std::string> LostIn(PathFormat format, const CameraPath& path) {
+  std::vector<std::string> lost;
+  const bool is_json = format == PathFormat::kNerfstudio || format == PathFormat::kNgp;
+  const char* const note = is_json ? " (only our programs read its lf_ keys)" : "";
+  const auto add = [&](bool holds, const char* what) {
+    if (holds) lost.push_back(fmt::format("{}{}", what, note));
+  };
+  if (format == PathFormat::kUsda) {
+    lost.push_back("the resolution");
+    add(AnyCamera(path, IsSkewed), "skew");
+  } else {
+    add(AnyCamera(path, IsOffCentre), "the principal point and elements that are no squares");
+  }
+  if (format == PathFormat::kChan)
+    lost.push_back("resolution, frame rate, unit and order of the rotations");
+  if (format == PathFormat::kNgp || format == PathFormat::kUsda)
+    add(AnyCamera(path, HasBladesOrTilt), "the blades and the tilt of the focus");
+  else
+    add(AnyCamera(path, HasLens), "the lens");
+  return lost;
+}
+
+Result<std::string> NerfstudioTextFor(const CameraPath& path, const fs::path& file,
+                                      const PathOptions& options) {
+  if (options.dataparser_transforms.empty()) return NerfstudioText(path, "world");
+  LF_ASSIGN_OR_RETURN(const Similarity world_from_trained,
+                      WorldFromTrained(options.dataparser_transforms, options.light_field));
+  CameraPath trained = path;
+  LF_RETURN_IF_ERROR(MovePath(InverseOf(world_from_trained), file, &trained));
+  return NerfstudioText(trained, "trained");
+}
+
+Result<std::string> NgpTextFor(const CameraPath& path, const PathOptions& options) {
+  LF_ASSIGN_OR_RETURN(const NgpSpace space, NgpSpaceFor("", options));
+  return NgpText(path, space);
+}
+
+Result<std::string> TextOf(const CameraPath& path, const fs::path& file, PathFormat format,
+                           const PathOptions& options, std::vector<std::string>* lost) {
+  if (format == PathFormat::kYaml) {
+    LF_ASSIGN_OR_RETURN(PathYaml yaml, PathYamlOf(path));
+    *lost = std::move(yaml.lost);
+    return yaml.text;
+  }
+  *lost = LostIn(format, path);
+  if (format == PathFormat::kNgp) return NgpTextFor(path, options);
+  if (format == PathFormat::kChan) return ChanText(path, options.rotation_order);
+  if (format == PathFormat::kUsda) return UsdaText(path);
+  return NerfstudioTextFor(path, file, options);
+}
+
+}  // namespace
+
+std::string_view NameOf(PathFormat format) {
+  switch (format) {
+    case PathFormat::kYaml:
+      return "yaml";
+    case PathFormat::kNerfstudio:
+      return "nerfstudio";
+    case PathFormat::kNgp:
+      return "instant-ngp";
+    case PathFormat::kChan:
+      return "chan";
+    case PathFormat::kUsda:
+      break;
+  }
+  return "usda";
+}
+
+std::optional<PathFormat> PathFormatOf(std::string_view name) {
+  return ValueNamed(name, {PathFormat::kYaml, PathFormat::kNerfstudio, PathFormat::kNgp,
+                           PathFormat::kChan, PathFormat::kUsda});
+}
+
+std::optional<PathFormat> PathFormatOfFile(const fs::path& file) {
+  const fs::path extension = file.extension();
+  if (extension == ".yaml" || extension == ".yml") return PathFormat::kYaml;
+  if (extension == ".json") return PathFormat::kNerfstudio;
+  if (extension == ".chan") return PathFormat::kChan;
+  if (extension == ".usda") return PathFormat::kUsda;
+  return std::nullopt;
+}
+
+Result<std::vector<std::string>> WritePath(const CameraPath& path, const fs::path& file,
+                                           PathFormat format, const PathOptions& options) {
+  std::vector<std::string> lost;
+  LF_ASSIGN_OR_RETURN(const std::string text, TextOf(path, file, format, options, &lost));
+  LF_RETURN_IF_ERROR(WriteFileAtomically(file, text));
+  return lost;
+}
+
+Result<void> MovePath(const Similarity& b_from_a, const fs::path& file, CameraPath* path) {
+  for (size_t i = 0; i < path->frame_count(); ++i) {
+    RenderCamera& camera = path->cameras[i];
+    camera.pinhole.cam_from_world = PoseIn(b_from_a, camera.pinhole.cam_from_world);
+    double largest_w = 0;
+    for (double* const length : {&camera.aperture.radius_w, &camera.focal_length_w,
+                                 &camera.sensor_width_w, &camera.focus_distance_w}) {
+      *length *= b_from_a.scale;
+      largest_w = std::max(largest_w, *length);
+    }
+    if (!(camera.pinhole.cam_from_world.translation.cwiseAbs().maxCoeff() <= 1e12) ||
+        !(largest_w <= 1e9))
+      return InputError(
+          fmt::format("{}: frame {} would be moved beyond 1e12 world units, or its lens would be "
+                      "larger than 1e9: reduce the translation or the scale",
+                      file.string(), i + 1));
+    camera.focus_plane = FocusPlane(camera.pinhole, camera.focus_distance_w, camera.focus_tilt);
+  }
+  return {};
+}
+
+}  // namespace lf

@@ -1,0 +1,44 @@
+// Writes a camera path in any supported form.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lf/camera/path/camera_path.h"
+#include "lf/core/result.h"
+#include "lf/import/check/similarity.h"
+#include "lf/import/paths/open_path.h"
+
+namespace lf {
+
+enum class PathFormat { kYaml, kNerfstudio, kNgp, kChan, kUsda };
+
+// Returns the name of a format in options: yaml, nerfstudio, instant-ngp, chan, usda.
+std::string_view NameOf(PathFormat format);
+std::optional<PathFormat> PathFormatOf(std::string_view name);
+
+// Returns the format that the extension of a file stands for: .yaml and .yml for our own, .json for
+// nerfstudio, .chan and .usda for Nuke and USD. nullopt for other extensions.
+std::optional<PathFormat> PathFormatOfFile(const std::filesystem::path& file);
+
+// Writes a path.
+//   options  nerfstudio: if dataparser_transforms is set, the cameras are moved into that trained
+//            space; light_field as for OpenPath(). instant-ngp: ngp_scale and ngp_offset; by
+//            default those of the light field's transforms.json, otherwise 0.33 and 0.5. .chan:
+//            rotation_order
+// Returns phrases about what the format cannot hold, such as "blades"; our own programs restore
+// from JSON what is not named. kInput: an error of the dataparser_transforms. kOutput: the file
+// cannot be written.
+Result<std::vector<std::string>> WritePath(const CameraPath& path,
+                                           const std::filesystem::path& file, PathFormat format,
+                                           const PathOptions& options);
+
+// Moves the cameras of a path into world b, their lenses included. The unit stays. kInput: a camera
+// would be beyond 1e12, or a length of a lens beyond 1e9 world units.
+Result<void> MovePath(const Similarity& b_from_a, const std::filesystem::path& file,
+                      CameraPath* path);
+
+}  // namespace lf

@@ -1,0 +1,158 @@
+#include "lf/import/paths/write_path.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "lf/camera/path/path_yaml.h"
+#include "lf/core/file.h"
+#include "lf/import/paths/test_paths.h"
+#include "lf/pixels/files/test_folder.h"
+
+namespace lf {
+namespace {
+
+// Expects the same bits in every member.
+void ExpectSameCameras(const CameraPath& a, const CameraPath& b) {
+  EXPECT_EQ(a.fps, b.fps);
+  EXPECT_EQ(a.unit_m, b.unit_m);
+  ASSERT_EQ(a.frame_count(), b.frame_count());
+  for (size_t i = 0; i < a.frame_count(); ++i) {
+    const RenderCamera &x = a.cameras[i], &y = b.cameras[i];
+    EXPECT_EQ(x.pinhole.cam_from_world.rotation, y.pinhole.cam_from_world.rotation);
+    EXPECT_EQ(x.pinhole.cam_from_world.translation, y.pinhole.cam_from_world.translation);
+    EXPECT_EQ(x.pinhole.intrinsics, y.pinhole.intrinsics);
+    EXPECT_EQ(x.aperture.radius_w, y.aperture.radius_w);
+    EXPECT_EQ(x.aperture.blades, y.aperture.blades);
+    EXPECT_EQ(x.aperture.rotation_rad, y.aperture.rotation_rad);
+    EXPECT_EQ(x.focus_plane.normal, y.focus_plane.normal);
+    EXPECT_EQ(x.focus_plane.offset_w, y.focus_plane.offset_w);
+    EXPECT_EQ(x.time_s, y.time_s);
+    EXPECT_EQ(x.focal_length_w, y.focal_length_w);
+    EXPECT_EQ(x.sensor_width_w, y.sensor_width_w);
+    EXPECT_EQ(x.focus_distance_w, y.focus_distance_w);
+    EXPECT_EQ(x.focus_tilt.horizontal_rad, y.focus_tilt.horizontal_rad);
+    EXPECT_EQ(x.focus_tilt.vertical_rad, y.focus_tilt.vertical_rad);
+    EXPECT_EQ(x.unit_m, y.unit_m);
+  }
+}
+
+// A film in which everything moves.
+constexpr const char* kLivelyPath = R"(format: lfpath 1
+fps: 23.976
+frames: 9
+unit_m: 0.3
+resolution: [201, 99]
+camera: {sensor_width_mm: 24, focal_length_mm: 50, focal_length_speed_mm: 7, position: [0.1, 2, -3],
+         speed: [1, 0.7, 0.3], look_at: [0, 0, 1], roll_deg: 10}
+lens: {f_number: 1.4, focus_distance: 2, focus_distance_speed: 0.3, breathing: true, blades: 7,
+       blade_rotation_deg: 3, focus_tilt_deg: {horizontal: 7, vertical: -3}}
+)";
+
+class WritePathTest : public FolderTest {
+ protected:
+  static CameraPath Lively() {
+    const Result<CameraPath> path = ParsePathYaml(kLivelyPath, "p.yaml", std::nullopt);
+    EXPECT_TRUE(path) << path.error().message;
+    return path ? *path : CameraPath{};
+  }
+  // Writes the path and reads it again. *lost gets what the format cannot hold.
+  CameraPath ThereAndBack(const CameraPath& path, PathFormat format, const PathOptions& options,
+                          std::vector<std::string>* lost) {
+    const auto written = WritePath(path, folder_ / "written", format, options);
+    EXPECT_TRUE(written) << written.error().message;
+    if (written) *lost = *written;
+    const Result<CameraPath> read = OpenPath(folder_ / "written", options);
+    EXPECT_TRUE(read) << read.error().message;
+    return read ? *read : CameraPath{};
+  }
+};
+
+TEST_F(WritePathTest, JsonKeepsEveryBit) {
+  const CameraPath path = Lively();
+  for (const PathFormat format : {PathFormat::kNerfstudio, PathFormat::kNgp}) {
+    std::vector<std::string> lost;
+    ExpectSameCameras(path, ThereAndBack(path, format, {}, &lost));
+    ASSERT_EQ(lost.size(), 1u);
+    EXPECT_NE(lost[0].find(format == PathFormat::kNgp ? "tilt" : "lens"), std::string::npos);
+  }
+  // Another space of instant-ngp stands in the file.
+  std::vector<std::string> lost;
+  const PathOptions space = {.ngp_scale = 0.7, .ngp_offset = Vec3(1, 2, 3)};
+  ExpectSameCameras(path, ThereAndBack(path, PathFormat::kNgp, space, &lost));
+}
+
+TEST_F(WritePathTest, AnOffCentrePrincipalPointIsKeptAndTold) {
+  CameraPath path = Lively();
+  path.cameras[2].pinhole.intrinsics.cx_px += 5;
+  std::vector<std::string> lost;
+  ExpectSameCameras(path, ThereAndBack(path, PathFormat::kNerfstudio, {}, &lost));
+  ASSERT_EQ(lost.size(), 2u);
+  EXPECT_NE(lost[0].find("principal point"), std::string::npos);
+}
+
+TEST_F(WritePathTest, OtherProgramsFindTheirOwnKeys) {
+  CameraPath path = Lively();
+  path.cameras.resize(1);
+  ASSERT_TRUE(WritePath(path, folder_ / "n", PathFormat::kNerfstudio, {}));
+  const Result<std::string> text = ReadFile(folder_ / "n");
+  ASSERT_TRUE(text);
+  for (const char* part : {"\"camera_type\": \"perspective\"", "\"render_width\": 201",
+                           "\"render_height\": 99", "\"lf_space\": \"world\""})
+    EXPECT_NE(text->find(part), std::string::npos) << part;
+}
+
+TEST_F(WritePathTest, TheTrainedSpaceIsAppliedAndUndone) {
+  const CameraPath path = Lively();
+  ASSERT_TRUE(WriteFileAtomically(
+      folder_ / "t.json",
+      R"({"transform": [[0, -1, 0, 10], [1, 0, 0, 20], [0, 0, 1, 30]], "scale": 0.5})"));
+  std::vector<std::string> lost;
+  const CameraPath back = ThereAndBack(path, PathFormat::kNerfstudio,
+                                       {.dataparser_transforms = folder_ / "t.json"}, &lost);
+  ASSERT_EQ(back.frame_count(), path.frame_count());
+  for (size_t i = 0; i < path.frame_count(); ++i) {
+    const RenderCamera &a = path.cameras[i], &b = back.cameras[i];
+    EXPECT_LT((a.pinhole.CentreWorld() - b.pinhole.CentreWorld()).norm(), 1e-12);
+    EXPECT_LT((a.pinhole.ForwardWorld() - b.pinhole.ForwardWorld()).norm(), 1e-12);
+    EXPECT_NEAR(a.focus_distance_w, b.focus_distance_w, 1e-12);
+    EXPECT_NEAR(a.aperture.radius_w, b.aperture.radius_w, 1e-12);
+  }
+  // Without the file, the cameras are those of the trained space.
+  const Result<CameraPath> trained = OpenPath(folder_ / "written", {});
+  ASSERT_TRUE(trained);
+  EXPECT_NEAR(trained->cameras[0].focus_distance_w, path.cameras[0].focus_distance_w / 2, 1e-12);
+}
+
+TEST_F(WritePathTest, AMovedPathSeesTheMovedScene) {
+  CameraPath path = Lively();
+  const RenderCamera before = path.cameras[3];
+  Similarity move;
+  move.scale = 2;
+  move.rotation = Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  move.translation = Vec3(4, 5, 6);
+  ASSERT_TRUE(MovePath(move, "p", &path));
+  const RenderCamera& after = path.cameras[3];
+  const Vec3 point(0.2, -0.1, 1.5);
+  const Vec3 moved = move.scale * (move.rotation * point) + move.translation;
+  EXPECT_LT((*Project(before.pinhole, point) - *Project(after.pinhole, moved)).norm(), 1e-9);
+  EXPECT_NEAR(before.focus_plane.normal.dot(point) - before.focus_plane.offset_w,
+              (after.focus_plane.normal.dot(moved) - after.focus_plane.offset_w) / 2, 1e-9);
+  EXPECT_EQ(after.aperture.radius_w, 2 * before.aperture.radius_w);
+  move.scale = 1e10;
+  ExpectPathError(MovePath(move, "p", &path), "p", {"frame 1", "reduce"});
+}
+
+TEST(PathFormat, ExtensionsAndNames) {
+  EXPECT_EQ(PathFormatOfFile("a/b.yml"), PathFormat::kYaml);
+  EXPECT_EQ(PathFormatOfFile("b.json"), PathFormat::kNerfstudio);
+  EXPECT_EQ(PathFormatOfFile("b.chan"), PathFormat::kChan);
+  EXPECT_EQ(PathFormatOfFile("b.usda"), PathFormat::kUsda);
+  EXPECT_EQ(PathFormatOfFile("yaml"), std::nullopt);
+  EXPECT_EQ(PathFormatOf("instant-ngp"), PathFormat::kNgp);
+  EXPECT_EQ(PathFormatOf("ngp"), std::nullopt);
+}
+
+}  // namespace
+}  // namespace lf

@@ -1,0 +1,260 @@
+// lfpath PATH [-o OUT]: tells what a camera path is, converts it and changes it.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "tools/camera_table.h"
+#include "tools/common/program.h"
+#include "tools/common/validators.h"
+
+#include "lf/core/log.h"
+#include "lf/import/check/similarity.h"
+#include "lf/import/formats/open_light_field.h"
+#include "lf/import/paths/open_path.h"
+#include "lf/import/paths/resample_path.h"
+#include "lf/import/paths/write_path.h"
+
+namespace {
+
+constexpr lf::HelpTexts kHelp = {
+    .summary =
+        "Converts camera paths between programs, moves and resamples them, or tells about one.",
+    .usage = R"(  lfpath PATH [OPTIONS]
+  lfpath PATH -o OUT [OPTIONS])",
+    .examples = R"(  lfpath camera_path.json                       # what is in it
+  lfpath camera_path.json -o path.yaml --f-number 2 --focus-distance 1.5
+  lfpath path.yaml -o base_cam.json --format instant-ngp
+  lfpath nuke.chan -o path.yaml --fps 24 --resolution 1920x1080 --f-number 2 --focus-distance 3
+  lfpath path.yaml -o slow.yaml --frames 240
+  lfpath path.yaml -o moved.yaml --transform upright.txt --scale 0.5)",
+    .details =
+        R"(PATH is our own YAML, a path of nerfstudio, instant-ngp or Nuke, or a calibration whose cameras become
+frames; doc/formats/foreign_paths.md has their conventions. A warning lists what PATH does not state, and the value that is used; the options of
+"Picture" state it, and replace what PATH states. Without -o, the program prints the camera of every
+frame, as lfcammvminfo does.
+
+In OUT, every frame has a camera of its own: accelerations and curves are not kept. A warning tells
+what the format of OUT cannot hold. JSON files have lf_ keys, from which our programs restore
+everything: frames that are rendered with such a file have the same bits.)",
+};
+
+struct Arguments {
+  std::string path, light_field, dataparser, output, format, out_dataparser, transform;
+  std::string rotation_order = "zxy";
+  std::optional<double> unit_m, ngp_scale, sensor_width_mm, f_number, aperture_diameter_mm;
+  std::optional<double> focal_length_mm, focus_distance, fps;
+  std::optional<std::pair<int, int>> resolution;
+  std::vector<double> ngp_offset;
+  std::optional<uint32_t> frames;
+  double scale = 1;
+  bool overwrite = false;
+};
+
+void AddInput(CLI::App& app, Arguments& a) {
+  lf::OptionGroup input(app, lf::kInputGroup);
+  input.Add("PATH", a.path, lf::kPathHelp)->required();
+  input
+      .Add("--lightfield LIGHTFIELD", a.light_field,
+           "Light field that the path is for (none)\n"
+           "It states the unit, the depths to focus on by default, and what a transforms.json says "
+           "about the spaces of nerfstudio and instant-ngp.")
+      ->check(lf::NotEmpty());
+  input.Add("--unit-m METRES", a.unit_m, "Metres per world unit, if nothing else states it")
+      ->check(CLI::Range(1e-9, 1e9));
+  lf::OptionGroup spaces(app, "Spaces of other programs");
+  spaces
+      .Add("--dataparser-transforms FILE", a.dataparser,
+           "dataparser_transforms.json for PATH (beside PATH)\n"
+           "The file states the space in which nerfstudio trained; PATH is moved back from it.")
+      ->check(lf::NotEmpty());
+  spaces
+      .Add("--out-dataparser-transforms FILE", a.out_dataparser,
+           "dataparser_transforms.json for OUT (none)\n"
+           "OUT is moved into the space in which nerfstudio trained, so that nerfstudio can render "
+           "it. Without it, OUT is in the world of the light field.")
+      ->check(lf::NotEmpty());
+  spaces
+      .Add("--ngp-scale X", a.ngp_scale,
+           "Scale of the space of instant-ngp (0.33)\n"
+           "If it is not given: \"scale\" of the transforms.json of the light field, or of that "
+           "beside PATH; 0.33 if there is none.")
+      ->check(CLI::Range(1e-9, 1e9));
+  spaces
+      .Add("--ngp-offset X,Y,Z", a.ngp_offset,
+           "Offset of the space of instant-ngp (0.5,0.5,0.5)\n"
+           "If it is not given: \"offset\" of the same file; 0.5 in each direction if there is "
+           "none.")
+      ->delimiter(',')
+      ->expected(3)
+      ->check(CLI::Range(-1e6, 1e6));
+  spaces.AddChoice(
+      "--rotation-order", a.rotation_order, {"xyz", "xzy", "yxz", "yzx", "zxy", "zyx"},
+      "Order of the rotations in .chan files\n"
+      "zxy: first about z, then about x, then about y. A .chan does not state its order; "
+      "zxy is Nuke's default. It is used for PATH and for OUT.");
+}
+
+void AddOutput(CLI::App& app, Arguments& a) {
+  lf::OptionGroup output(app, lf::kOutputGroup);
+  auto* out = output.Add("-o,--output OUT", a.output, "Path to write")->check(lf::NotEmpty());
+  output
+      .AddChoice("--format", a.format, {"yaml", "nerfstudio", "instant-ngp", "chan", "usda"},
+                 "Format of OUT (by its extension)\n"
+                 ".yaml is our own format, .json nerfstudio's, .chan Nuke's, .usda a scene of USD.")
+      ->needs(out);
+  output
+      .Add(
+          "--transform FILE|MATRIX", a.transform,
+          "Move the cameras by a 4x4 matrix\n"
+          "MATRIX: 16 numbers, row by row. FILE: a file with 16 numbers. The matrix maps points of "
+          "the old world to the new one: a rotation, a scale and a translation. Lenses are scaled "
+          "as well.")
+      ->check(lf::NotEmpty());
+  output.Add("--scale X", a.scale, "Multiply all lengths by X, after --transform")
+      ->check(CLI::Range(1e-9, 1e9));
+  output
+      .Add("--fps RATE", a.fps,
+           "Frames per second (as PATH states, else 30)\n"
+           "If PATH states another rate, the path is resampled: it lasts as long as before.")
+      ->check(CLI::Range(1e-3, 1e6));
+  output
+      .Add(
+          "--frames N", a.frames,
+          "Number of frames (as PATH states)\n"
+          "The frames are spread evenly from the first camera to the last. The rate stays, so that "
+          "the film takes longer or shorter.")
+      ->check(CLI::Range(1, 1'000'000));
+  output.AddFlag("--overwrite", a.overwrite, "Replace OUT")->needs(out);
+}
+
+void AddPicture(CLI::App& app, Arguments& a) {
+  lf::OptionGroup picture(app, lf::kPictureGroup);
+  picture
+      .Add("--resolution WxH", a.resolution,
+           "Size of the frames (as PATH states, else 1920x1080)\n"
+           "If PATH states another size, the field of view of the width is kept.")
+      ->delimiter('x')
+      ->check(CLI::Range(1, 65536));
+  auto* number = picture.Add("--f-number N", a.f_number, "Focal length divided by diameter")
+                     ->check(CLI::Range(1e-6, 1e9));
+  picture
+      .Add("--aperture-diameter-mm MM", a.aperture_diameter_mm,
+           "Diameter of the aperture (as PATH states, else 0)\n"
+           "0: a pinhole, which sees few LF cameras.")
+      ->check(CLI::Range(0.0, 1e9))
+      ->excludes(number);
+  picture
+      .Add("--focus-distance X", a.focus_distance,
+           "Focus distance in world units (as PATH states)\n"
+           "If PATH states none: the middle of the depth range of --lightfield, otherwise 1.")
+      ->check(CLI::Range(1e-9, 1e9));
+  picture
+      .Add("--sensor-width-mm MM", a.sensor_width_mm,
+           "Width of the sensor (as PATH states, else 36)\n"
+           "The field of view is kept; the focal length follows.")
+      ->check(CLI::Range(1e-6, 1e9));
+  picture
+      .Add("--focal-length-mm MM", a.focal_length_mm,
+           "Focal length, for a .chan without field of view (50)\n"
+           "Together with the width of the sensor, it gives the field of view.")
+      ->check(CLI::Range(1e-6, 1e9));
+}
+
+// Returns the options for reading PATH.
+lf::Result<lf::PathOptions> OptionsOf(const Arguments& a) {
+  lf::PathOptions options;
+  if (!a.light_field.empty()) {
+    LF_ASSIGN_OR_RETURN(const lf::LightField light_field, lf::OpenLightField(a.light_field));
+    options = lf::PathOptionsFor(light_field, a.light_field);
+  }
+  if (a.unit_m) options.light_field_unit_m = a.unit_m;
+  options.dataparser_transforms = a.dataparser;
+  options.ngp_scale = a.ngp_scale;
+  if (!a.ngp_offset.empty()) options.ngp_offset = lf::Vec3(a.ngp_offset.data());
+  if (a.resolution) options.resolution_px = {a.resolution->first, a.resolution->second};
+  options.sensor_width_mm = a.sensor_width_mm;
+  options.focal_length_mm = a.focal_length_mm;
+  options.rotation_order = *lf::RotationOrderOf(a.rotation_order);
+  options.f_number = a.f_number;
+  options.aperture_diameter_mm = a.aperture_diameter_mm;
+  options.focus_distance_w = a.focus_distance;
+  options.fps = a.fps;
+  options.frame_count = a.frames;
+  return options;
+}
+
+lf::Result<lf::CameraPath> Changed(const Arguments& a, lf::CameraPath path) {
+  lf::Similarity similarity;
+  if (!a.transform.empty()) {
+    LF_ASSIGN_OR_RETURN(similarity, lf::ReadSimilarity(a.transform));
+  }
+  similarity.scale *= a.scale;
+  similarity.translation *= a.scale;
+  if (!a.transform.empty() || a.scale != 1)
+    LF_RETURN_IF_ERROR(lf::MovePath(similarity, a.path, &path));
+  if ((a.fps && *a.fps != path.fps) || (a.frames && *a.frames != path.frame_count()))
+    return lf::ResamplePath(path, a.fps, a.frames);
+  return path;
+}
+
+lf::Result<lf::PathFormat> FormatOf(const Arguments& a) {
+  if (!a.format.empty()) return *lf::PathFormatOf(a.format);
+  if (const std::optional<lf::PathFormat> format = lf::PathFormatOfFile(a.output)) return *format;
+  return lf::UsageError(fmt::format(
+      "-o {}: its extension stands for no format: expected .yaml, .json, .chan or .usda, or give "
+      "--format",
+      a.output));
+}
+
+lf::Result<void> Write(const Arguments& a, lf::PathOptions options, const lf::CameraPath& path) {
+  LF_ASSIGN_OR_RETURN(const lf::PathFormat format, FormatOf(a));
+  if (!a.out_dataparser.empty() && format != lf::PathFormat::kNerfstudio)
+    return lf::UsageError(
+        fmt::format("--out-dataparser-transforms can only be used with --format nerfstudio, but {} "
+                    "is written as {}: leave it out",
+                    a.output, lf::NameOf(format)));
+  std::error_code error;
+  if (!a.overwrite && std::filesystem::exists(a.output, error))
+    return lf::UsageError(fmt::format(
+        "{}: exists: give another name, or replace the file with --overwrite", a.output));
+  options.dataparser_transforms = a.out_dataparser;
+  LF_ASSIGN_OR_RETURN(const std::vector<std::string> lost,
+                      lf::WritePath(path, a.output, format, options));
+  if (!lost.empty())
+    lf::LogWarning("{}: the format has no place for {}", a.output, fmt::join(lost, "; for "));
+  lf::LogInfo("{}: {} frame{} at {} per second, as {}", a.output, path.frame_count(),
+              path.frame_count() == 1 ? "" : "s", path.fps, lf::NameOf(format));
+  return {};
+}
+
+lf::Result<void> Run(const Arguments& a, bool json) {
+  LF_ASSIGN_OR_RETURN(const lf::PathOptions options, OptionsOf(a));
+  LF_ASSIGN_OR_RETURN(lf::CameraPath opened, lf::OpenPath(a.path, options));
+  LF_ASSIGN_OR_RETURN(const lf::CameraPath path, Changed(a, std::move(opened)));
+  if (!a.output.empty()) LF_RETURN_IF_ERROR(Write(a, options, path));
+  if (!a.output.empty() && !json) return {};
+  const std::vector<lf::FrameId> frames = lf::AllFrames(path);
+  return lf::PrintReport(json ? lf::CameraJson(path, frames) : lf::CameraTable(path, frames));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  lf::Program program("lfpath", kHelp);
+  AddInput(program.app(), arguments);
+  AddOutput(program.app(), arguments);
+  AddPicture(program.app(), arguments);
+  program.AddCommonOptions({.json = "Print the cameras as JSON, with all digits\n"
+                                    "Infinite numbers are null.",
+                            .verbose = true,
+                            .quiet = true});
+  return program.Run(argc, argv, [&] { return Run(arguments, program.common().json); });
+}
