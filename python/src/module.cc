@@ -7,10 +7,12 @@
 #include "python/src/captures.h"
 #include "python/src/errors.h"
 #include "python/src/film.h"
+#include "python/src/gil.h"
 #include "python/src/light_field.h"
 #include "python/src/messages.h"
 
 PYBIND11_MODULE(_core, module) {
+  lf::python::WatchForEndOfPython();
   lf::python::TranslateFailures();
   lf::python::SendMessagesToPython();
   lf::python::AddLightField(module);

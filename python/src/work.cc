@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "python/src/errors.h"
+#include "python/src/gil.h"
 
 namespace lf::python {
 namespace {
@@ -63,7 +64,8 @@ class Teller {
 
 // Runs Python's handlers of the signals that have arrived, and the teller. Returns what they raise.
 std::exception_ptr Look(Teller& teller) {
-  const py::gil_scoped_acquire acquire;
+  const GilHold hold;
+  if (!hold.has_lock()) return nullptr;
   try {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     teller.Tell();
@@ -79,7 +81,7 @@ void RunWithoutGil(const std::function<void()>& work, WorkSignals* signals) {
   std::exception_ptr failure, raised;
   Teller teller(signals);
   {
-    const py::gil_scoped_release release;
+    const GilPause pause;
     Ending ending;
     std::thread worker([&] {
       try {
@@ -92,7 +94,7 @@ void RunWithoutGil(const std::function<void()>& work, WorkSignals* signals) {
     while (!ending.WaitFor(kPatience)) {
       if (signals == nullptr) continue;
       raised = Look(teller);
-      if (!raised) continue;
+      if (!raised && !PythonEnds()) continue;
       signals->stop = true;
       signals->interrupted = true;
       ending.Wait();

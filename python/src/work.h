@@ -30,7 +30,8 @@ struct WorkSignals {
 // Calls work() on another thread and waits for its end. The calling thread holds the GIL before and
 // after. Meanwhile it runs Python's signal handlers and signals->tell(): if one of them raises, as
 // the handler of Ctrl-C does in Python's main thread, sets both requests, waits for the end of the
-// work, clears them, and throws what was raised. Otherwise throws what work() threw.
+// work, clears them, and throws what was raised. Otherwise throws what work() threw. If Python ends
+// meanwhile, ends the work in the same way, and does not return.
 //   signals  null: the work cannot be interrupted, and is waited for
 void RunWithoutGil(const std::function<void()>& work, WorkSignals* signals = nullptr);
 

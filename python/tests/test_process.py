@@ -1,0 +1,66 @@
+"""The process of the caller: its end, and forks."""
+import subprocess
+import sys
+
+import pytest
+
+# A thread that is in a function of the package when Python ends.
+DAEMON = """
+import sys, threading, time
+import lfrendertools as lf
+field = lf.open(sys.argv[1])
+camera = lf.Path.load(sys.argv[2], field.unit_m)[0]
+begun = threading.Event()
+def work():
+    while True:
+        begun.set()
+        {work}
+threading.Thread(target=work, daemon=True).start()
+begun.wait()
+time.sleep({seconds})
+"""
+
+
+@pytest.mark.parametrize("work", [
+    "lf.open(sys.argv[1])", "field.image(0)", "list(field.images())", "lf.render(field, camera)",
+    "list(lf.film(field, lf.Path([camera] * 3)))", "lf.Renderer(field, camera).step()", "field.path()",
+    "lf.report(field, check='pixels')", "lf.report(field, progress=lambda *now: None)", "lf.forecast(field, camera)",
+    "lf.select(field, camera)", "lf.compress(field, 'a.lfs', overwrite=True)", "lf.synth('lights', 'more', count=1)",
+    "lf.write_packages(field, camera, 'packages', overwrite=True)", "lf.render(field, camera).save('frame.exr')"])
+def test_python_ends_while_a_daemon_thread_works(work, capture, path_file, tmp_path):
+    for seconds in (0, 0.1):
+        code = DAEMON.format(work=work, seconds=seconds)
+        end = subprocess.run([sys.executable, "-c", code, capture, path_file], cwd=tmp_path, capture_output=True,
+                             text=True, timeout=60)
+        assert end.returncode == 0 and "terminate" not in end.stderr, end.stderr
+
+
+def test_functions_for_the_end_of_python_can_render(capture, path_file):
+    code = """
+import atexit, sys
+atexit.register(lambda: print(lf.render(field, path).image_count))
+import lfrendertools as lf
+field = lf.open(sys.argv[1])
+path = lf.Path.load(sys.argv[2], field.unit_m)
+"""
+    end = subprocess.run([sys.executable, "-c", code, capture, path_file], capture_output=True, text=True, timeout=60)
+    assert end.returncode == 0 and int(end.stdout) > 0, end.stderr
+
+
+def test_forked_processes_end_while_threads_of_the_parent_work(capture):
+    code = """
+import os, sys, threading
+import lfrendertools as lf
+field = lf.open(sys.argv[1])
+def work():
+    while True:
+        lf.open(sys.argv[1])
+threading.Thread(target=work, daemon=True).start()
+for _ in range(20):
+    child = os.fork()
+    if child == 0:
+        sys.exit(0 if field.image(0).shape == (120, 160, 3) else 1)
+    assert os.waitpid(child, 0)[1] == 0
+"""
+    end = subprocess.run([sys.executable, "-c", code, capture], capture_output=True, text=True, timeout=60)
+    assert (end.returncode, end.stderr) == (0, "")
