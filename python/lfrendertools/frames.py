@@ -114,13 +114,17 @@ class Frame:
 
     def __repr__(self) -> str:
         height, width = self.rgb.shape[:2]
-        return f"<Frame {self.number}: {width} x {height} of {self.image_count} LF images>"
+        of = "rebinned rays" if self.image_count == 0 and self.interpolated is not None else \
+            f"{self.image_count} LF images"
+        return f"<Frame {self.number}: {width} x {height} of {of}>"
 
 
 class Plate:
     """The sensor plate of a frame: exact sums and counts of rays, as integers.
 
-    The sum of plates of different LF images is the plate of all of them, with the same bits in any order.
+    Plates of the shards of a frame (`lfrenderer --shard`) can be added: their sum is the plate of all LF images, with
+    the same bits in any order. A :class:`UsageError` tells if two plates are of different cameras, light fields or
+    options, or if both have the rays of the same LF images.
     """
 
     def __init__(self, core: _core.Plate) -> None:
@@ -157,6 +161,16 @@ class Plate:
         if not isinstance(other, Plate):
             return NotImplemented
         return Plate(self._core + other._core)
+
+    def __radd__(self, other: object) -> Plate:
+        # sum() begins with 0.
+        if isinstance(other, int) and other == 0:
+            return self
+        return NotImplemented
+
+    def __repr__(self) -> str:
+        width, height = self._core.size
+        return f"<Plate of frame {self._core.number}: {width} x {height} of {self._core.image_count} LF images>"
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Plate) and bool(self._core == other._core)

@@ -150,19 +150,6 @@ def test_notebooks_show_pictures(field, capture, tmp_path):
     assert lf.open(folder)._repr_html_().count("data:image/png") == 7
 
 
-def test_plates_are_kept_in_files(field, path, tmp_path):
-    with lf.Renderer(field, path, frames=[2]) as renderer:
-        while renderer.step():
-            pass
-        plate, frame = renderer.plate(), renderer.preview()
-    plate.save(tmp_path / "plate.lfplate")
-    again = lf.Plate.load(tmp_path / "plate.lfplate")
-    assert again == plate and np.array_equal(again.sums, plate.sums)
-    assert np.array_equal(again.develop().rgb, frame.rgb)
-    with pytest.raises(lf.OutputError):
-        plate.save(tmp_path / "no/folder/plate.lfplate")
-
-
 def test_frames_are_shared_by_dlpack(field, path):
     frame = lf.render(field, path[0])
     assert np.shares_memory(np.from_dlpack(frame.rgb), frame.rgb)

@@ -1,8 +1,12 @@
-"""The process of the caller: its end, and forks."""
+"""The process of the caller: its end, forks, and values for other processes."""
+import pickle
 import subprocess
 import sys
 
+import numpy as np
 import pytest
+
+import lfrendertools as lf
 
 # A thread that is in a function of the package when Python ends.
 DAEMON = """
@@ -64,3 +68,17 @@ for _ in range(20):
 """
     end = subprocess.run([sys.executable, "-c", code, capture], capture_output=True, text=True, timeout=60)
     assert (end.returncode, end.stderr) == (0, "")
+
+
+def test_frames_are_pickled(field, path, tmp_path):
+    for options in ({}, {"mode": "rebin"}, {"lens_weights": "none"}):
+        frame = lf.render(field, path, frames=[2], **options)
+        again = pickle.loads(pickle.dumps(frame))
+        assert np.array_equal(again.rgb, frame.rgb) and again.metadata == frame.metadata and repr(again) == repr(frame)
+        frame.save(tmp_path / "a.exr")
+        again.save(tmp_path / "b.exr")
+        assert (tmp_path / "a.exr").read_bytes() == (tmp_path / "b.exr").read_bytes()
+
+
+def test_a_rebinned_frame_says_so(field, path):
+    assert "rebinned" in repr(lf.render(field, path, mode="rebin"))
