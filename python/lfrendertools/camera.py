@@ -237,6 +237,7 @@ class Camera:
         if not changes:
             return self
         values = self._settings()
+        unchanged = Camera(**values)
         for default, others in (("world_from_cam", ("look_at", "quaternion")),
                                 ("field_of_view_deg", ("focal_length_mm",)),
                                 ("aperture_diameter", ("aperture_diameter_mm", "f_number")),
@@ -244,7 +245,11 @@ class Camera:
             if any(changes.get(other) is not None for other in others):
                 del values[default]
         values.update(changes)
-        return Camera(**values)
+        # Numbers that do not change keep their bits, which the arguments of the constructor state only up to rounding.
+        numbers = [old if was == is_now and math.isclose(old, was, rel_tol=1e-9, abs_tol=1e-9) else is_now
+                   for old, was, is_now in zip(*(camera._core.numbers() for camera in
+                                                 (self, unchanged, Camera(**values))))]
+        return Camera._of(_core.RenderCamera.of_numbers(tuple(numbers)))
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Camera) and bool(self._core == other._core)

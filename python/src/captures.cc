@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "python/src/cameras.h"
 #include "python/src/errors.h"
 #include "python/src/film_words.h"
 #include "python/src/light_field.h"
@@ -125,7 +126,7 @@ std::string Preprocess(const OpenedField& field, const std::string& name,
   options.interrupted = &work.signals.interrupted;
   return CallWithoutGil(
       [&] {
-        const CameraPath path{fps, light_field.unit_m, std::move(cameras)};
+        const CameraPath path = PathOf(std::move(cameras), fps, light_field.unit_m);
         ForecastFacts facts;
         facts.light_field = name;
         facts.output = words.output;

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "python/src/cameras.h"
 #include "python/src/errors.h"
 #include "python/src/film_words.h"
 #include "python/src/frames.h"
@@ -46,8 +47,8 @@ class Film {
     std::vector<FrameId> ids;
     for (const uint32_t frame : frames) ids.push_back(FrameId{frame});
     Run([&] {
-      CameraPath path{fps, field.light_field.unit_m, std::move(cameras)};
-      Package package = PackageOfAll(field.light_field, std::move(path), words.seed);
+      Package package = PackageOfAll(
+          field.light_field, PathOf(std::move(cameras), fps, field.light_field.unit_m), words.seed);
       if (words.max_angle_deg)
         package.choices.max_angle_rad = RadiansFromDegrees(*words.max_angle_deg);
       Take(CheckRenderOptions(package, options));

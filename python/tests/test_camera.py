@@ -59,6 +59,28 @@ def test_replacing_and_comparing():
         one.blades = 3
 
 
+def test_what_does_not_change_keeps_its_bits(field):
+    cameras = [camera(), camera(tilt_deg=(0, 0), up=(0.3, -1, 0)), field.camera(), camera(field_of_view_deg=33.3,
+               focal_length_mm=None), camera(unit_m=0.0254, shift_mm=(1, 3), aperture_diameter_mm=7, f_number=None)]
+    for one in cameras:
+        assert one.replace(blades=one.blades) == one
+        there = one.replace(focus_distance=1.25, blades=9)
+        assert np.array_equal(there.cam_from_world, one.cam_from_world) and np.array_equal(there.K, one.K)
+    breathing = camera(breathing=True, focus_distance=0.4)
+    assert breathing.replace(f_number=8).f_number == pytest.approx(8)
+    assert np.allclose(breathing.replace(f_number=8).K, breathing.K)
+
+
+def test_the_time_of_a_camera_is_that_of_its_path(path):
+    moved = lf.Path([path[1], path[1]], fps=12)
+    path_file = lf.Path(path, fps=50)
+    assert path[1] == moved[0] and hash(path[1]) == hash(moved[1]) and path_file[2] == path[2]
+    still = lf.Path.parse("format: lfpath 1\nfps: 25\nframes: 2\nresolution: [60, 40]\n"
+                          "camera: {field_of_view_deg: 40, position: [0, 0, 0], look_at: [0, 0, 1]}\n"
+                          "lens: {aperture_diameter: 0.1, focus_distance: 1}\n")
+    assert still[0] == still[1] and len({still[0], still[1]}) == 1
+
+
 def test_pickles_are_equal():
     path = lf.Path([camera(), camera(focus_distance=3)], fps=12)
     assert pickle.loads(pickle.dumps(path)) == path

@@ -52,6 +52,21 @@ def test_a_camera_renders_like_its_file(field, run, capture, tmp_path):
     assert np.abs(lf.render(field, camera).rgb - frame.rgb).max() < 1e-3
 
 
+def test_the_path_decides_the_time(field, path, capture, run, tmp_path):
+    """Frames of a path made in Python are those that lfrenderer makes of its file."""
+    cameras = [field.camera(resolution=(64, 48), focus_distance=0.8 + 0.2 * i) for i in range(3)]
+    for number, made in enumerate((lf.Path(cameras, fps=25), lf.Path(cameras)[::-1], path[1:], lf.Path(path, fps=10))):
+        made.save(tmp_path / f"{number}.yaml")
+        run("lfrenderer", capture, tmp_path / f"{number}.yaml", "-o", tmp_path / f"{number}")
+        for i, frame in lf.film(field, lf.Path.load(tmp_path / f"{number}.yaml")):
+            frame.save(tmp_path / "frame.exr")
+            expected = (tmp_path / f"{number}" / f"frame_{i:04}.exr").read_bytes()
+            assert (tmp_path / "frame.exr").read_bytes() == expected
+            assert frame.metadata["lf:time_s"] == (i - 1) / made.fps
+        assert [frame.metadata["lf:time_s"] for _, frame in lf.film(field, made)] == [
+            i / made.fps for i in range(len(made))]
+
+
 def test_bits_do_not_depend_on_threads_or_passes(field, path):
     frames = [frame.rgb.copy() for _, frame in lf.film(field, path, threads=1)]
     for threads, memory in ((2, "8G"), (3, "31M")):
