@@ -6,7 +6,7 @@ import numpy.typing as npt
 version: str
 
 _Stored = Union[npt.NDArray[np.uint8], npt.NDArray[np.uint16], npt.NDArray[np.float32]]
-_Tell = Callable[[int, int], None]
+_Tell = Callable[[int, int, int], None]
 
 class LightField:
     def __len__(self) -> int: ...

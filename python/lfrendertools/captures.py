@@ -14,7 +14,7 @@ from .camera import Camera, Path
 from .errors import MissingImagesWarning, UsageError
 from .light_field import LightField
 from .path_arguments import Frames, frame_numbers, path_in
-from .progress import Progress, teller
+from .progress import Progress, checked, telling
 
 _Facts = Dict[str, Any]
 
@@ -34,7 +34,8 @@ def report(field: LightField, *, check: str = "headers", distance: Optional[floa
     threads : int
         Number of threads; 0: one for each processor.
     progress : bool or callable, optional
-        Called with the number of LF images checked so far and in all. True: a progress bar, if tqdm is installed.
+        Called with the number of LF images that were checked, and their total number. True: a progress bar, if tqdm is
+        installed.
 
     Returns
     -------
@@ -48,10 +49,11 @@ def report(field: LightField, *, check: str = "headers", distance: Optional[floa
     >>> facts["images"], facts["missing"], facts["broken"]
     (49, 0, 0)
     """
-    return _facts(_core.report(_checked(field)._core, field._path,
-                               arguments.choice("check", check, ("headers", "pixels", "none")),
-                               None if distance is None else arguments.positive("distance", distance),
-                               arguments.thread_count(threads), teller(progress)))
+    with telling(checked(progress)) as tell:
+        return _facts(_core.report(_checked(field)._core, field._path,
+                                   arguments.choice("check", check, ("headers", "pixels", "none")),
+                                   None if distance is None else arguments.positive("distance", distance),
+                                   arguments.thread_count(threads), tell))
 
 
 def forecast(field: LightField, path: Union[Path, Camera], frames: Frames = None, *,
@@ -75,7 +77,7 @@ def forecast(field: LightField, path: Union[Path, Camera], frames: Frames = None
     threads : int
         Number of threads; 0: one for each processor.
     progress : bool or callable, optional
-        Called with the number of steps done so far and in all: two for each frame.
+        Called with the number of steps that are done, and their total number: two for each frame.
     **options
         Options of :class:`Renderer` that decide which LF images frames read.
 
@@ -94,7 +96,7 @@ def forecast(field: LightField, path: Union[Path, Camera], frames: Frames = None
     """
     words = _core.PackageWords()
     words.memory = arguments.text("memory", memory)
-    return _preprocess(field, path, frames, words, depths, threads, progress, options)
+    return _preprocess(field, path, frames, words, depths, threads, checked(progress), options)
 
 
 def write_packages(field: LightField, path: Union[Path, Camera], folder: FilePath, count: Optional[int] = None, *,
@@ -147,7 +149,7 @@ def write_packages(field: LightField, path: Union[Path, Camera], folder: FilePat
     words.frames_per_package = _at_least_1("frames_per_package", frames_per_package)
     words.overwrite = arguments.flag("overwrite", overwrite)
     words.strict = arguments.flag("strict", strict)
-    facts = _preprocess(field, path, frames, words, depths, threads, progress, options)
+    facts = _preprocess(field, path, frames, words, depths, threads, checked(progress), options)
     if facts["lf_images_missing"]:
         warnings.warn(f"{facts['lf_images_missing']} LF images that packages need do not exist, or are empty",
                       MissingImagesWarning, stacklevel=2)
@@ -187,7 +189,8 @@ def compress(field: LightField, store: FilePath, *, profile: str = "default", th
     threads : int
         Number of threads; 0: one for each processor.
     progress : bool or callable, optional
-        Called with the number of LF images encoded (then verified) so far and in all.
+        Called with the number of LF images that were encoded, and their total number; then, from 0 again, with those
+        that were verified. True: a bar for each.
 
     Returns
     -------
@@ -219,9 +222,9 @@ def compress(field: LightField, store: FilePath, *, profile: str = "default", th
         codec.target_psnr = _within("target_psnr", target_psnr, 10, 90)
     if levels is not None:
         codec.levels = int(_within("levels", arguments.whole("levels", levels), 1, 5))
-    with arguments.naming_arguments():
-        facts = _facts(_core.compress(_checked(field)._core, field._path, codec, words, arguments.thread_count(threads),
-                                      teller(progress)))
+    with arguments.naming_arguments(), telling(checked(progress)) as tell:
+        facts = _facts(_core.compress(_checked(field)._core, field._path, codec, words,
+                                      arguments.thread_count(threads), tell))
     if facts["lf_images_skipped"]:
         first = facts["skipped"][0]
         warnings.warn(f"{facts['lf_images_skipped']} LF images are not in the store, the first: {first['reason']}",
@@ -282,7 +285,8 @@ def synth(scene: str, folder: FilePath, *, capture: str = "planar", count: Optio
     threads : int
         Number of threads; 0: one for each processor.
     progress : bool or callable, optional
-        Called with the number of LF images (then frames) written so far and in all.
+        Called with the number of LF images that were written, and their total number; then, from 0 again, with those of
+        the frames of `truth`. True: a bar for each.
 
     Returns
     -------
@@ -335,8 +339,8 @@ def synth(scene: str, folder: FilePath, *, capture: str = "planar", count: Optio
             words.truth = file
         elif truth is not None:
             words.truth = os.fsdecode(arguments.file_name(truth))
-        with arguments.naming_arguments():
-            _core.synth(words, arguments.thread_count(threads), teller(progress, "files"))
+        with arguments.naming_arguments(), telling(checked(progress), "files") as tell:
+            _core.synth(words, arguments.thread_count(threads), tell)
     return opening.open(folder)
 
 
@@ -357,11 +361,10 @@ def _preprocess(field: LightField, path: Union[Path, Camera], frames: Frames, wo
         words.depths = (near, far)
     film = _core.FilmWords()
     arguments.set_words(film, options, {})
-    with arguments.naming_arguments():
+    with arguments.naming_arguments(), telling(progress, "steps") as tell:
         return _facts(_core.preprocess(
             field._core, field._path, [camera._core for camera in cameras], cameras.fps,
-            frame_numbers(frames, len(cameras)), film, words, arguments.thread_count(threads),
-            teller(progress, "steps")))
+            frame_numbers(frames, len(cameras)), film, words, arguments.thread_count(threads), tell))
 
 
 def _facts(text: str) -> _Facts:

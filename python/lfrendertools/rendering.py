@@ -16,7 +16,7 @@ from .errors import BlackFrameWarning, MissingImagesWarning, UsageError
 from .frames import Frame, Plate
 from .light_field import LightField
 from .path_arguments import Frames, frame_numbers, path_in
-from .progress import Progress, Tell, teller
+from .progress import Progress, TellPhase, checked, telling
 
 
 class Renderer:
@@ -157,7 +157,8 @@ def render(field: LightField, camera: Union[Camera, Path], *, progress: Progress
     camera : Camera or Path
         The camera; or a path, whose first frame is rendered unless `frames` names another one.
     progress : bool or callable, optional
-        Called with the number of LF images read so far and in all. True: a progress bar, if tqdm is installed.
+        Called with the number of LF images that were read, and their total number. True: a progress bar, if tqdm is
+        installed.
     **options
         Options of :class:`Renderer`.
 
@@ -178,14 +179,15 @@ def render(field: LightField, camera: Union[Camera, Path], *, progress: Progress
     >>> frame.rgb.shape, frame.rgb.dtype, frame.display().dtype
     ((60, 80, 3), dtype('float32'), dtype('uint8'))
     """
-    frames = options.pop("frames", None)
+    told, frames = checked(progress), options.pop("frames", None)
     film_of_one = _Film(field, camera, [1] if frames is None else frames, options)
     passes = film_of_one.core.passes()
     if sum(map(len, passes)) != 1:
         raise UsageError("render() renders one frame: use film() for several")
     film_of_one.begin(passes[0])
     film_of_one.core.check_any_contributes()
-    film_of_one.collect(teller(progress), 0, 1)
+    with telling(told, "LF images") as tell:
+        next(film_of_one.collect_some(tell, 0))
     film_of_one.core.check_not_all_broken()
     film_of_one.warn_of_missing()
     return Frame(film_of_one.core.develop(0))
@@ -223,21 +225,23 @@ def film(field: LightField, path: Path, frames: Frames = None, *, progress: Prog
     1 (120, 160, 3)
     26 (120, 160, 3)
     """
-    return _frames_of(_Film(field, path, frames, options), teller(progress))
+    told = checked(progress)
+    return _frames_of(_Film(field, path, frames, options), told)
 
 
-def _frames_of(sequence: _Film, tell: Tell) -> Iterator[Tuple[int, Frame]]:
+def _frames_of(sequence: _Film, progress: Progress) -> Iterator[Tuple[int, Frame]]:
     passes = sequence.core.passes()
-    for number, some in enumerate(passes):
-        sequence.begin(some)
-        for f in sequence.collect_some(tell, number, len(passes)):
-            frame = Frame(sequence.core.develop(f))
-            sequence.core.release(f)
-            if frame.image_count == 0 and frame.interpolated is None:
-                warnings.warn(f"frame {frame.number} is black: no recorded ray passes its lens", BlackFrameWarning,
-                              stacklevel=2)
-            yield frame.number, frame
-        sequence.warn_of_missing()
+    with telling(progress, "LF images") as tell:
+        for number, some in enumerate(passes):
+            sequence.begin(some)
+            for f in sequence.collect_some(tell, len(passes) - number - 1):
+                frame = Frame(sequence.core.develop(f))
+                sequence.core.release(f)
+                if frame.image_count == 0 and frame.interpolated is None:
+                    warnings.warn(f"frame {frame.number} is black: no recorded ray passes its lens",
+                                  BlackFrameWarning, stacklevel=2)
+                yield frame.number, frame
+            sequence.warn_of_missing()
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -309,30 +313,25 @@ class _Film:
                                    str(own["memory"]), arguments.flag("strict", own["strict"]),
                                    arguments.thread_count(own["threads"]))
         self._warned: List[str] = []
+        self._done = 0
 
     def begin(self, frames: Sequence[int]) -> None:
         with arguments.naming_arguments():
             self.core.begin(list(frames))
 
-    def collect_some(self, tell: Tell, number: int, count: int) -> Iterator[int]:
+    def collect_some(self, tell: TellPhase, passes_left: int) -> Iterator[int]:
         """Collect a pass, and yield the indices of its frames, from 0, when they are finished.
 
-        It tells the progress of all passes: this one is pass `number`, from 0, of `count`.
+        It tells the progress of all passes, as if those that are left had as many LF images as this one.
         """
         is_going_on = True
         while is_going_on:
             is_going_on = self.core.step()
             done, total = self.core.progress()
-            tell(number * total + done, count * total)
+            tell(self._done + done, self._done + (passes_left + 1) * total, 0)
             yield from self.core.stopped()
+        self._done += total
         yield from self.core.left()
-
-    def collect(self, tell: Tell, number: int, count: int) -> None:
-        while self.core.step() and not self.core.stopped():
-            done, total = self.core.progress()
-            tell(number * total + done, count * total)
-        done, total = self.core.progress()
-        tell(done, total)
 
     def warn_of_missing(self) -> None:
         missing = [(name, reason) for name, reason in self.core.skipped() if name not in self._warned]

@@ -51,15 +51,15 @@ class Teller {
   explicit Teller(WorkSignals* signals) : signals_(signals) {}
   void Tell() {
     if (signals_ == nullptr || !signals_->tell) return;
-    const std::pair now(signals_->done.load(), signals_->total.load());
+    const WorkProgress now = signals_->progress();
     if (now == told_) return;
     told_ = now;
-    signals_->tell(now.first, now.second);
+    signals_->tell(now.done, now.total, now.phase);
   }
 
  private:
   WorkSignals* signals_;
-  std::pair<size_t, size_t> told_{0, 0};
+  WorkProgress told_;
 };
 
 // Runs Python's handlers of the signals that have arrived, and the teller. Returns what they raise.

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <exception>
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -12,19 +13,40 @@
 
 namespace lf::python {
 
+// How far work has come. Each phase counts anew.
+struct WorkProgress {
+  size_t done = 0;
+  size_t total = 0;
+  int phase = 0;  // 0, 1, ...
+
+  friend bool operator==(const WorkProgress&, const WorkProgress&) = default;
+};
+
 // Signals between the thread of Python that waits and the work on another thread.
-struct WorkSignals {
+class WorkSignals {
+ public:
   // Requests that end work soon. Work that can be interrupted reads them
   // (WorkOptions::interrupted, WorkOptions::stop).
   std::atomic<bool> interrupted = false;
   std::atomic<bool> stop = false;
 
-  // The work states here how far it has come.
-  std::atomic<size_t> done = 0;
-  std::atomic<size_t> total = 0;
-  // If set, called with the GIL after `done` or `total` has changed, by the thread that waits. It
-  // may throw what a function of Python has raised, which ends the work as Ctrl-C does.
-  std::function<void(size_t done, size_t total)> tell = {};
+  // If set, called with the GIL after the progress has changed, by the thread that waits. It may
+  // throw what a function of Python has raised, which ends the work as Ctrl-C does.
+  std::function<void(size_t done, size_t total, int phase)> tell = {};
+
+  // Called by the work.
+  void SetProgress(const WorkProgress& now) {
+    const std::lock_guard lock(mutex_);
+    progress_ = now;
+  }
+  WorkProgress progress() const {
+    const std::lock_guard lock(mutex_);
+    return progress_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  WorkProgress progress_;
 };
 
 // Calls work() on another thread and waits for its end. The calling thread holds the GIL before and

@@ -170,12 +170,6 @@ def test_missing_images_are_told(run, tmp_path):
         lf.render(field, camera, strict=True)
 
 
-def test_progress_is_told(field, path):
-    told = []
-    lf.render(field, path, progress=lambda done, total: told.append((done, total)))
-    assert told[-1][0] == told[-1][1] > 0 and told == sorted(told)
-
-
 def test_an_exception_of_the_caller_ends_the_render(field, path):
     def refuse(done, total):
         raise RuntimeError("enough")
@@ -306,9 +300,3 @@ def test_a_broken_image_in_the_middle_is_no_obstacle(run, tmp_path):
     field = lf.open(tmp_path / "field")
     (tmp_path / "field" / field.names[4]).unlink()
     assert np.abs(field.camera().position - field.centres[4]).max() > 0.009
-
-
-def test_a_progress_bar_that_cannot_be_shown_is_told(field, path, monkeypatch):
-    monkeypatch.setitem(sys.modules, "tqdm.auto", None)
-    with pytest.warns(UserWarning, match="tqdm"):
-        lf.render(field, path, progress=True)
