@@ -102,10 +102,13 @@ class Frame:
             "exr" (half floats), "exr-float" (single precision), "png" or "png16"; by default "exr" or "png", by the
             suffix of `path`.
         """
-        name = os.fsdecode(arguments.file_name(path))
-        chosen = _FORMATS.get(pathlib.Path(name).suffix.lower()) if format is None else arguments.text("format", format)
-        if chosen is None:
-            raise UsageError(f"{name}: expected a name that ends in .exr or .png, or a format")
+        name = os.fsdecode(arguments.file_name("path", path))
+        suffix = pathlib.Path(name).suffix.lower()
+        chosen = _FORMATS.get(suffix, "") if format is None else arguments.text("format", format)
+        if suffix not in _FORMATS or not chosen.startswith(_FORMATS[suffix]):
+            ends = " or ".join(end for end, kind in _FORMATS.items() if format is None or chosen.startswith(kind))
+            raise UsageError(f"{name}: expected a name that ends in {ends}" if ends else
+                             f"format={format!r}: expected exr, exr-float, png or png16")
         with arguments.naming_arguments():
             self._core.save(os.fsencode(name), chosen)
 
@@ -134,7 +137,7 @@ class Plate:
     def load(cls, path: FilePath) -> Plate:
         """Read a plate that :meth:`save`, `lfrenderer --keep-plates` or `lfrenderer --shard` has written."""
         with arguments.naming_arguments():
-            return cls(_core.Plate.load(arguments.file_name(path)))
+            return cls(_core.Plate.load(arguments.file_name("path", path)))
 
     def save(self, path: FilePath) -> None:
         """Write the plate with all that :meth:`load` and :meth:`develop` need (doc/formats/plate.md).
@@ -145,7 +148,7 @@ class Plate:
             The file. It appears only when it is whole.
         """
         with arguments.naming_arguments():
-            self._core.save(arguments.file_name(path))
+            self._core.save(arguments.file_name("path", path))
 
     @property
     def sums(self) -> npt.NDArray[np.uint64]:

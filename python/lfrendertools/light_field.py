@@ -40,9 +40,12 @@ class Intrinsics:
     width, height : int
         Size of the LF images in pixels.
     distortion : str
-        Model of the lens distortion, or "pinhole" (lf/camera/distortion.h lists the models).
+        Model of the lens distortion: "pinhole" (none), "radial-tangential", "fisheye", "fov", "division", "unified",
+        "thin-prism fisheye" or "radial-tangential thin-prism fisheye".
     parameters : tuple of float
-        The parameters of the model, in the order that lf/camera/distortion.h states, with zeros up to 12 numbers.
+        12 numbers, of which the last are 0 if the model has fewer: OpenCV's k1, k2, p1, p2, k3, k4, k5, k6 for
+        "radial-tangential" and k1, k2, k3, k4 for "fisheye"; omega for "fov"; k for "division"; alpha, beta for
+        "unified"; k1, k2, p1, p2, k3, k4, sx1, sy1 and k0 to k5, p0, p1, s0 to s3 for the thin prisms.
     """
 
     K: Floats
@@ -103,7 +106,11 @@ class LightField:
     @functools.cached_property
     def intrinsics(self) -> Sequence[Intrinsics]:
         """The intrinsics of all LF cameras, each distinct set once."""
-        return tuple(Intrinsics(*entry) for entry in self._core.intrinsics())
+        all_of_them = []
+        for matrix, width, height, distortion, parameters in self._core.intrinsics():
+            matrix.setflags(write=False)
+            all_of_them.append(Intrinsics(matrix, width, height, distortion, tuple(parameters)))
+        return tuple(all_of_them)
 
     @property
     def intrinsics_index(self) -> npt.NDArray[np.uint32]:
@@ -130,9 +137,9 @@ class LightField:
         """True for LF images that were interpolated from recorded ones (doc/densify.md), of shape (n,)."""
         return self._core.is_virtual
 
-    @property
+    @functools.cached_property
     def spacing(self) -> float:
-        """Median distance from an LF camera to its nearest neighbour, in world units."""
+        """Median distance from an LF camera to its nearest neighbour, in world units. Computed at the first use."""
         return self._core.spacing()
 
     def project(self, i: int, points: npt.ArrayLike) -> Floats:
@@ -142,15 +149,16 @@ class LightField:
         ----------
         i : int
             Number of the LF camera, from 0.
-        points : array_like of shape (n, 3)
+        points : array_like of shape (..., 3)
             Points in world units.
 
         Returns
         -------
-        ndarray of shape (n, 2)
+        ndarray of shape (..., 2)
             Pixel positions, which may lie outside of the LF image; NaN for points that the lens cannot see.
         """
-        return self._core.project(arguments.whole("i", i), arguments.reals("points", points))
+        rows, shape = arguments.rows("points", points, 3)
+        return self._core.project(arguments.index("i", i), rows).reshape(*shape, 2)
 
     def rays(self, i: int, pixels: npt.ArrayLike) -> Tuple[Floats, Floats]:
         """Return the rays that LF camera `i` records at pixel positions.
@@ -159,17 +167,18 @@ class LightField:
         ----------
         i : int
             Number of the LF camera, from 0.
-        pixels : array_like of shape (n, 2)
+        pixels : array_like of shape (..., 2)
             Pixel positions.
 
         Returns
         -------
-        origins, directions : ndarray of shape (n, 3)
-            The LF camera's position, n times, and directions of length 1, in world axes. A direction is NaN if no ray
-            arrives at the pixel position.
+        origins, directions : ndarray of shape (..., 3)
+            The LF camera's position, for each ray, and directions of length 1, in world axes. A direction is NaN if no
+            ray arrives at the pixel position.
         """
-        i = arguments.whole("i", i)
-        directions = self._core.ray_directions(i, arguments.reals("pixels", pixels))
+        rows, shape = arguments.rows("pixels", pixels, 2)
+        i = arguments.index("i", i)
+        directions = self._core.ray_directions(i, rows).reshape(*shape, 3)
         return np.broadcast_to(self.centres[i], directions.shape), directions
 
     def image(self, i: int, rect: Optional[Tuple[int, int, int, int]] = None, masked: float = float("nan"), *,
@@ -200,7 +209,7 @@ class LightField:
         UsageError
             `rect` is not within the LF image, or `stored` is asked of a packed store, which has no image files.
         """
-        i, part = arguments.whole("i", i), None
+        i, part = arguments.index("i", i), None
         if rect is not None:
             # Positions that need more than 32 bits are outside of every LF image, as are their nearest ones.
             x0, y0, x1, y1 = (min(max(at, -2**31), 2**31 - 1) for at in arguments.whole_numbers("rect", rect, 4))
@@ -268,6 +277,7 @@ class LightField:
             square are cut off on the right and below.
         out : array, optional
             Receives the values, such as a `numpy.memmap` or a dataset of h5py, for light fields larger than the memory.
+            Its values must be floats.
 
         Returns
         -------
@@ -297,10 +307,12 @@ class LightField:
         shape = (rows, columns, *size, 3)
         if out is None:
             out = np.empty(shape, np.float32)
-        elif not hasattr(out, "shape"):
+        elif not hasattr(out, "shape") or not hasattr(out, "dtype"):
             raise TypeError(f"out={out!r}: expected an array")
-        elif isinstance(out, np.ndarray) and not (out.flags.writeable and np.issubdtype(out.dtype, np.floating)):
-            raise UsageError(f"out: expected an array of floats that can be written to, found {out.dtype}")
+        elif not np.issubdtype(out.dtype, np.floating):
+            raise UsageError(f"out: expected an array of floats, found {out.dtype}")
+        elif isinstance(out, np.ndarray) and not out.flags.writeable:
+            raise UsageError("out: the array cannot be written to")
         elif tuple(out.shape) != shape:
             raise UsageError(f"out has the shape {tuple(out.shape)}, expected {shape}")
         v = np.linspace(0, grid.shape[0] - 1, rows).round().astype(int)
@@ -333,8 +345,8 @@ class LightField:
         """
         text, doubt = self._core.example(
             os.fsencode(self._path), arguments.text("move", move),
-            None if start is None else arguments.whole("start", start),
-            None if focus_distance is None else arguments.positive("focus_distance", focus_distance))
+            None if start is None else arguments.index("start", start),
+            None if focus_distance is None else arguments.positive("focus_distance", focus_distance, 1e9))
         if doubt:
             logging.getLogger("lfrendertools").warning("%s: the focus distance is not sure: %s", self._path, doubt)
         return CameraPath.parse(text, self._path, self.unit_m)
@@ -429,20 +441,17 @@ def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[
     >>> field.array(views=(3, 3), reduce=2).shape
     (3, 3, 60, 80, 3)
     """
-    name = arguments.file_name(path)
+    name = arguments.file_name("path", path)
     if pitch is not None:
-        pair = (pitch, pitch) if np.ndim(pitch) == 0 else tuple(pitch)  # type: ignore[arg-type]
-        if len(pair) != 2:
-            raise UsageError(f"pitch={pitch!r}: expected one or two numbers")
-        pitch = (arguments.real("pitch", pair[0]), arguments.real("pitch", pair[1]))
-    if image_alpha not in _ALPHAS:
-        raise UsageError(f"image_alpha={image_alpha!r}: expected one of {', '.join(_ALPHAS)}")
+        pair = arguments.numbers("pitch", pitch if hasattr(pitch, "__len__") else (pitch, pitch), 2, 2)
+        pitch = (pair[0], pair[1])
     with arguments.naming_arguments():
         core = _core.open_light_field(
             name, 0.0 if focal_px is None else arguments.positive("focal_px", focal_px),
             0.0 if fov_deg is None else arguments.positive("fov_deg", fov_deg),
-            b"" if images is None else arguments.file_name(images), arguments.text("image_scale", image_scale),
-            image_alpha, arguments.text("background", background), pitch,
+            b"" if images is None else arguments.file_name("images", images),
+            arguments.text("image_scale", image_scale),
+            arguments.choice("image_alpha", image_alpha, _ALPHAS), arguments.text("background", background), pitch,
             None if plane_distance is None else arguments.real("plane_distance", plane_distance),
             (arguments.flag("flip_x", flip_x), arguments.flag("flip_y", flip_y)))
     return LightField(core, str(pathlib.Path(os.fsdecode(name))))
@@ -467,7 +476,7 @@ def read_image(path: FilePath) -> npt.NDArray[Any]:
     InputError
         The file is missing, damaged or of another kind.
     """
-    return _core.read_image(arguments.file_name(path))
+    return _core.read_image(arguments.file_name("path", path))
 
 
 def _part_of(values: npt.NDArray[Any], rect: Tuple[int, int, int, int]) -> Tuple[slice, slice]:

@@ -81,6 +81,26 @@ def test_the_time_of_a_camera_is_that_of_its_path(path):
     assert still[0] == still[1] and len({still[0], still[1]}) == 1
 
 
+def test_frames_per_second_are_checked(path):
+    path = lf.Path(path)
+    path.fps = 12.5
+    assert path.fps == 12.5
+    for wrong in (-5, 0, float("nan")):
+        with pytest.raises(lf.UsageError, match="fps"):
+            path.fps = wrong
+    with pytest.raises(TypeError, match="fps"):
+        path.fps = "24"
+
+
+def test_up_needs_a_point_to_look_at():
+    with pytest.raises(lf.UsageError, match="up.*look_at"):
+        camera(look_at=None, quaternion=(1, 0, 0, 0), up=(0, -1, 0))
+    with pytest.raises(lf.UsageError, match="up.*look_at"):
+        camera().replace(up=(1, 0, 0))
+    turned = camera().replace(look_at=(0, 0, 1), up=(1, 0, 0))
+    assert np.allclose(turned.cam_from_world, camera(up=(1, 0, 0)).cam_from_world, rtol=0, atol=1e-15)
+
+
 def test_pickles_are_equal():
     path = lf.Path([camera(), camera(focus_distance=3)], fps=12)
     assert pickle.loads(pickle.dumps(path)) == path

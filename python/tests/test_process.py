@@ -1,4 +1,4 @@
-"""The process of the caller: its end, forks, and values for other processes."""
+"""The process of the caller: its end, its working directory, forks, and values for other processes."""
 import pickle
 import subprocess
 import sys
@@ -68,6 +68,23 @@ for _ in range(20):
 """
     end = subprocess.run([sys.executable, "-c", code, capture], capture_output=True, text=True, timeout=60)
     assert (end.returncode, end.stderr) == (0, "")
+
+
+def test_a_lack_of_memory_is_an_output_error(capture):
+    code = """
+import resource, sys
+import lfrendertools as lf
+field = lf.open(sys.argv[1])
+camera = field.camera(focus_distance=1)
+lf.render(field, camera)
+resource.setrlimit(resource.RLIMIT_AS, (3 << 30, 3 << 30))
+try:
+    lf.render(field, camera.replace(resolution=(12000, 9000)), memory="100G")
+except lf.OutputError as error:
+    print(error)
+"""
+    end = subprocess.run([sys.executable, "-c", code, capture], capture_output=True, text=True, timeout=60)
+    assert "memory" in end.stdout, end.stderr
 
 
 def test_frames_are_pickled(field, path, tmp_path):

@@ -98,8 +98,10 @@ def test_changed_pixels_are_saved(field, path, tmp_path):
     frame.rgb[:] = 0.5
     frame.save(tmp_path / "b.png")
     assert (np.asarray(Image.open(tmp_path / "b.png")) == 188).all()
-    with pytest.raises(lf.UsageError, match="ends in"):
-        frame.save(tmp_path / "a.tiff")
+    for wrong in ({"path": "a.tiff"}, {"path": "a.exr", "format": "png"}, {"path": "a.png", "format": "exr-float"},
+                  {"path": "a.png", "format": "gif"}, {"path": "a.tiff", "format": "png"}):
+        with pytest.raises(lf.UsageError, match="ends in|expected exr"):
+            frame.save(**{**wrong, "path": tmp_path / wrong["path"]})
     with pytest.raises(lf.OutputError):
         frame.save(tmp_path / "missing" / "a.png")
 
@@ -121,6 +123,8 @@ def test_step_by_step(field, path):
         with pytest.raises(IndexError):
             renderer.preview(1)
         assert not renderer.step()
+        assert repr(renderer).startswith("<Renderer: 2 frames, ")
+    assert repr(renderer) == "<Renderer, closed>"
 
 
 def test_sizes_of_plates_must_agree(field, path):
@@ -136,7 +140,7 @@ def test_sizes_of_plates_must_agree(field, path):
 @pytest.mark.parametrize("options, words", [
     ({"estimator": "best"}, "estimator=\"best\": expected one of auto, nearest, bilinear"),
     ({"colour": 1}, "unknown option colour"), ({"stop_when": "noise<0"}, "stop_when"),
-    ({"max_images": "many"}, "max_images='many'"), ({"memory": "lots"}, "memory"), ({"frames": [4]}, "frames 1 to 3"),
+    ({"max_images": -1}, "max_images=-1"), ({"memory": "lots"}, "memory"), ({"frames": [4]}, "frames 1 to 3"),
     ({"frames": "1-"}, "range such as"), ({"max_images": 0}, "max_images=0"), ({"fill": -1}, "fill=-1")])
 def test_wrong_options(field, path, options, words):
     with pytest.raises(lf.UsageError, match=words) as error:
