@@ -7,8 +7,7 @@ import sys
 import warnings
 from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
-from . import _core, arguments
-from . import light_field as opening
+from . import _core, arguments, opening
 from .arguments import FilePath
 from .camera import Camera, Path
 from .errors import MissingImagesWarning, UsageError
@@ -51,7 +50,7 @@ def report(field: LightField, *, check: str = "headers", distance: Optional[floa
     (49, 0, 0)
     """
     with telling(checked(progress)) as tell:
-        return _facts(_core.report(_checked(field)._core, os.fsencode(field._path),
+        return _facts(_core.report(_checked(field)._core, os.fsencode(field.source),
                                    arguments.choice("check", check, ("headers", "pixels", "none")),
                                    None if distance is None else arguments.positive("distance", distance),
                                    arguments.thread_count(threads), tell))
@@ -203,7 +202,7 @@ def compress(field: LightField, store: FilePath, *, profile: str = "default", th
     >>> import lfrendertools as lf
     >>> facts = lf.compress(lf.open("capture/"), "capture.lfs", target_psnr=40)
     >>> facts["ratio"] > 2, lf.open("capture.lfs")
-    (True, <LightField capture.lfs: 49 LF images>)
+    (True, <LightField ...capture.lfs: 49 LF images>)
     """
     words = _core.StoreWords()
     words.output = arguments.file_name("store", store)
@@ -226,7 +225,7 @@ def compress(field: LightField, store: FilePath, *, profile: str = "default", th
     if levels is not None:
         codec.levels = arguments.whole_within("levels", levels, 1, 5)
     with arguments.naming_arguments(), telling(checked(progress)) as tell:
-        facts = _facts(_core.compress(_checked(field)._core, os.fsencode(field._path), codec, words,
+        facts = _facts(_core.compress(_checked(field)._core, os.fsencode(field.source), codec, words,
                                       arguments.thread_count(threads), tell))
     if facts["lf_images_skipped"]:
         first = facts["skipped"][0]
@@ -305,7 +304,7 @@ def synth(scene: str, folder: FilePath, *, capture: str = "planar", count: Optio
     --------
     >>> import lfrendertools as lf
     >>> lf.synth("chart", "chart", count=4, size=(48, 32), samples=1)
-    <LightField chart: 4 LF images>
+    <LightField ...chart: 4 LF images>
     """
     words = _core.SyntheticFieldOptions()
     words.scene = arguments.choice("scene", scene, ("still-life", "lights", "chart"))
@@ -376,7 +375,7 @@ def _preprocess(field: LightField, path: Union[Path, Camera], frames: Frames, wo
     film = film_words(options, {})
     with arguments.naming_arguments(), telling(progress, "steps") as tell:
         facts = _facts(_core.preprocess(
-            field._core, os.fsencode(field._path), [camera._core for camera in cameras], cameras.fps,
+            field._core, os.fsencode(field.source), [camera._core for camera in cameras], cameras.fps,
             frame_numbers(frames, len(cameras)), film, words, arguments.thread_count(threads), tell))
     if facts["depths_from"] == "--depths":
         facts["depths_from"] = "depths"

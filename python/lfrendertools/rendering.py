@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from . import _core, arguments
 from .camera import Camera, Path
-from .errors import BlackFrameWarning, MissingImagesWarning, UsageError
+from .errors import BlackFrameWarning, UsageError, warn_of_missing
 from .film_options import film_words
 from .frames import Frame, Plate
 from .light_field import LightField
@@ -411,8 +411,5 @@ class _Film:
 
     def warn_of_missing(self) -> None:
         missing = [(name, reason) for name, reason in self.core.skipped() if name not in self._warned]
-        if not missing:
-            return
         self._warned += [name for name, _ in missing]
-        warnings.warn(f"{len(missing)} LF images were left out, the first: {missing[0][1]}", MissingImagesWarning,
-                      stacklevel=3)
+        warn_of_missing([reason for _, reason in missing], stacklevel=4)

@@ -162,6 +162,7 @@ def test_paths_of_files(wrong, field, path):
 
 def test_sequences(field, path, tmp_path):
     refuses(lambda: lf.Path(path[0]), "^cameras=<Camera.*expected lf.Camera objects")
+    refuses(lambda: field.images(3), "^ids=3: expected numbers of LF images")
     for wrong in (0.1, "0.1", [[1]], ["a"]):
         refuses(lambda: lf.synth("chart", tmp_path, distortion=wrong), "^distortion=.*: expected 0 to 8 numbers")
     for wrong in (3, "ab", "a", None, [1, "b"]):

@@ -1,5 +1,6 @@
 """Cameras and paths."""
 import pickle
+import warnings
 
 import numpy as np
 import pytest
@@ -99,6 +100,24 @@ def test_up_needs_a_point_to_look_at():
         camera().replace(up=(1, 0, 0))
     turned = camera().replace(look_at=(0, 0, 1), up=(1, 0, 0))
     assert np.allclose(turned.cam_from_world, camera(up=(1, 0, 0)).cam_from_world, rtol=0, atol=1e-15)
+
+
+def test_an_uncertain_focus_is_told(tmp_path):
+    """Images without texture do not tell how far the subject is."""
+    from PIL import Image
+    field = lf.synth("chart", tmp_path / "field", count=9, size=(96, 64), samples=1, format="png")
+    for name in field.names:
+        Image.new("RGB", (96, 64), (90, 90, 90)).save(tmp_path / "field" / name)
+    field = lf.open(tmp_path / "field")
+    for action in (field.camera, field.path, lambda: field.camera(blades=5)):
+        with pytest.warns(lf.UncertainFocusWarning, match="focus_distance="):
+            action()
+    with pytest.warns(lf.UncertainFocusWarning):
+        pinhole = field.camera()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert field.camera(focus_distance=1).aperture_diameter > 2 * field.spacing > pinhole.aperture_diameter
+        assert field.camera(focus_distance=1) == field.path("static", focus_distance=1)[0]
 
 
 def test_pickles_are_equal():

@@ -90,6 +90,38 @@ def test_a_broken_image_is_an_error_that_names_it(run, tmp_path):
     assert error.value.exit_code == 3
 
 
+def test_broken_images_are_left_out_with_a_warning(run, tmp_path):
+    run("lfsynth", "chart", "-o", tmp_path / "field", "--count", 9, "--size", "32x24", "--samples", 1)
+    field = lf.open(tmp_path / "field")
+    whole = field.array()
+    grid = field.grid()
+    (tmp_path / "field" / field.names[2]).unlink()
+    (tmp_path / "field" / field.names[7]).write_bytes(b"no picture")
+    with pytest.warns(lf.MissingImagesWarning, match="2 LF images were left out.*0002"):
+        found = [i for i, _ in field.images(ahead=3)]
+    assert found == [0, 1, 3, 4, 5, 6, 8]
+    with pytest.warns(lf.MissingImagesWarning, match="2 LF images"):
+        array = field.array()
+    for i in range(9):
+        place = tuple(np.argwhere(grid.ids == i)[0])
+        assert np.isnan(array[place]).all() if i in (2, 7) else np.array_equal(array[place], whole[place])
+    for action in (lambda: list(field.images(strict=True)), lambda: field.array(strict=True)):
+        with pytest.raises(lf.InputError, match="0002"):
+            action()
+
+
+def test_images_are_loaded_as_stored(field):
+    for i, picture in field.images([4, 2], stored=True):
+        assert picture.dtype == np.uint8 and np.array_equal(picture, field.image(i, stored=True))
+
+
+def test_masked_pixels_have_the_value_that_is_asked_for(tmp_path):
+    lf.synth("chart", tmp_path / "field", count=4, size=(48, 32), samples=1, alpha="straight", format="png")
+    field = lf.open(tmp_path / "field", image_alpha="mask")
+    (_, with_nan), (_, with_zero) = next(field.images()), next(field.images(masked=0))
+    assert np.isnan(with_nan).any() and np.array_equal(np.nan_to_num(with_nan), with_zero)
+
+
 def test_intrinsics_are_read_only(field):
     k = field.intrinsics[0]
     with pytest.raises(ValueError):

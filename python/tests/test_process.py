@@ -1,5 +1,7 @@
 """The process of the caller: its end, its working directory, forks, and values for other processes."""
+import os
 import pickle
+import shutil
 import subprocess
 import sys
 
@@ -85,6 +87,21 @@ except lf.OutputError as error:
 """
     end = subprocess.run([sys.executable, "-c", code, capture], capture_output=True, text=True, timeout=60)
     assert "memory" in end.stdout, end.stderr
+
+
+def test_the_working_directory_may_change(capture, path, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    shutil.copytree(capture, "field")
+    field = lf.open("field")
+    lf.compress(field, "field.lfs", profile="lossless")
+    store, by_images = lf.open("field.lfs"), lf.open("field/transforms.json", images="field/images")
+    os.mkdir("other")
+    os.chdir("other")
+    assert field.source == str(tmp_path / "field") and str(tmp_path / "field.lfs") in repr(store)
+    assert np.array_equal(store.image(3), field.image(3)) and np.array_equal(by_images.image(3), field.image(3))
+    assert lf.report(field)["missing"] == 0
+    facts = lf.write_packages(field, path, "packages", 1)
+    assert facts["light_field"] == field.source and field.path("static", focus_distance=1)[0].resolution[0] > 0
 
 
 def test_frames_are_pickled(field, path, tmp_path):

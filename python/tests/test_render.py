@@ -167,7 +167,7 @@ def test_missing_images_are_told(run, tmp_path):
     field = lf.open(tmp_path / "field")
     camera = field.camera(aperture_diameter=0.05)
     (tmp_path / "field" / field.names[4]).unlink()
-    with pytest.warns(lf.MissingImagesWarning, match="1 LF images.*0004"):
+    with pytest.warns(lf.MissingImagesWarning, match="1 LF image was.*0004"):
         frame = lf.render(field, camera)
     assert frame.image_count == 8
     with pytest.raises(lf.InputError, match="0004"):
