@@ -67,6 +67,28 @@ class SynthTest(unittest.TestCase):
         names = sorted(file.name for file in (field / "truth").iterdir())
         self.assertEqual(names, ["frame_0001.exr", "frame_0002.exr"])
 
+    def test_an_older_field_is_replaced_whole(self):
+        options = ("--size", "24x16", "--samples", 1)
+        field = self.synth("chart", "field", "--count", 9, *options)
+        (field / "images/0009.exr").write_bytes(b"of somebody else")
+        self.synth("lights", "field", "--count", 4, "--calibration-only", *options)
+        self.assertEqual(len(list((field / "images").iterdir())), 10)
+        self.synth("chart", "field", "--count", 9, *options)
+        self.synth("lights", "field", "--count", 4, *options)
+        self.assertEqual(sorted(file.name for file in (field / "images").iterdir()),
+                         ["0000.exr", "0001.exr", "0002.exr", "0003.exr", "0009.exr"])
+
+    def test_a_light_field_of_another_form_is_not_hidden(self):
+        folder = self.folder / "other"
+        folder.mkdir()
+        (folder / "scene_par.txt").write_text("1\na.png 1 0 0 0 1 0 0 0 1 1 0 0 0 1 0 0 0 1 0 0 0\n")
+        options = ("-o", folder, "--count", 1, "--size", "24x16", "--samples", 1)
+        said = self.run_tool(SYNTH, "chart", *options, code=2)
+        self.assertIn("holds a light field that lfsynth did not write", said)
+        self.assertEqual([file.name for file in folder.iterdir()], ["scene_par.txt"])
+        self.run_tool(SYNTH, "chart", *options, "--overwrite")
+        self.assertTrue((folder / "transforms.json").exists())
+
     def test_a_calibration_alone_may_have_very_many_cameras(self):
         field = self.synth("chart", "wide", "--calibration-only", "--count", 10000)
         self.assertEqual(len(json.loads((field / "transforms.json").read_text())["frames"]), 10000)

@@ -312,7 +312,7 @@ std::string ForecastJson(const PreprocessReport& report, const CameraPath& path,
       {"largest_aperture",
        advice.largest_aperture_w > 0 ? finite(advice.largest_aperture_w) : Json()}};
   json["warnings"] = DensityWarnings(report, path, facts);
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace lf

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "lf/core/file.h"
 #include "lf/core/file_lock.h"
 #include "lf/core/log.h"
+#include "lf/import/formats/open_light_field.h"
 #include "lf/import/paths/open_path.h"
 #include "lf/light_field/synthetic/built_in_scenes.h"
 #include "lf/light_field/synthetic/write_light_field.h"
@@ -76,17 +78,44 @@ Result<FileLock> LockFolder(const std::filesystem::path& folder) {
   return lock;
 }
 
-// Refuses to overwrite a light field that lfsynth did not write, or that was edited since.
-Result<void> CheckMayWrite(const SyntheticFieldOptions& a) {
+// Refuses to overwrite a light field that lfsynth did not write, or that was edited since. Returns
+// the paths of the LF images of the light field that is replaced, if lfsynth wrote it.
+Result<std::vector<std::filesystem::path>> ImagesToReplace(const SyntheticFieldOptions& a) {
   std::error_code error;
-  if (a.overwrite || !std::filesystem::exists(CalibrationIn(a), error)) return {};
-  LF_ASSIGN_OR_RETURN(const bool is_ours, IsAsWritten(CalibrationIn(a), kSynthProgram));
-  if (is_ours) return {};
+  std::vector<std::filesystem::path> images;
+  const bool is_there = std::filesystem::exists(CalibrationIn(a), error);
+  if (is_there) {
+    LF_ASSIGN_OR_RETURN(const bool is_ours, IsAsWritten(CalibrationIn(a), kSynthProgram));
+    if (is_ours) {
+      LF_ASSIGN_OR_RETURN(const LightField earlier, ReadTransformsJson(CalibrationIn(a)));
+      for (uint32_t i = 0; i < earlier.size(); ++i) images.push_back(earlier.ImagePath({i}));
+      return images;
+    }
+  }
+  if (a.overwrite || !HoldsLightField(a.output)) return images;
   return UsageError(
-      fmt::format("{}: was not written by lfsynth, or was changed afterwards: give another folder, "
-                  "or replace this "
-                  "light field with --overwrite",
-                  CalibrationIn(a).string()));
+      is_there
+          ? fmt::format("{}: was not written by lfsynth, or was changed afterwards: give another "
+                        "folder, or replace this light field with --overwrite",
+                        CalibrationIn(a).string())
+          : fmt::format("{}: holds a light field that lfsynth did not write, and that a "
+                        "transforms.json would hide: give another folder, or write beside it with "
+                        "--overwrite",
+                        a.output));
+}
+
+// Removes those LF images of an earlier light field that the new one does not replace.
+Result<void> RemoveOthers(const std::vector<std::filesystem::path>& earlier,
+                          const LightField& light_field) {
+  std::set<std::filesystem::path> kept;
+  for (uint32_t i = 0; i < light_field.size(); ++i) kept.insert(light_field.ImagePath({i}));
+  for (const std::filesystem::path& path : earlier) {
+    std::error_code error;
+    if (!kept.contains(path) && !std::filesystem::remove(path, error) && error)
+      return OutputError(fmt::format("{}: the older LF image cannot be removed: {}", path.string(),
+                                     error.message()));
+  }
+  return {};
 }
 
 }  // namespace
@@ -100,13 +129,14 @@ Result<void> WriteSyntheticField(const SyntheticFieldOptions& options, ThreadPoo
   LF_ASSIGN_OR_RETURN(const LfImageFormat format, FormatOf(options));
   LF_ASSIGN_OR_RETURN(const RigOptions rig, RigOf(options, *built_in));
   LF_ASSIGN_OR_RETURN(const std::vector<RigidTransform> poses, MakeRig(rig));
-  CameraPath path;
+  std::vector<RenderCamera> truth = options.truth_cameras;
   if (!options.truth.empty()) {
-    LF_ASSIGN_OR_RETURN(path, OpenPath(options.truth, {.light_field_unit_m = 1.0}));
+    LF_ASSIGN_OR_RETURN(CameraPath path, OpenPath(options.truth, {.light_field_unit_m = 1.0}));
+    truth = std::move(path.cameras);
   }
   // The lock keeps two processes from mixing their scenes in one folder.
   LF_ASSIGN_OR_RETURN(const FileLock lock, LockFolder(options.output));
-  LF_RETURN_IF_ERROR(CheckMayWrite(options));
+  LF_ASSIGN_OR_RETURN(const std::vector<std::filesystem::path> earlier, ImagesToReplace(options));
   const auto [width_px, height_px] =
       options.size_px.value_or(std::pair(built_in->width_px, built_in->height_px));
   Intrinsics intrinsics = IntrinsicsFor(*built_in, width_px, height_px);
@@ -120,16 +150,17 @@ Result<void> WriteSyntheticField(const SyntheticFieldOptions& options, ThreadPoo
   if (options.calibration_only) {
     LF_RETURN_IF_ERROR(WriteTransformsJson(light_field, CalibrationIn(options), kSynthProgram));
   } else {
+    LF_RETURN_IF_ERROR(RemoveOthers(earlier, light_field));
     const int samples = options.samples > 0 ? options.samples : built_in->samples;
     const auto tell = [&](size_t done) { return keep_going(done, poses.size(), false); };
     LF_RETURN_IF_ERROR(WriteLightField(scene, light_field,
                                        {format, samples, options.noise, options.seed, tell}, pool));
   }
   LogInfo("{}: {} LF cameras, {:.4g} apart", options.output, poses.size(), RigPitch(rig));
-  if (options.truth.empty()) return {};
-  return WriteTruth(scene, path.cameras, {options.truth_samples, 0}, light_field.folder / "truth",
-                    pool, surroundings,
-                    [&](size_t done) { return keep_going(done, path.frame_count(), true); });
+  if (truth.empty()) return {};
+  return WriteTruth(scene, truth, {options.truth_samples, 0}, light_field.folder / "truth", pool,
+                    surroundings,
+                    [&](size_t done) { return keep_going(done, truth.size(), true); });
 }
 
 }  // namespace lf

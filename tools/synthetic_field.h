@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "lf/camera/render_camera.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
 #include "lf/light_field/synthetic/photograph.h"
@@ -17,6 +18,8 @@ namespace lf {
 
 // Each member has the meaning and the default of the option of lfsynth with this name.
 struct SyntheticFieldOptions {
+  // Frames of the ground truth, instead of the path file `truth`. Their world unit is one metre.
+  std::vector<RenderCamera> truth_cameras = {};
   std::string scene, output, capture = "planar", format = "exr", alpha = "none", truth;
   std::optional<std::pair<int, int>> size_px;
   uint32_t count = 0;
@@ -33,10 +36,11 @@ struct SyntheticFieldOptions {
 // ground truth (is_truth), by one thread at a time.
 using SyntheticProgress = std::function<bool(size_t done, size_t total, bool is_truth)>;
 
-// Writes the LF images, their calibration and, if a path is given, the ground truth.
-// kUsage: options that do not exist or contradict each other; the folder holds another light field
-// and `overwrite` is false. kInput: the path cannot be read. kOutput: the folder or the disk fails.
-// kInterrupted: keep_going() returned false.
+// Writes the LF images, their calibration and, if a path is given, the ground truth. LF images of
+// an earlier light field of lfsynth in the folder are removed, unless calibration_only is true.
+// kUsage: options that do not exist or contradict each other; the folder holds another light field,
+// in any form, and `overwrite` is false. kInput: the path cannot be read. kOutput: the folder or
+// the disk fails. kInterrupted: keep_going() returned false.
 Result<void> WriteSyntheticField(const SyntheticFieldOptions& options, ThreadPool& pool,
                                  const SyntheticProgress& keep_going);
 

@@ -10,6 +10,8 @@ from PIL import Image
 
 import lfrendertools as lf
 
+if len(sys.argv) < 3:
+    sys.exit(__doc__)
 field = lf.open(sys.argv[1])
 camera = field.camera()
 focus = float(sys.argv[3]) if len(sys.argv) > 3 else 0.8 * camera.focus_distance

@@ -20,6 +20,8 @@ from PIL import Image
 
 import lfrendertools as lf
 
+if len(sys.argv) < 3:
+    sys.exit(__doc__)
 folder, picture = pathlib.Path(sys.argv[1]), sys.argv[2]
 count = int(sys.argv[3]) if len(sys.argv) > 3 else 1_000_000
 if not (folder / "transforms.json").exists():

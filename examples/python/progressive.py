@@ -11,6 +11,8 @@ import numpy as np
 
 import lfrendertools as lf
 
+if len(sys.argv) < 3:
+    sys.exit(__doc__)
 field = lf.open(sys.argv[1])
 noise = sys.argv[3] if len(sys.argv) > 3 else "0.005"
 camera = field.camera()

@@ -10,6 +10,8 @@ from PIL import Image
 
 import lfrendertools as lf
 
+if len(sys.argv) < 3:
+    sys.exit(__doc__)
 field = lf.open(sys.argv[1])
 subject = field.camera()
 near, far = 0.75 * subject.focus_distance, 1.5 * subject.focus_distance

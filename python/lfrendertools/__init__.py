@@ -7,7 +7,7 @@ A light field is opened, looked at as arrays, and rendered through a lens:
 >>> frame = lf.render(field, field.camera(focus_distance=2.5))
 >>> frame.save("frame.exr")
 >>> field
-<LightField capture: 49 LF images>
+<LightField ...capture: 49 LF images>
 >>> frame
 <Frame 1: 160 x 120 of ... LF images>
 
@@ -23,9 +23,10 @@ from .camera import Camera, Path
 from .captures import compress, forecast, report, synth, write_packages
 from .display import display_values
 from .errors import (BelowRequired, BlackFrameWarning, Error, InputError, InterruptedRender, MissingImagesWarning,
-                     OutputError, UsageError)
+                     OutputError, UncertainFocusWarning, UsageError)
 from .frames import Frame, Plate
-from .light_field import Intrinsics, LightField, open, read_image
+from .light_field import Intrinsics, LightField, read_image
+from .opening import open
 from .rendering import Renderer, Selection, film, render, select
 from .rig import Grid
 
@@ -33,7 +34,7 @@ __version__: str = _core.version
 
 __all__ = ["BelowRequired", "BlackFrameWarning", "Camera", "Error", "Frame", "Grid", "InputError",
            "InterruptedRender", "Intrinsics", "LightField", "MissingImagesWarning", "OutputError", "Path", "Plate",
-           "Renderer", "Selection", "UsageError", "compress", "display_values", "film", "forecast", "open",
-           "read_image", "render", "report", "select", "synth", "write_packages"]
+           "Renderer", "Selection", "UncertainFocusWarning", "UsageError", "compress", "display_values", "film",
+           "forecast", "open", "read_image", "render", "report", "select", "synth", "write_packages"]
 
 logging.getLogger("lfrendertools").addHandler(logging.NullHandler())

@@ -6,7 +6,8 @@ import math
 import operator
 import os
 import re
-from typing import Any, Dict, Iterator, Mapping, Sequence, Tuple, Union
+import sys
+from typing import Any, Iterator, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -15,23 +16,43 @@ from .errors import Error, UsageError
 
 FilePath = Union[str, "os.PathLike[str]"]
 
-# Options of the programs whose values are arguments here.
-_OPTION = re.compile(r"--(alpha|balance|bayer|background|calibration-only|capture|count|depths|distance|"
-                     r"distortion|estimator|fill|filter|fisheye|flip-x|flip-y|focal-px|format|fov|"
-                     r"fov-deg|frames|frames-per-package|image-alpha|image-scale|images|jitter|"
-                     r"lens-weights|levels|lf-pixels|max-angle|max-angle-deg|max-images|memory|mode|noise|"
-                     r"order|overwrite|packages|pitch|plane-distance|profile|quantizer|resume|samples|"
-                     r"seed|shard-size|smooth-below|spacing|stop-when|strict|target-psnr|threads|"
-                     r"threshold|truth|truth-samples|verify)\b")
+# A call of a program, which stays as it is, or an option of the programs that is an argument here.
+_WORDS = re.compile(
+    r"\blf[a-z]+ [^,;:)]*--?[a-z][^,;:)]*|"
+    r"--(alpha|balance|bayer|background|calibration-only|capture|count|depths|distance|distortion|estimator|"
+    r"fill|filter|fisheye|flip-x|flip-y|focal-px|format|fov|fov-deg|frames|frames-per-package|image-alpha|"
+    r"image-scale|images|jitter|lens-weights|levels|lf-pixels|max-angle|max-angle-deg|max-images|memory|mode|noise|"
+    r"order|overwrite|packages|pitch|plane-distance|profile|quantizer|resume|samples|seed|shard-size|"
+    r"smooth-below|spacing|stop-when|strict|target-psnr|threads|threshold|truth|truth-samples|verify)(?![\w-])|"
+    r"--no-guard|another -o\b")
+_OTHER_WORDS = {"--no-guard": "guard=False", "another -o": "another folder", "--max-angle": "max_angle_deg",
+                "--packages": "count"}
 
 
 def whole(name: str, value: Any) -> int:
-    """Return a whole number, also of NumPy. Numbers beyond 64 bits become the largest one."""
+    """Return a whole number, also of NumPy."""
     try:
-        number = int(operator.index(value))
+        return int(operator.index(value))
     except TypeError:
         raise TypeError(f"{name}={value!r}: expected a whole number") from None
-    return min(max(number, -2**63), 2**63 - 1)
+
+
+def whole_within(name: str, value: Any, least: int, most: int) -> int:
+    """Return a whole number from `least` to `most`."""
+    number = whole(name, value)
+    if not least <= number <= most:
+        raise UsageError(f"{name}={value!r}: expected a whole number from {least} to {most}")
+    return number
+
+
+def seed(name: str, value: Any) -> int:
+    """Return a seed of random numbers."""
+    return whole_within(name, value, 0, 2**64 - 1)
+
+
+def index(name: str, value: Any) -> int:
+    """Return a whole number, or the nearest one of 64 bits, which is then out of the range of every sequence."""
+    return min(max(whole(name, value), -2**63), 2**63 - 1)
 
 
 def real(name: str, value: Any) -> float:
@@ -46,11 +67,20 @@ def real(name: str, value: Any) -> float:
     raise TypeError(f"{name}={value!r}: expected a number")
 
 
-def positive(name: str, value: Any) -> float:
-    """Return a finite number above 0."""
+def within(name: str, value: Any, least: float, most: float) -> float:
+    """Return a number from `least` to `most`."""
     number = real(name, value)
-    if not 0 < number < math.inf:
-        raise UsageError(f"{name}={value!r}: expected a number above 0")
+    if not least <= number <= most:
+        raise UsageError(f"{name}={value!r}: expected a number from {least:g} to {most:g}")
+    return number
+
+
+def positive(name: str, value: Any, most: float = sys.float_info.max) -> float:
+    """Return a number above 0 and up to `most`."""
+    number = real(name, value)
+    if not 0 < number <= most:
+        limit = "" if most == sys.float_info.max else f" and up to {most:g}"
+        raise UsageError(f"{name}={value!r}: expected a number above 0{limit}")
     return number
 
 
@@ -62,14 +92,57 @@ def reals(name: str, value: npt.ArrayLike) -> npt.NDArray[np.float64]:
         raise TypeError(f"{name}: expected an array of numbers: {error}") from None
 
 
+def entries(name: str, value: Any, expected: str) -> Tuple[Any, ...]:
+    """Return the entries of a sequence, which text is not. `expected` tells what they are."""
+    try:
+        if not isinstance(value, (str, bytes)):
+            return tuple(value)
+    except TypeError:
+        pass
+    raise TypeError(f"{name}={value!r}: expected {expected}")
+
+
+def iterator(name: str, value: Any, expected: str) -> Iterator[Any]:
+    """Return an iterator over the entries of the argument. `expected` tells what they are."""
+    try:
+        return iter(value)
+    except TypeError:
+        raise TypeError(f"{name}={value!r}: expected {expected}") from None
+
+
+def rows(name: str, value: npt.ArrayLike, columns: int) -> Tuple[npt.NDArray[np.float64], Tuple[int, ...]]:
+    """Return an array (..., columns) of numbers as rows (n, columns), and its leading dimensions."""
+    array = reals(name, value)
+    if array.shape == (0,):
+        array = array.reshape(0, columns)
+    if array.ndim == 0 or array.shape[-1] != columns:
+        raise UsageError(f"{name}: expected an array of shape (..., {columns}), found {array.shape}")
+    return array.reshape(-1, columns), array.shape[:-1]
+
+
 def whole_numbers(name: str, value: Any, count: int) -> Tuple[int, ...]:
     """Return so many whole numbers."""
-    if isinstance(value, (str, bytes)) or not hasattr(value, "__iter__"):
-        raise TypeError(f"{name}={value!r}: expected {count} whole numbers")
-    numbers = tuple(whole(name, number) for number in value)
+    found = entries(name, value, f"{count} whole numbers")
+    try:
+        numbers = tuple(int(operator.index(number)) for number in found)
+    except TypeError:
+        raise TypeError(f"{name}={value!r}: expected {count} whole numbers") from None
     if len(numbers) != count:
         raise UsageError(f"{name}={value!r}: expected {count} whole numbers, found {len(numbers)}")
     return numbers
+
+
+def numbers(name: str, value: Any, least_count: int, most_count: int) -> Tuple[float, ...]:
+    """Return from `least_count` to `most_count` numbers."""
+    count = f"{least_count}" if least_count == most_count else f"{least_count} to {most_count}"
+    found = entries(name, value, f"{count} numbers")
+    try:
+        floats = tuple(real(name, number) for number in found)
+    except TypeError:
+        raise TypeError(f"{name}={value!r}: expected {count} numbers") from None
+    if not least_count <= len(floats) <= most_count:
+        raise UsageError(f"{name}={value!r}: expected {count} numbers, found {len(floats)}")
+    return floats
 
 
 def choice(name: str, value: Any, words: Sequence[str]) -> str:
@@ -81,10 +154,7 @@ def choice(name: str, value: Any, words: Sequence[str]) -> str:
 
 def thread_count(value: Any) -> int:
     """Return a number of threads; 0: one for each processor."""
-    number = whole("threads", value)
-    if not 0 <= number <= 512:
-        raise UsageError(f"threads={value!r}: expected 0 to 512")
-    return number
+    return whole_within("threads", value, 0, 512)
 
 
 def flag(name: str, value: Any) -> bool:
@@ -95,45 +165,39 @@ def flag(name: str, value: Any) -> bool:
 
 
 def text(name: str, value: Any) -> str:
-    """Return a text."""
+    """Return a string."""
     if not isinstance(value, str):
-        raise TypeError(f"{name}={value!r}: expected a text")
+        raise TypeError(f"{name}={value!r}: expected a string")
     return value
 
 
-def file_name(path: FilePath) -> bytes:
-    """Return the bytes of a path, whose name need not be UTF-8."""
-    name = os.fsencode(path)
-    if not name:
-        raise UsageError("expected a path, found an empty text")
-    if b"\0" in name:
-        raise UsageError(f"{os.fsdecode(name)!r}: a path has no character 0")
-    return name
+def memory(value: Any) -> str:
+    """Return a size of memory, which the library parses."""
+    if not isinstance(value, str):
+        raise TypeError(f"memory={value!r}: expected a string such as \"8G\" or \"512M\"")
+    return value
 
 
-def set_words(words: object, options: Mapping[str, Any], own: Dict[str, Any]) -> None:
-    """Set members of `words`, or entries of `own`, to the options with these names.
+def file_name(name: str, path: Any) -> bytes:
+    """Return the bytes of a path, which need not be UTF-8."""
+    try:
+        encoded = os.fsencode(path)
+    except TypeError:
+        raise TypeError(f"{name}={path!r}: expected a path: str, bytes or os.PathLike") from None
+    except UnicodeEncodeError:
+        raise UsageError(f"{name}={path!r}: has characters that no file name has") from None
+    if not encoded:
+        raise UsageError(f"{name}: expected a path, found an empty string")
+    if b"\0" in encoded:
+        raise UsageError(f"{name}={os.fsdecode(encoded)!r}: a path has no character 0")
+    return encoded
 
-    Parameters
-    ----------
-    words : object of the extension
-        Its members are the options of the library.
-    options : mapping
-        Names and values as the caller gave them.
-    own : dict
-        The caller's own options with their defaults, which are replaced.
-    """
-    for name, value in options.items():
-        if name in own:
-            own[name] = value
-        elif hasattr(words, name) and not name.startswith("_"):
-            try:
-                setattr(words, name, value)
-            except TypeError:
-                raise UsageError(f"{name}={value!r}: a value of this type is not possible") from None
-        else:
-            known = sorted([*own, *(word for word in dir(words) if not word.startswith("_"))])
-            raise UsageError(f"unknown option {name}: expected one of {', '.join(known)}")
+
+def _argument_for(found: "re.Match[str]") -> str:
+    option = found[0]
+    if option.startswith("lf"):
+        return option
+    return _OTHER_WORDS.get(option, option[2:].replace("-", "_"))
 
 
 @contextlib.contextmanager
@@ -142,4 +206,6 @@ def naming_arguments() -> Iterator[None]:
     try:
         yield
     except Error as error:
-        raise type(error)(_OPTION.sub(lambda found: found[1].replace("-", "_"), str(error))) from None
+        words = _WORDS.sub(_argument_for, str(error))
+        # A message that explains which option a word is names it once.
+        raise type(error)(re.sub(r"\b(\w+)( [\w.+-]+)? \(\1\)", r"\1\2", words)) from None

@@ -11,11 +11,10 @@ import numpy.typing as npt
 
 from . import _core, arguments
 from .errors import InputError, UsageError
+from .path_text import text_of_path
 
 Floats = npt.NDArray[np.float64]
 Vector = Union[Sequence[float], Floats]
-
-# Path files have no more bytes than this.
 
 # Names, in a path file, of the values that may change from frame to frame.
 _MOVING = ("position", "quaternion", "field_of_view_deg", "shift_mm", "aperture_diameter", "focus_distance",
@@ -36,7 +35,7 @@ class Camera:
         The direction of the camera: a point on the optical axis; the rotation from camera to world as (w, x, y, z);
         or this rotation as a matrix (3, 3). One of them is required.
     up : array_like of shape (3,), optional
-        A world direction that points up in the picture. Used only with `look_at`.
+        A world direction that points up in the picture, by default (0, -1, 0). Only with `look_at`.
     roll_deg : float, optional
         A turn about the optical axis, clockwise for the photographer.
     resolution : tuple of int
@@ -91,7 +90,7 @@ class Camera:
     __slots__ = ("_core",)
 
     def __init__(self, position: Vector, *, look_at: Optional[Vector] = None, quaternion: Optional[Vector] = None,
-                 world_from_cam: Optional[npt.ArrayLike] = None, up: Vector = (0, -1, 0), roll_deg: float = 0,
+                 world_from_cam: Optional[npt.ArrayLike] = None, up: Optional[Vector] = None, roll_deg: float = 0,
                  resolution: Tuple[int, int], focal_length_mm: Optional[float] = None,
                  field_of_view_deg: Optional[float] = None, sensor_width_mm: float = 36,
                  shift_mm: Tuple[float, float] = (0, 0), f_number: Optional[float] = None,
@@ -104,6 +103,12 @@ class Camera:
         _one_of(focal_length_mm=focal_length_mm, field_of_view_deg=field_of_view_deg)
         _one_of(f_number=f_number, aperture_diameter=aperture_diameter, aperture_diameter_mm=aperture_diameter_mm)
         _one_of(focus_distance=focus_distance, focus_point=focus_point)
+        if position is None:
+            raise TypeError("position=None: expected 3 numbers")
+        if up is None:
+            up = (0, -1, 0)
+        elif look_at is None:
+            raise UsageError(f"up={up!r}: is used only with look_at")
         if world_from_cam is not None:
             quaternion = _quaternion_of(arguments.reals("world_from_cam", world_from_cam))
         camera = {"position": position, "look_at": look_at, "quaternion": quaternion, "roll_deg": roll_deg or None,
@@ -114,7 +119,7 @@ class Camera:
                 "focus_point": focus_point, "focus_tilt_deg": tilt_deg, "blades": blades,
                 "blade_rotation_deg": blade_rotation_deg, "blade_roundness": blade_roundness, "ratio": ratio,
                 "breathing": arguments.flag("breathing", breathing), **_hood_of(hood)}
-        text = _text_of_path(1, 1, unit_m, resolution, camera, lens, {})
+        text = text_of_path(1, 1, unit_m, resolution, camera, lens, {})
         try:
             cameras, _, _ = _core.parse_path(text, "camera", None)
         except InputError as error:
@@ -233,10 +238,26 @@ class Camera:
 
         If only the resolution changes, the horizontal field of view stays. The copy of a camera with `breathing` has
         its present field of view and does not breathe, unless `breathing` is given.
+
+        Parameters
+        ----------
+        **changes
+            Arguments of :class:`Camera`. One that excludes another, such as `f_number` and `aperture_diameter`,
+            replaces it.
+
+        Returns
+        -------
+        Camera
+
+        Raises
+        ------
+        UsageError
+            As for :class:`Camera`.
         """
         if not changes:
             return self
         values = self._settings()
+        unchanged = Camera(**values)
         for default, others in (("world_from_cam", ("look_at", "quaternion")),
                                 ("field_of_view_deg", ("focal_length_mm",)),
                                 ("aperture_diameter", ("aperture_diameter_mm", "f_number")),
@@ -244,7 +265,11 @@ class Camera:
             if any(changes.get(other) is not None for other in others):
                 del values[default]
         values.update(changes)
-        return Camera(**values)
+        # Numbers that do not change keep their bits, which the arguments of the constructor state only up to rounding.
+        numbers = [old if was == is_now and math.isclose(old, was, rel_tol=1e-9, abs_tol=1e-9) else is_now
+                   for old, was, is_now in zip(*(camera._core.numbers() for camera in
+                                                 (self, unchanged, Camera(**values))))]
+        return Camera._of(_core.RenderCamera.of_numbers(tuple(numbers)))
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Camera) and bool(self._core == other._core)
@@ -283,10 +308,8 @@ class Path(Sequence[Camera]):
     """
 
     def __init__(self, cameras: Iterable[Camera], fps: float = 24) -> None:
-        self._cameras: List[Camera] = list(cameras)
-        self.fps = arguments.real("fps", fps)
-        if not 0.001 <= self.fps <= 1e6:
-            raise UsageError(f"fps={fps!r}: expected a number from 0.001 to 1000000")
+        self._cameras: List[Camera] = list(arguments.iterator("cameras", cameras, "lf.Camera objects"))
+        self.fps = fps
         for camera in self._cameras:
             if not isinstance(camera, Camera):
                 raise TypeError(f"a path consists of lf.Camera objects, found {camera!r}")
@@ -296,6 +319,15 @@ class Path(Sequence[Camera]):
             values = {getattr(camera, what) for camera in self._cameras}
             if len(values) > 1:
                 raise UsageError(f"the cameras of a path must have one {what}, found {sorted(values)[:4]}")
+
+    @property
+    def fps(self) -> float:
+        """Frames per second. Frame i, from 1, is at the time (i - 1) / fps."""
+        return self._fps
+
+    @fps.setter
+    def fps(self, fps: float) -> None:
+        self._fps = arguments.within("fps", fps, 0.001, 1e6)
 
     @classmethod
     def load(cls, path: Union[str, os.PathLike[str]], unit_m: Optional[float] = None) -> Path:
@@ -314,7 +346,7 @@ class Path(Sequence[Camera]):
             The file cannot be read, has a mistake, or states another unit than `unit_m`.
         """
         unit = None if unit_m is None else arguments.positive("unit_m", unit_m)
-        cameras, fps, _ = _core.read_path(arguments.file_name(path), unit)
+        cameras, fps, _ = _core.read_path(arguments.file_name("path", path), unit)
         return cls((Camera._of(core) for core in cameras), fps)
 
     @classmethod
@@ -334,6 +366,11 @@ class Path(Sequence[Camera]):
         matrix, and relative), and other values by no more than the rounding of double precision. The file appears only
         when it is whole.
 
+        Parameters
+        ----------
+        path : path
+            The file.
+
         Raises
         ------
         UsageError
@@ -342,13 +379,14 @@ class Path(Sequence[Camera]):
         OutputError
             The file cannot be written.
         """
+        file = arguments.file_name("path", path)
         settings = [camera._settings() for camera in self._cameras]
         for what in ("blades", "blade_roundness", "ratio", "hood", "sensor_width_mm"):
             values = np.array([setting[what] for setting in settings])
             # A width that was converted from world units and back differs by its rounding.
             if (np.ptp(values, axis=0) > 1e-9 * values.max(axis=0)).any():
                 raise UsageError(
-                    f"{os.fsdecode(path)}: the cameras have different {what}, which a path file cannot say")
+                    f"{os.fsdecode(file)}: the cameras have different {what}, which a path file cannot say")
         for setting in settings:
             setting["quaternion"] = _quaternion_of(setting.pop("world_from_cam"))
             setting["focus_tilt_deg"] = setting.pop("tilt_deg")
@@ -361,8 +399,8 @@ class Path(Sequence[Camera]):
         lens = {key: first[key] for key in ("aperture_diameter", "focus_distance", "focus_tilt_deg", "blades",
                                             "blade_rotation_deg", "blade_roundness", "ratio")}
         lens.update(_hood_of(first["hood"]))
-        text = _text_of_path(len(settings), self.fps, first["unit_m"], first["resolution"], camera, lens, keys)
-        _core.write_text(arguments.file_name(path), text)
+        text = text_of_path(len(settings), self.fps, first["unit_m"], first["resolution"], camera, lens, keys)
+        _core.write_text(file, text)
 
     @property
     def cameras(self) -> Sequence[Camera]:
@@ -430,48 +468,3 @@ def _quaternion_of(rotation: Floats) -> Floats:
     x, y, z, w = np.linalg.eigh(matrix, UPLO="L")[1][:, -1]
     quaternion = np.array([w, x, y, z])
     return quaternion if w >= 0 else -quaternion
-
-
-def _value_text(value: Any) -> str:
-    if isinstance(value, (np.ndarray, np.generic)):
-        value = value.tolist()
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, (int, float)):
-        return repr(value)
-    if isinstance(value, (str, bytes)):
-        raise TypeError("text is no number")
-    return "[" + ", ".join(_value_text(entry) for entry in value) + "]"
-
-
-def _entry_text(key: str, value: Any) -> str:
-    try:
-        if key not in ("focus_tilt_deg", "shift_mm"):
-            return _value_text(value)
-        horizontal, vertical = value
-        return f"{{horizontal: {_value_text(horizontal)}, vertical: {_value_text(vertical)}}}"
-    except TypeError:
-        name = key.replace("focus_tilt_deg", "tilt_deg")
-        raise TypeError(f"{name}={value!r}: expected a number, or as many numbers as it has") from None
-    except ValueError:
-        name = key.replace("focus_tilt_deg", "tilt_deg")
-        raise UsageError(f"{name}={value!r}: expected two numbers") from None
-
-
-def _text_of_path(count: int, fps: float, unit_m: float, resolution: Tuple[int, int], camera: Dict[str, Any],
-                  lens: Dict[str, Any], keys: Dict[str, List[Tuple[float, Any]]]) -> str:
-    """Return the text of a path file (doc/formats/path.md). Values that are None are left out."""
-    lines = ["format: lfpath 1", f"fps: {_value_text(fps)}", f"frames: {count}",
-             f"unit_m: {_entry_text('unit_m', unit_m)}",
-             f"resolution: {_entry_text('resolution', resolution)}"]
-    for section, values in (("camera", camera), ("lens", lens)):
-        lines.append(f"{section}:")
-        lines += [f"  {key}: {_entry_text(key, value)}" for key, value in values.items()
-                  if value is not None and key not in keys]
-    if keys:
-        lines.append("keyframes:")
-        for key, entries in keys.items():
-            lines.append(f"  {key}:")
-            lines += [f"    - {{time: {_value_text(time)}, value: {_entry_text(key, value)}, interpolation: linear}}"
-                      for time, value in entries]
-    return "\n".join(lines) + "\n"

@@ -3,18 +3,18 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
+import sys
 import warnings
-from typing import Any, Dict, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
-from . import _core, arguments
-from . import light_field as opening
+from . import _core, arguments, opening
 from .arguments import FilePath
 from .camera import Camera, Path
 from .errors import MissingImagesWarning, UsageError
+from .film_options import film_words
 from .light_field import LightField
 from .path_arguments import Frames, frame_numbers, path_in
-from .progress import Progress, teller
+from .progress import Progress, checked, telling
 
 _Facts = Dict[str, Any]
 
@@ -34,7 +34,8 @@ def report(field: LightField, *, check: str = "headers", distance: Optional[floa
     threads : int
         Number of threads; 0: one for each processor.
     progress : bool or callable, optional
-        Called with the number of LF images checked so far and in all. True: a progress bar, if tqdm is installed.
+        Called with the number of LF images that were checked, and their total number. True: a progress bar, if tqdm is
+        installed.
 
     Returns
     -------
@@ -48,10 +49,11 @@ def report(field: LightField, *, check: str = "headers", distance: Optional[floa
     >>> facts["images"], facts["missing"], facts["broken"]
     (49, 0, 0)
     """
-    return _facts(_core.report(_checked(field)._core, field._path,
-                               arguments.choice("check", check, ("headers", "pixels", "none")),
-                               None if distance is None else arguments.positive("distance", distance),
-                               arguments.thread_count(threads), teller(progress)))
+    with telling(checked(progress)) as tell:
+        return _facts(_core.report(_checked(field)._core, os.fsencode(field.source),
+                                   arguments.choice("check", check, ("headers", "pixels", "none")),
+                                   None if distance is None else arguments.positive("distance", distance),
+                                   arguments.thread_count(threads), tell))
 
 
 def forecast(field: LightField, path: Union[Path, Camera], frames: Frames = None, *,
@@ -71,18 +73,18 @@ def forecast(field: LightField, path: Union[Path, Camera], frames: Frames = None
         Nearest and farthest depth of the scene in world units. By default the depths of the calibration or, if it has
         none, depths that are estimated from LF images.
     memory : str
-        Memory that the render may use.
+        Memory that the render may use, such as "8G" or "512M".
     threads : int
         Number of threads; 0: one for each processor.
     progress : bool or callable, optional
-        Called with the number of steps done so far and in all: two for each frame.
+        Called with the number of steps that are done, and their total number: two for each frame.
     **options
         Options of :class:`Renderer` that decide which LF images frames read.
 
     Returns
     -------
     dict
-        The facts that doc/formats/forecast.md lists.
+        The facts that doc/formats/forecast.md lists. `depths_from` is "depths" if that argument was given.
 
     Examples
     --------
@@ -93,8 +95,8 @@ def forecast(field: LightField, path: Union[Path, Camera], frames: Frames = None
     True
     """
     words = _core.PackageWords()
-    words.memory = arguments.text("memory", memory)
-    return _preprocess(field, path, frames, words, depths, threads, progress, options)
+    words.memory = arguments.memory(memory)
+    return _preprocess(field, path, frames, words, depths, threads, checked(progress), options)
 
 
 def write_packages(field: LightField, path: Union[Path, Camera], folder: FilePath, count: Optional[int] = None, *,
@@ -140,16 +142,16 @@ def write_packages(field: LightField, path: Union[Path, Camera], folder: FilePat
     if count is not None and frames_per_package is not None:
         raise UsageError("count and frames_per_package cannot both be given")
     words = _core.PackageWords()
-    words.output = os.fsdecode(arguments.file_name(folder))
-    words.memory = arguments.text("memory", memory)
+    words.output = arguments.file_name("folder", folder)
+    words.memory = arguments.memory(memory)
     words.balance = arguments.choice("balance", balance, ("rays", "frames"))
     words.packages = _at_least_1("count", count)
     words.frames_per_package = _at_least_1("frames_per_package", frames_per_package)
     words.overwrite = arguments.flag("overwrite", overwrite)
     words.strict = arguments.flag("strict", strict)
-    facts = _preprocess(field, path, frames, words, depths, threads, progress, options)
+    facts = _preprocess(field, path, frames, words, depths, threads, checked(progress), options)
     if facts["lf_images_missing"]:
-        warnings.warn(f"{facts['lf_images_missing']} LF images that packages need do not exist, or are empty",
+        warnings.warn(f"{facts['lf_images_missing']} of the LF images that packages need do not exist, or are empty",
                       MissingImagesWarning, stacklevel=2)
     return facts
 
@@ -179,7 +181,7 @@ def compress(field: LightField, store: FilePath, *, profile: str = "default", th
     shard_size : str
         Such as "4G": split the store into files of about this size.
     resume, overwrite : bool
-        Continue an unfinished store, or replace a store.
+        Continue an unfinished store, or replace a store. Not both.
     verify : bool
         True: read the store back, and compare it.
     strict : bool
@@ -187,7 +189,8 @@ def compress(field: LightField, store: FilePath, *, profile: str = "default", th
     threads : int
         Number of threads; 0: one for each processor.
     progress : bool or callable, optional
-        Called with the number of LF images encoded (then verified) so far and in all.
+        Called with the number of LF images that were encoded, and their total number; then, from 0 again, with those
+        that were verified. True: a bar for each.
 
     Returns
     -------
@@ -199,32 +202,34 @@ def compress(field: LightField, store: FilePath, *, profile: str = "default", th
     >>> import lfrendertools as lf
     >>> facts = lf.compress(lf.open("capture/"), "capture.lfs", target_psnr=40)
     >>> facts["ratio"] > 2, lf.open("capture.lfs")
-    (True, <LightField capture.lfs: 49 LF images>)
+    (True, <LightField ...capture.lfs: 49 LF images>)
     """
     words = _core.StoreWords()
-    words.output = os.fsdecode(arguments.file_name(store))
-    if not words.output.endswith(".lfs"):
-        raise UsageError(f"store={words.output!r}: expected a file name that ends in .lfs")
+    words.output = arguments.file_name("store", store)
+    if os.path.splitext(os.fsencode(store))[1] != b".lfs":
+        raise UsageError(f"store={os.fsdecode(store)!r}: expected a file name that ends in .lfs")
     words.shard_size = arguments.text("shard_size", shard_size)
     for name, value in (("resume", resume), ("overwrite", overwrite), ("verify", verify), ("strict", strict)):
         setattr(words, name, arguments.flag(name, value))
+    if words.resume and words.overwrite:
+        raise UsageError("resume and overwrite cannot both be True")
     codec = _core.CodecWords()
     codec.profile = arguments.choice("profile", profile, ("default", "lossless", "thesis"))
     codec.quantizer = arguments.text("quantizer", quantizer)
     if threshold is not None and target_psnr is not None:
         raise UsageError("threshold and target_psnr cannot both be given")
     if threshold is not None:
-        codec.threshold = _within("threshold", threshold, 0, 255)
+        codec.threshold = arguments.within("threshold", threshold, 0, 255)
     if target_psnr is not None:
-        codec.target_psnr = _within("target_psnr", target_psnr, 10, 90)
+        codec.target_psnr = arguments.within("target_psnr", target_psnr, 10, 90)
     if levels is not None:
-        codec.levels = int(_within("levels", arguments.whole("levels", levels), 1, 5))
-    with arguments.naming_arguments():
-        facts = _facts(_core.compress(_checked(field)._core, field._path, codec, words, arguments.thread_count(threads),
-                                      teller(progress)))
+        codec.levels = arguments.whole_within("levels", levels, 1, 5)
+    with arguments.naming_arguments(), telling(checked(progress)) as tell:
+        facts = _facts(_core.compress(_checked(field)._core, os.fsencode(field.source), codec, words,
+                                      arguments.thread_count(threads), tell))
     if facts["lf_images_skipped"]:
         first = facts["skipped"][0]
-        warnings.warn(f"{facts['lf_images_skipped']} LF images are not in the store, the first: {first['reason']}",
+        warnings.warn(f"{_images(facts['lf_images_skipped'])} not in the store, the first: {first['reason']}",
                       MissingImagesWarning, stacklevel=2)
     return facts
 
@@ -268,21 +273,24 @@ def synth(scene: str, folder: FilePath, *, capture: str = "planar", count: Optio
         Parameter of COLMAP's FOV model in radians; 0: none.
     samples : int, optional
         Rays per pixel at edges of the LF images; by default as the scene recommends.
-    truth : path or Path, optional
-        A camera path or its file: the frames that a real lens would film along this path are written to
-        `folder`/truth as frame_0001.exr, ...
+    truth : Path or path, optional
+        A camera path, with `unit_m` 1, or its file: the frames that a real lens would film along this path are written
+        to `folder`/truth as frame_0001.exr, ...
     truth_samples : int, optional
         Rays per pixel of these frames.
     calibration_only : bool
         True: write no images.
     overwrite : bool
-        True: replace another light field in the folder.
+        A light field that this function or `lfsynth` wrote there is replaced, and those of its LF images that the new
+        one does not have are removed, unless `calibration_only` is True. False: a light field of another origin, or one
+        whose calibration was changed, is an error; True: the files of the new one are written beside its files.
     seed : int
         Seed of `jitter` and `noise`.
     threads : int
         Number of threads; 0: one for each processor.
     progress : bool or callable, optional
-        Called with the number of LF images (then frames) written so far and in all.
+        Called with the number of LF images that were written, and their total number; then, from 0 again, with those of
+        the frames of `truth`. True: a bar for each.
 
     Returns
     -------
@@ -296,48 +304,57 @@ def synth(scene: str, folder: FilePath, *, capture: str = "planar", count: Optio
     --------
     >>> import lfrendertools as lf
     >>> lf.synth("chart", "chart", count=4, size=(48, 32), samples=1)
-    <LightField chart: 4 LF images>
+    <LightField ...chart: 4 LF images>
     """
     words = _core.SyntheticFieldOptions()
     words.scene = arguments.choice("scene", scene, ("still-life", "lights", "chart"))
-    words.output = os.fsdecode(arguments.file_name(folder))
+    words.output = arguments.file_name("folder", folder)
     words.capture = arguments.choice("capture", capture, ("planar", "band", "hemisphere"))
     words.format = arguments.choice("format", format, ("exr", "png", "png16"))
     words.alpha = arguments.choice("alpha", alpha, ("none", "straight", "premultiplied"))
     if count is not None:
-        words.count = int(_within("count", arguments.whole("count", count), 1, 100_000_000))
+        words.count = arguments.whole_within("count", count, 1, 100_000_000)
     if size is not None:
         width, height = arguments.whole_numbers("size", size, 2)
         if not (1 <= width <= 32768 and 1 <= height <= 32768):
             raise UsageError(f"size={size!r}: expected a width and a height from 1 to 32768")
         words.size = (width, height)
-    words.spacing = None if spacing is None else arguments.positive("spacing", spacing)
-    words.distance = None if distance is None else arguments.positive("distance", distance)
-    words.jitter = _within("jitter", jitter, 0, 1)
-    words.noise = _within("noise", noise, 0, 10)
-    words.distortion = [arguments.real("distortion", k) for k in distortion]
-    words.fisheye = [arguments.real("fisheye", k) for k in fisheye]
-    models = (words.distortion, words.fisheye, fov)
-    if len(words.distortion) > 8 or len(words.fisheye) > 4 or sum(map(bool, models)) > 1:
-        raise UsageError("expected one of distortion (up to 8 numbers), fisheye (up to 4 numbers) and fov")
-    words.fov = _within("fov", fov, 0, 3.14)
+    words.spacing = None if spacing is None else arguments.positive("spacing", spacing, 1e6)
+    words.distance = None if distance is None else arguments.positive("distance", distance, 1e6)
+    words.jitter = arguments.within("jitter", jitter, 0, 1)
+    words.noise = arguments.within("noise", noise, 0, 10)
+    words.distortion = _lens_parameters("distortion", distortion, 8)
+    words.fisheye = _lens_parameters("fisheye", fisheye, 4)
+    words.fov = arguments.within("fov", fov, 0, 3.14)
+    if sum(map(bool, (words.distortion, words.fisheye, words.fov))) > 1:
+        raise UsageError("expected one of distortion, fisheye and fov")
     if samples is not None:
-        words.samples = int(_within("samples", arguments.whole("samples", samples), 1, 4096))
+        words.samples = arguments.whole_within("samples", samples, 1, 4096)
     if truth_samples is not None:
-        words.truth_samples = int(_within("truth_samples", arguments.whole("truth_samples", truth_samples), 1, 10**6))
+        words.truth_samples = arguments.whole_within("truth_samples", truth_samples, 1, 10**6)
     for name, value in (("bayer", bayer), ("calibration_only", calibration_only), ("overwrite", overwrite)):
         setattr(words, name, arguments.flag(name, value))
-    words.seed = arguments.whole("seed", seed)
-    with tempfile.TemporaryDirectory() as temporary:
-        if isinstance(truth, Path):
-            file = os.path.join(temporary, "truth.yaml")
-            truth.save(file)
-            words.truth = file
-        elif truth is not None:
-            words.truth = os.fsdecode(arguments.file_name(truth))
-        with arguments.naming_arguments():
-            _core.synth(words, arguments.thread_count(threads), teller(progress, "files"))
+    words.seed = arguments.seed("seed", seed)
+    if isinstance(truth, Path):
+        if truth[0].unit_m != 1:
+            raise UsageError(f"truth: the path has unit_m={truth[0].unit_m:g}, and synthetic scenes have unit_m=1")
+        words.truth_cameras = [camera._core for camera in truth]
+    elif truth is not None:
+        words.truth = arguments.file_name("truth", truth)
+    with arguments.naming_arguments(), telling(checked(progress), "files") as tell:
+        _core.synth(words, arguments.thread_count(threads), tell)
     return opening.open(folder)
+
+
+def _lens_parameters(name: str, values: Sequence[float], most_count: int) -> List[float]:
+    parameters = arguments.numbers(name, values, 0, most_count)
+    if not all(abs(k) <= 1e6 for k in parameters):
+        raise UsageError(f"{name}={values!r}: expected numbers from -1e6 to 1e6")
+    return list(parameters)
+
+
+def _images(count: int) -> str:
+    return "1 LF image is" if count == 1 else f"{count} LF images are"
 
 
 def _checked(field: LightField) -> LightField:
@@ -351,17 +368,18 @@ def _preprocess(field: LightField, path: Union[Path, Camera], frames: Frames, wo
                 options: Dict[str, Any]) -> _Facts:
     cameras = path_in(field, path)
     if depths is not None:
-        near, far = (arguments.positive("depths", depth) for depth in depths)
-        if not near < far:
-            raise UsageError(f"depths={depths!r}: expected a near depth that is less than the far depth")
+        near, far = arguments.numbers("depths", depths, 2, 2)
+        if not 0 < near < far <= sys.float_info.max:
+            raise UsageError(f"depths={depths!r}: expected a near depth above 0 and a far depth beyond it")
         words.depths = (near, far)
-    film = _core.FilmWords()
-    arguments.set_words(film, options, {})
-    with arguments.naming_arguments():
-        return _facts(_core.preprocess(
-            field._core, field._path, [camera._core for camera in cameras], cameras.fps,
-            frame_numbers(frames, len(cameras)), film, words, arguments.thread_count(threads),
-            teller(progress, "steps")))
+    film = film_words(options, {})
+    with arguments.naming_arguments(), telling(progress, "steps") as tell:
+        facts = _facts(_core.preprocess(
+            field._core, os.fsencode(field.source), [camera._core for camera in cameras], cameras.fps,
+            frame_numbers(frames, len(cameras)), film, words, arguments.thread_count(threads), tell))
+    if facts["depths_from"] == "--depths":
+        facts["depths_from"] = "depths"
+    return facts
 
 
 def _facts(text: str) -> _Facts:
@@ -370,13 +388,4 @@ def _facts(text: str) -> _Facts:
 
 
 def _at_least_1(name: str, value: Optional[int]) -> Optional[int]:
-    if value is None:
-        return None
-    return int(_within(name, arguments.whole(name, value), 1, 1_000_000))
-
-
-def _within(name: str, value: float, least: float, most: float) -> float:
-    number = arguments.real(name, value)
-    if not least <= number <= most:
-        raise UsageError(f"{name}={value!r}: expected a number from {least:g} to {most:g}")
-    return number
+    return None if value is None else arguments.whole_within(name, value, 1, 1_000_000)

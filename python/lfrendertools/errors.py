@@ -1,6 +1,9 @@
 """The exceptions of this package. Each has the exit code with which the programs report the same error."""
 from __future__ import annotations
 
+import warnings
+from typing import Sequence
+
 
 class Error(Exception):
     """Any error of this package.
@@ -50,3 +53,15 @@ class MissingImagesWarning(UserWarning):
 
 class BlackFrameWarning(UserWarning):
     """No recorded ray passes the lens of a frame, which is therefore black."""
+
+
+class UncertainFocusWarning(UserWarning):
+    """The distance of the subject is not sure, so that a camera of the light field is almost a pinhole."""
+
+
+def warn_of_missing(reasons: Sequence[str], stacklevel: int) -> None:
+    """Warn if LF images were left out, for these reasons."""
+    if reasons:
+        were = "1 LF image was" if len(reasons) == 1 else f"{len(reasons)} LF images were"
+        warnings.warn(f"{were} left out, the first: {reasons[0]}" if len(reasons) > 1 else
+                      f"{were} left out: {reasons[0]}", MissingImagesWarning, stacklevel=stacklevel)

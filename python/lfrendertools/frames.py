@@ -102,10 +102,13 @@ class Frame:
             "exr" (half floats), "exr-float" (single precision), "png" or "png16"; by default "exr" or "png", by the
             suffix of `path`.
         """
-        name = os.fsdecode(arguments.file_name(path))
-        chosen = _FORMATS.get(pathlib.Path(name).suffix.lower()) if format is None else arguments.text("format", format)
-        if chosen is None:
-            raise UsageError(f"{name}: expected a name that ends in .exr or .png, or a format")
+        name = os.fsdecode(arguments.file_name("path", path))
+        suffix = pathlib.Path(name).suffix.lower()
+        chosen = _FORMATS.get(suffix, "") if format is None else arguments.text("format", format)
+        if suffix not in _FORMATS or not chosen.startswith(_FORMATS[suffix]):
+            ends = " or ".join(end for end, kind in _FORMATS.items() if format is None or chosen.startswith(kind))
+            raise UsageError(f"{name}: expected a name that ends in {ends}" if ends else
+                             f"format={format!r}: expected exr, exr-float, png or png16")
         with arguments.naming_arguments():
             self._core.save(os.fsencode(name), chosen)
 
@@ -114,13 +117,17 @@ class Frame:
 
     def __repr__(self) -> str:
         height, width = self.rgb.shape[:2]
-        return f"<Frame {self.number}: {width} x {height} of {self.image_count} LF images>"
+        of = "rebinned rays" if self.image_count == 0 and self.interpolated is not None else \
+            f"{self.image_count} LF images"
+        return f"<Frame {self.number}: {width} x {height} of {of}>"
 
 
 class Plate:
     """The sensor plate of a frame: exact sums and counts of rays, as integers.
 
-    The sum of plates of different LF images is the plate of all of them, with the same bits in any order.
+    Plates of the shards of a frame (`lfrenderer --shard`) can be added: their sum is the plate of all LF images, with
+    the same bits in any order. A :class:`UsageError` tells if two plates are of different cameras, light fields or
+    options, or if both have the rays of the same LF images.
     """
 
     def __init__(self, core: _core.Plate) -> None:
@@ -130,7 +137,7 @@ class Plate:
     def load(cls, path: FilePath) -> Plate:
         """Read a plate that :meth:`save`, `lfrenderer --keep-plates` or `lfrenderer --shard` has written."""
         with arguments.naming_arguments():
-            return cls(_core.Plate.load(arguments.file_name(path)))
+            return cls(_core.Plate.load(arguments.file_name("path", path)))
 
     def save(self, path: FilePath) -> None:
         """Write the plate with all that :meth:`load` and :meth:`develop` need (doc/formats/plate.md).
@@ -141,7 +148,7 @@ class Plate:
             The file. It appears only when it is whole.
         """
         with arguments.naming_arguments():
-            self._core.save(arguments.file_name(path))
+            self._core.save(arguments.file_name("path", path))
 
     @property
     def sums(self) -> npt.NDArray[np.uint64]:
@@ -157,6 +164,16 @@ class Plate:
         if not isinstance(other, Plate):
             return NotImplemented
         return Plate(self._core + other._core)
+
+    def __radd__(self, other: object) -> Plate:
+        # sum() begins with 0.
+        if isinstance(other, int) and other == 0:
+            return self
+        return NotImplemented
+
+    def __repr__(self) -> str:
+        width, height = self._core.size
+        return f"<Plate of frame {self._core.number}: {width} x {height} of {self._core.image_count} LF images>"
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Plate) and bool(self._core == other._core)

@@ -2,15 +2,12 @@
 from __future__ import annotations
 
 import base64
-import collections
-import concurrent.futures
 import dataclasses
 import functools
 import html
-import logging
 import os
-import pathlib
-from typing import Any, Iterable, Iterator, Optional, Sequence, Tuple, Union
+import warnings
+from typing import Any, Iterable, Iterator, Optional, Sequence, Tuple
 
 import numpy as np
 import numpy.typing as npt
@@ -20,13 +17,11 @@ from .arguments import FilePath
 from .camera import Camera
 from .camera import Path as CameraPath
 from .display import display_values
-from .errors import Error, UsageError
+from .errors import Error, UncertainFocusWarning, UsageError
+from .reading import loaded_ahead
 from .rig import Grid, find_grid, plot_of_rig
 
 Floats = npt.NDArray[np.float64]
-Picture = npt.NDArray[np.float32]
-
-_ALPHAS = ("auto", "mask", "straight", "premultiplied")
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -40,9 +35,12 @@ class Intrinsics:
     width, height : int
         Size of the LF images in pixels.
     distortion : str
-        Model of the lens distortion, or "pinhole" (lf/camera/distortion.h lists the models).
+        Model of the lens distortion: "pinhole" (none), "radial-tangential", "fisheye", "fov", "division", "unified",
+        "thin-prism fisheye" or "radial-tangential thin-prism fisheye".
     parameters : tuple of float
-        The parameters of the model, in the order that lf/camera/distortion.h states, with zeros up to 12 numbers.
+        12 numbers, of which the last are 0 if the model has fewer: OpenCV's k1, k2, p1, p2, k3, k4, k5, k6 for
+        "radial-tangential" and k1, k2, k3, k4 for "fisheye"; omega for "fov"; k for "division"; alpha, beta for
+        "unified"; k1, k2, p1, p2, k3, k4, sx1, sy1 and k0 to k5, p0, p1, s0 to s3 for the thin prisms.
     """
 
     K: Floats
@@ -60,16 +58,21 @@ class LightField:
     views of the light field's own memory, unless their description says otherwise.
     """
 
-    def __init__(self, core: _core.LightField, path: str) -> None:
+    def __init__(self, core: _core.LightField, source: str) -> None:
         self._core = core
-        self._path = path
+        self._source = source
         self._centres: Optional[Floats] = None
 
     def __len__(self) -> int:
         return len(self._core)
 
     def __repr__(self) -> str:
-        return f"<LightField {self._path}: {len(self)} LF images>"
+        return f"<LightField {self._source}: {len(self)} LF images>"
+
+    @property
+    def source(self) -> str:
+        """Absolute path of the file or folder that was opened."""
+        return self._source
 
     @property
     def unit_m(self) -> float:
@@ -103,7 +106,11 @@ class LightField:
     @functools.cached_property
     def intrinsics(self) -> Sequence[Intrinsics]:
         """The intrinsics of all LF cameras, each distinct set once."""
-        return tuple(Intrinsics(*entry) for entry in self._core.intrinsics())
+        all_of_them = []
+        for matrix, width, height, distortion, parameters in self._core.intrinsics():
+            matrix.setflags(write=False)
+            all_of_them.append(Intrinsics(matrix, width, height, distortion, tuple(parameters)))
+        return tuple(all_of_them)
 
     @property
     def intrinsics_index(self) -> npt.NDArray[np.uint32]:
@@ -130,9 +137,9 @@ class LightField:
         """True for LF images that were interpolated from recorded ones (doc/densify.md), of shape (n,)."""
         return self._core.is_virtual
 
-    @property
+    @functools.cached_property
     def spacing(self) -> float:
-        """Median distance from an LF camera to its nearest neighbour, in world units."""
+        """Median distance from an LF camera to its nearest neighbour, in world units. Computed at the first use."""
         return self._core.spacing()
 
     def project(self, i: int, points: npt.ArrayLike) -> Floats:
@@ -142,15 +149,16 @@ class LightField:
         ----------
         i : int
             Number of the LF camera, from 0.
-        points : array_like of shape (n, 3)
+        points : array_like of shape (..., 3)
             Points in world units.
 
         Returns
         -------
-        ndarray of shape (n, 2)
+        ndarray of shape (..., 2)
             Pixel positions, which may lie outside of the LF image; NaN for points that the lens cannot see.
         """
-        return self._core.project(arguments.whole("i", i), arguments.reals("points", points))
+        rows, shape = arguments.rows("points", points, 3)
+        return self._core.project(arguments.index("i", i), rows).reshape(*shape, 2)
 
     def rays(self, i: int, pixels: npt.ArrayLike) -> Tuple[Floats, Floats]:
         """Return the rays that LF camera `i` records at pixel positions.
@@ -159,17 +167,18 @@ class LightField:
         ----------
         i : int
             Number of the LF camera, from 0.
-        pixels : array_like of shape (n, 2)
+        pixels : array_like of shape (..., 2)
             Pixel positions.
 
         Returns
         -------
-        origins, directions : ndarray of shape (n, 3)
-            The LF camera's position, n times, and directions of length 1, in world axes. A direction is NaN if no ray
-            arrives at the pixel position.
+        origins, directions : ndarray of shape (..., 3)
+            The LF camera's position, for each ray, and directions of length 1, in world axes. A direction is NaN if no
+            ray arrives at the pixel position.
         """
-        i = arguments.whole("i", i)
-        directions = self._core.ray_directions(i, arguments.reals("pixels", pixels))
+        rows, shape = arguments.rows("pixels", pixels, 2)
+        i = arguments.index("i", i)
+        directions = self._core.ray_directions(i, rows).reshape(*shape, 3)
         return np.broadcast_to(self.centres[i], directions.shape), directions
 
     def image(self, i: int, rect: Optional[Tuple[int, int, int, int]] = None, masked: float = float("nan"), *,
@@ -200,7 +209,7 @@ class LightField:
         UsageError
             `rect` is not within the LF image, or `stored` is asked of a packed store, which has no image files.
         """
-        i, part = arguments.whole("i", i), None
+        i, part = arguments.index("i", i), None
         if rect is not None:
             # Positions that need more than 32 bits are outside of every LF image, as are their nearest ones.
             x0, y0, x1, y1 = (min(max(at, -2**31), 2**31 - 1) for at in arguments.whole_numbers("rect", rect, 4))
@@ -211,7 +220,8 @@ class LightField:
         with arguments.naming_arguments():
             return self._core.image(i, part, arguments.real("masked", masked))
 
-    def images(self, ids: Optional[Iterable[int]] = None, ahead: int = 8) -> Iterator[Tuple[int, Picture]]:
+    def images(self, ids: Optional[Iterable[int]] = None, ahead: int = 8, *, masked: float = float("nan"),
+               stored: bool = False, strict: bool = False) -> Iterator[Tuple[int, npt.NDArray[Any]]]:
         """Load LF images one after the other. Other threads load the next ones in advance.
 
         Parameters
@@ -220,6 +230,10 @@ class LightField:
             Numbers of LF images; by default all of them.
         ahead : int, optional
             Largest number of LF images that are in memory at the same time.
+        masked, stored : float, bool
+            As for :meth:`image`.
+        strict : bool
+            True: a missing or broken LF image is an error; False: it is left out, with a warning in the end.
 
         Yields
         ------
@@ -229,21 +243,10 @@ class LightField:
         ahead = arguments.whole("ahead", ahead)
         if ahead < 1:
             raise UsageError(f"ahead={ahead}: expected 1 or more")
-        wanted = iter(range(len(self)) if ids is None else ids)
-        loading: "collections.deque[Tuple[int, concurrent.futures.Future[Picture]]]" = collections.deque()
-        with concurrent.futures.ThreadPoolExecutor(min(ahead, os.cpu_count() or 1)) as threads:
-            try:
-                for i in (arguments.whole("ids", one) for one in wanted):
-                    loading.append((i, threads.submit(self.image, i)))
-                    if len(loading) == ahead:
-                        first, future = loading.popleft()
-                        yield first, future.result()
-                while loading:
-                    first, future = loading.popleft()
-                    yield first, future.result()
-            finally:
-                for _, future in loading:
-                    future.cancel()
+        wanted = range(len(self)) if ids is None else arguments.iterator("ids", ids, "numbers of LF images")
+        load = functools.partial(self.image, masked=arguments.real("masked", masked),
+                                 stored=arguments.flag("stored", stored))
+        return loaded_ahead((arguments.whole("ids", i) for i in wanted), load, ahead, arguments.flag("strict", strict))
 
     def grid(self) -> Optional[Grid]:
         """Find the rows and columns in which the LF cameras stand.
@@ -256,7 +259,8 @@ class LightField:
         """
         return find_grid(self.centres, self.cam_from_world)
 
-    def array(self, views: Optional[Tuple[int, int]] = None, reduce: int = 1, out: Any = None) -> Any:
+    def array(self, views: Optional[Tuple[int, int]] = None, reduce: int = 1, out: Any = None, *,
+              strict: bool = False) -> Any:
         """Load LF images of a grid into one array.
 
         Parameters
@@ -268,6 +272,9 @@ class LightField:
             square are cut off on the right and below.
         out : array, optional
             Receives the values, such as a `numpy.memmap` or a dataset of h5py, for light fields larger than the memory.
+            Its values must be floats.
+        strict : bool
+            True: a missing or broken LF image is an error; False: its values are NaN, and a warning tells it.
 
         Returns
         -------
@@ -297,20 +304,27 @@ class LightField:
         shape = (rows, columns, *size, 3)
         if out is None:
             out = np.empty(shape, np.float32)
-        elif not hasattr(out, "shape"):
+        elif not hasattr(out, "shape") or not hasattr(out, "dtype"):
             raise TypeError(f"out={out!r}: expected an array")
-        elif isinstance(out, np.ndarray) and not (out.flags.writeable and np.issubdtype(out.dtype, np.floating)):
-            raise UsageError(f"out: expected an array of floats that can be written to, found {out.dtype}")
+        elif not np.issubdtype(out.dtype, np.floating):
+            raise UsageError(f"out: expected an array of floats, found {out.dtype}")
+        elif isinstance(out, np.ndarray) and not out.flags.writeable:
+            raise UsageError("out: the array cannot be written to")
         elif tuple(out.shape) != shape:
             raise UsageError(f"out has the shape {tuple(out.shape)}, expected {shape}")
         v = np.linspace(0, grid.shape[0] - 1, rows).round().astype(int)
         u = np.linspace(0, grid.shape[1] - 1, columns).round().astype(int)
         ids = grid.ids[np.ix_(v, u)]
-        for number, (_, picture) in enumerate(self.images(ids.ravel().tolist())):
+        places = {i: divmod(number, columns) for number, i in enumerate(ids.ravel().tolist())}
+        missing = set(places)
+        for i, picture in self.images(places, strict=strict):
             if reduce > 1:
                 whole = picture[:size[0] * reduce, :size[1] * reduce]
                 picture = whole.reshape(size[0], reduce, size[1], reduce, 3).mean(axis=(1, 3))
-            out[number // columns, number % columns] = picture
+            out[places[i]] = picture
+            missing.remove(i)
+        for i in missing:
+            out[places[i]] = np.nan
         return out
 
     def path(self, move: str = "focus-pull", *, start: Optional[int] = None,
@@ -324,32 +338,46 @@ class LightField:
         start : int, optional
             Number of the LF camera at which the path begins; by default the one in the middle of the capture.
         focus_distance : float, optional
-            Distance of the subject in world units. By default it is found by comparing LF images, which takes seconds;
-            if the result is not sure, the logger gets a warning.
+            Distance of the subject in world units. By default it is found by comparing LF images, which takes seconds.
 
         Returns
         -------
         Path
+
+        Warns
+        -----
+        UncertainFocusWarning
+            The distance of the subject is not sure: state `focus_distance`.
         """
-        text, doubt = self._core.example(
-            os.fsencode(self._path), arguments.text("move", move),
-            None if start is None else arguments.whole("start", start),
-            None if focus_distance is None else arguments.positive("focus_distance", focus_distance))
+        path, doubt = self._example(move, start, focus_distance)
+        self._warn_of_focus(doubt)
+        return path
+
+    def _example(self, move: str, start: Optional[int], focus_distance: Optional[float]) -> Tuple[CameraPath, str]:
+        """Return a first path, and the reason why its focus may be wrong; "" if it is sure."""
+        with arguments.naming_arguments():
+            text, doubt = self._core.example(
+                os.fsencode(self._source), arguments.text("move", move),
+                None if start is None else arguments.index("start", start),
+                None if focus_distance is None else arguments.positive("focus_distance", focus_distance, 1e9))
+        return CameraPath.parse(text, self._source, self.unit_m), doubt
+
+    def _warn_of_focus(self, doubt: str) -> None:
         if doubt:
-            logging.getLogger("lfrendertools").warning("%s: the focus distance is not sure: %s", self._path, doubt)
-        return CameraPath.parse(text, self._path, self.unit_m)
+            warnings.warn(f"{self._source}: the focus distance is not sure, so that the camera is almost a pinhole: "
+                          f"{doubt}; state the distance of the subject as focus_distance=", UncertainFocusWarning,
+                          stacklevel=3)
 
     @functools.cached_property
-    def _first_camera(self) -> Camera:
-        return self.path("static")[0]
+    def _first_example(self) -> Tuple[CameraPath, str]:
+        return self._example("static", None, None)
 
     def camera(self, **changes: Any) -> Camera:
         """Return a camera that sees the subject of the light field sharply.
 
         The camera is that of the static path (:meth:`path`). It stands at the LF camera in the middle of the capture
         and is focused on the subject. Its aperture is eight times as wide as the spacing of the LF cameras, or narrower
-        if double edges would be visible; if the distance of the subject is not sure, it is almost a pinhole. The first
-        call takes seconds; later calls use its result.
+        if double edges would be visible. The first call takes seconds; later calls use its result.
 
         Parameters
         ----------
@@ -359,8 +387,17 @@ class LightField:
         Returns
         -------
         Camera
+
+        Warns
+        -----
+        UncertainFocusWarning
+            The distance of the subject is not sure, so that the camera is almost a pinhole: state `focus_distance`.
         """
-        return self._first_camera.replace(**changes)
+        path, doubt = self._first_example
+        if doubt and changes.get("focus_distance") is not None:
+            path, doubt = self._example("static", None, changes["focus_distance"])
+        self._warn_of_focus(doubt)
+        return path[0].replace(**changes)
 
     def _repr_html_(self) -> str:
         rows = "".join(f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in (
@@ -383,71 +420,6 @@ class LightField:
         return f"<div>{''.join(pictures)}</div>"
 
 
-def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[float] = None,
-         images: Optional[FilePath] = None, image_scale: str = "auto", image_alpha: str = "auto",
-         background: str = "", pitch: Union[None, float, Tuple[float, float]] = None,
-         plane_distance: Optional[float] = None, flip_x: bool = False, flip_y: bool = False) -> LightField:
-    """Open a light field of any supported form.
-
-    Parameters
-    ----------
-    path : path
-        A calibration file or its folder (transforms.json, COLMAP, Middlebury, LLFF, HCI, AOS), a packed store
-        (STORE.lfs), or a folder of images with Stanford names.
-    focal_px : float, optional
-        Focal length in pixels, for folders with Stanford names.
-    fov_deg : float, optional
-        Field of view of the square LF images, for poses of Airborne Optical Sectioning (AOS).
-    images : path, optional
-        Folder that is searched for the image files by their names, if they are not where the calibration says.
-    image_scale, image_alpha, background : str, optional
-        The options of `lfrenderer` with these names.
-    pitch : float or tuple of float, optional
-        For folders with Stanford names: distance between columns, and between rows, in world units.
-    plane_distance : float, optional
-        For folders with Stanford names: distance, in world units, of the plane to which the images are rectified.
-    flip_x, flip_y : bool, optional
-        For folders with Stanford names: True if columns or rows are counted in the opposite direction.
-
-    Returns
-    -------
-    LightField
-
-    Raises
-    ------
-    InputError
-        There is no light field at `path`, or its calibration is wrong.
-
-    Examples
-    --------
-    >>> import lfrendertools as lf
-    >>> field = lf.open("capture/")
-    >>> field.cam_from_world.shape, field.K.shape, field.cam_from_world.flags.writeable
-    ((49, 3, 4), (49, 3, 3), False)
-    >>> field.image(0).shape, field.image(0, stored=True).dtype
-    ((120, 160, 3), dtype('uint8'))
-    >>> field.array(views=(3, 3), reduce=2).shape
-    (3, 3, 60, 80, 3)
-    """
-    name = arguments.file_name(path)
-    if pitch is not None:
-        pair = (pitch, pitch) if np.ndim(pitch) == 0 else tuple(pitch)  # type: ignore[arg-type]
-        if len(pair) != 2:
-            raise UsageError(f"pitch={pitch!r}: expected one or two numbers")
-        pitch = (arguments.real("pitch", pair[0]), arguments.real("pitch", pair[1]))
-    if image_alpha not in _ALPHAS:
-        raise UsageError(f"image_alpha={image_alpha!r}: expected one of {', '.join(_ALPHAS)}")
-    with arguments.naming_arguments():
-        core = _core.open_light_field(
-            name, 0.0 if focal_px is None else arguments.positive("focal_px", focal_px),
-            0.0 if fov_deg is None else arguments.positive("fov_deg", fov_deg),
-            b"" if images is None else arguments.file_name(images), arguments.text("image_scale", image_scale),
-            image_alpha, arguments.text("background", background), pitch,
-            None if plane_distance is None else arguments.real("plane_distance", plane_distance),
-            (arguments.flag("flip_x", flip_x), arguments.flag("flip_y", flip_y)))
-    return LightField(core, str(pathlib.Path(os.fsdecode(name))))
-
-
 def read_image(path: FilePath) -> npt.NDArray[Any]:
     """Read a picture (EXR, PNG, JPEG, TIFF or camera raw) as the programs do.
 
@@ -467,7 +439,7 @@ def read_image(path: FilePath) -> npt.NDArray[Any]:
     InputError
         The file is missing, damaged or of another kind.
     """
-    return _core.read_image(arguments.file_name(path))
+    return _core.read_image(arguments.file_name("path", path))
 
 
 def _part_of(values: npt.NDArray[Any], rect: Tuple[int, int, int, int]) -> Tuple[slice, slice]:

@@ -18,10 +18,10 @@ def path_in(field: LightField, path: Union[Path, Camera]) -> Path:
     cameras = Path([path]) if isinstance(path, Camera) else path
     if not isinstance(cameras, Path):
         raise TypeError(f"expected an lf.Camera or an lf.Path, found {path!r}")
-    for camera in cameras:
-        if camera.unit_m != field.unit_m:
-            raise UsageError(f"the camera has unit_m={camera.unit_m:g}, and the light field {field.unit_m:g}: give "
-                             f"the camera unit_m=field.unit_m, or make it by field.camera()")
+    # All cameras of a path have the same unit.
+    if cameras[0].unit_m != field.unit_m:
+        raise UsageError(f"the camera has unit_m={cameras[0].unit_m:g}, and the light field {field.unit_m:g}: give the "
+                         f"camera unit_m=field.unit_m, or make it by field.camera()")
     return cameras
 
 
@@ -34,7 +34,7 @@ def frame_numbers(frames: Frames, count: int) -> List[int]:
     try:
         numbers = {arguments.whole("frames", number) for number in frames}
     except TypeError:
-        raise TypeError(f"frames={frames!r}: expected a list of numbers, or text such as \"1-10,20\"") from None
+        raise TypeError(f"frames={frames!r}: expected a list of numbers, or a string such as \"1-10,20\"") from None
     if not numbers or min(numbers) < 1 or max(numbers) > count:
         raise UsageError(f"frames={frames!r}: the path has the frames 1 to {count}")
     return sorted(numbers)

@@ -12,11 +12,12 @@ import numpy.typing as npt
 
 from . import _core, arguments
 from .camera import Camera, Path
-from .errors import BlackFrameWarning, MissingImagesWarning, UsageError
+from .errors import BlackFrameWarning, UsageError, warn_of_missing
+from .film_options import film_words
 from .frames import Frame, Plate
 from .light_field import LightField
 from .path_arguments import Frames, frame_numbers, path_in
-from .progress import Progress, Tell, teller
+from .progress import Progress, TellPhase, checked, telling
 
 
 class Renderer:
@@ -31,29 +32,43 @@ class Renderer:
     frames : str or iterable of int, optional
         Frames to render, from 1: "1-10,20", "1-100x10", or numbers; by default all.
     mode : {"collect", "rebin", "hybrid"}
-        How frames are made from recorded rays (doc/rebinning.md).
-    estimator, filter, lens_weights, lf_pixels, order : str
-        The options of `lfrenderer` with these names.
+        How frames are made from recorded rays (doc/rebinning.md). Default "collect".
+    estimator : {"auto", "nearest", "bilinear"}
+        How LF pixels contribute to elements. "bilinear": each element reads every LF image at the point that it sees.
+        "nearest": each LF pixel is added to one element. Default "auto": "bilinear".
+    filter : {"auto", "nearest", "bilinear", "bicubic", "mosaic", "prefiltered"}
+        Interpolation between LF pixels, with the estimator "bilinear". Default "auto": "mosaic" for mosaics, "bicubic"
+        for brackets, otherwise "prefiltered".
+    lens_weights : {"auto", "none", "area", "hat"}
+        Weight of each LF image in a frame: the same for all, by the part of the lens that is nearest to its LF camera,
+        or by interpolation between the nearest LF images. Default "auto": "area" for large lenses, "hat" for small
+        ones, and a mix between.
+    lf_pixels : {"auto", "areas", "points"}
+        What LF pixels show, for the filter "prefiltered": the mean light of their area, or the light of their centre.
+        Default "auto": as the light field states, otherwise measured.
+    order : {"shuffle", "round-robin", "area"}
+        Order in which frames take LF images, which matters if they end early. Default "shuffle".
     max_images : int, optional
-        Largest number of LF images for each frame.
+        Largest number of LF images for each frame. Default None: all.
     max_angle_deg : float, optional
-        Largest angle between the optical axes of LF camera and frame.
+        Largest angle between the optical axes of LF camera and frame, up to 180. Default None: no limit.
     seed : int
-        Seed of the random numbers: of the order "shuffle", and of rebinned rays.
+        Seed of the random numbers: of the order "shuffle", and of rebinned rays. Default 0.
     stop_when : str
-        Rule by which a frame is finished early: "noise<=X" or "samples>=N", as `--stop-when` of `lfrenderer`.
+        Rule by which a frame is finished early: "noise<=X" or "samples>=N", as `--stop-when` of `lfrenderer`. Default
+        "": none.
     smooth_below, fill : int
         Elements with fewer rays than `smooth_below` are averaged with their neighbours. Elements without rays are
-        filled from elements up to `fill` elements away.
+        filled from elements up to `fill` elements away. Default 0 and 2.
     guard : bool
         True: where a frame of a densified light field is in focus, it shows recorded LF images alone. False: it shows
-        virtual LF images there, like anywhere else.
+        virtual LF images there, like anywhere else. Default True.
     memory : str
-        Upper limit of the memory that is used, such as "8G" or "512M".
+        Upper limit of the memory that is used, such as "8G" or "512M". Default "8G".
     strict : bool
-        True: a missing or broken LF image is an error; False: it is left out, with a warning.
+        True: a missing or broken LF image is an error; False: it is left out, with a warning. Default False.
     threads : int
-        Number of threads; 0: one for each processor.
+        Number of threads, up to 512. Default 0: one for each processor.
 
     Notes
     -----
@@ -97,14 +112,28 @@ class Renderer:
         """Return the film, unless it is closed, and the number of a frame in it."""
         if self._film is None:
             raise UsageError("this Renderer is closed: its with statement has ended")
-        number = arguments.whole("i", i)
+        number = arguments.index("i", i)
         if number < 0:
             raise IndexError(f"frame {number}: frames of a Renderer are numbered from 0")
         return self._film.core, number
 
-    def step(self) -> bool:
-        """Read the next batch of LF images. Returns False if no LF image is left.
+    def __repr__(self) -> str:
+        with self._lock:
+            if self._film is None:
+                return "<Renderer, closed>"
+            done, total = self._film.core.progress()
+            return f"<Renderer: {len(self._film.core.left())} frames, {done} of {total} LF images read>"
 
+    def step(self) -> bool:
+        """Read the next batch of LF images.
+
+        Returns
+        -------
+        bool
+            False if no LF image is left.
+
+        Notes
+        -----
         Ctrl-C (KeyboardInterrupt) interrupts the batch; another call then repeats it.
         """
         with self._lock:
@@ -115,7 +144,7 @@ class Renderer:
 
     @property
     def progress(self) -> Tuple[int, int]:
-        """Number of LF images that were read so far, and number that will be read in all."""
+        """Number of LF images that were read, and total number of those to read."""
         with self._lock:
             return self._core_of()[0].progress()
 
@@ -126,19 +155,70 @@ class Renderer:
             return tuple(self._core_of()[0].skipped())
 
     def preview(self, i: int = 0) -> Frame:
-        """Return frame `i` of this renderer, from 0, with the rays that it has so far."""
+        """Return an unfinished frame, with the rays that it has.
+
+        Parameters
+        ----------
+        i : int
+            Number of the frame in this renderer, from 0.
+
+        Returns
+        -------
+        Frame
+
+        Raises
+        ------
+        IndexError
+            There is no such frame, or it was stopped.
+        UsageError
+            The renderer is closed.
+        """
         with self._lock:
             core, number = self._core_of(i)
             return Frame(core.develop(number))
 
     def plate(self, i: int = 0) -> Plate:
-        """Return a copy of the plate of frame `i` of this renderer, from 0."""
+        """Return a copy of the plate of a frame.
+
+        Parameters
+        ----------
+        i : int
+            Number of the frame in this renderer, from 0.
+
+        Returns
+        -------
+        Plate
+
+        Raises
+        ------
+        IndexError
+            There is no such frame, or it was stopped.
+        UsageError
+            The renderer is closed.
+        """
         with self._lock:
             core, number = self._core_of(i)
             return Plate(core.plate(number))
 
     def stop(self, i: int = 0) -> Frame:
-        """Finish frame `i` of this renderer, from 0, with the rays that it has. Returns it, and frees its memory."""
+        """Finish a frame with the rays that it has, and free its memory.
+
+        Parameters
+        ----------
+        i : int
+            Number of the frame in this renderer, from 0.
+
+        Returns
+        -------
+        Frame
+
+        Raises
+        ------
+        IndexError
+            There is no such frame, or it was stopped.
+        UsageError
+            The renderer is closed.
+        """
         with self._lock:
             core, number = self._core_of(i)
             frame = Frame(core.develop(number))
@@ -157,7 +237,8 @@ def render(field: LightField, camera: Union[Camera, Path], *, progress: Progress
     camera : Camera or Path
         The camera; or a path, whose first frame is rendered unless `frames` names another one.
     progress : bool or callable, optional
-        Called with the number of LF images read so far and in all. True: a progress bar, if tqdm is installed.
+        Called with the number of LF images that were read, and their total number. True: a progress bar, if tqdm is
+        installed.
     **options
         Options of :class:`Renderer`.
 
@@ -178,14 +259,15 @@ def render(field: LightField, camera: Union[Camera, Path], *, progress: Progress
     >>> frame.rgb.shape, frame.rgb.dtype, frame.display().dtype
     ((60, 80, 3), dtype('float32'), dtype('uint8'))
     """
-    frames = options.pop("frames", None)
+    told, frames = checked(progress), options.pop("frames", None)
     film_of_one = _Film(field, camera, [1] if frames is None else frames, options)
     passes = film_of_one.core.passes()
     if sum(map(len, passes)) != 1:
         raise UsageError("render() renders one frame: use film() for several")
     film_of_one.begin(passes[0])
     film_of_one.core.check_any_contributes()
-    film_of_one.collect(teller(progress), 0, 1)
+    with telling(told, "LF images") as tell:
+        next(film_of_one.collect_some(tell, 0))
     film_of_one.core.check_not_all_broken()
     film_of_one.warn_of_missing()
     return Frame(film_of_one.core.develop(0))
@@ -223,21 +305,23 @@ def film(field: LightField, path: Path, frames: Frames = None, *, progress: Prog
     1 (120, 160, 3)
     26 (120, 160, 3)
     """
-    return _frames_of(_Film(field, path, frames, options), teller(progress))
+    told = checked(progress)
+    return _frames_of(_Film(field, path, frames, options), told)
 
 
-def _frames_of(sequence: _Film, tell: Tell) -> Iterator[Tuple[int, Frame]]:
+def _frames_of(sequence: _Film, progress: Progress) -> Iterator[Tuple[int, Frame]]:
     passes = sequence.core.passes()
-    for number, some in enumerate(passes):
-        sequence.begin(some)
-        for f in sequence.collect_some(tell, number, len(passes)):
-            frame = Frame(sequence.core.develop(f))
-            sequence.core.release(f)
-            if frame.image_count == 0 and frame.interpolated is None:
-                warnings.warn(f"frame {frame.number} is black: no recorded ray passes its lens", BlackFrameWarning,
-                              stacklevel=2)
-            yield frame.number, frame
-        sequence.warn_of_missing()
+    with telling(progress, "LF images") as tell:
+        for number, some in enumerate(passes):
+            sequence.begin(some)
+            for f in sequence.collect_some(tell, len(passes) - number - 1):
+                frame = Frame(sequence.core.develop(f))
+                sequence.core.release(f)
+                if frame.image_count == 0 and frame.interpolated is None:
+                    warnings.warn(f"frame {frame.number} is black: no recorded ray passes its lens",
+                                  BlackFrameWarning, stacklevel=2)
+                yield frame.number, frame
+            sequence.warn_of_missing()
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -288,8 +372,9 @@ def select(field: LightField, camera: Union[Camera, Path], frame: int = 1, **opt
     >>> 0 < len(selection.ids) <= len(field), selection.rects.shape[1]
     (True, 4)
     """
-    film_of_one = _Film(field, camera, [frame], options)
-    return Selection(*film_of_one.core.needs(arguments.whole("frame", frame)))
+    cameras = path_in(field, camera)
+    number = arguments.whole_within("frame", frame, 1, len(cameras))
+    return Selection(*_Film(field, cameras[number - 1], None, options).core.needs(1))
 
 
 class _Film:
@@ -297,47 +382,34 @@ class _Film:
 
     def __init__(self, field: LightField, path: Union[Path, Camera], frames: Frames, options: Dict[str, Any]) -> None:
         cameras = path_in(field, path)
-        words = _core.FilmWords()
         own: Dict[str, Any] = {"memory": "8G", "strict": False, "threads": 0}
-        arguments.set_words(words, options, own)
-        angle = words.max_angle_deg
-        if angle is not None and not 0 < angle <= 180:
-            raise UsageError(f"max_angle_deg={angle:g}: expected a number above 0 and up to 180")
+        words = film_words(options, own)
         with arguments.naming_arguments():
-            self.core = _core.Film(field._core, [camera._core for camera in cameras],
-                                   arguments.positive("fps", cameras.fps), frame_numbers(frames, len(cameras)), words,
-                                   str(own["memory"]), arguments.flag("strict", own["strict"]),
-                                   arguments.thread_count(own["threads"]))
+            self.core = _core.Film(field._core, [camera._core for camera in cameras], cameras.fps,
+                                   frame_numbers(frames, len(cameras)), words, arguments.memory(own["memory"]),
+                                   arguments.flag("strict", own["strict"]), arguments.thread_count(own["threads"]))
         self._warned: List[str] = []
+        self._done = 0
 
     def begin(self, frames: Sequence[int]) -> None:
         with arguments.naming_arguments():
             self.core.begin(list(frames))
 
-    def collect_some(self, tell: Tell, number: int, count: int) -> Iterator[int]:
+    def collect_some(self, tell: TellPhase, passes_left: int) -> Iterator[int]:
         """Collect a pass, and yield the indices of its frames, from 0, when they are finished.
 
-        It tells the progress of all passes: this one is pass `number`, from 0, of `count`.
+        It tells the progress of all passes, as if those that are left had as many LF images as this one.
         """
         is_going_on = True
         while is_going_on:
             is_going_on = self.core.step()
             done, total = self.core.progress()
-            tell(number * total + done, count * total)
+            tell(self._done + done, self._done + (passes_left + 1) * total, 0)
             yield from self.core.stopped()
+        self._done += total
         yield from self.core.left()
-
-    def collect(self, tell: Tell, number: int, count: int) -> None:
-        while self.core.step() and not self.core.stopped():
-            done, total = self.core.progress()
-            tell(number * total + done, count * total)
-        done, total = self.core.progress()
-        tell(done, total)
 
     def warn_of_missing(self) -> None:
         missing = [(name, reason) for name, reason in self.core.skipped() if name not in self._warned]
-        if not missing:
-            return
         self._warned += [name for name, _ in missing]
-        warnings.warn(f"{len(missing)} LF images were left out, the first: {missing[0][1]}", MissingImagesWarning,
-                      stacklevel=3)
+        warn_of_missing([reason for _, reason in missing], stacklevel=4)

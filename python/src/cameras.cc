@@ -7,6 +7,7 @@
 #include <cstring>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "python/src/errors.h"
@@ -68,6 +69,12 @@ RenderCamera CameraOf(const py::tuple& numbers) {
   return camera;
 }
 
+// Returns the numbers that two equal cameras share: all but the time, which belongs to the path.
+py::tuple NumbersToCompare(RenderCamera camera) {
+  camera.time_s = 0;
+  return NumbersOf(camera);
+}
+
 py::tuple TupleOf(const CameraPath& path) {
   return py::make_tuple(path.cameras, path.fps, path.unit_m);
 }
@@ -86,6 +93,11 @@ void WriteText(const std::string& file, const std::string& text) {
 }
 
 }  // namespace
+
+CameraPath PathOf(std::vector<RenderCamera> cameras, double fps, double unit_m) {
+  for (size_t i = 0; i < cameras.size(); ++i) cameras[i].time_s = static_cast<double>(i) / fps;
+  return {fps, unit_m, std::move(cameras)};
+}
 
 void AddCameras(py::module_& module) {
   py::class_<RenderCamera>(module, "RenderCamera")
@@ -132,9 +144,13 @@ void AddCameras(py::module_& module) {
       .def_property_readonly("focal_length", [](const RenderCamera& c) { return c.focal_length_w; })
       .def_property_readonly("sensor_width", [](const RenderCamera& c) { return c.sensor_width_w; })
       .def_property_readonly("unit_m", [](const RenderCamera& c) { return c.unit_m; })
-      .def("__eq__", [](const RenderCamera& a,
-                        const RenderCamera& b) { return NumbersOf(a).equal(NumbersOf(b)); })
-      .def("__hash__", [](const RenderCamera& c) { return py::hash(NumbersOf(c)); })
+      .def("__eq__",
+           [](const RenderCamera& a, const RenderCamera& b) {
+             return NumbersToCompare(a).equal(NumbersToCompare(b));
+           })
+      .def("__hash__", [](const RenderCamera& c) { return py::hash(NumbersToCompare(c)); })
+      .def("numbers", &NumbersOf)
+      .def_static("of_numbers", &CameraOf)
       .def(py::pickle(&NumbersOf, &CameraOf));
   module.def("parse_path", &ParsePath);
   module.def("read_path", &ReadPath);

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "python/src/cameras.h"
 #include "python/src/errors.h"
 #include "python/src/film_words.h"
 #include "python/src/light_field.h"
@@ -31,16 +32,13 @@ namespace {
 
 namespace py = pybind11;
 
-using Tell = std::function<void(size_t done, size_t total)>;
+using Tell = std::function<void(size_t done, size_t total, int phase)>;
 
 // Work whose progress is told to a function of Python.
 struct ToldWork {
   explicit ToldWork(Tell tell) { signals.tell = std::move(tell); }
   std::function<void(size_t, size_t)> Progress() {
-    return [this](size_t done, size_t total) {
-      signals.done = done;
-      signals.total = total;
-    };
+    return [this](size_t done, size_t total) { signals.SetProgress({done, total}); };
   }
   WorkSignals signals;
 };
@@ -125,7 +123,7 @@ std::string Preprocess(const OpenedField& field, const std::string& name,
   options.interrupted = &work.signals.interrupted;
   return CallWithoutGil(
       [&] {
-        const CameraPath path{fps, light_field.unit_m, std::move(cameras)};
+        const CameraPath path = PathOf(std::move(cameras), fps, light_field.unit_m);
         ForecastFacts facts;
         facts.light_field = name;
         facts.output = words.output;
@@ -168,7 +166,7 @@ std::string CompressField(const OpenedField& field, const std::string& name,
   return CallWithoutGil(
       [&] {
         const auto progress = [&](const CompressProgress& now) {
-          work.Progress()(now.done, now.total);
+          work.signals.SetProgress({now.done, now.total, now.is_verifying ? 1 : 0});
         };
         const CompressReport report =
             Take(Compress(Take(SourceOfAll(field.light_field)), options, pool, progress));
@@ -182,8 +180,8 @@ void Synthesise(const SyntheticFieldOptions& options, int threads, const Tell& t
   ToldWork work(tell);
   RunWithoutGil(
       [&] {
-        Take(WriteSyntheticField(options, pool, [&](size_t done, size_t total, bool) {
-          work.Progress()(done, total);
+        Take(WriteSyntheticField(options, pool, [&](size_t done, size_t total, bool is_truth) {
+          work.signals.SetProgress({done, total, is_truth ? 1 : 0});
           return !work.signals.interrupted;
         }));
       },
@@ -229,6 +227,7 @@ void AddCaptures(py::module_& module) {
       .def_readwrite("format", &SyntheticFieldOptions::format)
       .def_readwrite("alpha", &SyntheticFieldOptions::alpha)
       .def_readwrite("truth", &SyntheticFieldOptions::truth)
+      .def_readwrite("truth_cameras", &SyntheticFieldOptions::truth_cameras)
       .def_readwrite("size", &SyntheticFieldOptions::size_px)
       .def_readwrite("count", &SyntheticFieldOptions::count)
       .def_readwrite("spacing", &SyntheticFieldOptions::spacing)

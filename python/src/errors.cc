@@ -1,5 +1,7 @@
 #include "python/src/errors.h"
 
+#include <new>
+
 namespace lf::python {
 namespace {
 
@@ -21,6 +23,11 @@ const char* ExceptionOf(ErrorKind kind) {
   return "Error";
 }
 
+void Raise(const Error& error) {
+  const py::object type = py::module_::import("lfrendertools.errors").attr(ExceptionOf(error.kind));
+  PyErr_SetObject(type.ptr(), TextOf(error.message).ptr());
+}
+
 }  // namespace
 
 py::str TextOf(const std::string& text) {
@@ -35,9 +42,9 @@ void TranslateFailures() {
     try {
       if (pointer) std::rethrow_exception(pointer);
     } catch (const Failure& failure) {
-      const py::object type =
-          py::module_::import("lfrendertools.errors").attr(ExceptionOf(failure.error().kind));
-      PyErr_SetObject(type.ptr(), TextOf(failure.what()).ptr());
+      Raise(failure.error());
+    } catch (const std::bad_alloc&) {
+      Raise(OutputError("the memory of the machine does not suffice"));
     }
   });
 }

@@ -36,7 +36,8 @@ inline void Take(const Result<void>& result) {
 // of them.
 pybind11::str TextOf(const std::string& text);
 
-// Makes the module translate each Failure into the exception of its kind.
+// Makes the module translate each Failure into the exception of its kind, and std::bad_alloc into
+// an OutputError.
 void TranslateFailures();
 
 }  // namespace lf::python

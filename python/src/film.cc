@@ -1,7 +1,7 @@
 #include "python/src/film.h"
 
 #include <fmt/format.h>
-#include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
 #include <algorithm>
@@ -9,42 +9,27 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
-#include "python/src/arrays.h"
+#include "python/src/cameras.h"
 #include "python/src/errors.h"
 #include "python/src/film_words.h"
+#include "python/src/frames.h"
 #include "python/src/light_field.h"
 #include "python/src/work.h"
 #include "tools/common/byte_size.h"
 
-#include "lf/film/develop/frame_file.h"
-#include "lf/film/plate/plate_file.h"
 #include "lf/pixels/files/write_png.h"
-#include "lf/render/pipeline/develop_frame.h"
 #include "lf/render/pipeline/film_renderer.h"
 #include "lf/render/pipeline/film_setup.h"
-#include "lf/render/pipeline/frame_metadata.h"
 #include "lf/render/pipeline/frame_range.h"
 #include "lf/render/pipeline/render.h"
+#include "lf/render/pipeline/setup_inputs.h"
 
 namespace lf::python {
 namespace {
 
 namespace py = pybind11;
-
-// A finished or unfinished frame: its picture, and the notes that its file gets.
-struct Frame {
-  DevelopedFrame picture;
-  PlateNotes notes;
-};
-
-// A plate with the notes from which it can be developed.
-struct Plate {
-  SensorPlate sums{0, 0};
-  PlateNotes notes;
-};
 
 class Film {
  public:
@@ -62,14 +47,15 @@ class Film {
     std::vector<FrameId> ids;
     for (const uint32_t frame : frames) ids.push_back(FrameId{frame});
     Run([&] {
-      CameraPath path{fps, field.light_field.unit_m, std::move(cameras)};
-      Package package = PackageOfAll(field.light_field, std::move(path), words.seed);
+      Package package = PackageOfAll(
+          field.light_field, PathOf(std::move(cameras), fps, field.light_field.unit_m), words.seed);
       if (words.max_angle_deg)
         package.choices.max_angle_rad = RadiansFromDegrees(*words.max_angle_deg);
       Take(CheckRenderOptions(package, options));
       Take(PutInOrder(order, options, pool_, &package));
       setup_ = Take(FilmSetup::Make(std::move(package), options.film, options.work, ids, pool_));
       Take(setup_->PlanSlabs());
+      inputs_ = Take(InputsOfRays(*setup_));
     });
   }
 
@@ -129,11 +115,12 @@ class Film {
     if (!setup_->film().Collects())
       throw Failure(UsageError("mode=\"rebin\": its frames have no plates"));
     auto plate = std::make_unique<Plate>();
-    const SensorPlate& sums = renderer().plate(f);
-    plate->sums = SensorPlate(sums.width(), sums.height(), sums.kind());
-    plate->sums.Merge(sums);
+    plate->sums = CopyOf(renderer().plate(f));
     plate->notes = renderer().NotesOf(f);
     plate->notes.version = LF_VERSION;
+    plate->inputs = inputs_;
+    for (auto& entry : InputsOfCamera(plate->notes.frame, plate->notes.camera))
+      plate->inputs.push_back(std::move(entry));
     return plate;
   }
 
@@ -193,88 +180,9 @@ class Film {
   WorkSignals signals_;
   ThreadPool& pool_;
   std::unique_ptr<FilmSetup> setup_;
+  RunInputs inputs_;  // inputs of the rays
   std::unique_ptr<FilmRenderer> renderer_;
 };
-
-// Returns an array that shares the memory of an image, which the object `self` holds; None if the
-// image is empty. The array has the shape [height][width] if is_flat is true, otherwise
-// [height][width][channels].
-template <class T>
-py::object Show(Image<T>& image, const py::object& self, bool is_flat = true) {
-  if (image.empty()) return py::none();
-  std::vector<py::ssize_t> shape = {image.height(), image.width()};
-  if (!is_flat) shape.push_back(image.channels());
-  return py::array_t<T>(shape, image.pixels().data(), self);
-}
-
-ImageMetadata MetadataOf(const PlateNotes& notes) {
-  return FrameMetadata(notes.frame, notes.camera, notes.rays, notes.estimator, notes.fps,
-                       notes.version);
-}
-
-void SaveFrame(const Frame& frame, const std::string& path, const std::string& format) {
-  const std::optional<FrameFormat> known = ParseFrameFormat(format);
-  if (!known)
-    throw Failure(
-        UsageError(fmt::format("format=\"{}\": expected exr, exr-float, png or png16", format)));
-  RunWithoutGil([&] {
-    Take(WriteFrame(path, frame.picture, *known,
-                    FileMetadata(frame.notes, *known, ColourSpace::kRec709)));
-  });
-}
-
-Frame DevelopPlate(const Plate& plate, int threads) {
-  ThreadPool& pool = PoolOf(threads);
-  return CallWithoutGil([&] {
-    RenderedFrame rendered = DevelopFrame(plate.notes, plate.sums, nullptr, true, pool, {});
-    return Frame{std::move(rendered.picture), plate.notes};
-  });
-}
-
-std::unique_ptr<Plate> LoadPlate(const std::string& path) {
-  auto plate = std::make_unique<Plate>();
-  RunWithoutGil([&] {
-    PlateReader reader = Take(PlateReader::Open(path));
-    plate->sums = SensorPlate(reader.width(), reader.height(), reader.kind());
-    plate->notes = Take(PlateNotesOf(reader.entries(), reader.width(), reader.height(), path));
-    Take(reader.AddTo(&plate->sums));
-  });
-  return plate;
-}
-
-void SavePlate(const Plate& plate, const std::string& path) {
-  ThreadPool& pool = PoolOf(0);
-  RunWithoutGil([&] { Take(WritePlate(path, TextOf(plate.notes), plate.sums, pool)); });
-}
-
-// Returns the sum of two plates of the same camera, such as those of two parts of a light field.
-std::unique_ptr<Plate> AddPlates(const Plate& a, const Plate& b) {
-  if (a.sums.width() != b.sums.width() || a.sums.height() != b.sums.height() ||
-      a.sums.kind() != b.sums.kind())
-    throw Failure(UsageError(fmt::format(
-        "plates of {} x {} and {} x {} elements, with {} and {} channels, cannot be added",
-        a.sums.width(), a.sums.height(), b.sums.width(), b.sums.height(), a.sums.channels(),
-        b.sums.channels())));
-  auto sum = std::make_unique<Plate>();
-  sum->sums = SensorPlate(a.sums.width(), a.sums.height(), a.sums.kind());
-  sum->sums.Merge(a.sums);
-  sum->sums.Merge(b.sums);
-  sum->notes = a.notes;
-  sum->notes.rays += b.notes.rays;
-  // The effective number of LF images of the sum does not follow from those of the parts.
-  sum->notes.weighed.reset();
-  return sum;
-}
-
-// Returns [height][width][channels], sums or counts.
-py::array_t<uint64_t> WordsOf(const Plate& plate, uint64_t ElementSum::*member) {
-  const SensorPlate& sums = plate.sums;
-  py::array_t<uint64_t> out(
-      {py::ssize_t{sums.height()}, py::ssize_t{sums.width()}, py::ssize_t{sums.channels()}});
-  uint64_t* to = out.mutable_data();
-  for (size_t i = 0; i < sums.words().size(); ++i) *to++ = sums.AtWord(i).*member;
-  return out;
-}
 
 std::vector<uint32_t> ParseFrames(const std::string& text, size_t frame_count) {
   std::vector<uint32_t> numbers;
@@ -316,46 +224,6 @@ void AddFilm(py::module_& module) {
   AddWords(module);
   module.def("parse_frames", &ParseFrames);
   module.def("encode_png", &PngOf);
-  py::class_<Frame>(module, "Frame")
-      .def_property_readonly("number", [](const Frame& f) { return f.notes.frame.value; })
-      .def_property_readonly("camera", [](const Frame& f) { return f.notes.camera; })
-      .def_property_readonly(
-          "rgb",
-          [](const py::object& self) { return Show(self.cast<Frame&>().picture.rgb, self, false); })
-      .def_property_readonly("count",
-                             [](const py::object& self) {
-                               return Show(self.cast<Frame&>().picture.ray_count, self, false);
-                             })
-      .def_property_readonly(
-          "coverage",
-          [](const py::object& self) { return Show(self.cast<Frame&>().picture.coverage, self); })
-      .def_property_readonly(
-          "opacity",
-          [](const py::object& self) { return Show(self.cast<Frame&>().picture.opacity, self); })
-      .def_property_readonly("effective",
-                             [](const py::object& self) {
-                               return Show(self.cast<Frame&>().picture.effective_count, self);
-                             })
-      .def_property_readonly("interpolated",
-                             [](const py::object& self) {
-                               return Show(self.cast<Frame&>().picture.interpolated, self);
-                             })
-      .def_property_readonly(
-          "densified",
-          [](const py::object& self) { return Show(self.cast<Frame&>().picture.densified, self); })
-      .def_property_readonly("image_count", [](const Frame& f) { return f.notes.rays.image_count; })
-      .def_property_readonly("metadata", [](const Frame& f) { return MetadataOf(f.notes); })
-      .def("save", &SaveFrame);
-  py::class_<Plate>(module, "Plate")
-      .def_static("load", &LoadPlate)
-      .def_property_readonly("sums",
-                             [](const Plate& plate) { return WordsOf(plate, &ElementSum::sum); })
-      .def_property_readonly("counts",
-                             [](const Plate& plate) { return WordsOf(plate, &ElementSum::count); })
-      .def("save", &SavePlate)
-      .def("__add__", &AddPlates)
-      .def("__eq__", [](const Plate& a, const Plate& b) { return a.sums == b.sums; })
-      .def("develop", &DevelopPlate);
   py::class_<Film>(module, "Film")
       .def(
           py::init<const OpenedField&, std::vector<RenderCamera>, double,

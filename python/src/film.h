@@ -1,4 +1,4 @@
-// Films in memory as Python sees them: frames, their plates, and the renderer of film_renderer.h.
+// Films in memory as Python sees them: the renderer of film_renderer.h.
 #pragma once
 
 #include <pybind11/pybind11.h>

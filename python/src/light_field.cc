@@ -17,6 +17,7 @@
 
 #include "python/src/arrays.h"
 #include "python/src/errors.h"
+#include "python/src/gil.h"
 #include "python/src/work.h"
 #include "tools/common/light_field_argument.h"
 
@@ -216,7 +217,7 @@ py::array LoadImage(const OpenedField& field, py::ssize_t i,
         rect.x_begin, rect.y_begin, rect.x_end, rect.y_end, k.width_px, k.height_px, i)));
   Image<float> light;
   {
-    const py::gil_scoped_release release;
+    const GilPause pause;
     const LfPixels loaded = Take(LoadWithoutThrowing(
         *field.store, id, rect, field.light_field.image_names[id.value], LfPixels()));
     light = LightOf(loaded, field.light_field.encoding, masked);

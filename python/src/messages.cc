@@ -5,6 +5,7 @@
 #include <string>
 
 #include "python/src/errors.h"
+#include "python/src/gil.h"
 
 #include "lf/core/log.h"
 
@@ -27,10 +28,11 @@ int LevelOf(LogLevel level) {
   return 40;
 }
 
-// Hands a message to the logger. Any thread may call it, even while Python ends.
+// Hands a message to the logger. Any thread may call it, even while Python ends: the message is
+// then lost.
 void SendToPython(LogLevel level, std::string_view message) {
-  if (Py_IsInitialized() == 0) return;
-  const py::gil_scoped_acquire acquire;
+  const GilHold hold;
+  if (!hold.has_lock()) return;
   try {
     py::module_::import("logging")
         .attr("getLogger")("lfrendertools")

@@ -7,14 +7,18 @@
 #include "python/src/captures.h"
 #include "python/src/errors.h"
 #include "python/src/film.h"
+#include "python/src/frames.h"
+#include "python/src/gil.h"
 #include "python/src/light_field.h"
 #include "python/src/messages.h"
 
 PYBIND11_MODULE(_core, module) {
+  lf::python::WatchForEndOfPython();
   lf::python::TranslateFailures();
   lf::python::SendMessagesToPython();
   lf::python::AddLightField(module);
   lf::python::AddCameras(module);
+  lf::python::AddFrames(module);
   lf::python::AddFilm(module);
   lf::python::AddCaptures(module);
   module.attr("version") = LF_VERSION;

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "python/src/errors.h"
+#include "python/src/gil.h"
 
 namespace lf::python {
 namespace {
@@ -50,20 +51,21 @@ class Teller {
   explicit Teller(WorkSignals* signals) : signals_(signals) {}
   void Tell() {
     if (signals_ == nullptr || !signals_->tell) return;
-    const std::pair now(signals_->done.load(), signals_->total.load());
+    const WorkProgress now = signals_->progress();
     if (now == told_) return;
     told_ = now;
-    signals_->tell(now.first, now.second);
+    signals_->tell(now.done, now.total, now.phase);
   }
 
  private:
   WorkSignals* signals_;
-  std::pair<size_t, size_t> told_{0, 0};
+  WorkProgress told_;
 };
 
 // Runs Python's handlers of the signals that have arrived, and the teller. Returns what they raise.
 std::exception_ptr Look(Teller& teller) {
-  const py::gil_scoped_acquire acquire;
+  const GilHold hold;
+  if (!hold.has_lock()) return nullptr;
   try {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     teller.Tell();
@@ -79,7 +81,7 @@ void RunWithoutGil(const std::function<void()>& work, WorkSignals* signals) {
   std::exception_ptr failure, raised;
   Teller teller(signals);
   {
-    const py::gil_scoped_release release;
+    const GilPause pause;
     Ending ending;
     std::thread worker([&] {
       try {
@@ -92,7 +94,7 @@ void RunWithoutGil(const std::function<void()>& work, WorkSignals* signals) {
     while (!ending.WaitFor(kPatience)) {
       if (signals == nullptr) continue;
       raised = Look(teller);
-      if (!raised) continue;
+      if (!raised && !PythonEnds()) continue;
       signals->stop = true;
       signals->interrupted = true;
       ending.Wait();

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <exception>
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -12,25 +13,47 @@
 
 namespace lf::python {
 
+// How far work has come. Each phase counts anew.
+struct WorkProgress {
+  size_t done = 0;
+  size_t total = 0;
+  int phase = 0;  // 0, 1, ...
+
+  friend bool operator==(const WorkProgress&, const WorkProgress&) = default;
+};
+
 // Signals between the thread of Python that waits and the work on another thread.
-struct WorkSignals {
+class WorkSignals {
+ public:
   // Requests that end work soon. Work that can be interrupted reads them
   // (WorkOptions::interrupted, WorkOptions::stop).
   std::atomic<bool> interrupted = false;
   std::atomic<bool> stop = false;
 
-  // The work states here how far it has come.
-  std::atomic<size_t> done = 0;
-  std::atomic<size_t> total = 0;
-  // If set, called with the GIL after `done` or `total` has changed, by the thread that waits. It
-  // may throw what a function of Python has raised, which ends the work as Ctrl-C does.
-  std::function<void(size_t done, size_t total)> tell = {};
+  // If set, called with the GIL after the progress has changed, by the thread that waits. It may
+  // throw what a function of Python has raised, which ends the work as Ctrl-C does.
+  std::function<void(size_t done, size_t total, int phase)> tell = {};
+
+  // Called by the work.
+  void SetProgress(const WorkProgress& now) {
+    const std::lock_guard lock(mutex_);
+    progress_ = now;
+  }
+  WorkProgress progress() const {
+    const std::lock_guard lock(mutex_);
+    return progress_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  WorkProgress progress_;
 };
 
 // Calls work() on another thread and waits for its end. The calling thread holds the GIL before and
 // after. Meanwhile it runs Python's signal handlers and signals->tell(): if one of them raises, as
 // the handler of Ctrl-C does in Python's main thread, sets both requests, waits for the end of the
-// work, clears them, and throws what was raised. Otherwise throws what work() threw.
+// work, clears them, and throws what was raised. Otherwise throws what work() threw. If Python ends
+// meanwhile, ends the work in the same way, and does not return.
 //   signals  null: the work cannot be interrupted, and is waited for
 void RunWithoutGil(const std::function<void()>& work, WorkSignals* signals = nullptr);
 

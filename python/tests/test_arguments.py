@@ -55,6 +55,13 @@ def test_names_that_are_not_utf8(tmp_path, capture, path):
     assert os.path.getsize(folder + ".png") > 100
     assert all(isinstance(name, str) for name in field.names)
     refuses(lambda: lf.Plate.load(folder + ".plate"), "cannot be read", lf.InputError)
+    assert lf.report(field)["images"] == 49 and lf.forecast(field, path)["frames"]
+    assert len(lf.write_packages(field, path, os.path.join(tmp_path, "\udcfe"), 1)["packages"]) == 1
+    lf.compress(field, folder + ".lfs")
+    path.save(folder + ".yaml")
+    lf.synth("chart", os.path.join(tmp_path, "\udcfd"), count=1, size=(16, 12), samples=1, truth=folder + ".yaml",
+             truth_samples=1)
+    assert len(os.listdir(tmp_path)) == 6
 
 
 def test_numbers_of_lf_images(field):
@@ -137,6 +144,87 @@ def test_what_is_rendered(field, path):
     for name, wrong in (("threads", "no"), ("strict", "no"), ("strict", np.array([1, 2]))):
         refuses(lambda: lf.render(field, path, **{name: wrong}), name)
     refuses(lambda: lf.render(field, path, memory="1M"), "^memory 1 MiB is too small", lf.OutputError)
+
+
+@pytest.mark.parametrize("wrong", [3, None, 1.5, [1]])
+def test_paths_of_files(wrong, field, path):
+    frame = lf.render(field, path)
+    for action, name in ((lambda: lf.open(wrong), "path"), (lambda: lf.Path.load(wrong), "path"),
+                         (lambda: path.save(wrong), "path"), (lambda: frame.save(wrong), "path"),
+                         (lambda: lf.Plate.load(wrong), "path"), (lambda: lf.read_image(wrong), "path"),
+                         (lambda: lf.compress(field, wrong), "store"), (lambda: lf.synth("chart", wrong), "folder"),
+                         (lambda: lf.write_packages(field, path, wrong), "folder")):
+        refuses(action, f"^{name}=.*expected a path")
+    if wrong is not None:
+        refuses(lambda: lf.open(".", images=wrong), "^images=.*expected a path")
+        refuses(lambda: lf.synth("chart", "x", truth=wrong), "^truth=.*expected a path")
+
+
+def test_sequences(field, path, tmp_path):
+    refuses(lambda: lf.Path(path[0]), "^cameras=<Camera.*expected lf.Camera objects")
+    refuses(lambda: field.images(3), "^ids=3: expected numbers of LF images")
+    for wrong in (0.1, "0.1", [[1]], ["a"]):
+        refuses(lambda: lf.synth("chart", tmp_path, distortion=wrong), "^distortion=.*: expected 0 to 8 numbers")
+    for wrong in (3, "ab", "a", None, [1, "b"]):
+        if wrong is not None:
+            refuses(lambda: lf.forecast(field, path, depths=wrong), "^depths=.*: expected 2 numbers")
+    refuses(lambda: lf.forecast(field, path, depths=(1,)), r"^depths=\(1,\): expected 2 numbers, found 1",
+            lf.UsageError)
+    refuses(lambda: field.array((3.0, 3)), r"^views=\(3.0, 3\): expected 2 whole numbers")
+    refuses(lambda: field.image(0, (0, 0, 1000.0, 1)), r"^rect=\(0, 0, 1000.0, 1\): expected 4 whole numbers")
+    assert lf.display_values([0, 1, float("nan")]).tolist() == [0, 255, 0]
+    refuses(lambda: lf.display_values("white"), "^light: expected an array of numbers")
+
+
+@pytest.mark.parametrize("function", [lf.render, lf.forecast, lf.select, lf.film])
+def test_options_of_films(function, field, path):
+    for name, wrong in (("max_images", "3"), ("seed", 1.5), ("seed", None), ("guard", 2), ("fill", "off"), ("order", 1),
+                        ("max_angle_deg", "9"), ("mode", None), ("memory", 8), ("memory", 8e9)):
+        if function is lf.select and name == "mode":
+            continue
+        refuses(lambda: function(field, path, **{name: wrong}), f"^{name}={wrong!r}: expected")
+    for name, wrong in (("max_images", -1), ("max_images", 10**30), ("seed", -1), ("seed", 2**64), ("fill", 10**30),
+                        ("smooth_below", -1), ("max_angle_deg", 500), ("max_angle_deg", float("nan"))):
+        refuses(lambda: function(field, path, **{name: wrong}), f"^{name}={wrong!r}: expected", lf.UsageError)
+
+
+def test_values_that_files_cannot_hold(field, tmp_path):
+    refuses(lambda: field.path("static", focus_distance=1e300), "^focus_distance=1e.300: expected", lf.UsageError)
+    for options in ({"spacing": 1e300}, {"distance": 1e300}, {"distortion": (float("nan"),)}, {"fisheye": (1e9,)},
+                    {"seed": -1}, {"count": 10**30}):
+        refuses(lambda: lf.synth("chart", tmp_path / "field", **options), next(iter(options)), lf.UsageError)
+    assert not (tmp_path / "field").exists()
+
+
+def test_the_frame_of_a_selection(field, path):
+    for wrong in (0, 4, -1):
+        refuses(lambda: lf.select(field, path, wrong), f"^frame={wrong}: expected a whole number from 1 to 3",
+                lf.UsageError)
+    refuses(lambda: lf.select(field, path, 1.5), "^frame=1.5")
+
+
+def test_a_camera_needs_a_position(field):
+    refuses(lambda: lf.Camera(**{**CAMERA, "position": None}), "^position=None: expected 3 numbers")
+    refuses(lambda: field.camera(position=None), "^position=None: expected 3 numbers")
+
+
+def test_a_truth_of_another_unit(tmp_path):
+    camera = lf.Camera(**CAMERA, unit_m=0.01)
+    refuses(lambda: lf.synth("chart", tmp_path / "field", truth=lf.Path([camera])), "^truth: .*unit_m=0.01",
+            lf.UsageError)
+
+
+def test_commands_of_programs_keep_their_options(tmp_path):
+    from PIL import Image
+    for row in range(2):
+        Image.new("RGB", (16, 12)).save(tmp_path / f"out_{row:02}_00.png")
+    with pytest.raises(lf.InputError) as error:
+        lf.open(tmp_path)
+    assert "--pitch 1 --focal-px 16" in str(error.value) and "plane_distance" in str(error.value)
+    refuses(lambda: lf.open(tmp_path, pitch=0, focal_px=20), "the pitch is 0, 0 world units", lf.UsageError)
+    pose = '{"imagefile": "a.png", "M3x4": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]}'
+    (tmp_path / "poses.json").write_text('{"images": [' + pose + ']}')
+    refuses(lambda: lf.open(tmp_path / "poses.json"), r"\(fov_deg;", lf.InputError)
 
 
 def test_a_closed_renderer_says_so(field, path):

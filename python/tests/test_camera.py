@@ -1,5 +1,6 @@
 """Cameras and paths."""
 import pickle
+import warnings
 
 import numpy as np
 import pytest
@@ -57,6 +58,66 @@ def test_replacing_and_comparing():
     assert one.replace(f_number=8).aperture_diameter == pytest.approx(one.aperture_diameter / 2)
     with pytest.raises(AttributeError):
         one.blades = 3
+
+
+def test_what_does_not_change_keeps_its_bits(field):
+    cameras = [camera(), camera(tilt_deg=(0, 0), up=(0.3, -1, 0)), field.camera(), camera(field_of_view_deg=33.3,
+               focal_length_mm=None), camera(unit_m=0.0254, shift_mm=(1, 3), aperture_diameter_mm=7, f_number=None)]
+    for one in cameras:
+        assert one.replace(blades=one.blades) == one
+        there = one.replace(focus_distance=1.25, blades=9)
+        assert np.array_equal(there.cam_from_world, one.cam_from_world) and np.array_equal(there.K, one.K)
+    breathing = camera(breathing=True, focus_distance=0.4)
+    assert breathing.replace(f_number=8).f_number == pytest.approx(8)
+    assert np.allclose(breathing.replace(f_number=8).K, breathing.K)
+
+
+def test_the_time_of_a_camera_is_that_of_its_path(path):
+    moved = lf.Path([path[1], path[1]], fps=12)
+    path_file = lf.Path(path, fps=50)
+    assert path[1] == moved[0] and hash(path[1]) == hash(moved[1]) and path_file[2] == path[2]
+    still = lf.Path.parse("format: lfpath 1\nfps: 25\nframes: 2\nresolution: [60, 40]\n"
+                          "camera: {field_of_view_deg: 40, position: [0, 0, 0], look_at: [0, 0, 1]}\n"
+                          "lens: {aperture_diameter: 0.1, focus_distance: 1}\n")
+    assert still[0] == still[1] and len({still[0], still[1]}) == 1
+
+
+def test_frames_per_second_are_checked(path):
+    path = lf.Path(path)
+    path.fps = 12.5
+    assert path.fps == 12.5
+    for wrong in (-5, 0, float("nan")):
+        with pytest.raises(lf.UsageError, match="fps"):
+            path.fps = wrong
+    with pytest.raises(TypeError, match="fps"):
+        path.fps = "24"
+
+
+def test_up_needs_a_point_to_look_at():
+    with pytest.raises(lf.UsageError, match="up.*look_at"):
+        camera(look_at=None, quaternion=(1, 0, 0, 0), up=(0, -1, 0))
+    with pytest.raises(lf.UsageError, match="up.*look_at"):
+        camera().replace(up=(1, 0, 0))
+    turned = camera().replace(look_at=(0, 0, 1), up=(1, 0, 0))
+    assert np.allclose(turned.cam_from_world, camera(up=(1, 0, 0)).cam_from_world, rtol=0, atol=1e-15)
+
+
+def test_an_uncertain_focus_is_told(tmp_path):
+    """Images without texture do not tell how far the subject is."""
+    from PIL import Image
+    field = lf.synth("chart", tmp_path / "field", count=9, size=(96, 64), samples=1, format="png")
+    for name in field.names:
+        Image.new("RGB", (96, 64), (90, 90, 90)).save(tmp_path / "field" / name)
+    field = lf.open(tmp_path / "field")
+    for action in (field.camera, field.path, lambda: field.camera(blades=5)):
+        with pytest.warns(lf.UncertainFocusWarning, match="focus_distance="):
+            action()
+    with pytest.warns(lf.UncertainFocusWarning):
+        pinhole = field.camera()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert field.camera(focus_distance=1).aperture_diameter > 2 * field.spacing > pinhole.aperture_diameter
+        assert field.camera(focus_distance=1) == field.path("static", focus_distance=1)[0]
 
 
 def test_pickles_are_equal():

@@ -60,7 +60,7 @@ def test_forecast_writes_nothing(field, path, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     told = []
     facts = lf.forecast(field, path, frames="2-3", depths=(0.5, 3), progress=lambda *now: told.append(now))
-    assert [frame["frame"] for frame in facts["frames"]] == [2, 3] and facts["depths_from"] == "--depths"
+    assert [frame["frame"] for frame in facts["frames"]] == [2, 3] and facts["depths_from"] == "depths"
     assert facts["packages"][0]["rays"] == sum(frame["rays"] for frame in facts["frames"])
     assert told[-1] == (4, 4) and not list(tmp_path.iterdir())
 
@@ -68,7 +68,7 @@ def test_forecast_writes_nothing(field, path, tmp_path, monkeypatch):
 def test_packages_replace_others_only_if_asked(field, path, tmp_path):
     lf.write_packages(field, path, tmp_path, frames_per_package=1)
     assert len(list(tmp_path.glob("*.lfp"))) == 3
-    with pytest.raises(lf.UsageError):
+    with pytest.raises(lf.UsageError, match="replace them with overwrite, or give another folder"):
         lf.write_packages(field, path, tmp_path)
     assert len(lf.write_packages(field, path, tmp_path, overwrite=True)["packages"]) == 1
 
@@ -80,6 +80,8 @@ def test_selection_is_what_the_forecast_counts(field, path):
     assert len(np.unique(np.concatenate([selection.ids, selection.neighbours]))) == \
         len(selection.ids) + len(selection.neighbours)
     assert (selection.rects[:, 2:] > selection.rects[:, :2]).all()
+    alone = lf.select(field, path[1])
+    assert np.array_equal(alone.ids, selection.ids) and np.array_equal(alone.rects, selection.rects)
     # LF cameras inside of the lens, seen along its axis, are all selected.
     camera = path[1]
     offset = (field.centres - camera.position) @ camera.cam_from_world[:, :3].T
@@ -103,7 +105,7 @@ def test_stores_are_those_of_lfcompressor(field, capture, run, tmp_path):
 def test_broken_images_are_left_out_of_stores_with_a_warning(capture, tmp_path):
     folder = shutil.copytree(capture, tmp_path / "field")
     (folder / "images/0005.png").write_bytes(b"no picture")
-    with pytest.warns(lf.MissingImagesWarning, match="1 LF images are not in the store"):
+    with pytest.warns(lf.MissingImagesWarning, match="1 LF image is not in the store"):
         facts = lf.compress(lf.open(folder), tmp_path / "a.lfs")
     assert facts["lf_images_skipped"] == 1
     with pytest.raises(lf.InputError):
@@ -128,6 +130,29 @@ def test_synthetic_fields_are_those_of_lfsynth(run, tmp_path, path_file, path):
         lf.synth("chart", tmp_path / "d", format="png", bayer=True)
 
 
+def test_older_synthetic_fields_are_replaced_whole(tmp_path):
+    lf.synth("chart", tmp_path, count=9, size=(16, 12), samples=1)
+    (tmp_path / "images/notes.txt").write_text("kept")
+    lf.synth("lights", tmp_path, count=4, size=(16, 12), samples=1)
+    assert sorted(file.name for file in (tmp_path / "images").iterdir()) == [
+        "0000.exr", "0001.exr", "0002.exr", "0003.exr", "notes.txt"]
+    lf.synth("lights", tmp_path, count=4, size=(16, 12), samples=1, format="png")
+    assert sorted(file.name for file in (tmp_path / "images").iterdir())[:2] == ["0000.png", "0001.png"]
+
+
+def test_other_light_fields_are_not_hidden(tmp_path):
+    (tmp_path / "images").mkdir()
+    (tmp_path / "images/out_00_00.png").write_bytes(b"")
+    (tmp_path / "sparse/0").mkdir(parents=True)
+    for name in ("cameras.txt", "images.txt", "points3D.txt"):
+        (tmp_path / "sparse/0" / name).write_text("")
+    with pytest.raises(lf.UsageError, match="holds a light field"):
+        lf.synth("chart", tmp_path, count=1, size=(16, 12), samples=1)
+    assert not (tmp_path / "transforms.json").exists()
+    assert len(lf.synth("chart", tmp_path, count=1, size=(16, 12), samples=1, overwrite=True)) == 1
+    assert (tmp_path / "images/out_00_00.png").exists()
+
+
 def test_files_are_read_as_stored(capture, field, tmp_path):
     from PIL import Image
     expected = np.asarray(Image.open(capture / field.names[5]))[..., :3]
@@ -150,19 +175,6 @@ def test_notebooks_show_pictures(field, capture, tmp_path):
     assert lf.open(folder)._repr_html_().count("data:image/png") == 7
 
 
-def test_plates_are_kept_in_files(field, path, tmp_path):
-    with lf.Renderer(field, path, frames=[2]) as renderer:
-        while renderer.step():
-            pass
-        plate, frame = renderer.plate(), renderer.preview()
-    plate.save(tmp_path / "plate.lfplate")
-    again = lf.Plate.load(tmp_path / "plate.lfplate")
-    assert again == plate and np.array_equal(again.sums, plate.sums)
-    assert np.array_equal(again.develop().rgb, frame.rgb)
-    with pytest.raises(lf.OutputError):
-        plate.save(tmp_path / "no/folder/plate.lfplate")
-
-
 def test_frames_are_shared_by_dlpack(field, path):
     frame = lf.render(field, path[0])
     assert np.shares_memory(np.from_dlpack(frame.rgb), frame.rgb)
@@ -174,6 +186,8 @@ def test_arrays_go_into_hdf5(field, tmp_path):
         views = file.create_dataset("views", (3, 3, 60, 80, 3), "f4", chunks=(1, 1, 60, 80, 3))
         field.array((3, 3), reduce=2, out=views)
         assert np.array_equal(views[...], field.array((3, 3), reduce=2))
+        with pytest.raises(lf.UsageError, match="floats, found uint8"):
+            field.array((3, 3), reduce=2, out=file.create_dataset("bytes", (3, 3, 60, 80, 3), "u1"))
 
 
 def test_wrong_arguments(field, path, tmp_path):
@@ -192,6 +206,8 @@ def test_wrong_arguments(field, path, tmp_path):
         assert "--" not in str(error.value)
     with pytest.raises(TypeError):
         lf.report("capture/")
+    with pytest.raises(lf.UsageError, match="resume and overwrite"):
+        lf.compress(field, tmp_path / "x.lfs", resume=True, overwrite=True)
     assert not list(tmp_path.iterdir())
 
 

@@ -35,3 +35,9 @@ def test_example_with_its_own_scene(script, count, size, tmp_path):
     if script == "aperture_sweep.py":
         psnr = [float(line.split(",")[1].split()[0]) for line in end.stdout.splitlines()]
         assert len(psnr) == 4 and min(psnr) > 28, psnr
+
+
+@pytest.mark.parametrize("script", sorted(FOLDER.glob("*.py")), ids=lambda script: script.name)
+def test_examples_tell_how_they_are_called(script):
+    end = subprocess.run([sys.executable, script], capture_output=True, text=True)
+    assert end.returncode == 1 and f"usage: {script.name}" in end.stderr and "Traceback" not in end.stderr

@@ -90,6 +90,58 @@ def test_a_broken_image_is_an_error_that_names_it(run, tmp_path):
     assert error.value.exit_code == 3
 
 
+def test_broken_images_are_left_out_with_a_warning(run, tmp_path):
+    run("lfsynth", "chart", "-o", tmp_path / "field", "--count", 9, "--size", "32x24", "--samples", 1)
+    field = lf.open(tmp_path / "field")
+    whole = field.array()
+    grid = field.grid()
+    (tmp_path / "field" / field.names[2]).unlink()
+    (tmp_path / "field" / field.names[7]).write_bytes(b"no picture")
+    with pytest.warns(lf.MissingImagesWarning, match="2 LF images were left out.*0002"):
+        found = [i for i, _ in field.images(ahead=3)]
+    assert found == [0, 1, 3, 4, 5, 6, 8]
+    with pytest.warns(lf.MissingImagesWarning, match="2 LF images"):
+        array = field.array()
+    for i in range(9):
+        place = tuple(np.argwhere(grid.ids == i)[0])
+        assert np.isnan(array[place]).all() if i in (2, 7) else np.array_equal(array[place], whole[place])
+    for action in (lambda: list(field.images(strict=True)), lambda: field.array(strict=True)):
+        with pytest.raises(lf.InputError, match="0002"):
+            action()
+
+
+def test_images_are_loaded_as_stored(field):
+    for i, picture in field.images([4, 2], stored=True):
+        assert picture.dtype == np.uint8 and np.array_equal(picture, field.image(i, stored=True))
+
+
+def test_masked_pixels_have_the_value_that_is_asked_for(tmp_path):
+    lf.synth("chart", tmp_path / "field", count=4, size=(48, 32), samples=1, alpha="straight", format="png")
+    field = lf.open(tmp_path / "field", image_alpha="mask")
+    (_, with_nan), (_, with_zero) = next(field.images()), next(field.images(masked=0))
+    assert np.isnan(with_nan).any() and np.array_equal(np.nan_to_num(with_nan), with_zero)
+
+
+def test_intrinsics_are_read_only(field):
+    k = field.intrinsics[0]
+    with pytest.raises(ValueError):
+        k.K[0, 0] = 1
+    assert isinstance(k.parameters, tuple) and len(k.parameters) == 12
+
+
+def test_points_and_pixels_may_have_any_shape(field):
+    points = np.random.default_rng(3).uniform(-0.2, 0.2, (4, 5, 3)) + [0, 0, 1.5]
+    pixels = field.project(3, points)
+    assert pixels.shape == (4, 5, 2) and np.array_equal(pixels[2], field.project(3, points[2]))
+    assert np.array_equal(field.project(3, points[1, 1]), pixels[1, 1])
+    origins, directions = field.rays(3, pixels)
+    assert origins.shape == directions.shape == (4, 5, 3)
+    assert field.project(3, []).shape == (0, 2) and field.rays(3, [])[1].shape == (0, 3)
+    for wrong in ([1, 2], 5, np.ones((3, 2))):
+        with pytest.raises(lf.UsageError, match="points: expected an array of shape"):
+            field.project(3, wrong)
+
+
 def test_a_grid_is_found(field):
     grid = field.grid()
     assert grid.shape == (7, 7)
@@ -117,6 +169,9 @@ def test_arrays_of_a_grid(field, tmp_path):
     assert np.allclose(file[2, 2], corner, atol=1e-6)
     with pytest.raises(lf.UsageError, match="expected"):
         field.array(out=np.empty((1, 2)))
+    read_only = np.memmap(tmp_path / "array", np.float32, "r", shape=(3, 3, 60, 80, 3))
+    with pytest.raises(lf.UsageError, match="cannot be written"):
+        field.array(views=(3, 3), reduce=2, out=read_only)
 
 
 def test_what_is_no_light_field(tmp_path):

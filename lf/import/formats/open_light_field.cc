@@ -267,16 +267,6 @@ Result<void> CompleteAlpha(const OpenOptions& options, const fs::path& path,
   return {};
 }
 
-bool HoldsLightField(const fs::path& folder) {
-  std::error_code error;
-  if (fs::exists(folder / kCalibrationName, error)) return true;
-  const Result<std::optional<fs::path>> model = FindColmapModel(folder);
-  if (model && *model) return true;
-  const Result<std::optional<fs::path>> calibration = CalibrationIn(folder);
-  return !calibration || *calibration || HoldsStanfordNames(folder) ||
-         HoldsStanfordNames(folder / kImagesName) || !PackedStoresIn(folder).empty();
-}
-
 // Returns a hint for a folder that holds photographs but no calibration; "" for other folders.
 std::string PhotographsIn(const fs::path& path) {
   constexpr size_t kMostEntries = 4096;
@@ -362,6 +352,16 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
 }
 
 }  // namespace
+
+bool HoldsLightField(const fs::path& folder) {
+  std::error_code error;
+  if (fs::exists(folder / kCalibrationName, error)) return true;
+  const Result<std::optional<fs::path>> model = FindColmapModel(folder);
+  if (model && *model) return true;
+  const Result<std::optional<fs::path>> calibration = CalibrationIn(folder);
+  return !calibration || *calibration || HoldsStanfordNames(folder) ||
+         HoldsStanfordNames(folder / kImagesName) || !PackedStoresIn(folder).empty();
+}
 
 bool HoldsOwnAndItsSource(const fs::path& folder) {
   std::error_code error;

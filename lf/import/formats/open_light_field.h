@@ -46,6 +46,10 @@ struct OpenOptions {
   std::optional<BayerPattern> bayer = {};
 };
 
+// Returns true if the folder holds a light field in one of the forms that OpenLightField() finds
+// there. Its files may be damaged.
+bool HoldsLightField(const std::filesystem::path& folder);
+
 // Returns true if the folder holds both a transforms.json that lfimport wrote and nobody changed,
 // and a calibration of another form, from which it may have been made.
 bool HoldsOwnAndItsSource(const std::filesystem::path& folder);

@@ -97,16 +97,17 @@ std::vector<RigidTransform> HemispherePoses(const RigOptions& options) {
 Result<void> CheckOptions(const RigOptions& options) {
   if (options.count == 0)
     return UsageError("a rig of 0 cameras takes no picture; give 1 or more (--count)");
+  constexpr double kLongest_w = 1e6;  // calibrations hold the positions of all rigs up to here
   const bool pitched = options.shape != RigShape::kHemisphere;
-  if (pitched && !(options.spacing_w > 0 && std::isfinite(options.spacing_w)))
-    return UsageError(
-        fmt::format("camera spacing {} (--spacing): expected a positive length in world units",
-                    options.spacing_w));
-  if (!(options.distance_w > 0 && std::isfinite(options.distance_w)))
+  if (pitched && !(options.spacing_w > 0 && options.spacing_w <= kLongest_w))
+    return UsageError(fmt::format(
+        "camera spacing {} (--spacing): expected a positive length of at most {} world units",
+        options.spacing_w, kLongest_w));
+  if (!(options.distance_w > 0 && options.distance_w <= kLongest_w))
     return UsageError(
         fmt::format("distance {} of the cameras from the scene (--distance): expected a positive "
-                    "length in world units",
-                    options.distance_w));
+                    "length of at most {} world units",
+                    options.distance_w, kLongest_w));
   if (!(options.jitter >= 0 && options.jitter <= 1))
     return UsageError(
         fmt::format("jitter {} (--jitter): expected a share of the camera spacing from 0 to 1",

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <optional>
 #include <set>
@@ -88,26 +87,8 @@ Result<ShardPlate> Look(const fs::path& path) {
   plate.kind = reader.kind();
   LF_ASSIGN_OR_RETURN(
       plate.notes, PlateNotesOf(reader.entries(), reader.width(), reader.height(), path.string()));
-  if (const std::string* const text = FindEntry(reader.entries(), "shard")) {
-    const std::optional<Shard> shard = ShardOf(*text);
-    if (!shard)
-      return InputError(
-          fmt::format("{}: its shard is \"{}\", expected k/K, such as 2/5; render the plate again",
-                      path.string(), *text));
-    plate.shard = *shard;
-  }
-  // Entries that may differ between the shards of a frame: the shard, its rays, and its LF images.
-  constexpr const char* kOwn[] = {"shard",
-                                  "sheet.lf_images",
-                                  "sheet.virtual_lf_images",
-                                  "sheet.rays_tested",
-                                  "sheet.rays_accepted",
-                                  "sheet.lf_images_skipped",
-                                  "sheet.skipped"};
-  for (const auto& entry : reader.entries())
-    if (!entry.first.starts_with("progress.") &&
-        std::find(std::begin(kOwn), std::end(kOwn), entry.first) == std::end(kOwn))
-      plate.inputs.push_back(entry);
+  LF_ASSIGN_OR_RETURN(plate.shard, ShardIn(reader.entries(), path.string()));
+  plate.inputs = SharedEntries(reader.entries());
   return plate;
 }
 

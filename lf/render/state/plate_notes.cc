@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <span>
 #include <utility>
 #include <vector>
@@ -278,6 +280,31 @@ Result<PlateNotes> PlateNotesOf(const PlateEntries& entries, int width_px, int h
   }
   if (reader.fault()) return *reader.fault();
   return notes;
+}
+
+Result<Shard> ShardIn(const PlateEntries& entries, const std::string& name) {
+  const std::string* const text = FindEntry(entries, "shard");
+  if (text == nullptr) return Shard();
+  if (const std::optional<Shard> shard = ShardOf(*text)) return *shard;
+  return InputError(fmt::format(
+      "{}: its shard is \"{}\", expected k/K, such as 2/5; render the plate again", name, *text));
+}
+
+PlateEntries SharedEntries(const PlateEntries& entries) {
+  // Entries that may differ between the shards of a frame: the shard, its rays, and its LF images.
+  constexpr const char* kOwn[] = {"shard",
+                                  "sheet.lf_images",
+                                  "sheet.virtual_lf_images",
+                                  "sheet.rays_tested",
+                                  "sheet.rays_accepted",
+                                  "sheet.lf_images_skipped",
+                                  "sheet.skipped"};
+  PlateEntries shared;
+  for (const auto& entry : entries)
+    if (!entry.first.starts_with("progress.") &&
+        std::find(std::begin(kOwn), std::end(kOwn), entry.first) == std::end(kOwn))
+      shared.push_back(entry);
+  return shared;
 }
 
 }  // namespace lf

@@ -14,6 +14,7 @@
 #include "lf/film/develop/develop.h"
 #include "lf/film/plate/plate_file.h"
 #include "lf/render/collect/collect.h"
+#include "lf/render/state/shard.h"
 #include "lf/selection/lens_weights/lens_coverage.h"
 
 namespace lf {
@@ -54,5 +55,13 @@ PlateEntries TextOf(const PlateNotes& notes);
 // message begins with `name`.
 Result<PlateNotes> PlateNotesOf(const PlateEntries& entries, int width_px, int height_px,
                                 const std::string& name);
+
+// Returns the shard whose rays a finished plate has: 1/1 unless the entries state another one.
+// kInput: the shard is invalid. The message begins with `name`.
+Result<Shard> ShardIn(const PlateEntries& entries, const std::string& name);
+
+// Returns those entries of a finished plate that the plates of all shards of its frame have in
+// common. Plates may be added only if these entries are equal (FirstDifference()).
+PlateEntries SharedEntries(const PlateEntries& entries);
 
 }  // namespace lf

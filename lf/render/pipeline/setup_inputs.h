@@ -1,0 +1,14 @@
+// The inputs that decide the rays of a film (render/state/run_inputs.h), from its setup.
+#pragma once
+
+#include "lf/core/result.h"
+#include "lf/render/pipeline/film_setup.h"
+#include "lf/render/state/run_inputs.h"
+
+namespace lf {
+
+// Returns the inputs of the rays of all frames, those of rebinned rays included. kInput: the packed
+// store of the light field cannot be read.
+Result<RunInputs> InputsOfRays(const FilmSetup& setup);
+
+}  // namespace lf

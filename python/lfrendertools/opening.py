@@ -1,0 +1,79 @@
+"""Opens light fields."""
+from __future__ import annotations
+
+import os
+import pathlib
+from typing import Optional, Tuple, Union
+
+from . import _core, arguments
+from .arguments import FilePath
+from .light_field import LightField
+
+_ALPHAS = ("auto", "mask", "straight", "premultiplied")
+
+
+def open(path: FilePath, *, focal_px: Optional[float] = None, fov_deg: Optional[float] = None,
+         images: Optional[FilePath] = None, image_scale: str = "auto", image_alpha: str = "auto",
+         background: str = "", pitch: Union[None, float, Tuple[float, float]] = None,
+         plane_distance: Optional[float] = None, flip_x: bool = False, flip_y: bool = False) -> LightField:
+    """Open a light field of any supported form.
+
+    Parameters
+    ----------
+    path : path
+        A calibration file or its folder (transforms.json, COLMAP, Middlebury, LLFF, HCI, AOS), a packed store
+        (STORE.lfs), or a folder of images with Stanford names.
+    focal_px : float, optional
+        Focal length in pixels, for folders with Stanford names.
+    fov_deg : float, optional
+        Field of view of the square LF images, for poses of Airborne Optical Sectioning (AOS).
+    images : path, optional
+        Folder that is searched for the image files by their names, if they are not where the calibration says.
+    image_scale, image_alpha, background : str, optional
+        The options of `lfrenderer` with these names.
+    pitch : float or tuple of float, optional
+        For folders with Stanford names: distance between columns, and between rows, in world units.
+    plane_distance : float, optional
+        For folders with Stanford names: distance, in world units, of the plane to which the images are rectified.
+    flip_x, flip_y : bool, optional
+        For folders with Stanford names: True if columns or rows are counted in the opposite direction.
+
+    Returns
+    -------
+    LightField
+
+    Raises
+    ------
+    InputError
+        There is no light field at `path`, or its calibration is wrong.
+
+    Examples
+    --------
+    >>> import lfrendertools as lf
+    >>> field = lf.open("capture/")
+    >>> field.cam_from_world.shape, field.K.shape, field.cam_from_world.flags.writeable
+    ((49, 3, 4), (49, 3, 3), False)
+    >>> field.image(0).shape, field.image(0, stored=True).dtype
+    ((120, 160, 3), dtype('uint8'))
+    >>> field.array(views=(3, 3), reduce=2).shape
+    (3, 3, 60, 80, 3)
+    """
+    # The working directory may change while the light field is open.
+    source = _absolute("path", path)
+    if pitch is not None:
+        pair = arguments.numbers("pitch", pitch if hasattr(pitch, "__len__") else (pitch, pitch), 2, 2)
+        pitch = (pair[0], pair[1])
+    with arguments.naming_arguments():
+        core = _core.open_light_field(
+            os.fsencode(source), 0.0 if focal_px is None else arguments.positive("focal_px", focal_px),
+            0.0 if fov_deg is None else arguments.positive("fov_deg", fov_deg),
+            b"" if images is None else os.fsencode(_absolute("images", images)),
+            arguments.text("image_scale", image_scale), arguments.choice("image_alpha", image_alpha, _ALPHAS),
+            arguments.text("background", background), pitch,
+            None if plane_distance is None else arguments.real("plane_distance", plane_distance),
+            (arguments.flag("flip_x", flip_x), arguments.flag("flip_y", flip_y)))
+    return LightField(core, source)
+
+
+def _absolute(name: str, path: FilePath) -> str:
+    return str(pathlib.Path(os.fsdecode(arguments.file_name(name, path))).absolute())

@@ -1,0 +1,273 @@
+#include "python/src/frames.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "python/src/errors.h"
+#include "python/src/work.h"
+
+#include "lf/film/develop/frame_file.h"
+#include "lf/film/plate/plate_file.h"
+#include "lf/render/pipeline/develop_frame.h"
+#include "lf/render/pipeline/frame_metadata.h"
+
+namespace lf::python {
+namespace {
+
+namespace py = pybind11;
+
+// Returns an array that shares the memory of an image, which the object `self` holds; None if the
+// image is empty. The array has the shape [height][width] if is_flat is true, otherwise
+// [height][width][channels].
+template <class T>
+py::object Show(Image<T>& image, const py::object& self, bool is_flat = true) {
+  if (image.empty()) return py::none();
+  std::vector<py::ssize_t> shape = {image.height(), image.width()};
+  if (!is_flat) shape.push_back(image.channels());
+  return py::array_t<T>(shape, image.pixels().data(), self);
+}
+
+ImageMetadata MetadataOf(const PlateNotes& notes) {
+  return FrameMetadata(notes.frame, notes.camera, notes.rays, notes.estimator, notes.fps,
+                       notes.version);
+}
+
+void SaveFrame(const Frame& frame, const std::string& path, const std::string& format) {
+  const std::optional<FrameFormat> known = ParseFrameFormat(format);
+  if (!known)
+    throw Failure(
+        UsageError(fmt::format("format=\"{}\": expected exr, exr-float, png or png16", format)));
+  RunWithoutGil([&] {
+    Take(WriteFrame(path, frame.picture, *known,
+                    FileMetadata(frame.notes, *known, ColourSpace::kRec709)));
+  });
+}
+
+Frame DevelopPlate(const Plate& plate, int threads) {
+  ThreadPool& pool = PoolOf(threads);
+  return CallWithoutGil([&] {
+    RenderedFrame rendered = DevelopFrame(plate.notes, plate.sums, nullptr, true, pool, {});
+    return Frame{std::move(rendered.picture), plate.notes};
+  });
+}
+
+// Sets the members of a plate that the entries of its file state, apart from the shard.
+void SetEntries(const PlateEntries& entries, const std::string& name, Plate* plate) {
+  plate->notes = Take(PlateNotesOf(entries, plate->sums.width(), plate->sums.height(), name));
+  for (auto& entry : SharedEntries(entries))
+    if (!entry.first.starts_with("sheet.")) plate->inputs.push_back(std::move(entry));
+}
+
+PlateEntries EntriesOf(const Plate& plate) {
+  PlateEntries entries = plate.inputs;
+  for (auto& entry : TextOf(plate.notes)) entries.push_back(std::move(entry));
+  return entries;
+}
+
+std::unique_ptr<Plate> LoadPlate(const std::string& path) {
+  auto plate = std::make_unique<Plate>();
+  RunWithoutGil([&] {
+    PlateReader reader = Take(PlateReader::Open(path));
+    plate->sums = SensorPlate(reader.width(), reader.height(), reader.kind());
+    SetEntries(reader.entries(), path, plate.get());
+    const Shard shard = Take(ShardIn(reader.entries(), path));
+    plate->shard_count = shard.count;
+    plate->shards = {shard.number};
+    Take(reader.AddTo(&plate->sums));
+  });
+  return plate;
+}
+
+// Returns the shards of a plate as text, such as "1, 2 of 5".
+std::string ShardsText(const Plate& plate) {
+  return fmt::format("{} of {}", fmt::join(plate.shards, ", "), plate.shard_count);
+}
+
+void SavePlate(const Plate& plate, const std::string& path) {
+  PlateEntries entries = EntriesOf(plate);
+  if (plate.shards.size() < plate.shard_count) {
+    if (plate.shards.size() > 1)
+      throw Failure(UsageError(fmt::format(
+          "{}: the plate has the shards {}, and a file must have one shard or all: add the others",
+          path, ShardsText(plate))));
+    entries.emplace_back("shard", Shard{*plate.shards.begin(), plate.shard_count}.Text());
+  }
+  ThreadPool& pool = PoolOf(0);
+  RunWithoutGil([&] { Take(WritePlate(path, entries, plate.sums, pool)); });
+}
+
+// Throws a Failure (kUsage) unless the plates have different rays of the same frame of the same
+// render.
+void CheckCanBeAdded(const Plate& a, const Plate& b) {
+  if (a.sums.width() != b.sums.width() || a.sums.height() != b.sums.height() ||
+      a.sums.kind() != b.sums.kind())
+    throw Failure(UsageError(fmt::format(
+        "plates of {} x {} and {} x {} elements, with {} and {} channels, cannot be added",
+        a.sums.width(), a.sums.height(), b.sums.width(), b.sums.height(), a.sums.channels(),
+        b.sums.channels())));
+  if (const auto difference = FirstDifference(a.Shared(), b.Shared()))
+    throw Failure(UsageError(
+        fmt::format("plates of different frames, light fields or options cannot be added: {}",
+                    difference->Text("one was made with", "the other with"))));
+  std::vector<uint32_t> both;
+  std::set_intersection(a.shards.begin(), a.shards.end(), b.shards.begin(), b.shards.end(),
+                        std::back_inserter(both));
+  if (a.shard_count != b.shard_count || !both.empty())
+    throw Failure(UsageError(
+        fmt::format("plates with the shards {} and {} cannot be added, because rays would count "
+                    "twice: add plates of different shards of one division",
+                    ShardsText(a), ShardsText(b))));
+}
+
+std::unique_ptr<Plate> AddPlates(const Plate& a, const Plate& b) {
+  CheckCanBeAdded(a, b);
+  auto sum = std::make_unique<Plate>();
+  sum->sums = CopyOf(a.sums);
+  sum->sums.Merge(b.sums);
+  sum->notes = a.notes;
+  sum->notes.rays += b.notes.rays;
+  sum->notes.skipped_count += b.notes.skipped_count;
+  sum->notes.skipped.insert(sum->notes.skipped.end(), b.notes.skipped.begin(),
+                            b.notes.skipped.end());
+  sum->inputs = a.inputs;
+  sum->shard_count = a.shard_count;
+  sum->shards = a.shards;
+  sum->shards.insert(b.shards.begin(), b.shards.end());
+  return sum;
+}
+
+// Returns [height][width][channels], sums or counts.
+py::array_t<uint64_t> WordsOf(const Plate& plate, uint64_t ElementSum::*member) {
+  const SensorPlate& sums = plate.sums;
+  py::array_t<uint64_t> out(
+      {py::ssize_t{sums.height()}, py::ssize_t{sums.width()}, py::ssize_t{sums.channels()}});
+  uint64_t* to = out.mutable_data();
+  for (size_t i = 0; i < sums.words().size(); ++i) *to++ = sums.AtWord(i).*member;
+  return out;
+}
+
+// Pickle keeps a plate as these values.
+py::tuple StateOf(const Plate& plate) {
+  return py::make_tuple(EntriesOf(plate), WordsOf(plate, &ElementSum::sum),
+                        WordsOf(plate, &ElementSum::count), plate.shard_count, plate.shards);
+}
+
+std::unique_ptr<Plate> PlateOf(const py::tuple& state) {
+  const auto sums = state[1].cast<py::array_t<uint64_t>>(),
+             counts = state[2].cast<py::array_t<uint64_t>>();
+  const auto height = static_cast<int>(sums.shape(0)), width = static_cast<int>(sums.shape(1)),
+             channels = static_cast<int>(sums.shape(2));
+  auto plate = std::make_unique<Plate>();
+  plate->sums = SensorPlate(width, height, PlateKindOf(static_cast<uint32_t>(channels)).value());
+  SetEntries(state[0].cast<PlateEntries>(), "a pickled plate", plate.get());
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      for (int c = 0; c < channels; ++c)
+        plate->sums.Add(x, y, c, {sums.at(y, x, c), counts.at(y, x, c)});
+  plate->shard_count = state[3].cast<uint32_t>();
+  plate->shards = state[4].cast<std::set<uint32_t>>();
+  return plate;
+}
+
+template <class T>
+py::array_t<T> ArrayCopy(const Image<T>& image) {
+  return py::array_t<T>(std::vector<py::ssize_t>{image.height(), image.width(), image.channels()},
+                        image.pixels().data());
+}
+
+template <class T>
+Image<T> ImageOf(const py::handle& value) {
+  const auto array = value.cast<py::array_t<T, py::array::c_style>>();
+  if (array.size() == 0) return Image<T>();
+  Image<T> image(static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)),
+                 static_cast<int>(array.shape(2)));
+  std::copy_n(array.data(), array.size(), image.pixels().data());
+  return image;
+}
+
+// Pickle keeps a frame as these values.
+py::tuple StateOf(const Frame& frame) {
+  const DevelopedFrame& p = frame.picture;
+  return py::make_tuple(TextOf(frame.notes), ArrayCopy(p.rgb), ArrayCopy(p.ray_count),
+                        ArrayCopy(p.coverage), ArrayCopy(p.opacity), ArrayCopy(p.effective_count),
+                        ArrayCopy(p.interpolated), ArrayCopy(p.densified));
+}
+
+Frame FrameOf(const py::tuple& state) {
+  DevelopedFrame picture = {ImageOf<float>(state[1]), ImageOf<uint32_t>(state[2]),
+                            ImageOf<float>(state[3]), ImageOf<float>(state[4]),
+                            ImageOf<float>(state[5]), ImageOf<float>(state[6]),
+                            ImageOf<float>(state[7])};
+  PlateNotes notes = Take(PlateNotesOf(state[0].cast<PlateEntries>(), picture.rgb.width(),
+                                       picture.rgb.height(), "a pickled frame"));
+  return {std::move(picture), std::move(notes)};
+}
+
+}  // namespace
+
+SensorPlate CopyOf(const SensorPlate& plate) {
+  SensorPlate copy(plate.width(), plate.height(), plate.kind());
+  copy.Merge(plate);
+  return copy;
+}
+
+void AddFrames(py::module_& module) {
+  py::class_<Frame>(module, "Frame")
+      .def_property_readonly("number", [](const Frame& f) { return f.notes.frame.value; })
+      .def_property_readonly("camera", [](const Frame& f) { return f.notes.camera; })
+      .def_property_readonly(
+          "rgb",
+          [](const py::object& self) { return Show(self.cast<Frame&>().picture.rgb, self, false); })
+      .def_property_readonly("count",
+                             [](const py::object& self) {
+                               return Show(self.cast<Frame&>().picture.ray_count, self, false);
+                             })
+      .def_property_readonly(
+          "coverage",
+          [](const py::object& self) { return Show(self.cast<Frame&>().picture.coverage, self); })
+      .def_property_readonly(
+          "opacity",
+          [](const py::object& self) { return Show(self.cast<Frame&>().picture.opacity, self); })
+      .def_property_readonly("effective",
+                             [](const py::object& self) {
+                               return Show(self.cast<Frame&>().picture.effective_count, self);
+                             })
+      .def_property_readonly("interpolated",
+                             [](const py::object& self) {
+                               return Show(self.cast<Frame&>().picture.interpolated, self);
+                             })
+      .def_property_readonly(
+          "densified",
+          [](const py::object& self) { return Show(self.cast<Frame&>().picture.densified, self); })
+      .def_property_readonly("image_count", [](const Frame& f) { return f.notes.rays.image_count; })
+      .def_property_readonly("metadata", [](const Frame& f) { return MetadataOf(f.notes); })
+      .def("save", &SaveFrame)
+      .def(py::pickle([](const Frame& frame) { return StateOf(frame); }, &FrameOf));
+  py::class_<Plate>(module, "Plate")
+      .def_static("load", &LoadPlate)
+      .def_property_readonly("sums",
+                             [](const Plate& plate) { return WordsOf(plate, &ElementSum::sum); })
+      .def_property_readonly("counts",
+                             [](const Plate& plate) { return WordsOf(plate, &ElementSum::count); })
+      .def_property_readonly("number", [](const Plate& p) { return p.notes.frame.value; })
+      .def_property_readonly(
+          "size", [](const Plate& p) { return std::pair(p.sums.width(), p.sums.height()); })
+      .def_property_readonly("image_count", [](const Plate& p) { return p.notes.rays.image_count; })
+      .def(py::pickle([](const Plate& plate) { return StateOf(plate); }, &PlateOf))
+      .def("save", &SavePlate)
+      .def("__add__", &AddPlates)
+      .def("__eq__", [](const Plate& a, const Plate& b) { return a.sums == b.sums; })
+      .def("develop", &DevelopPlate);
+}
+
+}  // namespace lf::python
