@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Reads camera paths in the formats of other programs. The files are written here, with NumPy and from the formats'
-documentation alone (doc/formats/foreign_paths.md); the cameras must be those they were written of. Writes such paths with
-lfpath, and reads them here; rendered again, they must give the same frames.
+documentation alone (doc/formats/foreign_paths.md); the cameras must be those they were written of. Writes such paths
+with lfpath, and reads them here; rendered again, they must give the same frames.
 
 usage: foreign_paths_test.py LFCAMMVMINFO LFPATH LFSYNTH LFRENDERER
 """
@@ -53,7 +53,8 @@ frames: 4
 resolution: [60, 40]
 camera: {sensor_width_mm: 36, focal_length_mm: 40, focal_length_speed_mm: 20, position: [-0.002, -0.127, -0.8],
          speed: [0.01, 0.005, -0.002], look_at: [0, -0.1, 0], up: [0.1, -1, 0]}
-lens: {aperture_diameter: 0.02, aperture_diameter_speed: -0.01, focus_distance: 0.6, focus_distance_speed: 0.5, blades: 5,
+lens: {aperture_diameter: 0.02, aperture_diameter_speed: -0.01, focus_distance: 0.6, focus_distance_speed: 0.5,
+       blades: 5,
        blade_rotation_deg: 12, breathing: true, focus_tilt_deg: {horizontal: 4, vertical: -7}}
 """
 
@@ -271,7 +272,10 @@ class ForeignPathsTest(ProgramTestCase):
             path = self.facts(self.calibration(form))
             self.assertEqual((path["frames"], path["resolution"]), (6, [300, 200]))
             for camera, facts in zip(self.cameras, path["cameras"]):
-                self.agrees(facts, camera.axes, camera.centre, camera.vertical_deg)
+                # The principal point is 90 elements below the upper edge of the 200 rows.
+                focal_px = 100 / np.tan(np.radians(camera.vertical_deg / 2))
+                seen_deg = np.degrees(np.arctan(90 / focal_px) + np.arctan(110 / focal_px))
+                self.agrees(facts, camera.axes, camera.centre, seen_deg)
 
     def test_off_centre_frames_show_their_part_of_the_picture(self):
         """The left half of a frame is the frame whose principal point is at its right edge."""

@@ -60,7 +60,7 @@ struct Arguments {
 void AddOptions(CLI::App& app, Arguments& a, lf::MergeOptions& options) {
   lf::OptionGroup input(app, lf::kInputGroup), output(app, lf::kOutputGroup);
   lf::OptionGroup running(app, lf::kRunningGroup);
-  input.Add("PLATES", a.plates, "Plates of lfrenderer --shard, --keep-plates, or their folders")
+  input.Add("PLATES", a.plates, "Plates of lfrenderer --shard or --keep-plates, or folders")
       ->required()
       ->check(lf::NotEmpty());
   a.allow_missing.AddTo(app, "the LF images of the frame with the most LF images");

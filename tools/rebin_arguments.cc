@@ -33,7 +33,7 @@ void AddKeptRays(OptionGroup& group, RebinArguments& a) {
       "off: only kept rays are averaged");
   group.AddChoice(
       "--preview", a.preview, {"auto", "on", "off"},
-      "Interpolate gaps in unfinished frames of --mode hybrid\n"
+      "Interpolate gaps in unfinished frames of the hybrid\n"
       "on: rays of the first 64 LF images of each frame are kept, so that elements that have no "
       "collected ray yet are interpolated in pictures of the frame before it is finished\n"
       "off: elements without a collected ray are interpolated only if they have none in the end\n"

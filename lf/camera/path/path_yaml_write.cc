@@ -91,8 +91,22 @@ std::vector<YamlQuantity> Optics(const CameraPath& path) {
   return optics;
 }
 
+// Adds a quantity unless it has its default in all frames.
+void AddIfUsed(YamlQuantity quantity, std::string_view unused, std::vector<YamlQuantity>* section) {
+  if (quantity.Moves() || quantity.values[0] != unused) section->push_back(std::move(quantity));
+}
+
 std::vector<YamlQuantity> CameraSection(const CameraPath& path) {
   std::vector<YamlQuantity> section = Optics(path);
+  AddIfUsed(QuantityOf(path, "shift",
+                       [](const RenderCamera& camera) {
+                         RenderCamera plain = camera;
+                         plain.sensor_width_w = EffectiveSensorWidth(camera);
+                         const Vec2 shift_w = ShiftOf(plain);
+                         return fmt::format("{{horizontal: {}, vertical: {}}}", shift_w.x(),
+                                            shift_w.y());
+                       }),
+            "{horizontal: 0, vertical: 0}", &section);
   section.push_back(QuantityOf(path, "position", [](const RenderCamera& camera) {
     return PointText(camera.pinhole.CentreWorld());
   }));
@@ -106,21 +120,18 @@ std::vector<YamlQuantity> LensSection(const CameraPath& path) {
                  [](const RenderCamera& c) { return fmt::format("{}", 2 * c.aperture.radius_w); }),
       QuantityOf(path, "focus_distance",
                  [](const RenderCamera& c) { return fmt::format("{}", c.focus_distance_w); })};
-  const auto add_if_used = [&](YamlQuantity quantity, std::string_view unused) {
-    if (quantity.Moves() || quantity.values[0] != unused) section.push_back(std::move(quantity));
-  };
-  add_if_used(QuantityOf(path, "focus_tilt_deg",
-                         [](const RenderCamera& c) {
-                           return fmt::format("{{horizontal: {}, vertical: {}}}",
-                                              DegreesFromRadians(c.focus_tilt.horizontal_rad),
-                                              DegreesFromRadians(c.focus_tilt.vertical_rad));
-                         }),
-              "{horizontal: 0, vertical: 0}");
-  add_if_used(QuantityOf(path, "blade_rotation_deg",
-                         [](const RenderCamera& c) {
-                           return fmt::format("{}", DegreesFromRadians(c.aperture.rotation_rad));
-                         }),
-              "0");
+  AddIfUsed(QuantityOf(path, "focus_tilt_deg",
+                       [](const RenderCamera& c) {
+                         return fmt::format("{{horizontal: {}, vertical: {}}}",
+                                            DegreesFromRadians(c.focus_tilt.horizontal_rad),
+                                            DegreesFromRadians(c.focus_tilt.vertical_rad));
+                       }),
+            "{horizontal: 0, vertical: 0}", &section);
+  AddIfUsed(QuantityOf(path, "blade_rotation_deg",
+                       [](const RenderCamera& c) {
+                         return fmt::format("{}", DegreesFromRadians(c.aperture.rotation_rad));
+                       }),
+            "0", &section);
   return section;
 }
 
@@ -151,23 +162,36 @@ bool AnyMoves(const std::vector<YamlQuantity>& section) {
                      [](const YamlQuantity& quantity) { return quantity.Moves(); });
 }
 
+// Returns the lines of what does not move: the shape of the lens of the first camera.
+std::string ShapeOf(const RenderCamera& camera) {
+  std::string lines;
+  const auto add = [&](const char* key, double value, double unused) {
+    if (value != unused) lines += fmt::format("  {}: {}\n", key, value);
+  };
+  add("blades", camera.aperture.blades, 0);
+  add("blade_roundness", camera.aperture.roundness, 0);
+  add("ratio", camera.aperture.ratio, 1);
+  if (camera.hood.exists())
+    lines += fmt::format("  hood_distance: {}\n  hood_diameter: {}\n", camera.hood.distance_w,
+                         2 * camera.hood.radius_w);
+  return lines;
+}
+
 std::vector<std::string> LostOf(const CameraPath& path) {
-  size_t shifted = 0, stretched = 0, blades = 0;
+  size_t stretched = 0, shapes = 0;
+  const std::string shape = ShapeOf(path.cameras[0]);
   for (const RenderCamera& camera : path.cameras) {
     const Intrinsics& k = camera.pinhole.intrinsics;
-    if (std::abs(k.cx_px - k.width_px / 2.0) > 1e-9 || std::abs(k.cy_px - k.height_px / 2.0) > 1e-9)
-      ++shifted;
     if (std::abs(k.fx_px - k.fy_px) > kEqualOptics * k.fx_px || k.skew_px != 0) ++stretched;
-    if (camera.aperture.blades != path.cameras[0].aperture.blades) ++blades;
+    if (ShapeOf(camera) != shape) ++shapes;
   }
   std::vector<std::string> lost;
   const auto add = [&](size_t count, const char* what) {
     if (count > 0)
       lost.push_back(fmt::format("{} of {} frame{}", what, count, count == 1 ? "" : "s"));
   };
-  add(shifted, "the principal point, which is away from the centre of the plate,");
   add(stretched, "the shape of the elements, which are no squares,");
-  add(blades, "the number of blades, which changes,");
+  add(shapes, "the blades, ratio or hood of the lens, which change,");
   return lost;
 }
 
@@ -180,9 +204,8 @@ Result<PathYaml> PathYamlOf(const CameraPath& path) {
   yaml.text =
       fmt::format("format: lfpath 1\nfps: {}\nframes: {}\nunit_m: {}\nresolution: [{}, {}]\n",
                   path.fps, path.frame_count(), path.unit_m, plate.width_px, plate.height_px);
-  const int blades = path.cameras[0].aperture.blades;
   AddSection("camera", camera, "", &yaml.text);
-  AddSection("lens", lens, blades > 0 ? fmt::format("  blades: {}\n", blades) : "", &yaml.text);
+  AddSection("lens", lens, ShapeOf(path.cameras[0]), &yaml.text);
   if (AnyMoves(camera) || AnyMoves(lens)) yaml.text += "keyframes:\n";
   AddKeyframes(path, camera, &yaml.text);
   AddKeyframes(path, lens, &yaml.text);

@@ -17,7 +17,7 @@ namespace {
 
 // Difference of two places, in frames, that are the same but for rounding errors.
 constexpr double kSamePlace = 1e-9;
-constexpr int kNumbersBetween = 12;  // number of values that NumberBetween() knows
+constexpr int kNumbersBetween = 16;  // number of values that NumberBetween() knows
 
 // Returns one of the numbers of a camera that are monotone cubics between frames.
 double& NumberBetween(RenderCamera* camera, int index) {
@@ -29,6 +29,10 @@ double& NumberBetween(RenderCamera* camera, int index) {
                                             &k.skew_px,
                                             &camera->aperture.radius_w,
                                             &camera->aperture.rotation_rad,
+                                            &camera->aperture.ratio,
+                                            &camera->aperture.roundness,
+                                            &camera->hood.distance_w,
+                                            &camera->hood.radius_w,
                                             &camera->focal_length_w,
                                             &camera->sensor_width_w,
                                             &camera->focus_distance_w,

@@ -26,6 +26,10 @@ void ExpectSameCameras(const CameraPath& a, const CameraPath& b) {
     EXPECT_EQ(x.aperture.radius_w, y.aperture.radius_w);
     EXPECT_EQ(x.aperture.blades, y.aperture.blades);
     EXPECT_EQ(x.aperture.rotation_rad, y.aperture.rotation_rad);
+    EXPECT_EQ(x.aperture.ratio, y.aperture.ratio);
+    EXPECT_EQ(x.aperture.roundness, y.aperture.roundness);
+    EXPECT_EQ(x.hood.distance_w, y.hood.distance_w);
+    EXPECT_EQ(x.hood.radius_w, y.hood.radius_w);
     EXPECT_EQ(x.focus_plane.normal, y.focus_plane.normal);
     EXPECT_EQ(x.focus_plane.offset_w, y.focus_plane.offset_w);
     EXPECT_EQ(x.time_s, y.time_s);
@@ -44,10 +48,12 @@ fps: 23.976
 frames: 9
 unit_m: 0.3
 resolution: [201, 99]
-camera: {sensor_width_mm: 24, focal_length_mm: 50, focal_length_speed_mm: 7, position: [0.1, 2, -3],
+camera: {sensor_width_mm: 24, focal_length_mm: 50, focal_length_speed_mm: 7,
+         shift_mm: {horizontal: 3, vertical: -2}, position: [0.1, 2, -3],
          speed: [1, 0.7, 0.3], look_at: [0, 0, 1], roll_deg: 10}
 lens: {f_number: 1.4, focus_distance: 2, focus_distance_speed: 0.3, breathing: true, blades: 7,
-       blade_rotation_deg: 3, focus_tilt_deg: {horizontal: 7, vertical: -3}}
+       blade_rotation_deg: 3, blade_roundness: 0.3, ratio: 1.7, hood_distance: 0.3, hood_diameter: 0.2,
+       focus_tilt_deg: {horizontal: 7, vertical: -3}}
 )";
 
 class WritePathTest : public FolderTest {
