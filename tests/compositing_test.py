@@ -27,6 +27,7 @@ resolution: [{WIDTH}, {HEIGHT}]
 camera:
   field_of_view_deg: 40
   focal_length_mm: 35
+  shift_mm: {{horizontal: 3, vertical: -2}}
   position: [0.02, -0.03, -1.05]
   look_at: [0.1, 0.05, 0]
   up: [0.1, -1, 0.05]
@@ -118,11 +119,13 @@ class CompositingTest(ProgramTestCase):
         seen = [(place * window).sum() / window.sum() for place in places[::-1]]
         print(f"the light is {np.hypot(*(seen - predicted)):.3f} px from the place that worldToNDC gives")
         self.assertLess(np.hypot(*(seen - predicted)), 0.1)
-        # worldToCamera and the lens of a camera in Nuke, which looks along -z with y up, give the same place.
+        # worldToCamera and the screen window, whose axes are left and up, give the same place.
         right, up, forward, _ = np.append(LIGHT, 1) @ attributes["worldToCamera"]
-        scale = attributes["pinholeFocalLength"] / np.array(attributes["sensorOverallDimensions"])
-        place = np.array([0.5, 0.5]) + scale * np.array([right, -up]) / forward
+        window = attributes["screenWindowWidth"] * np.array([1, HEIGHT / WIDTH])
+        place = 0.5 - (np.array([-right, up]) / forward - attributes["screenWindowCenter"]) / window
         np.testing.assert_allclose(place, [x / w, y / w], atol=1e-5)
+        lens = np.array(attributes["sensorOverallDimensions"]) / attributes["pinholeFocalLength"]
+        np.testing.assert_allclose(lens, window, rtol=1e-6)
 
     def test_colours_are_converted_exactly(self):
         rgb, sheets = {}, {}
@@ -221,7 +224,7 @@ class CompositingTest(ProgramTestCase):
     def test_openimageio_lists_the_attributes(self):
         out = self.render("out", "--frames", 1, "--colour-space", "acescg")
         text = self.succeeds("oiiotool", "--info", "-v", out / "frame_0001.exr").lower()
-        for words in ("worldtocamera: 0.992", "worldtondc: 1.400", "framespersecond: 30000/1001",
+        for words in ("worldtocamera: 0.992", "worldtondc: 1.391", "framespersecond: 30000/1001",
                       "chromaticities: 0.713, 0.293, 0.165", "focus: 1.05", "fnumber: 0.7", "pixelaspectratio: 1",
                       "pinholefocallength: 35", "sensoroveralldimensions: 25.4"):
             self.assertIn(words, text)

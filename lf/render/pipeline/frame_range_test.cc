@@ -33,6 +33,7 @@ TEST(FrameRange, FramesBeyondTheEndMayBeLeftOut) {
     return ParseFrameRange(text, 72, "--frames", FramesBeyondEnd::kLeftOut);
   };
   EXPECT_EQ(clamped("71-80").value(), (std::vector<FrameId>{FrameId{71}, FrameId{72}}));
+  EXPECT_EQ(clamped("72-75").value(), (std::vector<FrameId>{FrameId{72}}));
   EXPECT_EQ(clamped("99,70-90:5,80-85").value(), (std::vector<FrameId>{FrameId{70}}));
   EXPECT_TRUE(clamped("73-80,4000000000").value().empty());
   EXPECT_FALSE(clamped("0-3"));
