@@ -271,9 +271,10 @@ class ForeignPathsTest(ProgramTestCase):
             path = self.facts(self.calibration(form))
             self.assertEqual((path["frames"], path["resolution"]), (6, [300, 200]))
             for camera, facts in zip(self.cameras, path["cameras"]):
-                # The principal point is 90 elements below the upper edge of the 200 rows.
+                # In transforms.json, the principal point is 90 elements below the upper edge of the 200 rows.
                 focal_px = 100 / np.tan(np.radians(camera.vertical_deg / 2))
-                seen_deg = np.degrees(np.arctan(90 / focal_px) + np.arctan(110 / focal_px))
+                above_px = 90 if form == "transforms.json" else 100
+                seen_deg = np.degrees(np.arctan(above_px / focal_px) + np.arctan((200 - above_px) / focal_px))
                 self.agrees(facts, camera.axes, camera.centre, seen_deg)
 
     def test_off_centre_frames_show_their_part_of_the_picture(self):
