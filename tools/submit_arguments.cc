@@ -188,8 +188,7 @@ void AddResources(CLI::App& app, SubmitArguments& a) {
                     "array: writes scripts, which you submit as an array to Grid Engine, PBS, LSF, "
                     "HTCondor, Kubernetes, AWS Batch or another batch system");
   running
-      .Add("--write FOLDER", a.write,
-           "Folder of the files of --engine openjd and array (in DIR/cluster)")
+      .Add("--write FOLDER", a.write, "Folder of the files for --engine openjd|array (DIR/cluster)")
       ->check(NotEmpty());
   running
       .Add("--jobs N", a.at_once,
