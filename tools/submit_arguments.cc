@@ -74,7 +74,7 @@ Result<Words> SplitWords(const std::vector<std::string>& words) {
     if (!IsPackageName(*word))
       return UsageError(
           fmt::format("{}: is not a package (a file that ends in .lfp): make packages with "
-                      "lfpreprocessor LIGHTFIELD PATH -o packages --packages 8",
+                      "lfpreprocessor LIGHTFIELD PATH.yaml -o packages --packages 8",
                       *word));
     split.files.push_back(fs::absolute(*word).lexically_normal());
   }
@@ -188,7 +188,7 @@ void AddResources(CLI::App& app, SubmitArguments& a) {
                     "array: writes scripts, which you submit as an array to Grid Engine, PBS, LSF, "
                     "HTCondor, Kubernetes, AWS Batch or another batch system");
   running
-      .Add("--write FOLDER", a.write, "Folder of the files of openjd and array (in DIR/cluster)")
+      .Add("--write FOLDER", a.write, "Folder of the files for --engine openjd|array (DIR/cluster)")
       ->check(NotEmpty());
   running
       .Add("--jobs N", a.at_once,

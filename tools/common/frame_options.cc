@@ -42,13 +42,14 @@ void AddViews(OptionGroup& output, PictureArguments& a) {
 }  // namespace
 
 void PictureArguments::AddTo(OptionGroup& output) {
-  output.AddChoice("--colour-space", colour_space, {"rec709", "rec2020", "acescg"},
-                   "Primaries of EXR frames (rec709)\n"
-                   "The light stays linear. The attribute chromaticities of the file names the "
-                   "primaries.\n"
-                   "rec709: those of sRGB displays, white D65\n"
-                   "rec2020: those of ITU-R BT.2020, white D65\n"
-                   "acescg: AP1, with white adapted from D65 to that of ACES (Bradford)");
+  output
+      .Add("--colour-space SPACE", colour_space,
+           "Primaries of EXR frames: rec709, rec2020, acescg (rec709)\n"
+           "The light stays linear. The attribute chromaticities of the file names the primaries.\n"
+           "rec709: those of sRGB displays, white D65\n"
+           "rec2020: those of ITU-R BT.2020, white D65\n"
+           "acescg: AP1, with white adapted from D65 to that of ACES (Bradford)")
+      ->check(CLI::IsMember({"rec709", "rec2020", "acescg"}));
   output.AddFlag("--frame-alpha", alpha,
                  "Give frames alpha\n"
                  "Alpha is 1 where light was recorded or filled, and 0 where nothing was recorded. "
