@@ -1,6 +1,7 @@
 """Thin-lens cameras, and paths of them."""
 from __future__ import annotations
 
+import logging
 import math
 import os
 import re
@@ -14,12 +15,6 @@ from .errors import InputError, UsageError
 
 Floats = npt.NDArray[np.float64]
 Vector = Union[Sequence[float], Floats]
-
-# Path files have no more bytes than this.
-
-# Names, in a path file, of the values that may change from frame to frame.
-_MOVING = ("position", "quaternion", "field_of_view_deg", "shift_mm", "aperture_diameter", "focus_distance",
-           "focus_tilt_deg", "blade_rotation_deg")
 
 
 class Camera:
@@ -114,7 +109,7 @@ class Camera:
                 "focus_point": focus_point, "focus_tilt_deg": tilt_deg, "blades": blades,
                 "blade_rotation_deg": blade_rotation_deg, "blade_roundness": blade_roundness, "ratio": ratio,
                 "breathing": arguments.flag("breathing", breathing), **_hood_of(hood)}
-        text = _text_of_path(1, 1, unit_m, resolution, camera, lens, {})
+        text = _text_of_camera(unit_m, resolution, camera, lens)
         try:
             cameras, _, _ = _core.parse_path(text, "camera", None)
         except InputError as error:
@@ -299,12 +294,15 @@ class Path(Sequence[Camera]):
 
     @classmethod
     def load(cls, path: Union[str, os.PathLike[str]], unit_m: Optional[float] = None) -> Path:
-        """Read a camera path file (doc/formats/path.md).
+        """Read a camera path of any form: our own (doc/formats/path.md) or that of another program
+        (doc/formats/foreign_paths.md).
+
+        What the file does not state has a default, which a message tells; :meth:`Camera.replace` changes it.
 
         Parameters
         ----------
         path : path
-            The file.
+            The file, or the folder of a COLMAP model or a transforms.json, whose cameras become the frames.
         unit_m : float, optional
             Metres per world unit of the light field.
 
@@ -327,42 +325,34 @@ class Path(Sequence[Camera]):
                                            None if unit_m is None else arguments.positive("unit_m", unit_m))
         return cls((Camera._of(core) for core in cameras), fps)
 
-    def save(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Write a camera path file. A value that changes during the path gets a key at every frame.
+    def save(self, path: Union[str, os.PathLike[str]], format: Optional[str] = None) -> None:
+        """Write a camera path file. Each frame gets a camera of its own.
 
-        When the file is read again, directions and fields of view differ by at most 1e-12 (entries of the rotation
-        matrix, and relative), and other values by no more than the rounding of double precision. The file appears only
-        when it is whole.
+        When a YAML file is read again, directions and fields of view differ by at most 1e-12 (entries of the rotation
+        matrix, and relative), and other values by no more than the rounding of double precision. JSON files give the
+        same bits. The file appears only when it is whole.
+
+        Parameters
+        ----------
+        path : path
+            The file.
+        format : str, optional
+            "yaml", "nerfstudio", "instant-ngp", "chan" or "usda" (doc/formats/foreign_paths.md). By default, the
+            extension tells: .yaml, .json for nerfstudio, .chan or .usda.
 
         Raises
         ------
         UsageError
-            The cameras have different openings (apart from size and rotation) or sensor widths, which a path file
-            cannot express.
+            The format is unknown, or is "yaml" and cannot express the cameras, such as numbers of blades that differ.
         OutputError
             The file cannot be written.
         """
-        settings = [camera._settings() for camera in self._cameras]
-        for what in ("blades", "blade_roundness", "ratio", "hood", "sensor_width_mm"):
-            values = np.array([setting[what] for setting in settings])
-            # A width that was converted from world units and back differs by its rounding.
-            if (np.ptp(values, axis=0) > 1e-9 * values.max(axis=0)).any():
-                raise UsageError(
-                    f"{os.fsdecode(path)}: the cameras have different {what}, which a path file cannot say")
-        for setting in settings:
-            setting["quaternion"] = _quaternion_of(setting.pop("world_from_cam"))
-            setting["focus_tilt_deg"] = setting.pop("tilt_deg")
-        first = settings[0]
-        moving = {key for key in _MOVING if any(not np.array_equal(s[key], first[key]) for s in settings)}
-        keys = {key: [(i / self.fps, setting[key]) for i, setting in enumerate(settings)] for key in _MOVING
-                if key in moving}
-        camera = {key: first[key] for key in ("position", "quaternion", "field_of_view_deg", "sensor_width_mm",
-                                              "shift_mm")}
-        lens = {key: first[key] for key in ("aperture_diameter", "focus_distance", "focus_tilt_deg", "blades",
-                                            "blade_rotation_deg", "blade_roundness", "ratio")}
-        lens.update(_hood_of(first["hood"]))
-        text = _text_of_path(len(settings), self.fps, first["unit_m"], first["resolution"], camera, lens, keys)
-        _core.write_text(arguments.file_name(path), text)
+        file = arguments.file_name(path)
+        lost = _core.save_path(file, [camera._core for camera in self._cameras], self.fps,
+                               None if format is None else arguments.text("format", format))
+        if lost:
+            logging.getLogger("lfrendertools").warning("%s: the format has no place for %s", os.fsdecode(file),
+                                                       "; for ".join(lost))
 
     @property
     def cameras(self) -> Sequence[Camera]:
@@ -458,20 +448,11 @@ def _entry_text(key: str, value: Any) -> str:
         raise UsageError(f"{name}={value!r}: expected two numbers") from None
 
 
-def _text_of_path(count: int, fps: float, unit_m: float, resolution: Tuple[int, int], camera: Dict[str, Any],
-                  lens: Dict[str, Any], keys: Dict[str, List[Tuple[float, Any]]]) -> str:
-    """Return the text of a path file (doc/formats/path.md). Values that are None are left out."""
-    lines = ["format: lfpath 1", f"fps: {_value_text(fps)}", f"frames: {count}",
-             f"unit_m: {_entry_text('unit_m', unit_m)}",
+def _text_of_camera(unit_m: float, resolution: Tuple[int, int], camera: Dict[str, Any], lens: Dict[str, Any]) -> str:
+    """Return the text of a path of one frame (doc/formats/path.md). Values that are None are left out."""
+    lines = ["format: lfpath 1", "fps: 1", "frames: 1", f"unit_m: {_entry_text('unit_m', unit_m)}",
              f"resolution: {_entry_text('resolution', resolution)}"]
     for section, values in (("camera", camera), ("lens", lens)):
         lines.append(f"{section}:")
-        lines += [f"  {key}: {_entry_text(key, value)}" for key, value in values.items()
-                  if value is not None and key not in keys]
-    if keys:
-        lines.append("keyframes:")
-        for key, entries in keys.items():
-            lines.append(f"  {key}:")
-            lines += [f"    - {{time: {_value_text(time)}, value: {_entry_text(key, value)}, interpolation: linear}}"
-                      for time, value in entries]
+        lines += [f"  {key}: {_entry_text(key, value)}" for key, value in values.items() if value is not None]
     return "\n".join(lines) + "\n"
