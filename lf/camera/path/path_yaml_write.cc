@@ -67,19 +67,33 @@ double EffectiveSensorWidth(const RenderCamera& camera) {
   return k.width_px * camera.focal_length_w / k.fx_px;
 }
 
-// Returns focal length and sensor width if the latter is the same in all frames and gives the field
-// of view, otherwise focal length and field of view, which together imply the sensor width.
+// Returns true if the sensor width is the same in all frames and gives the field of view.
+bool HasOneSensor(const CameraPath& path) {
+  const double width_w = path.cameras[0].sensor_width_w;
+  return std::all_of(path.cameras.begin(), path.cameras.end(), [&](const RenderCamera& camera) {
+    return camera.sensor_width_w == width_w &&
+           std::abs(EffectiveSensorWidth(camera) - width_w) <= kEqualOptics * width_w;
+  });
+}
+
+std::string PairText(const Vec2& pair) {
+  return fmt::format("{{horizontal: {}, vertical: {}}}", pair.x() + 0.0, pair.y() + 0.0);
+}
+constexpr std::string_view kNoPair = "{horizontal: 0, vertical: 0}";
+
+// Appends a quantity, unless it is `unused` in all frames.
+void AddIfUsed(YamlQuantity quantity, std::string_view unused, std::vector<YamlQuantity>* section) {
+  if (quantity.Moves() || quantity.values[0] != unused) section->push_back(std::move(quantity));
+}
+
+// Returns focal length and sensor width if there is one sensor, otherwise focal length and field of
+// view, which together imply the sensor width; and the shift, which that width scales.
 std::vector<YamlQuantity> Optics(const CameraPath& path) {
   std::vector<YamlQuantity> optics = {QuantityOf(
       path, "focal_length",
       [](const RenderCamera& camera) { return fmt::format("{}", camera.focal_length_w); })};
-  const double width_w = path.cameras[0].sensor_width_w;
-  const bool is_one_sensor =
-      std::all_of(path.cameras.begin(), path.cameras.end(), [&](const RenderCamera& camera) {
-        return camera.sensor_width_w == width_w &&
-               std::abs(EffectiveSensorWidth(camera) - width_w) <= kEqualOptics * width_w;
-      });
-  if (is_one_sensor)
+  const bool has_one_sensor = HasOneSensor(path);
+  if (has_one_sensor)
     optics.push_back(QuantityOf(path, "sensor_width", [](const RenderCamera& camera) {
       return fmt::format("{}", camera.sensor_width_w);
     }));
@@ -88,6 +102,13 @@ std::vector<YamlQuantity> Optics(const CameraPath& path) {
       const Intrinsics& k = camera.pinhole.intrinsics;
       return fmt::format("{}", DegreesFromRadians(2 * std::atan(k.width_px / (2 * k.fx_px))));
     }));
+  AddIfUsed(QuantityOf(path, "shift",
+                       [has_one_sensor](const RenderCamera& camera) {
+                         RenderCamera written = camera;
+                         if (!has_one_sensor) written.sensor_width_w = EffectiveSensorWidth(camera);
+                         return PairText(ShiftOf(written));
+                       }),
+            kNoPair, &optics);
   return optics;
 }
 
@@ -106,21 +127,17 @@ std::vector<YamlQuantity> LensSection(const CameraPath& path) {
                  [](const RenderCamera& c) { return fmt::format("{}", 2 * c.aperture.radius_w); }),
       QuantityOf(path, "focus_distance",
                  [](const RenderCamera& c) { return fmt::format("{}", c.focus_distance_w); })};
-  const auto add_if_used = [&](YamlQuantity quantity, std::string_view unused) {
-    if (quantity.Moves() || quantity.values[0] != unused) section.push_back(std::move(quantity));
-  };
-  add_if_used(QuantityOf(path, "focus_tilt_deg",
-                         [](const RenderCamera& c) {
-                           return fmt::format("{{horizontal: {}, vertical: {}}}",
-                                              DegreesFromRadians(c.focus_tilt.horizontal_rad),
-                                              DegreesFromRadians(c.focus_tilt.vertical_rad));
-                         }),
-              "{horizontal: 0, vertical: 0}");
-  add_if_used(QuantityOf(path, "blade_rotation_deg",
-                         [](const RenderCamera& c) {
-                           return fmt::format("{}", DegreesFromRadians(c.aperture.rotation_rad));
-                         }),
-              "0");
+  AddIfUsed(QuantityOf(path, "focus_tilt_deg",
+                       [](const RenderCamera& c) {
+                         return PairText({DegreesFromRadians(c.focus_tilt.horizontal_rad),
+                                          DegreesFromRadians(c.focus_tilt.vertical_rad)});
+                       }),
+            kNoPair, &section);
+  AddIfUsed(QuantityOf(path, "blade_rotation_deg",
+                       [](const RenderCamera& c) {
+                         return fmt::format("{}", DegreesFromRadians(c.aperture.rotation_rad));
+                       }),
+            "0", &section);
   return section;
 }
 
@@ -151,23 +168,34 @@ bool AnyMoves(const std::vector<YamlQuantity>& section) {
                      [](const YamlQuantity& quantity) { return quantity.Moves(); });
 }
 
+// Returns the lines of the opening's shape and of the hood, which cannot move.
+std::string ShapeText(const RenderCamera& camera) {
+  const Aperture& aperture = camera.aperture;
+  std::string text;
+  if (aperture.blades > 0) text += fmt::format("  blades: {}\n", aperture.blades);
+  if (aperture.roundness != 0) text += fmt::format("  blade_roundness: {}\n", aperture.roundness);
+  if (aperture.ratio != 1) text += fmt::format("  ratio: {}\n", aperture.ratio);
+  if (camera.hood.exists())
+    text += fmt::format("  hood_distance: {}\n  hood_diameter: {}\n", camera.hood.distance_w,
+                        2 * camera.hood.radius_w);
+  return text;
+}
+
 std::vector<std::string> LostOf(const CameraPath& path) {
-  size_t shifted = 0, stretched = 0, blades = 0;
+  const std::string shape = ShapeText(path.cameras[0]);
+  size_t stretched = 0, shapes = 0;
   for (const RenderCamera& camera : path.cameras) {
     const Intrinsics& k = camera.pinhole.intrinsics;
-    if (std::abs(k.cx_px - k.width_px / 2.0) > 1e-9 || std::abs(k.cy_px - k.height_px / 2.0) > 1e-9)
-      ++shifted;
     if (std::abs(k.fx_px - k.fy_px) > kEqualOptics * k.fx_px || k.skew_px != 0) ++stretched;
-    if (camera.aperture.blades != path.cameras[0].aperture.blades) ++blades;
+    if (ShapeText(camera) != shape) ++shapes;
   }
   std::vector<std::string> lost;
   const auto add = [&](size_t count, const char* what) {
     if (count > 0)
       lost.push_back(fmt::format("{} of {} frame{}", what, count, count == 1 ? "" : "s"));
   };
-  add(shifted, "the principal point, which is away from the centre of the plate,");
   add(stretched, "the shape of the elements, which are no squares,");
-  add(blades, "the number of blades, which changes,");
+  add(shapes, "blades, ratio and hood, which differ from those of the first frame,");
   return lost;
 }
 
@@ -180,9 +208,8 @@ Result<PathYaml> PathYamlOf(const CameraPath& path) {
   yaml.text =
       fmt::format("format: lfpath 1\nfps: {}\nframes: {}\nunit_m: {}\nresolution: [{}, {}]\n",
                   path.fps, path.frame_count(), path.unit_m, plate.width_px, plate.height_px);
-  const int blades = path.cameras[0].aperture.blades;
   AddSection("camera", camera, "", &yaml.text);
-  AddSection("lens", lens, blades > 0 ? fmt::format("  blades: {}\n", blades) : "", &yaml.text);
+  AddSection("lens", lens, ShapeText(path.cameras[0]), &yaml.text);
   if (AnyMoves(camera) || AnyMoves(lens)) yaml.text += "keyframes:\n";
   AddKeyframes(path, camera, &yaml.text);
   AddKeyframes(path, lens, &yaml.text);

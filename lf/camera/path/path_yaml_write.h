@@ -11,16 +11,15 @@ namespace lf {
 
 struct PathYaml {
   std::string text;
-  // Phrases about what the file cannot hold, such as "the principal point of 3 frames".
+  // Phrases about what the file cannot hold, such as "the shape of the elements of 3 frames".
   std::vector<std::string> lost;
 };
 
 // Returns the text of a path whose cameras are the given ones at the times of the frames; between
 // these times they move smoothly. A quantity that never changes is stated once. Reading the text
-// returns the same cameras but for rounding errors. Lost are: a principal point away from the
-// centre of the plate, elements that are no squares, skew, and a number of blades that changes.
-// kOutput: the file would exceed the limits of its reader, such as some 20,000 frames that move in
-// every respect.
+// returns the same cameras but for rounding errors. Lost are: elements that are no squares, skew,
+// and blades, ratio and hood where they differ from those of the first frame. kOutput: the file
+// would exceed the limits of its reader, such as some 20,000 frames that move in every respect.
 Result<PathYaml> PathYamlOf(const CameraPath& path);
 
 }  // namespace lf

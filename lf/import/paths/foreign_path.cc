@@ -84,8 +84,9 @@ RenderCamera CameraOf(const ForeignCamera& from, const Defaults& defaults) {
   camera.sensor_width_w = from.sensor_width_w.value_or(defaults.sensor_width_w);
   camera.focal_length_w =
       from.focal_length_w.value_or(camera.sensor_width_w * k.fx_px / k.width_px);
-  camera.aperture = {from.aperture_diameter_w.value_or(0) / 2, from.blades,
-                     from.blade_rotation_rad};
+  camera.aperture = {from.aperture_diameter_w.value_or(0) / 2, from.blades, from.blade_rotation_rad,
+                     from.ratio, from.roundness};
+  camera.hood = from.hood;
   camera.focus_distance_w = from.focus_distance_w.value_or(defaults.focus_distance_w);
   camera.focus_tilt = from.focus_tilt;
   camera.focus_plane = FocusPlane(camera.pinhole, camera.focus_distance_w, camera.focus_tilt);
@@ -113,6 +114,13 @@ std::string FaultOf(const RenderCamera& camera) {
   if (!(camera.aperture.radius_w >= 0 && 2 * camera.aperture.radius_w <= kLargestLength_w))
     return fmt::format("the aperture is {:g} world units wide: expected 0 to {:g}",
                        2 * camera.aperture.radius_w, kLargestLength_w);
+  if (!IsShape(camera) || !(camera.hood.distance_w <= kLargestLength_w) ||
+      !(camera.hood.radius_w <= kLargestLength_w))
+    return fmt::format(
+        "the hood is {:g} world units in front of the lens and {:g} wide, with {} "
+        "blades: expected at most {:g}, and at most {} blades",
+        camera.hood.distance_w, 2 * camera.hood.radius_w, camera.aperture.blades, kLargestLength_w,
+        kMostBladesInHood);
   return "";
 }
 
@@ -186,6 +194,8 @@ void MoveInto(const Similarity& b_from_a, ForeignCamera* camera) {
   for (std::optional<double>* length : {&camera->sensor_width_w, &camera->focal_length_w,
                                         &camera->aperture_diameter_w, &camera->focus_distance_w})
     if (*length) **length *= b_from_a.scale;
+  camera->hood.distance_w *= b_from_a.scale;
+  camera->hood.radius_w *= b_from_a.scale;
 }
 
 Result<CameraPath> CompletePath(ForeignPath&& path, const std::filesystem::path& file,

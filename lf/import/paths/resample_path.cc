@@ -17,7 +17,7 @@ namespace {
 
 // Difference of two places, in frames, that are the same but for rounding errors.
 constexpr double kSamePlace = 1e-9;
-constexpr int kNumbersBetween = 12;  // number of values that NumberBetween() knows
+constexpr int kNumbersBetween = 16;  // number of values that NumberBetween() knows
 
 // Returns one of the numbers of a camera that are monotone cubics between frames.
 double& NumberBetween(RenderCamera* camera, int index) {
@@ -33,7 +33,11 @@ double& NumberBetween(RenderCamera* camera, int index) {
                                             &camera->sensor_width_w,
                                             &camera->focus_distance_w,
                                             &camera->focus_tilt.horizontal_rad,
-                                            &camera->focus_tilt.vertical_rad};
+                                            &camera->focus_tilt.vertical_rad,
+                                            &camera->aperture.ratio,
+                                            &camera->aperture.roundness,
+                                            &camera->hood.distance_w,
+                                            &camera->hood.radius_w};
   return *numbers[index];
 }
 

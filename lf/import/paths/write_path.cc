@@ -34,7 +34,7 @@ bool IsOffCentre(const RenderCamera& camera) {
 }
 
 bool HasBladesOrTilt(const RenderCamera& camera) {
-  return camera.aperture.blades > 0 || camera.focus_tilt.horizontal_rad != 0 ||
+  return camera.aperture.blades > 0 || HasShape(camera) || camera.focus_tilt.horizontal_rad != 0 ||
          camera.focus_tilt.vertical_rad != 0;
 }
 
@@ -57,7 +57,8 @@ std::vector<std::string> LostIn(PathFormat format, const CameraPath& path) {
   if (format == PathFormat::kChan)
     lost.push_back("resolution, frame rate, unit and order of the rotations");
   if (format == PathFormat::kNgp || format == PathFormat::kUsda)
-    add(AnyCamera(path, HasBladesOrTilt), "the blades and the tilt of the focus");
+    add(AnyCamera(path, HasBladesOrTilt),
+        "the shape of the opening, the hood and the tilt of the focus");
   else
     add(AnyCamera(path, HasLens), "the lens");
   return lost;
@@ -137,8 +138,9 @@ Result<void> MovePath(const Similarity& b_from_a, const fs::path& file, CameraPa
     RenderCamera& camera = path->cameras[i];
     camera.pinhole.cam_from_world = PoseIn(b_from_a, camera.pinhole.cam_from_world);
     double largest_w = 0;
-    for (double* const length : {&camera.aperture.radius_w, &camera.focal_length_w,
-                                 &camera.sensor_width_w, &camera.focus_distance_w}) {
+    for (double* const length :
+         {&camera.aperture.radius_w, &camera.focal_length_w, &camera.sensor_width_w,
+          &camera.focus_distance_w, &camera.hood.distance_w, &camera.hood.radius_w}) {
       *length *= b_from_a.scale;
       largest_w = std::max(largest_w, *length);
     }
