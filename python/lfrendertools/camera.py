@@ -1,6 +1,7 @@
 """Thin-lens cameras, and paths of them."""
 from __future__ import annotations
 
+import logging
 import math
 import os
 import re
@@ -15,10 +16,6 @@ from .path_text import text_of_path
 
 Floats = npt.NDArray[np.float64]
 Vector = Union[Sequence[float], Floats]
-
-# Names, in a path file, of the values that may change from frame to frame.
-_MOVING = ("position", "quaternion", "field_of_view_deg", "shift_mm", "aperture_diameter", "focus_distance",
-           "focus_tilt_deg", "blade_rotation_deg")
 
 
 class Camera:
@@ -119,7 +116,7 @@ class Camera:
                 "focus_point": focus_point, "focus_tilt_deg": tilt_deg, "blades": blades,
                 "blade_rotation_deg": blade_rotation_deg, "blade_roundness": blade_roundness, "ratio": ratio,
                 "breathing": arguments.flag("breathing", breathing), **_hood_of(hood)}
-        text = text_of_path(1, 1, unit_m, resolution, camera, lens, {})
+        text = _text_of_camera(unit_m, resolution, camera, lens)
         try:
             cameras, _, _ = _core.parse_path(text, "camera", None)
         except InputError as error:
@@ -331,12 +328,15 @@ class Path(Sequence[Camera]):
 
     @classmethod
     def load(cls, path: Union[str, os.PathLike[str]], unit_m: Optional[float] = None) -> Path:
-        """Read a camera path file (doc/formats/path.md).
+        """Read a camera path of any form: our own (doc/formats/path.md) or that of another program
+        (doc/formats/foreign_paths.md).
+
+        What the file does not state has a default, which a message tells; :meth:`Camera.replace` changes it.
 
         Parameters
         ----------
         path : path
-            The file.
+            The file, or the folder of a COLMAP model or a transforms.json, whose cameras become the frames.
         unit_m : float, optional
             Metres per world unit of the light field.
 
@@ -359,12 +359,20 @@ class Path(Sequence[Camera]):
                                            None if unit_m is None else arguments.positive("unit_m", unit_m))
         return cls((Camera._of(core) for core in cameras), fps)
 
-    def save(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Write a camera path file. A value that changes during the path gets a key at every frame.
+    def save(self, path: Union[str, os.PathLike[str]], format: Optional[str] = None) -> None:
+        """Write a camera path file. Each frame gets a camera of its own.
 
-        When the file is read again, directions and fields of view differ by at most 1e-12 (entries of the rotation
-        matrix, and relative), and other values by no more than the rounding of double precision. The file appears only
-        when it is whole.
+        When a YAML file is read again, directions and fields of view differ by at most 1e-12 (entries of the rotation
+        matrix, and relative), and other values by no more than the rounding of double precision. JSON files give the
+        same bits. The file appears only when it is whole.
+
+        Parameters
+        ----------
+        path : path
+            The file.
+        format : str, optional
+            "yaml", "nerfstudio", "instant-ngp", "chan" or "usda" (doc/formats/foreign_paths.md). By default, the
+            extension tells: .yaml, .json for nerfstudio, .chan or .usda.
 
         Parameters
         ----------
@@ -374,33 +382,16 @@ class Path(Sequence[Camera]):
         Raises
         ------
         UsageError
-            The cameras have different openings (apart from size and rotation) or sensor widths, which a path file
-            cannot express.
+            The format is unknown, or is "yaml" and cannot express the cameras, such as numbers of blades that differ.
         OutputError
             The file cannot be written.
         """
-        file = arguments.file_name("path", path)
-        settings = [camera._settings() for camera in self._cameras]
-        for what in ("blades", "blade_roundness", "ratio", "hood", "sensor_width_mm"):
-            values = np.array([setting[what] for setting in settings])
-            # A width that was converted from world units and back differs by its rounding.
-            if (np.ptp(values, axis=0) > 1e-9 * values.max(axis=0)).any():
-                raise UsageError(
-                    f"{os.fsdecode(file)}: the cameras have different {what}, which a path file cannot say")
-        for setting in settings:
-            setting["quaternion"] = _quaternion_of(setting.pop("world_from_cam"))
-            setting["focus_tilt_deg"] = setting.pop("tilt_deg")
-        first = settings[0]
-        moving = {key for key in _MOVING if any(not np.array_equal(s[key], first[key]) for s in settings)}
-        keys = {key: [(i / self.fps, setting[key]) for i, setting in enumerate(settings)] for key in _MOVING
-                if key in moving}
-        camera = {key: first[key] for key in ("position", "quaternion", "field_of_view_deg", "sensor_width_mm",
-                                              "shift_mm")}
-        lens = {key: first[key] for key in ("aperture_diameter", "focus_distance", "focus_tilt_deg", "blades",
-                                            "blade_rotation_deg", "blade_roundness", "ratio")}
-        lens.update(_hood_of(first["hood"]))
-        text = text_of_path(len(settings), self.fps, first["unit_m"], first["resolution"], camera, lens, keys)
-        _core.write_text(file, text)
+        file = arguments.file_name(path)
+        lost = _core.save_path(file, [camera._core for camera in self._cameras], self.fps,
+                               None if format is None else arguments.text("format", format))
+        if lost:
+            logging.getLogger("lfrendertools").warning("%s: the format has no place for %s", os.fsdecode(file),
+                                                       "; for ".join(lost))
 
     @property
     def cameras(self) -> Sequence[Camera]:
@@ -468,3 +459,39 @@ def _quaternion_of(rotation: Floats) -> Floats:
     x, y, z, w = np.linalg.eigh(matrix, UPLO="L")[1][:, -1]
     quaternion = np.array([w, x, y, z])
     return quaternion if w >= 0 else -quaternion
+
+
+def _value_text(value: Any) -> str:
+    if isinstance(value, (np.ndarray, np.generic)):
+        value = value.tolist()
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (int, float)):
+        return repr(value)
+    if isinstance(value, (str, bytes)):
+        raise TypeError("text is no number")
+    return "[" + ", ".join(_value_text(entry) for entry in value) + "]"
+
+
+def _entry_text(key: str, value: Any) -> str:
+    try:
+        if key not in ("focus_tilt_deg", "shift_mm"):
+            return _value_text(value)
+        horizontal, vertical = value
+        return f"{{horizontal: {_value_text(horizontal)}, vertical: {_value_text(vertical)}}}"
+    except TypeError:
+        name = key.replace("focus_tilt_deg", "tilt_deg")
+        raise TypeError(f"{name}={value!r}: expected a number, or as many numbers as it has") from None
+    except ValueError:
+        name = key.replace("focus_tilt_deg", "tilt_deg")
+        raise UsageError(f"{name}={value!r}: expected two numbers") from None
+
+
+def _text_of_camera(unit_m: float, resolution: Tuple[int, int], camera: Dict[str, Any], lens: Dict[str, Any]) -> str:
+    """Return the text of a path of one frame (doc/formats/path.md). Values that are None are left out."""
+    lines = ["format: lfpath 1", "fps: 1", "frames: 1", f"unit_m: {_entry_text('unit_m', unit_m)}",
+             f"resolution: {_entry_text('resolution', resolution)}"]
+    for section, values in (("camera", camera), ("lens", lens)):
+        lines.append(f"{section}:")
+        lines += [f"  {key}: {_entry_text(key, value)}" for key, value in values.items() if value is not None]
+    return "\n".join(lines) + "\n"

@@ -1,5 +1,7 @@
 #include "python/src/cameras.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
@@ -14,8 +16,10 @@
 #include "python/src/work.h"
 
 #include "lf/camera/path/path_yaml.h"
+#include "lf/camera/path/path_yaml_write.h"
 #include "lf/camera/render_camera.h"
-#include "lf/core/file.h"
+#include "lf/import/paths/open_path.h"
+#include "lf/import/paths/write_path.h"
 
 namespace lf::python {
 namespace {
@@ -85,11 +89,34 @@ py::tuple ParsePath(const std::string& text, const std::string& name,
 }
 
 py::tuple ReadPath(const std::string& file, std::optional<double> unit_m) {
-  return TupleOf(CallWithoutGil([&] { return Take(ReadPathYaml(file, unit_m)); }));
+  return TupleOf(
+      CallWithoutGil([&] { return Take(OpenPath(file, {.light_field_unit_m = unit_m})); }));
 }
 
-void WriteText(const std::string& file, const std::string& text) {
-  RunWithoutGil([&] { Take(WriteFileAtomically(file, text)); });
+// Writes a path file in a format, or in the one of the file's extension. Returns what other
+// programs do not find in the file.
+std::vector<std::string> SavePath(const std::string& file, const std::vector<RenderCamera>& cameras,
+                                  double fps, const std::optional<std::string>& name) {
+  return CallWithoutGil([&]() -> std::vector<std::string> {
+    const std::optional<PathFormat> format = name ? PathFormatOf(*name) : PathFormatOfFile(file);
+    if (!format)
+      Take(Result<void>(UsageError(fmt::format(
+          "{}: expected a name that ends in .yaml, .json, .chan or .usda, or the format \"yaml\", "
+          "\"nerfstudio\", \"instant-ngp\", \"chan\" or \"usda\"{}",
+          file, name ? fmt::format(", found \"{}\"", *name) : ""))));
+    CameraPath path;
+    path.fps = fps;
+    path.unit_m = cameras.front().unit_m;
+    path.cameras = cameras;
+    if (*format == PathFormat::kYaml) {
+      const PathYaml yaml = Take(PathYamlOf(path));
+      if (!yaml.lost.empty())
+        Take(Result<void>(
+            UsageError(fmt::format("{}: YAML has no place for {}; save a .json instead", file,
+                                   fmt::join(yaml.lost, "; for ")))));
+    }
+    return Take(WritePath(path, file, *format, {}));
+  });
 }
 
 }  // namespace
@@ -154,7 +181,7 @@ void AddCameras(py::module_& module) {
       .def(py::pickle(&NumbersOf, &CameraOf));
   module.def("parse_path", &ParsePath);
   module.def("read_path", &ReadPath);
-  module.def("write_text", &WriteText);
+  module.def("save_path", &SavePath);
 }
 
 }  // namespace lf::python

@@ -145,6 +145,30 @@ def test_saved_paths_are_read_again(tmp_path, path):
     assert sorted(file.name for file in tmp_path.iterdir()) == ["0.yaml", "1.yaml", "2.yaml"]
 
 
+@pytest.mark.parametrize("name, format", [("n.json", None), ("b.json", "instant-ngp")])
+def test_json_keeps_every_bit(tmp_path, path, name, format):
+    path.save(tmp_path / name, format)
+    again = lf.Path.load(tmp_path / name)
+    assert again == path
+    assert ("instant" in (format or "")) == ('"path"' in (tmp_path / name).read_text())
+
+
+def test_paths_of_other_programs_are_loaded(tmp_path):
+    file = tmp_path / "nuke.chan"
+    file.write_text("1 1 2 3 0 0 0 40\n2 1 2 4 0 0 0 40\n")
+    nuke = lf.Path.load(file)
+    assert len(nuke) == 2 and nuke[0].resolution == (1920, 1080)
+    assert np.allclose(nuke[1].position, (1, 2, 4)) and nuke[0].aperture_diameter == 0
+    nuke.save(tmp_path / "again.chan")
+    assert np.allclose(np.loadtxt(tmp_path / "again.chan"), np.loadtxt(file), atol=1e-9)
+    nuke.save(tmp_path / "scene", "usda")
+    assert (tmp_path / "scene").read_text().startswith("#usda 1.0")
+    with pytest.raises(lf.UsageError, match="ends in .yaml"):
+        nuke.save(tmp_path / "scene")
+    with pytest.raises(lf.UsageError, match="found \"abc\""):
+        nuke.save(tmp_path / "scene", "abc")
+
+
 def test_paths_that_a_file_cannot_say(tmp_path):
     with pytest.raises(lf.UsageError, match="blades"):
         lf.Path([camera(), camera(blades=5)]).save(tmp_path / "path.yaml")

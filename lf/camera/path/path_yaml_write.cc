@@ -67,19 +67,33 @@ double EffectiveSensorWidth(const RenderCamera& camera) {
   return k.width_px * camera.focal_length_w / k.fx_px;
 }
 
-// Returns focal length and sensor width if the latter is the same in all frames and gives the field
-// of view, otherwise focal length and field of view, which together imply the sensor width.
+// Returns true if the sensor width is the same in all frames and gives the field of view.
+bool HasOneSensor(const CameraPath& path) {
+  const double width_w = path.cameras[0].sensor_width_w;
+  return std::all_of(path.cameras.begin(), path.cameras.end(), [&](const RenderCamera& camera) {
+    return camera.sensor_width_w == width_w &&
+           std::abs(EffectiveSensorWidth(camera) - width_w) <= kEqualOptics * width_w;
+  });
+}
+
+std::string PairText(const Vec2& pair) {
+  return fmt::format("{{horizontal: {}, vertical: {}}}", pair.x() + 0.0, pair.y() + 0.0);
+}
+constexpr std::string_view kNoPair = "{horizontal: 0, vertical: 0}";
+
+// Appends a quantity, unless it is `unused` in all frames.
+void AddIfUsed(YamlQuantity quantity, std::string_view unused, std::vector<YamlQuantity>* section) {
+  if (quantity.Moves() || quantity.values[0] != unused) section->push_back(std::move(quantity));
+}
+
+// Returns focal length and sensor width if there is one sensor, otherwise focal length and field of
+// view, which together imply the sensor width; and the shift, which that width scales.
 std::vector<YamlQuantity> Optics(const CameraPath& path) {
   std::vector<YamlQuantity> optics = {QuantityOf(
       path, "focal_length",
       [](const RenderCamera& camera) { return fmt::format("{}", camera.focal_length_w); })};
-  const double width_w = path.cameras[0].sensor_width_w;
-  const bool is_one_sensor =
-      std::all_of(path.cameras.begin(), path.cameras.end(), [&](const RenderCamera& camera) {
-        return camera.sensor_width_w == width_w &&
-               std::abs(EffectiveSensorWidth(camera) - width_w) <= kEqualOptics * width_w;
-      });
-  if (is_one_sensor)
+  const bool has_one_sensor = HasOneSensor(path);
+  if (has_one_sensor)
     optics.push_back(QuantityOf(path, "sensor_width", [](const RenderCamera& camera) {
       return fmt::format("{}", camera.sensor_width_w);
     }));
@@ -88,6 +102,13 @@ std::vector<YamlQuantity> Optics(const CameraPath& path) {
       const Intrinsics& k = camera.pinhole.intrinsics;
       return fmt::format("{}", DegreesFromRadians(2 * std::atan(k.width_px / (2 * k.fx_px))));
     }));
+  AddIfUsed(QuantityOf(path, "shift",
+                       [has_one_sensor](const RenderCamera& camera) {
+                         RenderCamera written = camera;
+                         if (!has_one_sensor) written.sensor_width_w = EffectiveSensorWidth(camera);
+                         return PairText(ShiftOf(written));
+                       }),
+            kNoPair, &optics);
   return optics;
 }
 
@@ -122,11 +143,10 @@ std::vector<YamlQuantity> LensSection(const CameraPath& path) {
                  [](const RenderCamera& c) { return fmt::format("{}", c.focus_distance_w); })};
   AddIfUsed(QuantityOf(path, "focus_tilt_deg",
                        [](const RenderCamera& c) {
-                         return fmt::format("{{horizontal: {}, vertical: {}}}",
-                                            DegreesFromRadians(c.focus_tilt.horizontal_rad),
-                                            DegreesFromRadians(c.focus_tilt.vertical_rad));
+                         return PairText({DegreesFromRadians(c.focus_tilt.horizontal_rad),
+                                          DegreesFromRadians(c.focus_tilt.vertical_rad)});
                        }),
-            "{horizontal: 0, vertical: 0}", &section);
+            kNoPair, &section);
   AddIfUsed(QuantityOf(path, "blade_rotation_deg",
                        [](const RenderCamera& c) {
                          return fmt::format("{}", DegreesFromRadians(c.aperture.rotation_rad));
@@ -162,28 +182,26 @@ bool AnyMoves(const std::vector<YamlQuantity>& section) {
                      [](const YamlQuantity& quantity) { return quantity.Moves(); });
 }
 
-// Returns the lines of what does not move: the shape of the lens of the first camera.
-std::string ShapeOf(const RenderCamera& camera) {
-  std::string lines;
-  const auto add = [&](const char* key, double value, double unused) {
-    if (value != unused) lines += fmt::format("  {}: {}\n", key, value);
-  };
-  add("blades", camera.aperture.blades, 0);
-  add("blade_roundness", camera.aperture.roundness, 0);
-  add("ratio", camera.aperture.ratio, 1);
+// Returns the lines of the opening's shape and of the hood, which cannot move.
+std::string ShapeText(const RenderCamera& camera) {
+  const Aperture& aperture = camera.aperture;
+  std::string text;
+  if (aperture.blades > 0) text += fmt::format("  blades: {}\n", aperture.blades);
+  if (aperture.roundness != 0) text += fmt::format("  blade_roundness: {}\n", aperture.roundness);
+  if (aperture.ratio != 1) text += fmt::format("  ratio: {}\n", aperture.ratio);
   if (camera.hood.exists())
-    lines += fmt::format("  hood_distance: {}\n  hood_diameter: {}\n", camera.hood.distance_w,
-                         2 * camera.hood.radius_w);
-  return lines;
+    text += fmt::format("  hood_distance: {}\n  hood_diameter: {}\n", camera.hood.distance_w,
+                        2 * camera.hood.radius_w);
+  return text;
 }
 
 std::vector<std::string> LostOf(const CameraPath& path) {
+  const std::string shape = ShapeText(path.cameras[0]);
   size_t stretched = 0, shapes = 0;
-  const std::string shape = ShapeOf(path.cameras[0]);
   for (const RenderCamera& camera : path.cameras) {
     const Intrinsics& k = camera.pinhole.intrinsics;
     if (std::abs(k.fx_px - k.fy_px) > kEqualOptics * k.fx_px || k.skew_px != 0) ++stretched;
-    if (ShapeOf(camera) != shape) ++shapes;
+    if (ShapeText(camera) != shape) ++shapes;
   }
   std::vector<std::string> lost;
   const auto add = [&](size_t count, const char* what) {
@@ -191,7 +209,7 @@ std::vector<std::string> LostOf(const CameraPath& path) {
       lost.push_back(fmt::format("{} of {} frame{}", what, count, count == 1 ? "" : "s"));
   };
   add(stretched, "the shape of the elements, which are no squares,");
-  add(shapes, "the blades, ratio or hood of the lens, which change,");
+  add(shapes, "blades, ratio and hood, which differ from those of the first frame,");
   return lost;
 }
 
@@ -205,7 +223,7 @@ Result<PathYaml> PathYamlOf(const CameraPath& path) {
       fmt::format("format: lfpath 1\nfps: {}\nframes: {}\nunit_m: {}\nresolution: [{}, {}]\n",
                   path.fps, path.frame_count(), path.unit_m, plate.width_px, plate.height_px);
   AddSection("camera", camera, "", &yaml.text);
-  AddSection("lens", lens, ShapeOf(path.cameras[0]), &yaml.text);
+  AddSection("lens", lens, ShapeText(path.cameras[0]), &yaml.text);
   if (AnyMoves(camera) || AnyMoves(lens)) yaml.text += "keyframes:\n";
   AddKeyframes(path, camera, &yaml.text);
   AddKeyframes(path, lens, &yaml.text);

@@ -114,6 +114,13 @@ std::string FaultOf(const RenderCamera& camera) {
   if (!(camera.aperture.radius_w >= 0 && 2 * camera.aperture.radius_w <= kLargestLength_w))
     return fmt::format("the aperture is {:g} world units wide: expected 0 to {:g}",
                        2 * camera.aperture.radius_w, kLargestLength_w);
+  if (!IsShape(camera) || !(camera.hood.distance_w <= kLargestLength_w) ||
+      !(camera.hood.radius_w <= kLargestLength_w))
+    return fmt::format(
+        "the hood is {:g} world units in front of the lens and {:g} wide, with {} "
+        "blades: expected at most {:g}, and at most {} blades",
+        camera.hood.distance_w, 2 * camera.hood.radius_w, camera.aperture.blades, kLargestLength_w,
+        kMostBladesInHood);
   return "";
 }
 

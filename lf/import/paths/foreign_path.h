@@ -21,7 +21,8 @@ struct ForeignCamera {
   PinholeCamera pinhole;  // without distortion
   std::optional<double> sensor_width_w, focal_length_w, aperture_diameter_w, focus_distance_w;
   int blades = 0;
-  double blade_rotation_rad = 0, ratio = 1, roundness = 0;  // as in Aperture
+  double blade_rotation_rad = 0;
+  double ratio = 1, roundness = 0;  // as in Aperture
   Hood hood;
   FocusTilt focus_tilt;
 };

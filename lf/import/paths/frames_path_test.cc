@@ -17,8 +17,7 @@ const std::string kSplatText =
     R"([{"id": 0, "img_name": "a", "width": 200, "height": 100, "position": [1, 2, 3],
 "rotation": [[1, 0, 0], [0, 0, 1], [0, -1, 0]], "fx": 120, "fy": 110}])";
 
-// A transforms.json has this camera as an OpenGL matrix, with an off-centre principal point and
-// distortion.
+// A transforms.json of that camera, with an off-centre principal point and distortion.
 const std::string kTransformsText =
     R"({"fl_x": 120, "fl_y": 110, "cx": 90, "cy": 60, "w": 200, "h": 100,
 "camera_model": "OPENCV", "k1": 0.1, "lf_unit_m": 0.5, "lf_depth_range": [2, 6],

@@ -23,9 +23,10 @@ constexpr NumberRule kDiameterRule = {"world units from 0 to 1e9",
 constexpr NumberRule kBladesRule = {"0 or a whole number from 3 to 64", [](double x) {
                                       return x == 0 || (x >= 3 && x <= 64 && x == std::floor(x));
                                     }};
-constexpr NumberRule kRatioRule = {"from 0.1 to 10",
+constexpr NumberRule kRatioRule = {"a factor from 0.1 to 10",
                                    [](double x) { return x >= 1 / kMostRatio && x <= kMostRatio; }};
-constexpr NumberRule kRoundnessRule = {"from 0 to 1", [](double x) { return x >= 0 && x <= 1; }};
+constexpr NumberRule kRoundnessRule = {"a number from 0 to 1",
+                                       [](double x) { return x >= 0 && x <= 1; }};
 constexpr NumberRule kTiltRule = {"radians above -pi/2, below pi/2",
                                   [](double x) { return std::abs(x) < kPi / 2; }};
 
@@ -93,6 +94,15 @@ Result<void> ReadLfCameraKeys(const JsonFields& frame, ForeignCamera* camera) {
   LF_ASSIGN_OR_RETURN(const std::optional<double> rotation_rad,
                       frame.Number("lf_blade_rotation_rad", kFiniteRule));
   camera->blade_rotation_rad = rotation_rad.value_or(0);
+  LF_ASSIGN_OR_RETURN(const std::optional<double> ratio,
+                      frame.Number("lf_aperture_ratio", kRatioRule));
+  camera->ratio = ratio.value_or(1);
+  LF_ASSIGN_OR_RETURN(const std::optional<double> roundness,
+                      frame.Number("lf_blade_roundness", kRoundnessRule));
+  camera->roundness = roundness.value_or(0);
+  LF_ASSIGN_OR_RETURN(const std::optional<std::vector<double>> hood_w,
+                      frame.Numbers("lf_hood", 2, 2, kDiameterRule));
+  if (hood_w) camera->hood = {(*hood_w)[0], (*hood_w)[1] / 2};
   LF_ASSIGN_OR_RETURN(const std::optional<std::vector<double>> tilt_rad,
                       frame.Numbers("lf_focus_tilt_rad", 2, 2, kTiltRule));
   if (tilt_rad) camera->focus_tilt = {(*tilt_rad)[0], (*tilt_rad)[1]};
@@ -132,6 +142,10 @@ void AddLfCameraKeys(const RenderCamera& camera, JsonText* out) {
   if (camera.aperture.blades > 0) out->Add(", \"lf_blades\": {}", camera.aperture.blades);
   if (camera.aperture.rotation_rad != 0)
     add_number("lf_blade_rotation_rad", camera.aperture.rotation_rad);
+  if (camera.aperture.ratio != 1) add_number("lf_aperture_ratio", camera.aperture.ratio);
+  if (camera.aperture.roundness != 0) add_number("lf_blade_roundness", camera.aperture.roundness);
+  if (camera.hood.exists())
+    add_numbers("lf_hood", std::array{camera.hood.distance_w, 2 * camera.hood.radius_w});
   const FocusTilt& tilt = camera.focus_tilt;
   if (tilt.horizontal_rad != 0 || tilt.vertical_rad != 0)
     add_numbers("lf_focus_tilt_rad", std::array{tilt.horizontal_rad, tilt.vertical_rad});

@@ -12,9 +12,9 @@ namespace lf {
 
 // The keys of a frame (doc/formats/foreign_paths.md).
 inline constexpr const char* kLfCameraKeys[] = {
-    "lf_cam_from_world",    "lf_intrinsics",     "lf_sensor_width",    "lf_focal_length",
-    "lf_aperture_diameter", "lf_focus_distance", "lf_blades",          "lf_blade_rotation_rad",
-    "lf_focus_tilt_rad",    "lf_aperture_ratio", "lf_blade_roundness", "lf_hood"};
+    "lf_cam_from_world",    "lf_intrinsics",     "lf_sensor_width", "lf_focal_length",
+    "lf_aperture_diameter", "lf_focus_distance", "lf_blades",       "lf_blade_rotation_rad",
+    "lf_blade_roundness",   "lf_aperture_ratio", "lf_hood",         "lf_focus_tilt_rad"};
 
 // Sets the members of a camera that the keys of its frame state. All keys may be missing.
 //   camera  has the pose and the intrinsics that the other keys of the frame state

@@ -37,7 +37,11 @@ double& NumberBetween(RenderCamera* camera, int index) {
                                             &camera->sensor_width_w,
                                             &camera->focus_distance_w,
                                             &camera->focus_tilt.horizontal_rad,
-                                            &camera->focus_tilt.vertical_rad};
+                                            &camera->focus_tilt.vertical_rad,
+                                            &camera->aperture.ratio,
+                                            &camera->aperture.roundness,
+                                            &camera->hood.distance_w,
+                                            &camera->hood.radius_w};
   return *numbers[index];
 }
 

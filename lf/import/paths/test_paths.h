@@ -35,7 +35,7 @@ inline const std::string kNerfstudioText = R"({"camera_type": "perspective", "re
 "camera_path": [{"camera_to_world": [1, 0, 0, 1, 0, 0, -1, 2, 0, 1, 0, 3, 0, 0, 0, 1],
                  "fov": 90, "aspect": 2}]})";
 
-// The file has that camera in instant-ngp's space, with the focus at 4 / 0.33 world units.
+// A base_cam.json of that camera, with the focus at 4 / 0.33 world units.
 inline const std::string kNgpText =
     R"({"path": [{"R": [0.7071067811865476, 0, 0.7071067811865476, 0],
 "T": [1.16, 1.49, 0.83],

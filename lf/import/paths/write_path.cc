@@ -57,7 +57,8 @@ std::vector<std::string> LostIn(PathFormat format, const CameraPath& path) {
   if (format == PathFormat::kChan)
     lost.push_back("resolution, frame rate, unit and order of the rotations");
   if (format == PathFormat::kNgp || format == PathFormat::kUsda)
-    add(AnyCamera(path, HasBladesOrTilt), "the shape of the lens and the tilt of the focus");
+    add(AnyCamera(path, HasBladesOrTilt),
+        "the shape of the opening, the hood and the tilt of the focus");
   else
     add(AnyCamera(path, HasLens), "the lens");
   return lost;
