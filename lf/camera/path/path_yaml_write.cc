@@ -112,22 +112,8 @@ std::vector<YamlQuantity> Optics(const CameraPath& path) {
   return optics;
 }
 
-// Adds a quantity unless it has its default in all frames.
-void AddIfUsed(YamlQuantity quantity, std::string_view unused, std::vector<YamlQuantity>* section) {
-  if (quantity.Moves() || quantity.values[0] != unused) section->push_back(std::move(quantity));
-}
-
 std::vector<YamlQuantity> CameraSection(const CameraPath& path) {
   std::vector<YamlQuantity> section = Optics(path);
-  AddIfUsed(QuantityOf(path, "shift",
-                       [](const RenderCamera& camera) {
-                         RenderCamera plain = camera;
-                         plain.sensor_width_w = EffectiveSensorWidth(camera);
-                         const Vec2 shift_w = ShiftOf(plain);
-                         return fmt::format("{{horizontal: {}, vertical: {}}}", shift_w.x(),
-                                            shift_w.y());
-                       }),
-            "{horizontal: 0, vertical: 0}", &section);
   section.push_back(QuantityOf(path, "position", [](const RenderCamera& camera) {
     return PointText(camera.pinhole.CentreWorld());
   }));

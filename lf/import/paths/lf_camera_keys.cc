@@ -106,17 +106,6 @@ Result<void> ReadLfCameraKeys(const JsonFields& frame, ForeignCamera* camera) {
   LF_ASSIGN_OR_RETURN(const std::optional<std::vector<double>> tilt_rad,
                       frame.Numbers("lf_focus_tilt_rad", 2, 2, kTiltRule));
   if (tilt_rad) camera->focus_tilt = {(*tilt_rad)[0], (*tilt_rad)[1]};
-  LF_ASSIGN_OR_RETURN(const std::optional<double> ratio,
-                      frame.Number("lf_aperture_ratio", kRatioRule));
-  camera->ratio = ratio.value_or(1);
-  LF_ASSIGN_OR_RETURN(const std::optional<double> roundness,
-                      frame.Number("lf_blade_roundness", kRoundnessRule));
-  camera->roundness = roundness.value_or(0);
-  LF_ASSIGN_OR_RETURN(const std::optional<std::vector<double>> hood,
-                      frame.Numbers("lf_hood", 2, 2, kDiameterRule));
-  if (hood) camera->hood = {(*hood)[0], (*hood)[1] / 2};
-  if (camera->hood.exists() && camera->blades > kMostBladesInHood)
-    return frame.Wrong("lf_blades", fmt::format("at most {} with a hood", kMostBladesInHood));
   return {};
 }
 
@@ -149,10 +138,6 @@ void AddLfCameraKeys(const RenderCamera& camera, JsonText* out) {
   const FocusTilt& tilt = camera.focus_tilt;
   if (tilt.horizontal_rad != 0 || tilt.vertical_rad != 0)
     add_numbers("lf_focus_tilt_rad", std::array{tilt.horizontal_rad, tilt.vertical_rad});
-  if (camera.aperture.ratio != 1) add_number("lf_aperture_ratio", camera.aperture.ratio);
-  if (camera.aperture.roundness != 0) add_number("lf_blade_roundness", camera.aperture.roundness);
-  if (camera.hood.exists())
-    add_numbers("lf_hood", std::array{camera.hood.distance_w, 2 * camera.hood.radius_w});
 }
 
 }  // namespace lf
