@@ -53,8 +53,8 @@ frames: 4
 resolution: [60, 40]
 camera: {sensor_width_mm: 36, focal_length_mm: 40, focal_length_speed_mm: 20, position: [-0.002, -0.127, -0.8],
          speed: [0.01, 0.005, -0.002], look_at: [0, -0.1, 0], up: [0.1, -1, 0]}
-lens: {aperture_diameter: 0.02, aperture_diameter_speed: -0.01, focus_distance: 0.6, focus_distance_speed: 0.5, blades: 5,
-       blade_rotation_deg: 12, blade_roundness: 0.2, ratio: 1.2, breathing: true,
+lens: {aperture_diameter: 0.02, aperture_diameter_speed: -0.01, focus_distance: 0.6, focus_distance_speed: 0.5,
+       blades: 5, blade_rotation_deg: 12, blade_roundness: 0.2, ratio: 1.2, breathing: true,
        focus_tilt_deg: {horizontal: 4, vertical: -7}}
 """
 
