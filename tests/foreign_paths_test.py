@@ -353,8 +353,9 @@ class ForeignPathsTest(ProgramTestCase):
         again = self.facts(self.convert(self.convert(path, "n.json"), "again.yaml"))
         self.assertEqual((again["fps"], again["frames"], again["resolution"]), (12.5, 4, [60, 40]))
         for old, new in zip(facts["cameras"], again["cameras"]):
-            for name, values in old.items():
-                self.assertLessEqual(np.abs(np.subtract(values, new[name])).max(), 1e-9, name)
+            # A breathing lens is written with the sensor width of its view, which has other millimetres.
+            for name in set(old) - {"shift_mm"}:
+                self.assertLessEqual(np.abs(np.subtract(old[name], new[name])).max(), 1e-9, name)
 
     def test_paths_are_moved_scaled_and_resampled(self):
         path, facts = self.lively()

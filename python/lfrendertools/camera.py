@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from . import _core, arguments
 from .errors import InputError, UsageError
-from .path_text import text_of_path
+from .path_text import text_of_camera
 
 Floats = npt.NDArray[np.float64]
 Vector = Union[Sequence[float], Floats]
@@ -116,7 +116,7 @@ class Camera:
                 "focus_point": focus_point, "focus_tilt_deg": tilt_deg, "blades": blades,
                 "blade_rotation_deg": blade_rotation_deg, "blade_roundness": blade_roundness, "ratio": ratio,
                 "breathing": arguments.flag("breathing", breathing), **_hood_of(hood)}
-        text = _text_of_camera(unit_m, resolution, camera, lens)
+        text = text_of_camera(unit_m, resolution, camera, lens)
         try:
             cameras, _, _ = _core.parse_path(text, "camera", None)
         except InputError as error:
@@ -372,12 +372,7 @@ class Path(Sequence[Camera]):
             The file.
         format : str, optional
             "yaml", "nerfstudio", "instant-ngp", "chan" or "usda" (doc/formats/foreign_paths.md). By default, the
-            extension tells: .yaml, .json for nerfstudio, .chan or .usda.
-
-        Parameters
-        ----------
-        path : path
-            The file.
+            extension tells: .json for nerfstudio, .chan or .usda; files of other names are YAML.
 
         Raises
         ------
@@ -386,7 +381,9 @@ class Path(Sequence[Camera]):
         OutputError
             The file cannot be written.
         """
-        file = arguments.file_name(path)
+        file = arguments.file_name("path", path)
+        if format is None and os.path.splitext(os.fsdecode(file))[1] not in (".json", ".chan", ".usda"):
+            format = "yaml"
         lost = _core.save_path(file, [camera._core for camera in self._cameras], self.fps,
                                None if format is None else arguments.text("format", format))
         if lost:
@@ -459,39 +456,3 @@ def _quaternion_of(rotation: Floats) -> Floats:
     x, y, z, w = np.linalg.eigh(matrix, UPLO="L")[1][:, -1]
     quaternion = np.array([w, x, y, z])
     return quaternion if w >= 0 else -quaternion
-
-
-def _value_text(value: Any) -> str:
-    if isinstance(value, (np.ndarray, np.generic)):
-        value = value.tolist()
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, (int, float)):
-        return repr(value)
-    if isinstance(value, (str, bytes)):
-        raise TypeError("text is no number")
-    return "[" + ", ".join(_value_text(entry) for entry in value) + "]"
-
-
-def _entry_text(key: str, value: Any) -> str:
-    try:
-        if key not in ("focus_tilt_deg", "shift_mm"):
-            return _value_text(value)
-        horizontal, vertical = value
-        return f"{{horizontal: {_value_text(horizontal)}, vertical: {_value_text(vertical)}}}"
-    except TypeError:
-        name = key.replace("focus_tilt_deg", "tilt_deg")
-        raise TypeError(f"{name}={value!r}: expected a number, or as many numbers as it has") from None
-    except ValueError:
-        name = key.replace("focus_tilt_deg", "tilt_deg")
-        raise UsageError(f"{name}={value!r}: expected two numbers") from None
-
-
-def _text_of_camera(unit_m: float, resolution: Tuple[int, int], camera: Dict[str, Any], lens: Dict[str, Any]) -> str:
-    """Return the text of a path of one frame (doc/formats/path.md). Values that are None are left out."""
-    lines = ["format: lfpath 1", "fps: 1", "frames: 1", f"unit_m: {_entry_text('unit_m', unit_m)}",
-             f"resolution: {_entry_text('resolution', resolution)}"]
-    for section, values in (("camera", camera), ("lens", lens)):
-        lines.append(f"{section}:")
-        lines += [f"  {key}: {_entry_text(key, value)}" for key, value in values.items() if value is not None]
-    return "\n".join(lines) + "\n"

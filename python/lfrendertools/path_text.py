@@ -1,7 +1,7 @@
 """The text of camera path files (doc/formats/path.md)."""
 from __future__ import annotations
 
-from typing import Any, Dict, List, Tuple
+from typing import Any, Dict, Tuple
 
 import numpy as np
 
@@ -34,20 +34,11 @@ def _entry_text(key: str, value: Any) -> str:
         raise UsageError(f"{name}={value!r}: expected two numbers") from None
 
 
-def text_of_path(count: int, fps: float, unit_m: float, resolution: Tuple[int, int], camera: Dict[str, Any],
-                 lens: Dict[str, Any], keys: Dict[str, List[Tuple[float, Any]]]) -> str:
-    """Return the text of a path file. Values that are None are left out."""
-    lines = ["format: lfpath 1", f"fps: {_value_text(fps)}", f"frames: {count}",
-             f"unit_m: {_entry_text('unit_m', unit_m)}",
+def text_of_camera(unit_m: float, resolution: Tuple[int, int], camera: Dict[str, Any], lens: Dict[str, Any]) -> str:
+    """Return the text of a path of one frame. Values that are None are left out."""
+    lines = ["format: lfpath 1", "fps: 1", "frames: 1", f"unit_m: {_entry_text('unit_m', unit_m)}",
              f"resolution: {_entry_text('resolution', resolution)}"]
     for section, values in (("camera", camera), ("lens", lens)):
         lines.append(f"{section}:")
-        lines += [f"  {key}: {_entry_text(key, value)}" for key, value in values.items()
-                  if value is not None and key not in keys]
-    if keys:
-        lines.append("keyframes:")
-        for key, entries in keys.items():
-            lines.append(f"  {key}:")
-            lines += [f"    - {{time: {_value_text(time)}, value: {_entry_text(key, value)}, interpolation: linear}}"
-                      for time, value in entries]
+        lines += [f"  {key}: {_entry_text(key, value)}" for key, value in values.items() if value is not None]
     return "\n".join(lines) + "\n"
