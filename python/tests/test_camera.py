@@ -163,8 +163,8 @@ def test_paths_of_other_programs_are_loaded(tmp_path):
     assert np.allclose(np.loadtxt(tmp_path / "again.chan"), np.loadtxt(file), atol=1e-9)
     nuke.save(tmp_path / "scene", "usda")
     assert (tmp_path / "scene").read_text().startswith("#usda 1.0")
-    with pytest.raises(lf.UsageError, match="ends in .yaml"):
-        nuke.save(tmp_path / "scene")
+    nuke.save(tmp_path / "scene.txt")
+    assert (tmp_path / "scene.txt").read_text().startswith("format: lfpath 1")
     with pytest.raises(lf.UsageError, match="found \"abc\""):
         nuke.save(tmp_path / "scene", "abc")
 
