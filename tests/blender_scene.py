@@ -57,7 +57,7 @@ def empty_scene(width, height, samples):
 
 def shop(file, unit):
     """A scene of things at depths 2.5 to 8, whose camera moves, zooms and pulls the focus in frames 1 to 5. Its
-    aperture is a turned triangle. `unit`: metres of a Blender unit."""
+    aperture is a turned triangle that is squeezed, and the lens shifts. `unit`: metres of a Blender unit."""
     scene, camera = empty_scene(192, 128, 8)
     scene.unit_settings.scale_length = unit
     scene.frame_end = 5
@@ -79,12 +79,15 @@ def shop(file, unit):
     lens.dof.aperture_fstop = 0.15
     lens.dof.aperture_blades = 3
     lens.dof.aperture_rotation = math.radians(20)
+    lens.dof.aperture_ratio = 1.5
     camera.rotation_euler = (math.pi / 2, 0, 0)
-    for frame, x, depth, focal in ((1, 0.0, 4.0, 35.0), (5, 0.03, 3.0, 38.0)):
+    for frame, x, depth, focal, shift in ((1, 0.0, 4.0, 35.0, 0.0), (5, 0.03, 3.0, 38.0, 0.05)):
         camera.location, target.location, lens.lens = (x, 0, 0.3 * x), (0.5, depth, 0.2), focal
+        lens.shift_x, lens.shift_y = shift, -shift
         camera.keyframe_insert("location", frame=frame)
         target.keyframe_insert("location", frame=frame)
-        lens.keyframe_insert("lens", frame=frame)
+        for name in ("lens", "shift_x", "shift_y"):
+            lens.keyframe_insert(name, frame=frame)
     scene.frame_set(1)
     bpy.ops.wm.save_as_mainfile(filepath=file)
 
@@ -127,6 +130,51 @@ def dots(file, places, size, percentage, fit, shift, parent_scale, aspect):
     bpy.ops.wm.save_as_mainfile(filepath=file)
 
 
+def traveller(file):
+    """A scene whose camera has everything that moves: a scaled and turning parent, a constraint to look at something,
+    zoom, focus, aperture and blades. A marker switches to another camera, which is upside down, in frame 7."""
+    scene, camera = empty_scene(90, 150, 1)
+    scene.frame_start, scene.frame_end = 3, 8
+    scene.render.fps, scene.render.fps_base = 24, 1.001
+    parent, target = bpy.data.objects.new("parent", None), bpy.data.objects.new("target", None)
+    other = bpy.data.objects.new("other", camera.data.copy())
+    for each in (parent, target, other):
+        scene.collection.objects.link(each)
+    parent.scale = (2, 2, 2)
+    target.location = (3, 8, 1)
+    camera.parent = parent
+    camera.location = (0.1, -0.5, 0.2)
+    track = camera.constraints.new("TRACK_TO")
+    track.target, track.track_axis, track.up_axis = target, "TRACK_NEGATIVE_Z", "UP_Y"
+    lens, field = camera.data, camera.data.dof
+    lens.sensor_fit, lens.sensor_height, field.use_dof, field.aperture_blades = "VERTICAL", 24, True, 6
+    field.aperture_ratio, lens.shift_y = 0.5, -0.2
+    for frame, turn, focal, focus, stop, rotation in ((3, 0, 20, 2, 1.4, 0), (8, 1.5, 80, 9, 8, 0.7)):
+        parent.rotation_euler, lens.lens = (0.1, turn, 2 * turn), focal
+        lens.shift_x = 0.1 * turn
+        field.focus_distance, field.aperture_fstop, field.aperture_rotation = focus, stop, rotation
+        parent.keyframe_insert("rotation_euler", frame=frame)
+        lens.keyframe_insert("lens", frame=frame)
+        lens.keyframe_insert("shift_x", frame=frame)
+        for name in ("focus_distance", "aperture_fstop", "aperture_rotation"):
+            field.keyframe_insert(name, frame=frame)
+    other.rotation_euler = (math.pi / 2, math.pi, 0.3)
+    other.data.sensor_fit, other.data.sensor_height = "VERTICAL", 24
+    other.data.dof.aperture_blades, other.data.dof.aperture_ratio = 6, 0.5
+    scene.timeline_markers.new("first", frame=3).camera = camera
+    scene.timeline_markers.new("other", frame=7).camera = other
+    bpy.ops.wm.save_as_mainfile(filepath=file)
+
+
+def changed(file, **values):
+    """Changes attributes of the scene's camera in a file."""
+    bpy.ops.wm.open_mainfile(filepath=file)
+    for name, value in values.items():
+        owner, _, name = name.rpartition("__")
+        setattr(getattr(bpy.context.scene.camera.data, owner) if owner else bpy.context.scene.camera.data, name, value)
+    bpy.ops.wm.save_mainfile()
+
+
 def truth(file, frame, output, samples):
     """Renders a frame of a scene with Cycles' own depth of field."""
     bpy.ops.wm.open_mainfile(filepath=file)
@@ -138,6 +186,27 @@ def truth(file, frame, output, samples):
     image.file_format, image.color_mode, image.color_depth, image.exr_codec = "OPEN_EXR", "RGB", "32", "ZIP"
     scene.render.filepath = output
     bpy.ops.render.render(write_still=True)
+
+
+def cameras(file, output):
+    """Writes what Blender says about the camera of each frame."""
+    bpy.ops.wm.open_mainfile(filepath=file)
+    scene = bpy.context.scene
+    result = []
+    for frame in range(scene.frame_start, scene.frame_end + 1):
+        scene.frame_set(frame)
+        camera, lens, field = scene.camera, scene.camera.data, scene.camera.data.dof
+        corners = lens.view_frame(scene=scene)  # of the picture, at some depth
+        middle = sum(corners, mathutils.Vector()) / len(corners) / -corners[0].z
+        result.append({"position": list(camera.matrix_world.translation),
+                       "axes": [list(axis) for axis in camera.matrix_world.to_3x3().normalized().transposed()],
+                       "half_view": max(corner.x for corner in corners) / -corners[0].z - middle.x,
+                       "middle": [middle.x, middle.y],
+                       "lens": lens.lens, "use_dof": field.use_dof, "fstop": field.aperture_fstop,
+                       "focus": field.focus_distance, "blades": field.aperture_blades,
+                       "rotation": field.aperture_rotation, "ratio": field.aperture_ratio})
+    with open(output, "w") as stream:
+        json.dump(result, stream)
 
 
 job, arguments = sys.argv[sys.argv.index("--") + 1:]

@@ -117,8 +117,9 @@ def run_capture(arguments, scene):
     plan = plan_capture(scene, depsgraph, arguments.depth_range and tuple(arguments.depth_range))
     if plan.depth_range is None:
         plan.depth_range = measured_depths(scene, depsgraph, plan)
-    for words, is_warning in readout(scene, plan):
-        say(("warning: " if is_warning else "") + words)
+    say("Depths: {} to {}".format(*plan.depth_range))
+    for name, value, is_warning in readout(scene, plan):
+        say(f"{name}: {value}" + (" (too large, see doc/blender.md)" if is_warning else ""))
     return 0 if arguments.plan else render_all(scene, plan, arguments.folder)
 
 

@@ -164,13 +164,16 @@ class LFRENDERTOOLS_PT_light_field(bpy.types.Panel):
         layout.operator("lfrendertools.capture", icon="RENDER_STILL")
 
     def draw_readout(self, context):
-        box = self.layout.box().column()
+        box = self.layout.box().column(align=True)
         try:
             lines = readout(context.scene, plan_capture(context.scene, context.evaluated_depsgraph_get()))
         except Failure as error:
-            lines = [(str(error), True)]
-        for words, is_warning in lines:
-            box.label(text=words, icon="ERROR" if is_warning else "NONE")
+            box.label(text=str(error), icon="ERROR")
+            return
+        for name, value, is_warning in lines:
+            row = box.split(factor=0.55)
+            row.label(text=name)
+            row.label(text=value, icon="ERROR" if is_warning else "NONE")
 
 
 def draw_export(self, _):

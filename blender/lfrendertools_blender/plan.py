@@ -108,27 +108,27 @@ def round_to(number, digits):
 
 
 def readout(scene, plan):
-    """Returns the lines that the panel and the command show about a plan, each with True if it is a warning."""
+    """Returns what the panel and the command show about a plan: lines of (name, value, is a warning)."""
     length = functools.partial(length_words, scene)
-    width, height = plan.size
-    lines = [(f"{plan.rig.count} LF images of {width} x {height} pixels, {size_words(scene, plan)} at most", False)]
+    lines = [("LF images", str(plan.rig.count), False), ("Pixels", "{} x {}".format(*plan.size), False),
+             ("Size at most", size_words(scene, plan), False)]
     spacing = max(rigs.spacings(plan.rig))
-    if plan.depth_range is None:
-        lines.append(("Measure or state the depths to see the steps", False))
-    else:
+    if plan.depth_range:
         steps = [rigs.step_px(plan.filmed.fx, spacing, plan.focus, depth) for depth in plan.depth_range]
-        lines.append((f"Steps of {steps[0]:.2f} px at {length(plan.depth_range[0])}, {steps[1]:.2f} px at "
-                      f"{length(plan.depth_range[1])}, in focus at {length(plan.focus)}", max(steps) > 1))
+        for name, step in zip(("Step near", "Step far"), steps):
+            lines.append((name, f"{step:.2f} px", step > 1))
+        lines.append(("Focus", length(plan.focus), False))
         if max(steps) > 1:
-            lines.append((f"A spacing of {length(spacing / max(steps))} has steps of 1 px", False))
+            lines.append(("1 px spacing", length(spacing / max(steps)), False))
     widest = rigs.widest_aperture(plan.rig)
-    lines.append((f"Lens up to {length(widest)} wide; the camera's is {length(plan.aperture)}", plan.aperture > widest))
+    lines.append(("Widest lens", length(widest), False))
+    lines.append(("Camera's lens", length(plan.aperture), plan.aperture > widest))
     return lines
 
 
 def length_words(scene, length):
     units = scene.unit_settings
-    return bpy.utils.units.to_string(units.system, "LENGTH", length * units.scale_length, precision=4).strip()
+    return bpy.utils.units.to_string(units.system, "LENGTH", length * units.scale_length, precision=3).strip()
 
 
 def size_words(scene, plan):

@@ -25,14 +25,14 @@ PROPERTIES = {
         name="Overscan", default=0.1, min=0, max=4, subtype="FACTOR", soft_max=1,
         description="Margin of the LF images on each side, as a share of the picture's width and height"),
     "converge": BoolProperty(
-        name="Shift to Pivot", default=False,
+        name="Shift", default=False,
         description="Lens shift of the LF cameras of a plane, so that all of them show the same part of the plane at "
                     "the pivot. They do not turn"),
     "near": FloatProperty(name="Near", default=0, min=0, unit="LENGTH",
                           description="Smallest depth of the scene along the optical axes. 0: measured"),
     "far": FloatProperty(name="Far", default=0, min=0, unit="LENGTH",
                          description="Largest depth of the scene along the optical axes. 0: measured"),
-    "use_float": BoolProperty(name="32-Bit Floats", default=False,
+    "use_float": BoolProperty(name="32 Bits", default=False,
                               description="32 instead of 16 bits for each value of an LF image"),
     "max_radiance": FloatProperty(
         name="Brightest", default=16, min=0.001, soft_max=1000,
