@@ -188,6 +188,8 @@ def import_path(scene, file, program="lfcammvminfo"):
         raise InputError(f"{file} tilts the focus plane, which Blender's camera cannot")
     if cameras[0]["blades"] and cameras[0]["blade_roundness"]:
         raise InputError(f"{file} has rounded blades, which Blender's camera does not have")
+    if any(camera["hood_mm"][1] for camera in cameras):
+        raise InputError(f"{file} has a lens with a hood, which Blender's camera does not have")
     set_frames(scene, path)
     name = pathlib.Path(file).stem
     camera = bpy.data.objects.new(name, bpy.data.cameras.new(name))
