@@ -26,6 +26,7 @@
 #include "lf/focus/example_path.h"
 #include "lf/light_field/model/capture_geometry.h"
 #include "lf/light_field/model/keep_images.h"
+#include "lf/live/shrink.h"
 #include "lf/pixels/files/image_file.h"
 #include "lf/storage/load/open_store.h"
 #include "lf/storage/packed/packed_store_file.h"
@@ -187,23 +188,6 @@ Image<float> LightOf(const LfPixels& pixels, const RadianceEncoding& encoding, f
   return light;
 }
 
-// Returns the means of squares of `side` x `side` pixels. Pixels that fill no square are cut off.
-Image<float> MeansOfSquares(const Image<float>& image, int side) {
-  Image<float> means(std::max(1, image.width() / side), std::max(1, image.height() / side),
-                     image.channels());
-  for (int y = 0; y < means.height(); ++y)
-    for (int x = 0; x < means.width() * means.channels(); ++x) {
-      const int column = x / means.channels() * side, channel = x % means.channels();
-      float sum = 0;
-      int count = 0;
-      for (int v = y * side; v < std::min(image.height(), (y + 1) * side); ++v)
-        for (int u = column; u < std::min(image.width(), column + side); ++u, ++count)
-          sum += image.row(v)[u * image.channels() + channel];
-      means.row(y)[x] = sum / static_cast<float>(std::max(1, count));
-    }
-  return means;
-}
-
 py::array LoadImage(const OpenedField& field, py::ssize_t i,
                     const std::optional<std::array<int, 4>>& part, float masked) {
   const LfImageId id = IdOf(field, i);
@@ -247,8 +231,9 @@ py::array Thumbnail(const OpenedField& field, py::ssize_t i, int width_px) {
     while (divisor < 8 && 2 * divisor <= square) divisor *= 2;
     divisor = Take(LoadReducedWithoutThrowing(*field.store, id, divisor, k,
                                               field.light_field.image_names[id.value], &pixels));
-    const Image<float> light = LightOf(pixels, field.light_field.encoding, 0);
-    return MeansOfSquares(light, std::max(1, square / divisor));
+    LfPixels shrunken;
+    Shrink(pixels, std::max(1, square / divisor), &shrunken);
+    return LightOf(shrunken, field.light_field.encoding, 0);
   });
   return ArrayOf(std::move(small));
 }

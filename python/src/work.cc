@@ -45,30 +45,21 @@ class Ending {
   bool has_ended_ = false;
 };
 
-// Tells how far the work has come, if that is news.
-class Teller {
- public:
-  explicit Teller(WorkSignals* signals) : signals_(signals) {}
-  void Tell() {
-    if (signals_ == nullptr || !signals_->tell) return;
-    const WorkProgress now = signals_->progress();
-    if (now == told_) return;
-    told_ = now;
-    signals_->tell(now.done, now.total, now.phase);
-  }
+// Tells how far the work has come.
+void TellNews(WorkSignals* signals) {
+  if (signals == nullptr || !signals->tell) return;
+  for (const WorkProgress& news : signals->TakeNews())
+    signals->tell(news.done, news.total, news.phase);
+}
 
- private:
-  WorkSignals* signals_;
-  WorkProgress told_;
-};
-
-// Runs Python's handlers of the signals that have arrived, and the teller. Returns what they raise.
-std::exception_ptr Look(Teller& teller) {
+// Runs Python's handlers of the signals that have arrived, and tells the progress. Returns what
+// they raise.
+std::exception_ptr Look(WorkSignals* signals) {
   const GilHold hold;
   if (!hold.has_lock()) return nullptr;
   try {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    teller.Tell();
+    TellNews(signals);
   } catch (...) {
     return std::current_exception();
   }
@@ -79,7 +70,6 @@ std::exception_ptr Look(Teller& teller) {
 
 void RunWithoutGil(const std::function<void()>& work, WorkSignals* signals) {
   std::exception_ptr failure, raised;
-  Teller teller(signals);
   {
     const GilPause pause;
     Ending ending;
@@ -93,7 +83,7 @@ void RunWithoutGil(const std::function<void()>& work, WorkSignals* signals) {
     });
     while (!ending.WaitFor(kPatience)) {
       if (signals == nullptr) continue;
-      raised = Look(teller);
+      raised = Look(signals);
       if (!raised && !PythonEnds()) continue;
       signals->stop = true;
       signals->interrupted = true;
@@ -108,7 +98,7 @@ void RunWithoutGil(const std::function<void()>& work, WorkSignals* signals) {
     std::rethrow_exception(raised);
   }
   if (failure) std::rethrow_exception(failure);
-  teller.Tell();
+  TellNews(signals);
 }
 
 ThreadPool& PoolOf(int thread_count) {

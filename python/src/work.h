@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "lf/core/parallel.h"
 
@@ -18,8 +19,6 @@ struct WorkProgress {
   size_t done = 0;
   size_t total = 0;
   int phase = 0;  // 0, 1, ...
-
-  friend bool operator==(const WorkProgress&, const WorkProgress&) = default;
 };
 
 // Signals between the thread of Python that waits and the work on another thread.
@@ -37,16 +36,19 @@ class WorkSignals {
   // Called by the work.
   void SetProgress(const WorkProgress& now) {
     const std::lock_guard lock(mutex_);
-    progress_ = now;
+    if (news_.empty() || news_.back().phase != now.phase) news_.push_back(now);
+    news_.back() = now;
   }
-  WorkProgress progress() const {
+  // Returns the progress since the last call: of each phase the last one, so that even a phase that
+  // was over between two calls is told.
+  std::vector<WorkProgress> TakeNews() {
     const std::lock_guard lock(mutex_);
-    return progress_;
+    return std::exchange(news_, {});
   }
 
  private:
-  mutable std::mutex mutex_;
-  WorkProgress progress_;
+  std::mutex mutex_;
+  std::vector<WorkProgress> news_;
 };
 
 // Calls work() on another thread and waits for its end. The calling thread holds the GIL before and
