@@ -26,7 +26,7 @@ RayForms MakeRayForms(const Mat3& direction, const Vec3& centre_world,
   const Mat3 sensor = plate.intrinsics.Matrix() * plate.cam_from_world.rotation * focus * direction;
   // L is the point where the ray meets the lens plane f.(L - c') = 0:
   //   (L - c') f.d = [ (c - c') f^T - f.(c - c') I ] d
-  const Mat3 lens = offset * f.transpose() - f.dot(offset) * Mat3::Identity();
+  const Mat3 lens = ToPlane(offset, f);
 
   RayForms forms;
   forms.forward = f.transpose() * direction;
@@ -37,8 +37,7 @@ RayForms MakeRayForms(const Mat3& direction, const Vec3& centre_world,
   forms.lens_right = plate.RightWorld().transpose() * lens * direction;
   forms.lens_up = plate.UpWorld().transpose() * lens * direction;
   if (render_camera.hood.exists()) {
-    const Vec3 beyond = offset - render_camera.hood.distance_w * f;
-    const Mat3 hood = beyond * f.transpose() - f.dot(beyond) * Mat3::Identity();
+    const Mat3 hood = ToPlane(offset - render_camera.hood.distance_w * f, f);
     forms.hood_right = plate.RightWorld().transpose() * hood * direction;
     forms.hood_up = plate.UpWorld().transpose() * hood * direction;
   }

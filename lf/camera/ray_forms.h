@@ -21,6 +21,13 @@
 
 namespace lf {
 
+// Returns the matrix M that maps the direction d of a ray to the place, times f.d, where the ray
+// meets a plane normal to f, seen from a point of this plane (doc/ray.md, Geometry, 5).
+//   offset  vector from that point to a point of the ray
+inline Mat3 ToPlane(const Vec3& offset, const Vec3& f) {
+  return offset * f.transpose() - f.dot(offset) * Mat3::Identity();
+}
+
 struct RayForms {
   // f.d, for the ray's direction d and the render camera's forward axis f. The ray runs forward
   // where this form is above 0.

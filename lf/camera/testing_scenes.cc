@@ -33,6 +33,8 @@ CameraPair RandomCameraPair(uint64_t seed) {
   // Every seventh opening is squeezed, and the blades of every seventh are rounded.
   if (seed % 7 == 2) render.aperture.ratio = seed % 2 == 0 ? 1.9 : 0.4;
   if (seed % 7 == 4) render.aperture.roundness = 0.6;
+  // Every ninth lens has a hood.
+  if (seed % 9 == 5) render.hood = {0.1 * static_cast<double>(seed % 4), 0.3};
   const bool tilted = seed % 4 >= 2;
   const double reach = tilted ? 1.45 : 0;
   render.focus_distance_w = random.Uniform(0.5, 3);

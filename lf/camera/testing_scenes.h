@@ -1,6 +1,7 @@
 // Pairs of an LF camera and a render camera for tests. Random pairs have LF cameras in front of,
 // behind and in the lens plane of the render camera; focus planes tilted so far that their horizon
-// is in view; apertures that are disks, ellipses, polygons or rounded polygons; images rolled about
+// is in view; apertures that are disks, ellipses, polygons or rounded polygons; lenses
+// with a hood; images rolled about
 // the optical axis.
 #pragma once
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "lf/camera/ray_forms.h"
 #include "lf/collection/gather.h"
 #include "lf/collection/gather_model.h"
 #include "lf/collection/position_patches.h"
@@ -45,15 +46,14 @@ GatherForms MakeForms(const PinholeCamera& lf_camera, const RenderCamera& render
   const Mat3 direction = lens.cam_from_world.rotation.transpose() * lens.intrinsics.InverseMatrix();
   // `to_focus` maps e to (X - c) |n.d'|, provided that n.d' has the sign of `distance`.
   const Mat3 to_focus = sign * (distance * Mat3::Identity() - offset * n.transpose()) * direction;
-  const Mat3 to_lens = offset * f.transpose() - f.dot(offset) * Mat3::Identity();
+  const Mat3 to_lens = ToPlane(offset, f);
   GatherForms forms;
   forms.plane = sign * n.transpose() * direction;
   forms.forward = f.transpose() * to_focus;
   forms.lens_right = lens.RightWorld().transpose() * to_lens * to_focus;
   forms.lens_up = lens.UpWorld().transpose() * to_lens * to_focus;
   if (render_camera.hood.exists()) {
-    const Vec3 beyond = offset - render_camera.hood.distance_w * f;
-    const Mat3 to_hood = beyond * f.transpose() - f.dot(beyond) * Mat3::Identity();
+    const Mat3 to_hood = ToPlane(offset - render_camera.hood.distance_w * f, f);
     forms.hood_right = lens.RightWorld().transpose() * to_hood * to_focus;
     forms.hood_up = lens.UpWorld().transpose() * to_hood * to_focus;
   }
