@@ -44,12 +44,14 @@ resolution: [160, 120]
 camera:
   field_of_view_deg: 44
   focal_length_mm: 35
+  {camera}
   position: [-0.025, 0, 0]
   look_at: [0, 0, -1]
   up: [0, 1, 0]
 lens:
   aperture_diameter: {first}
   focus_distance: 0.8
+  {lens}
 keyframes:
   position: [{{time: 0, value: [-0.025, -0.01, 0]}}, {{time: 0.16, value: [0.005, 0.01, -0.01]}},
              {{time: 0.32, value: [0.03, 0, 0.005]}}]
@@ -58,6 +60,12 @@ keyframes:
                       {{time: 0.32, value: {last}}}]
   focus_distance: [{{time: 0, value: 0.8}}, {{time: 0.32, value: 2}}]
 """
+# Entries of the sections camera and lens of the fields whose lens is no plain disk.
+SHAPES = {
+    "mosaic": ("", "blades: 5\n  blade_roundness: 0.5"),
+    "falloff": ("shift_mm: {horizontal: 2, vertical: -1}", "ratio: 1.6"),
+    "opacity": ("", "hood_distance: 0.05\n  hood_diameter: 0.06"),
+}
 
 
 class Difference(Exception):
@@ -198,8 +206,9 @@ class World:
     def path_of(self, field):
         has_pinhole = field in ("rgb", "flawed mosaic")
         path = self.folder_of(field).parent / "path.yaml"
+        camera, lens = SHAPES.get(field, ("", ""))
         path.write_text(PATH_YAML.format(frames=FRAMES, first=0 if has_pinhole else 0.012,
-                                         last=0.015 if has_pinhole else 0.02))
+                                         last=0.015 if has_pinhole else 0.02, camera=camera, lens=lens))
         return path
 
     @once
