@@ -173,12 +173,7 @@ lf::Result<lf::LightField> OpenChanged(const Arguments& a, size_t* excluded_coun
   LF_ASSIGN_OR_RETURN(lf::LightField light_field, lf::OpenLightField(a.light_field.path, options));
   LF_ASSIGN_OR_RETURN(const std::vector<std::string> patterns, lf::ReadPatterns(a.exclude));
   LF_ASSIGN_OR_RETURN(*excluded_count, lf::ExcludeImages(patterns, &light_field));
-  lf::Similarity similarity;
-  if (!a.transform.empty()) {
-    LF_ASSIGN_OR_RETURN(similarity, lf::ReadSimilarity(a.transform));
-  }
-  similarity.scale *= a.scale;
-  similarity.translation *= a.scale;
+  LF_ASSIGN_OR_RETURN(const lf::Similarity similarity, lf::ReadSimilarity(a.transform, a.scale));
   if (!a.transform.empty() || a.scale != 1)
     LF_RETURN_IF_ERROR(lf::Transform(similarity, &light_field));
   constexpr double kLeastUnit_m = 1e-9;

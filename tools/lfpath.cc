@@ -191,12 +191,7 @@ lf::Result<lf::PathOptions> OptionsOf(const Arguments& a) {
 }
 
 lf::Result<lf::CameraPath> Changed(const Arguments& a, lf::CameraPath path) {
-  lf::Similarity similarity;
-  if (!a.transform.empty()) {
-    LF_ASSIGN_OR_RETURN(similarity, lf::ReadSimilarity(a.transform));
-  }
-  similarity.scale *= a.scale;
-  similarity.translation *= a.scale;
+  LF_ASSIGN_OR_RETURN(const lf::Similarity similarity, lf::ReadSimilarity(a.transform, a.scale));
   if (!a.transform.empty() || a.scale != 1)
     LF_RETURN_IF_ERROR(lf::MovePath(similarity, a.path, &path));
   if ((a.fps && *a.fps != path.fps) || (a.frames && *a.frames != path.frame_count()))

@@ -94,6 +94,16 @@ Result<Similarity> ReadSimilarity(const std::string& text_or_file) {
   return similarity;
 }
 
+Result<Similarity> ReadSimilarity(const std::string& text_or_file, double scale) {
+  Similarity similarity;
+  if (!text_or_file.empty()) {
+    LF_ASSIGN_OR_RETURN(similarity, ReadSimilarity(text_or_file));
+  }
+  similarity.scale *= scale;
+  similarity.translation *= scale;
+  return similarity;
+}
+
 RigidTransform PoseIn(const Similarity& b_from_a, const RigidTransform& cam_from_a) {
   // With the old pose R, t a point of world a is at x_cam = R x_a + t. Camera coordinates grow by
   // s, the scale of b_from_a, whose rotation and translation are Q and q. Insertion of x_a = Q^T

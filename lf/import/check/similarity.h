@@ -30,6 +30,9 @@ Result<Similarity> ParseSimilarity(std::string_view text);
 // Parses the text itself if it states a similarity (ParseSimilarity()), otherwise the file of that
 // name, which may have at most 64 KiB.
 Result<Similarity> ReadSimilarity(const std::string& text_or_file);
+// Returns the similarity of the options --transform ("": none) and --scale of programs, which
+// scales after the transform.
+Result<Similarity> ReadSimilarity(const std::string& text_or_file, double scale);
 
 // Returns the pose in world b of a camera whose pose in world a is given. Camera coordinates grow
 // by the scale, so that the camera still sees every point at the same pixel.
