@@ -287,11 +287,13 @@ class ForeignPathsTest(ProgramTestCase):
         pictures = []
         for name, value in ("whole", whole), ("half", half):
             film = self.folder / f"film of {name}"
-            self.succeeds(RENDERER, field, self.write(f"{name}.json", value), "-o", film, "--format", "exr-float")
+            # Lens weights depend on the whole plate.
+            self.succeeds(RENDERER, field, self.write(f"{name}.json", value), "-o", film, "--format", "exr-float",
+                          "--lens-weights", "none")
             pictures.append(cv2.imread(str(film / "frame_0001.exr"), cv2.IMREAD_UNCHANGED)[..., :3])
         self.assertEqual(pictures[1].shape, (40, 30, 3))
         self.assertGreater(pictures[1].max(), 0.1)
-        self.assertLessEqual(np.abs(pictures[0][:, :30] - pictures[1]).max(), 0.005)
+        self.assertLessEqual(np.abs(pictures[0][:, :30] - pictures[1]).max(), 1e-6)
 
     def test_usda_holds_an_off_centre_principal_point(self):
         text = self.convert(self.calibration("transforms.json"), "frames.usda", "--focus-distance", 2).read_text()
