@@ -5,6 +5,9 @@ import subprocess
 
 # Commits up to this one were written before the check existed.
 LAST_UNCHECKED = "159f65395b40"
+# A commit whose fault (a subject of 73 characters) was found after others had built on it. Published history is not
+# rewritten.
+TOLERATED = {"75ac7e834ae9"}
 SUBJECT_LIMIT, LINES_WITHOUT_BODY = 72, 50
 SUBJECT = re.compile(r"^[\w./*{}-]+(?:, [\w./*{}-]+)*: (?P<verb>[A-Z][a-z]*)\b")
 # Matches a verb in the past or in the progressive form, but not "Feed". IMPERATIVE lists the imperatives that it
@@ -28,12 +31,15 @@ def faults_of(subject, body, changed_lines):
 
 def check_messages(root, after=LAST_UNCHECKED):
     """Yields the faults of the commits after `after`. The history of the repository must be whole."""
-    log = subprocess.run(["git", "-C", root, "log", "--no-merges", "--shortstat", "--format=%x00%h%x01%s%x01%b%x01",
+    log = subprocess.run(["git", "-C", root, "log", "--no-merges", "--shortstat", "--format=%x00%H%x01%s%x01%b%x01",
                           f"{after}..HEAD"], capture_output=True, text=True)
     if log.returncode != 0:
         yield f"scripts/commit_rules.py: commit {after} is not in the history: {log.stderr.strip()}"
     for entry in log.stdout.split("\0")[1:]:
-        commit, subject, body, statistics = entry.split("\1")
+        full_hash, subject, body, statistics = entry.split("\1")
+        commit = full_hash[:12]
+        if commit in TOLERATED:
+            continue
         changed_lines = sum(map(int, re.findall(r"(\d+) (?:insertion|deletion)", statistics)))
         for fault in faults_of(subject, body, changed_lines):
             yield f"commit {commit} ({subject}): {fault}"
