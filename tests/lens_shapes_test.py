@@ -36,6 +36,9 @@ LENSES = {
     "lying": (("", "ratio: 0.5"), ("", "ratio: 0.65")),
     "rounded": (("", "blades: 3\n  blade_roundness: 0.4"), ("", "blades: 3")),
     "cat's eye": (("", "hood_distance: 0.05\n  hood_diameter: 0.042"), ("", "")),
+    "transmission": (("", "transmission: crescent.png"), ("", "transmission: mirrored.png")),
+    "turned": (("", "transmission: crescent.png\n  blade_rotation_deg: 90\n  ratio: 1.5"),
+               ("", "transmission: crescent.png\n  ratio: 1.5")),
     "all": (("shift_mm: {vertical: 1}", "blades: 5\n  blade_roundness: 0.3\n  ratio: 1.8\n  blade_rotation_deg: 20"),
             ("shift_mm: {vertical: 1}", "blades: 5\n  blade_roundness: 0.3\n  ratio: 1.8\n  blade_rotation_deg: 56")),
 }
@@ -63,6 +66,14 @@ class LensShapesTest(ProgramTestCase):
                           "-q")
         return field
 
+    def setUp(self):
+        super().setUp()
+        crescent = np.zeros((120, 120), np.uint8)
+        cv2.circle(crescent, (60, 60), 58, 255, -1, cv2.LINE_AA)
+        cv2.circle(crescent, (85, 45), 45, 60, -1, cv2.LINE_AA)
+        cv2.imwrite(str(self.folder / "crescent.png"), crescent)
+        cv2.imwrite(str(self.folder / "mirrored.png"), crescent[:, ::-1])
+
     def path(self, name, lens):
         file = self.folder / f"{name}.yaml"
         file.write_text(PATH.format(camera=lens[0], lens=lens[1]))
@@ -88,11 +99,32 @@ class LensShapesTest(ProgramTestCase):
                 of_default = psnr_db(picture(self.frame(path)), truth)
                 self.assertGreater(of_default, 40)
                 self.assertLess(psnr_db(picture(self.frame(self.path("wrong", wrong))), truth), of_default - 3)
+                if "transmission" in right[1]:
+                    continue
                 plain = self.frame(path, "--lens-weights", "none")
                 self.assertGreater(psnr_db(picture(plain), truth), 36)
                 if "hood" not in right[1]:
                     hybrid = self.frame(path, "--mode", "hybrid")
                     self.assertGreater(psnr_db(picture(hybrid), truth), 36)
+
+    def test_a_transmission_needs_lens_weights(self):
+        path = self.path("crescent", LENSES["transmission"][0])
+        for options in (["--lens-weights", "none"], ["--stop-when", "samples>=4"], ["--smooth-below", 2]):
+            self.fails(2, ["transmission", "--lens-weights none"], RENDERER, self.field, path, "-o",
+                       self.folder / "frames", *options)
+        for mode in ("rebin", "hybrid"):
+            self.fails(2, ["transmission", "--mode collect"], RENDERER, self.field, path, "-o",
+                       self.folder / "frames", "--mode", mode)
+
+    def test_a_wrong_transmission_is_an_error(self):
+        for name, text, words in (("missing", "nothing.png", ["nothing.png"]),
+                                  ("text", "00ff/00", ["two hexadecimal digits"]),
+                                  ("list", "[1, 2]", ["name of a picture file"]),
+                                  ("dark", "00", ["wholly dark"])):
+            with self.subTest(name):
+                path = self.path(name, ("", f"transmission: {text}"))
+                self.fails(3, ["lens.transmission", f"{name}.yaml:", *words], RENDERER, self.field, path, "-o",
+                           self.folder / "frames")
 
     def test_rebinned_rays_refuse_a_hood(self):
         path = self.path("hood", LENSES["cat's eye"][0])
@@ -102,7 +134,7 @@ class LensShapesTest(ProgramTestCase):
                            "--mode", mode)
 
     def test_packages_and_plates_keep_the_lens(self):
-        for name in ("all", "cat's eye"):
+        for name in ("all", "cat's eye", "turned"):
             with self.subTest(name):
                 self.check_packages_and_plates(self.path(name.replace("'", ""), LENSES[name][0]))
 

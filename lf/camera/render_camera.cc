@@ -24,6 +24,7 @@ Vec2 ShiftOf(const RenderCamera& camera) {
 void OpenUpTo(double radius_w, RenderCamera* camera) {
   camera->aperture = {radius_w, 0, 0};
   camera->hood = {};
+  camera->transmission = nullptr;
 }
 
 bool HasShape(const RenderCamera& camera) {

@@ -6,6 +6,7 @@
 
 #include "lf/camera/aperture.h"
 #include "lf/camera/pinhole.h"
+#include "lf/camera/transmission.h"
 #include "lf/core/geometry.h"
 
 namespace lf {
@@ -30,6 +31,7 @@ struct RenderCamera {
   Aperture aperture;      // in the plane through the lens centre normal to the optical axis
   Plane focus_plane;      // in world coordinates
   Hood hood;
+  TransmissionPtr transmission;  // null: the whole opening lets all light through
 
   // The settings that the members above were computed from, for people and metadata.
   double time_s = 0;
@@ -48,11 +50,11 @@ Plane FocusPlane(const PinholeCamera& camera, double focus_distance_w, const Foc
 // the principal point is the centre of the plate.
 Vec2 ShiftOf(const RenderCamera& camera);
 
-// Replaces the opening by a disk of this radius, and removes the hood, so that rays that pass
-// near the lens are accepted.
+// Replaces the opening by a disk of this radius, and removes hood and transmission, so that rays
+// that pass near the lens are accepted.
 void OpenUpTo(double radius_w, RenderCamera* camera);
-// Returns true if the opening has a shape or the camera a hood. Files state their numbers only
-// then.
+// Returns true if the opening has a ratio or roundness, or the camera a hood. Files state their
+// numbers only then.
 bool HasShape(const RenderCamera& camera);
 // Returns true if these numbers are within their limits.
 bool IsShape(const RenderCamera& camera);

@@ -63,6 +63,10 @@ class Camera:
     hood : tuple of float, optional
         Distance from the lens, and diameter, of a round opening in front of the lens, which cuts off oblique rays:
         lights in the corners have the shape of a cat's eye. (0, 0): there is none.
+    transmission : str, path-like or array_like of shape (height, width), optional
+        How much light each place of the opening lets through: the file of a picture, shares from 0 to 1, or whole
+        numbers of the type uint8 up to 255. The picture is a square around the opening, upright for the photographer
+        behind the camera; it is reduced to at most 64 x 64 places. Out-of-focus lights have its shape.
     breathing : bool, optional
         True: the field of view narrows when the focus comes nearer. False: focusing does not change it.
     unit_m : float, optional
@@ -95,6 +99,7 @@ class Camera:
                  focus_distance: Optional[float] = None, focus_point: Optional[Vector] = None,
                  tilt_deg: Tuple[float, float] = (0, 0), blades: int = 0, blade_rotation_deg: float = 0,
                  blade_roundness: float = 0, ratio: float = 1, hood: Tuple[float, float] = (0, 0),
+                 transmission: Union[None, str, "os.PathLike[str]", npt.ArrayLike] = None,
                  breathing: bool = False, unit_m: float = 1) -> None:
         _one_of(look_at=look_at, quaternion=quaternion, world_from_cam=world_from_cam)
         _one_of(focal_length_mm=focal_length_mm, field_of_view_deg=field_of_view_deg)
@@ -117,6 +122,8 @@ class Camera:
                 "blade_rotation_deg": blade_rotation_deg, "blade_roundness": blade_roundness, "ratio": ratio,
                 "breathing": arguments.flag("breathing", breathing), **_hood_of(hood)}
         text = text_of_camera(unit_m, resolution, camera, lens)
+        if transmission is not None:
+            text += f'  transmission: "{_transmission_text(transmission)}"\n'
         try:
             cameras, _, _ = _core.parse_path(text, "camera", None)
         except InputError as error:
@@ -208,6 +215,15 @@ class Camera:
         return self._core.hood
 
     @property
+    def transmission(self) -> Optional[Floats]:
+        """Shares of the light that the places of the opening let through, (side, side); None: all of it."""
+        text = self._core.transmission
+        if not text:
+            return None
+        rows = [np.frombuffer(bytes.fromhex(row), np.uint8) for row in text.split("/")]
+        return np.stack(rows) / 255
+
+    @property
     def shift_mm(self) -> Tuple[float, float]:
         """How far the middle of the picture is to the right of the optical axis, and above it, on the sensor plate."""
         right, up = self._core.shift
@@ -228,7 +244,7 @@ class Camera:
                 "aperture_diameter": core.aperture_diameter,
                 "focus_distance": core.focus_distance, "tilt_deg": core.tilt_deg, "blades": core.blades,
                 "blade_rotation_deg": core.blade_rotation_deg, "blade_roundness": core.blade_roundness,
-                "ratio": core.ratio, "hood": core.hood, "unit_m": core.unit_m}
+                "ratio": core.ratio, "hood": core.hood, "transmission": self.transmission, "unit_m": core.unit_m}
 
     def replace(self, **changes: Any) -> Camera:
         """Return a copy with some arguments of the constructor changed.
@@ -263,10 +279,10 @@ class Camera:
                 del values[default]
         values.update(changes)
         # Numbers that do not change keep their bits, which the arguments of the constructor state only up to rounding.
+        changed = Camera(**values)
         numbers = [old if was == is_now and math.isclose(old, was, rel_tol=1e-9, abs_tol=1e-9) else is_now
-                   for old, was, is_now in zip(*(camera._core.numbers() for camera in
-                                                 (self, unchanged, Camera(**values))))]
-        return Camera._of(_core.RenderCamera.of_numbers(tuple(numbers)))
+                   for old, was, is_now in zip(*(camera._core.numbers() for camera in (self, unchanged, changed)))]
+        return Camera._of(_core.RenderCamera.of_numbers(tuple(numbers), changed._core.transmission))
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Camera) and bool(self._core == other._core)
@@ -427,6 +443,25 @@ def _hood_of(hood: Tuple[float, float]) -> Dict[str, float]:
     if values.shape != (2,):
         raise UsageError(f"hood={hood!r}: expected a distance and a diameter")
     return {"hood_distance": float(values[0]), "hood_diameter": float(values[1])} if values.any() else {}
+
+
+def _transmission_text(transmission: Union[str, "os.PathLike[str]", npt.ArrayLike]) -> str:
+    """Return the value of `transmission` in a path file."""
+    if isinstance(transmission, (str, os.PathLike)):
+        return _core.transmission_of_file(arguments.file_name("transmission", transmission))
+    shares = np.asarray(transmission)
+    if shares.ndim != 2 or shares.size == 0:
+        raise UsageError(f"transmission: expected a file or an array of shape (height, width), found the shape "
+                         f"{shares.shape}")
+    if shares.dtype != np.uint8:
+        reals = arguments.reals("transmission", shares)
+        if not (reals.min() >= 0 and reals.max() <= 1):
+            raise UsageError(f"transmission: expected shares from 0 to 1, found {reals.min()} to {reals.max()}")
+        shares = np.rint(255 * reals).astype(np.uint8)
+    try:
+        return _core.transmission_of_array(np.ascontiguousarray(shares))
+    except InputError as error:
+        raise UsageError(f"transmission: {error}") from None
 
 
 def _one_of(**arguments: Any) -> None:

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,6 +22,7 @@
 #include "lf/camera/path/path_yaml_write.h"
 #include "lf/camera/render_camera.h"
 #include "lf/import/paths/open_path.h"
+#include "lf/import/paths/transmission_file.h"
 #include "lf/import/paths/write_path.h"
 
 namespace lf::python {
@@ -63,8 +67,16 @@ py::tuple NumbersOf(const RenderCamera& camera) {
   return py::tuple(numbers);
 }
 
-RenderCamera CameraOf(const py::tuple& numbers) {
+// Returns Transmission::Text(), or "" if the lens has none.
+std::string TransmissionText(const RenderCamera& camera) {
+  return camera.transmission ? camera.transmission->Text() : "";
+}
+
+RenderCamera CameraOf(const py::tuple& numbers, const std::string& transmission) {
   RenderCamera camera;
+  if (!transmission.empty())
+    camera.transmission =
+        std::make_shared<const Transmission>(Take(Transmission::FromText(transmission)));
   size_t next = 0;
   VisitNumbers(camera, [&](double& number) {
     if (next >= numbers.size()) throw py::value_error("a pickled camera lacks numbers");
@@ -73,10 +85,17 @@ RenderCamera CameraOf(const py::tuple& numbers) {
   return camera;
 }
 
-// Returns the numbers that two equal cameras share: all but the time, which belongs to the path.
-py::tuple NumbersToCompare(RenderCamera camera) {
+// Returns what two equal cameras share: all but the time, which belongs to the path.
+py::tuple ValuesToCompare(RenderCamera camera) {
   camera.time_s = 0;
-  return NumbersOf(camera);
+  return py::make_tuple(NumbersOf(camera), TransmissionText(camera));
+}
+
+// Returns the text of a picture [height][width], 0 (dark) to 255.
+std::string TextOfTransmission(const py::array_t<uint8_t, py::array::c_style>& picture) {
+  Image<uint8_t> shares(static_cast<int>(picture.shape(1)), static_cast<int>(picture.shape(0)));
+  std::copy_n(picture.data(), picture.size(), shares.pixels().begin());
+  return Take(Transmission::Of(shares)).Text();
 }
 
 py::tuple TupleOf(const CameraPath& path) {
@@ -85,7 +104,7 @@ py::tuple TupleOf(const CameraPath& path) {
 
 py::tuple ParsePath(const std::string& text, const std::string& name,
                     std::optional<double> unit_m) {
-  return TupleOf(Take(ParsePathYaml(text, name, unit_m)));
+  return TupleOf(Take(ParsePathYaml(text, name, unit_m, PicturesBeside(name))));
 }
 
 py::tuple ReadPath(const std::string& file, std::optional<double> unit_m) {
@@ -156,6 +175,7 @@ void AddCameras(py::module_& module) {
       .def_property_readonly(
           "hood",
           [](const RenderCamera& c) { return std::pair(c.hood.distance_w, 2 * c.hood.radius_w); })
+      .def_property_readonly("transmission", &TransmissionText)
       .def_property_readonly("shift", &ShiftOf)
       .def_property_readonly("focus_distance",
                              [](const RenderCamera& c) { return c.focus_distance_w; })
@@ -173,12 +193,20 @@ void AddCameras(py::module_& module) {
       .def_property_readonly("unit_m", [](const RenderCamera& c) { return c.unit_m; })
       .def("__eq__",
            [](const RenderCamera& a, const RenderCamera& b) {
-             return NumbersToCompare(a).equal(NumbersToCompare(b));
+             return ValuesToCompare(a).equal(ValuesToCompare(b));
            })
-      .def("__hash__", [](const RenderCamera& c) { return py::hash(NumbersToCompare(c)); })
+      .def("__hash__", [](const RenderCamera& c) { return py::hash(ValuesToCompare(c)); })
       .def("numbers", &NumbersOf)
       .def_static("of_numbers", &CameraOf)
-      .def(py::pickle(&NumbersOf, &CameraOf));
+      .def(py::pickle(
+          [](const RenderCamera& c) { return py::make_tuple(NumbersOf(c), TransmissionText(c)); },
+          [](const py::tuple& state) {
+            return CameraOf(state[0].cast<py::tuple>(), state[1].cast<std::string>());
+          }));
+  module.def("transmission_of_array", &TextOfTransmission);
+  module.def("transmission_of_file", [](const std::string& file) {
+    return CallWithoutGil([&] { return Take(ReadTransmissionFile(file)).Text(); });
+  });
   module.def("parse_path", &ParsePath);
   module.def("read_path", &ReadPath);
   module.def("save_path", &SavePath);

@@ -4,6 +4,7 @@ import warnings
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import lfrendertools as lf
 
@@ -201,6 +202,38 @@ def test_first_paths(field, capture, run, tmp_path):
     assert field.path("orbit", start=24, focus_distance=1.1) == lf.Path.load(tmp_path / "path.yaml", field.unit_m)
     with pytest.raises(lf.UsageError, match="focus-pull"):
         field.path("zoom")
+
+
+def test_transmission(tmp_path):
+    camera = lf.Camera((0, 0, -1), look_at=(0, 0, 0), resolution=(120, 80), focal_length_mm=50, f_number=4,
+                       focus_distance=1)
+    assert camera.transmission is None
+    shares = np.rint(255 * np.random.default_rng(3).random((6, 6))) / 255
+    stopped = camera.replace(transmission=shares)
+    assert np.array_equal(stopped.transmission, shares) and stopped != camera
+    assert camera.replace(transmission=np.rint(shares * 255).astype(np.uint8)) == stopped
+    assert pickle.loads(pickle.dumps(stopped)) == stopped and hash(stopped) != hash(camera)
+    assert np.array_equal(stopped.replace(f_number=2).transmission, shares)
+    assert stopped.replace(transmission=None) == camera
+    lf.Path([stopped, stopped]).save(tmp_path / "path.yaml")
+    assert np.array_equal(lf.Path.load(tmp_path / "path.yaml")[1].transmission, shares)
+    with pytest.raises(lf.UsageError, match="transmission"):
+        lf.Path([stopped, camera]).save(tmp_path / "two.yaml")
+    for wrong in (np.zeros((2, 2)), np.ones(3), np.full((2, 2), 1.5), np.zeros((0, 2)), [[np.nan]]):
+        with pytest.raises(lf.UsageError, match="transmission"):
+            camera.replace(transmission=wrong)
+    with pytest.raises(lf.InputError, match="nowhere.png"):
+        camera.replace(transmission=tmp_path / "nowhere.png")
+
+
+def test_transmission_of_a_picture(tmp_path):
+    picture = np.zeros((40, 30, 4), np.uint8)
+    picture[:20] = 255
+    Image.fromarray(picture).save(tmp_path / "half.png")
+    camera = lf.Camera((0, 0, -1), look_at=(0, 0, 0), resolution=(120, 80), focal_length_mm=50, f_number=4,
+                       focus_distance=1, transmission=tmp_path / "half.png")
+    assert camera.transmission.shape == (40, 40)
+    assert camera.transmission[:20, 5:35].min() == 1 and camera.transmission.sum() == 20 * 30
 
 
 def test_shift_and_shape_survive_files_and_pickle(tmp_path):

@@ -110,6 +110,10 @@ LivePlan PlanLiveExport(PageScene& scene, std::span<const uint32_t> used, size_t
   if (plan.refused.empty() && most_bytes == 0) plan.refused = "--export-live 0 leaves them out";
   if (!plan.refused.empty()) return plan;
   const CameraPath& path = *scene.first_draft()->path;
+  if (path.cameras.front().transmission) {
+    plan.refused = "the lens has a transmission";
+    return plan;
+  }
   const RenderCamera& frame =
       path.Camera(FrameId{static_cast<uint32_t>(path.frame_count() / 2 + 1)});
   plan.ids = SpreadOut(field, used, frame);

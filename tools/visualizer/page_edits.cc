@@ -14,6 +14,7 @@
 #include "lf/camera/path/path_yaml.h"
 #include "lf/core/file.h"
 #include "lf/focus/focus_pick.h"
+#include "lf/import/paths/transmission_file.h"
 #include "lf/live/shrink.h"
 #include "lf/render/state/record_fields.h"
 
@@ -94,7 +95,8 @@ PageAnswer StartPreview(PageScene& scene, PreviewRender& preview, const Json& js
 // The text does not become a draft: drafts are few, and a drag would replace those that pages show.
 PageAnswer ShowLive(PageScene& scene, LiveView& live, const Json& json, bool is_lens) {
   const std::string file = scene.arguments().path.filename().string();
-  const auto path = ParsePathYaml(TextOf(json, "text"), file, scene.light_field().unit_m);
+  const auto path = ParsePathYaml(TextOf(json, "text"), file, scene.light_field().unit_m,
+                                  PicturesBeside(scene.arguments().path));
   if (!path) return RefusedPath(path.error(), file);
   const auto frame = FrameOf(json, *path);
   const double width = NumberOf(json, "width"), budget_ms = NumberOf(json, "budget_ms");

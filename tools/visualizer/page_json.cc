@@ -64,12 +64,11 @@ PageAnswer Refusal(const Error& error) {
 std::string PathHeadJson(const PathDraft& draft) {
   const CameraPath& path = *draft.path;
   const Intrinsics& k = path.cameras.front().pinhole.intrinsics;
-  return RecordLine({{"id", draft.id},
-                     {"frames", path.frame_count()},
-                     {"fps", path.fps},
-                     {"unit_m", path.unit_m},
-                     {"width", k.width_px},
-                     {"height", k.height_px}});
+  Json head = {{"id", draft.id},        {"frames", path.frame_count()}, {"fps", path.fps},
+               {"unit_m", path.unit_m}, {"width", k.width_px},          {"height", k.height_px}};
+  if (const TransmissionPtr& of_path = path.cameras.front().transmission)
+    head["transmission"] = of_path->Text();
+  return RecordLine(head);
 }
 
 std::string PathNewsJson(PageScene& scene, const std::string& text) {

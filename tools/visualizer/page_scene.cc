@@ -11,6 +11,7 @@
 #include "lf/core/hash.h"
 #include "lf/core/log.h"
 #include "lf/import/paths/open_path.h"
+#include "lf/import/paths/transmission_file.h"
 #include "lf/render/package/package_file.h"
 #include "lf/render/state/run_inputs.h"
 #include "lf/storage/load/open_store.h"
@@ -96,8 +97,9 @@ Result<void> PageScene::OpenPackages() {
 Result<std::shared_ptr<PathDraft>> PageScene::AddDraft(const std::string& text) {
   const std::string id = IdOfText(text);
   if (std::shared_ptr<PathDraft> known = FindDraft(id)) return known;
-  LF_ASSIGN_OR_RETURN(CameraPath path, ParsePathYaml(text, arguments_.path.filename().string(),
-                                                     light_field_.unit_m));
+  LF_ASSIGN_OR_RETURN(CameraPath path,
+                      ParsePathYaml(text, arguments_.path.filename().string(), light_field_.unit_m,
+                                    PicturesBeside(arguments_.path)));
   return KeepDraft(text, std::move(path));
 }
 

@@ -61,6 +61,7 @@ std::vector<CameraFact> CameraFacts(const RenderCamera& camera, FrameId frame) {
       Number("blade_roundness", aperture.roundness),
       Pair("hood_mm", "distance", "diameter", mm_per_w * camera.hood.distance_w,
            mm_per_w * 2 * camera.hood.radius_w),
+      Number("transmission", camera.transmission ? camera.transmission->Mean() : 1),
   };
 }
 

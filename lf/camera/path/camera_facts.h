@@ -31,6 +31,7 @@ struct CameraFact {
 //   shift_mm           horizontal, vertical (ShiftOf())
 //   ratio, blade_roundness
 //   hood_mm            distance, diameter; 0 if there is no hood
+//   transmission       mean of the transmission's places, from 0 to 1; 1 if there is none
 std::vector<CameraFact> CameraFacts(const RenderCamera& camera, FrameId frame);
 
 }  // namespace lf

@@ -193,6 +193,7 @@ Result<RenderCamera> CameraAt(const Moment& moment) {
   LF_ASSIGN_OR_RETURN(const double rotation_rad, NumberOf(moment, path.blade_rotation_rad));
   camera.aperture = {diameter_w / 2, path.blades, rotation_rad, path.ratio, path.roundness};
   camera.hood = {path.hood_distance_w, path.hood_diameter_w / 2};
+  camera.transmission = path.transmission;
   return camera;
 }
 

@@ -7,6 +7,7 @@
 
 #include "lf/camera/path/motion.h"
 #include "lf/camera/path/yaml_schema.h"
+#include "lf/camera/transmission.h"
 #include "lf/core/geometry.h"
 
 namespace lf {
@@ -59,6 +60,7 @@ struct PathDescription {
   double roundness = 0;  // Aperture::roundness
   double hood_distance_w = 0;
   double hood_diameter_w = 0;  // 0: there is no hood
+  TransmissionPtr transmission;
 };
 
 }  // namespace lf

@@ -70,7 +70,7 @@ bool CheckFormat(YamlMap* file) {
 }
 
 PathDescription Describe(const YamlNode& root, std::optional<double> light_field_unit_m,
-                         YamlErrors* errors) {
+                         const ReadTransmission& read_transmission, YamlErrors* errors) {
   PathDescription path;
   path.file_name = errors->file_name();
   YamlMap file(root, "", errors);
@@ -85,7 +85,7 @@ PathDescription Describe(const YamlNode& root, std::optional<double> light_field
   file.CheckKeys();
   if (!camera || !lens) return path;
   ReadCameraSection(*camera->value, &quantities, &path, errors);
-  ReadLensSection(*lens->value, &quantities, &path, errors);
+  ReadLensSection(*lens->value, read_transmission, &quantities, &path, errors);
   quantities.CheckKeys();
   return path;
 }
@@ -93,18 +93,21 @@ PathDescription Describe(const YamlNode& root, std::optional<double> light_field
 }  // namespace
 
 Result<CameraPath> ParsePathYaml(std::string_view text, std::string_view name,
-                                 std::optional<double> light_field_unit_m) {
+                                 std::optional<double> light_field_unit_m,
+                                 const ReadTransmission& read_transmission) {
   LF_ASSIGN_OR_RETURN(const YamlNodePtr root, ParseYaml(text, name));
   YamlErrors errors(name);
-  const PathDescription description = Describe(*root, light_field_unit_m, &errors);
+  const PathDescription description =
+      Describe(*root, light_field_unit_m, read_transmission, &errors);
   if (!errors.empty()) return errors.First();
   return EvaluatePath(description);
 }
 
 Result<CameraPath> ReadPathYaml(const std::filesystem::path& path,
-                                std::optional<double> light_field_unit_m) {
+                                std::optional<double> light_field_unit_m,
+                                const ReadTransmission& read_transmission) {
   LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path, kMaxYamlBytes));
-  return ParsePathYaml(text, path.string(), light_field_unit_m);
+  return ParsePathYaml(text, path.string(), light_field_unit_m, read_transmission);
 }
 
 }  // namespace lf

@@ -178,6 +178,8 @@ std::string ShapeText(const RenderCamera& camera) {
   if (camera.hood.exists())
     text += fmt::format("  hood_distance: {}\n  hood_diameter: {}\n", camera.hood.distance_w,
                         2 * camera.hood.radius_w);
+  if (camera.transmission)
+    text += fmt::format("  transmission: \"{}\"\n", camera.transmission->Text());
   return text;
 }
 
@@ -195,7 +197,7 @@ std::vector<std::string> LostOf(const CameraPath& path) {
       lost.push_back(fmt::format("{} of {} frame{}", what, count, count == 1 ? "" : "s"));
   };
   add(stretched, "the shape of the elements, which are no squares,");
-  add(shapes, "blades, ratio and hood, which differ from those of the first frame,");
+  add(shapes, "blades, ratio, hood and transmission, which differ from those of the first frame,");
   return lost;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -158,6 +159,34 @@ void ReadHood(YamlMap* lens, QuantityReader* quantities, PathDescription* path) 
   if (diameter_w) path->hood_diameter_w = *diameter_w;
 }
 
+// Reads `transmission`: the name of a picture file, or the text of a transmission. A name has a
+// dot, and the text has none.
+void ReadTransmissionKey(YamlMap* lens, const ReadTransmission& read_transmission,
+                         PathDescription* path) {
+  const YamlEntry* entry = lens->Find("transmission");
+  if (!entry) return;
+  const YamlNode& node = *entry->value;
+  if (node.kind != YamlNode::Kind::kPlain && node.kind != YamlNode::Kind::kQuoted) {
+    AddExpected(node, "lens.transmission", "the name of a picture file, such as heart.png",
+                lens->errors());
+    return;
+  }
+  const bool is_file = node.text.find('.') != std::string::npos;
+  const auto read = [&]() -> Result<Transmission> {
+    if (!is_file) return Transmission::FromText(node.text);
+    if (!read_transmission)
+      return InputError(
+          "pictures cannot be read here; write the path with lfpath first, which "
+          "puts the picture into it");
+    return read_transmission(node.text);
+  }();
+  if (read)
+    path->transmission = std::make_shared<const Transmission>(*read);
+  else
+    lens->errors()->Add(node.place, fmt::format("lens.transmission: {}: {}",
+                                                QuoteForMessage(node.text), read.error().message));
+}
+
 }  // namespace
 
 void ReadCameraSection(const YamlNode& node, QuantityReader* quantities, PathDescription* path,
@@ -168,8 +197,8 @@ void ReadCameraSection(const YamlNode& node, QuantityReader* quantities, PathDes
   camera.CheckKeys();
 }
 
-void ReadLensSection(const YamlNode& node, QuantityReader* quantities, PathDescription* path,
-                     YamlErrors* errors) {
+void ReadLensSection(const YamlNode& node, const ReadTransmission& read_transmission,
+                     QuantityReader* quantities, PathDescription* path, YamlErrors* errors) {
   YamlMap lens(node, "lens", errors);
   path->aperture_diameter_w = quantities->Read(&lens, kApertureDiameter);
   path->f_number = quantities->Read(&lens, kFNumber);
@@ -184,6 +213,7 @@ void ReadLensSection(const YamlNode& node, QuantityReader* quantities, PathDescr
     path->breathing = ReadBool(*breathing->value, "lens.breathing", errors).value_or(false);
   ReadShape(&lens, quantities, path);
   ReadHood(&lens, quantities, path);
+  ReadTransmissionKey(&lens, read_transmission, path);
   lens.CheckKeys();
 }
 

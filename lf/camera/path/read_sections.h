@@ -2,6 +2,7 @@
 #pragma once
 
 #include "lf/camera/path/path_description.h"
+#include "lf/camera/path/path_yaml.h"
 #include "lf/camera/path/read_quantity.h"
 #include "lf/camera/path/yaml_schema.h"
 
@@ -11,7 +12,7 @@ namespace lf {
 // key that is unknown, is missing, has a wrong type, is out of range, or contradicts another key.
 void ReadCameraSection(const YamlNode& node, QuantityReader* quantities, PathDescription* path,
                        YamlErrors* errors);
-void ReadLensSection(const YamlNode& node, QuantityReader* quantities, PathDescription* path,
-                     YamlErrors* errors);
+void ReadLensSection(const YamlNode& node, const ReadTransmission& read_transmission,
+                     QuantityReader* quantities, PathDescription* path, YamlErrors* errors);
 
 }  // namespace lf

@@ -198,7 +198,7 @@ Result<void> Preprocessor::Begin() {
 
 Result<void> Preprocessor::CheckOptions() const {
   LF_RETURN_IF_ERROR(CheckOpacity(light_field_.encoding, options_.mode));
-  LF_RETURN_IF_ERROR(CheckHoods(path_.cameras, options_.mode));
+  LF_RETURN_IF_ERROR(CheckLenses(path_.cameras, options_.mode));
   if (Rebins(options_.mode) && options_.max_image_count)
     return UsageError(
         "--max-images cannot be used with --mode rebin or hybrid, in which all frames share the "

@@ -11,6 +11,7 @@
 #include "lf/import/paths/nerfstudio_path.h"
 #include "lf/import/paths/ngp_path.h"
 #include "lf/import/paths/path_kind.h"
+#include "lf/import/paths/transmission_file.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -70,7 +71,8 @@ Result<CameraPath> OpenPath(const fs::path& path, const PathOptions& options) {
   LF_RETURN_IF_ERROR(CheckOptions(place.kind, path, options));
   CameraPath opened;
   if (place.kind == PathKind::kYaml) {
-    LF_ASSIGN_OR_RETURN(opened, ReadPathYaml(path, options.light_field_unit_m));
+    LF_ASSIGN_OR_RETURN(opened,
+                        ReadPathYaml(path, options.light_field_unit_m, PicturesBeside(path)));
   } else {
     LF_ASSIGN_OR_RETURN(ForeignPath read, ReadForeign(place, options));
     LF_ASSIGN_OR_RETURN(opened, CompletePath(std::move(read), path, options));

@@ -56,6 +56,8 @@ std::vector<std::string> LostIn(PathFormat format, const CameraPath& path) {
   }
   if (format == PathFormat::kChan)
     lost.push_back("resolution, frame rate, unit and order of the rotations");
+  if (AnyCamera(path, [](const RenderCamera& camera) { return camera.transmission != nullptr; }))
+    lost.push_back("the transmission of the lens (only YAML keeps it)");
   if (format == PathFormat::kNgp || format == PathFormat::kUsda)
     add(AnyCamera(path, HasBladesOrTilt),
         "the shape of the opening, the hood and the tilt of the focus");

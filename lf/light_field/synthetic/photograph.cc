@@ -212,8 +212,12 @@ Image<float> ThinLensPhotograph(const Scene& scene, const RenderCamera& camera,
   const std::vector<Vec2> element_points = SquarePoints(SideOf(sampling.samples));
   const auto sample_count = static_cast<int>(element_points.size());
   std::vector<Vec3> lens_points;
-  for (const Vec2& point : SampleLens(camera.aperture, sample_count, sampling.seed))
+  std::vector<double> shares;  // of the light that the lens lets through at its points
+  for (const Vec2& point : SampleLens(camera.aperture, sample_count, sampling.seed)) {
     lens_points.push_back(LensPointWorld(camera, point));
+    shares.push_back(
+        camera.transmission ? LightThrough(*camera.transmission, camera.aperture, point) : 1);
+  }
   const HoodTest hood(camera);
   const double element_spread = PixelRays(camera.pinhole).FootprintOf(sample_count).spread;
   const double lens_cell_w = kFootprintPerSide * std::sqrt(Area(camera.aperture) / sample_count);
@@ -222,22 +226,27 @@ Image<float> ThinLensPhotograph(const Scene& scene, const RenderCamera& camera,
     const int y = static_cast<int>(row);
     for (int x = 0; x < intrinsics.width_px; ++x) {
       Rgba sum = Rgba::Zero();
-      int cut_off = 0;  // number of samples whose ray the hood cuts off
+      double let_through = 0;  // sum of the shares of the samples that the hood does not cut off
       for (size_t i = 0; i < lens_points.size(); ++i) {
+        if (shares[i] == 0) continue;
         const std::optional<Vec3> focus_point =
             FocusPointOfElement(camera, x + element_points[i].x(), y + element_points[i].y());
-        if (!focus_point) continue;
-        const Vec3 direction = *focus_point - lens_points[i];
-        if (!hood.LetsThrough(lens_points[i], direction)) {
-          ++cut_off;
+        if (!focus_point) {
+          let_through += shares[i];
           continue;
         }
+        const Vec3 direction = *focus_point - lens_points[i];
+        if (!hood.LetsThrough(lens_points[i], direction)) continue;
+        let_through += shares[i];
         // The footprint is as wide at the lens as the part of the lens that the sample represents,
         // and as wide at the focus plane as the part of the element that the sample represents.
         const Footprint footprint{lens_cell_w, -lens_cell_w / direction.norm() - element_spread};
-        sum += LightOf(scene.SightAlong({lens_points[i], direction}, footprint), surroundings);
+        const Rgba light =
+            LightOf(scene.SightAlong({lens_points[i], direction}, footprint), surroundings);
+        sum += shares[i] * light;
       }
-      Store(sum / std::max(1, sample_count - cut_off), x, y, &picture);
+      if (let_through > 0) sum /= let_through;
+      Store(sum, x, y, &picture);
     }
   });
   return picture;

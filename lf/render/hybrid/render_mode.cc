@@ -26,15 +26,21 @@ Result<void> CheckOpacity(const RadianceEncoding& encoding, RenderMode mode) {
                   NameOf(mode)));
 }
 
-Result<void> CheckHoods(std::span<const RenderCamera> cameras, RenderMode mode) {
-  if (!Rebins(mode) || std::none_of(cameras.begin(), cameras.end(), [](const RenderCamera& camera) {
-        return camera.hood.exists();
-      }))
-    return {};
-  return UsageError(fmt::format(
-      "--mode {} cannot render a lens with a hood (lens.hood_diameter in the path): use "
-      "--mode collect, or leave the hood out",
-      NameOf(mode)));
+Result<void> CheckLenses(std::span<const RenderCamera> cameras, RenderMode mode) {
+  if (!Rebins(mode)) return {};
+  for (const RenderCamera& camera : cameras) {
+    if (camera.hood.exists())
+      return UsageError(fmt::format(
+          "--mode {} cannot render a lens with a hood (lens.hood_diameter in the path): use "
+          "--mode collect, or leave the hood out",
+          NameOf(mode)));
+    if (camera.transmission)
+      return UsageError(
+          fmt::format("--mode {} cannot render a lens with a transmission (lens.transmission in "
+                      "the path): use --mode collect, or leave the transmission out",
+                      NameOf(mode)));
+  }
+  return {};
 }
 
 }  // namespace lf

@@ -27,8 +27,8 @@ inline bool Rebins(RenderMode mode) { return mode != RenderMode::kCollect; }
 // (RadianceEncoding::HasOpacity()), because rebinned rays do not keep it.
 Result<void> CheckOpacity(const RadianceEncoding& encoding, RenderMode mode);
 
-// Returns kUsage if the mode rebins and a camera has a hood, because rebinned rays are queried at
-// the same lens points for all elements.
-Result<void> CheckHoods(std::span<const RenderCamera> cameras, RenderMode mode);
+// Returns kUsage if the mode rebins and a camera has a hood or a transmission, because rebinned
+// rays are queried at the same lens points for all elements.
+Result<void> CheckLenses(std::span<const RenderCamera> cameras, RenderMode mode);
 
 }  // namespace lf

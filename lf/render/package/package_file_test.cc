@@ -60,6 +60,8 @@ Package TestPackage() {
   package.path.unit_m = 0.01;
   for (uint32_t f = 0; f < 12; ++f) {
     package.path.cameras.push_back(testing::RandomCameraPair(f).render_camera);
+    package.path.cameras.back().transmission =
+        std::make_shared<const Transmission>(*Transmission::FromText("00ff/80ff"));
     package.surroundings.push_back({f / 7.0, 0.01 + f, {1.0 / 3, f * 0.1, -2}, f / 9.0});
     if (f % 2 == 0) package.surroundings.back().recorded_distance_w = f / 5.0;
     if (f % 3 != 0) continue;
@@ -200,6 +202,7 @@ TEST_F(PackageFileTest, ReadsWhatWasWrittenToTheBit) {
     EXPECT_EQ(c.aperture.roundness, d.aperture.roundness);
     EXPECT_EQ(c.hood.distance_w, d.hood.distance_w);
     EXPECT_EQ(c.hood.radius_w, d.hood.radius_w);
+    EXPECT_TRUE(AreEqual(c.transmission, d.transmission));
     EXPECT_EQ(c.focus_plane.normal, d.focus_plane.normal);
     EXPECT_EQ(c.focus_plane.offset_w, d.focus_plane.offset_w);
     EXPECT_EQ(c.focus_tilt.vertical_rad, d.focus_tilt.vertical_rad);

@@ -224,6 +224,12 @@ Result<void> Reader::ReadSurroundings(const std::vector<double>& numbers, int64_
 
 Result<void> Reader::ReadFrames() {
   CameraPath& film = package_.path;
+  TransmissionPtr transmission;
+  if (const std::string& places = settings_.Text("transmission"); !places.empty()) {
+    const Result<Transmission> read = Transmission::FromText(places);
+    if (!read) return settings_.Wrong("transmission", read.error().message);
+    transmission = std::make_shared<const Transmission>(*read);
+  }
   LF_RETURN_IF_ERROR(ForEachRow(
       database_,
       "select frame, camera, is_rendered, lf_images, rays, surroundings from frames "
@@ -242,7 +248,8 @@ Result<void> Reader::ReadFrames() {
                                             [](double x) { return std::abs(x) <= kMostNumber; }) &&
                                 IsWithin(numbers[5], 1, kMostSide_px) &&
                                 IsWithin(numbers[6], 1, kMostSide_px);
-        const RenderCamera camera = are_finite ? CameraOfNumbers(numbers) : RenderCamera();
+        RenderCamera camera = are_finite ? CameraOfNumbers(numbers) : RenderCamera();
+        camera.transmission = transmission;
         const Intrinsics& plate = camera.pinhole.intrinsics;
         const bool has_size =
             film.cameras.empty() ||

@@ -65,6 +65,8 @@ class Writer {
         {"path_unit_m", fmt::format("{}", package_.path.unit_m)}};
     if (package_.whole_virtual_count > 0)
       settings.emplace_back("light_field.virtual", fmt::format("{}", package_.whole_virtual_count));
+    if (const TransmissionPtr& of_film = package_.path.cameras.front().transmission)
+      settings.emplace_back("transmission", of_film->Text());
     settings.insert(settings.end(), pixels.begin(), pixels.end());
     settings.insert(settings.end(), of_choices.begin(), of_choices.end());
     return settings;
@@ -117,6 +119,11 @@ class Writer {
 
   // Writes all frames of the film, and marks those that this package renders (is_rendered).
   Result<void> WriteFrames() {
+    for (const RenderCamera& camera : package_.path.cameras)
+      if (!AreEqual(camera.transmission, package_.path.cameras.front().transmission))
+        return UsageError(
+            "the frames have lenses with different transmissions, but a package holds one: "
+            "render the film without packages, or divide the path");
     LF_ASSIGN_OR_RETURN(
         Statement insert,
         database_.Prepare("insert into frames values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"));

@@ -51,7 +51,7 @@ Result<void> CheckRebinnedRays(const Package& package, const FilmOptions& film,
         "--smooth-below would count: leave these options out, use \"noise<=X\", or use --mode "
         "hybrid");
   LF_RETURN_IF_ERROR(CheckOpacity(package.light_field.encoding, film.mode));
-  LF_RETURN_IF_ERROR(CheckHoods(package.path.cameras, film.mode));
+  LF_RETURN_IF_ERROR(CheckLenses(package.path.cameras, film.mode));
   LF_RETURN_IF_ERROR(CheckSlab(package, film, frames));
   if (film.Rebins() && !package.choices.has_neighbours)
     return UsageError(fmt::format(
@@ -73,7 +73,15 @@ Result<void> CheckRebinnedRays(const Package& package, const FilmOptions& film,
 
 Result<void> CheckLensWeights(const Package& package, const FilmOptions& film,
                               const std::vector<FrameId>& frames) {
-  if (film.lens_weights == LensWeights::kNone) return {};
+  if (film.lens_weights == LensWeights::kNone) {
+    for (const FrameId frame : frames)
+      if (package.path.Camera(frame).transmission && film.Collects())
+        return UsageError(
+            "the lens has a transmission (lens.transmission in the path), which lens weights "
+            "state: leave out --lens-weights none and options that count rays "
+            "(\"samples>=N\", --smooth-below), or leave the transmission out");
+    return {};
+  }
   const char* const name = NameOf(film.lens_weights);
   if (!package.choices.has_neighbours)
     return UsageError(

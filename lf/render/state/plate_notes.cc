@@ -172,6 +172,7 @@ PlateEntries TextOf(const PlateNotes& notes) {
   if (HasShape(camera))
     text.emplace_back("sheet.lens_shape", words({camera.aperture.ratio, camera.aperture.roundness,
                                                  camera.hood.distance_w, camera.hood.radius_w}));
+  if (camera.transmission) text.emplace_back("sheet.transmission", camera.transmission->Text());
   if (notes.rays.virtual_count > 0)
     text.emplace_back("sheet.virtual_lf_images", fmt::format("{}", notes.rays.virtual_count));
   if (notes.places_done)
@@ -225,6 +226,12 @@ Result<PlateNotes> PlateNotesOf(const PlateEntries& entries, int width_px, int h
       reader.Fault(
           "sheet.lens_shape",
           "a ratio from 0.1 to 10, a roundness from 0 to 1, distance and radius of a hood");
+  }
+  if (const std::string* const places = FindEntry(entries, "sheet.transmission")) {
+    if (const auto transmission = Transmission::FromText(*places))
+      notes.camera.transmission = std::make_shared<const Transmission>(*transmission);
+    else
+      reader.Fault("sheet.transmission", transmission.error().message);
   }
   const std::vector<double> focus = reader.Numbers("sheet.focus_plane", 4);
   notes.camera.focus_plane = {Vec3Of(focus), focus[3]};

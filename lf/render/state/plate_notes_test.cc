@@ -17,6 +17,7 @@ PlateNotes Notes() {
   camera.pinhole.cam_from_world = *LookAlong({0.1, 0.2, 0.3}, {1, 2, 3}, {0, -1, 0});
   camera.aperture = {0.1, 5, 0.3, 1.0 / 3, 0.7};
   camera.hood = {0.2, 1.0 / 7};
+  camera.transmission = std::make_shared<const Transmission>(*Transmission::FromText("00ff/8000"));
   camera.focus_plane = FocusPlane(camera.pinhole, 2.2, {0.1, 0.2});
   camera.time_s = 0.1;
   camera.focal_length_w = 0.05;

@@ -77,6 +77,7 @@ std::string CameraHash(const RenderCamera& camera) {
     hasher.Add(camera.hood.distance_w);
     hasher.Add(camera.hood.radius_w);
   }
+  if (camera.transmission) hasher.Add(camera.transmission->Text());
   hasher.AddMatrix(camera.focus_plane.normal);
   hasher.Add(camera.focus_plane.offset_w);
   return hasher.Text();

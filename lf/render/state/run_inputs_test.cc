@@ -69,8 +69,13 @@ TEST(RunInputs, EveryInputMakesADifferenceAndItsKeyNamesIt) {
       {"frame.camera", [](Inputs& i) { i.camera.aperture.rotation_rad = 0.1; }},
       {"frame.camera", [](Inputs& i) { i.camera.aperture.ratio = 1.1; }},
       {"frame.camera", [](Inputs& i) { i.camera.aperture.roundness = 0.1; }},
-      {"frame.camera", [](Inputs& i) {
+      {"frame.camera",
+       [](Inputs& i) {
          i.camera.hood = {0.1, 0.2};
+       }},
+      {"frame.camera", [](Inputs& i) {
+         i.camera.transmission =
+             std::make_shared<const Transmission>(*Transmission::FromText("ff"));
        }}};
   for (const auto& [key, change] : changes) {
     Inputs inputs;

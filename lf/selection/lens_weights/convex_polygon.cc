@@ -70,6 +70,15 @@ double ConvexPolygon::FarthestFrom(const Vec2& point) const {
   return std::sqrt(most);
 }
 
+std::pair<double, double> ConvexPolygon::Extent(const Vec2& normal) const {
+  double least = normal.dot(vertices_.front()), most = least;
+  for (const Vec2& v : vertices_) {
+    least = std::min(least, normal.dot(v));
+    most = std::max(most, normal.dot(v));
+  }
+  return {least, most};
+}
+
 double ConvexPolygon::Area() const {
   double twice = 0;
   for (size_t i = 0; i < vertices_.size(); ++i)

@@ -1,6 +1,7 @@
 // Convex polygons in the lens plane, in world units.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "lf/core/geometry.h"
@@ -23,6 +24,9 @@ class ConvexPolygon {
 
   // Returns the distance of the farthest vertex from `point`; 0 if there are no vertices.
   double FarthestFrom(const Vec2& point) const;
+
+  // Returns the least and the largest value of normal . p of the points p. There must be vertices.
+  std::pair<double, double> Extent(const Vec2& normal) const;
 
   double Area() const;
 

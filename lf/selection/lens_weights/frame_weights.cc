@@ -12,6 +12,7 @@
 #include "lf/core/value_named.h"
 #include "lf/selection/lens_weights/lens_cells.h"
 #include "lf/selection/lens_weights/lens_coverage.h"
+#include "lf/selection/lens_weights/transmitted_light.h"
 
 namespace lf {
 namespace {
@@ -128,9 +129,10 @@ double ShareOfFirstTenth(std::vector<double> shares) {
   return 0;
 }
 
-// The part of the opening that the hood leaves to rays through a focus point.
-struct HoodedLens {
-  HoodedLens(const RenderCamera& frame, const Vec3& focus_world)
+// The opening of a lens with a hood or a transmission, for rays through a focus point: the part
+// that the hood leaves, and the light that it lets through.
+struct PartialLens {
+  PartialLens(const RenderCamera& frame, const Vec3& focus_world)
       : opening(RimVertices(frame.aperture)) {
     const std::vector<ApertureEdge> edges = HoodOnLens(frame, focus_world);
     for (const ApertureEdge& edge : edges) opening.Clip(edge.normal, edge.distance_w);
@@ -139,10 +141,23 @@ struct HoodedLens {
       if (std::all_of(edges.begin(), edges.end(), [&](const ApertureEdge& edge) {
             return edge.normal.dot(place) <= edge.distance_w;
           }))
-        places.push_back(place);
+        AddPlace(frame, place);
+    measure = [&frame](const ConvexPolygon& part) {
+      return frame.transmission ? TransmittedLight(*frame.transmission, frame.aperture, part)
+                                : part.Area();
+    };
   }
+
+  void AddPlace(const RenderCamera& frame, const Vec2& place) {
+    const double light = frame.transmission && frame.aperture.radius_w > 0
+                             ? LightThrough(*frame.transmission, frame.aperture, place)
+                             : 1;
+    if (light > 0) places.push_back({place, light});
+  }
+
   ConvexPolygon opening;
-  std::vector<Vec2> places;  // spread evenly over the opening
+  PartMeasure measure;            // of parts of the opening
+  std::vector<LensPlace> places;  // spread evenly over the opening
 };
 
 double NodePosition(int index, int count, int size_px) {
@@ -228,15 +243,18 @@ void FrameWeights::SetGrid(const RenderCamera& frame, std::span<const Vec3> cent
                            double distance_w, size_t in_opening_count) {
   if (distance_w == 0) return;
   const Movement movement = MovementOf(frame, centres_world);
-  // Weights have a sharp edge where the hood cuts the lens, which moves from node to node.
-  const int step_px = frame.hood.exists() ? kWeightBlock : kLeastNodeStep_px;
+  // Weights have a sharp edge where the hood cuts the lens, and at edges of the transmission. They
+  // move from node to node.
+  const bool is_partial = frame.hood.exists() || frame.transmission;
+  const int step_px = is_partial ? kWeightBlock : kLeastNodeStep_px;
   columns_ = NodeCount(movement.across, distance_w, width_px_, step_px);
   rows_ = NodeCount(movement.down, distance_w, height_px_, step_px);
   const size_t most_nodes = kMostShares / centres_world.size();
   if (static_cast<size_t>(columns_) * rows_ > most_nodes && hat_share_ == 0 &&
       in_opening_count >= kManyInOpening && !HasHorizon(frame)) {
-    // With a hood, the opening is another one at every element, and the weights state it.
-    keeps_opening_ = !frame.hood.exists();
+    // With a hood, the opening is another one at every element; a transmission divides cells. The
+    // weights state both.
+    keeps_opening_ = !is_partial;
     CoarsenTo(most_nodes);
   }
   if (columns_ > 1) step_w_ += movement.across / (columns_ - 1);
@@ -263,10 +281,11 @@ FrameWeights::Node FrameWeights::MakeNode(const RenderCamera& frame,
   const auto mix = [&](const std::vector<double>& part, double by) {
     for (size_t k = 0; k < shares.size(); ++k) shares[k] += by * part[k];
   };
-  if (frame.hood.exists()) {
-    const HoodedLens lens(frame, *focus);
+  if (frame.hood.exists() || frame.transmission) {
+    const PartialLens lens(frame, *focus);
     if (hat_share_ < 1)
-      mix(CellShares(seen.points, lens.opening, CoveredBy(seen.points)), 1 - hat_share_);
+      mix(CellShares(seen.points, lens.opening, CoveredBy(seen.points), lens.measure),
+          1 - hat_share_);
     if (hat_share_ > 0) mix(HatShares(seen.points, lens.places), hat_share_);
   } else {
     if (hat_share_ < 1) {

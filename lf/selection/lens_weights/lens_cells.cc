@@ -158,10 +158,10 @@ std::vector<double> CellShares(std::span<const Vec2> points, const Aperture& ape
 }
 
 std::vector<double> CellShares(std::span<const Vec2> points, const ConvexPolygon& opening,
-                               const CoveredRegion& covered) {
-  if (opening.empty()) return std::vector<double>(points.size(), 0);
-  return SharesOf(points, opening, covered, opening.FarthestFrom(Vec2::Zero()), opening.Area(),
-                  [](const ConvexPolygon& cell) { return cell.Area(); });
+                               const CoveredRegion& covered, const PartMeasure& measure) {
+  const double whole = opening.empty() ? 0 : measure(opening);
+  if (whole == 0) return std::vector<double>(points.size(), 0);
+  return SharesOf(points, opening, covered, opening.FarthestFrom(Vec2::Zero()), whole, measure);
 }
 
 std::vector<double> WholeCellShares(std::span<const Vec2> points, const Aperture& aperture,
@@ -184,15 +184,19 @@ std::vector<double> WholeCellShares(std::span<const Vec2> points, const Aperture
 std::vector<double> HatShares(std::span<const Vec2> points, const Aperture& aperture,
                               int sample_count) {
   LF_CHECK(aperture.radius_w >= 0 && sample_count > 0);
-  return HatShares(points, SampleLens(aperture, aperture.radius_w == 0 ? 1 : sample_count));
+  std::vector<LensPlace> places;
+  for (const Vec2& place : SampleLens(aperture, aperture.radius_w == 0 ? 1 : sample_count))
+    places.push_back({place});
+  return HatShares(points, places);
 }
 
-std::vector<double> HatShares(std::span<const Vec2> points, std::span<const Vec2> places) {
+std::vector<double> HatShares(std::span<const Vec2> points, std::span<const LensPlace> places) {
   std::vector<double> shares(points.size(), 0);
   if (points.empty() || places.empty()) return shares;
+  double sum = 0;
+  for (const LensPlace& place : places) sum += place.weight;
   HatMaker hats(points);
-  for (const Vec2& place : places)
-    hats.AddAt(place, 1.0 / static_cast<double>(places.size()), &shares);
+  for (const LensPlace& place : places) hats.AddAt(place.place, place.weight / sum, &shares);
   return shares;
 }
 

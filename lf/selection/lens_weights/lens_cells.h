@@ -2,6 +2,7 @@
 // approximates the integral over the lens area (doc/ray.md, "What is added").
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -24,9 +25,11 @@ namespace lf {
 std::vector<double> CellShares(std::span<const Vec2> points, const Aperture& aperture,
                                const CoveredRegion& covered = {});
 
-// Does the same for an opening that is any convex polygon. If it is empty, all shares are 0.
+// Does the same for an opening that is any convex polygon, and for any measure of its parts: their
+// area, or the light that they let through. If the measure of the opening is 0, all shares are 0.
+using PartMeasure = std::function<double(const ConvexPolygon& part)>;
 std::vector<double> CellShares(std::span<const Vec2> points, const ConvexPolygon& opening,
-                               const CoveredRegion& covered = {});
+                               const CoveredRegion& covered, const PartMeasure& measure);
 
 // Returns, for each point, the area of its whole Voronoi cell, which may extend beyond the opening,
 // divided by the area of the opening. Cells are clipped by the covered region, and by a square that
@@ -46,8 +49,12 @@ std::vector<double> WholeCellShares(std::span<const Vec2> points, const Aperture
 //   aperture  its radius_w must be at least 0; if it is 0, only one sample is used
 std::vector<double> HatShares(std::span<const Vec2> points, const Aperture& aperture,
                               int sample_count = 64);
-// Returns the natural-neighbour weights as a mean over these places of the opening; 0 if there are
-// none.
-std::vector<double> HatShares(std::span<const Vec2> points, std::span<const Vec2> places);
+// Returns the natural-neighbour weights as a weighted mean over these places of the opening; 0 if
+// there are none.
+struct LensPlace {
+  Vec2 place = Vec2::Zero();
+  double weight = 1;  // above 0
+};
+std::vector<double> HatShares(std::span<const Vec2> points, std::span<const LensPlace> places);
 
 }  // namespace lf

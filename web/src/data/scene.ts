@@ -9,6 +9,7 @@ export interface PathHead {
   unit_m: number;
   width: number;
   height: number;
+  transmission?: string; // of the lens, as a path file states it; missing if there is none
 }
 
 // The data of the event that the path's file has changed.

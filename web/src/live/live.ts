@@ -52,7 +52,7 @@ export function startLive(
 function picturesOf(state: State, exported: ExportedLive | null): Pictures {
   const loaded = () => state.emit("live");
   if (exported) return new ExportedPictures(exported, loaded);
-  const unit_m = () => state.path.unit_m;
-  const open = (lost: () => void) => new GlPictures(GlRenderer.open(lost), unit_m, loaded);
-  return new ChosenPictures(new ServerPictures(unit_m), wishOf(location.search), open, loaded);
+  const path = () => state.path;
+  const open = (lost: () => void) => new GlPictures(GlRenderer.open(lost), path, loaded);
+  return new ChosenPictures(new ServerPictures(path), wishOf(location.search), open, loaded);
 }

@@ -99,7 +99,7 @@ export class LiveView {
   }
 
   private path(): string {
-    return oneFramePath(this.camera.camera, this.state.path.unit_m);
+    return oneFramePath(this.camera.camera, this.state.path);
   }
 
   // Returns the width to be rendered: that of the picture on the screen, in steps so that few sizes occur.

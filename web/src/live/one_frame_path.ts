@@ -2,7 +2,7 @@
 // quickly even if the film has thousands of frames.
 
 import type { FrameCamera } from "../data/frame_camera";
-import type { Vec3 } from "../data/scene";
+import type { PathHead, Vec3 } from "../data/scene";
 
 const DEGREES = 180 / Math.PI;
 
@@ -35,11 +35,15 @@ export function isBreathing({ fx, sensorWidth, width, focalLength }: FrameCamera
   return Math.abs((fx * sensorWidth) / width - focalLength) > 1e-9 * focalLength;
 }
 
-export function oneFramePath(camera: FrameCamera, unit_m: number): string {
+// The properties of a path that its cameras do not have.
+export type PathFacts = Pick<PathHead, "unit_m" | "transmission">;
+
+export function oneFramePath(camera: FrameCamera, { unit_m, transmission }: PathFacts): string {
   const list = (numbers: readonly number[]): string => `[${numbers.join(", ")}]`;
   const perElement = camera.sensorWidth / camera.width;
   const hood =
     camera.hoodRadius > 0 ? `  hood_distance: ${camera.hoodDistance}\n  hood_diameter: ${2 * camera.hoodRadius}\n` : "";
+  const ofTransmission = transmission ? `  transmission: "${transmission}"\n` : "";
   const shift = [(camera.width / 2 - camera.cx) * perElement, (camera.cy - camera.height / 2) * perElement];
   return `format: lfpath 1
 fps: 1
@@ -61,5 +65,5 @@ lens:
   blade_rotation_deg: ${camera.rotation * DEGREES}
   blade_roundness: ${camera.roundness}
   ratio: ${camera.ratio}
-${hood}`;
+${hood}${ofTransmission}`;
 }

@@ -3,7 +3,7 @@
 import type { FrameCamera } from "../data/frame_camera";
 import { readLivePicture, type LivePicture } from "../data/live_picture";
 import { postForBytes } from "../data/source";
-import { oneFramePath } from "./one_frame_path";
+import { oneFramePath, type PathFacts } from "./one_frame_path";
 
 export interface PictureRequest {
   camera: FrameCamera;
@@ -18,16 +18,16 @@ export interface Pictures {
 }
 
 // Returns the body of a request to the server, without its budget.
-export function bodyOf({ camera, width, recordedOnly }: PictureRequest, unit_m: number): object {
-  return { text: oneFramePath(camera, unit_m), frame: 1, width, recorded: recordedOnly };
+export function bodyOf({ camera, width, recordedOnly }: PictureRequest, path: PathFacts): object {
+  return { text: oneFramePath(camera, path), frame: 1, width, recorded: recordedOnly };
 }
 
 export class ServerPictures implements Pictures {
-  constructor(private readonly unit_m: () => number) {}
+  constructor(private readonly path: () => PathFacts) {}
 
   async ask(request: PictureRequest): Promise<LivePicture | null> {
     const { budget_ms } = request;
-    const body = { ...bodyOf(request, this.unit_m()), ...(budget_ms === null ? {} : { budget_ms }) };
+    const body = { ...bodyOf(request, this.path()), ...(budget_ms === null ? {} : { budget_ms }) };
     const answer = await postForBytes<unknown>("live", body);
     return answer instanceof ArrayBuffer ? readLivePicture(answer) : null;
   }

@@ -60,6 +60,7 @@ export class FramePanel {
         "Hood",
         `${millimetres(2 * camera.hoodRadius, path.unit_m)} wide, ${length(camera.hoodDistance)} in front`,
       ]);
+    if (path.transmission) rows.push(["Transmission", "a picture in the opening"]);
     if (shift !== 0 || rise !== 0)
       rows.push(["Shift", `${millimetres(shift, path.unit_m)}, ${millimetres(rise, path.unit_m)}`]);
     const { cx, fx, width } = camera;

@@ -132,8 +132,9 @@ test("the path of one frame has the camera of the frame", () => {
   });
   for (const turn of [0, 1, 2, 3, 4]) {
     const camera = orbited(start, [0.2, -1, 0.4], turn * 1.3, turn * 0.25);
-    const text = oneFramePath(camera, 0.01);
+    const text = oneFramePath(camera, { unit_m: 0.01, transmission: "ff00/0000" });
     const [read] = readByPrograms(text).cameras;
+    assertNear([read.transmission], [0.25], 1e-9);
     assertNear(read.position_w, camera.centre, 1e-9);
     assertNear(read.forward, camera.forward, 1e-9);
     assertNear(read.up, camera.up, 1e-9);

@@ -60,7 +60,7 @@ test("the field of view breathes as the programs say", () => {
   const fx = (distance: number): number => 48 / widthAt(distance);
   const near = cameraAt([0, 0, 0], { focalLength: 0.05, focusDistance: 0.5, fx: fx(0.5), fy: fx(0.5) });
   assertNear([withFocusDistance(near, 2).fx], [fx(2)], 1e-3);
-  assert.match(oneFramePath(near, 1), /breathing: true/);
+  assert.match(oneFramePath(near, { unit_m: 1 }), /breathing: true/);
   assert.ok(Math.abs(fx(2) - fx(0.5)) > 1, "the field of view changes");
 });
 

@@ -19,6 +19,7 @@ export interface Camera {
   blades: number;
   shift_mm: number[];
   hood_mm: number[];
+  transmission: number;
   ratio: number;
   blade_roundness: number;
 }

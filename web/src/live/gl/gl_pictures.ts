@@ -4,6 +4,7 @@ import { readHead } from "../../data/head";
 import type { LivePicture } from "../../data/live_picture";
 import { getBytes, postForBytes } from "../../data/source";
 import type { LocalPictures } from "../chosen_pictures";
+import type { PathFacts } from "../one_frame_path";
 import { bodyOf, type PictureRequest } from "../pictures";
 import { GlRenderer } from "./gl_renderer";
 import { readLens, type LensAnswer } from "./lens";
@@ -25,7 +26,7 @@ export class GlPictures implements LocalPictures {
   //   loaded  is called when LF images have come to the graphics card
   constructor(
     readonly renderer: GlRenderer,
-    private readonly unit_m: () => number,
+    private readonly path: () => PathFacts,
     private readonly loaded: () => void,
   ) {}
 
@@ -45,7 +46,7 @@ export class GlPictures implements LocalPictures {
   // Returns null as long as LF images of the picture are not on the graphics card; they are loaded from then on. Throws
   // if no picture of this light field can be rendered here.
   async ask(request: PictureRequest): Promise<LivePicture | null> {
-    const body = { ...bodyOf(request, this.unit_m()), images: this.most };
+    const body = { ...bodyOf(request, this.path()), images: this.most };
     const answer = await postForBytes<unknown>("lens", body);
     return answer instanceof ArrayBuffer ? this.pictureOf(request, readLens(answer)) : null;
   }
