@@ -104,9 +104,10 @@ def programs(root):
 
 
 def offered_by(option, offered):
-    """Returns the programs that offer an option, or all but those that do not, whichever is shorter."""
+    """Returns the programs that offer an option, or all but those that do not, whichever is shorter. A program that
+    offers none only lists its commands, and is left out."""
     names = [code(name) for name, options in offered.items() if option in options]
-    others = [code(name) for name, options in offered.items() if option not in options]
+    others = [code(name) for name, options in offered.items() if options and option not in options]
     if len(others) >= len(names):
         return ", ".join(names)
     return "all but " + " and ".join(filter(None, (", ".join(others[:-1]), others[-1]))) if others else "all"

@@ -38,6 +38,9 @@ OFFERED = {
     "lfcompressor": set(COMMON) - {"--seed"},
     "lfdensify": set(COMMON) - {"--seed"},
     "lfrenderer": set(COMMON),
+    # lffocus alone only lists its commands, whose options follow their names.
+    "lffocus": set(),
+    "lffocus stack": set(COMMON),
     # --allow-missing follows the two dashes, because it is an option of lfrenderer.
     "lfsubmit": set(COMMON) - {"--seed", "--allow-missing"},
     "lfmerge": set(COMMON) - {"--seed", "--strict"},

@@ -13,12 +13,13 @@ FORMATS = {"int": "<i", "float": "<f", "double": "<d", "v2f": "<2f", "rational":
            "chromaticities": "<8f", "m44f": "<16f", "box2i": "<4i", "compression": "<B"}
 
 
-def read_header(data):
-    """Returns the attributes of the first part, {name: (type, value)}, and the index of the byte after its header.
+def read_header(data, at=8):
+    """Returns the attributes of the part whose header begins at a byte, {name: (type, value)}, and the index of the
+    byte after its header. The header of the first part begins at byte 8.
 
     A matrix is an array [row][column]; a value of one number is that number, other values are tuples, texts or bytes.
     """
-    attributes, at = {}, 8
+    attributes = {}
     while data[at]:
         words = []
         for _ in range(2):
@@ -36,6 +37,28 @@ def channels_of(path):
     """Returns {name: array [height][width]} of a file of rows that are compressed by zip."""
     data = path.read_bytes()
     header, at = read_header(data)
+    return _channels(data, header, at, 0)
+
+
+def parts_of(path):
+    """Returns, for each part of a file of several parts, its attributes {name: value} and its channels, as
+    attributes_of() and channels_of() do."""
+    data = path.read_bytes()
+    assert struct.unpack_from("<I", data, 4)[0] & 0x1000, "expected a file of several parts"
+    headers, at = [], 8
+    while data[at]:
+        header, at = read_header(data, at)
+        headers.append(header)
+    at += 1
+    parts = []
+    for header in headers:
+        parts.append(({name: value for name, (_, value) in header.items()}, _channels(data, header, at, 4)))
+        at += 8 * header["chunkCount"][1]
+    return parts
+
+
+def _channels(data, header, at, extra):
+    """Returns the channels of a part whose table of blocks begins at a byte. Each block begins with `extra` bytes."""
     assert header["compression"][1] == 3, "expected zip compression"
     left, top, right, bottom = header["dataWindow"][1]
     width, height = right - left + 1, bottom - top + 1
@@ -43,10 +66,11 @@ def channels_of(path):
     row = np.dtype([(name, kind, width) for name, kind in types.items()])
     rows = np.empty(height, row)
     for block, offset in enumerate(np.frombuffer(data, "<u8", -(-height // BLOCK_ROWS), at)):
-        begin, size = struct.unpack_from("<ii", data, offset)
+        pixels = int(offset) + extra + 8
+        begin, size = struct.unpack_from("<ii", data, pixels - 8)
         assert begin - top == block * BLOCK_ROWS
         count = min(BLOCK_ROWS, height - block * BLOCK_ROWS)
-        packed = data[int(offset) + 8:int(offset) + 8 + size]
+        packed = data[pixels:pixels + size]
         rows[begin - top:begin - top + count] = np.frombuffer(
             packed if size == count * row.itemsize else _unpacked(packed), row)
     return {name: rows[name] for name in types}

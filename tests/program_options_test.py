@@ -26,6 +26,8 @@ CALLS = {
     "lfcompressor": ["no", "-o", "no.lfs"],
     "lfdensify": ["no", "-o", "no.lfs"],
     "lfexample": ["no", "-o", "no.yaml"],
+    "lffocus": [],
+    "lffocus stack": ["no", "no.yaml", "-o", "no"],
     "lfimport": ["no"],
     "lfmerge": ["no", "-o", "no"],
     "lfsubmit": ["no.lfp", "-o", "no"],
@@ -59,33 +61,40 @@ def hint(count):
 
 
 class ProgramOptionsTest(ProgramTestCase):
-    def program(self, name):
-        return BIN / name
+    def call(self, name, *arguments):
+        """Calls a program, or a command of one, such as "lffocus stack"."""
+        program, *command = name.split()
+        return super().call(BIN / program, *command, *arguments)
 
     def test_all_programs_are_listed(self):
         programs = {path.name for path in BIN.iterdir() if path.name.startswith("lf")}
-        self.assertEqual(programs, set(OFFERED))
+        self.assertEqual(programs, {name.split()[0] for name in OFFERED})
+
+    def test_all_commands_are_listed(self):
+        commands = {name.split()[1] for name in OFFERED if name.startswith("lffocus ")}
+        last = self.call("lffocus", "no").stderr.splitlines()[-1]
+        self.assertEqual(set(re.search("the commands (.*) as the first", last)[1].split(", ")), commands)
 
     # Every start of a program loads all of its shared libraries. A library for all image formats once brought 250.
     def test_few_libraries_are_loaded(self):
         for name in OFFERED:
             with self.subTest(program=name):
-                libraries = subprocess.run(["ldd", self.program(name)], capture_output=True, text=True).stdout
+                libraries = subprocess.run(["ldd", BIN / name.split()[0]], capture_output=True, text=True).stdout
                 self.assertLess(len(libraries.splitlines()), 50, libraries)
 
     def test_help_tells_the_options_that_have_an_effect(self):
         for name, offered in OFFERED.items():
             with self.subTest(program=name):
-                text = self.succeeds(self.program(name), "--help")
+                text = self.succeeds(name, "--help")
                 self.assertEqual({option for option in options_in(text) if option in COMMON}, offered)
                 if "--progress" in offered:
-                    self.assertIn("auto: a bar on a terminal", self.succeeds(self.program(name), "--help-all"))
+                    self.assertIn("auto: a bar on a terminal", self.succeeds(name, "--help-all"))
 
     def test_help_can_be_scanned(self):
         for name in OFFERED:
             with self.subTest(program=name):
-                text = self.succeeds(self.program(name), "--help")
-                everything = self.succeeds(self.program(name), "--help-all")
+                text = self.succeeds(name, "--help")
+                everything = self.succeeds(name, "--help-all")
                 for line in (text + everything).splitlines():
                     self.assertLessEqual(len(line), 100, line)
                     self.assertEqual(line, line.rstrip())
@@ -102,7 +111,7 @@ class ProgramOptionsTest(ProgramTestCase):
     def test_defaults_in_help_are_those_listed(self):
         listed = dict(line.rsplit(" ", 1) for line in defaults.listed() if " --" in line)
         for name in OFFERED:
-            everything = self.succeeds(self.program(name), "--help-all")
+            everything = self.succeeds(name, "--help-all")
             for line in option_lines(everything):
                 match = re.match(SCANNED, line)
                 value = listed.get(f"{name} {match['name']}")
@@ -117,7 +126,7 @@ class ProgramOptionsTest(ProgramTestCase):
                     continue
                 with self.subTest(program=name, option=option):
                     call = [*CALLS[name], option, *VALUES.get(option, [])]
-                    result = self.call(self.program(name), *call)
+                    result = self.call(name, *call)
                     self.assertEqual(result.returncode, 2, result.stderr)
                     self.assertIn(f"Try '{name} --help'", result.stderr)
                     self.assertIn(option, result.stderr.splitlines()[-1])
@@ -133,6 +142,7 @@ class ProgramOptionsTest(ProgramTestCase):
         yield "lfpreprocessor", [field, path, "-o", out / "packages", "--overwrite"], "octree"
         yield "lfrenderer", [field, path, "-o", out / "frames"], "instruction set"
         yield "lfrenderer", [field, path, "-o", out / "shards", "--shard", "1/1"], "memory: "
+        yield "lffocus stack", [field, path, "-o", out / "stack", "--near", 0.3, "--far", 1], "instruction set"
         yield "lfmerge", [out / "shards", "-o", out / "merged", "--overwrite"], "plates"
         yield "lfcompressor", [field, "-o", out / "a.lfs", "--overwrite"], "codec default"
         yield "lfdensify", [field, "-o", out / "b.lfs", "--overwrite", "--depths", 0.2, 10, "--force"], "divisor 1"
@@ -146,8 +156,8 @@ class ProgramOptionsTest(ProgramTestCase):
         called = set()
         for name, arguments, word in self.calls():
             with self.subTest(program=name):
-                plain = self.call(self.program(name), *arguments)
-                told = self.call(self.program(name), *arguments, "-v")
+                plain = self.call(name, *arguments)
+                told = self.call(name, *arguments, "-v")
                 self.assertEqual((plain.returncode, told.returncode), (0, 0), told.stderr)
                 self.assertGreater(len(told.stderr.splitlines()), len(plain.stderr.splitlines()))
                 self.assertIn(word, told.stderr)
@@ -163,7 +173,6 @@ class ProgramOptionsTest(ProgramTestCase):
         for arguments in (["lfrenderer", field, path, "-o", self.folder / "frames"],
                           ["lfexample", field, "-o", self.folder / "example.yaml"],
                           ["lfsynth", "lights", "-o", self.folder / "lights", "--calibration-only"]):
-            arguments[0] = self.program(arguments[0])
             plain, quiet = self.call(*arguments), self.call(*arguments, "-q")
             self.assertEqual((plain.returncode, quiet.returncode), (0, 0))
             self.assertNotEqual(plain.stderr, "")

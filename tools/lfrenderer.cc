@@ -15,7 +15,6 @@
 #include "tools/common/progress.h"
 #include "tools/render_arguments.h"
 #include "tools/render_densified.h"
-#include "tools/render_end.h"
 #include "tools/render_summary.h"
 
 #include "lf/core/geometry.h"
@@ -161,10 +160,6 @@ int main(int argc, char** argv) {
       return lf::OutputError(
           "--json: the report cannot be written to stdout: is the disk full, or was the pipe "
           "closed?");
-    lf::Result<void> required = lf::CheckRequired(report, rendered.options.film.require_samples);
-    if (required) required = lf::CheckRequiredNoise(report, rendered.options.film.require_noise);
-    LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, arguments.allow_missing.Limit());
-    LF_RETURN_IF_ERROR(lf::EndOfRender(report, limit, required));
-    return lf::EndWithMissing(rendered.missing, limit);
+    return lf::OutcomeOf(report, rendered.options.film, arguments.allow_missing, rendered.missing);
   });
 }

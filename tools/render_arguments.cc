@@ -173,12 +173,25 @@ void AddQuality(CLI::App& app, RenderArguments& a) {
       ->check(NotEmpty());
 }
 
-void AddRunning(CLI::App& app, RenderArguments& a) {
-  OptionGroup running(app, kRunningGroup);
+void AddMemory(OptionGroup& running, RenderArguments& a) {
   running.Add(
       "--memory SIZE", a.memory,
       "Upper limit of the memory that is used\n"
       "SIZE: such as 8G or 512M. With less memory, the frames are rendered in more passes.");
+}
+
+void AddDumpEvery(OptionGroup& running, RenderArguments& a) {
+  running.Add("--dump-every TIME", a.dump_every,
+              "Time between checkpoints\n"
+              "A render that is killed loses the work since its last checkpoint. TIME is a number "
+              "with a unit, such as 30s, 10m or 1h. The time between checkpoints is longer if "
+              "writing them would otherwise take more than 5 % of the time. 0: checkpoints are "
+              "only written at signals, such as Ctrl-C.");
+}
+
+void AddRunning(CLI::App& app, RenderArguments& a) {
+  OptionGroup running(app, kRunningGroup);
+  AddMemory(running, a);
   CLI::Option* const resume = running.AddFlag(
       "--resume", a.resume,
       "Continue the unfinished render in DIR\n"
@@ -199,12 +212,7 @@ void AddRunning(CLI::App& app, RenderArguments& a) {
           "this way, the report states how far it got: it contains those of its LF images whose "
           "rank in the order of the light field, from 0, is below finished_early_before_place.")
       ->check(NotEmpty());
-  running.Add("--dump-every TIME", a.dump_every,
-              "Time between checkpoints\n"
-              "A render that is killed loses the work since its last checkpoint. TIME is a number "
-              "with a unit, such as 30s, 10m or 1h. The time between checkpoints is longer if "
-              "writing them would otherwise take more than 5 % of the time. 0: checkpoints are "
-              "only written at signals, such as Ctrl-C.");
+  AddDumpEvery(running, a);
   running
       .Add("--shard k/K", a.shard,
            "Render part k of K of the LF images, for lfmerge\n"
@@ -245,6 +253,16 @@ void RenderArguments::AddTo(CLI::App& app) {
   AddPicture(app, *this);
   AddQuality(app, *this);
   AddRunning(app, *this);
+  rebin.AddTo(app);
+  AddMeasuring(app, *this);
+}
+
+void RenderArguments::AddRenderingTo(CLI::App& app) {
+  AddPicture(app, *this);
+  AddQuality(app, *this);
+  OptionGroup running(app, kRunningGroup);
+  AddMemory(running, *this);
+  AddDumpEvery(running, *this);
   rebin.AddTo(app);
   AddMeasuring(app, *this);
 }

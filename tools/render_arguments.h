@@ -1,4 +1,4 @@
-// The command line of lfrenderer.
+// The command line of lfrenderer, of which `lffocus stack` has a part.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -37,6 +37,10 @@ struct RenderArguments {
        resume = false, overwrite = false, keep_plates = false;
 
   void AddTo(CLI::App& app);
+  // Adds only the options that decide pictures, memory and checkpoints, for a program that renders
+  // frames of its own: not those of the inputs and the outputs, nor --resume, --overwrite, --finish
+  // and --shard.
+  void AddRenderingTo(CLI::App& app);
   // Returns the common options of lfrenderer.
   static OfferedOptions Common();
 

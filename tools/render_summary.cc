@@ -8,6 +8,7 @@
 
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
+#include "tools/render_end.h"
 
 #include "lf/core/log.h"
 #include "lf/core/shell_word.h"
@@ -248,6 +249,15 @@ Result<void> CheckRequiredNoise(const RenderReport& report, std::optional<double
       fmt::format("--require noise<={}: {} of {} frames have more noise in over 10 % of the "
                   "elements that LF images see: {}{}; a wider aperture or more LF images reduce it",
                   *noise, count, report.frames.size(), frames, count > kNamed ? ", ..." : "")};
+}
+
+Result<void> OutcomeOf(const RenderReport& report, const FilmOptions& film,
+                       const AllowMissing& allow_missing, const MissingImages& densify) {
+  Result<void> required = CheckRequired(report, film.require_samples);
+  if (required) required = CheckRequiredNoise(report, film.require_noise);
+  LF_ASSIGN_OR_RETURN(const MissingLimit limit, allow_missing.Limit());
+  LF_RETURN_IF_ERROR(EndOfRender(report, limit, required));
+  return EndWithMissing(densify, limit);
 }
 
 }  // namespace lf

@@ -5,7 +5,10 @@
 #include <optional>
 #include <string>
 
+#include "tools/common/allow_missing.h"
+
 #include "lf/core/result.h"
+#include "lf/render/pipeline/film_options.h"
 #include "lf/render/state/report.h"
 
 namespace lf {
@@ -30,5 +33,12 @@ Result<void> CheckRequired(const RenderReport& report, std::optional<uint32_t> s
 // such frames.
 //   noise  X of --require "noise<=X"; unset: nothing is required
 Result<void> CheckRequiredNoise(const RenderReport& report, std::optional<double> noise);
+
+// Returns the outcome of a render whose results are all written: kBelowRequired if frames have less
+// quality than the options require, or if more LF images were left out than --allow-missing
+// accepts.
+//   densify  LF images that --densify left out
+Result<void> OutcomeOf(const RenderReport& report, const FilmOptions& film,
+                       const AllowMissing& allow_missing, const MissingImages& densify);
 
 }  // namespace lf

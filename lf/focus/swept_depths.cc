@@ -5,8 +5,7 @@
 
 namespace lf {
 
-std::optional<DepthRange> SweptDepths(const LightField& light_field, const LfImageStore& store,
-                                      const Vec3& position_world, ThreadPool& pool) {
+LfImageId NearestCamera(const LightField& light_field, const Vec3& position_world) {
   LfImageId nearest{0};
   double nearest_w = -1;
   for (uint32_t i = 0; i < light_field.size(); ++i) {
@@ -15,8 +14,14 @@ std::optional<DepthRange> SweptDepths(const LightField& light_field, const LfIma
     nearest = LfImageId{i};
     nearest_w = away_w;
   }
+  return nearest;
+}
+
+std::optional<DepthRange> SweptDepths(const LightField& light_field, const LfImageStore& store,
+                                      const Vec3& position_world, ThreadPool& pool) {
   if (light_field.size() < 3) return std::nullopt;
-  const Result<Subject> subject = FindSubject(light_field, store, nearest, pool);
+  const Result<Subject> subject =
+      FindSubject(light_field, store, NearestCamera(light_field, position_world), pool);
   if (!subject) {
     LogDebug("depths of the scene: {}", subject.error().message);
     return std::nullopt;

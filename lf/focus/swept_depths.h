@@ -4,11 +4,16 @@
 #include <optional>
 
 #include "lf/core/geometry.h"
+#include "lf/core/ids.h"
 #include "lf/core/parallel.h"
 #include "lf/light_field/model/light_field.h"
 #include "lf/storage/load/lf_image_store.h"
 
 namespace lf {
+
+// Returns the LF camera nearest to a position; the first one of several. The light field must have
+// a camera.
+LfImageId NearestCamera(const LightField& light_field, const Vec3& position_world);
 
 // Runs FindSubject() for the LF camera nearest to a position. Returns the range of depths, along
 // the camera's optical axis, that contains four fifths of the depths found in its image, widened by

@@ -24,6 +24,7 @@ from .captures import compress, forecast, report, synth, write_packages
 from .display import display_values
 from .errors import (BelowRequired, BlackFrameWarning, Error, InputError, InterruptedRender, MissingImagesWarning,
                      OutputError, UncertainFocusWarning, UsageError)
+from .focus_stacks import FocusStack, focus_stack
 from .frames import Frame, Plate
 from .light_field import Intrinsics, LightField, read_image
 from .opening import open
@@ -32,9 +33,9 @@ from .rig import Grid
 
 __version__: str = _core.version
 
-__all__ = ["BelowRequired", "BlackFrameWarning", "Camera", "Error", "Frame", "Grid", "InputError",
+__all__ = ["BelowRequired", "BlackFrameWarning", "Camera", "Error", "FocusStack", "Frame", "Grid", "InputError",
            "InterruptedRender", "Intrinsics", "LightField", "MissingImagesWarning", "OutputError", "Path", "Plate",
            "Renderer", "Selection", "UncertainFocusWarning", "UsageError", "compress", "display_values", "film",
-           "forecast", "open", "read_image", "render", "report", "select", "synth", "write_packages"]
+           "focus_stack", "forecast", "open", "read_image", "render", "report", "select", "synth", "write_packages"]
 
 logging.getLogger("lfrendertools").addHandler(logging.NullHandler())

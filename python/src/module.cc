@@ -3,6 +3,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include "python/src/analysis.h"
 #include "python/src/cameras.h"
 #include "python/src/captures.h"
 #include "python/src/errors.h"
@@ -20,6 +21,7 @@ PYBIND11_MODULE(_core, module) {
   lf::python::AddCameras(module);
   lf::python::AddFrames(module);
   lf::python::AddFilm(module);
+  lf::python::AddAnalysis(module);
   lf::python::AddCaptures(module);
   module.attr("version") = LF_VERSION;
 }

@@ -332,6 +332,10 @@ Result<RenderReport> Renderer::End() {
     if (const Result<void> video = film.WriteVideo(setup_->frames(), *folder_.video); !video)
       video_error = video.error();
   if (video_error && video_error->kind == ErrorKind::kInterrupted) return Interrupted();
+  if (folder_.complete) {
+    if (const Result<void> completed = folder_.complete(); !completed)
+      return completed.error().kind == ErrorKind::kInterrupted ? Interrupted() : completed.error();
+  }
   for (const auto& [frame, report] : state_->finished()) totals_.frames.push_back(report);
   totals_.total_s += NowSeconds() - begin_s_;
   totals_.peak_memory_bytes = PeakMemoryBytes();

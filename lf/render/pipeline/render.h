@@ -54,6 +54,10 @@ struct FolderOptions {
   // state is rendered as usual. Needs `resume`; must be empty for a shard.
   std::vector<FrameId> finish_early;  // ascending
   std::string version;                // version of the program, for the metadata of the files
+  // Called when the files of all frames are complete, before the state is removed; may be empty. If
+  // it returns an error, the render ends with it, and a resumed render keeps the frames and calls
+  // it again.
+  std::function<Result<void>()> complete = {};
 };
 
 // If FilmOptions::shard is set, the render writes plates for MergeShards() instead of frames and a

@@ -1,0 +1,188 @@
+#include "lf/analysis/focus_stack/focus_stack.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "lf/core/check.h"
+#include "lf/core/file.h"
+#include "lf/core/log.h"
+#include "lf/film/develop/frame_file.h"
+#include "lf/film/develop/video.h"
+#include "lf/pixels/files/exr_parts.h"
+#include "lf/render/pipeline/check_outputs.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+std::string PartName(FrameId plane) { return fmt::format("focus_{:04}", plane.value); }
+
+bool Exists(const fs::path& path) {
+  std::error_code error;
+  return fs::exists(path, error);
+}
+
+// Returns true if the folder is missing, empty, or one that RenderFocusStack() has left.
+bool IsOurs(const fs::path& folder) {
+  std::error_code error;
+  return !fs::exists(folder, error) || fs::is_empty(folder, error) ||
+         fs::is_directory(folder / "partial", error) || fs::exists(folder / "report.json", error);
+}
+
+// Returns the files of the light field that the package reads.
+std::vector<fs::path> FilesOf(const Package& package, const RenderOptions& options) {
+  std::vector<fs::path> files = options.folder.inputs;
+  const LightField& field = package.light_field;
+  for (const std::vector<std::string>* names : {&field.image_names, &field.mask_names})
+    for (const std::string& name : *names)
+      if (!name.empty()) files.push_back(field.folder / name);
+  return files;
+}
+
+Result<void> CheckFile(const Package& package, const FocusStackOptions& options) {
+  const FolderOptions& folder = options.render.folder;
+  const fs::path partial = StackFolder(options.output);
+  LF_RETURN_IF_ERROR(CheckReplacesNone({options.output}, FilesOf(package, options.render)));
+  if (!IsOurs(partial))
+    return UsageError(fmt::format(
+        "{}: is a folder of something else, but the render of {} keeps its state in a folder of "
+        "this name: move it, or give another -o",
+        partial.string(), options.output.string()));
+  std::error_code error;
+  if (fs::is_directory(options.output, error))
+    return UsageError(
+        fmt::format("{}: is a folder: give the name of a file, or of a folder without the "
+                    "extension {}",
+                    options.output.string(), options.output.extension().string()));
+  if (Exists(options.output) && !folder.overwrite && !(folder.resume && Exists(partial)))
+    return UsageError(
+        fmt::format("{}: exists: give another name, or replace the file with --overwrite",
+                    options.output.string()));
+  if (FormOfStack(options.output) != FocusStackForm::kVideo) return {};
+  LF_RETURN_IF_ERROR(CheckVideoTool());
+  return CheckVideoTarget(options.output);
+}
+
+// Returns the planes in the order in which a video shows them.
+std::vector<FrameId> ShownPlanes(size_t count, bool back_and_forth) {
+  std::vector<FrameId> planes;
+  for (size_t i = 1; i <= count; ++i) planes.push_back(FrameId{static_cast<uint32_t>(i)});
+  if (back_and_forth)
+    for (size_t i = count - 1; i > 1; --i) planes.push_back(FrameId{static_cast<uint32_t>(i)});
+  return planes;
+}
+
+// Writes the outputs that are made of the frames of a whole stack.
+class StackOutputs {
+ public:
+  StackOutputs(const CameraPath& stack, const FocusStackOptions& options, const fs::path& folder)
+      : stack_(stack), options_(options), folder_(folder) {}
+
+  Result<void> Write() const {
+    switch (FormOfStack(options_.output)) {
+      case FocusStackForm::kFolder:
+        return WriteFileAtomically(folder_ / "planes.json", FocusPlanesJson(stack_, options_));
+      case FocusStackForm::kExr:
+        return WriteExrFile();
+      case FocusStackForm::kVideo:
+        break;
+    }
+    return WriteVideo();
+  }
+
+ private:
+  bool IsStopped() const {
+    return options_.render.signals != nullptr && options_.render.signals->stop;
+  }
+  fs::path PathOf(FrameId plane) const {
+    return FramePath(folder_, plane, options_.render.folder.format);
+  }
+
+  Result<void> WriteExrFile() const {
+    std::vector<ExrPart> parts;
+    for (const FrameId plane : ShownPlanes(stack_.frame_count(), false))
+      parts.push_back({PathOf(plane), PartName(plane)});
+    return JoinExr(options_.output, parts, [this] { return IsStopped(); });
+  }
+
+  Result<void> WriteVideo() const {
+    const Intrinsics& plate = stack_.cameras.front().pinhole.intrinsics;
+    LF_ASSIGN_OR_RETURN(
+        const std::unique_ptr<VideoWriter> writer,
+        VideoWriter::Open(options_.output, plate.width_px, plate.height_px, stack_.fps));
+    for (const FrameId plane : ShownPlanes(stack_.frame_count(), options_.back_and_forth)) {
+      if (IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted at the video"};
+      LF_ASSIGN_OR_RETURN(const Image<uint8_t> picture,
+                          ReadDisplayImage(PathOf(plane), options_.render.folder.picture.colours));
+      LF_RETURN_IF_ERROR(writer->Add(picture));
+    }
+    return writer->Close();
+  }
+
+  const CameraPath& stack_;
+  const FocusStackOptions& options_;
+  const fs::path& folder_;
+};
+
+}  // namespace
+
+FocusStackForm FormOfStack(const fs::path& output) {
+  const std::string extension = output.extension().string();
+  if (extension == ".exr") return FocusStackForm::kExr;
+  return extension == ".mp4" ? FocusStackForm::kVideo : FocusStackForm::kFolder;
+}
+
+fs::path StackFolder(const fs::path& output) {
+  if (FormOfStack(output) == FocusStackForm::kFolder) return output;
+  return output.string() + ".partial";
+}
+
+Result<RenderReport> RenderFocusStack(Package package, const FocusStackOptions& options,
+                                      ThreadPool& pool,
+                                      const std::function<void(const RenderProgress&)>& progress) {
+  LF_CHECK(options.render.frames.empty());
+  const bool is_file = FormOfStack(options.output) != FocusStackForm::kFolder;
+  const fs::path folder = StackFolder(options.output);
+  const CameraPath stack = package.path;
+  if (is_file)
+    LF_RETURN_IF_ERROR(CheckFile(package, options));
+  else
+    LF_RETURN_IF_ERROR(
+        CheckReplacesNone({folder / "planes.json"}, FilesOf(package, options.render)));
+  const StackOutputs outputs(stack, options, folder);
+  RenderOptions render = options.render;
+  render.folder.output_folder = folder;
+  render.folder.complete = [&outputs] { return outputs.Write(); };
+  if (is_file) render.folder.contact_sheet = false;
+  Result<RenderReport> report = Render(std::move(package), render, pool, progress);
+  if (!report || !is_file) return report;
+  std::error_code error;
+  fs::remove_all(folder, error);
+  if (error)
+    LogWarning("{}: cannot be removed: {}; it is no longer needed", folder.string(),
+               error.message());
+  return report;
+}
+
+std::string FocusPlanesJson(const CameraPath& stack, const FocusStackOptions& options) {
+  std::string planes;
+  for (const FrameId plane : ShownPlanes(stack.frame_count(), false)) {
+    const double distance_w = stack.Camera(plane).focus_distance_w;
+    const bool is_part = FormOfStack(options.output) == FocusStackForm::kExr;
+    const std::string name = FramePath("", plane, options.render.folder.format).string();
+    planes += fmt::format(
+        "{}\n    {{\"frame\": {}, \"{}\": \"{}\", \"focus_distance_w\": {}, "
+        "\"focus_distance_mm\": {}}}",
+        planes.empty() ? "" : ",", plane.value, is_part ? "part" : "file",
+        is_part ? PartName(plane) : name, distance_w, distance_w * stack.unit_m * 1000);
+  }
+  return fmt::format("{{\n  \"frame\": {},\n  \"unit_m\": {},\n  \"planes\": [{}\n  ]\n}}\n",
+                     options.frame.value, stack.unit_m, planes);
+}
+
+}  // namespace lf

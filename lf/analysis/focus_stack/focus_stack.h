@@ -1,0 +1,64 @@
+// Renders a focus stack: pictures of one camera that differ only in their focus distance. It is a
+// film whose frames are the planes of the stack, so that each LF image is read once for all planes
+// that fit in the memory together, and each picture has the bits of a single render.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "lf/camera/path/camera_path.h"
+#include "lf/core/ids.h"
+#include "lf/core/parallel.h"
+#include "lf/core/result.h"
+#include "lf/render/package/package.h"
+#include "lf/render/pipeline/render.h"
+#include "lf/render/state/report.h"
+
+namespace lf {
+
+// How a focus stack is written.
+//   kFolder  frames in a folder as Render() writes them, and planes.json, which lists the planes
+//   kExr     one EXR file with a part for each plane: focus_0001, focus_0002, ... Its attributes
+//   are
+//            those of the EXR file of a frame, with the focus distance in metres (focus) and in
+//            world units (lf:focus_distance_w).
+//   kVideo   an mp4 in which the focus moves from the first plane to the last
+enum class FocusStackForm { kFolder, kExr, kVideo };
+
+// Returns the form that the extension of the output stands for: .exr, .mp4, or any other for a
+// folder.
+FocusStackForm FormOfStack(const std::filesystem::path& output);
+
+// Returns the folder that holds the frames and the state of an unfinished render: the output itself
+// or, if it is a file, FILE.partial beside it.
+std::filesystem::path StackFolder(const std::filesystem::path& output);
+
+struct FocusStackOptions {
+  std::filesystem::path output;
+  FrameId frame = FrameId{1};  // frame of the path that the camera was taken from, for planes.json
+  // True: the video goes back from the last plane to the first, so that it can be repeated. Used by
+  // kVideo.
+  bool back_and_forth = false;
+  // Options of the render. RenderFocusStack() sets folder.output_folder, folder.complete and, for
+  // a file, folder.contact_sheet. `frames` must be empty. For a file, folder.video must be unset,
+  // folder.keep_plates false, and folder.format an EXR format (kExr) or kPng8 (kVideo).
+  RenderOptions render;
+};
+
+// Renders the frames of the package, whose path is that of FocusStackPath(), and writes the stack.
+// A file appears under its name only when it is complete, and FILE.partial is then removed. Results
+// and errors are those of Render(), and:
+//   kUsage   a file of this name exists, and neither overwrite is set nor is an unfinished render
+//            of it resumed; the output would replace a file that the render reads; FILE.partial is
+//            a folder of something else
+//   kOutput  the output cannot be written, or ffmpeg is missing
+Result<RenderReport> RenderFocusStack(Package package, const FocusStackOptions& options,
+                                      ThreadPool& pool,
+                                      const std::function<void(const RenderProgress&)>& progress);
+
+// Returns the list of the planes as JSON (doc/focus.md): frame and unit_m, and for each plane its
+// frame, the name of its file or part, and its focus distance in world units and millimetres.
+//   stack  path of FocusStackPath()
+std::string FocusPlanesJson(const CameraPath& stack, const FocusStackOptions& options);
+
+}  // namespace lf

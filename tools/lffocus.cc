@@ -1,0 +1,55 @@
+// lffocus COMMAND ...: pictures of a light field for people and programs that analyse it.
+#include <fmt/format.h>
+
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "tools/common/program.h"
+#include "tools/focus_stack.h"
+
+namespace {
+
+constexpr lf::HelpTexts kHelp = {
+    .summary = "Makes focus stacks of a light field.",
+    .usage = R"(  lffocus stack LIGHTFIELD PATH -o OUT [OPTIONS])",
+    .examples = R"(  lffocus stack --help
+  lffocus stack capture/ path.yaml -o stack.exr --planes 30
+  lffocus stack capture/ path.yaml --frame 12 -o rack.mp4 --near 0.4 --far 2 --planes 75)",
+    .details =
+        R"(Each command has options and a help of its own: lffocus stack --help. doc/focus.md has examples.)",
+};
+
+struct Command {
+  std::string_view name;
+  // Runs the command with the whole command line, and returns the exit code.
+  int (*run)(int argc, char** argv);
+};
+constexpr std::array kCommands = {Command{"stack", lf::RunFocusStack}};
+
+std::string Names() {
+  std::string names;
+  for (const Command& command : kCommands) {
+    if (!names.empty()) names += ", ";
+    names += command.name;
+  }
+  return names;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  for (const Command& command : kCommands)
+    if (argc > 1 && command.name == argv[1]) return command.run(argc, argv);
+  lf::Program program("lffocus", kHelp);
+  std::string word;
+  lf::OptionGroup input(program.app(), lf::kInputGroup);
+  input.Add("COMMAND", word,
+            "Command, the first word of the call\n"
+            "stack: pictures of one camera that differ in their focus distance");
+  return program.Run(argc, argv, [&]() -> lf::Result<void> {
+    return lf::UsageError(fmt::format(
+        "{}: expected one of the commands {} as the first word, as in lffocus {} --help",
+        word.empty() ? "no command is given" : word, Names(), kCommands[0].name));
+  });
+}
