@@ -6,16 +6,21 @@
 #include <string_view>
 
 #include "tools/common/program.h"
+#include "tools/focus_depth.h"
 #include "tools/focus_stack.h"
 
 namespace {
 
 constexpr lf::HelpTexts kHelp = {
-    .summary = "Makes focus stacks of a light field.",
-    .usage = R"(  lffocus stack LIGHTFIELD PATH -o OUT [OPTIONS])",
+    .summary = "Makes focus stacks, depth maps and sharp pictures of a light field.",
+    .usage = R"(  lffocus stack LIGHTFIELD PATH -o OUT [OPTIONS]
+  lffocus depth LIGHTFIELD PATH -o FILE [-o FILE...] [OPTIONS]
+  lffocus sharp LIGHTFIELD PATH -o FILE [OPTIONS])",
     .examples = R"(  lffocus stack --help
   lffocus stack capture/ path.yaml -o stack.exr --planes 30
-  lffocus stack capture/ path.yaml --frame 12 -o rack.mp4 --near 0.4 --far 2 --planes 75)",
+  lffocus stack capture/ path.yaml --frame 12 -o rack.mp4 --near 0.4 --far 2 --planes 75
+  lffocus depth capture/ path.yaml -o depth.exr -o points.ply
+  lffocus sharp capture/ path.yaml -o sharp.png)",
     .details =
         R"(Each command has options and a help of its own: lffocus stack --help. doc/focus.md has examples.)",
 };
@@ -25,7 +30,9 @@ struct Command {
   // Runs the command with the whole command line, and returns the exit code.
   int (*run)(int argc, char** argv);
 };
-constexpr std::array kCommands = {Command{"stack", lf::RunFocusStack}};
+constexpr std::array kCommands = {Command{"stack", lf::RunFocusStack},
+                                  Command{"depth", lf::RunFocusDepth},
+                                  Command{"sharp", lf::RunFocusSharp}};
 
 std::string Names() {
   std::string names;
@@ -44,9 +51,11 @@ int main(int argc, char** argv) {
   lf::Program program("lffocus", kHelp);
   std::string word;
   lf::OptionGroup input(program.app(), lf::kInputGroup);
-  input.Add("COMMAND", word,
-            "Command, the first word of the call\n"
-            "stack: pictures of one camera that differ in their focus distance");
+  input.Add(
+      "COMMAND", word,
+      "Command, the first word of the call\n"
+      "stack: pictures of one camera that differ in their focus distance; depth: the depth of "
+      "every element; sharp: a picture in which everything is in focus");
   return program.Run(argc, argv, [&]() -> lf::Result<void> {
     return lf::UsageError(fmt::format(
         "{}: expected one of the commands {} as the first word, as in lffocus {} --help",

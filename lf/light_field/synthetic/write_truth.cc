@@ -20,8 +20,12 @@ Result<void> WriteTruth(const Scene& scene, std::span<const RenderCamera> camera
   for (size_t i = 0; i < cameras.size(); ++i) {
     const Image<float> picture =
         ThinLensPhotograph(scene, cameras[i], sampling, pool, surroundings);
-    LF_RETURN_IF_ERROR(WriteImage(folder / fmt::format("frame_{:04}.exr", i + 1), picture.view(),
-                                  names, PixelType::kFloat));
+    const Image<float> depths = DepthsSeen(scene, cameras[i].pinhole, pool);
+    std::vector<ExrChannel> channels;
+    for (int c = 0; c < picture.channels(); ++c)
+      channels.push_back({names[static_cast<size_t>(c)], picture.view(), c, false});
+    channels.push_back({"Z", depths.view(), 0, false});
+    LF_RETURN_IF_ERROR(WriteExr(folder / fmt::format("frame_{:04}.exr", i + 1), channels));
     if (keep_going && !keep_going(i + 1) && i + 1 < cameras.size())
       return Error{
           ErrorKind::kInterrupted,

@@ -16,8 +16,8 @@
 namespace lf {
 
 // Writes the frames folder/frame_0001.exr ..., one for each camera: R, G, B as floats, linear
-// light. If surroundings are transparent, R, G and B are multiplied by alpha, and A is written
-// behind them.
+// light, and Z, the depths that are seen through the lens centre (DepthsSeen()). If surroundings
+// are transparent, R, G and B are multiplied by alpha, and A is written, too.
 //   keep_going  called after every frame; returns false to stop the work. May be empty
 // kOutput: a folder or file cannot be written. kInterrupted: the work was stopped; written frames
 // are complete.

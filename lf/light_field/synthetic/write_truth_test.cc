@@ -32,8 +32,16 @@ TEST_F(WriteTruthTest, EveryFrameIsAFileOfItsOwnWithFullPrecision) {
   for (int i = 0; i < 3; ++i) {
     const auto name = "frame_000" + std::to_string(i + 1) + ".exr";
     const StoredImage stored = *ReadImage(folder_ / "truth" / name);
-    EXPECT_EQ(std::get<Image<float>>(stored).pixels(),
-              ThinLensPhotograph(scene_, cameras_[static_cast<size_t>(i)], {4, 0}, pool_).pixels());
+    const auto& read = std::get<Image<float>>(stored);
+    const RenderCamera& camera = cameras_[static_cast<size_t>(i)];
+    const Image<float> picture = ThinLensPhotograph(scene_, camera, {4, 0}, pool_);
+    const Image<float> depths = DepthsSeen(scene_, camera.pinhole, pool_);
+    ASSERT_EQ(read.channels(), 4);
+    for (int y = 0; y < read.height(); ++y)
+      for (int x = 0; x < read.width(); ++x) {
+        for (int c = 0; c < 3; ++c) EXPECT_EQ(read.at(x, y, c), picture.at(x, y, c));
+        EXPECT_EQ(read.at(x, y, 3), depths.at(x, y));
+      }
   }
 }
 
