@@ -8,7 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core, arguments
-from .camera import Camera, Path
+from .camera import Camera
+from .camera_path import Path
 from .errors import UsageError
 from .light_field import LightField
 from .path_arguments import path_in
