@@ -106,6 +106,13 @@ class ShutterTest(ProgramTestCase):
                 other = picture(self.render(self.path("blurred"), *options) / "frame_0001.exr")
                 self.assertGreater(psnr_db(other, truth), 33)
 
+    def test_the_ground_truth_is_the_mean_of_its_instants(self):
+        out = self.folder / "truth"
+        self.succeeds(SYNTH, "still-life", "-o", out, "--calibration-only", "--truth", self.path("path"),
+                      "--truth-samples", 256, "-q")
+        self.assertEqual(len(list(out.glob("truth/*.exr"))), 2)
+        self.assertGreater(psnr_db(picture(out / "truth/frame_0002.exr"), self.truth(2)), 90)
+
     def test_a_camera_at_rest_takes_the_picture_without_a_shutter(self):
         path = self.path("moving")
         rest = "\n".join(line for line in path.read_text().splitlines() if "speed" not in line)

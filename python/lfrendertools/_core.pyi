@@ -233,6 +233,7 @@ class SyntheticFieldOptions:
     alpha: str
     truth: _Bytes
     truth_cameras: List[RenderCamera]
+    truth_instants: int
     size: Optional[Tuple[int, int]]
     count: int
     spacing: Optional[float]

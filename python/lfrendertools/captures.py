@@ -340,6 +340,8 @@ def synth(scene: str, folder: FilePath, *, capture: str = "planar", count: Optio
         if truth[0].unit_m != 1:
             raise UsageError(f"truth: the path has unit_m={truth[0].unit_m:g}, and synthetic scenes have unit_m=1")
         words.truth_cameras = [camera._core for camera in truth]
+        if truth._shutter is not None:
+            _, words.truth_instants, words.truth_cameras = truth._shutter
     elif truth is not None:
         words.truth = arguments.file_name("truth", truth)
     with arguments.naming_arguments(), telling(checked(progress), "files") as tell:

@@ -229,6 +229,7 @@ void AddCaptures(py::module_& module) {
       .def_readwrite("alpha", &SyntheticFieldOptions::alpha)
       .def_readwrite("truth", &SyntheticFieldOptions::truth)
       .def_readwrite("truth_cameras", &SyntheticFieldOptions::truth_cameras)
+      .def_readwrite("truth_instants", &SyntheticFieldOptions::truth_instants)
       .def_readwrite("size", &SyntheticFieldOptions::size_px)
       .def_readwrite("count", &SyntheticFieldOptions::count)
       .def_readwrite("spacing", &SyntheticFieldOptions::spacing)
