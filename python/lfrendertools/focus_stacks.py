@@ -108,6 +108,10 @@ def focus_stack(field: LightField, camera: Union[Camera, Path], distances: Optio
     else:
         found = _checked(distances)
     stack = Path([Camera._of(_core.focused_at(chosen, distance)) for distance in found], cameras.fps)
+    shutter = cameras[frame - 1:frame]._shutter
+    if shutter is not None:  # all planes are exposed while the camera moves as in this frame
+        stack._shutter = (*shutter[:2], [_core.focused_at(instant, distance) for distance in found
+                                         for instant in shutter[2]])
     width, height = stack[0].resolution
     rgb = np.empty((len(found), height, width, 3), np.float32)
     coverage = np.empty((len(found), height, width), np.float32)

@@ -79,6 +79,21 @@ def test_a_path_keeps_its_shutter(field, path, tmp_path):
     assert len(needs.ids) >= len(lf.select(field, lf.Path(cameras, path.fps), 2).ids)
 
 
+def test_focus_stacks_and_ground_truth_are_exposed(field, path, tmp_path):
+    cameras = [path[0], path[2]]
+    blurred = lf.Path(cameras, path.fps, shutter=(360, 3))
+    stack = lf.focus_stack(field, blurred, [0.8, 1.4], frame=1)
+    assert stack.cameras.shutter == (360, 3)
+    sharp = lf.focus_stack(field, lf.Path(cameras, path.fps), [0.8, 1.4], frame=1)
+    assert np.array_equal(stack.rgb, sharp.rgb)  # only the focus of these cameras differs, which the stack replaces
+    moving_path = moving(x=0.0, shutter="shutter: {angle_deg: 360, samples: 3}")
+    lf.synth("still-life", tmp_path / "out", truth=moving_path, truth_samples=4, calibration_only=True)
+    lf.synth("still-life", tmp_path / "plain", truth=moving(x=0.0), truth_samples=4, calibration_only=True)
+    frames = [sorted((tmp_path / name / "truth").iterdir()) for name in ("out", "plain")]
+    assert [len(files) for files in frames] == [2, 2]
+    assert frames[0][1].read_bytes() != frames[1][1].read_bytes()
+
+
 @pytest.mark.parametrize("shutter", [(361, 2), (-1, 2), (180, 65), (180, 0), (180, 2.5), (180,), 180, "180"])
 def test_a_wrong_shutter_is_refused(path, shutter):
     with pytest.raises((lf.UsageError, TypeError), match="shutter"):
