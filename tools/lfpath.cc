@@ -40,8 +40,8 @@ frames; doc/formats/foreign_paths.md has their conventions. A warning lists what
 "Picture" state it, and replace what PATH states. Without -o, the program prints the camera of every
 frame, as lfcammvminfo does.
 
-In OUT, every frame has a camera of its own: accelerations and curves are not kept. A warning tells
-what the format of OUT cannot hold. JSON files have lf_ keys, from which our programs restore
+In OUT, every frame has a camera of its own: accelerations and curves are not kept. Only our own YAML
+keeps a shutter. A warning tells what the format of OUT cannot hold. JSON files have lf_ keys, from which our programs restore
 everything: frames that are rendered with such a file have the same bits.)",
 };
 
@@ -222,6 +222,11 @@ lf::Result<void> Write(const Arguments& a, lf::PathOptions options, const lf::Ca
   options.dataparser_transforms = a.out_dataparser;
   LF_ASSIGN_OR_RETURN(const std::vector<std::string> lost,
                       lf::WritePath(path, a.output, format, options));
+  if (path.shutter.exists() && format == lf::PathFormat::kYaml)
+    lf::LogWarning(
+        "{}: the cameras at which the shutter exposes a frame are interpolated between the cameras "
+        "of the frames",
+        a.output);
   if (!lost.empty())
     lf::LogWarning("{}: the format has no place for {}", a.output, fmt::join(lost, "; for "));
   lf::LogInfo("{}: {} frame{} at {} per second, as {}", a.output, path.frame_count(),

@@ -39,7 +39,7 @@ py::object Show(Image<T>& image, const py::object& self, bool is_flat = true) {
 
 ImageMetadata MetadataOf(const PlateNotes& notes) {
   return FrameMetadata(notes.frame, notes.camera, notes.rays, notes.estimator, notes.fps,
-                       notes.version);
+                       notes.version, notes.shutter);
 }
 
 void SaveFrame(const Frame& frame, const std::string& path, const std::string& format) {

@@ -45,6 +45,21 @@ TEST_F(WriteTruthTest, EveryFrameIsAFileOfItsOwnWithFullPrecision) {
   }
 }
 
+TEST_F(WriteTruthTest, AFrameOfInstantsIsTheirMean) {
+  cameras_ = {cameras_[0], cameras_[0], cameras_[2], cameras_[2]};
+  cameras_[3].pinhole.cam_from_world.translation.x() += 0.05;
+  ASSERT_TRUE(WriteTruth(scene_, cameras_, {4, 0}, folder_, pool_, Surroundings::kShown, {}, 2));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "frame_0003.exr"));
+  const auto stored = std::get<Image<float>>(*ReadImage(folder_ / "frame_0002.exr"));
+  const Image<float> first = ThinLensPhotograph(scene_, cameras_[2], {4, 0}, pool_);
+  const Image<float> second = ThinLensPhotograph(scene_, cameras_[3], {4, 0}, pool_);
+  EXPECT_NE(first.pixels(), second.pixels());
+  for (size_t i = 0; i < stored.pixels().size(); ++i)
+    ASSERT_EQ(
+        stored.pixels()[i],
+        static_cast<float>((static_cast<double>(first.pixels()[i]) + second.pixels()[i]) / 2));
+}
+
 TEST_F(WriteTruthTest, StoppedItKeepsTheFramesThatAreDone) {
   const Result<void> stopped =
       WriteTruth(scene_, cameras_, {1, 0}, folder_, pool_, Surroundings::kShown,
