@@ -170,10 +170,12 @@ Result<void> WritePicture(const fs::path& path, const StoredImage& pixels,
                           const std::function<bool()>& is_interrupted) {
   ImageMetadata all = metadata;
   if (colours.chromaticities) all.emplace_back("chromaticities", *colours.chromaticities);
-  if (colours.frames_per_second)
-    all.emplace_back("framesPerSecond", FrameRate{*colours.frames_per_second});
-  if (const auto* floats = std::get_if<Image<float>>(&pixels))
+  if (const auto* floats = std::get_if<Image<float>>(&pixels)) {
+    if (colours.frames_per_second)
+      all.emplace_back("framesPerSecond", FrameRate{*colours.frames_per_second});
     return WriteImage(path, floats->view(), channel_names, colours.type, all, is_interrupted);
+  }
+  if (colours.frames_per_second) all.emplace_back(kFrameRateText, *colours.frames_per_second);
   return std::visit(
       [&](const auto& image) -> Result<void> {
         LF_ASSIGN_OR_RETURN(const ImageFormat format, FormatOf(path));

@@ -1,5 +1,5 @@
-// What the file of a picture states about its colours and its film, and writing a picture that
-// states the same: for programs that join or copy pictures.
+// Reads the statements of a picture's file about its colours and its film, and writes a picture
+// with the same statements: for programs that join pictures.
 #pragma once
 
 #include <array>
@@ -14,6 +14,8 @@
 #include "lf/pixels/files/image_file.h"
 
 namespace lf {
+
+inline constexpr const char* kFrameRateText = "lf:fps";
 
 struct ColourFacts {
   // Type of the values. kHalf if R, G, B and A of an EXR file are half; kFloat if some of them are

@@ -68,7 +68,7 @@ TEST_F(PictureHeaderTest, ColoursAreHalfOnlyIfAllOfThemAre) {
 TEST_F(PictureHeaderTest, ARateThatIsNoNumberIsNotStated) {
   for (const char* rate : {"fast", "25 fps", "0", "-3", "inf", "nan", ""}) {
     ASSERT_TRUE(WritePicture(folder_ / "a.png", NoiseImage<uint8_t>(3, 3, 3), {"R", "G", "B"}, {},
-                             {{"framesPerSecond", std::string(rate)}}));
+                             {{kFrameRateText, std::string(rate)}}));
     EXPECT_EQ(ReadPictureHeader(folder_ / "a.png").value().colours.frames_per_second, std::nullopt)
         << rate;
   }

@@ -97,7 +97,7 @@ std::optional<double> FrameRateOf(png_structp png, png_infop info) {
   int count = 0;
   png_get_text(png, info, &texts, &count);
   for (const png_text& text : std::span(texts, static_cast<size_t>(count))) {
-    if (std::string_view(text.key) != "framesPerSecond") continue;
+    if (std::string_view(text.key) != kFrameRateText) continue;
     double rate = 0;
     const char* const end = text.text + text.text_length;
     const std::from_chars_result read = std::from_chars(text.text, end, rate);
