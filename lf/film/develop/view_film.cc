@@ -214,8 +214,8 @@ Result<void> FilmWriter::WriteTarget(const Target& target) {
                         ? fmt::format("quilt {}x{}", options_.grid.columns, options_.grid.rows)
                         : std::string(NameOf(options_.layout))},
       {"imageCounter", moment.number}};
-  return WritePicture(target.file, joined, names, header_.colours, metadata,
-                      options_.is_interrupted);
+  return WriteStoredImage(target.file, joined, names, header_.colours, metadata,
+                          options_.is_interrupted);
 }
 
 Result<ViewFilmReport> FilmWriter::Write(std::span<const fs::path> frames) {

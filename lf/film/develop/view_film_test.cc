@@ -39,9 +39,9 @@ class ViewFilmTest : public FolderTest {
     const FrameFormat format =
         std::is_floating_point_v<T> ? FrameFormat::kExrHalf : FrameFormat::kPng8;
     for (int frame = first; frame <= last; ++frame)
-      ASSERT_TRUE(WritePicture(FramePath(views_, FrameId{static_cast<uint32_t>(frame)}, format),
-                               Picture<T>(frame, width, height, channels),
-                               {names.begin(), names.begin() + channels}, colours));
+      ASSERT_TRUE(WriteStoredImage(FramePath(views_, FrameId{static_cast<uint32_t>(frame)}, format),
+                                   Picture<T>(frame, width, height, channels),
+                                   {names.begin(), names.begin() + channels}, colours));
   }
   Result<ViewFilmReport> Write(const ViewFilmOptions& options) {
     return WriteViewFilm(std::vector<fs::path>{views_}, options, pool_, {});
@@ -297,7 +297,7 @@ TEST_F(ViewFilmTest, ForDisplayLightOfAnyPrimariesBecomesSrgb) {
   Image<float> primaries(3, 1, 3);
   for (int i = 0; i < 3; ++i) primaries.at(i, 0, i) = 1;
   const fs::path file = views_ / "frame_0001.exr";
-  ASSERT_TRUE(WritePicture(file, primaries, {"R", "G", "B"}, facts));
+  ASSERT_TRUE(WriteStoredImage(file, primaries, {"R", "G", "B"}, facts));
   const auto header = ReadPictureHeader(file);
   const auto joined = JoinViews(std::vector<fs::path>{file}, *header,
                                 {ViewLayout::kQuilt, {1, 1}, true}, pool_, {});

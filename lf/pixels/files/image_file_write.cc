@@ -164,10 +164,10 @@ Result<void> WriteImage(const fs::path& path, ImageView<const uint16_t> pixels) 
   return WriteStored(path, pixels, PixelType::kUint16);
 }
 
-Result<void> WritePicture(const fs::path& path, const StoredImage& pixels,
-                          const std::vector<std::string>& channel_names, const ColourFacts& colours,
-                          const ImageMetadata& metadata,
-                          const std::function<bool()>& is_interrupted) {
+Result<void> WriteStoredImage(const fs::path& path, const StoredImage& pixels,
+                              const std::vector<std::string>& channel_names,
+                              const ColourFacts& colours, const ImageMetadata& metadata,
+                              const std::function<bool()>& is_interrupted) {
   ImageMetadata all = metadata;
   if (colours.chromaticities) all.emplace_back("chromaticities", *colours.chromaticities);
   if (const auto* floats = std::get_if<Image<float>>(&pixels)) {

@@ -46,9 +46,9 @@ Result<PictureHeader> ReadPictureHeaderBytes(std::string_view bytes, const std::
 //   channel_names   as for WriteImage()
 //   metadata        further entries
 //   is_interrupted  as for WriteImage()
-Result<void> WritePicture(const std::filesystem::path& path, const StoredImage& pixels,
-                          const std::vector<std::string>& channel_names, const ColourFacts& colours,
-                          const ImageMetadata& metadata = {},
-                          const std::function<bool()>& is_interrupted = {});
+Result<void> WriteStoredImage(const std::filesystem::path& path, const StoredImage& pixels,
+                              const std::vector<std::string>& channel_names,
+                              const ColourFacts& colours, const ImageMetadata& metadata = {},
+                              const std::function<bool()>& is_interrupted = {});
 
 }  // namespace lf

@@ -15,7 +15,7 @@ constexpr std::array<float, 8> kSomePrimaries = {0.7f, 0.3f, 0.2f, 0.7f, 0.1f, 0
 void ExpectKept(const std::filesystem::path& path, const StoredImage& pixels,
                 const std::vector<std::string>& names, const ColourFacts& colours) {
   const auto written =
-      WritePicture(path, pixels, names, colours, {{"lf:more", std::string("yes")}});
+      WriteStoredImage(path, pixels, names, colours, {{"lf:more", std::string("yes")}});
   ASSERT_TRUE(written) << written.error().message;
   const auto header = ReadPictureHeader(path);
   ASSERT_TRUE(header) << header.error().message;
@@ -67,16 +67,16 @@ TEST_F(PictureHeaderTest, ColoursAreHalfOnlyIfAllOfThemAre) {
 
 TEST_F(PictureHeaderTest, ARateThatIsNoNumberIsNotStated) {
   for (const char* rate : {"fast", "25 fps", "0", "-3", "inf", "nan", ""}) {
-    ASSERT_TRUE(WritePicture(folder_ / "a.png", NoiseImage<uint8_t>(3, 3, 3), {"R", "G", "B"}, {},
-                             {{kFrameRateText, std::string(rate)}}));
+    ASSERT_TRUE(WriteStoredImage(folder_ / "a.png", NoiseImage<uint8_t>(3, 3, 3), {"R", "G", "B"},
+                                 {}, {{kFrameRateText, std::string(rate)}}));
     EXPECT_EQ(ReadPictureHeader(folder_ / "a.png").value().colours.frames_per_second, std::nullopt)
         << rate;
   }
 }
 
 TEST_F(PictureHeaderTest, NothingIsWrittenAfterAnInterruption) {
-  const auto written = WritePicture(folder_ / "a.png", NoiseImage<uint8_t>(3, 3, 3),
-                                    {"R", "G", "B"}, {}, {}, [] { return true; });
+  const auto written = WriteStoredImage(folder_ / "a.png", NoiseImage<uint8_t>(3, 3, 3),
+                                        {"R", "G", "B"}, {}, {}, [] { return true; });
   ASSERT_FALSE(written);
   EXPECT_EQ(written.error().kind, ErrorKind::kInterrupted);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "a.png"));
