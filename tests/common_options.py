@@ -46,5 +46,6 @@ OFFERED = {
     # --allow-missing follows the two dashes, because it is an option of lfrenderer.
     "lfsubmit": set(COMMON) - {"--seed", "--allow-missing"},
     "lfmerge": set(COMMON) - {"--seed", "--strict"},
+    "lfquilt": {"--threads", "--progress", "--quiet", "--json"},
     "lfvisualizer": set(COMMON) - {"--strict", "--json"},
 }

@@ -32,6 +32,7 @@ CALLS = {
     "lffocus sharp": ["no", "no.yaml", "-o", "no.exr"],
     "lfimport": ["no"],
     "lfmerge": ["no", "-o", "no"],
+    "lfquilt": ["no.png", "-o", "no.png", "--views", "1x1"],
     "lfsubmit": ["no.lfp", "-o", "no"],
     "lfsynth": ["lights", "-o", "no"],
     "lfvisualizer": ["no", "no.yaml", "--text"],

@@ -54,6 +54,11 @@ class TinyCalls:
     def preprocess(self, path, out, *more):
         return self.words("lfpreprocessor", self.field, path, "-o", out, "--packages", "2", "--frames", "1-2", *more)
 
+    def quilt(self, *more, reverse=False):
+        """Returns a call of lfquilt that joins the LF images."""
+        images = sorted(self.field.rglob("*.png"), reverse=reverse)
+        return self.words("lfquilt", *images, "-o", self.out.with_suffix(".png"), "--views", f"{len(images)}x1", *more)
+
     def prepare(self):
         self.base.mkdir(exist_ok=True)
         commands = [self.synth(self.field), self.example(self.path), self.example(self.other_path, "4"),
@@ -82,6 +87,7 @@ class TinyCalls:
         packages = self.preprocess(self.path, out)
         convert_path = [self.programs / "lfpath", str(self.path), "-o", str(out.with_suffix(".json")), "-q"]
         merge = self.words("lfmerge", self.shards / "partial" / "shards", "-o", out)
+        quilt = self.quilt()
         return [Call("lfsynth", synth, [[*synth, "--overwrite"]]),
                 Call("lfimport", convert, [[*convert, "--force"]]),
                 Call("lfexample", self.words("lfexample", self.field, "-o", out.with_suffix(".yaml"))),
@@ -93,7 +99,8 @@ class TinyCalls:
                 Call("lfrenderer, collect", film, [[*film, "--resume"]]),
                 Call("lfrenderer, hybrid", hybrid, [[*hybrid, "--resume"]]),
                 Call("lfrenderer, rebin", rebin, [[*rebin, "--resume"]]),
-                Call("lfmerge", merge, [[*merge, "--resume"], [*merge, "--overwrite"]])]
+                Call("lfmerge", merge, [[*merge, "--resume"], [*merge, "--overwrite"]]),
+                Call("lfquilt", quilt, [[*quilt, "--resume"], [*quilt, "--overwrite"]])]
 
     def submitters(self):
         """Returns calls of lfsubmit, in which lfsubmit or its lfrenderer is disturbed, and calls that resume or
@@ -130,7 +137,8 @@ class TinyCalls:
                 Call("lfrenderer --overwrite", film, [self.render("-o", out, "--resume"), film],
                      before=[self.render("-o", out, path=other)]),
                 Call("lfmerge --overwrite", merge + anew, [merge + resume, merge + anew],
-                     before=[self.render("-o", out, path=other)])]
+                     before=[self.render("-o", out, path=other)]),
+                Call("lfquilt --overwrite", self.quilt(*anew), before=[self.quilt(reverse=True)])]
 
     def printers(self):
         """Returns the calls of programs that print, and of one that writes a page."""

@@ -307,6 +307,10 @@ std::string ForecastJson(const PreprocessReport& report, const CameraPath& path,
                               {"far_displacement_px", density.far_displacement_px}});
     add_virtual(frame.virtual_count, &json["frames"].back());
   }
+  json["advice"] = nullptr;
+  json["warnings"] = Json::array();
+  const auto text = [&] { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; };
+  if (report.frames.empty()) return text();
   const ForecastAdvice advice = AdviceOf(report, path, !facts.depths_from.empty());
   json["advice"] = {
       {"focus_distance",
@@ -316,7 +320,7 @@ std::string ForecastJson(const PreprocessReport& report, const CameraPath& path,
       {"largest_aperture",
        advice.largest_aperture_w > 0 ? finite(advice.largest_aperture_w) : Json()}};
   json["warnings"] = DensityWarnings(report, path, facts);
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return text();
 }
 
 }  // namespace lf

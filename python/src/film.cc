@@ -107,7 +107,8 @@ class Film {
           RenderedFrame rendered = renderer().Develop(f, completion, true, is_interrupted);
           PlateNotes notes = renderer().NotesOf(f);
           notes.version = LF_VERSION;
-          return Frame{std::move(rendered.picture), std::move(notes)};
+          const bool keeps_opacity = setup_->film().Collects() && renderer().plate(f).has_opacity();
+          return MakeFrame(std::move(rendered.picture), std::move(notes), keeps_opacity);
         },
         &signals_);
   }

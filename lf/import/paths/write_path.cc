@@ -150,6 +150,8 @@ std::optional<PathFormat> PathFormatOfFile(const fs::path& file) {
   return std::nullopt;
 }
 
+bool HoldsShift(PathFormat format) { return format != PathFormat::kChan; }
+
 Result<std::vector<std::string>> WritePath(const CameraPath& path, const fs::path& file,
                                            PathFormat format, const PathOptions& options) {
   std::vector<std::string> lost;
