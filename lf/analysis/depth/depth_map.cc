@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "lf/analysis/depth/fill_depths.h"
@@ -172,7 +173,7 @@ class DepthMaker {
     map_.skipped = views_->skipped();
     FrameRays rays;
     rays.image_count = views_->views().size();
-    map_.notes = MakePlateNotes(id_, frame_, rays, lens_, light_field_.encoding);
+    map_.notes = MakePlateNotes(id_, frame_, rays, std::span(&lens_, 1), light_field_.encoding);
     return std::move(map_);
   }
 
