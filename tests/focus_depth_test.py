@@ -175,7 +175,7 @@ class FocusDepthTest(ProgramTestCase):
     def test_wrong_calls_are_refused(self):
         for words, arguments in ((["depth.tif", ".exr, .pfm, .ply or .png"], ["-o", "depth.tif"]),
                                  (["--window 4", "odd"], ["-o", "d.exr", "--window", 4]),
-                                 (["--near below --far"], ["-o", "d.exr", "--near", 2, "--far", 1]),
+                                 (["the nearest below the farthest"], ["-o", "d.exr", "--near", 2, "--far", 1]),
                                  (["--frame 2", "1 frame"], ["-o", "d.exr", "--frame", 2])):
             with self.subTest(words):
                 self.fails(2, words, FOCUS, "depth", self.field, self.path, *arguments)

@@ -42,9 +42,6 @@ lens with fewer than 12 LF cameras is widened. Surfaces without texture, beyond 
 seen by too few LF cameras have no depth. In front of a surface without texture, the borders of near
 surfaces are wider by up to two elements. Virtual LF images are left out.)";
 
-// Factors by which a found range is widened, because a plane sweep needs all of the scene.
-constexpr double kWiderNear = 1.5, kWiderFar = 3;
-
 const HelpTexts kDepthHelp = {
     .summary = "Finds the depth of every element of a frame.",
     .usage = R"(  lffocus depth LIGHTFIELD PATH -o FILE [-o FILE...] [OPTIONS])",
@@ -147,25 +144,16 @@ Result<void> CheckOutputs(const DepthArguments& a) {
 
 Result<DepthRange> RangeOf(const DepthArguments& a, const LightField& light_field,
                            const RenderCamera& camera, ThreadPool& pool) {
-  DepthRange range;
-  if (a.near.empty() || a.far.empty()) {
-    Result<DepthRange> found = FindFocusRange(light_field, camera, pool);
-    if (!found) return Error{found.error().kind, found.error().message + ", by --near and --far"};
-    range = *found;
-    // The found range leaves out a fifth of the scene.
-    if (!light_field.depth_range) range = {range.near_w / kWiderNear, range.far_w * kWiderFar};
-  }
+  std::optional<double> near_w, far_w;
   if (!a.near.empty()) {
-    LF_ASSIGN_OR_RETURN(range.near_w, ParseFocusDistance(a.near, "--near", camera.unit_m));
+    LF_ASSIGN_OR_RETURN(near_w, ParseFocusDistance(a.near, "--near", camera.unit_m));
   }
   if (!a.far.empty()) {
-    LF_ASSIGN_OR_RETURN(range.far_w, ParseFocusDistance(a.far, "--far", camera.unit_m));
+    LF_ASSIGN_OR_RETURN(far_w, ParseFocusDistance(a.far, "--far", camera.unit_m));
   }
-  if (!(range.near_w < range.far_w))
-    return UsageError(fmt::format(
-        "the nearest distance is {:.6g} and the farthest {:.6g} world units: expected --near below "
-        "--far",
-        range.near_w, range.far_w));
+  Result<DepthRange> range = RangeToSweep(light_field, camera, near_w, far_w, pool);
+  if (!range && range.error().kind == ErrorKind::kInput)
+    return Error{ErrorKind::kInput, range.error().message + ", by --near and --far"};
   return range;
 }
 

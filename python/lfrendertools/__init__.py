@@ -22,6 +22,7 @@ from . import _core
 from .camera import Camera
 from .camera_path import Path
 from .captures import compress, forecast, report, synth, write_packages
+from .depth_maps import DepthMap, depth_map
 from .display import display_values
 from .errors import (BelowRequired, BlackFrameWarning, Error, InputError, InterruptedRender, MissingImagesWarning,
                      OutputError, UncertainFocusWarning, UsageError)
@@ -34,9 +35,10 @@ from .rig import Grid
 
 __version__: str = _core.version
 
-__all__ = ["BelowRequired", "BlackFrameWarning", "Camera", "Error", "FocusStack", "Frame", "Grid", "InputError",
-           "InterruptedRender", "Intrinsics", "LightField", "MissingImagesWarning", "OutputError", "Path", "Plate",
-           "Renderer", "Selection", "UncertainFocusWarning", "UsageError", "compress", "display_values", "film",
-           "focus_stack", "forecast", "open", "read_image", "render", "report", "select", "synth", "write_packages"]
+__all__ = ["BelowRequired", "BlackFrameWarning", "Camera", "DepthMap", "Error", "FocusStack", "Frame", "Grid",
+           "InputError", "InterruptedRender", "Intrinsics", "LightField", "MissingImagesWarning", "OutputError",
+           "Path", "Plate", "Renderer", "Selection", "UncertainFocusWarning", "UsageError", "compress", "depth_map",
+           "display_values", "film", "focus_stack", "forecast", "open", "read_image", "render", "report", "select",
+           "synth", "write_packages"]
 
 logging.getLogger("lfrendertools").addHandler(logging.NullHandler())

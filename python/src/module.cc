@@ -6,6 +6,7 @@
 #include "python/src/analysis.h"
 #include "python/src/cameras.h"
 #include "python/src/captures.h"
+#include "python/src/depth_maps.h"
 #include "python/src/errors.h"
 #include "python/src/film.h"
 #include "python/src/frames.h"
@@ -22,6 +23,7 @@ PYBIND11_MODULE(_core, module) {
   lf::python::AddFrames(module);
   lf::python::AddFilm(module);
   lf::python::AddAnalysis(module);
+  lf::python::AddDepthMaps(module);
   lf::python::AddCaptures(module);
   module.attr("version") = LF_VERSION;
 }

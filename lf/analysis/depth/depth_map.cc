@@ -12,6 +12,7 @@
 #include "lf/analysis/depth/lens_views.h"
 #include "lf/analysis/depth/plane_sweep.h"
 #include "lf/analysis/depth/sharp_plate.h"
+#include "lf/analysis/focus_stack/focus_planes.h"
 #include "lf/live/lens_order.h"
 #include "lf/render/collect/frame_lens.h"
 #include "lf/render/pipeline/develop_frame.h"
@@ -271,6 +272,24 @@ class DepthMaker {
 };
 
 }  // namespace
+
+Result<DepthRange> RangeToSweep(const LightField& light_field, const RenderCamera& camera,
+                                std::optional<double> near_w, std::optional<double> far_w,
+                                ThreadPool& pool) {
+  constexpr double kWiderNear = 1.5, kWiderFar = 3;
+  DepthRange range;
+  if (!near_w || !far_w) {
+    LF_ASSIGN_OR_RETURN(range, FindFocusRange(light_field, camera, pool));
+    if (!light_field.depth_range) range = {range.near_w / kWiderNear, range.far_w * kWiderFar};
+  }
+  range = {near_w.value_or(range.near_w), far_w.value_or(range.far_w)};
+  if (!(range.near_w < range.far_w))
+    return UsageError(fmt::format(
+        "the nearest distance is {:.6g} and the farthest {:.6g} world units: expected the nearest "
+        "below the farthest",
+        range.near_w, range.far_w));
+  return range;
+}
 
 size_t PlanesFor(const RenderCamera& frame, const DepthRange& range, double lens_radius_w) {
   constexpr double kStep = 0.5;  // elements from one plane to the next

@@ -55,6 +55,14 @@ struct DepthMap {
   std::vector<SkippedImage> skipped;  // broken LF images
 };
 
+// Returns the distances to test: the given ones or, if one is unset, that of FindFocusRange(). A
+// range that is not stated by the light field is widened, because a fifth of the scene may lie
+// beyond it. kUsage: the nearest distance is not below the farthest. Other errors are those of
+// FindFocusRange().
+Result<DepthRange> RangeToSweep(const LightField& light_field, const RenderCamera& camera,
+                                std::optional<double> near_w, std::optional<double> far_w,
+                                ThreadPool& pool);
+
 // Returns the number of planes between which a point moves by at most half an element in the LF
 // images at the rim of a lens of this radius, from 8 to 256.
 size_t PlanesFor(const RenderCamera& frame, const DepthRange& range, double lens_radius_w);
