@@ -158,7 +158,7 @@ void CopyInner(const std::vector<float>& costs, const PixelRect& tile, int radiu
     inner = std::copy_n(costs.begin() + (y + radius) * stride + radius, tile.width(), inner);
 }
 
-// What the costs of one set say about one element.
+// The least cost of one set at one element, and how it stands out.
 struct Minimum {
   size_t index = 0;
   float least = kNoCost;
