@@ -20,8 +20,7 @@ Result<CameraPath> PathOfViews(const CameraPath& path, int view_count,
   if (path.shutter.exists())
     return InputError(
         "the path has a shutter, but a path of views has none, because its cameras jump from view "
-        "to "
-        "view: remove the shutter from the path");
+        "to view: remove the shutter from the path");
   CameraPath views;
   views.fps = path.fps;
   views.unit_m = path.unit_m;
