@@ -63,6 +63,8 @@ TEST(ChanPath, AnglesSurviveAGimbalLock) {
     const Mat3 rotation = RotationOfAngles(angles, order);
     const Vec3 found = AnglesOfRotation(rotation, order, Vec3(0.1, 0.1, 0.1));
     EXPECT_LT((RotationOfAngles(found, order) - rotation).norm(), 1e-9);
+    // The angle that is applied first stays as it was in the frame before.
+    EXPECT_NEAR(found[AxesOf(order)[0]], 0.1, 1e-9);
   }
 }
 

@@ -113,6 +113,10 @@ TEST(NerfstudioPath, KeysOfOursMustAgreeWithTheOthers) {
   ExpectNerfstudioError("\"aspect\": 2",
                         "\"lf_cam_from_world\": [1, 0, 0, -1, 0, 0, -1, 3.1, 0, 1, 0, -2]",
                         {"\"lf_cam_from_world\" is another pose", "remove"});
+  // Another program rolled the camera, and kept the translation.
+  ExpectNerfstudioError("\"aspect\": 2",
+                        "\"lf_cam_from_world\": [0, 0, -1, -1, -1, 0, 0, 3, 0, 1, 0, -2]",
+                        {"\"lf_cam_from_world\" is another pose", "remove"});
   ExpectNerfstudioError("\"aspect\": 2", "\"lf_intrinsics\": [60, 51, 100, 50, 0]",
                         {"\"lf_intrinsics\" is a list of 5", "fy about 5"});
   ExpectNerfstudioError("\"aspect\": 2", "\"lf_blades\": 2", {"0 or a whole number from 3"});

@@ -1,5 +1,6 @@
 #include "lf/import/paths/ngp_path.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -36,6 +37,23 @@ TEST(NgpPath, SpaceAxesAndLensAreUndone) {
   EXPECT_NEAR(*camera.focus_distance_w, 4 / 0.33, 1e-12);
   EXPECT_NEAR(*camera.aperture_diameter_w, 0.2, 1e-12);
   EXPECT_EQ(path->lacks.size(), 1u);  // the frame rate
+}
+
+TEST(NgpPath, FramesAreFilmedFromTheBeginningOfTheCurveAndNotUpToItsEnd) {
+  // The world's x axis is the third axis of instant-ngp's space.
+  const auto key = [](double z) {
+    return fmt::format(
+        R"({{"R": [0, 0, 0, 1], "T": [0.5, 0.5, {}], "slice": 0, "scale": 1, "fov": 50, )"
+        R"("aperture_size": 0}})",
+        z);
+  };
+  const std::string text =
+      fmt::format(R"({{"path": [{}, {}], "spline_order": 1, "loop": false}})", key(0.5), key(0.83));
+  const Result<ForeignPath> path = ParsedNgp(text, {.frame_count = 4});
+  ASSERT_TRUE(path) << path.error().message;
+  ASSERT_EQ(path->cameras.size(), 4u);
+  for (int i = 0; i < 4; ++i)
+    EXPECT_NEAR(path->cameras[static_cast<size_t>(i)].pinhole.CentreWorld().x(), i / 4.0, 1e-12);
 }
 
 TEST(NgpPath, ErrorsNameTheKeyframeTheValueAndTheRemedy) {
@@ -75,6 +93,14 @@ NgpCurve CurveOf(const std::vector<double>& positions, int order, bool loop = fa
   }
   RepairTimestamps(&curve);
   return curve;
+}
+
+TEST(NgpCurve, AQuaternionAndItsNegativeAreOneRotation) {
+  NgpCurve curve = CurveOf({0, 1}, 1);
+  // A turn by 0.8 about x; the negative quaternion would be reached by the longer way.
+  curve.keys[1].head<4>() << -std::sin(0.4), 0, 0, -std::cos(0.4);
+  const NgpNumbers middle = At(curve, 0.5);
+  EXPECT_NEAR(middle[0] / middle[3], std::tan(0.2), 1e-12);
 }
 
 TEST(NgpCurve, OrdersZeroAndOnePassThroughTheKeys) {
