@@ -34,20 +34,17 @@ bool IsOurs(const fs::path& folder) {
          fs::is_directory(folder / "partial", error) || fs::exists(folder / "report.json", error);
 }
 
-// Returns the files of the light field that the package reads.
-std::vector<fs::path> FilesOf(const Package& package, const RenderOptions& options) {
-  std::vector<fs::path> files = options.folder.inputs;
-  const LightField& field = package.light_field;
-  for (const std::vector<std::string>* names : {&field.image_names, &field.mask_names})
-    for (const std::string& name : *names)
-      if (!name.empty()) files.push_back(field.folder / name);
+// Returns the files that the render reads.
+std::vector<fs::path> InputsOf(const Package& package, const RenderOptions& options) {
+  std::vector<fs::path> files = FilesOfLightField(package.light_field);
+  files.insert(files.end(), options.folder.inputs.begin(), options.folder.inputs.end());
   return files;
 }
 
 Result<void> CheckFile(const Package& package, const FocusStackOptions& options) {
   const FolderOptions& folder = options.render.folder;
   const fs::path partial = StackFolder(options.output);
-  LF_RETURN_IF_ERROR(CheckReplacesNone({options.output}, FilesOf(package, options.render)));
+  LF_RETURN_IF_ERROR(CheckReplacesNone({options.output}, InputsOf(package, options.render)));
   if (!IsOurs(partial))
     return UsageError(fmt::format(
         "{}: is a folder of something else, but the render of {} keeps its state in a folder of "
@@ -153,7 +150,7 @@ Result<RenderReport> RenderFocusStack(Package package, const FocusStackOptions& 
     LF_RETURN_IF_ERROR(CheckFile(package, options));
   else
     LF_RETURN_IF_ERROR(
-        CheckReplacesNone({folder / "planes.json"}, FilesOf(package, options.render)));
+        CheckReplacesNone({folder / "planes.json"}, InputsOf(package, options.render)));
   const StackOutputs outputs(stack, options, folder);
   RenderOptions render = options.render;
   render.folder.output_folder = folder;
