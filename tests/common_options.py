@@ -41,6 +41,7 @@ OFFERED = {
     # lffocus alone only lists its commands, whose options follow their names.
     "lffocus": set(),
     "lffocus stack": set(COMMON),
+    "lffocus epi": set(COMMON) - {"--seed"},
     # --allow-missing follows the two dashes, because it is an option of lfrenderer.
     "lfsubmit": set(COMMON) - {"--seed", "--allow-missing"},
     "lfmerge": set(COMMON) - {"--seed", "--strict"},

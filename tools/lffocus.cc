@@ -6,16 +6,19 @@
 #include <string_view>
 
 #include "tools/common/program.h"
+#include "tools/focus_epi.h"
 #include "tools/focus_stack.h"
 
 namespace {
 
 constexpr lf::HelpTexts kHelp = {
-    .summary = "Makes focus stacks of a light field.",
-    .usage = R"(  lffocus stack LIGHTFIELD PATH -o OUT [OPTIONS])",
+    .summary = "Makes focus stacks and epipolar pictures of a light field.",
+    .usage = R"(  lffocus stack LIGHTFIELD PATH -o OUT [OPTIONS]
+  lffocus epi LIGHTFIELD --row Y [-o FILE] [OPTIONS])",
     .examples = R"(  lffocus stack --help
   lffocus stack capture/ path.yaml -o stack.exr --planes 30
-  lffocus stack capture/ path.yaml --frame 12 -o rack.mp4 --near 0.4 --far 2 --planes 75)",
+  lffocus stack capture/ path.yaml --frame 12 -o rack.mp4 --near 0.4 --far 2 --planes 75
+  lffocus epi capture/ --row 240 -o epi.png)",
     .details =
         R"(Each command has options and a help of its own: lffocus stack --help. doc/focus.md has examples.)",
 };
@@ -25,7 +28,8 @@ struct Command {
   // Runs the command with the whole command line, and returns the exit code.
   int (*run)(int argc, char** argv);
 };
-constexpr std::array kCommands = {Command{"stack", lf::RunFocusStack}};
+constexpr std::array kCommands = {Command{"stack", lf::RunFocusStack},
+                                  Command{"epi", lf::RunFocusEpi}};
 
 std::string Names() {
   std::string names;
@@ -46,7 +50,8 @@ int main(int argc, char** argv) {
   lf::OptionGroup input(program.app(), lf::kInputGroup);
   input.Add("COMMAND", word,
             "Command, the first word of the call\n"
-            "stack: pictures of one camera that differ in their focus distance");
+            "stack: pictures of one camera that differ in their focus distance\n"
+            "epi: the same pixel row or column of a row of LF cameras, in one picture");
   return program.Run(argc, argv, [&]() -> lf::Result<void> {
     return lf::UsageError(fmt::format(
         "{}: expected one of the commands {} as the first word, as in lffocus {} --help",

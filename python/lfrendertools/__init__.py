@@ -22,6 +22,7 @@ from . import _core
 from .camera import Camera, Path
 from .captures import compress, forecast, report, synth, write_packages
 from .display import display_values
+from .epipolar import EpipolarPicture, epi
 from .errors import (BelowRequired, BlackFrameWarning, Error, InputError, InterruptedRender, MissingImagesWarning,
                      OutputError, UncertainFocusWarning, UsageError)
 from .focus_stacks import FocusStack, focus_stack
@@ -33,9 +34,10 @@ from .rig import Grid
 
 __version__: str = _core.version
 
-__all__ = ["BelowRequired", "BlackFrameWarning", "Camera", "Error", "FocusStack", "Frame", "Grid", "InputError",
-           "InterruptedRender", "Intrinsics", "LightField", "MissingImagesWarning", "OutputError", "Path", "Plate",
-           "Renderer", "Selection", "UncertainFocusWarning", "UsageError", "compress", "display_values", "film",
-           "focus_stack", "forecast", "open", "read_image", "render", "report", "select", "synth", "write_packages"]
+__all__ = ["BelowRequired", "BlackFrameWarning", "Camera", "EpipolarPicture", "Error", "FocusStack", "Frame", "Grid",
+           "InputError", "InterruptedRender", "Intrinsics", "LightField", "MissingImagesWarning", "OutputError",
+           "Path", "Plate", "Renderer", "Selection", "UncertainFocusWarning", "UsageError", "compress",
+           "display_values", "epi", "film", "focus_stack", "forecast", "open", "read_image", "render", "report",
+           "select", "synth", "write_packages"]
 
 logging.getLogger("lfrendertools").addHandler(logging.NullHandler())
