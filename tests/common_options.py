@@ -42,6 +42,7 @@ OFFERED = {
     "lffocus": set(),
     "lffocus stack": set(COMMON),
     "lffocus epi": set(COMMON) - {"--seed"},
+    "lffocus views": set(COMMON) - {"--seed"},
     # --allow-missing follows the two dashes, because it is an option of lfrenderer.
     "lfsubmit": set(COMMON) - {"--seed", "--allow-missing"},
     "lfmerge": set(COMMON) - {"--seed", "--strict"},

@@ -29,6 +29,7 @@ CALLS = {
     "lffocus": [],
     "lffocus stack": ["no", "no.yaml", "-o", "no"],
     "lffocus epi": ["no", "--row", "1"],
+    "lffocus views": ["no", "--grid", "2x2", "-o", "no"],
     "lfimport": ["no"],
     "lfmerge": ["no", "-o", "no"],
     "lfsubmit": ["no.lfp", "-o", "no"],
@@ -145,6 +146,8 @@ class ProgramOptionsTest(ProgramTestCase):
         yield "lfrenderer", [field, path, "-o", out / "shards", "--shard", "1/1"], "memory: "
         yield "lffocus stack", [field, path, "-o", out / "stack", "--near", 0.3, "--far", 1], "instruction set"
         yield "lffocus epi", [field, "--row", 3, "-o", out / "epi.png", "--overwrite"], "transforms.json: opened"
+        yield "lffocus views", [field, "--grid", "3x3", "-o", out / "views", "--overwrite", "--focus-distance",
+                                1], "transforms.json: opened"
         yield "lfmerge", [out / "shards", "-o", out / "merged", "--overwrite"], "plates"
         yield "lfcompressor", [field, "-o", out / "a.lfs", "--overwrite"], "codec default"
         yield "lfdensify", [field, "-o", out / "b.lfs", "--overwrite", "--depths", 0.2, 10, "--force"], "divisor 1"

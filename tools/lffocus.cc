@@ -8,17 +8,20 @@
 #include "tools/common/program.h"
 #include "tools/focus_epi.h"
 #include "tools/focus_stack.h"
+#include "tools/focus_views.h"
 
 namespace {
 
 constexpr lf::HelpTexts kHelp = {
-    .summary = "Makes focus stacks and epipolar pictures of a light field.",
+    .summary = "Makes focus stacks, epipolar pictures and regular grids of views of a light field.",
     .usage = R"(  lffocus stack LIGHTFIELD PATH -o OUT [OPTIONS]
-  lffocus epi LIGHTFIELD --row Y [-o FILE] [OPTIONS])",
+  lffocus epi LIGHTFIELD --row Y [-o FILE] [OPTIONS]
+  lffocus views LIGHTFIELD --grid COLUMNSxROWS -o OUT [OPTIONS])",
     .examples = R"(  lffocus stack --help
   lffocus stack capture/ path.yaml -o stack.exr --planes 30
   lffocus stack capture/ path.yaml --frame 12 -o rack.mp4 --near 0.4 --far 2 --planes 75
-  lffocus epi capture/ --row 240 -o epi.png)",
+  lffocus epi capture/ --row 240 -o epi.png
+  lffocus views capture/ --grid 9x9 -o views)",
     .details =
         R"(Each command has options and a help of its own: lffocus stack --help. doc/focus.md has examples.)",
 };
@@ -29,7 +32,8 @@ struct Command {
   int (*run)(int argc, char** argv);
 };
 constexpr std::array kCommands = {Command{"stack", lf::RunFocusStack},
-                                  Command{"epi", lf::RunFocusEpi}};
+                                  Command{"epi", lf::RunFocusEpi},
+                                  Command{"views", lf::RunFocusViews}};
 
 std::string Names() {
   std::string names;
@@ -51,7 +55,8 @@ int main(int argc, char** argv) {
   input.Add("COMMAND", word,
             "Command, the first word of the call\n"
             "stack: pictures of one camera that differ in their focus distance\n"
-            "epi: the same pixel row or column of a row of LF cameras, in one picture");
+            "epi: the same pixel row or column of a row of LF cameras, in one picture\n"
+            "views: the light field as a regular grid of views in one orientation");
   return program.Run(argc, argv, [&]() -> lf::Result<void> {
     return lf::UsageError(fmt::format(
         "{}: expected one of the commands {} as the first word, as in lffocus {} --help",

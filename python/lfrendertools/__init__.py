@@ -31,13 +31,14 @@ from .light_field import Intrinsics, LightField, read_image
 from .opening import open
 from .rendering import Renderer, Selection, film, render, select
 from .rig import Grid
+from .view_grids import Views, views
 
 __version__: str = _core.version
 
 __all__ = ["BelowRequired", "BlackFrameWarning", "Camera", "EpipolarPicture", "Error", "FocusStack", "Frame", "Grid",
            "InputError", "InterruptedRender", "Intrinsics", "LightField", "MissingImagesWarning", "OutputError",
-           "Path", "Plate", "Renderer", "Selection", "UncertainFocusWarning", "UsageError", "compress",
+           "Path", "Plate", "Renderer", "Selection", "UncertainFocusWarning", "UsageError", "Views", "compress",
            "display_values", "epi", "film", "focus_stack", "forecast", "open", "read_image", "render", "report",
-           "select", "synth", "write_packages"]
+           "select", "synth", "views", "write_packages"]
 
 logging.getLogger("lfrendertools").addHandler(logging.NullHandler())
