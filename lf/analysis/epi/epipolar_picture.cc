@@ -157,6 +157,10 @@ void MixInto(float* to, const PixelLines& lines, const LineSource& source) {
 Result<EpipolarPicture> MakeEpipolarPicture(
     const LightField& light_field, const LfImageStore& store, const EpipolarOptions& options,
     ThreadPool& pool, const std::function<void(size_t done, size_t total)>& progress) {
+  if (light_field.encoding.masks_clipped)
+    return InputError(
+        "the LF images are brackets, of which each shows only a part of the scene: make epipolar "
+        "pictures of one exposure (lfimport --exclude leaves LF images out)");
   EpipolarPicture picture;
   LF_ASSIGN_OR_RETURN(picture.line, FindCameraLine(light_field, options.through, options.kind,
                                                    options.tolerance_w));

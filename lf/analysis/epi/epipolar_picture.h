@@ -68,8 +68,9 @@ struct EpipolarPicture {
 //   store     a store with Mosaics::kToRgb
 //   progress  called by any thread, one at a time; may be empty
 // kUsage: the pixel is outside the view, or an option is out of its range. kInput: errors of
-// FindCameraLine(); no LF image can be loaded, or with `strict` one. kOutput: the machine lacks
-// something. kInterrupted: `stop` is set.
+// FindCameraLine(); the LF images are brackets (RadianceEncoding::masks_clipped); no LF image can
+// be loaded, or with `strict` one. kOutput: the machine lacks something. kInterrupted: `stop` is
+// set.
 Result<EpipolarPicture> MakeEpipolarPicture(
     const LightField& light_field, const LfImageStore& store, const EpipolarOptions& options,
     ThreadPool& pool, const std::function<void(size_t done, size_t total)>& progress = {});

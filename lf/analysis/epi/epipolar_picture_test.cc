@@ -190,6 +190,10 @@ TEST(EpipolarPicture, RefusesOptionsThatAreOutOfRange) {
   EpipolarOptions options = OptionsOf(LineKind::kRow, 3);
   options.line_count = 1;
   EXPECT_FALSE(MakeEpipolarPicture(light_field, WallStore(light_field), options, pool));
+  LightField brackets = light_field;
+  brackets.encoding.masks_clipped = true;
+  EXPECT_FALSE(
+      MakeEpipolarPicture(brackets, WallStore(brackets), OptionsOf(LineKind::kRow, 3), pool));
   std::atomic<bool> stop = true;
   options = OptionsOf(LineKind::kRow, 3);
   options.stop = &stop;

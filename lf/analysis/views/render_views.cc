@@ -102,7 +102,6 @@ class ViewMaker {
   Result<void> MakeRecorded(const std::vector<size_t>& views) {
     LF_ASSIGN_OR_RETURN(const std::unique_ptr<LfImageStore> store,
                         OpenStore(light_field_, Mosaics::kToRgb));
-    MachineFailure machine;
     std::mutex mutex;
     std::optional<Error> failure;
     pool_.ForEach(views.size(), [&](size_t i) {
@@ -117,15 +116,15 @@ class ViewMaker {
       if (failure) return;
       report_.copied_count += rays.IsSame() ? 1 : 0;
       if (!light) {
-        machine.Note(light.error());
+        // If the machine lacks something, the LF image may be intact: no view is made of it.
+        if (options_.strict || light.error().kind == ErrorKind::kOutput) failure = light.error();
+        if (failure) return;
         report_.missing.push_back(light.error().message);
-        if (options_.strict) failure = light.error();
         light = Image<float>(whole.width(), whole.height(), 3, kNoLight);
       }
       if (const Result<void> given = Give(views[i], *light); !given) failure = given.error();
     });
     if (IsStopped()) return Interrupted();
-    LF_RETURN_IF_ERROR(machine.Check());
     if (failure) return *failure;
     if (!views.empty() && report_.missing.size() == views.size())
       return InputError(report_.missing.front());

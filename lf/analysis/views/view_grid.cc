@@ -102,6 +102,8 @@ Result<ViewGrid> ViewGrid::Make(const LightField& light_field, int columns, int 
 
 void ViewGrid::FindRecorded(const LightField& light_field, const std::vector<Vec2>& points_w) {
   recorded_.resize(size());
+  // Each LF image of a bracket shows only the pixels that are not clipped in it.
+  if (light_field.encoding.masks_clipped) return;
   double step_w = std::numeric_limits<double>::infinity();
   for (const double step : {step_w_.x(), step_w_.y()})
     if (step > 0) step_w = std::min(step_w, step);

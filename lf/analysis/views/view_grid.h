@@ -43,7 +43,8 @@ class ViewGrid {
   const Vec2& step_w() const { return step_w_; }
 
   // Returns the LF camera that stands at the place of the view, unless it is virtual: at most
-  // kCoincident of the grid's smaller step away. None if there is none.
+  // kCoincident of the grid's smaller step away. None if there is none, or if the LF images are
+  // brackets (RadianceEncoding::masks_clipped), which are merged by rendering.
   std::optional<LfImageId> RecordedAt(size_t view) const { return recorded_[view]; }
   static constexpr double kCoincident = 0.01;
 

@@ -81,6 +81,14 @@ TEST(ViewGrid, TakesOnlyRecordedLfCamerasAtItsPlaces) {
   EXPECT_FALSE(grid->RecordedAt(7));
 }
 
+TEST(ViewGrid, OfBracketsHasNoLfCameras) {
+  LightField capture = Capture(5, 3);
+  capture.encoding.masks_clipped = true;
+  const auto grid = ViewGrid::Make(capture, 5, 3);
+  ASSERT_TRUE(grid);
+  for (size_t view = 0; view < grid->size(); ++view) EXPECT_FALSE(grid->RecordedAt(view));
+}
+
 TEST(ViewGrid, HasTheIntrinsicsOfTheMiddleIfPrincipalPointsScatter) {
   LightField capture = Capture(5, 3);
   capture.intrinsics[2].cx_px += 5;
