@@ -82,6 +82,12 @@ class TinyCalls:
         packages = self.preprocess(self.path, out)
         convert_path = [self.programs / "lfpath", str(self.path), "-o", str(out.with_suffix(".json")), "-q"]
         merge = self.words("lfmerge", self.shards / "partial" / "shards", "-o", out)
+        stack = self.words("lffocus", "stack", self.field, self.path, "--planes", "2", "--near", "2", "--far", "4", "-o",
+                           out.with_suffix(".exr"))
+        epi = self.words("lffocus", "epi", self.field, "--row", "9", "-o", out.with_suffix(".png"))
+        views = self.words("lffocus", "views", self.field, "--grid", "3x3", "-o", out)
+        array = self.words("lffocus", "views", self.field, "--grid", "2x4", "--focus-distance", "3", "-o",
+                           out.with_suffix(".npy"))
         return [Call("lfsynth", synth, [[*synth, "--overwrite"]]),
                 Call("lfimport", convert, [[*convert, "--force"]]),
                 Call("lfexample", self.words("lfexample", self.field, "-o", out.with_suffix(".yaml"))),
@@ -93,7 +99,11 @@ class TinyCalls:
                 Call("lfrenderer, collect", film, [[*film, "--resume"]]),
                 Call("lfrenderer, hybrid", hybrid, [[*hybrid, "--resume"]]),
                 Call("lfrenderer, rebin", rebin, [[*rebin, "--resume"]]),
-                Call("lfmerge", merge, [[*merge, "--resume"], [*merge, "--overwrite"]])]
+                Call("lfmerge", merge, [[*merge, "--resume"], [*merge, "--overwrite"]]),
+                Call("lffocus stack", stack, [[*stack, "--resume"], [*stack, "--overwrite"]]),
+                Call("lffocus epi", epi, [[*epi, "--overwrite"]]),
+                Call("lffocus views", views, [[*views, "--overwrite"]]),
+                Call("lffocus views, an array", array, [[*array, "--overwrite"]])]
 
     def submitters(self):
         """Returns calls of lfsubmit, in which lfsubmit or its lfrenderer is disturbed, and calls that resume or
