@@ -121,12 +121,14 @@ class FocusStackTest(ProgramTestCase):
     def test_a_densified_light_field_is_rendered(self):
         """Virtual LF images are made in the folder of the frames, which is removed when a file is complete."""
         self.field = self.folder / "still-life"
-        self.succeeds(SYNTH, "still-life", "-o", self.field, "--count", 16, "--size", "160x120", "--spacing", 0.02, "-q")
+        self.succeeds(SYNTH, "still-life", "-o", self.field, "--count", 16, "--size", "160x120", "--spacing", 0.02,
+                      "-q")
         poses = [np.array(frame["transform_matrix"])
                  for frame in json.loads((self.field / "transforms.json").read_text())["frames"]]
         centre, axes = np.mean([pose[:3, 3] for pose in poses], axis=0), poses[0][:3, :3]
         text = self.path.read_text().replace("[0, 1, 0]", str(axes[:, 1].tolist())).replace("0.045", "0.05")
-        text = text.replace("[0, 0, 0]", str(centre.tolist())).replace("[0, 0, -1]", str((centre - axes[:, 2]).tolist()))
+        for old, new in (("[0, 0, 0]", centre), ("[0, 0, -1]", centre - axes[:, 2])):
+            text = text.replace(old, str(new.tolist()))
         self.path.write_text(text)
         options = ["--distances", "0.8,1.2", "--densify", "--filter", "bilinear"]
         self.stack("stack", *options)
@@ -136,7 +138,8 @@ class FocusStackTest(ProgramTestCase):
         self.refused(["stack.exr: exists"], "stack.exr", *options)
         self.assertFalse((self.folder / "stack.exr.partial").exists())
         dense = self.folder / "stack/densified.lfs"
-        self.succeeds(FOCUS, "stack", dense, self.path, "-o", self.folder / "again", *options[:2], "--filter", "bilinear")
+        self.succeeds(FOCUS, "stack", dense, self.path, "-o", self.folder / "again", *options[:2], "--filter",
+                      "bilinear")
         for number, (_, channels) in enumerate(parts_of(self.folder / "stack.exr"), 1):
             name = f"frame_{number:04}.exr"
             self.assertIn("densified", channels)

@@ -82,8 +82,8 @@ class TinyCalls:
         packages = self.preprocess(self.path, out)
         convert_path = [self.programs / "lfpath", str(self.path), "-o", str(out.with_suffix(".json")), "-q"]
         merge = self.words("lfmerge", self.shards / "partial" / "shards", "-o", out)
-        stack = self.words("lffocus", "stack", self.field, self.path, "--planes", "2", "--near", "2", "--far", "4", "-o",
-                           out.with_suffix(".exr"))
+        stack = self.words("lffocus", "stack", self.field, self.path, "--planes", "2", "--near", "2", "--far", "4",
+                           "-o", out.with_suffix(".exr"))
         epi = self.words("lffocus", "epi", self.field, "--row", "9", "-o", out.with_suffix(".png"))
         views = self.words("lffocus", "views", self.field, "--grid", "3x3", "-o", out)
         array = self.words("lffocus", "views", self.field, "--grid", "2x4", "--focus-distance", "3", "-o",
