@@ -48,4 +48,6 @@ check lfvisualizer field path.yaml --export page
 check lfcammvminfo path.yaml --csv
 check lfpath path.yaml -o path.json
 check lfpath path.json -o path-again.yaml --fps 12
+check lfpath path.yaml -o views.yaml --quilt 3x2
+check lfquilt merged -o quilt.exr --views 1x1
 ((failed == 0)) || { echo "$failed failed"; exit 1; }

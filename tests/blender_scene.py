@@ -166,6 +166,22 @@ def traveller(file):
     bpy.ops.wm.save_as_mainfile(filepath=file)
 
 
+def chan(file, path, order, size, frames):
+    """A scene whose camera is read from a .chan by the add-on that comes with Blender, which also writes it again, into
+    path.again. `order`: of the rotations, which a .chan does not state."""
+    scene, camera = empty_scene(*size, 1)
+    scene.frame_start, scene.frame_end = 1, frames
+    bpy.ops.preferences.addon_enable(module="io_anim_nuke_chan")
+    bpy.context.view_layer.objects.active = camera
+    words = {"rotation_order": order, "filepath": path}
+    bpy.ops.import_scene.import_chan(**words, z_up=False, sensor_width=36, sensor_height=36 * size[1] / size[0])
+    for curve in [*camera.animation_data.action.fcurves, *camera.data.animation_data.action.fcurves]:
+        assert len(curve.keyframe_points) == frames, curve.data_path
+    words["filepath"] += ".again"
+    bpy.ops.export.export_chan(**words, y_up=False, check_existing=False)
+    bpy.ops.wm.save_as_mainfile(filepath=file)
+
+
 def changed(file, **values):
     """Changes attributes of the scene's camera in a file."""
     bpy.ops.wm.open_mainfile(filepath=file)

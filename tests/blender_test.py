@@ -2,7 +2,7 @@
 """Tests the add-on of Blender: what it captures is filmed like Cycles' own depth of field, cameras of every kind are
 where transforms.json says, and a killed capture continues to the same files.
 
-usage: blender_test.py LFRENDERER LFCAMMVMINFO [TEST...]
+usage: blender_test.py LFRENDERER LFCAMMVMINFO LFPATH [TEST...]
 Exit 77 if there is no blender: the test then counts as skipped, not as passed.
 """
 import json
@@ -26,7 +26,7 @@ sys.path.insert(0, str(ROOT / "blender" / "lfrendertools_blender"))
 import rig
 
 BLENDER = shutil.which("blender")
-RENDERER = CAMMVMINFO = None
+RENDERER = CAMMVMINFO = LFPATH = None
 # Least quality of frames 1 and 5 of the scene "shop". With a lens that is turned by half a blade they have 42.2, 37.3.
 TRUE_DB = {1: 43, 5: 47}
 SAMPLES_OF_TRUTH = 2048
@@ -238,6 +238,45 @@ class PathTest(ProgramTestCase):
             self.assertFalse((self.folder / "refused.yaml").exists())
 
 
+MOVING = """format: lfpath 1
+fps: 25
+frames: 6
+resolution: [150, 90]
+camera: {focal_length_mm: 30, focal_length_speed_mm: 60, position: [0.5, -1.2, -3], speed: [4, 1, 2],
+         look_at: [0.2, 0.3, 0.5], up: [0.3, -1, 0.2], roll_deg: 150, roll_speed_deg: 400}
+lens: {aperture_diameter: 0, focus_distance: 2}
+"""
+
+
+class ChanTest(ProgramTestCase):
+    """Blender comes with an add-on for .chan files: it must read and write the cameras that lfpath writes and reads."""
+
+    def told(self, path, *options):
+        return json.loads(self.succeeds(LFPATH, path, "--json", "-q", *options))["cameras"]
+
+    def test_blender_reads_and_writes_the_cameras_of_a_chan(self):
+        (self.folder / "path.yaml").write_text(MOVING)
+        path = self.told(self.folder / "path.yaml")
+        for order in "zxy", "xyz":
+            chan, scene, file = self.folder / f"{order}.chan", self.folder / f"{order}.blend", self.folder / "c.json"
+            self.succeeds(LFPATH, self.folder / "path.yaml", "-o", chan, "--rotation-order", order, "-q")
+            scene_of("chan", file=str(scene), path=str(chan), order=order.upper(), size=(150, 90), frames=6)
+            scene_of("cameras", file=str(scene), output=str(file))
+            again = self.told(f"{chan}.again", "--rotation-order", order, "--resolution", "150x90", "--fps", 25)
+            blenders = json.loads(file.read_text())
+            self.assertEqual((len(blenders), len(again)), (6, 6))
+            for ours, blender, read in zip(path, blenders, again):
+                right = np.cross(ours["forward"], ours["up"])
+                axes = [right, ours["up"], np.negative(ours["forward"])]
+                np.testing.assert_allclose(blender["axes"], axes, rtol=0, atol=1e-5)
+                np.testing.assert_allclose(blender["position"], ours["position_w"], rtol=0, atol=1e-5)
+                half_view = math.tan(math.radians(ours["field_of_view_deg"][0] / 2))
+                self.assertAlmostEqual(blender["half_view"], half_view, delta=1e-5)
+                for name in "position_w", "forward", "up":
+                    np.testing.assert_allclose(read[name], ours[name], rtol=0, atol=1e-5)
+                self.assertAlmostEqual(read["field_of_view_deg"][1], ours["field_of_view_deg"][1], delta=1e-4)
+
+
 class RigTest(unittest.TestCase):
     def test_coarse_grids_come_first(self):
         order = rig.coarse_first(rig.Rig(columns=15, rows=7))
@@ -257,8 +296,8 @@ class RigTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    RENDERER, CAMMVMINFO = sys.argv[1:3]
+    RENDERER, CAMMVMINFO, LFPATH = sys.argv[1:4]
     if BLENDER is None:
         print("skipped: there is no blender here (scripts/install_packages.sh blender)")
         sys.exit(77)
-    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
+    unittest.main(argv=sys.argv[:1] + sys.argv[4:])

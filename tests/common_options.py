@@ -43,8 +43,11 @@ OFFERED = {
     "lffocus stack": set(COMMON),
     "lffocus epi": set(COMMON) - {"--seed"},
     "lffocus views": set(COMMON) - {"--seed"},
+    "lffocus depth": set(COMMON) - {"--seed"},
+    "lffocus sharp": set(COMMON) - {"--seed"},
     # --allow-missing follows the two dashes, because it is an option of lfrenderer.
     "lfsubmit": set(COMMON) - {"--seed", "--allow-missing"},
     "lfmerge": set(COMMON) - {"--seed", "--strict"},
+    "lfquilt": {"--threads", "--progress", "--quiet", "--json"},
     "lfvisualizer": set(COMMON) - {"--strict", "--json"},
 }

@@ -19,6 +19,7 @@ NUMBERS = {  # the variable of each batch system, and the number of its first ta
     "SLURM_ARRAY_TASK_ID": 0, "PBS_ARRAY_INDEX": 0, "PBS_ARRAYID": 0, "SGE_TASK_ID": 1, "LSB_JOBINDEX": 1,
     "JOB_COMPLETION_INDEX": 0, "AWS_BATCH_JOB_ARRAY_INDEX": 0,
 }
+LAST_FRAMES = ("frame_0008.exr", "frame_0009.exr")  # of the nine frames of the path
 OFTEN = ["--threads", 1, "--", "--dump-every", "0.05s"]  # packages get a checkpoint soon
 
 
@@ -58,6 +59,51 @@ class ProgressTest(ClusterTestCase):
             self.assertIn("nothing is rendered", result.stderr)
             self.assertEqual(json.loads(result.stdout)["frames"], [])
             self.assertFalse(self.film.exists())
+
+
+class ClampedTest(ClusterTestCase):
+    """--clamp-frames of the other programs that choose frames of a path."""
+
+    def preprocess(self, *words, code=0):
+        result = self.call(cluster_test_case.PREPROCESSOR, self.field, self.path, *words)
+        self.assertEqual(result.returncode, code, result.stderr)
+        return result
+
+    def test_packages_of_a_chunk_that_is_too_long(self):
+        out = self.folder / "packages"
+        self.assertIn("1 to 9", self.preprocess("-o", out, "--frames", "8-12", code=2).stderr)
+        self.preprocess("-o", out, "--frames", "8-12", "--clamp-frames")
+        package, = out.glob("*.lfp")
+        self.assertIn("-of-frames-8-9", package.name)
+        self.succeeds(cluster_test_case.RENDERER, package, "-o", self.film, "-q")
+        self.assertEqual(digests(self.film), {name: self.expected[name] for name in LAST_FRAMES})
+
+    def test_nothing_is_selected_if_no_frame_is_left(self):
+        out = self.folder / "packages"
+        for words in (["-o", out], ["-o", out, "--overwrite"], ["--plan"]):
+            result = self.preprocess(*words, "--frames", "10-20", "--clamp-frames", "--json")
+            self.assertIn("beyond the end of the path: nothing is selected", result.stderr)
+            self.assertEqual(json.loads(result.stdout)["packages"], [])
+            self.assertEqual(json.loads(result.stdout)["lf_images"], 16)
+            result = self.preprocess(*words, "--frames", "10-20", "--clamp-frames")
+            self.assertEqual(result.stdout, "")
+        self.assertFalse(out.exists())
+
+    def test_a_job_of_a_chunk_that_is_too_long(self):
+        self.submit("--frames", "8-12", code=2, words=["1 to 9"])
+        self.submit("--frames", "8-12", "--clamp-frames")
+        self.assertEqual(digests(self.film), {name: self.expected[name] for name in LAST_FRAMES})
+
+    def test_nothing_is_submitted_if_no_frame_is_left(self):
+        self.assertIn("nothing is submitted", self.submit("--frames", "10-20", "--clamp-frames"))
+        said = self.succeeds(cluster_test_case.SUBMIT, *self.package_files, "-o", self.film, "--frames", "10-20",
+                             "--clamp-frames", "--json")
+        self.assertEqual(json.loads(said)["packages"], [])
+        self.assertFalse(self.film.exists())
+
+    def test_frames_are_clamped_for_new_jobs_by_lfsubmit_alone(self):
+        self.submit("--frames", "8-12", "--", "--clamp-frames", code=2, words=["--clamp-frames"])
+        self.fails(2, ["--clamp-frames", "new jobs"], cluster_test_case.SUBMIT, "--resume", self.film, "--clamp-frames")
 
 
 class FarmTestCase(ClusterTestCase):

@@ -2,7 +2,7 @@
 """Tests calibrations, camera paths, images and masks made to do harm, and things that are no files: pipes, devices,
 loops of links. Programs must keep to the limits of memory and time and report one error.
 
-usage: hostile_files_test.py LFRENDERER LFIMPORT LFEXAMPLE LFPREPROCESSOR
+usage: hostile_files_test.py LFRENDERER LFIMPORT LFEXAMPLE LFPREPROCESSOR LFPATH
 """
 import functools
 import json
@@ -179,6 +179,55 @@ def paths():
     yield "nothing", ""
 
 
+POSE = np.eye(4).ravel().tolist()
+NUMBERS = (0, -1, 1e300, -1e300, 1e-300, float("nan"), float("inf"), "x", None, [1], {}, True, 2**64)
+
+
+def foreign_paths():
+    """Yields (name, file name, text) of camera paths of other programs."""
+    studio = {"camera_type": "perspective", "render_width": 80, "render_height": 60, "fps": 25, "seconds": 1,
+              "camera_path": [{"camera_to_world": POSE, "fov": 50}] * 2}
+    ngp = {"path": [{"R": [0, 0, 0, 1], "T": [0.5, 0.5, 0.5], "slice": 0, "scale": 1.5, "fov": 50,
+                     "aperture_size": 0.01, "timestamp": time} for time in (1, 2)], "duration_seconds": 1}
+    splat = [{"id": 0, "img_name": "a", "width": 80, "height": 60, "fx": 70, "fy": 70, "position": [0, 0, 0],
+              "rotation": np.eye(3).tolist()}]
+    for key in ("render_width", "render_height", "fps", "seconds", "camera_path"):
+        for value in NUMBERS:
+            yield f"{key} {value}"[:40], "n.json", json.dumps({**studio, key: value})
+    for value in NUMBERS:
+        yield f"fov {value}"[:40], "n.json", json.dumps(
+            {**studio, "camera_path": [{"camera_to_world": POSE, "fov": value}]})
+        yield f"a pose with {value}"[:40], "n.json", json.dumps(
+            {**studio, "camera_path": [{"camera_to_world": [value, *POSE[1:]], "fov": 50}]})
+        yield f"instant-ngp, duration {value}"[:40], "b.json", json.dumps({**ngp, "duration_seconds": value})
+        yield f"instant-ngp, order {value}"[:40], "b.json", json.dumps({**ngp, "spline_order": value})
+        for key in ("R", "T", "scale", "fov", "aperture_size", "timestamp"):
+            wrong = value if key not in ("R", "T") else [value, *ngp["path"][0][key][1:]]
+            yield f"instant-ngp, {key} {value}"[:40], "b.json", json.dumps(
+                {**ngp, "path": [{**ngp["path"][0], key: wrong}]})
+        for key in ("width", "height", "fx", "position", "rotation"):
+            yield f"splats, {key} {value}"[:40], "cameras.json", json.dumps([{**splat[0], key: value}])
+    yield "half an hour of instant-ngp", "b.json", json.dumps({**ngp, "duration_seconds": 1800})
+    yield "40,000 frames of nerfstudio", "n.json", json.dumps({**studio, "camera_path": studio["camera_path"] * 20_000})
+    yield "a curve of 30,000 keys", "b.json", json.dumps({**ngp, "path": ngp["path"] * 15_000})
+    yield "brackets, a million deep", "n.json", '{"camera_path": ' + "[" * 1_000_000
+    yield "maps, a million deep", "b.json", '{"path": [' + '{"a": ' * 1_000_000
+    yield "keys twice", "n.json", '{"camera_path": [], ' + json.dumps(studio)[1:]
+    yield "a key of ten million letters", "n.json", json.dumps({**studio, "k" * 10_000_000: 1})
+    line = "{} 0 0 0 0 0 0 50\n"
+    yield "50,000 lines of a .chan", "c.chan", "".join(line.format(i) for i in range(1, 50_001))
+    yield "a line of ten million blanks", "c.chan", "1" + " " * 10_000_000 + line.format("")[1:]
+    yield "a line of a million columns", "c.chan", "1 " * 1_000_000
+    yield "a number of a million digits", "c.chan", line.format("1" * 1_000_000)
+    yield "a comment of ten million letters", "c.chan", "#" * 10_000_000 + "\n" + line.format(1)
+    for number in ("1e18", "-5", "1.5", "nan", "inf", "0x10", "1e400", "\0"):
+        yield f"a frame number {number!r}", "c.chan", line.format(number)
+        yield f"a position {number!r}", "c.chan", line.format(1).replace(" 0", f" {number}", 1)
+        yield f"a field of view {number!r}", "c.chan", line.format(1).replace("50", number)
+    yield "a byte order mark", "c.chan", "\ufeff" + line.format(1)
+    yield "bytes that are no UTF-8", "n.json", json.dumps(studio).replace("perspective", "\udcff")
+
+
 class HostileFilesTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -278,7 +327,16 @@ class HostileFilesTest(unittest.TestCase):
         self.runs.all("camera paths, lfrenderer", calls, accepts=(0, 2, 3))
         self.runs.all("camera paths, lfpreprocessor", plans, accepts=(0, 2, 3))
 
+    def test_foreign_camera_paths(self):
+        calls = []
+        for name, file_name, text in foreign_paths():
+            folder = self.new_folder()
+            (folder / file_name).write_bytes(text.encode(errors="surrogateescape"))
+            calls.append((name, [PROGRAMS[4], folder / file_name, "-o", folder / "out" / "path.json"]))
+            (folder / "out").mkdir()
+        self.runs.all("foreign camera paths, lfpath", calls, accepts=(0, 2, 3))
+
 
 if __name__ == "__main__":
-    PROGRAMS = sys.argv[1:5]
+    PROGRAMS = sys.argv[1:6]
     unittest.main(argv=sys.argv[:1], verbosity=2)

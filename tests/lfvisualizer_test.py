@@ -49,6 +49,13 @@ class VisualizerTest(ProgramTestCase):
                 self.assertAlmostEqual(got, wanted, 12, index)
         self.assertEqual([line[0] for line in words["render_camera"]], [1, 2, 3])
 
+    def test_frames_beyond_the_end_can_be_left_out(self):
+        words = self.lines("--frames", "3-7", "--clamp-frames")
+        self.assertEqual([line[0] for line in words["render_camera"]], [3])
+        words = self.lines("--frames", "4-7", "--clamp-frames")
+        self.assertEqual({word: len(lines) for word, lines in words.items()},
+                         {"lf_camera": small_field.SIDE**2, "render_camera": 0, "collected": 0})
+
     # The number of collected LF images equals the number that lfrenderer reports, with weights and without.
     def test_what_is_collected_is_what_a_render_collects(self):
         for weights in ("auto", "none"):
@@ -193,6 +200,7 @@ class VisualizerTest(ProgramTestCase):
         other.write_text("{}")
         self.fails(3, ["no camera path"], VISUALIZER, self.field, other)
         self.fails(2, ["--frames '7'"], VISUALIZER, self.field, self.path, "--text", "--frames", 7)
+        self.fails(2, ["--clamp-frames", "--text"], VISUALIZER, self.field, self.path, "--clamp-frames")
         self.fails(3, ["nowhere"], VISUALIZER, self.folder / "nowhere", self.path, "--text")
 
 

@@ -37,7 +37,7 @@ RUNS = {  # options with which a run changes the content of the frames
 INPUTS = ("folder", "store", "lossy store", "store of packages", "lossy store of packages",
           "needed pixels", "lossy needed pixels", "densified store")
 CUTS = ("whole", "packages", "moved packages", "shards", "shards of packages", "lfsubmit")
-FIELDS = ("rgb", "mosaic", "alpha", "opacity", "falloff", "flawed", "flawed mosaic")
+FIELDS = ("rgb", "mosaic", "alpha", "opacity", "falloff", "shutter", "flawed", "flawed mosaic")
 VALUES = {"field": FIELDS, "input": INPUTS, "cut": CUTS, "mode": tuple(MODES), "run": tuple(RUNS)}
 
 

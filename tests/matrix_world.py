@@ -41,6 +41,7 @@ PATH_YAML = """format: lfpath 1
 fps: 25
 frames: {frames}
 resolution: [160, 120]
+{clock}
 camera:
   field_of_view_deg: 44
   focal_length_mm: 35
@@ -60,11 +61,12 @@ keyframes:
                       {{time: 0.32, value: {last}}}]
   focus_distance: [{{time: 0, value: 0.8}}, {{time: 0.32, value: 2}}]
 """
-# Entries of the sections camera and lens of the fields whose lens is no plain disk.
+# Entries of a path, and of its sections camera and lens, of the fields that are no plain disk at one moment.
 SHAPES = {
-    "mosaic": ("", "blades: 5\n  blade_roundness: 0.5"),
-    "falloff": ("shift_mm: {horizontal: 2, vertical: -1}", "ratio: 1.6"),
-    "opacity": ("", "hood_distance: 0.05\n  hood_diameter: 0.06"),
+    "mosaic": ("", "", "blades: 5\n  blade_roundness: 0.5"),
+    "falloff": ("", "shift_mm: {horizontal: 2, vertical: -1}", "ratio: 1.6"),
+    "opacity": ("", "", "hood_distance: 0.05\n  hood_diameter: 0.06"),
+    "shutter": ("shutter: {angle_deg: 270, samples: 5}", "", ""),
 }
 
 
@@ -206,9 +208,10 @@ class World:
     def path_of(self, field):
         has_pinhole = field in ("rgb", "flawed mosaic")
         path = self.folder_of(field).parent / "path.yaml"
-        camera, lens = SHAPES.get(field, ("", ""))
+        clock, camera, lens = SHAPES.get(field, ("", "", ""))
         path.write_text(PATH_YAML.format(frames=FRAMES, first=0 if has_pinhole else 0.012,
-                                         last=0.015 if has_pinhole else 0.02, camera=camera, lens=lens))
+                                         last=0.015 if has_pinhole else 0.02, clock=clock, camera=camera,
+                                         lens=lens))
         return path
 
     @once

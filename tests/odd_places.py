@@ -95,6 +95,9 @@ class OddNames:
         self.call("lfmerge", here / f"{name} cut" / "partial" / "shards", "-o", here / f"{name} merged")
         self.same("lfmerge", frames_of(here / f"{name} merged") == self.expected["frames"])
         yield "lfmerge"
+        self.call("lfquilt", film, "-o", here / f"{name} quilt.exr", "--layout", "left-right")
+        self.same("lfquilt", len(list(here.glob("*quilt_*.exr"))) == 2)
+        yield "lfquilt"
         self.call("lfsubmit", *sorted(packages.glob("*.lfp")), "-o", here / f"{name} job", "--progress", "none")
         self.same("lfsubmit", frames_of(here / f"{name} job") == self.expected["frames"])
         yield "lfsubmit"
@@ -186,6 +189,7 @@ class Inputs:
             yield "lfsynth", words("lfsynth", "chart", "-o", place, "--count", "4", "--size", "32x32"), set()
             yield "lfvisualizer", [self.calls.programs / "lfvisualizer", field, path, "--export", place], set()
             yield "lfmerge", words("lfmerge", self.shards / "partial/shards", "-o", place), set()
+            yield "lfquilt", words("lfquilt", self.image, self.image, "-o", place, "--layout", "over-under"), set()
             yield "lfsubmit", [self.calls.programs / "lfsubmit", package, "-o", place, "--progress", "none"], set()
         yield "lfcompressor", words("lfcompressor", store, "-o", store, "--overwrite"), set()
         yield "lfcompressor", words("lfcompressor", package, "-o", package, "--overwrite"), set()
@@ -193,6 +197,8 @@ class Inputs:
         yield "lfrenderer", words("lfrenderer", package, "-o", self.packages, "--overwrite"), set()
         yield "lfrenderer", words("lfrenderer", store, path, "-o", self.folder, "--overwrite", "--frames", "1"), set()
         yield "lfmerge", words("lfmerge", self.shards / "partial/shards", "-o", self.shards / "partial/shards",
+                               "--overwrite"), set()
+        yield "lfquilt", words("lfquilt", self.image, self.image, "-o", self.image, "--layout", "anaglyph",
                                "--overwrite"), set()
         yield "lfsubmit", [self.calls.programs / "lfsubmit", package, "-o", self.packages, "--overwrite",
                            "--progress", "none"], set()

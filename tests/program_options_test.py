@@ -30,8 +30,11 @@ CALLS = {
     "lffocus stack": ["no", "no.yaml", "-o", "no"],
     "lffocus epi": ["no", "--row", "1"],
     "lffocus views": ["no", "--grid", "2x2", "-o", "no"],
+    "lffocus depth": ["no", "no.yaml", "-o", "no.exr"],
+    "lffocus sharp": ["no", "no.yaml", "-o", "no.exr"],
     "lfimport": ["no"],
     "lfmerge": ["no", "-o", "no"],
+    "lfquilt": ["no.png", "-o", "no.png", "--views", "1x1"],
     "lfsubmit": ["no.lfp", "-o", "no"],
     "lfsynth": ["lights", "-o", "no"],
     "lfvisualizer": ["no", "no.yaml", "--text"],
@@ -148,6 +151,9 @@ class ProgramOptionsTest(ProgramTestCase):
         yield "lffocus epi", [field, "--row", 3, "-o", out / "epi.png", "--overwrite"], "transforms.json: opened"
         yield "lffocus views", [field, "--grid", "3x3", "-o", out / "views", "--overwrite", "--focus-distance",
                                 1], "transforms.json: opened"
+        for command in ("depth", "sharp"):
+            yield f"lffocus {command}", [field, path, "-o", out / "a.exr", "--near", 0.3, "--far", 1,
+                                         "--overwrite"], "transforms.json: opened"
         yield "lfmerge", [out / "shards", "-o", out / "merged", "--overwrite"], "plates"
         yield "lfcompressor", [field, "-o", out / "a.lfs", "--overwrite"], "codec default"
         yield "lfdensify", [field, "-o", out / "b.lfs", "--overwrite", "--depths", 0.2, 10, "--force"], "divisor 1"

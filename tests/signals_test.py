@@ -78,6 +78,9 @@ class SignalsTest(WritersCase):
     def test_lfmerge(self):
         self.same("lfmerge", "--resume")
 
+    def test_lfquilt(self):
+        self.same("lfquilt", "--resume")
+
     def test_lfsynth(self):
         self.same("lfsynth")
 

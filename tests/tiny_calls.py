@@ -54,6 +54,11 @@ class TinyCalls:
     def preprocess(self, path, out, *more):
         return self.words("lfpreprocessor", self.field, path, "-o", out, "--packages", "2", "--frames", "1-2", *more)
 
+    def quilt(self, *more, reverse=False):
+        """Returns a call of lfquilt that joins the LF images."""
+        images = sorted(self.field.rglob("*.png"), reverse=reverse)
+        return self.words("lfquilt", *images, "-o", self.out.with_suffix(".png"), "--views", f"{len(images)}x1", *more)
+
     def prepare(self):
         self.base.mkdir(exist_ok=True)
         commands = [self.synth(self.field), self.example(self.path), self.example(self.other_path, "4"),
@@ -88,6 +93,7 @@ class TinyCalls:
         views = self.words("lffocus", "views", self.field, "--grid", "3x3", "-o", out)
         array = self.words("lffocus", "views", self.field, "--grid", "2x4", "--focus-distance", "3", "-o",
                            out.with_suffix(".npy"))
+        quilt = self.quilt()
         return [Call("lfsynth", synth, [[*synth, "--overwrite"]]),
                 Call("lfimport", convert, [[*convert, "--force"]]),
                 Call("lfexample", self.words("lfexample", self.field, "-o", out.with_suffix(".yaml"))),
@@ -103,7 +109,8 @@ class TinyCalls:
                 Call("lffocus stack", stack, [[*stack, "--resume"], [*stack, "--overwrite"]]),
                 Call("lffocus epi", epi, [[*epi, "--overwrite"]]),
                 Call("lffocus views", views, [[*views, "--overwrite"]]),
-                Call("lffocus views, an array", array, [[*array, "--overwrite"]])]
+                Call("lffocus views, an array", array, [[*array, "--overwrite"]]),
+                Call("lfquilt", quilt, [[*quilt, "--resume"], [*quilt, "--overwrite"]])]
 
     def submitters(self):
         """Returns calls of lfsubmit, in which lfsubmit or its lfrenderer is disturbed, and calls that resume or
@@ -140,7 +147,8 @@ class TinyCalls:
                 Call("lfrenderer --overwrite", film, [self.render("-o", out, "--resume"), film],
                      before=[self.render("-o", out, path=other)]),
                 Call("lfmerge --overwrite", merge + anew, [merge + resume, merge + anew],
-                     before=[self.render("-o", out, path=other)])]
+                     before=[self.render("-o", out, path=other)]),
+                Call("lfquilt --overwrite", self.quilt(*anew), before=[self.quilt(reverse=True)])]
 
     def printers(self):
         """Returns the calls of programs that print, and of one that writes a page."""

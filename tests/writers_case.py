@@ -56,6 +56,8 @@ class WritersCase(ProgramTestCase):
                         "--distance", 3 + (way == "b")],
             "lfimport": [self.field, "-o", out, "--unit-m", 1 + (way == "b"), "--check", "none"],
             "lfexample": [self.field, "-o", out / "path.yaml", "--focus", 3 + (way == "b")],
+            "lfquilt": [*sorted(self.field.rglob("*.png"), reverse=way == "b"), "-o", out / "film.png", "--views",
+                        "3x3"],
             "lfsubmit": [*sorted((self.world / f"packages_{way}").glob("*.lfp")), "-o", out, "--jobs", 2,
                          "--", "--estimator",
                          estimator],
@@ -89,6 +91,7 @@ class WritersCase(ProgramTestCase):
         """Returns digests of a program's results, without reports, which contain times."""
         kinds = {"lfrenderer": "frame_*", "lfmerge": "frame_*", "lfsubmit": "frame_*", "lfpreprocessor": "*.lfp",
                  "lfcompressor": "*.lfs", "lfdensify": "*.lfs", "lfimport": "*.json", "lfexample": "*.yaml",
+                 "lfquilt": "*.png",
                  "lfsynth": "**/[!.]*"}
         return {str(path.relative_to(out)): cls.digest(path)
                 for path in sorted(out.glob(kinds[program])) if path.is_file()}

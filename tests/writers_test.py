@@ -65,6 +65,9 @@ class WritersTest(WritersCase):
     def test_lfmerge(self):
         self.race("lfmerge", "--overwrite")
 
+    def test_lfquilt(self):
+        self.race("lfquilt", "--overwrite")
+
     def test_lfcompressor(self):
         self.race("lfcompressor", "--overwrite")
 

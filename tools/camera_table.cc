@@ -17,6 +17,16 @@ std::string Brief(double value) {
   return fmt::format("{:.5g}", std::abs(value) < kNothing ? 0.0 : value);
 }
 
+// Returns the facts of the camera of a frame and, at the end, of the shutter, if there is one.
+std::vector<CameraFact> FactsOf(const CameraPath& path, FrameId frame) {
+  std::vector<CameraFact> facts = CameraFacts(path.Camera(frame), frame);
+  if (path.shutter.exists())
+    facts.push_back({"shutter",
+                     {"angle_deg", "samples"},
+                     {path.shutter.angle_deg, static_cast<double>(path.shutter.samples)}});
+  return facts;
+}
+
 std::string Exact(double value) { return fmt::format("{}", value == 0 ? 0.0 : value); }
 
 // A column of the table: one fact about the camera of each frame, as texts [frame][part]. A part is
@@ -40,7 +50,7 @@ std::vector<std::string> BriefTexts(const CameraFact& fact) {
 std::vector<TableColumn> Columns(const CameraPath& path, const std::vector<FrameId>& frames) {
   std::vector<TableColumn> columns;
   for (const FrameId frame : frames) {
-    const std::vector<CameraFact> facts = CameraFacts(path.Camera(frame), frame);
+    const std::vector<CameraFact> facts = FactsOf(path, frame);
     columns.resize(facts.size());
     for (size_t i = 0; i < facts.size(); ++i) {
       if (columns[i].texts.empty()) columns[i].fact = facts[i];
@@ -119,7 +129,7 @@ std::string CameraTable(const CameraPath& path, const std::vector<FrameId>& fram
 
 std::string CameraBlock(const CameraPath& path, FrameId frame) {
   std::string block;
-  for (const CameraFact& fact : CameraFacts(path.Camera(frame), frame)) block += BlockLine(fact);
+  for (const CameraFact& fact : FactsOf(path, frame)) block += BlockLine(fact);
   return block;
 }
 
@@ -129,13 +139,13 @@ std::string CameraCsv(const CameraPath& path, const std::vector<FrameId>& frames
     if (!csv.empty() && csv.back() != '\n') csv += ',';
     csv += cell;
   };
-  for (const CameraFact& fact : CameraFacts(path.Camera(frames.front()), frames.front())) {
+  for (const CameraFact& fact : FactsOf(path, frames.front())) {
     if (fact.parts.empty()) add(fact.name);
     for (const std::string& part : fact.parts) add(fact.name + "." + part);
   }
   csv += '\n';
   for (const FrameId frame : frames) {
-    for (const CameraFact& fact : CameraFacts(path.Camera(frame), frame))
+    for (const CameraFact& fact : FactsOf(path, frame))
       for (const double value : fact.values) add(Exact(value));
     csv += '\n';
   }
@@ -151,8 +161,7 @@ std::string CameraJson(const CameraPath& path, const std::vector<FrameId>& frame
   nlohmann::ordered_json& cameras = json["cameras"] = nlohmann::ordered_json::array();
   for (const FrameId frame : frames) {
     nlohmann::ordered_json camera;
-    for (const CameraFact& fact : CameraFacts(path.Camera(frame), frame))
-      camera[fact.name] = JsonOf(fact);
+    for (const CameraFact& fact : FactsOf(path, frame)) camera[fact.name] = JsonOf(fact);
     cameras.push_back(std::move(camera));
   }
   return json.dump(1) + "\n";

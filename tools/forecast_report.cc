@@ -200,7 +200,10 @@ std::string ForecastText(const PreprocessReport& report, const CameraPath& path,
           &lines);
   AddLine(
       "film",
-      fmt::format("{} frames of {} x {}", report.frames.size(), plate.width_px, plate.height_px),
+      fmt::format("{} frames of {} x {}{}", report.frames.size(), plate.width_px, plate.height_px,
+                  path.shutter.exists()
+                      ? fmt::format(", each exposed at {} instants", path.shutter.samples)
+                      : ""),
       &lines);
   AddLine("to be read",
           fmt::format("{} LF images{} in files of {} together{}", image_count,
@@ -249,6 +252,7 @@ std::string ForecastJson(const PreprocessReport& report, const CameraPath& path,
   Json json;
   json["light_field"] = facts.light_field;
   json["output"] = facts.output.empty() ? Json() : Json(facts.output);
+  if (path.shutter.exists()) json["shutter_samples"] = path.shutter.samples;
   json["lf_images"] = report.light_field_image_count;
   const auto add_virtual = [](size_t count, Json* to) {
     if (count > 0) (*to)["virtual_lf_images"] = count;
@@ -303,6 +307,10 @@ std::string ForecastJson(const PreprocessReport& report, const CameraPath& path,
                               {"far_displacement_px", density.far_displacement_px}});
     add_virtual(frame.virtual_count, &json["frames"].back());
   }
+  json["advice"] = nullptr;
+  json["warnings"] = Json::array();
+  const auto text = [&] { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; };
+  if (report.frames.empty()) return text();
   const ForecastAdvice advice = AdviceOf(report, path, !facts.depths_from.empty());
   json["advice"] = {
       {"focus_distance",
@@ -312,7 +320,7 @@ std::string ForecastJson(const PreprocessReport& report, const CameraPath& path,
       {"largest_aperture",
        advice.largest_aperture_w > 0 ? finite(advice.largest_aperture_w) : Json()}};
   json["warnings"] = DensityWarnings(report, path, facts);
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return text();
 }
 
 }  // namespace lf

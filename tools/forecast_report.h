@@ -37,7 +37,8 @@ MissingImages MissingOf(const PreprocessReport& report);
 std::string ForecastText(const PreprocessReport& report, const CameraPath& path,
                          const ForecastFacts& facts);
 
-// Returns JSON about all packages and all frames; lengths are in world units.
+// Returns JSON about all packages and all frames, of which there may be none; lengths are in world
+// units.
 std::string ForecastJson(const PreprocessReport& report, const CameraPath& path,
                          const ForecastFacts& facts);
 

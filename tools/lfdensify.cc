@@ -146,7 +146,7 @@ lf::Result<lf::DensifyOptions> MakeOptions(const Arguments& a, const lf::LightFi
   if (!a.path.empty()) {
     LF_ASSIGN_OR_RETURN(const lf::CameraPath path,
                         lf::OpenPath(a.path, lf::PathOptionsFor(light_field, a.light_field.path)));
-    options.choices.frames = path.cameras;
+    options.choices.frames.assign(path.AllInstants().begin(), path.AllInstants().end());
   }
   LF_ASSIGN_OR_RETURN(options.memory_bytes, lf::ParseByteSize(a.memory, "--memory"));
   options.resume = a.resume;

@@ -14,6 +14,7 @@
 #include "tools/common/program.h"
 #include "tools/common/validators.h"
 
+#include "lf/camera/path/view_cameras.h"
 #include "lf/core/log.h"
 #include "lf/import/check/similarity.h"
 #include "lf/import/formats/open_light_field.h"
@@ -33,16 +34,23 @@ constexpr lf::HelpTexts kHelp = {
   lfpath path.yaml -o base_cam.json --format instant-ngp
   lfpath nuke.chan -o path.yaml --fps 24 --resolution 1920x1080 --f-number 2 --focus-distance 3
   lfpath path.yaml -o slow.yaml --frames 240
-  lfpath path.yaml -o moved.yaml --transform upright.txt --scale 0.5)",
+  lfpath path.yaml -o moved.yaml --transform upright.txt --scale 0.5
+  lfpath path.yaml -o stereo.yaml --stereo-mm 65
+  lfpath path.yaml -o quilt.yaml --quilt 8x6 --convergence 1.5)",
     .details =
         R"(PATH is our own YAML, a path of nerfstudio, instant-ngp or Nuke, or a calibration whose cameras become
 frames; doc/formats/foreign_paths.md has their conventions. A warning lists what PATH does not state, and the value that is used; the options of
 "Picture" state it, and replace what PATH states. Without -o, the program prints the camera of every
 frame, as lfcammvminfo does.
 
-In OUT, every frame has a camera of its own: accelerations and curves are not kept. A warning tells
-what the format of OUT cannot hold. JSON files have lf_ keys, from which our programs restore
-everything: frames that are rendered with such a file have the same bits.)",
+--stereo and --quilt make several views of every frame: the views of frame 1, those of frame 2, and so
+on. Their cameras stand side by side, are parallel, and have shifted plates, so that the plane of
+convergence is at the same place in all views. Render OUT as any path; lfquilt then puts the views
+together (doc/stereo.md).
+
+In OUT, every frame has a camera of its own: accelerations and curves are not kept. Only our own YAML
+keeps a shutter. A warning tells what the format of OUT cannot hold. JSON files have lf_ keys, from
+which our programs restore everything: frames that are rendered with such a file have the same bits.)",
 };
 
 struct Arguments {
@@ -54,7 +62,11 @@ struct Arguments {
   std::vector<double> ngp_offset;
   std::optional<uint32_t> frames;
   double scale = 1;
+  std::optional<double> separation_w, separation_mm, view_angle_deg, convergence_w;
+  std::optional<std::pair<int, int>> quilt;  // columns, rows
   bool overwrite = false;
+
+  bool makes_views() const { return separation_w || separation_mm || quilt; }
 };
 
 void AddInput(CLI::App& app, Arguments& a) {
@@ -134,6 +146,44 @@ void AddOutput(CLI::App& app, Arguments& a) {
   output.AddFlag("--overwrite", a.overwrite, "Replace OUT")->needs(out);
 }
 
+void AddViews(CLI::App& app, Arguments& a) {
+  lf::OptionGroup output(app, lf::kOutputGroup);
+  auto* stereo = output
+                     .Add("--stereo SEPARATION", a.separation_w,
+                          "Make two views of every frame, for left and right eye\n"
+                          "SEPARATION: distance of the eyes in world units, after --scale.")
+                     ->check(CLI::Range(1e-9, 1e9));
+  auto* stereo_mm =
+      output.Add("--stereo-mm MM", a.separation_mm, "As --stereo, with the separation in mm")
+          ->check(CLI::Range(1e-9, 1e9))
+          ->excludes(stereo);
+  auto* quilt = output
+                    .Add("--quilt CxR", a.quilt,
+                         "Make the views of a light field display\n"
+                         "C columns times R rows of views for every frame, from the leftmost to "
+                         "the rightmost. "
+                         "The first view is the lower left tile of the quilt that lfquilt makes.")
+                    ->delimiter('x')
+                    ->check(CLI::Range(1, 1000))
+                    ->excludes(stereo)
+                    ->excludes(stereo_mm);
+  output
+      .Add("--view-angle DEGREES", a.view_angle_deg,
+           "Angle that the views of --quilt fill (35)\n"
+           "The angle between the outermost views, seen from the plane of convergence. Makers of "
+           "light field displays recommend 35 to 40 degrees.")
+      ->check(CLI::Range(lf::kLeastViewAngle_deg, lf::kMostViewAngle_deg))
+      ->needs(quilt);
+  output
+      .Add("--convergence X", a.convergence_w,
+           "Distance where all views agree (the focus distance)\n"
+           "In world units along the optical axis, for --stereo and --quilt: points at this "
+           "distance "
+           "appear on the screen, nearer ones in front of it. Without it, each frame has its own "
+           "focus distance.")
+      ->check(CLI::Range(1e-9, 1e9));
+}
+
 void AddPicture(CLI::App& app, Arguments& a) {
   lf::OptionGroup picture(app, lf::kPictureGroup);
   picture
@@ -190,6 +240,25 @@ lf::Result<lf::PathOptions> OptionsOf(const Arguments& a) {
   return options;
 }
 
+// Returns the cameras of all views, or the path as it is if no views are asked for.
+lf::Result<lf::CameraPath> ViewsOf(const Arguments& a, lf::CameraPath path) {
+  constexpr double kDefaultViewAngle_deg = 35;
+  if (!a.makes_views() && a.convergence_w)
+    return lf::UsageError(
+        "--convergence can only be used with --stereo, --stereo-mm or --quilt: leave it out, or "
+        "give one of them");
+  if (!a.makes_views()) return path;
+  if (!a.quilt)
+    return lf::StereoPath(path,
+                          a.separation_w.value_or(a.separation_mm.value_or(0) * 1e-3 / path.unit_m),
+                          a.convergence_w);
+  const int view_count = a.quilt->first * a.quilt->second;
+  if (view_count < 2) return lf::UsageError("--quilt 1x1 has a single view: expected at least 2");
+  return lf::QuiltPath(path, view_count,
+                       lf::RadiansFromDegrees(a.view_angle_deg.value_or(kDefaultViewAngle_deg)),
+                       a.convergence_w);
+}
+
 lf::Result<lf::CameraPath> Changed(const Arguments& a, lf::CameraPath path) {
   LF_ASSIGN_OR_RETURN(const lf::Similarity similarity, lf::ReadSimilarity(a.transform, a.scale));
   if (!a.transform.empty() || a.scale != 1)
@@ -215,6 +284,11 @@ lf::Result<void> Write(const Arguments& a, lf::PathOptions options, const lf::Ca
         fmt::format("--out-dataparser-transforms can only be used with --format nerfstudio, but {} "
                     "is written as {}: leave it out",
                     a.output, lf::NameOf(format)));
+  if (a.makes_views() && !lf::HoldsShift(format))
+    return lf::UsageError(fmt::format(
+        "--{} cannot be used with -o {}, because the format {} has no place for the shift of the "
+        "views: use --format yaml, nerfstudio, instant-ngp or usda",
+        a.quilt ? "quilt" : "stereo", a.output, lf::NameOf(format)));
   std::error_code error;
   if (!a.overwrite && std::filesystem::exists(a.output, error))
     return lf::UsageError(fmt::format(
@@ -222,6 +296,11 @@ lf::Result<void> Write(const Arguments& a, lf::PathOptions options, const lf::Ca
   options.dataparser_transforms = a.out_dataparser;
   LF_ASSIGN_OR_RETURN(const std::vector<std::string> lost,
                       lf::WritePath(path, a.output, format, options));
+  if (path.shutter.exists() && format == lf::PathFormat::kYaml)
+    lf::LogWarning(
+        "{}: the cameras at which the shutter exposes a frame are interpolated between the cameras "
+        "of the frames",
+        a.output);
   if (!lost.empty())
     lf::LogWarning("{}: the format has no place for {}", a.output, fmt::join(lost, "; for "));
   lf::LogInfo("{}: {} frame{} at {} per second, as {}", a.output, path.frame_count(),
@@ -232,7 +311,8 @@ lf::Result<void> Write(const Arguments& a, lf::PathOptions options, const lf::Ca
 lf::Result<void> Run(const Arguments& a, bool json) {
   LF_ASSIGN_OR_RETURN(const lf::PathOptions options, OptionsOf(a));
   LF_ASSIGN_OR_RETURN(lf::CameraPath opened, lf::OpenPath(a.path, options));
-  LF_ASSIGN_OR_RETURN(const lf::CameraPath path, Changed(a, std::move(opened)));
+  LF_ASSIGN_OR_RETURN(lf::CameraPath changed, Changed(a, std::move(opened)));
+  LF_ASSIGN_OR_RETURN(const lf::CameraPath path, ViewsOf(a, std::move(changed)));
   if (!a.output.empty()) LF_RETURN_IF_ERROR(Write(a, options, path));
   if (!a.output.empty() && !json) return {};
   const std::vector<lf::FrameId> frames = lf::AllFrames(path);
@@ -246,6 +326,7 @@ int main(int argc, char** argv) {
   lf::Program program("lfpath", kHelp);
   AddInput(program.app(), arguments);
   AddOutput(program.app(), arguments);
+  AddViews(program.app(), arguments);
   AddPicture(program.app(), arguments);
   program.AddCommonOptions({.json = "Print the cameras as JSON, with all digits\n"
                                     "Infinite numbers are null.",

@@ -18,7 +18,6 @@
 
 #include "lf/distribute/preprocess/preprocess.h"
 #include "lf/import/paths/open_path.h"
-#include "lf/render/pipeline/frame_range.h"
 
 namespace {
 
@@ -43,7 +42,8 @@ bit-identical to those of lfrenderer LIGHTFIELD PATH.)",
 
 struct Arguments {
   lf::LightFieldArgument light_field;
-  std::string path, output, frames, memory = "8G", order = "shuffle", balance = "rays";
+  lf::FrameRangeArguments frames;
+  std::string path, output, memory = "8G", order = "shuffle", balance = "rays";
   std::string estimator = "auto", lens_weights = "auto", mode = "collect";
   int64_t packages = 0, frames_per_package = 0, max_images = 0;
   double max_angle_deg = 0;
@@ -68,7 +68,7 @@ void AddInputAndOutput(CLI::App& app, Arguments& a) {
                  "Replace the packages in DIR\n"
                  "All packages in DIR are replaced; with --frames, only those that were made with "
                  "the same --frames.");
-  lf::AddFrameRange(output, a.frames);
+  a.frames.AddTo(output, "render", "nothing is selected");
   auto* packages =
       output.Add("--packages N", a.packages, "Number of packages (as few as --memory allows)")
           ->check(CLI::Range(0, 1'000'000));
@@ -158,9 +158,7 @@ lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::Comm
     options.output_folder = a.output;
   }
   options.overwrite = a.overwrite;
-  if (!a.frames.empty()) {
-    LF_ASSIGN_OR_RETURN(options.frames, lf::ParseFrameRange(a.frames, path.frame_count()));
-  }
+  LF_ASSIGN_OR_RETURN(options.frames, a.frames.Of(path.frame_count()));
   options.order = *lf::ImageOrderOf(a.order);
   options.seed = common.seed;
   if (a.max_images > 0) options.max_image_count = static_cast<size_t>(a.max_images);
@@ -192,6 +190,19 @@ lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::Comm
   return options;
 }
 
+// Tells that --clamp-frames has left out all frames, and prints a report without packages.
+lf::Result<void> ReportNoFrames(const Arguments& a, const lf::CommonOptions& common,
+                                const lf::LightField& light_field, const lf::CameraPath& path) {
+  a.frames.TellNone();
+  if (!common.json) return {};
+  lf::PreprocessReport report;
+  report.light_field_image_count = light_field.size();
+  lf::ForecastFacts facts;
+  facts.light_field = a.light_field.path;
+  facts.output = a.output;
+  return lf::PrintReport(lf::ForecastJson(report, path, facts));
+}
+
 lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   const std::atomic<bool>& interrupted = lf::CatchInterrupts();
   LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, a.allow_missing.Limit());
@@ -203,6 +214,7 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
                       lf::OpenPath(a.path, lf::PathOptionsFor(light_field, a.light_field.path)));
   LF_ASSIGN_OR_RETURN(lf::PreprocessOptions options,
                       MakeOptions(a, common, path, light_field.encoding));
+  if (a.frames.IsNone(options.frames)) return ReportNoFrames(a, common, light_field, path);
   options.interrupted = &interrupted;
   lf::ThreadPool pool(common.threads);
   const std::string depths_from = lf::KnowDepths(light_field, path, pool, &options);

@@ -67,9 +67,7 @@ struct Rendered {
 
 // Tells that --clamp-frames has left out all frames. Returns an empty report.
 Rendered NoFrames(const lf::RenderArguments& arguments, lf::RenderOptions options) {
-  lf::LogInfo(
-      "--frames {}: all of these frames are beyond the end of the path: nothing is rendered",
-      arguments.frames);
+  arguments.frames.TellNone();
   return {lf::RenderReport(), std::move(options)};
 }
 

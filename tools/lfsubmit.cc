@@ -58,6 +58,10 @@ using lf::Result;
 
 Result<void> Submit(const lf::SubmitArguments& arguments, const lf::CommonOptions& common) {
   LF_ASSIGN_OR_RETURN(const ClusterJob job, arguments.MakeJob(common));
+  if (job.packages.empty()) {
+    arguments.frames.TellNone();
+    return common.json ? lf::PrintReport(lf::ToJson(job, lf::JobStatus())) : Result<void>();
+  }
   if (job.video) {
     LF_RETURN_IF_ERROR(lf::CheckVideoTool());
     LF_RETURN_IF_ERROR(lf::CreateFolder(job.output_folder));

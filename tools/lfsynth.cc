@@ -40,7 +40,9 @@ void AddOutput(CLI::App& app, lf::SyntheticFieldOptions& a) {
   output.Add("--truth PATH", a.truth,
              "Also write ground truth frames of this camera path\n"
              "DIR/truth gets the frames that a real thin lens would film of the scene itself, to "
-             "compare them with frames that are rendered from the LF images.");
+             "compare them with frames that are rendered from the LF images. If the path has a "
+             "shutter, a frame is the mean of the pictures at its instants. The channel Z is the "
+             "depth of the surface that is seen through the lens centre.");
   output.AddFlag("--overwrite", a.overwrite,
                  "Replace a light field in DIR not written by lfsynth\n"
                  "Needed if another program wrote the transforms.json in DIR, or if it was changed "

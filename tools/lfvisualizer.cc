@@ -6,6 +6,7 @@
 
 #include "tools/common/allow_missing.h"
 #include "tools/common/byte_size.h"
+#include "tools/common/frame_options.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
@@ -16,7 +17,6 @@
 
 #include "lf/core/log.h"
 #include "lf/import/paths/open_path.h"
-#include "lf/render/pipeline/frame_range.h"
 #include "lf/view/scene_text.h"
 
 namespace {
@@ -47,7 +47,8 @@ ssh -L 8080:127.0.0.1:8080 HOST, where HOST is the machine that runs lfvisualize
 struct Arguments {
   lf::LightFieldArgument light_field;
   lf::PageArguments page;
-  std::string path, watch, frames, export_folder, live_memory = "512M", export_live = "32M";
+  lf::FrameRangeArguments frames;
+  std::string path, watch, export_folder, live_memory = "512M", export_live = "32M";
   int port = 0;
   uint64_t max_images = 0, export_images = 400;
   bool text = false;
@@ -76,12 +77,8 @@ void AddOutput(CLI::App& app, Arguments& a) {
       output.AddFlag("--text", a.text, "Print cameras, and which LF cameras each frame uses")
           ->excludes(serve)
           ->excludes(watch);
-  output
-      .Add("--frames RANGE", a.frames,
-           "Frames to print, such as 1-100x2, 7 or 3-5,9 (all)\n"
-           "1-100x2, 1-100:2: every second frame of 1 to 100. Frames are counted from 1.")
-      ->needs(text)
-      ->check(lf::NotEmpty());
+  for (CLI::Option* const option : a.frames.AddTo(output, "print", "only LF cameras are printed"))
+    option->needs(text);
   auto* to_files = output
                        .Add("--export DIR", a.export_folder,
                             "Write the page and its data into a new folder\n"
@@ -156,10 +153,12 @@ lf::Result<void> PrintText(const Arguments& a, const lf::CommonOptions& common) 
   LF_ASSIGN_OR_RETURN(const lf::LightField light_field, a.light_field.Open());
   LF_ASSIGN_OR_RETURN(const lf::CameraPath path,
                       lf::OpenPath(a.path, lf::PathOptionsFor(light_field, a.light_field.path)));
-  LF_ASSIGN_OR_RETURN(
-      const std::vector<lf::FrameId> frames,
-      lf::ParseFrameRange(a.frames.empty() ? fmt::format("1-{}", path.frame_count()) : a.frames,
-                          path.frame_count()));
+  LF_ASSIGN_OR_RETURN(std::vector<lf::FrameId> frames, a.frames.Of(path.frame_count()));
+  if (a.frames.IsNone(frames))
+    a.frames.TellNone();
+  else
+    for (uint32_t number = 1; a.frames.range.empty() && number <= path.frame_count(); ++number)
+      frames.push_back(lf::FrameId{number});
   lf::ThreadPool pool(common.threads);
   return lf::WriteSceneText(light_field, path, frames, common.seed, Needs(a), pool,
                             lf::PrintReport);

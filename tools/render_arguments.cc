@@ -58,11 +58,7 @@ void AddInput(CLI::App& app, RenderArguments& a) {
 void AddOutput(CLI::App& app, RenderArguments& a) {
   OptionGroup output(app, kOutputGroup);
   output.Add("-o,--output DIR", a.output, "Folder of the frames")->required();
-  AddFrameRange(output, a.frames);
-  output.AddFlag("--clamp-frames", a.clamp_frames,
-                 "Leave out frames of --frames beyond the end of the path\n"
-                 "Without this option they are an error. If none is left, nothing is rendered, and "
-                 "the exit code is 0. Farms need this whose last chunk may be too long.");
+  a.frames.AddTo(output, "render", "nothing is rendered");
   AddFrameFormat(output, a.format);
   a.picture.AddTo(output);
   AddFilmFiles(output, a.video, a.no_contact_sheet);
@@ -380,11 +376,7 @@ Result<FolderOptions> RenderArguments::MakeFolder(size_t frame_count) const {
 Result<RenderOptions> RenderArguments::MakeOptions(const CommonOptions& common,
                                                    size_t frame_count) const {
   RenderOptions options;
-  if (!frames.empty()) {
-    LF_ASSIGN_OR_RETURN(options.frames, ParseFrameRange(frames, frame_count, "--frames",
-                                                        clamp_frames ? FramesBeyondEnd::kLeftOut
-                                                                     : FramesBeyondEnd::kError));
-  }
+  LF_ASSIGN_OR_RETURN(options.frames, frames.Of(frame_count));
   LF_ASSIGN_OR_RETURN(options.film, MakeFilm(common.seed));
   LF_ASSIGN_OR_RETURN(options.work.memory_bytes, ParseByteSize(memory, "--memory"));
   options.work.strict = common.strict;

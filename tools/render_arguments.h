@@ -22,19 +22,20 @@ namespace lf {
 struct RenderArguments {
   std::vector<std::string> inputs;  // the words LIGHTFIELD PATH, or PACKAGE...
   LightFieldArgument light_field;   // its options; its `path` is the value of --lightfield
-  std::string output, video, frames, memory = "8G", format = "exr", mode = "collect";
+  std::string output, video, memory = "8G", format = "exr", mode = "collect";
   std::string estimator = "auto", filter = "auto", lens_weights = "auto", back_end = "fast",
               lf_pixels = "auto";
   std::string order = "shuffle", rectangles = "on", dump_every = "30s", stop_when, require, shard,
               finish, fill = "2";
+  FrameRangeArguments frames;
   PictureArguments picture;
   RebinArguments rebin;
   AllowMissing allow_missing;
   int64_t max_images = 0;    // 0: no limit
   double max_angle_deg = 0;  // 0: no limit
   uint32_t smooth_below = 0;
-  bool clamp_frames = false, densify = false, no_guard = false, no_contact_sheet = false,
-       resume = false, overwrite = false, keep_plates = false;
+  bool densify = false, no_guard = false, no_contact_sheet = false, resume = false,
+       overwrite = false, keep_plates = false;
 
   void AddTo(CLI::App& app);
   // Adds only the options that decide pictures, memory and checkpoints, for a program that renders
@@ -56,9 +57,7 @@ struct RenderArguments {
   // HasNoFrame() tells, they must not be used, because they would mean all frames.
   //   frame_count  number of frames of the film
   Result<RenderOptions> MakeOptions(const CommonOptions& common, size_t frame_count) const;
-  bool HasNoFrame(const RenderOptions& options) const {
-    return !frames.empty() && options.frames.empty();
-  }
+  bool HasNoFrame(const RenderOptions& options) const { return frames.IsNone(options.frames); }
 
  private:
   Result<FilmOptions> MakeFilm(uint64_t seed) const;

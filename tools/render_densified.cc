@@ -29,7 +29,7 @@ DensifyOptions OptionsOf(const CameraPath& path, const RenderArguments& argument
                          const RenderOptions& options) {
   DensifyOptions densify;
   densify.store = options.folder.output_folder / "densified.lfs";
-  densify.choices.frames = path.cameras;
+  densify.choices.frames.assign(path.AllInstants().begin(), path.AllInstants().end());
   // With the default of --memory, this is the default of lfdensify.
   densify.memory_bytes = options.work.memory_bytes / 4;
   densify.overwrite = options.folder.overwrite;

@@ -27,10 +27,10 @@ namespace {
 
 // Options of lfrenderer that are refused after --: those that the job decides on, and those with
 // which lfrenderer would print a text and render nothing.
-constexpr std::array kOfTheJob = {"-o",         "--output", "--resume",          "--overwrite",
-                                  "--progress", "--json",   "--frames",          "--video",
-                                  "--shard",    "--finish", "--threads",         "--memory",
-                                  "-q",         "--quiet",  "--no-contact-sheet"};
+constexpr std::array kOfTheJob = {"-o",         "--output", "--resume",           "--overwrite",
+                                  "--progress", "--json",   "--frames",           "--video",
+                                  "--shard",    "--finish", "--threads",          "--memory",
+                                  "-q",         "--quiet",  "--no-contact-sheet", "--clamp-frames"};
 constexpr std::array kRenderNothing = {"--help", "-h", "--help-all", "--version"};
 
 uint64_t MachineMemoryBytes() {
@@ -107,7 +107,7 @@ void MakeStrict(ClusterJob* job) {
 // Checks the arguments as lfrenderer would, before a task waits in a queue. Opens the packages as
 // *film, and returns the options that the arguments mean.
 Result<RenderOptions> TryArguments(const std::vector<fs::path>& packages, const fs::path& output,
-                                   const std::string& frames,
+                                   const FrameRangeArguments& frames,
                                    const std::vector<std::string>& arguments, PackagedFilm* film) {
   Program renderer("lfrenderer", HelpTexts{});
   RenderArguments render;
@@ -116,7 +116,8 @@ Result<RenderOptions> TryArguments(const std::vector<fs::path>& packages, const 
   std::vector<std::string> words = {"lfrenderer"};
   for (const fs::path& package : packages) words.push_back(package.string());
   words.insert(words.end(), {"-o", output.string()});
-  if (!frames.empty()) words.insert(words.end(), {"--frames", frames});
+  if (!frames.range.empty()) words.insert(words.end(), {"--frames", frames.range});
+  if (frames.clamp) words.emplace_back("--clamp-frames");
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
@@ -147,7 +148,7 @@ void AddNewJob(CLI::App& app, SubmitArguments& a) {
             "Options after -- are passed to lfrenderer for every package.");
   output.Add("-o,--output DIR", a.output, "Folder of the frames, shared by all machines")
       ->check(NotEmpty());
-  AddFrameRange(output, a.frames);
+  a.frames.AddTo(output, "render", "nothing is submitted");
   AddFilmFiles(output, a.video, a.no_contact_sheet);
   output.AddFlag("--overwrite", a.overwrite,
                  "Remove an earlier job and frames of PACKAGES from DIR\n"
@@ -243,10 +244,10 @@ Result<void> SubmitArguments::Check() const {
         "{}: packages cannot be given with --status, --cancel and --finish, which need only "
         "DIR: leave them out",
         words.front()));
-  if (asked == 1 && (!output.empty() || !frames.empty() || overwrite))
+  if (asked == 1 && (!output.empty() || !frames.range.empty() || frames.clamp || overwrite))
     return UsageError(
-        "-o, --frames and --overwrite can only be used for new jobs, not with --status, --cancel, "
-        "--resume and --finish: leave them out");
+        "-o, --frames, --clamp-frames and --overwrite can only be used for new jobs, not with "
+        "--status, --cancel, --resume and --finish: leave them out");
   if (asked == 1) return {};
   if (words.empty() || words.front().starts_with('-'))
     return UsageError(
@@ -336,7 +337,7 @@ Result<void> SubmitArguments::Change(ClusterJob* job, const CommonOptions& commo
     std::vector<fs::path> files;
     for (const JobPackage& package : job->packages) files.push_back(package.file);
     PackagedFilm film;
-    LF_RETURN_IF_ERROR(TryArguments(files, job->output_folder, "", split.arguments, &film));
+    LF_RETURN_IF_ERROR(TryArguments(files, job->output_folder, {}, split.arguments, &film));
     job->arguments = split.arguments;
     std::error_code error;
     job->working_folder = fs::current_path(error);
@@ -366,6 +367,7 @@ Result<ClusterJob> SubmitArguments::MakeJob(const CommonOptions& common) const {
   PackagedFilm film;
   LF_ASSIGN_OR_RETURN(const RenderOptions options,
                       TryArguments(files, job.output_folder, frames, job.arguments, &film));
+  if (frames.IsNone(options.frames)) return job;
   LF_ASSIGN_OR_RETURN(const std::vector<PackagePart> parts, PartsWith(film, options.frames));
   for (const PackagePart& part : parts)
     job.packages.push_back(

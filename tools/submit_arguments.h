@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/common/frame_options.h"
 #include "tools/common/program.h"
 
 #include "lf/core/result.h"
@@ -16,7 +17,8 @@ namespace lf {
 
 struct SubmitArguments {
   std::vector<std::string> words;  // PACKAGES, and after "--" the arguments of lfrenderer
-  std::string output, frames, video, memory, time_limit, renderer, write;
+  std::string output, video, memory, time_limit, renderer, write;
+  FrameRangeArguments frames;
   std::optional<std::string> engine;  // unset: local for a new job, unchanged for a resumed one
   std::optional<uint64_t> at_once;
   std::optional<uint32_t> most_crashes;
@@ -35,7 +37,8 @@ struct SubmitArguments {
   // Returns true if arguments of lfrenderer are given.
   bool HasRendererArguments() const;
 
-  // Returns a new job. Reads all packages and checks the arguments of lfrenderer.
+  // Returns a new job. Reads all packages and checks the arguments of lfrenderer. The job has no
+  // packages if --clamp-frames leaves out all frames.
   Result<ClusterJob> MakeJob(const CommonOptions& common) const;
   // Applies the given arguments to a job that is resumed, and writes the job to its file.
   Result<void> Change(ClusterJob* job, const CommonOptions& common) const;

@@ -130,9 +130,12 @@ Result<void> WriteSyntheticField(const SyntheticFieldOptions& options, ThreadPoo
   LF_ASSIGN_OR_RETURN(const RigOptions rig, RigOf(options, *built_in));
   LF_ASSIGN_OR_RETURN(const std::vector<RigidTransform> poses, MakeRig(rig));
   std::vector<RenderCamera> truth = options.truth_cameras;
+  auto instants = static_cast<size_t>(options.truth_instants);
   if (!options.truth.empty()) {
-    LF_ASSIGN_OR_RETURN(CameraPath path, OpenPath(options.truth, {.light_field_unit_m = 1.0}));
-    truth = std::move(path.cameras);
+    LF_ASSIGN_OR_RETURN(const CameraPath path,
+                        OpenPath(options.truth, {.light_field_unit_m = 1.0}));
+    truth.assign(path.AllInstants().begin(), path.AllInstants().end());
+    instants = static_cast<size_t>(path.shutter.samples);
   }
   // The lock keeps two processes from mixing their scenes in one folder.
   LF_ASSIGN_OR_RETURN(const FileLock lock, LockFolder(options.output));
@@ -158,9 +161,10 @@ Result<void> WriteSyntheticField(const SyntheticFieldOptions& options, ThreadPoo
   }
   LogInfo("{}: {} LF cameras, {:.4g} apart", options.output, poses.size(), RigPitch(rig));
   if (truth.empty()) return {};
-  return WriteTruth(scene, truth, {options.truth_samples, 0}, light_field.folder / "truth", pool,
-                    surroundings,
-                    [&](size_t done) { return keep_going(done, truth.size(), true); });
+  const size_t frame_count = truth.size() / instants;
+  return WriteTruth(
+      scene, truth, {options.truth_samples, 0}, light_field.folder / "truth", pool, surroundings,
+      [&](size_t done) { return keep_going(done, frame_count, true); }, instants);
 }
 
 }  // namespace lf

@@ -20,6 +20,7 @@ namespace lf {
 struct SyntheticFieldOptions {
   // Frames of the ground truth, instead of the path file `truth`. Their world unit is one metre.
   std::vector<RenderCamera> truth_cameras = {};
+  int truth_instants = 1;  // number of consecutive truth_cameras whose mean is one frame
   std::string scene, output, capture = "planar", format = "exr", alpha = "none", truth;
   std::optional<std::pair<int, int>> size_px;
   uint32_t count = 0;

@@ -212,26 +212,44 @@ std::vector<SelectedImage> SelectImages(const ImageIndex& index,
 
 PlaceRange PlacesOfFirst(size_t image_count, const ImageIndex& index, const TakingFrame& frame,
                          const SelectOptions& options) {
+  return PlacesOfFirst(image_count, index, std::span(&frame, 1), options);
+}
+
+PlaceRange PlacesOfFirst(size_t image_count, const ImageIndex& index,
+                         std::span<const TakingFrame> instants, const SelectOptions& options) {
   LF_CHECK(image_count > 0);
   const LightField& light_field = index.light_field();
-  const SeenRegion region(frame.camera);
-  std::vector<std::pair<uint32_t, LfImageId>> places;
-  index.tree().ForEachLeaf(region, [&](size_t leaf, bool all_inside) {
-    for (const LfImageId id : index.tree().Leaf(leaf))
-      if (all_inside || !region.Misses(light_field.Camera(id).CentreWorld()))
-        places.emplace_back(index.PlaceOf(id), id);
+  struct Candidate {
+    uint32_t place;
+    LfImageId id;
+    size_t instant;
+  };
+  std::vector<Candidate> candidates;
+  for (size_t i = 0; i < instants.size(); ++i) {
+    const SeenRegion region(instants[i].camera);
+    index.tree().ForEachLeaf(region, [&](size_t leaf, bool all_inside) {
+      for (const LfImageId id : index.tree().Leaf(leaf))
+        if (all_inside || !region.Misses(light_field.Camera(id).CentreWorld()))
+          candidates.push_back({index.PlaceOf(id), id, i});
+    });
+  }
+  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    return std::pair(a.place, a.instant) < std::pair(b.place, b.instant);
   });
-  std::sort(places.begin(), places.end());
   CellsOfLast cells;
   size_t found = 0;
-  for (const auto& [place, id] : places) {
+  std::optional<uint32_t> last_found;  // place of the last LF image that was found
+  for (const auto& [place, id, instant] : candidates) {
     if (IsInterrupted(options)) break;
+    if (last_found == place) continue;
+    const TakingFrame& frame = instants[instant];
     if (!IsWithinAngle(light_field.cameras[id.value], frame.camera, options)) continue;
     if (frame.takes && !frame.takes(id)) continue;
     const PixelRect rect = ContributingRect(light_field.Camera(id), frame.camera,
                                             cells.Of(light_field, id), options.reach);
-    found += rect.empty() ? 0 : 1;
-    if (found == image_count) return {0, place + 1};
+    if (rect.empty()) continue;
+    last_found = place;
+    if (++found == image_count) return {0, place + 1};
   }
   return {};
 }

@@ -79,8 +79,11 @@ std::vector<SelectedImage> SelectImages(const ImageIndex& index,
 
 // Returns the range [0, end) of places that contains exactly the first `image_count` contributing
 // LF images that the frame takes. If there are fewer, the range is all places. image_count must be
-// above 0. frame.places and options.whole_images are not used.
+// above 0. frame.places and options.whole_images are not used. The second form counts an LF image
+// that contributes to at least one of the instants of a frame once.
 PlaceRange PlacesOfFirst(size_t image_count, const ImageIndex& index, const TakingFrame& frame,
                          const SelectOptions& options);
+PlaceRange PlacesOfFirst(size_t image_count, const ImageIndex& index,
+                         std::span<const TakingFrame> instants, const SelectOptions& options);
 
 }  // namespace lf

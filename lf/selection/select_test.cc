@@ -162,5 +162,20 @@ TEST(Select, EveryFrameTakesItsFirstImagesOnly) {
   EXPECT_EQ(taken, 25u);
 }
 
+TEST(Select, LimitsCountAnImageOfSeveralInstantsOnce) {
+  const LightField grid = Grid();
+  const ImageIndex index(grid);
+  const TakingFrame first = {Frame(0.05, 0)}, second = {Frame(0.05, 0.03)};
+  const TakingFrame twice[] = {first, first};
+  EXPECT_EQ(PlacesOfFirst(5, index, twice, {}), PlacesOfFirst(5, index, first, {}));
+  ThreadPool pool(2);
+  for (const size_t count : {1, 3, 7}) {
+    TakingFrame instants[] = {first, second};
+    const PlaceRange places = PlacesOfFirst(count, index, instants, {});
+    for (TakingFrame& instant : instants) instant.places = places;
+    EXPECT_EQ(SelectImages(index, instants, {}, pool).size(), count);
+  }
+}
+
 }  // namespace
 }  // namespace lf

@@ -19,7 +19,8 @@ from __future__ import annotations
 import logging
 
 from . import _core
-from .camera import Camera, Path
+from .camera import Camera
+from .camera_path import Path
 from .captures import compress, forecast, report, synth, write_packages
 from .display import display_values
 from .epipolar import EpipolarPicture, epi

@@ -1,11 +1,10 @@
-"""Thin-lens cameras, and paths of them."""
+"""Thin-lens cameras."""
 from __future__ import annotations
 
-import logging
 import math
 import os
 import re
-from typing import Any, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple, Union, overload
+from typing import Any, Dict, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -125,7 +124,7 @@ class Camera:
         if transmission is not None:
             text += f'  transmission: "{_transmission_text(transmission)}"\n'
         try:
-            cameras, _, _ = _core.parse_path(text, "camera", None)
+            cameras, _, _, _ = _core.parse_path(text, "camera", None)
         except InputError as error:
             # A position in this text would say nothing to the caller.
             words = re.sub(r"^camera:\d+:\d+: (?:camera\.|lens\.)?| \(also wrong: line.*\)$", "", str(error))
@@ -298,143 +297,6 @@ class Camera:
         width, height = self.resolution
         return (f"<Camera {width} x {height} at ({x:.4g}, {y:.4g}, {z:.4g}), focus {self.focus_distance:.4g}, "
                 f"aperture {self.aperture_diameter:.4g}>")
-
-
-class Path(Sequence[Camera]):
-    """A camera path: one camera for each frame. Frames are numbered from 1, the items of this sequence from 0.
-
-    Parameters
-    ----------
-    cameras : iterable of Camera
-        The cameras of the frames. All must have the same resolution and `unit_m`.
-    fps : float, optional
-        Frames per second.
-
-    Examples
-    --------
-    >>> import lfrendertools as lf
-    >>> near = lf.open("capture/").camera(focus_distance=0.8)
-    >>> path = lf.Path([near, near.replace(focus_distance=1.6)], fps=25)
-    >>> path.save("path.yaml")
-    >>> [round(camera.focus_distance, 3) for camera in lf.Path.load("path.yaml")]
-    [0.8, 1.6]
-    """
-
-    def __init__(self, cameras: Iterable[Camera], fps: float = 24) -> None:
-        self._cameras: List[Camera] = list(arguments.iterator("cameras", cameras, "lf.Camera objects"))
-        self.fps = fps
-        for camera in self._cameras:
-            if not isinstance(camera, Camera):
-                raise TypeError(f"a path consists of lf.Camera objects, found {camera!r}")
-        if not self._cameras:
-            raise UsageError("a path needs at least one camera")
-        for what in ("resolution", "unit_m"):
-            values = {getattr(camera, what) for camera in self._cameras}
-            if len(values) > 1:
-                raise UsageError(f"the cameras of a path must have one {what}, found {sorted(values)[:4]}")
-
-    @property
-    def fps(self) -> float:
-        """Frames per second. Frame i, from 1, is at the time (i - 1) / fps."""
-        return self._fps
-
-    @fps.setter
-    def fps(self, fps: float) -> None:
-        self._fps = arguments.within("fps", fps, 0.001, 1e6)
-
-    @classmethod
-    def load(cls, path: Union[str, os.PathLike[str]], unit_m: Optional[float] = None) -> Path:
-        """Read a camera path of any form: our own (doc/formats/path.md) or that of another program
-        (doc/formats/foreign_paths.md).
-
-        What the file does not state has a default, which a message tells; :meth:`Camera.replace` changes it.
-
-        Parameters
-        ----------
-        path : path
-            The file, or the folder of a COLMAP model or a transforms.json, whose cameras become the frames.
-        unit_m : float, optional
-            Metres per world unit of the light field.
-
-        Raises
-        ------
-        InputError
-            The file cannot be read, has a mistake, or states another unit than `unit_m`.
-        """
-        unit = None if unit_m is None else arguments.positive("unit_m", unit_m)
-        cameras, fps, _ = _core.read_path(arguments.file_name("path", path), unit)
-        return cls((Camera._of(core) for core in cameras), fps)
-
-    @classmethod
-    def parse(cls, text: str, name: str = "path", unit_m: Optional[float] = None) -> Path:
-        """Read a camera path as :meth:`load` does, but from the text of a file. Error messages call it `name`."""
-        # Text that is not Unicode cannot be in a path, and stands in messages with question marks.
-        utf8, utf8_name = (arguments.text(what, value).encode("utf-8", "replace")
-                           for what, value in (("text", text), ("name", name)))
-        cameras, fps, _ = _core.parse_path(utf8, utf8_name,
-                                           None if unit_m is None else arguments.positive("unit_m", unit_m))
-        return cls((Camera._of(core) for core in cameras), fps)
-
-    def save(self, path: Union[str, os.PathLike[str]], format: Optional[str] = None) -> None:
-        """Write a camera path file. Each frame gets a camera of its own.
-
-        When a YAML file is read again, directions and fields of view differ by at most 1e-12 (entries of the rotation
-        matrix, and relative), and other values by no more than the rounding of double precision. JSON files give the
-        same bits. The file appears only when it is whole.
-
-        Parameters
-        ----------
-        path : path
-            The file.
-        format : str, optional
-            "yaml", "nerfstudio", "instant-ngp", "chan" or "usda" (doc/formats/foreign_paths.md). By default, the
-            extension tells: .json for nerfstudio, .chan or .usda; files of other names are YAML.
-
-        Raises
-        ------
-        UsageError
-            The format is unknown, or is "yaml" and cannot express the cameras, such as numbers of blades that differ.
-        OutputError
-            The file cannot be written.
-        """
-        file = arguments.file_name("path", path)
-        if format is None and os.path.splitext(os.fsdecode(file))[1] not in (".json", ".chan", ".usda"):
-            format = "yaml"
-        lost = _core.save_path(file, [camera._core for camera in self._cameras], self.fps,
-                               None if format is None else arguments.text("format", format))
-        if lost:
-            logging.getLogger("lfrendertools").warning("%s: the format has no place for %s", os.fsdecode(file),
-                                                       "; for ".join(lost))
-
-    @property
-    def cameras(self) -> Sequence[Camera]:
-        """The cameras of the frames."""
-        return tuple(self._cameras)
-
-    def __len__(self) -> int:
-        return len(self._cameras)
-
-    @overload
-    def __getitem__(self, i: int) -> Camera:
-        ...
-
-    @overload
-    def __getitem__(self, i: slice) -> Path:
-        ...
-
-    def __getitem__(self, i: Union[int, slice]) -> Union[Camera, Path]:
-        if isinstance(i, slice):
-            return Path(self._cameras[i], self.fps)
-        return self._cameras[i]
-
-    def __iter__(self) -> Iterator[Camera]:
-        return iter(self._cameras)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Path) and self.fps == other.fps and self._cameras == other._cameras
-
-    def __repr__(self) -> str:
-        return f"<Path of {len(self)} frames, {self.fps:g} per second>"
 
 
 def _hood_of(hood: Tuple[float, float]) -> Dict[str, float]:

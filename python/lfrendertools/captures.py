@@ -9,7 +9,8 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
 from . import _core, arguments, opening
 from .arguments import FilePath
-from .camera import Camera, Path
+from .camera import Camera
+from .camera_path import Path
 from .errors import MissingImagesWarning, UsageError
 from .film_options import film_words
 from .light_field import LightField
@@ -339,6 +340,8 @@ def synth(scene: str, folder: FilePath, *, capture: str = "planar", count: Optio
         if truth[0].unit_m != 1:
             raise UsageError(f"truth: the path has unit_m={truth[0].unit_m:g}, and synthetic scenes have unit_m=1")
         words.truth_cameras = [camera._core for camera in truth]
+        if truth._shutter is not None:
+            _, words.truth_instants, words.truth_cameras = truth._shutter
     elif truth is not None:
         words.truth = arguments.file_name("truth", truth)
     with arguments.naming_arguments(), telling(checked(progress), "files") as tell:
@@ -376,7 +379,7 @@ def _preprocess(field: LightField, path: Union[Path, Camera], frames: Frames, wo
     with arguments.naming_arguments(), telling(progress, "steps") as tell:
         facts = _facts(_core.preprocess(
             field._core, os.fsencode(field.source), [camera._core for camera in cameras], cameras.fps,
-            frame_numbers(frames, len(cameras)), film, words, arguments.thread_count(threads), tell))
+            cameras._shutter, frame_numbers(frames, len(cameras)), film, words, arguments.thread_count(threads), tell))
     if facts["depths_from"] == "--depths":
         facts["depths_from"] = "depths"
     return facts

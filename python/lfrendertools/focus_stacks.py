@@ -8,7 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core, arguments
-from .camera import Camera, Path
+from .camera import Camera
+from .camera_path import Path
 from .errors import UsageError
 from .light_field import LightField
 from .path_arguments import path_in
@@ -107,6 +108,10 @@ def focus_stack(field: LightField, camera: Union[Camera, Path], distances: Optio
     else:
         found = _checked(distances)
     stack = Path([Camera._of(_core.focused_at(chosen, distance)) for distance in found], cameras.fps)
+    shutter = cameras[frame - 1:frame]._shutter
+    if shutter is not None:  # all planes are exposed while the camera moves as in this frame
+        stack._shutter = (*shutter[:2], [_core.focused_at(instant, distance) for distance in found
+                                         for instant in shutter[2]])
     width, height = stack[0].resolution
     rgb = np.empty((len(found), height, width, 3), np.float32)
     coverage = np.empty((len(found), height, width), np.float32)

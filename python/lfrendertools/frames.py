@@ -91,7 +91,8 @@ class Frame:
         """Return the picture for a display: sRGB values from 0 to 255, of shape (height, width, 3)."""
         return display_values(self.rgb)
 
-    def save(self, path: FilePath, format: Optional[str] = None) -> None:
+    def save(self, path: FilePath, format: Optional[str] = None, *, colour_space: str = "rec709",
+             alpha: bool = False) -> None:
         """Write the frame as `lfrenderer` does: EXR with linear light and all other channels, or PNG for display.
 
         Parameters
@@ -101,6 +102,20 @@ class Frame:
         format : str, optional
             "exr" (half floats), "exr-float" (single precision), "png" or "png16"; by default "exr" or "png", by the
             suffix of `path`.
+        colour_space : {"rec709", "rec2020", "acescg"}
+            Primaries of an EXR file, as `--colour-space` of `lfrenderer` (doc/formats/frame.md). The light stays
+            linear. `rgb` does not change. Default "rec709", the only one for PNG files.
+        alpha : bool
+            True: the file has alpha, as by `--frame-alpha`: 1 where light was recorded, filled or interpolated, and
+            0 elsewhere. Colours are multiplied by it in EXR files, and are not in PNG files. A frame that has
+            `opacity` keeps it in any case. Default False.
+
+        Raises
+        ------
+        UsageError
+            The name, the format or the colour space is none of these, or a PNG file was to have other primaries.
+        OutputError
+            The file cannot be written.
         """
         name = os.fsdecode(arguments.file_name("path", path))
         suffix = pathlib.Path(name).suffix.lower()
@@ -110,7 +125,8 @@ class Frame:
             raise UsageError(f"{name}: expected a name that ends in {ends}" if ends else
                              f"format={format!r}: expected exr, exr-float, png or png16")
         with arguments.naming_arguments():
-            self._core.save(os.fsencode(name), chosen)
+            self._core.save(os.fsencode(name), chosen, arguments.text("colour_space", colour_space),
+                            arguments.flag("alpha", alpha))
 
     def _repr_png_(self) -> bytes:
         return _core.encode_png(self.display())

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from . import _core, arguments
 from .arguments import FilePath
 from .camera import Camera
-from .camera import Path as CameraPath
+from .camera_path import Path as CameraPath
 from .display import display_values
 from .errors import Error, UncertainFocusWarning, UsageError
 from .reading import loaded_ahead

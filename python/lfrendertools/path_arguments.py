@@ -4,7 +4,8 @@ from __future__ import annotations
 from typing import Iterable, List, Union
 
 from . import _core, arguments
-from .camera import Camera, Path
+from .camera import Camera
+from .camera_path import Path
 from .errors import UsageError
 from .light_field import LightField
 

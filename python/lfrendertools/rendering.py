@@ -11,7 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core, arguments
-from .camera import Camera, Path
+from .camera import Camera
+from .camera_path import Path
 from .errors import BlackFrameWarning, UsageError, warn_of_missing
 from .film_options import film_words
 from .frames import Frame, Plate
@@ -374,7 +375,7 @@ def select(field: LightField, camera: Union[Camera, Path], frame: int = 1, **opt
     """
     cameras = path_in(field, camera)
     number = arguments.whole_within("frame", frame, 1, len(cameras))
-    return Selection(*_Film(field, cameras[number - 1], None, options).core.needs(1))
+    return Selection(*_Film(field, cameras[number - 1:number], None, options).core.needs(1))
 
 
 class _Film:
@@ -385,7 +386,7 @@ class _Film:
         own: Dict[str, Any] = {"memory": "8G", "strict": False, "threads": 0}
         words = film_words(options, own)
         with arguments.naming_arguments():
-            self.core = _core.Film(field._core, [camera._core for camera in cameras], cameras.fps,
+            self.core = _core.Film(field._core, [camera._core for camera in cameras], cameras.fps, cameras._shutter,
                                    frame_numbers(frames, len(cameras)), words, arguments.memory(own["memory"]),
                                    arguments.flag("strict", own["strict"]), arguments.thread_count(own["threads"]))
         self._warned: List[str] = []

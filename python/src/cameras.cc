@@ -21,7 +21,9 @@
 #include "lf/camera/path/path_yaml.h"
 #include "lf/camera/path/path_yaml_write.h"
 #include "lf/camera/render_camera.h"
+#include "lf/core/check.h"
 #include "lf/import/paths/open_path.h"
+#include "lf/import/paths/resample_path.h"
 #include "lf/import/paths/transmission_file.h"
 #include "lf/import/paths/write_path.h"
 
@@ -99,7 +101,18 @@ std::string TextOfTransmission(const py::array_t<uint8_t, py::array::c_style>& p
 }
 
 py::tuple TupleOf(const CameraPath& path) {
-  return py::make_tuple(path.cameras, path.fps, path.unit_m);
+  ShutterWords shutter;
+  if (path.shutter.exists())
+    shutter.emplace(path.shutter.angle_deg, path.shutter.samples, path.instants);
+  return py::make_tuple(path.cameras, path.fps, path.unit_m, shutter);
+}
+
+// Returns the instants of a shutter, which are interpolated between the cameras of the frames.
+std::vector<RenderCamera> InstantsOf(std::vector<RenderCamera> cameras, double fps,
+                                     double angle_deg, int samples) {
+  CameraPath path = PathOf(std::move(cameras), fps, 1, {});
+  Take(AddShutter({angle_deg, samples}, &path));
+  return path.instants;
 }
 
 py::tuple ParsePath(const std::string& text, const std::string& name,
@@ -115,7 +128,8 @@ py::tuple ReadPath(const std::string& file, std::optional<double> unit_m) {
 // Writes a path file in a format, or in the one of the file's extension. Returns what other
 // programs do not find in the file.
 std::vector<std::string> SavePath(const std::string& file, const std::vector<RenderCamera>& cameras,
-                                  double fps, const std::optional<std::string>& name) {
+                                  double fps, const ShutterWords& shutter,
+                                  const std::optional<std::string>& name) {
   return CallWithoutGil([&]() -> std::vector<std::string> {
     const std::optional<PathFormat> format = name ? PathFormatOf(*name) : PathFormatOfFile(file);
     if (!format)
@@ -123,9 +137,8 @@ std::vector<std::string> SavePath(const std::string& file, const std::vector<Ren
           "{}: expected a name that ends in .yaml, .json, .chan or .usda, or the format \"yaml\", "
           "\"nerfstudio\", \"instant-ngp\", \"chan\" or \"usda\"{}",
           file, name ? fmt::format(", found \"{}\"", *name) : ""))));
-    CameraPath path;
-    path.fps = fps;
-    path.unit_m = cameras.front().unit_m;
+    CameraPath path = PathOf(cameras, fps, cameras.front().unit_m, shutter);
+    // Each format states or computes the times itself.
     path.cameras = cameras;
     if (*format == PathFormat::kYaml) {
       const PathYaml yaml = Take(PathYamlOf(path));
@@ -140,9 +153,25 @@ std::vector<std::string> SavePath(const std::string& file, const std::vector<Ren
 
 }  // namespace
 
-CameraPath PathOf(std::vector<RenderCamera> cameras, double fps, double unit_m) {
-  for (size_t i = 0; i < cameras.size(); ++i) cameras[i].time_s = static_cast<double>(i) / fps;
-  return {fps, unit_m, std::move(cameras)};
+CameraPath PathOf(std::vector<RenderCamera> cameras, double fps, double unit_m,
+                  ShutterWords shutter) {
+  CameraPath path;
+  path.fps = fps;
+  path.unit_m = unit_m;
+  path.cameras = std::move(cameras);
+  for (size_t i = 0; i < path.cameras.size(); ++i)
+    path.cameras[i].time_s = static_cast<double>(i) / fps;
+  if (!shutter) return path;
+  auto& [angle_deg, samples, instants] = *shutter;
+  path.shutter = {angle_deg, samples};
+  path.instants = std::move(instants);
+  const auto count = static_cast<size_t>(samples);
+  LF_CHECK(path.instants.size() == path.cameras.size() * count);
+  for (size_t i = 0; i < path.instants.size(); ++i)
+    path.instants[i].time_s = (static_cast<double>(i / count) +
+                               InstantOffset(path.shutter, static_cast<int>(i % count))) /
+                              fps;
+  return path;
 }
 
 void AddCameras(py::module_& module) {
@@ -210,6 +239,7 @@ void AddCameras(py::module_& module) {
   module.def("parse_path", &ParsePath);
   module.def("read_path", &ReadPath);
   module.def("save_path", &SavePath);
+  module.def("instants", &InstantsOf);
 }
 
 }  // namespace lf::python

@@ -3,14 +3,20 @@
 
 #include <pybind11/pybind11.h>
 
+#include <optional>
+#include <tuple>
 #include <vector>
 
 #include "lf/camera/path/camera_path.h"
 
 namespace lf::python {
 
+// The angle in degrees, number of samples and instants of a shutter; None: there is no shutter.
+using ShutterWords = std::optional<std::tuple<double, int, std::vector<RenderCamera>>>;
+
 // Returns a path of these cameras. Their place in the path decides their time.
-CameraPath PathOf(std::vector<RenderCamera> cameras, double fps, double unit_m);
+CameraPath PathOf(std::vector<RenderCamera> cameras, double fps, double unit_m,
+                  ShutterWords shutter);
 
 void AddCameras(pybind11::module_& module);
 

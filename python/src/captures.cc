@@ -111,7 +111,7 @@ PreprocessOptions PreprocessOptionsOf(const PackageWords& words, const FilmWords
 
 // Makes packages, or only forecasts their render. Returns the report of lfpreprocessor as JSON.
 std::string Preprocess(const OpenedField& field, const std::string& name,
-                       std::vector<RenderCamera> cameras, double fps,
+                       std::vector<RenderCamera> cameras, double fps, ShutterWords shutter,
                        const std::vector<uint32_t>& frames, const FilmWords& film,
                        const PackageWords& words, int threads, const Tell& tell) {
   ThreadPool& pool = PoolOf(threads);
@@ -123,7 +123,8 @@ std::string Preprocess(const OpenedField& field, const std::string& name,
   options.interrupted = &work.signals.interrupted;
   return CallWithoutGil(
       [&] {
-        const CameraPath path = PathOf(std::move(cameras), fps, light_field.unit_m);
+        const CameraPath path =
+            PathOf(std::move(cameras), fps, light_field.unit_m, std::move(shutter));
         ForecastFacts facts;
         facts.light_field = name;
         facts.output = words.output;
@@ -228,6 +229,7 @@ void AddCaptures(py::module_& module) {
       .def_readwrite("alpha", &SyntheticFieldOptions::alpha)
       .def_readwrite("truth", &SyntheticFieldOptions::truth)
       .def_readwrite("truth_cameras", &SyntheticFieldOptions::truth_cameras)
+      .def_readwrite("truth_instants", &SyntheticFieldOptions::truth_instants)
       .def_readwrite("size", &SyntheticFieldOptions::size_px)
       .def_readwrite("count", &SyntheticFieldOptions::count)
       .def_readwrite("spacing", &SyntheticFieldOptions::spacing)

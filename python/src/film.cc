@@ -34,8 +34,8 @@ namespace py = pybind11;
 class Film {
  public:
   Film(const OpenedField& field, std::vector<RenderCamera> cameras, double fps,
-       const std::vector<uint32_t>& frames, const FilmWords& words, const std::string& memory,
-       bool strict, int threads)
+       ShutterWords shutter, const std::vector<uint32_t>& frames, const FilmWords& words,
+       const std::string& memory, bool strict, int threads)
       : pool_(PoolOf(threads)) {
     RenderOptions options;
     options.film = Take(FilmOptionsOf(words));
@@ -48,7 +48,9 @@ class Film {
     for (const uint32_t frame : frames) ids.push_back(FrameId{frame});
     Run([&] {
       Package package = PackageOfAll(
-          field.light_field, PathOf(std::move(cameras), fps, field.light_field.unit_m), words.seed);
+          field.light_field,
+          PathOf(std::move(cameras), fps, field.light_field.unit_m, std::move(shutter)),
+          words.seed);
       if (words.max_angle_deg)
         package.choices.max_angle_rad = RadiansFromDegrees(*words.max_angle_deg);
       Take(CheckRenderOptions(package, options));
@@ -105,7 +107,8 @@ class Film {
           RenderedFrame rendered = renderer().Develop(f, completion, true, is_interrupted);
           PlateNotes notes = renderer().NotesOf(f);
           notes.version = LF_VERSION;
-          return Frame{std::move(rendered.picture), std::move(notes)};
+          const bool keeps_opacity = setup_->film().Collects() && renderer().plate(f).has_opacity();
+          return MakeFrame(std::move(rendered.picture), std::move(notes), keeps_opacity);
         },
         &signals_);
   }
@@ -119,7 +122,7 @@ class Film {
     plate->notes = renderer().NotesOf(f);
     plate->notes.version = LF_VERSION;
     plate->inputs = inputs_;
-    for (auto& entry : InputsOfCamera(plate->notes.frame, plate->notes.camera))
+    for (auto& entry : InputsOfFrame(setup_->path(), plate->notes.frame))
       plate->inputs.push_back(std::move(entry));
     return plate;
   }
@@ -129,8 +132,7 @@ class Film {
   py::tuple Needs(uint32_t frame) {
     const FrameNeeds needs = CallWithoutGil(
         [&] {
-          return NeedsOf(setup_->index(), setup_->path().Camera(FrameId{frame}), setup_->Needs(),
-                         pool_);
+          return NeedsOf(setup_->index(), setup_->path(), FrameId{frame}, setup_->Needs(), pool_);
         },
         &signals_);
     const auto count = static_cast<py::ssize_t>(needs.images.size());
@@ -226,7 +228,7 @@ void AddFilm(py::module_& module) {
   module.def("encode_png", &PngOf);
   py::class_<Film>(module, "Film")
       .def(
-          py::init<const OpenedField&, std::vector<RenderCamera>, double,
+          py::init<const OpenedField&, std::vector<RenderCamera>, double, ShutterWords,
                    const std::vector<uint32_t>&, const FilmWords&, const std::string&, bool, int>())
       .def("passes", &Film::Passes)
       .def("needs", &Film::Needs)

@@ -53,6 +53,7 @@ Result<FilmOptions> FilmOptionsOf(const FilmWords& words) {
   film.smooth_below = words.smooth_below;
   film.fill_radius_px = words.fill;
   film.guard = words.guard;
+  film.adds_opacity = true;  // for Frame.save(), which may give files alpha
   film.rebin.rebin.seed = words.seed;
   if (IsNoiseRule(words.stop_when)) {
     LF_ASSIGN_OR_RETURN(film.stop_at_noise, ParseNoiseRule(words.stop_when, "stop_when"));

@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -39,25 +40,52 @@ py::object Show(Image<T>& image, const py::object& self, bool is_flat = true) {
 
 ImageMetadata MetadataOf(const PlateNotes& notes) {
   return FrameMetadata(notes.frame, notes.camera, notes.rays, notes.estimator, notes.fps,
-                       notes.version);
+                       notes.version, notes.shutter);
 }
 
-void SaveFrame(const Frame& frame, const std::string& path, const std::string& format) {
+// Returns the picture with the alpha and the primaries that a file gets.
+DevelopedFrame PictureFor(const Frame& frame, ColourSpace colours, bool alpha) {
+  DevelopedFrame picture = frame.picture;
+  if (alpha && picture.opacity.empty()) {
+    picture.opacity = Image<float>(frame.has_light.width(), frame.has_light.height());
+    std::copy(frame.has_light.pixels().begin(), frame.has_light.pixels().end(),
+              picture.opacity.pixels().begin());
+  }
+  ConvertFromRec709(colours, &picture.rgb);
+  return picture;
+}
+
+void SaveFrame(const Frame& frame, const std::string& path, const std::string& format,
+               const std::string& colour_space, bool alpha) {
   const std::optional<FrameFormat> known = ParseFrameFormat(format);
   if (!known)
     throw Failure(
         UsageError(fmt::format("format=\"{}\": expected exr, exr-float, png or png16", format)));
+  const std::optional<ColourSpace> colours = ParseColourSpace(colour_space);
+  if (!colours)
+    throw Failure(UsageError(
+        fmt::format("colour_space=\"{}\": expected rec709, rec2020 or acescg", colour_space)));
+  if (!IsExr(*known) && *colours != ColourSpace::kRec709)
+    throw Failure(UsageError(fmt::format(
+        "colour_space=\"{}\": cannot be used with format=\"{}\", because PNG frames are sRGB "
+        "pictures for display: leave it out, or save an EXR file",
+        colour_space, format)));
   RunWithoutGil([&] {
-    Take(WriteFrame(path, frame.picture, *known,
-                    FileMetadata(frame.notes, *known, ColourSpace::kRec709)));
+    const ImageMetadata metadata = FileMetadata(frame.notes, *known, *colours);
+    if (alpha || *colours != ColourSpace::kRec709)
+      Take(WriteFrame(path, PictureFor(frame, *colours, alpha), *known, metadata));
+    else
+      Take(WriteFrame(path, frame.picture, *known, metadata));
   });
 }
 
 Frame DevelopPlate(const Plate& plate, int threads) {
   ThreadPool& pool = PoolOf(threads);
   return CallWithoutGil([&] {
-    RenderedFrame rendered = DevelopFrame(plate.notes, plate.sums, nullptr, true, pool, {});
-    return Frame{std::move(rendered.picture), plate.notes};
+    PlateNotes notes = plate.notes;
+    notes.develop.adds_opacity = true;
+    RenderedFrame rendered = DevelopFrame(notes, plate.sums, nullptr, true, pool, {});
+    return MakeFrame(std::move(rendered.picture), std::move(notes), plate.sums.has_opacity());
   });
 }
 
@@ -200,7 +228,8 @@ py::tuple StateOf(const Frame& frame) {
   const DevelopedFrame& p = frame.picture;
   return py::make_tuple(TextOf(frame.notes), ArrayCopy(p.rgb), ArrayCopy(p.ray_count),
                         ArrayCopy(p.coverage), ArrayCopy(p.opacity), ArrayCopy(p.effective_count),
-                        ArrayCopy(p.interpolated), ArrayCopy(p.densified));
+                        ArrayCopy(p.interpolated), ArrayCopy(p.densified),
+                        ArrayCopy(frame.has_light));
 }
 
 Frame FrameOf(const py::tuple& state) {
@@ -210,10 +239,20 @@ Frame FrameOf(const py::tuple& state) {
                             ImageOf<float>(state[7])};
   PlateNotes notes = Take(PlateNotesOf(state[0].cast<PlateEntries>(), picture.rgb.width(),
                                        picture.rgb.height(), "a pickled frame"));
-  return {std::move(picture), std::move(notes)};
+  return {std::move(picture), std::move(notes), ImageOf<uint8_t>(state[8])};
 }
 
 }  // namespace
+
+Frame MakeFrame(DevelopedFrame picture, PlateNotes notes, bool keeps_opacity) {
+  Frame frame = {std::move(picture), std::move(notes)};
+  if (keeps_opacity) return frame;
+  const Image<float> added = std::exchange(frame.picture.opacity, {});
+  frame.has_light = Image<uint8_t>(added.width(), added.height());
+  std::transform(added.pixels().begin(), added.pixels().end(), frame.has_light.pixels().begin(),
+                 [](float opacity) { return static_cast<uint8_t>(opacity > 0); });
+  return frame;
+}
 
 SensorPlate CopyOf(const SensorPlate& plate) {
   SensorPlate copy(plate.width(), plate.height(), plate.kind());

@@ -18,7 +18,15 @@ namespace lf::python {
 struct Frame {
   DevelopedFrame picture;
   PlateNotes notes;
+  // [height][width] 1 where light was recorded, filled or interpolated: the alpha that a file may
+  // get. Empty if the picture has opacities.
+  Image<uint8_t> has_light = {};
 };
+
+// Returns the frame of a picture that was developed with DevelopOptions::adds_opacity. Opacities
+// that were added become has_light.
+//   keeps_opacity  the opacities are those of the LF images
+Frame MakeFrame(DevelopedFrame picture, PlateNotes notes, bool keeps_opacity);
 
 // A plate with the notes from which it can be developed.
 struct Plate {

@@ -125,7 +125,7 @@ def test_synthetic_fields_are_those_of_lfsynth(run, tmp_path, path_file, path):
         assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes(), file
     assert len(field) == 4 and told
     lf.synth("chart", tmp_path / "c", count=1, size=(48, 32), samples=1, truth=path, truth_samples=1)
-    assert lf.read_image(tmp_path / "c/truth/frame_0003.exr").shape == (80, 120, 3)
+    assert lf.read_image(tmp_path / "c/truth/frame_0003.exr").shape == (80, 120, 4)
     with pytest.raises(lf.UsageError):
         lf.synth("chart", tmp_path / "d", format="png", bayer=True)
 

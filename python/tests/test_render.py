@@ -42,6 +42,73 @@ def test_frames_have_the_bytes_of_lfrenderer(way, field, path, capture, path_fil
         assert (tmp_path / "one.exr").read_bytes() == (tmp_path / "frames" / "frame_0002.exr").read_bytes()
 
 
+@pytest.mark.parametrize("way", ["nearest", "hybrid", "few"])
+def test_saved_alpha_and_primaries_have_the_bytes_of_lfrenderer(way, field, path, capture, path_file, run, tmp_path):
+    from PIL import Image
+    options = {**WAYS[way], "fill": 0}
+    frame = pickle.loads(pickle.dumps(lf.render(field, path, **options)))
+    light = frame.rgb.copy()
+    saves = [("exr", {"colour_space": "acescg", "alpha": True}), ("exr-float", {"colour_space": "rec2020"}),
+             ("exr", {"alpha": True}), ("png16", {"alpha": True}), ("png", {"colour_space": "rec709"})]
+    for number, (format, more) in enumerate(saves):
+        words = [word for name, value in more.items()
+                 for word in (["--frame-alpha"] if name == "alpha" else ["--colour-space", value])]
+        run("lfrenderer", capture, path_file, "-o", tmp_path / str(number), "--frames", 1, "--format", format,
+            *words_of(options), *words)
+        file = tmp_path / f"frame_0001.{format[:3]}"
+        frame.save(file, format, **more)
+        assert file.read_bytes() == (tmp_path / str(number) / file.name).read_bytes(), (format, more)
+        if format == "png16":
+            Image.open(file).verify()
+            with Image.open(file) as picture:
+                assert picture.mode == "RGBA"
+    # The frame itself has neither alpha nor other primaries.
+    assert frame.opacity is None and np.array_equal(frame.rgb, light)
+
+
+def test_saved_alpha_is_0_where_there_is_no_light(field, tmp_path):
+    """Elements are finer than LF pixels, and those without a ray are not filled."""
+    from PIL import Image
+    options = {"estimator": "nearest", "max_images": 1, "fill": 0}
+    path = lf.Path([field.camera(resolution=(480, 320), focus_distance=1)])
+    frame = lf.render(field, path, **options)
+    frame.save(tmp_path / "alpha.png", alpha=np.bool_(True))
+    alpha = np.asarray(Image.open(tmp_path / "alpha.png"))[..., 3]
+    assert np.array_equal(alpha, np.where(frame.count.max(axis=2) > 0, 255, 0))
+    assert 0.02 < (alpha > 0).mean() < 0.98
+    with lf.Renderer(field, path, frames=[1], **options) as renderer:
+        while renderer.step():
+            pass
+        renderer.plate().develop().save(tmp_path / "plate.png", alpha=True)
+    assert (tmp_path / "plate.png").read_bytes() == (tmp_path / "alpha.png").read_bytes()
+
+
+def test_opacities_of_lf_images_are_kept_with_and_without_alpha(tmp_path):
+    from PIL import Image
+    lf.synth("chart", tmp_path / "field", count=9, size=(48, 32), samples=1, alpha="straight", format="png")
+    field = lf.open(tmp_path / "field", background="none")
+    frame = lf.render(field, field.camera(resolution=(48, 32), focus_distance=1))
+    assert frame.opacity is not None and 0 < frame.opacity.mean() < 1
+    for name, alpha in (("a.png", False), ("b.png", True)):
+        frame.save(tmp_path / name, alpha=alpha)
+        saved = np.asarray(Image.open(tmp_path / name))[..., 3]
+        assert np.abs(saved / 255 - frame.opacity).max() < 0.003
+    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
+
+
+def test_wrong_alpha_and_primaries_are_refused(field, path, tmp_path):
+    frame = lf.render(field, path)
+    with pytest.raises(lf.UsageError, match="colour_space=\"acescg\".*format=\"png\".*EXR"):
+        frame.save(tmp_path / "a.png", colour_space="acescg")
+    with pytest.raises(lf.UsageError, match="colour_space=\"srgb\": expected rec709, rec2020 or acescg"):
+        frame.save(tmp_path / "a.exr", colour_space="srgb")
+    with pytest.raises(TypeError, match="colour_space=None: expected a string"):
+        frame.save(tmp_path / "a.exr", colour_space=None)
+    with pytest.raises(TypeError, match="alpha='yes': expected True or False"):
+        frame.save(tmp_path / "a.exr", alpha="yes")
+    assert not list(tmp_path.glob("*.exr")) and not list(tmp_path.glob("*.png"))
+
+
 def test_a_camera_renders_like_its_file(field, run, capture, tmp_path):
     camera = field.camera(resolution=(80, 60), focus_distance=1.1, blades=6)
     lf.Path([camera]).save(tmp_path / "path.yaml")

@@ -5,14 +5,39 @@
 #include "tools/common/program.h"
 #include "tools/common/validators.h"
 
+#include "lf/core/log.h"
+#include "lf/render/pipeline/frame_range.h"
+
 namespace lf {
 
-void AddFrameRange(OptionGroup& output, std::string& frames) {
-  output
-      .Add("--frames RANGE", frames,
-           "Frames to render, such as 1-100x2, 7 or 3-5,9 (all)\n"
-           "1-100x2, 1-100:2: every second frame of 1 to 100. Frames are counted from 1.")
-      ->check(NotEmpty());
+std::vector<CLI::Option*> FrameRangeArguments::AddTo(OptionGroup& output, const std::string& use,
+                                                     const std::string& if_none) {
+  if_none_ = if_none;
+  CLI::Option* const frames =
+      output
+          .Add("--frames RANGE", range,
+               fmt::format("Frames to {}, such as 1-100x2, 7 or 3-5,9 (all)\n"
+                           "1-100x2, 1-100:2: every second frame of 1 to 100. Frames are counted "
+                           "from 1.",
+                           use))
+          ->check(NotEmpty());
+  CLI::Option* const clamps = output.AddFlag(
+      "--clamp-frames", clamp,
+      fmt::format("Leave out frames of --frames beyond the end of the path\n"
+                  "Without this option they are an error. If none is left, {}, and "
+                  "the exit code is 0. Farms need this whose last chunk may be too long.",
+                  if_none));
+  return {frames, clamps};
+}
+
+Result<std::vector<FrameId>> FrameRangeArguments::Of(size_t frame_count) const {
+  if (range.empty()) return std::vector<FrameId>();
+  return ParseFrameRange(range, frame_count, "--frames",
+                         clamp ? FramesBeyondEnd::kLeftOut : FramesBeyondEnd::kError);
+}
+
+void FrameRangeArguments::TellNone() const {
+  LogInfo("--frames {}: all of these frames are beyond the end of the path: {}", range, if_none_);
 }
 
 void AddFrameFormat(OptionGroup& output, std::string& format) {

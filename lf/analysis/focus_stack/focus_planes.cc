@@ -148,14 +148,23 @@ Result<CameraPath> FocusStackPath(const CameraPath& path, FrameId frame,
   stack.fps = path.fps;
   stack.unit_m = path.unit_m;
   stack.cameras.reserve(distances_w.size());
+  const auto focused = [&](const RenderCamera& camera, double distance_w) -> Result<RenderCamera> {
+    Result<RenderCamera> at_distance = FocusedAt(camera, distance_w);
+    if (at_distance) return at_distance;
+    return Error{at_distance.error().kind,
+                 fmt::format("focus distance {:.6g}: {} (the lens of frame {} breathes)",
+                             distance_w, at_distance.error().message, frame.value)};
+  };
   for (const double distance_w : distances_w) {
-    const Result<RenderCamera> camera = FocusedAt(path.Camera(frame), distance_w);
-    if (!camera)
-      return Error{camera.error().kind,
-                   fmt::format("focus distance {:.6g}: {} (the lens of frame {} breathes)",
-                               distance_w, camera.error().message, frame.value)};
-    stack.cameras.push_back(*camera);
+    LF_ASSIGN_OR_RETURN(const RenderCamera camera, focused(path.Camera(frame), distance_w));
+    stack.cameras.push_back(camera);
+    if (!path.shutter.exists()) continue;
+    for (const RenderCamera& instant : path.Instants(frame)) {
+      LF_ASSIGN_OR_RETURN(const RenderCamera exposed, focused(instant, distance_w));
+      stack.instants.push_back(exposed);
+    }
   }
+  stack.shutter = path.shutter;
   return stack;
 }
 

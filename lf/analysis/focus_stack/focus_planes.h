@@ -49,7 +49,8 @@ Result<std::vector<double>> ParseFocusDistances(std::string_view text, std::stri
 Result<RenderCamera> FocusedAt(const RenderCamera& camera, double focus_distance_w);
 
 // Returns a path of one frame for each distance: the camera of frame `frame` of `path`, focused
-// there. Errors as FocusedAt(); the message states the distance.
+// there. With a shutter, the cameras at its instants are focused there as well. Errors as
+// FocusedAt(); the message states the distance.
 Result<CameraPath> FocusStackPath(const CameraPath& path, FrameId frame,
                                   std::span<const double> distances_w);
 

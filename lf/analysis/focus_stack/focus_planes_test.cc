@@ -62,6 +62,20 @@ TEST(FocusPlanes, EqualThoseOfAPathThatStatesTheDistance) {
             PathAt(0.8, true).cameras[0].pinhole.intrinsics);
 }
 
+TEST(FocusPlanes, AreExposedAtTheInstantsOfTheFrame) {
+  CameraPath path = PathAt(0.8, false);
+  path.shutter = {180, 2};
+  path.instants = {path.cameras[0], path.cameras[0]};
+  path.instants[1].pinhole.cam_from_world.translation.x() += 0.1;
+  const auto stack = FocusStackPath(path, FrameId{1}, std::vector<double>{0.5, 2});
+  ASSERT_TRUE(stack);
+  ASSERT_EQ(stack->Instants(FrameId{2}).size(), 2u);
+  for (const RenderCamera& instant : stack->Instants(FrameId{2}))
+    EXPECT_EQ(instant.focus_distance_w, 2);
+  EXPECT_EQ(stack->Instants(FrameId{2})[1].pinhole.cam_from_world.translation,
+            path.instants[1].pinhole.cam_from_world.translation);
+}
+
 TEST(FocusPlanes, WithinTheFocalLengthNeedALensThatDoesNotBreathe) {
   EXPECT_TRUE(FocusStackPath(PathAt(0.8, false), FrameId{1}, std::vector<double>{0.04}));
   const auto path = FocusStackPath(PathAt(0.8, true), FrameId{1}, std::vector<double>{1, 0.04});

@@ -1,6 +1,8 @@
-// The camera path after evaluation: one thin-lens camera per frame (thesis 4.5.1).
+// The camera path after evaluation: one thin-lens camera per frame (thesis 4.5.1), and with a
+// shutter the cameras of the instants at which each frame is exposed.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "lf/camera/render_camera.h"
@@ -13,16 +15,48 @@ namespace lf {
 inline constexpr int kMostFrames = 1'000'000;
 inline constexpr int kLargestPlateSide_px = 65536;
 inline constexpr long long kMostPlateElements = 1LL << 30;
+inline constexpr int kMostShutterSamples = 64;
+inline constexpr long long kMostInstants = 1'000'000;  // of all frames together
+
+// The time for which each frame is exposed. It is centred at the time of the frame, and divided
+// into `samples` equal parts; the instants of the frame are the middles of these parts.
+struct Shutter {
+  double angle_deg = 0;  // open time divided by the duration of a frame, times 360
+  int samples = 1;       // number of instants of each frame; 1: there is no shutter
+  bool exists() const { return samples > 1; }
+};
+
+// Returns the time from a frame to one of its instants, in durations of a frame: from -1/2 to 1/2.
+inline double InstantOffset(const Shutter& shutter, int instant) {
+  return shutter.angle_deg / 360 * ((instant + 0.5) / shutter.samples - 0.5);
+}
 
 struct CameraPath {
   double fps = 30;
   double unit_m = 1;                  // metres per world unit
   std::vector<RenderCamera> cameras;  // one for each frame 1, 2, ...; frame 1 is at time 0
+  Shutter shutter = {};
+  // The cameras of the instants, [frame - 1][instant]; empty if there is no shutter.
+  std::vector<RenderCamera> instants = {};
 
   size_t frame_count() const { return cameras.size(); }
+  // Returns the camera at the time of the frame, for metadata, previews and depths.
   const RenderCamera& Camera(FrameId frame) const {
     LF_CHECK(frame.value >= 1 && frame.value <= cameras.size());
     return cameras[frame.value - 1];
+  }
+  // Returns the cameras whose rays make the picture of the frame: those of its instants or, without
+  // a shutter, Camera(frame) alone.
+  std::span<const RenderCamera> Instants(FrameId frame) const {
+    if (!shutter.exists()) return {&Camera(frame), 1};
+    const auto count = static_cast<size_t>(shutter.samples);
+    LF_CHECK(frame.value >= 1 && frame.value <= cameras.size());
+    LF_CHECK(instants.size() == cameras.size() * count);
+    return std::span(instants).subspan((frame.value - 1) * count, count);
+  }
+  // Returns the same cameras of all frames.
+  std::span<const RenderCamera> AllInstants() const {
+    return shutter.exists() ? instants : cameras;
   }
 };
 

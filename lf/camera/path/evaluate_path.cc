@@ -197,16 +197,34 @@ Result<RenderCamera> CameraAt(const Moment& moment) {
   return camera;
 }
 
-// Rotates the blades while they close: by a constant angle per stop below the path's widest
-// opening, stops = 2 log2(widest / diameter). An aperture of diameter 0 has no shape to rotate.
-void TurnClosingBlades(double rotation_per_stop_rad, std::vector<RenderCamera>* cameras) {
+// Rotates the blades while they close: by a constant angle per stop below the widest opening among
+// the path's frames, stops = 2 log2(widest / diameter). An aperture of diameter 0 has no shape to
+// rotate.
+void TurnClosingBlades(double rotation_per_stop_rad, CameraPath* path) {
   double widest_w = 0;
-  for (const RenderCamera& camera : *cameras)
+  for (const RenderCamera& camera : path->cameras)
     widest_w = std::max(widest_w, camera.aperture.radius_w);
-  for (RenderCamera& camera : *cameras)
-    if (camera.aperture.radius_w > 0)
-      camera.aperture.rotation_rad +=
-          rotation_per_stop_rad * 2 * std::log2(widest_w / camera.aperture.radius_w);
+  const auto turn = [&](RenderCamera* camera) {
+    if (camera->aperture.radius_w > 0 && widest_w > 0)
+      camera->aperture.rotation_rad +=
+          rotation_per_stop_rad * 2 * std::log2(widest_w / camera->aperture.radius_w);
+  };
+  for (RenderCamera& camera : path->cameras) turn(&camera);
+  for (RenderCamera& camera : path->instants) turn(&camera);
+}
+
+// Evaluates the instants of all frames, unless there is no shutter.
+Result<void> AddInstants(const PathDescription& path, CameraPath* evaluated) {
+  if (!path.shutter.exists()) return {};
+  evaluated->shutter = path.shutter;
+  evaluated->instants.reserve(static_cast<size_t>(path.frame_count) * path.shutter.samples);
+  for (int frame = 1; frame <= path.frame_count; ++frame)
+    for (int k = 0; k < path.shutter.samples; ++k) {
+      const double time_s = (frame - 1 + InstantOffset(path.shutter, k)) / path.fps;
+      LF_ASSIGN_OR_RETURN(RenderCamera camera, CameraAt({path, frame, time_s}));
+      evaluated->instants.push_back(camera);
+    }
+  return {};
 }
 
 }  // namespace
@@ -220,7 +238,8 @@ Result<CameraPath> EvaluatePath(const PathDescription& path) {
     LF_ASSIGN_OR_RETURN(RenderCamera camera, CameraAt({path, frame, (frame - 1) / path.fps}));
     evaluated.cameras.push_back(camera);
   }
-  TurnClosingBlades(path.blade_rotation_per_stop_rad, &evaluated.cameras);
+  LF_RETURN_IF_ERROR(AddInstants(path, &evaluated));
+  TurnClosingBlades(path.blade_rotation_per_stop_rad, &evaluated);
   return evaluated;
 }
 

@@ -8,10 +8,13 @@
 namespace lf {
 
 // Returns the cameras of frames 1, 2, ...: the camera of frame i has the state at time (i - 1) /
-// fps, without motion blur. Elements are squares. The principal point is
-// the centre of the plate, unless camera.shift moves the plate.
+// fps. With a shutter, also returns the cameras of the instants of every frame, each with the state
+// at its own time: all quantities move while a frame is exposed. The instants of the first frames
+// may be before time 0, where speeds continue backwards and keyframes hold their first value.
+// Elements are squares. The principal point is the centre of the plate, unless camera.shift moves
+// the plate.
 //
-// kInput, with frame, time, quantity and its position in the file, if at some frame
+// kInput, with frame, time, quantity and its position in the file, if at some frame or instant
 //   a quantity is out of its range: an aperture below 0, a focus distance of 0, a tilt of 90
 //   degrees
 //   the camera is at the point that it looks at, or looks along `up`

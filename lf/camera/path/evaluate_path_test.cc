@@ -20,6 +20,67 @@ TEST(Path, FrameOneIsTimeZero) {
   EXPECT_DOUBLE_EQ(path->Camera({21}).time_s, 2);
 }
 
+TEST(Path, AShutterExposesEachFrameAtInstantsAroundItsTime) {
+  TestPath moving;
+  moving.clock += "shutter: {angle_deg: 180, samples: 4}\n";
+  moving.pose = "position: [0, 0, -2], speed: [1, 0, 0], look_at: [0, 0, 0], follow: direction";
+  moving.aperture = "aperture_diameter_mm: 40, aperture_diameter_speed_mm: -8";
+  moving.focus = "focus_distance: 2, focus_distance_speed: 0.5";
+  const auto path = moving.Parse();
+  ASSERT_TRUE(path) << path.error().message;
+  EXPECT_EQ(path->instants.size(), 4 * 21u);
+  EXPECT_EQ(path->AllInstants().size(), 4 * 21u);
+  // The shutter is open for 0.05 s; the instants are the middles of four parts of this time.
+  const double offsets_s[] = {-0.01875, -0.00625, 0.00625, 0.01875};
+  for (const uint32_t frame : {1U, 2U, 21U}) {
+    const std::span<const RenderCamera> instants = path->Instants({frame});
+    ASSERT_EQ(instants.size(), 4u);
+    for (size_t k = 0; k < 4; ++k) {
+      const double time_s = (frame - 1) / 10.0 + offsets_s[k];
+      EXPECT_NEAR(instants[k].time_s, time_s, 1e-12);
+      EXPECT_NEAR(instants[k].pinhole.CentreWorld().x(), time_s, 1e-12);
+      EXPECT_NEAR(instants[k].aperture.radius_w, 0.02 - 0.004 * time_s, 1e-12);
+      EXPECT_NEAR(instants[k].focus_distance_w, 2 + 0.5 * time_s, 1e-12);
+    }
+  }
+  moving.clock = TestPath{}.clock;
+  const auto without = moving.Parse();
+  ASSERT_TRUE(without);
+  for (uint32_t frame = 1; frame <= 21; ++frame) {
+    EXPECT_EQ(path->Camera({frame}).time_s, without->Camera({frame}).time_s);
+    EXPECT_EQ(without->Instants({frame}).size(), 1u);
+    EXPECT_EQ(without->Instants({frame}).data(), &without->Camera({frame}));
+  }
+}
+
+TEST(Path, KeyframesHoldForInstantsBeforeTheFirstOne) {
+  TestPath moving;
+  moving.clock += "shutter: {angle_deg: 360, samples: 2}\n";
+  moving.more = "keyframes: {focus_distance: [{time: 0, value: 2}, {time: 2, value: 4}]}\n";
+  const auto path = moving.Parse();
+  ASSERT_TRUE(path) << path.error().message;
+  EXPECT_EQ(path->Instants({1})[0].focus_distance_w, 2);
+  EXPECT_GT(path->Instants({1})[1].focus_distance_w, 2);
+  EXPECT_LT(path->Instants({21})[0].focus_distance_w, 4);
+  EXPECT_EQ(path->Instants({21})[1].focus_distance_w, 4);
+}
+
+TEST(Path, AShutterOfOneSampleIsNone) {
+  TestPath path;
+  path.clock += "shutter: {angle_deg: 180, samples: 1}\n";
+  EXPECT_FALSE(path.Parse()->shutter.exists());
+  EXPECT_TRUE(path.Parse()->instants.empty());
+}
+
+TEST(Path, AnInstantOutOfRangeIsAnErrorOfItsFrame) {
+  TestPath path;
+  path.clock += "shutter: {angle_deg: 360, samples: 2}\n";
+  path.aperture = "aperture_diameter_mm: 0, aperture_diameter_speed_mm: 1";
+  EXPECT_NE(path.Error().find("at frame 1 (-0.025 s): -0.025 must be at least 0"),
+            std::string::npos)
+      << path.Error();
+}
+
 TEST(Path, ElementsAreSquaresAroundTheCentreOfThePlate) {
   const Intrinsics k = TestPath{}.At(1).pinhole.intrinsics;
   EXPECT_DOUBLE_EQ(k.fx_px, 200 * 50 / 36.0);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "lf/camera/path/camera_path.h"
 #include "lf/camera/path/motion.h"
 #include "lf/camera/path/yaml_schema.h"
 #include "lf/camera/transmission.h"
@@ -29,6 +30,7 @@ struct PathDescription {
   double unit_m = 1;
   int width_px = 0;
   int height_px = 0;
+  Shutter shutter;
 
   Quantity position_w;
   std::optional<Quantity> look_at_w;    // set unless `orientation` is set

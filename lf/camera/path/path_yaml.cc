@@ -62,6 +62,29 @@ void ReadUnit(YamlMap* file, std::optional<double> light_field_unit_m, PathDescr
   if (!light_field_unit_m) path->unit_m = *unit_m;
 }
 
+// Reads the mapping `shutter`. ReadClock() must have been called.
+void ReadShutter(YamlMap* file, PathDescription* path) {
+  const YamlEntry* entry = file->Find("shutter");
+  if (!entry) return;
+  YamlErrors* errors = file->errors();
+  YamlMap shutter(*entry->value, "shutter", errors);
+  const YamlEntry* angle = shutter.Require("angle_deg", "angle_deg: 180");
+  const YamlEntry* samples = shutter.Require("samples", "samples: 8");
+  shutter.CheckKeys();
+  if (!angle || !samples) return;
+  path->shutter.angle_deg =
+      ReadNumber(*angle->value, "shutter.angle_deg", NumberRange::Within(0, 360), errors)
+          .value_or(0);
+  path->shutter.samples =
+      ReadInteger(*samples->value, "shutter.samples", 1, kMostShutterSamples, errors).value_or(1);
+  const long long count = static_cast<long long>(path->frame_count) * path->shutter.samples;
+  if (path->shutter.exists() && count > kMostInstants)
+    errors->Add(entry->place,
+                fmt::format("shutter: {} frames with {} samples are {} cameras, more than {}; "
+                            "reduce samples, or divide the path",
+                            path->frame_count, path->shutter.samples, count, kMostInstants));
+}
+
 // Checks the version of the format, which determines the meaning of all other keys. If the version
 // is wrong, no other error is reported.
 bool CheckFormat(YamlMap* file) {
@@ -76,6 +99,7 @@ PathDescription Describe(const YamlNode& root, std::optional<double> light_field
   YamlMap file(root, "", errors);
   if (!errors->empty() || !CheckFormat(&file)) return path;
   ReadClock(&file, &path);
+  ReadShutter(&file, &path);
   ReadUnit(&file, light_field_unit_m, &path);
   ReadResolution(&file, &path);
   const YamlEntry* camera = file.Require("camera", "camera: {position: [0, 0, -0.4], ...}");

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "lf/camera/path/path_yaml.h"
 
@@ -25,7 +26,11 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
     Require(path.error().message.find('\n') == std::string::npos);
     return 0;
   }
-  for (const lf::RenderCamera& camera : path->cameras) {
+  Require(path->instants.size() ==
+          (path->shutter.exists() ? path->cameras.size() * path->shutter.samples : 0));
+  std::vector<lf::RenderCamera> cameras = path->cameras;
+  cameras.insert(cameras.end(), path->instants.begin(), path->instants.end());
+  for (const lf::RenderCamera& camera : cameras) {
     Require(camera.pinhole.cam_from_world.rotation.isUnitary(1e-6));
     Require(camera.pinhole.cam_from_world.translation.allFinite());
     Require(std::isfinite(camera.pinhole.intrinsics.fx_px) && camera.pinhole.intrinsics.fx_px > 0);

@@ -265,5 +265,37 @@ TEST(PathYaml, AFileThatIsNotThereIsNamed) {
   EXPECT_NE(path.error().message.find("/nowhere/path.yaml"), std::string::npos);
 }
 
+TEST(PathYaml, ChecksTheShutter) {
+  const auto error = [](const std::string& shutter, const std::string& frames = "21") {
+    TestPath path;
+    path.clock =
+        "fps: 10\nframes: " + frames + "\nresolution: [200, 100]\nshutter: " + shutter + "\n";
+    return path.Error();
+  };
+  EXPECT_EQ(error("{angle_deg: 360, samples: 64}"), "");
+  EXPECT_EQ(error("{angle_deg: 0, samples: 2}"), "");
+  for (const auto& [shutter, words] :
+       {std::pair("{angle_deg: 361, samples: 8}",
+                  "shutter.angle_deg: expected a number from 0 to 360, found '361'"),
+        std::pair("{angle_deg: -1, samples: 8}",
+                  "shutter.angle_deg: expected a number from 0 to 360, found '-1'"),
+        std::pair("{angle_deg: 180, samples: 65}",
+                  "shutter.samples: expected a whole number from 1 to 64, found '65'"),
+        std::pair("{angle_deg: 180, samples: 0}",
+                  "shutter.samples: expected a whole number from 1 to 64, found '0'"),
+        std::pair("{angle_deg: 180, samples: 2.5}", "shutter.samples"),
+        std::pair("{angle_deg: 180}",
+                  "shutter.samples is missing; write for instance 'samples: 8'"),
+        std::pair("{samples: 8}", "shutter.angle_deg is missing"),
+        std::pair("{angle: 180, samples: 8}",
+                  "unknown key 'angle' in shutter; known are: angle_deg, samples"),
+        std::pair("180", "shutter")})
+    EXPECT_NE(error(shutter).find(words), std::string::npos) << error(shutter);
+  EXPECT_NE(
+      error("{angle_deg: 180, samples: 64}", "20000").find("1280000 cameras, more than 1000000"),
+      std::string::npos)
+      << error("{angle_deg: 180, samples: 64}", "20000");
+}
+
 }  // namespace
 }  // namespace lf

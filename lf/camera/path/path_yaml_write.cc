@@ -210,6 +210,9 @@ Result<PathYaml> PathYamlOf(const CameraPath& path) {
   yaml.text =
       fmt::format("format: lfpath 1\nfps: {}\nframes: {}\nunit_m: {}\nresolution: [{}, {}]\n",
                   path.fps, path.frame_count(), path.unit_m, plate.width_px, plate.height_px);
+  if (path.shutter.exists())
+    yaml.text += fmt::format("shutter: {{angle_deg: {}, samples: {}}}\n", path.shutter.angle_deg,
+                             path.shutter.samples);
   AddSection("camera", camera, "", &yaml.text);
   AddSection("lens", lens, ShapeText(path.cameras[0]), &yaml.text);
   if (AnyMoves(camera) || AnyMoves(lens)) yaml.text += "keyframes:\n";

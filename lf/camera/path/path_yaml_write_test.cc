@@ -122,5 +122,24 @@ TEST(PathYamlWrite, TooLongFilmsAreRefused) {
   EXPECT_NE(yaml.error().message.find("JSON"), std::string::npos);
 }
 
+TEST(PathYaml, KeepsTheShutter) {
+  TestPath moving;
+  moving.clock += "shutter: {angle_deg: 172.8, samples: 8}\n";
+  moving.pose = "position: [0, 0, -2], speed: [1, 0, 0], look_at: [0, 0, 0], follow: direction";
+  const auto path = moving.Parse();
+  ASSERT_TRUE(path);
+  const auto yaml = PathYamlOf(*path);
+  ASSERT_TRUE(yaml);
+  EXPECT_TRUE(yaml->lost.empty());
+  const auto read = ParsePathYaml(yaml->text, "p.yaml", std::nullopt);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->shutter.angle_deg, 172.8);
+  EXPECT_EQ(read->shutter.samples, 8);
+  // Between the keyframes of a straight path, cameras move evenly. Before the first one, they rest.
+  for (size_t i = 8; i + 8 < path->instants.size(); ++i)
+    EXPECT_NEAR(read->instants[i].pinhole.CentreWorld().x(),
+                path->instants[i].pinhole.CentreWorld().x(), 1e-9);
+}
+
 }  // namespace
 }  // namespace lf

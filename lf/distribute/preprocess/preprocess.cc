@@ -125,13 +125,14 @@ class Preprocessor {
       needs = std::move(kept->second);
       kept_needs_.erase(kept);
     } else {
-      needs = NeedsOf(*index_, path_.Camera(frame), needs_, pool_);
+      needs = NeedsOf(*index_, path_, frame, needs_, pool_);
     }
     LF_RETURN_IF_ERROR(CheckInterrupted());
     if (progress_) progress_(++done_, 2 * frames_.size());
     return needs;
   }
   void Keep(FrameId frame, FrameNeeds needs);
+  void KeepDistances(FrameId frame, const std::vector<double>& distances_w);
 
   const LightField& light_field_;
   // The footprint is stored in packages, so that all machines that render them use the same
@@ -153,6 +154,7 @@ class Preprocessor {
   std::map<FrameId, FrameNeeds> kept_needs_;
   uint64_t kept_bytes_ = 0;
   std::vector<FrameSurroundings> surroundings_;  // [frame number - 1], for all frames of the film
+  std::vector<double> instant_distances_w_;      // Package::instant_distances_w, of all packages
   size_t done_ = 0;
   std::vector<bool> is_counted_;  // [LF image]: true if a finished package needs it
   PreprocessReport report_;
@@ -199,6 +201,7 @@ Result<void> Preprocessor::Begin() {
 Result<void> Preprocessor::CheckOptions() const {
   LF_RETURN_IF_ERROR(CheckOpacity(light_field_.encoding, options_.mode));
   LF_RETURN_IF_ERROR(CheckLenses(path_.cameras, options_.mode));
+  LF_RETURN_IF_ERROR(CheckShutter(path_.shutter.exists(), options_.mode, needs_.guard));
   if (Rebins(options_.mode) && options_.max_image_count)
     return UsageError(
         "--max-images cannot be used with --mode rebin or hybrid, in which all frames share the "
@@ -210,7 +213,8 @@ Result<void> Preprocessor::CheckOptions() const {
                     NameOf(options_.lens_weights)));
   if (options_.lens_weights == LensWeights::kArea)
     for (const FrameId frame : frames_)
-      LF_RETURN_IF_ERROR(CheckHasArea(path_.Camera(frame), frame));
+      for (const RenderCamera& camera : path_.Instants(frame))
+        LF_RETURN_IF_ERROR(CheckHasArea(camera, frame));
   return {};
 }
 
@@ -255,6 +259,7 @@ Result<void> Preprocessor::ForecastFrames() {
     report_.frames.push_back(
         {frame, needs.images.size() - virtual_count, virtual_count, needs.RayCount(), {}});
     if (needs.sampling) sampling[frame] = *needs.sampling;
+    KeepDistances(frame, needs.instant_distances_w);
     Keep(frame, std::move(needs));
   }
   LF_RETURN_IF_ERROR(DescribeSurroundings(sampling));
@@ -275,6 +280,15 @@ Result<void> Preprocessor::ForecastFrames() {
   return {};
 }
 
+// Keeps the camera distances of the instants of a frame for the packages, if there are any.
+void Preprocessor::KeepDistances(FrameId frame, const std::vector<double>& distances_w) {
+  if (distances_w.empty()) return;
+  instant_distances_w_.resize(path_.instants.size(), -1);
+  std::copy(distances_w.begin(), distances_w.end(),
+            instant_distances_w_.begin() +
+                static_cast<ptrdiff_t>((frame.value - 1) * distances_w.size()));
+}
+
 void Preprocessor::Keep(FrameId frame, FrameNeeds needs) {
   const uint64_t bytes = needs.images.capacity() * sizeof(FrameNeeds::Image) +
                          needs.neighbours.capacity() * sizeof(LfImageId);
@@ -292,8 +306,8 @@ Result<void> Preprocessor::Measure() {
     return report_.frames[a].ray_count < report_.frames[b].ray_count;
   });
   const FrameId frame = frames_[by_rays[by_rays.size() / 2]];
-  const Result<RenderRate> rate =
-      MeasureRate(*index_, path_.Camera(frame), needs_, options_.reading, pool_);
+  const Result<RenderRate> rate = MeasureRate(
+      *index_, path_.Camera(frame), path_.Instants(frame).size(), needs_, options_.reading, pool_);
   if (rate)
     report_.rate = *rate;
   else
@@ -303,10 +317,11 @@ Result<void> Preprocessor::Measure() {
 
 Result<MemoryPlan> Preprocessor::MemoryOf(const LightField& light_field, size_t frame_count) const {
   const Intrinsics& plate = path_.Camera(frames_.front()).pinhole.intrinsics;
-  LF_ASSIGN_OR_RETURN(RenderMemory memory,
-                      PlanRenderMemory(options_.memory_bytes, options_.mode, 0, light_field,
-                                       options_.reading, plate.width_px, plate.height_px,
-                                       frame_count, pool_.thread_count(), 0, needs_.guard));
+  LF_ASSIGN_OR_RETURN(
+      RenderMemory memory,
+      PlanRenderMemory(options_.memory_bytes, options_.mode, 0, light_field, options_.reading,
+                       plate.width_px, plate.height_px, frame_count, pool_.thread_count(), 0,
+                       needs_.guard, static_cast<size_t>(path_.shutter.samples)));
   memory.plan.total_bytes += memory.rebin_bytes;
   return memory.plan;
 }
@@ -389,6 +404,7 @@ Package Preprocessor::PackageOf(const Section& section, const Gathering& gatheri
                      options_.max_angle_rad, needs_.HasNeighbours(), NameOf(options_.mode)};
   package.path = path_;
   package.surroundings = surroundings_;
+  package.instant_distances_w = instant_distances_w_;
   for (size_t f = section.begin; f < section.end; ++f)
     package.frames.push_back({.id = frames_[f],
                               .image_count = report_.frames[f].image_count,

@@ -149,6 +149,63 @@ TEST_F(PreprocessTest, PackagesHaveWhatTheirFramesNeed) {
     }
 }
 
+// With a shutter, the lens weights of every instant, and the LF images of the frame, are those of
+// the whole light field.
+TEST_F(PreprocessTest, PackagesHaveWhatAShutterNeeds) {
+  film_.shutter = {180, 3};
+  for (const RenderCamera& camera : film_.cameras)
+    for (int k = 0; k < 3; ++k) {
+      RenderCamera instant = camera;
+      instant.pinhole.cam_from_world.translation.x() -= 0.003 * (k - 1);
+      instant.aperture.radius_w += 0.0005 * k;
+      film_.instants.push_back(instant);
+    }
+  const ImageIndex whole(field_, options_.seed);
+  for (const LensWeights weights : {LensWeights::kAuto, LensWeights::kNone})
+    for (const std::optional<size_t> most : {std::optional<size_t>(), std::optional<size_t>(9)}) {
+      options_.lens_weights = weights;
+      options_.max_image_count = most;
+      options_.overwrite = true;
+      NeedsOptions needs;
+      needs.select.reach = PixelReach::kElement;
+      needs.lens_weights = weights;
+      needs.max_image_count = most;
+      for (const PackageForecast& forecast : Run().packages) {
+        const Package package = Read(forecast);
+        ASSERT_EQ(package.path.instants.size(), 30u);
+        const ImageIndex part(package.light_field, package.places);
+        for (const PackageFrame& frame : package.frames) {
+          const FrameNeeds wanted = NeedsOf(whole, film_, frame.id, needs, pool_);
+          const FrameNeeds found = NeedsOf(part, package.path, frame.id, needs, pool_, &package);
+          EXPECT_EQ(frame.image_count, wanted.images.size());
+          EXPECT_EQ(frame.ray_count, wanted.RayCount());
+          EXPECT_LE(wanted.images.size(), most.value_or(field_.size()));
+          ASSERT_EQ(found.images.size(), wanted.images.size());
+          for (size_t i = 0; i < found.images.size(); ++i) {
+            EXPECT_EQ(package.images[found.images[i].id.value].id, wanted.images[i].id.value);
+            EXPECT_EQ(found.images[i].rect, wanted.images[i].rect);
+          }
+          EXPECT_EQ(package.InstantDistances(frame.id).empty(), weights == LensWeights::kNone);
+          const auto lenses =
+              LensesOf(whole, film_.Instants(frame.id), weights, needs.select, pool_);
+          const auto again = LensesOf(part, package.path.Instants(frame.id), weights, needs.select,
+                                      pool_, package.InstantDistances(frame.id));
+          for (size_t k = 0; k < 3; ++k)
+            for (uint32_t i = 0; i < package.light_field.size(); ++i)
+              ASSERT_EQ(again[k].WeightsOf(LfImageId{i}).At(40, 30),
+                        lenses[k].WeightsOf(LfImageId{package.images[i].id}).At(40, 30));
+        }
+      }
+    }
+  for (const RenderMode mode : {RenderMode::kRebin, RenderMode::kHybrid}) {
+    options_.mode = mode;
+    options_.max_image_count.reset();
+    const Result<PreprocessReport> report = Preprocess(field_, film_, options_, pool_, nullptr);
+    ASSERT_FALSE(report);
+    EXPECT_NE(report.error().message.find("shutter"), std::string::npos);
+  }
+}
+
 // Guarded frames take more LF images, because recorded LF cameras are farther apart than all, and
 // have the lens weights of the whole light field with and without virtual LF images.
 TEST_F(PreprocessTest, PackagesHaveWhatTheGuardNeeds) {

@@ -37,8 +37,8 @@ std::vector<SelectedImage> SampleOf(const FrameNeeds& needs, const LfImageStore&
 }  // namespace
 
 Result<RenderRate> MeasureRate(const ImageIndex& index, const RenderCamera& frame,
-                               const NeedsOptions& needs_options, const RayReading& reading,
-                               ThreadPool& pool) {
+                               size_t instant_count, const NeedsOptions& needs_options,
+                               const RayReading& reading, ThreadPool& pool) {
   const LightField& light_field = index.light_field();
   const FrameNeeds needs = NeedsOf(index, frame, needs_options, pool);
   LF_ASSIGN_OR_RETURN(
@@ -59,7 +59,8 @@ Result<RenderRate> MeasureRate(const ImageIndex& index, const RenderCamera& fram
   // Nothing else runs in this process, so its CPU time is the time that the pool's threads work.
   const std::clock_t lens_start = std::clock();
   const FrameLens lens(index, frame, needs_options.lens_weights, needs_options.select, pool);
-  const double lens_s = static_cast<double>(std::clock() - lens_start) / CLOCKS_PER_SEC;
+  const double lens_s = static_cast<double>(instant_count) *
+                        static_cast<double>(std::clock() - lens_start) / CLOCKS_PER_SEC;
   CollectOptions options;
   options.reading = reading;
   CollectedFrame collected = {lens.camera(), &plate};

@@ -22,8 +22,10 @@ struct RenderRate {
 // Computes the lens weights of the frame, loads a few of the LF images that the frame needs,
 // collects their rays, develops the plate, and writes the picture into the system's temporary
 // folder. kInput: none of these LF images can be loaded. kOutput: the picture cannot be written.
+//   instant_count  number of lenses of the frame: its lens weights take this many times as long as
+//                  those of `frame`
 Result<RenderRate> MeasureRate(const ImageIndex& index, const RenderCamera& frame,
-                               const NeedsOptions& needs, const RayReading& reading,
-                               ThreadPool& pool);
+                               size_t instant_count, const NeedsOptions& needs,
+                               const RayReading& reading, ThreadPool& pool);
 
 }  // namespace lf

@@ -9,6 +9,7 @@
 
 #include "lf/core/value_named.h"
 #include "lf/film/develop/display.h"
+#include "lf/film/develop/display_picture.h"
 
 namespace lf {
 namespace {
@@ -163,18 +164,23 @@ Result<void> WriteFrame(const std::filesystem::path& path, const DevelopedFrame&
                     is_interrupted, view == nullptr || view->is_srgb());
 }
 
-Result<Image<uint8_t>> ReadDisplayImage(const std::filesystem::path& path, ColourSpace colours) {
-  LF_ASSIGN_OR_RETURN(StoredImage stored, ReadImage(path));
+Result<Image<uint8_t>> DisplayPicture(const StoredImage& stored, const std::string& name) {
   return std::visit(
-      [&](auto& image) -> Result<Image<uint8_t>> {
+      [&](const auto& image) -> Result<Image<uint8_t>> {
         if (image.channels() < 3)
-          return InputError(fmt::format("{}: has {} channels, expected at least R, G and B",
-                                        path.string(), image.channels()));
-        if constexpr (std::is_same_v<decltype(image), Image<float>&>)
-          ConvertToRec709(colours, &image);
+          return InputError(fmt::format("{}: has {} channels, expected at least R, G and B", name,
+                                        image.channels()));
         return Picture(image);
       },
       stored);
+}
+
+Result<Image<uint8_t>> ReadDisplayImage(const std::filesystem::path& path, ColourSpace colours) {
+  LF_ASSIGN_OR_RETURN(StoredImage stored, ReadImage(path));
+  if (auto* const light = std::get_if<Image<float>>(&stored);
+      light != nullptr && light->channels() >= 3)
+    ConvertToRec709(colours, light);
+  return DisplayPicture(stored, path.string());
 }
 
 }  // namespace lf

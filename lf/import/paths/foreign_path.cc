@@ -223,11 +223,15 @@ Result<void> ReplaceQuantities(const PathOptions& options, const std::filesystem
   if (options.f_number && options.aperture_diameter_mm)
     return UsageError(
         "--f-number and --aperture-diameter-mm state the same quantity: leave one of them out");
-  for (size_t i = 0; i < path->cameras.size(); ++i) {
-    Replace(options, &path->cameras[i]);
-    if (const std::string fault = FaultOf(path->cameras[i]); !fault.empty())
-      return FrameError(file, i, fault);
-  }
+  const auto replace = [&](size_t index, RenderCamera* camera) -> Result<void> {
+    Replace(options, camera);
+    const std::string fault = FaultOf(*camera);
+    return fault.empty() ? Result<void>() : FrameError(file, index, fault);
+  };
+  for (size_t i = 0; i < path->cameras.size(); ++i)
+    LF_RETURN_IF_ERROR(replace(i, &path->cameras[i]));
+  for (size_t i = 0; i < path->instants.size(); ++i)
+    LF_RETURN_IF_ERROR(replace(i / path->shutter.samples, &path->instants[i]));
   return {};
 }
 

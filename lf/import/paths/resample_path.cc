@@ -117,7 +117,30 @@ Result<CameraPath> ResamplePath(const CameraPath& path, std::optional<double> fp
     camera.time_s = static_cast<double>(i) / new_fps;
     resampled.cameras.push_back(camera);
   }
+  LF_RETURN_IF_ERROR(AddShutter(path.shutter, &resampled));
   return resampled;
+}
+
+Result<void> AddShutter(const Shutter& shutter, CameraPath* path) {
+  path->shutter = shutter;
+  path->instants.clear();
+  if (!shutter.exists()) return {};
+  const auto samples = static_cast<size_t>(shutter.samples);
+  if (path->frame_count() * samples > kMostInstants)
+    return UsageError(
+        fmt::format("{} frames with {} samples of the shutter are {} cameras: expected at most {}",
+                    path->frame_count(), samples, path->frame_count() * samples, kMostInstants));
+  path->instants.reserve(path->frame_count() * samples);
+  const CameraCurves curves(*path);
+  const double last = static_cast<double>(path->frame_count() - 1);
+  for (size_t i = 0; i < path->frame_count(); ++i)
+    for (int k = 0; k < shutter.samples; ++k) {
+      const double place = static_cast<double>(i) + InstantOffset(shutter, k);
+      RenderCamera camera = curves.At(std::clamp(place, 0.0, last));
+      camera.time_s = place / path->fps;
+      path->instants.push_back(camera);
+    }
+  return {};
 }
 
 }  // namespace lf

@@ -11,13 +11,19 @@ namespace lf {
 
 // Returns the path with another frame rate, another number of frames, or both.
 //   fps          alone, keeps the duration: the last frame is the last one that the old path
-//   reaches frame_count  spreads the frames evenly from the first camera to the last; the frame
-//   rate is kept
-//                unless fps is set
+//                reaches
+//   frame_count  spreads the frames evenly from the first camera to the last; the frame rate is
+//                kept unless fps is set
 // A new frame at the time of an old one has the same camera, bit for bit. Between old frames,
 // positions follow a Catmull-Rom curve, rotations the shorter arc, and other numbers monotone
-// cubics, as keyframes do (motion.h). kUsage: more than kMostFrames frames.
+// cubics, as keyframes do (motion.h). The shutter is kept, with the instants of AddShutter().
+// kUsage: more than kMostFrames frames, or more than kMostInstants instants.
 Result<CameraPath> ResamplePath(const CameraPath& path, std::optional<double> fps,
                                 std::optional<uint32_t> frame_count);
+
+// Gives a path a shutter. The cameras of its instants are interpolated between those of the frames,
+// as by ResamplePath(); instants before the first frame or after the last one have its camera.
+// kUsage: more than kMostInstants instants.
+Result<void> AddShutter(const Shutter& shutter, CameraPath* path);
 
 }  // namespace lf

@@ -76,6 +76,24 @@ TEST(ResamplePath, FramesAtOldTimesAreTheOldOnes) {
   }
 }
 
+TEST(ResamplePath, TheShutterIsKeptAndItsInstantsLieBetweenTheFrames) {
+  CameraPath path = MovingPath();
+  ASSERT_TRUE(AddShutter({180, 4}, &path));
+  EXPECT_EQ(path.instants.size(), 4 * path.frame_count());
+  const auto at = [](const RenderCamera& camera) { return camera.pinhole.CentreWorld(); };
+  // Instants before the first frame and after the last one have its camera.
+  EXPECT_EQ(at(path.Instants(FrameId{1})[0]), at(path.cameras.front()));
+  EXPECT_NE(at(path.Instants(FrameId{1})[3]), at(path.cameras.front()));
+  EXPECT_EQ(path.instants.back().focus_distance_w, path.cameras.back().focus_distance_w);
+  EXPECT_NEAR(path.Instants(FrameId{2})[1].time_s, (1 - 0.0625) / path.fps, 1e-12);
+  const Result<CameraPath> slow = ResamplePath(path, 2 * path.fps, std::nullopt);
+  ASSERT_TRUE(slow);
+  EXPECT_EQ(slow->shutter.samples, 4);
+  EXPECT_EQ(slow->instants.size(), 4 * slow->frame_count());
+  path.cameras.resize(20'000, path.cameras.front());
+  EXPECT_EQ(AddShutter({180, kMostShutterSamples}, &path).error().kind, ErrorKind::kUsage);
+}
+
 TEST(ResamplePath, TooManyFramesAreRefused) {
   const Result<CameraPath> many = ResamplePath(MovingPath(), 2e6, std::nullopt);
   ASSERT_FALSE(many);

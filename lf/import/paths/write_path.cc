@@ -63,6 +63,8 @@ std::vector<std::string> LostIn(PathFormat format, const CameraPath& path) {
         "the shape of the opening, the hood and the tilt of the focus");
   else
     add(AnyCamera(path, HasLens), "the lens");
+  if (path.shutter.exists())
+    lost.emplace_back("the shutter, so that a moving camera does not blur its frames");
   return lost;
 }
 
@@ -93,6 +95,27 @@ Result<std::string> TextOf(const CameraPath& path, const fs::path& file, PathFor
   if (format == PathFormat::kChan) return ChanText(path, options.rotation_order);
   if (format == PathFormat::kUsda) return UsdaText(path);
   return NerfstudioTextFor(path, file, options);
+}
+
+// Moves the camera of frame `index` + 1.
+Result<void> MoveCamera(const Similarity& b_from_a, const fs::path& file, size_t index,
+                        RenderCamera* camera) {
+  camera->pinhole.cam_from_world = PoseIn(b_from_a, camera->pinhole.cam_from_world);
+  double largest_w = 0;
+  for (double* const length :
+       {&camera->aperture.radius_w, &camera->focal_length_w, &camera->sensor_width_w,
+        &camera->focus_distance_w, &camera->hood.distance_w, &camera->hood.radius_w}) {
+    *length *= b_from_a.scale;
+    largest_w = std::max(largest_w, *length);
+  }
+  if (!(camera->pinhole.cam_from_world.translation.cwiseAbs().maxCoeff() <= 1e12) ||
+      !(largest_w <= 1e9))
+    return InputError(
+        fmt::format("{}: frame {} would be moved beyond 1e12 world units, or its lens would be "
+                    "larger than 1e9: reduce the translation or the scale",
+                    file.string(), index + 1));
+  camera->focus_plane = FocusPlane(camera->pinhole, camera->focus_distance_w, camera->focus_tilt);
+  return {};
 }
 
 }  // namespace
@@ -127,6 +150,8 @@ std::optional<PathFormat> PathFormatOfFile(const fs::path& file) {
   return std::nullopt;
 }
 
+bool HoldsShift(PathFormat format) { return format != PathFormat::kChan; }
+
 Result<std::vector<std::string>> WritePath(const CameraPath& path, const fs::path& file,
                                            PathFormat format, const PathOptions& options) {
   std::vector<std::string> lost;
@@ -136,24 +161,10 @@ Result<std::vector<std::string>> WritePath(const CameraPath& path, const fs::pat
 }
 
 Result<void> MovePath(const Similarity& b_from_a, const fs::path& file, CameraPath* path) {
-  for (size_t i = 0; i < path->frame_count(); ++i) {
-    RenderCamera& camera = path->cameras[i];
-    camera.pinhole.cam_from_world = PoseIn(b_from_a, camera.pinhole.cam_from_world);
-    double largest_w = 0;
-    for (double* const length :
-         {&camera.aperture.radius_w, &camera.focal_length_w, &camera.sensor_width_w,
-          &camera.focus_distance_w, &camera.hood.distance_w, &camera.hood.radius_w}) {
-      *length *= b_from_a.scale;
-      largest_w = std::max(largest_w, *length);
-    }
-    if (!(camera.pinhole.cam_from_world.translation.cwiseAbs().maxCoeff() <= 1e12) ||
-        !(largest_w <= 1e9))
-      return InputError(
-          fmt::format("{}: frame {} would be moved beyond 1e12 world units, or its lens would be "
-                      "larger than 1e9: reduce the translation or the scale",
-                      file.string(), i + 1));
-    camera.focus_plane = FocusPlane(camera.pinhole, camera.focus_distance_w, camera.focus_tilt);
-  }
+  for (size_t i = 0; i < path->frame_count(); ++i)
+    LF_RETURN_IF_ERROR(MoveCamera(b_from_a, file, i, &path->cameras[i]));
+  for (size_t i = 0; i < path->instants.size(); ++i)
+    LF_RETURN_IF_ERROR(MoveCamera(b_from_a, file, i / path->shutter.samples, &path->instants[i]));
   return {};
 }
 

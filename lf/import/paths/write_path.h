@@ -24,6 +24,10 @@ std::optional<PathFormat> PathFormatOf(std::string_view name);
 // nerfstudio, .chan and .usda for Nuke and USD. nullopt for other extensions.
 std::optional<PathFormat> PathFormatOfFile(const std::filesystem::path& file);
 
+// Returns true if a file of the format can say that the plate of a camera is shifted
+// (camera.shift). In JSON, only our own programs read the shift.
+bool HoldsShift(PathFormat format);
+
 // Writes a path.
 //   options  nerfstudio: if dataparser_transforms is set, the cameras are moved into that trained
 //            space; light_field as for OpenPath(). instant-ngp: ngp_scale and ngp_offset; by

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include "lf/camera/path/path_yaml.h"
+#include "lf/camera/path/view_cameras.h"
 #include "lf/core/file.h"
 #include "lf/import/paths/test_paths.h"
 #include "lf/pixels/files/test_folder.h"
@@ -96,6 +98,26 @@ TEST_F(WritePathTest, AnOffCentrePrincipalPointIsKeptAndTold) {
   ExpectSameCameras(path, ThereAndBack(path, PathFormat::kNerfstudio, {}, &lost));
   ASSERT_EQ(lost.size(), 2u);
   EXPECT_NE(lost[0].find("principal point"), std::string::npos);
+}
+
+TEST_F(WritePathTest, ViewsKeepTheirPlatesInEveryFormatThatHoldsAShift) {
+  const auto views = StereoPath(Lively(), 0.2, 1.7);
+  ASSERT_TRUE(views);
+  std::vector<std::string> lost;
+  for (const PathFormat format : {PathFormat::kNerfstudio, PathFormat::kNgp}) {
+    EXPECT_TRUE(HoldsShift(format));
+    ExpectSameCameras(*views, ThereAndBack(*views, format, {}, &lost));
+  }
+  EXPECT_TRUE(HoldsShift(PathFormat::kYaml));
+  const CameraPath again = ThereAndBack(*views, PathFormat::kYaml, {}, &lost);
+  ASSERT_EQ(again.frame_count(), 18u);
+  for (size_t i = 0; i < 18; ++i) {
+    const Intrinsics& old = views->cameras[i].pinhole.intrinsics;
+    EXPECT_NEAR(again.cameras[i].pinhole.intrinsics.cx_px, old.cx_px, 1e-9);
+    EXPECT_GT(std::abs(old.cx_px - 100.5), 1);
+  }
+  EXPECT_FALSE(HoldsShift(PathFormat::kChan));
+  EXPECT_TRUE(HoldsShift(PathFormat::kUsda));
 }
 
 TEST_F(WritePathTest, OtherProgramsFindTheirOwnKeys) {

@@ -252,4 +252,19 @@ Image<float> ThinLensPhotograph(const Scene& scene, const RenderCamera& camera,
   return picture;
 }
 
+Image<float> DepthsSeen(const Scene& scene, const PinholeCamera& camera, ThreadPool& pool) {
+  const PixelRays rays(camera);
+  const Vec3 forward = camera.ForwardWorld();
+  Image<float> depths(camera.intrinsics.width_px, camera.intrinsics.height_px);
+  pool.ForEach(static_cast<size_t>(depths.height()), [&](size_t row) {
+    const int y = static_cast<int>(row);
+    for (int x = 0; x < depths.width(); ++x) {
+      const std::optional<Ray> ray = rays.Through(x + 0.5, y + 0.5);
+      const double distance = scene.SightAlong(*ray, rays.FootprintOf(1)).distance;
+      depths.at(x, y) = static_cast<float>(distance * forward.dot(ray->direction.normalized()));
+    }
+  });
+  return depths;
+}
+
 }  // namespace lf

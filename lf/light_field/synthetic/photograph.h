@@ -46,4 +46,10 @@ Image<float> ThinLensPhotograph(const Scene& scene, const RenderCamera& camera,
                                 const LensSampling& sampling, ThreadPool& pool,
                                 Surroundings surroundings = Surroundings::kShown);
 
+// Returns the depths, along the optical axis, of the surfaces that a camera sees through the
+// middles of its elements, glass and mirrors included; infinity where there is no surface. Glows
+// are no surfaces. Shape [height][width].
+//   camera  without distortion
+Image<float> DepthsSeen(const Scene& scene, const PinholeCamera& camera, ThreadPool& pool);
+
 }  // namespace lf

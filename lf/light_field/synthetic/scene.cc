@@ -59,7 +59,7 @@ Scene::Sight Scene::SightAlong(const Ray& ray, const Footprint& footprint,
   Hit first;
   const Rgb radiance =
       Follow({{ray.origin, ray.direction.normalized()}, footprint, 1, 0, sector}, &first);
-  return {radiance, first.shape};
+  return {radiance, first.shape, first.lambda};
 }
 
 Scene::Place Scene::PlaceOf(const Beam& beam, const Hit& hit) const {

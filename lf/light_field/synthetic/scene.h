@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "lf/camera/ray.h"
@@ -42,6 +43,9 @@ class Scene {
   struct Sight {
     Rgb radiance = Rgb::Zero();
     uint32_t shape = Hit::kNothing;
+    // Distance from the origin to the first hit, if the direction had unit length; infinity if
+    // there is none.
+    double distance = std::numeric_limits<double>::infinity();
   };
   // `sector` is a sector whose cone contains the ray, or null.
   Sight SightAlong(const Ray& ray, const Footprint& footprint,

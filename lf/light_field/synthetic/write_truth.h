@@ -16,14 +16,18 @@
 namespace lf {
 
 // Writes the frames folder/frame_0001.exr ..., one for each camera: R, G, B as floats, linear
-// light. If surroundings are transparent, R, G and B are multiplied by alpha, and A is written
-// behind them.
+// light, and Z, the depths that are seen through the lens centre (DepthsSeen()). If `instants` is
+// above 1, a frame is the mean of this many consecutive cameras (CameraPath::instants), and Z is
+// that of the middle one. If surroundings are transparent, R, G and B are multiplied by alpha, and
+// A is written, too.
+//   instants    number of `cameras` is a multiple of it
 //   keep_going  called after every frame; returns false to stop the work. May be empty
 // kOutput: a folder or file cannot be written. kInterrupted: the work was stopped; written frames
 // are complete.
 Result<void> WriteTruth(const Scene& scene, std::span<const RenderCamera> cameras,
                         const LensSampling& sampling, const std::filesystem::path& folder,
                         ThreadPool& pool, Surroundings surroundings = Surroundings::kShown,
-                        const std::function<bool(size_t frames_done)>& keep_going = {});
+                        const std::function<bool(size_t frames_done)>& keep_going = {},
+                        size_t instants = 1);
 
 }  // namespace lf

@@ -32,9 +32,32 @@ TEST_F(WriteTruthTest, EveryFrameIsAFileOfItsOwnWithFullPrecision) {
   for (int i = 0; i < 3; ++i) {
     const auto name = "frame_000" + std::to_string(i + 1) + ".exr";
     const StoredImage stored = *ReadImage(folder_ / "truth" / name);
-    EXPECT_EQ(std::get<Image<float>>(stored).pixels(),
-              ThinLensPhotograph(scene_, cameras_[static_cast<size_t>(i)], {4, 0}, pool_).pixels());
+    const auto& read = std::get<Image<float>>(stored);
+    const RenderCamera& camera = cameras_[static_cast<size_t>(i)];
+    const Image<float> picture = ThinLensPhotograph(scene_, camera, {4, 0}, pool_);
+    const Image<float> depths = DepthsSeen(scene_, camera.pinhole, pool_);
+    ASSERT_EQ(read.channels(), 4);
+    for (int y = 0; y < read.height(); ++y)
+      for (int x = 0; x < read.width(); ++x) {
+        for (int c = 0; c < 3; ++c) EXPECT_EQ(read.at(x, y, c), picture.at(x, y, c));
+        EXPECT_EQ(read.at(x, y, 3), depths.at(x, y));
+      }
   }
+}
+
+TEST_F(WriteTruthTest, AFrameOfInstantsIsTheirMean) {
+  cameras_ = {cameras_[0], cameras_[0], cameras_[2], cameras_[2]};
+  cameras_[3].pinhole.cam_from_world.translation.x() += 0.05;
+  ASSERT_TRUE(WriteTruth(scene_, cameras_, {4, 0}, folder_, pool_, Surroundings::kShown, {}, 2));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "frame_0003.exr"));
+  const auto stored = std::get<Image<float>>(*ReadImage(folder_ / "frame_0002.exr"));
+  const Image<float> first = ThinLensPhotograph(scene_, cameras_[2], {4, 0}, pool_);
+  const Image<float> second = ThinLensPhotograph(scene_, cameras_[3], {4, 0}, pool_);
+  EXPECT_NE(first.pixels(), second.pixels());
+  for (size_t i = 0; i < stored.pixels().size(); ++i)
+    ASSERT_EQ(
+        stored.pixels()[i],
+        static_cast<float>((static_cast<double>(first.pixels()[i]) + second.pixels()[i]) / 2));
 }
 
 TEST_F(WriteTruthTest, StoppedItKeepsTheFramesThatAreDone) {

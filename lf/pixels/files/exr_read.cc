@@ -5,10 +5,13 @@
 #include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfVersion.h>
 #include <OpenEXR/openexr.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -133,6 +136,25 @@ class ExrDecoder : public PictureDecoder {
   }
 
   const ImageFileInfo& info() const override { return info_; }
+
+  ColourFacts colours() const override {
+    const Imf::Header& header = file_->header(0);
+    ColourFacts facts = {PixelType::kHalf};
+    const bool has_alpha = info_.channels > 3 && info_.channel_names[3].ends_with('A');
+    for (int i = 0; i < std::min(info_.channels, has_alpha ? 4 : 3); ++i)
+      if (header.channels()[info_.channel_names[i].c_str()].type != Imf::HALF)
+        facts.type = PixelType::kFloat;
+    if (Imf::hasChromaticities(header)) {
+      const Imf::Chromaticities& c = Imf::chromaticities(header);
+      facts.chromaticities = {c.red.x,  c.red.y,  c.green.x, c.green.y,
+                              c.blue.x, c.blue.y, c.white.x, c.white.y};
+    }
+    if (Imf::hasFramesPerSecond(header)) {
+      const double rate = Imf::framesPerSecond(header);
+      if (rate > 0 && std::isfinite(rate)) facts.frames_per_second = rate;
+    }
+    return facts;
+  }
 
   // OpenEXR converts halves and integers (exactly up to 2^24) to floats.
   Result<void> Read(StoredImage* image) override {

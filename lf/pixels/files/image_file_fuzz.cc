@@ -4,6 +4,7 @@
 #include "lf/pixels/files/exposure_facts.h"
 #include "lf/pixels/files/file_bytes.h"
 #include "lf/pixels/files/image_file.h"
+#include "lf/pixels/files/picture_header.h"
 #include "lf/pixels/files/whole_file.h"
 
 // Any bytes must give an image, or an error that names the file. Pictures above a million values
@@ -22,6 +23,9 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
     LF_CHECK(info.error().message.starts_with("fuzz: "));
     return 0;
   }
+  const auto header = lf::ReadPictureHeaderBytes(file, "fuzz");
+  LF_CHECK(header && header->info.channels == info->channels);
+  LF_CHECK(header->colours.frames_per_second.value_or(1) > 0);
   LF_CHECK(info->width > 0 && info->height > 0 && info->channels > 0);
   if (info->raw)
     LF_CHECK(info->raw->black_level.value_or(0) < info->raw->white_level.value_or(65536));

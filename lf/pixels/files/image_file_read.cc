@@ -14,6 +14,7 @@
 #include "lf/pixels/files/image_file.h"
 #include "lf/pixels/files/image_probe.h"
 #include "lf/pixels/files/picture_decoder.h"
+#include "lf/pixels/files/picture_header.h"
 #include "lf/pixels/files/read_jpeg.h"
 #include "lf/pixels/files/read_raw.h"
 #include "lf/pixels/files/reduced_jpeg.h"
@@ -51,6 +52,16 @@ Result<ImageFileInfo> InfoFrom(const FileBytes& file) {
   }
   LF_ASSIGN_OR_RETURN(const std::unique_ptr<PictureDecoder> picture, Open(file, format));
   return picture->info();
+}
+
+Result<PictureHeader> HeaderFrom(const FileBytes& file) {
+  LF_ASSIGN_OR_RETURN(const ImageFormat format, ProbeImage(file.read, file.name));
+  if (format == ImageFormat::kJpeg || format == ImageFormat::kRaw) {
+    LF_ASSIGN_OR_RETURN(const ImageFileInfo info, InfoFrom(file));
+    return PictureHeader{info, {TypeOfValues(info)}};
+  }
+  LF_ASSIGN_OR_RETURN(const std::unique_ptr<PictureDecoder> picture, Open(file, format));
+  return PictureHeader{picture->info(), picture->colours()};
 }
 
 Result<ExposureFacts> ExposureFrom(const FileBytes& file) {
@@ -151,6 +162,14 @@ auto FromFile(const fs::path& path, const Read& read)
 
 Result<ImageFileInfo> ReadImageInfo(const fs::path& path) {
   return FromFile(path, [](const FileBytes& file) { return InfoFrom(file); });
+}
+
+Result<PictureHeader> ReadPictureHeader(const fs::path& path) {
+  return FromFile(path, [](const FileBytes& file) { return HeaderFrom(file); });
+}
+
+Result<PictureHeader> ReadPictureHeaderBytes(std::string_view bytes, const std::string& name) {
+  return WithoutThrowing(name, [&] { return HeaderFrom(FileInMemory(bytes, name)); });
 }
 
 Result<ExposureFacts> ReadExposureFacts(const fs::path& path) {

@@ -6,12 +6,14 @@
 #include <functional>
 #include <memory>
 #include <new>
+#include <type_traits>
 
 #include "lf/core/file.h"
 #include "lf/pixels/files/file_bytes.h"
 #include "lf/pixels/files/image_file.h"
 #include "lf/pixels/files/image_probe.h"
 #include "lf/pixels/files/picture_encoder.h"
+#include "lf/pixels/files/picture_header.h"
 #include "lf/pixels/files/whole_file.h"
 
 namespace lf {
@@ -160,6 +162,35 @@ Result<void> WriteImage(const fs::path& path, ImageView<const uint8_t> pixels) {
 
 Result<void> WriteImage(const fs::path& path, ImageView<const uint16_t> pixels) {
   return WriteStored(path, pixels, PixelType::kUint16);
+}
+
+Result<void> WriteStoredImage(const fs::path& path, const StoredImage& pixels,
+                              const std::vector<std::string>& channel_names,
+                              const ColourFacts& colours, const ImageMetadata& metadata,
+                              const std::function<bool()>& is_interrupted) {
+  ImageMetadata all = metadata;
+  if (colours.chromaticities) all.emplace_back("chromaticities", *colours.chromaticities);
+  if (const auto* floats = std::get_if<Image<float>>(&pixels)) {
+    if (colours.frames_per_second)
+      all.emplace_back("framesPerSecond", FrameRate{*colours.frames_per_second});
+    return WriteImage(path, floats->view(), channel_names, colours.type, all, is_interrupted);
+  }
+  if (colours.frames_per_second) all.emplace_back(kFrameRateText, *colours.frames_per_second);
+  return std::visit(
+      [&](const auto& image) -> Result<void> {
+        LF_ASSIGN_OR_RETURN(const ImageFormat format, FormatOf(path));
+        LF_RETURN_IF_ERROR(CheckHolds(path, format, colours.type, image.channels()));
+        LF_RETURN_IF_ERROR(CheckShape(path, image.width(), image.height()));
+        using Value = std::remove_cvref_t<decltype(image.at(0, 0))>;
+        LF_CHECK(sizeof(Value) == (colours.type == PixelType::kUint16 ? 2 : 1));
+        PictureRows picture =
+            RowsOf<Value>(path, image.view(), colours.type, [](Value value) { return value; });
+        picture.is_srgb = colours.is_srgb;
+        picture.metadata = all;
+        picture.is_interrupted = is_interrupted;
+        return Save(path, Encode(format, picture));
+      },
+      pixels);
 }
 
 Result<void> WriteExr(const fs::path& path, std::span<const ExrChannel> channels,

@@ -11,8 +11,15 @@
 #include "lf/core/result.h"
 #include "lf/pixels/files/file_bytes.h"
 #include "lf/pixels/files/image_file.h"
+#include "lf/pixels/files/picture_header.h"
 
 namespace lf {
+
+// Returns the type of the values of a StoredImage that is not EXR.
+inline PixelType TypeOfValues(const ImageFileInfo& info) {
+  if (info.is_float || info.bits == 32) return PixelType::kFloat;
+  return info.bits == 16 ? PixelType::kUint16 : PixelType::kUint8;
+}
 
 // A file whose header has been read. Its pixels can be decoded once. One thread at a time may use
 // it.
@@ -20,6 +27,7 @@ class PictureDecoder {
  public:
   virtual ~PictureDecoder() = default;
   virtual const ImageFileInfo& info() const = 0;
+  virtual ColourFacts colours() const { return {TypeOfValues(info())}; }
   // Decodes all pixels. `image` becomes an Image of the type that info() states, in the same memory
   // if possible. kInput: the file is truncated or damaged anywhere, even if the library could guess
   // what is missing.

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <charconv>
+#include <cmath>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -88,6 +91,21 @@ int OrientationOf(png_structp png, png_infop info) {
   return 1;
 }
 
+// Returns the frame rate that a text before the pixels states.
+std::optional<double> FrameRateOf(png_structp png, png_infop info) {
+  png_textp texts = nullptr;
+  int count = 0;
+  png_get_text(png, info, &texts, &count);
+  for (const png_text& text : std::span(texts, static_cast<size_t>(count))) {
+    if (std::string_view(text.key) != kFrameRateText) continue;
+    double rate = 0;
+    const char* const end = text.text + text.text_length;
+    const std::from_chars_result read = std::from_chars(text.text, end, rate);
+    if (read.ec == std::errc() && read.ptr == end && rate > 0 && std::isfinite(rate)) return rate;
+  }
+  return std::nullopt;
+}
+
 // Replaces the indices in the last `width` bytes of a row by colours of `channels` bytes. Returns
 // the first index that the palette lacks, or -1.
 int ReplaceIndices(const Palette& palette, int width, int channels, uint8_t* row) {
@@ -109,6 +127,7 @@ class PngDecoder : public PictureDecoder {
   PngDecoder& operator=(const PngDecoder&) = delete;
 
   const ImageFileInfo& info() const override { return info_; }
+  ColourFacts colours() const override { return colours_; }
   Result<void> Open();
   Result<void> Read(StoredImage* image) override;
 
@@ -132,6 +151,7 @@ class PngDecoder : public PictureDecoder {
   Palette palette_;
   bool has_palette_ = false;
   ImageFileInfo info_;
+  ColourFacts colours_;
 };
 
 void PngDecoder::ReadBytes(png_structp png, png_bytep to, size_t count) {
@@ -168,8 +188,8 @@ Result<void> PngDecoder::Open() {
     png_set_chunk_malloc_max(png_, kMostTextBytes);
     png_set_chunk_cache_max(png_, kMostTexts);
     png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
-    constexpr png_byte kRead[] = "eXIf\0tEXt\0zTXt";
-    png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_AS_DEFAULT, kRead, 3);
+    constexpr png_byte kRead[] = "eXIf\0sRGB\0tEXt\0zTXt";
+    png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_AS_DEFAULT, kRead, 4);
     png_read_info(png_, png_info_);
   }));
   ReadHeader();
@@ -189,6 +209,9 @@ void PngDecoder::ReadHeader() {
                                            : std::vector<std::string>{"R", "G", "B", "A"};
   if (info_.channels % 2 == 1) info_.channel_names.pop_back();
   info_.orientation = OrientationOf(png_, png_info_);
+  colours_.type = TypeOfValues(info_);
+  colours_.is_srgb = png_get_valid(png_, png_info_, PNG_INFO_sRGB) != 0;
+  colours_.frames_per_second = FrameRateOf(png_, png_info_);
 }
 
 void PngDecoder::ReadPalette() {

@@ -30,9 +30,10 @@ class FrameGate {
   std::atomic<State> state_ = State::kUndecided;
 };
 
-void Count(const PixelRect& rect, bool any_accepted, bool is_virtual, FrameRays* rays) {
-  if (any_accepted) ++(is_virtual ? rays->virtual_count : rays->image_count);
-  rays->tested_count += static_cast<uint64_t>(rect.pixel_count());
+void Count(uint64_t tested, uint64_t accepted, bool is_virtual, FrameRays* rays) {
+  if (accepted > 0) ++(is_virtual ? rays->virtual_count : rays->image_count);
+  rays->tested_count += tested;
+  rays->accepted_count += accepted;
 }
 
 }  // namespace
@@ -119,7 +120,8 @@ void BatchCollector::Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>
 
 // Returns how many of the frames, from the first one on, are planned together: all; or, if LF
 // images are filtered, those that read the same filtered LF images, so that memory holds only one
-// filtered copy of each LF image.
+// filtered copy of each LF image. The instants of a frame may read different ones; the frame is
+// then planned alone.
 size_t BatchCollector::CountTogether(const std::vector<BatchImage>& batch,
                                      std::span<const BatchFrame> frames) const {
   if (!reading_.Prefilters()) return frames.size();
@@ -127,14 +129,17 @@ size_t BatchCollector::CountTogether(const std::vector<BatchImage>& batch,
     std::optional<Prefilter> filter;
     const auto differs = [&](const BatchFrame& frame) {
       if (PlainlyMisses(image, frame.frame)) return false;
-      const RenderCamera& camera = frames_[frame.frame].camera;
-      const Prefilter needed =
-          SamplingOf(light_field_.Camera(image.id), camera, reading_).prefilter;
-      if (!filter) filter = needed;
-      return needed != *filter;
+      for (size_t e = 0; e < instant_count(); ++e) {
+        const RenderCamera& camera = ExposureOf(frame.frame, e).camera;
+        const Prefilter needed =
+            SamplingOf(light_field_.Camera(image.id), camera, reading_).prefilter;
+        if (!filter) filter = needed;
+        if (needed != *filter) return true;
+      }
+      return false;
     };
     const auto other = std::find_if(frames.begin(), frames.end(), differs);
-    frames = frames.first(static_cast<size_t>(other - frames.begin()));
+    frames = frames.first(std::max<size_t>(1, static_cast<size_t>(other - frames.begin())));
   }
   return frames.size();
 }
@@ -147,7 +152,8 @@ PixelRect BatchCollector::RectOf(const BatchImage& image, const RenderCamera& fr
 BatchCollector::Exposure BatchCollector::ExposureOf(size_t frame, size_t exposure) const {
   const CollectedFrame& of = frames_[frame];
   if (exposure == 0) return {of.camera, of.weights};
-  return {of.guard->camera, of.guard->weights};
+  if (is_guarded()) return {of.guard->camera, of.guard->weights};
+  return {of.further[exposure - 1].camera, of.further[exposure - 1].weights};
 }
 
 bool BatchCollector::PlainlyMisses(const BatchImage& image, size_t frame) const {
@@ -284,10 +290,13 @@ void BatchCollector::AddToFrames(std::vector<BatchImage>& batch, std::span<Batch
     frames[f].is_done = gates[f].IsOpen(nullptr);
     if (!frames[f].is_done) continue;
     for (size_t k = 0; k < batch.size(); ++k) {
-      const Contribution& contribution = ContributionOf(f, 0, k, batch.size());
-      frames[f].rays.accepted_count += contribution.accepted_count;
-      Count(contribution.rect, contribution.accepted_count > 0, IsVirtual(batch[k].id),
-            &frames[f].rays);
+      uint64_t tested = 0, accepted = 0;
+      for (size_t e = 0; e < instant_count(); ++e) {
+        const Contribution& contribution = ContributionOf(f, e, k, batch.size());
+        tested += static_cast<uint64_t>(contribution.rect.pixel_count());
+        accepted += contribution.accepted_count;
+      }
+      Count(tested, accepted, IsVirtual(batch[k].id), &frames[f].rays);
       if (is_guarded() && IsVirtual(batch[k].id) &&
           ContributionOf(f, 1, k, batch.size()).accepted_count > 0)
         ++frames[f].rays.virtual_count;
@@ -309,32 +318,40 @@ void BatchCollector::CollectTile(std::span<const BatchImage> batch, size_t taker
                                  size_t number) {
   thread_local TileSums sums;
   PlateTile& tile = tiles_[frame][number];
-  const auto for_each = [&](size_t exposure, const auto& body) {
-    for (size_t k = 0; k < batch.size(); ++k)
-      if (Contribution& contribution = ContributionOf(taker, exposure, k, batch.size());
+  // Calls body() for the exposures [begin, end) of LF image k.
+  const auto for_each = [&](size_t k, size_t begin, size_t end, const auto& body) {
+    for (size_t e = begin; e < end; ++e)
+      if (Contribution& contribution = ContributionOf(taker, e, k, batch.size());
           !contribution.rect.empty())
-        body(batch[k].id, contribution);
+        body(contribution);
   };
   NoiseTally tally(frames_[frame].moments, tile.rect());
   sums.Begin(&tile, tally.elements());
-  for_each(0, [&](LfImageId id, Contribution& contribution) {
-    const uint64_t accepted = AddToTile(contribution, number, *contribution.pixels, &sums);
-    contribution.accepted_count += accepted;
-    if (accepted > 0)
-      tally.TakeImage(IsVirtual(id), [&](size_t element, int c) { return sums.Added(element, c); });
-  });
+  for (size_t k = 0; k < batch.size(); ++k) {
+    uint64_t of_image = 0;  // rays at all instants
+    for_each(k, 0, instant_count(), [&](Contribution& contribution) {
+      const uint64_t accepted = AddToTile(contribution, number, *contribution.pixels, &sums);
+      contribution.accepted_count += accepted;
+      of_image += accepted;
+    });
+    if (of_image > 0)
+      tally.TakeImage(IsVirtual(batch[k].id),
+                      [&](size_t element, int c) { return sums.Added(element, c); });
+  }
   sums.Flush();
   if (frames_[frame].plate->kind() == PlateKind::kColours) return;
   sums.Begin(&tile, {}, TileSums::Target::kFourth);
-  for_each(0, [&](LfImageId /*id*/, const Contribution& contribution) {
-    AddToTile(contribution, number, *contribution.fourth, &sums);
-  });
+  for (size_t k = 0; k < batch.size(); ++k)
+    for_each(k, 0, instant_count(), [&](const Contribution& contribution) {
+      AddToTile(contribution, number, *contribution.fourth, &sums);
+    });
   sums.Flush();
   if (!is_guarded()) return;
   sums.Begin(&tile, {}, TileSums::Target::kAllRays);
-  for_each(1, [&](LfImageId /*id*/, Contribution& contribution) {
-    contribution.accepted_count += AddToTile(contribution, number, *contribution.pixels, &sums);
-  });
+  for (size_t k = 0; k < batch.size(); ++k)
+    for_each(k, 1, 2, [&](Contribution& contribution) {
+      contribution.accepted_count += AddToTile(contribution, number, *contribution.pixels, &sums);
+    });
   sums.Flush();
 }
 
@@ -375,24 +392,27 @@ void BatchCollector::AddByReference(const std::vector<BatchImage>& batch, BatchF
     return plate.At(tally.elements()[element].x, tally.elements()[element].y, c);
   };
   tally.Start(total_of);
-  const Exposure exposure = ExposureOf(frame->frame, 0);
   for (const BatchImage& image : batch) {
     if (!frame->places.Holds(image.place)) continue;
     if (is_guarded() && AddChannelsByReference(image, image.Pixels(), ExposureOf(frame->frame, 1),
                                                3, SensorPlate::kAllRaysChannel, &plate) > 0)
       frame->rays.virtual_count += IsVirtual(image.id) ? 1 : 0;
-    const PixelRect rect = RectOf(image, exposure.camera);
-    if (rect.empty() || WeightsOf(exposure, image.id).are_none()) continue;
-    const uint64_t accepted = CollectByReference(image, image.Pixels(), exposure, &plate);
-    if (plate.has_opacity())
-      AddChannelsByReference(image, image.Opacity(), exposure, 1, SensorPlate::kOpacityChannel,
-                             &plate);
-    if (is_guarded())
-      AddChannelsByReference(image, DefocusIn(frame->frame, image, {}), exposure, 1,
-                             SensorPlate::kDefocusChannel, &plate);
+    uint64_t tested = 0, accepted = 0;
+    for (size_t e = 0; e < instant_count(); ++e) {
+      const Exposure exposure = ExposureOf(frame->frame, e);
+      const PixelRect rect = RectOf(image, exposure.camera);
+      if (rect.empty() || WeightsOf(exposure, image.id).are_none()) continue;
+      tested += static_cast<uint64_t>(rect.pixel_count());
+      accepted += CollectByReference(image, image.Pixels(), exposure, &plate);
+      if (plate.has_opacity())
+        AddChannelsByReference(image, image.Opacity(), exposure, 1, SensorPlate::kOpacityChannel,
+                               &plate);
+      if (is_guarded())
+        AddChannelsByReference(image, DefocusIn(frame->frame, image, {}), exposure, 1,
+                               SensorPlate::kDefocusChannel, &plate);
+    }
     tally.TakeImage(IsVirtual(image.id), total_of);
-    frame->rays.accepted_count += accepted;
-    Count(rect, accepted > 0, IsVirtual(image.id), &frame->rays);
+    Count(tested, accepted, IsVirtual(image.id), &frame->rays);
   }
   frame->is_done = true;
   cpu_ns_ += timer.Nanoseconds();

@@ -144,8 +144,8 @@ class BatchCollector {
   double cpu_seconds() const { return static_cast<double>(cpu_ns_.load()) * 1e-9; }
 
  private:
-  // The rays that a frame takes: of all LF images or, if it has a guard, first of the recorded LF
-  // images, and then of all.
+  // The rays that a frame takes: of all LF images, at each of its instants; or, if it has a guard,
+  // first of the recorded LF images, and then of all.
   struct Exposure {
     const RenderCamera& camera;
     const ImageWeights& weights;
@@ -164,10 +164,15 @@ class BatchCollector {
     std::atomic<uint64_t> accepted_count = 0;
   };
   bool is_guarded() const { return !frames_.empty() && frames_.front().guard; }
-  size_t exposure_count() const { return is_guarded() ? 2 : 1; }
+  size_t exposure_count() const {
+    if (frames_.empty()) return 1;
+    return 1 + (is_guarded() ? 1 : frames_.front().further.size());
+  }
+  // Returns the number of the first exposures, which are added to the first channels of the plate.
+  size_t instant_count() const { return is_guarded() ? 1 : exposure_count(); }
   Exposure ExposureOf(size_t frame, size_t exposure) const;
   bool PlainlyMisses(const BatchImage& image, size_t frame) const;
-  // Returns the contribution of LF image k of a batch of `image_count`.
+  // Returns the contribution of LF image k of a batch of `image_count` LF images.
   Contribution& ContributionOf(size_t taker, size_t exposure, size_t k, size_t image_count) {
     return contributions_[(taker * exposure_count() + exposure) * image_count + k];
   }

@@ -224,6 +224,111 @@ TEST(Collect, OpacityIsCollectedByTheRaysAndWeightsOfColours) {
       }
 }
 
+// Returns three instants of one frame, whose rays have different weights if has_weights is true.
+std::vector<CollectedInstant> Instants(bool has_weights) {
+  std::vector<CollectedInstant> instants;
+  for (uint32_t k = 0; k < 3; ++k) {
+    RenderCamera camera = NoiseFrames()[0];
+    camera.pinhole.cam_from_world.translation.x() += 0.004 * k;
+    camera.aperture.radius_w *= 1 + 0.1 * k;
+    // The zoom is so fast that the instants need different prefilters.
+    camera.pinhole.intrinsics.fx_px = camera.pinhole.intrinsics.fy_px = 80 - 24 * k;
+    ImageWeights weights;
+    if (has_weights)
+      weights = [k](LfImageId id) { return RayWeights((id.value + k) % 4 * (k + 1)); };
+    instants.push_back({camera, weights});
+  }
+  return instants;
+}
+
+TEST(Collect, AFrameWithAShutterIsTheSumOfItsInstants) {
+  const LightField field = testing::NoiseField();
+  for (const Estimator estimator : {Estimator::kNearest, Estimator::kBilinear})
+    for (const CollectBackEnd back_end : {CollectBackEnd::kFast, CollectBackEnd::kReference})
+      for (const bool has_weights : {false, true}) {
+        SCOPED_TRACE(std::string(NameOf(estimator)) + (has_weights ? " weighted" : ""));
+        CollectOptions options;
+        options.reading.estimator = estimator;
+        options.back_end = back_end;
+        ThreadPool pool(3);
+        const std::vector<CollectedInstant> instants = Instants(has_weights);
+        std::vector<RenderCamera> cameras;
+        for (const CollectedInstant& instant : instants) cameras.push_back(instant.camera);
+        const std::vector<SelectedImage> images =
+            SelectImages(ImageIndex(field), cameras, {.reach = ReachOf(estimator)}, pool);
+
+        SensorPlate together(80, 60, PlateKind::kOpacity), sum(80, 60, PlateKind::kOpacity);
+        NoiseMoments moments(80, 60);
+        CollectedFrame frame{instants[0].camera, &together, {}, instants[0].weights};
+        frame.further.assign(instants.begin() + 1, instants.end());
+        frame.moments = &moments;
+        options.batch_image_count = 5;
+        const auto all = Collect(field, RedOpacityStore(), {frame}, images, options, pool, {});
+        ASSERT_TRUE(all);
+
+        options.batch_image_count = 16;
+        FrameRays rays;
+        for (const CollectedInstant& instant : instants) {
+          SensorPlate plate(80, 60, PlateKind::kOpacity);
+          const auto one = Collect(field, RedOpacityStore(),
+                                   {CollectedFrame{instant.camera, &plate, {}, instant.weights}},
+                                   images, options, pool, {});
+          ASSERT_TRUE(one);
+          rays += one->frames[0];
+          sum.Merge(plate);
+        }
+        EXPECT_EQ(together, sum);
+        EXPECT_EQ(all->frames[0].tested_count, rays.tested_count);
+        EXPECT_EQ(all->frames[0].accepted_count, rays.accepted_count);
+        // An LF image counts once, although it has rays at several instants.
+        EXPECT_LT(all->frames[0].image_count, rays.image_count);
+        EXPECT_LE(all->frames[0].image_count, field.size());
+        for (size_t i = 0; i < moments.size(); ++i)
+          EXPECT_LE(moments.At(i, 0).image_count, all->frames[0].image_count);
+        // The moments are those of the totals of LF images, whichever the batches.
+        EXPECT_TRUE(NoiseMoments::Read(moments.Text(), together));
+      }
+}
+
+TEST(Collect, AnImageIsOneMeasurementAtAllInstantsTogether) {
+  const LightField field = testing::NoiseField();
+  ThreadPool pool(2);
+  const std::vector<CollectedInstant> instants = Instants(true);
+  std::vector<RenderCamera> cameras;
+  for (const CollectedInstant& instant : instants) cameras.push_back(instant.camera);
+  CollectOptions options;
+  options.reading.estimator = Estimator::kBilinear;
+  const std::vector<SelectedImage> images =
+      SelectImages(ImageIndex(field), cameras, {.reach = ReachOf(options.reading)}, pool);
+  for (const CollectBackEnd back_end : {CollectBackEnd::kFast, CollectBackEnd::kReference}) {
+    options.back_end = back_end;
+    const auto collect = [&](std::span<const SelectedImage> order, SensorPlate* plate,
+                             NoiseMoments* moments) {
+      CollectedFrame frame{instants[0].camera, plate, {}, instants[0].weights};
+      frame.further.assign(instants.begin() + 1, instants.end());
+      frame.moments = moments;
+      EXPECT_TRUE(Collect(field, NoiseStore(), {frame}, order, options, pool, {}));
+    };
+    SensorPlate plate(80, 60);
+    NoiseMoments moments(80, 60), expected(80, 60);
+    collect(images, &plate, &moments);
+    for (const SelectedImage& image : images) {
+      SensorPlate of_image(80, 60);
+      collect({&image, 1}, &of_image, nullptr);
+      for (size_t i = 0; i < expected.size(); ++i)
+        for (int c = 0; c < SensorPlate::kChannels; ++c) {
+          const PlateElement at = expected.ElementAt(i);
+          if (const ElementSum sum = of_image.At(at.x, at.y, c); sum.count > 0)
+            expected.AddImage(i, c, sum);
+        }
+    }
+    EXPECT_EQ(moments, expected);
+    uint64_t measured = 0;
+    for (size_t i = 0; i < moments.size(); ++i) measured += moments.At(i, 1).image_count;
+    EXPECT_GT(measured, 10 * moments.size());
+  }
+}
+
 TEST(Collect, TheReferenceAcceptsTheSameRays) {
   const NoiseStore store;
   CollectOptions options;

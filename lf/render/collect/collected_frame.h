@@ -22,8 +22,9 @@ namespace lf {
 using ImageWeights = std::function<RayWeights(LfImageId id)>;
 
 struct FrameRays {
-  uint64_t image_count = 0;   // number of recorded LF images with an accepted ray
-  uint64_t tested_count = 0;  // number of LF pixels in the rectangles that the frame needs
+  uint64_t image_count = 0;  // number of recorded LF images with an accepted ray
+  // number of LF pixels in the rectangles that the frame needs, sum of its instants
+  uint64_t tested_count = 0;
   // Number of rays that were added to the plate. It includes rays of weight 0, except in tiles of
   // the plate (TileSums::GridOf()) whose elements all have weight 0, because these are passed over.
   uint64_t accepted_count = 0;
@@ -55,6 +56,12 @@ struct FrameGuard {
   double camera_distance_w = 0;
 };
 
+// A lens of a frame with a shutter, at another instant than CollectedFrame::camera.
+struct CollectedInstant {
+  RenderCamera camera;
+  ImageWeights weights = {};
+};
+
 struct CollectedFrame {
   RenderCamera camera;
   SensorPlate* plate = nullptr;  // receives the rays; must not be null
@@ -69,6 +76,10 @@ struct CollectedFrame {
   // Moments of the plate, made for its width and height. They are updated with the plate, and
   // always include exactly the LF images whose rays the plate has. Null: no moments are kept.
   NoiseMoments* moments = nullptr;
+  // The further instants of a frame with a shutter. Their rays are added to the same channels of
+  // the plate as those of `camera`, and the counts and moments of an LF image are those of its rays
+  // at all instants together. All frames must have the same number; none if there is a guard.
+  std::vector<CollectedInstant> further = {};
   // FrameCollector sets the members below.
   FrameProgress progress = {};
   bool is_stopped = false;  // true: the frame takes no more LF images

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -94,41 +95,104 @@ std::optional<FrameLens::Facts> FrameLens::facts() const {
   return Facts{weights_->hat_share(), weights_->coverage()};
 }
 
-Image<float> FrameLens::EffectiveCounts() const {
-  if (!weights_) return {};
-  const Intrinsics& plate = camera_.pinhole.intrinsics;
+Image<float> FrameLens::EffectiveCounts() const { return EffectiveCountsOf({this, 1}); }
+
+void FrameLens::ReduceWeights(double factor) {
+  if (weights_) weights_->Reduce(factor);
+}
+
+std::vector<FrameLens> LensesOf(const ImageIndex& index, std::span<const RenderCamera> instants,
+                                LensWeights kind, const SelectOptions& select, ThreadPool& pool,
+                                std::span<const double> camera_distances_w) {
+  std::vector<FrameLens> lenses;
+  lenses.reserve(instants.size());
+  double least = FrameWeights::kMostTogether / static_cast<double>(instants.size());
+  for (size_t i = 0; i < instants.size(); ++i) {
+    const auto distance_w =
+        camera_distances_w.empty() ? std::nullopt : std::optional(camera_distances_w[i]);
+    const FrameLens& lens = lenses.emplace_back(index, instants[i], kind, select, pool, distance_w);
+    if (lens.weights() != nullptr && lens.weights()->SumOfWeights() > 0)
+      least = std::min(least, lens.weights()->SumOfWeights());
+  }
+  if (lenses.size() == 1) return lenses;
+  for (FrameLens& lens : lenses) {
+    if (lens.weights() == nullptr || !(lens.weights()->SumOfWeights() > 0)) continue;
+    const double factor = std::max(least / lens.weights()->SumOfWeights(),
+                                   kLeastLargestWeight / lens.weights()->LargestWeight());
+    if (factor < 1) lens.ReduceWeights(factor);
+  }
+  return lenses;
+}
+
+std::optional<FrameLens::Facts> FactsOf(std::span<const FrameLens> lenses) {
+  std::optional<FrameLens::Facts> all = lenses.front().facts();
+  if (!all) return std::nullopt;
+  for (const FrameLens& lens : lenses.subspan(1)) {
+    const FrameLens::Facts facts = *lens.facts();
+    all->hat_share += facts.hat_share;
+    LensCoverage& coverage = all->coverage;
+    coverage.uncovered_share = std::max(coverage.uncovered_share, facts.coverage.uncovered_share);
+    coverage.fitting_diameter_w =
+        std::min(coverage.fitting_diameter_w, facts.coverage.fitting_diameter_w);
+  }
+  all->hat_share /= static_cast<double>(lenses.size());
+  return all;
+}
+
+Image<float> EffectiveCountsOf(std::span<const FrameLens> lenses) {
+  if (lenses.front().weights() == nullptr) return {};
+  const Intrinsics& plate = lenses.front().camera_.pinhole.intrinsics;
+  const LightField& light_field = lenses.front().light_field_;
   const int step = EffectiveStep(plate);
   const auto [columns, rows] = EffectiveSquares(plate);
   Image<double> sums(columns, rows, 2);
   const auto element = [step](int node, int size) {
     return std::min(node * step + step / 2, size - 1);
   };
-  Image<float> counts(sums.width(), sums.height(), 1);
-  std::vector<std::optional<Vec3>> focus;
-  for (int row = 0; row < sums.height(); ++row)
-    for (int column = 0; column < sums.width(); ++column)
-      focus.push_back(FocusPointOfElement(camera_, element(column, plate.width_px) + 0.5,
-                                          element(row, plate.height_px) + 0.5));
-  const ApertureTest opening(camera_.aperture);
-  for (const auto& [id, camera] : cameras_) {
-    if (!weights_->TakesPart(camera) || light_field_.cameras[id].is_virtual) continue;
-    const RayThrough ray(light_field_.Camera(LfImageId{id}), camera_.pinhole.ForwardWorld());
-    const RayWeights weights = WeightsOf(LfImageId{id});
-    for (int row = 0; row < sums.height(); ++row)
-      for (int column = 0; column < sums.width(); ++column) {
-        const std::optional<Vec3>& point = focus[static_cast<size_t>(row) * sums.width() + column];
-        if (!point || !IsSeenBy(ray, *point)) continue;
-        if (tests_opening() &&
-            !opening.Contains(LensPointOfLine(camera_, ray.centre_world(), *point)))
-          continue;
-        const double weight =
-            weights.At(element(column, plate.width_px), element(row, plate.height_px));
+  std::vector<std::vector<std::optional<Vec3>>> focus(lenses.size());  // [lens][row][column]
+  std::set<uint32_t> ids;
+  for (size_t l = 0; l < lenses.size(); ++l) {
+    for (const auto& [id, camera] : lenses[l].cameras_)
+      if (lenses[l].weights_->TakesPart(camera) && !light_field.cameras[id].is_virtual)
+        ids.insert(id);
+    for (int row = 0; row < rows; ++row)
+      for (int column = 0; column < columns; ++column)
+        focus[l].push_back(FocusPointOfElement(lenses[l].camera_,
+                                               element(column, plate.width_px) + 0.5,
+                                               element(row, plate.height_px) + 0.5));
+  }
+  std::vector<ApertureTest> openings;
+  for (const FrameLens& lens : lenses) openings.emplace_back(lens.camera_.aperture);
+  Image<double> of_image(columns, rows);
+  for (const uint32_t id : ids) {
+    std::fill(of_image.pixels().begin(), of_image.pixels().end(), 0.0);
+    for (size_t l = 0; l < lenses.size(); ++l) {
+      const FrameLens& lens = lenses[l];
+      const std::optional<size_t> camera = lens.IndexOf(LfImageId{id});
+      if (!camera || !lens.weights_->TakesPart(*camera)) continue;
+      const RayThrough ray(light_field.Camera(LfImageId{id}), lens.camera_.pinhole.ForwardWorld());
+      const RayWeights weights = lens.WeightsOf(LfImageId{id});
+      for (int row = 0; row < rows; ++row)
+        for (int column = 0; column < columns; ++column) {
+          const std::optional<Vec3>& point = focus[l][static_cast<size_t>(row) * columns + column];
+          if (!point || !IsSeenBy(ray, *point)) continue;
+          if (lens.tests_opening() &&
+              !openings[l].Contains(LensPointOfLine(lens.camera_, ray.centre_world(), *point)))
+            continue;
+          of_image.at(column, row) +=
+              weights.At(element(column, plate.width_px), element(row, plate.height_px));
+        }
+    }
+    for (int row = 0; row < rows; ++row)
+      for (int column = 0; column < columns; ++column) {
+        const double weight = of_image.at(column, row);
         sums.at(column, row, 0) += weight;
         sums.at(column, row, 1) += weight * weight;
       }
   }
-  for (int row = 0; row < sums.height(); ++row)
-    for (int column = 0; column < sums.width(); ++column) {
+  Image<float> counts(columns, rows, 1);
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column) {
       const double sum = sums.at(column, row, 0), squares = sums.at(column, row, 1);
       counts.at(column, row, 0) = static_cast<float>(squares > 0 ? sum * sum / squares : 0);
     }

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -80,16 +81,15 @@ class FrameLens {
   };
   std::optional<Facts> facts() const;
 
-  // Returns effective numbers of LF images, (sum w)^2 / sum w^2: the number of LF images of equal
-  // weight that would give the same noise. Here w is the weight of an LF image in an element. The
-  // sums are over the recorded LF images that contain the element's focus point, without virtual
-  // ones, which bring no new measurement; the result is 0 if no recorded LF image does. Computed
-  // for the middle element of each square of EffectiveStep() x EffectiveStep() elements. Does not
-  // take broken LF images and masks into account. Shape: [rows][columns] of EffectiveSquares().
-  // Empty if there are no lens weights.
+  // Returns the effective numbers of LF images of a frame that has only this lens.
   Image<float> EffectiveCounts() const;
 
+  // FrameWeights::Reduce(); does nothing without lens weights.
+  void ReduceWeights(double factor);
+
  private:
+  friend Image<float> EffectiveCountsOf(std::span<const FrameLens> lenses);
+
   const LightField& light_field_;
   const bool is_of_recorded_;  // true: virtual LF images have the weight 0
   SelectOptions select_;
@@ -99,13 +99,39 @@ class FrameLens {
   std::map<uint32_t, size_t> cameras_;  // from LfImageId::value to the index in weights_
 };
 
-// Returns the side of the squares of FrameLens::EffectiveCounts(), in elements.
+// Returns the lenses of all instants of a frame (CameraPath::Instants()). The light of each instant
+// counts equally in the frame: if there are lens weights, those of the instants with the larger
+// sums (FrameWeights::SumOfWeights()) are reduced to the smallest sum, and all sums together to
+// FrameWeights::kMostTogether. The largest weight of an instant is not reduced below
+// kLeastLargestWeight, because coarser weights would leave out LF images. Without lens weights,
+// each ray counts the same. The lens of a frame without a shutter is not changed.
+//   camera_distances_w  FrameLens's camera_distance_w of each instant; empty: measured in `index`
+std::vector<FrameLens> LensesOf(const ImageIndex& index, std::span<const RenderCamera> instants,
+                                LensWeights kind, const SelectOptions& select, ThreadPool& pool,
+                                std::span<const double> camera_distances_w = {});
+inline constexpr double kLeastLargestWeight = 16;
+
+// Returns the properties of the lens weights of all instants of a frame: the mean share of the
+// hats, the largest uncovered share and the smallest fitting diameter; nullopt if there are none.
+std::optional<FrameLens::Facts> FactsOf(std::span<const FrameLens> lenses);
+
+// Returns effective numbers of LF images, (sum w)^2 / sum w^2: the number of LF images of equal
+// weight that would give the same noise. Here w is the weight of an LF image in an element, summed
+// over the lenses of all instants that see it. The sums are over the recorded LF images that
+// contain the element's focus point, without virtual ones, which bring no new measurement; the
+// result is 0 if no recorded LF image does. Computed for the middle element of each square of
+// EffectiveStep() x EffectiveStep() elements. Does not take broken LF images and masks into
+// account. Shape: [rows][columns] of EffectiveSquares(). Empty if there are no lens weights.
+//   lenses  at least one
+Image<float> EffectiveCountsOf(std::span<const FrameLens> lenses);
+
+// Returns the side of the squares of EffectiveCountsOf(), in elements.
 int EffectiveStep(const Intrinsics& plate);
 // Returns the numbers of columns and rows of these squares on a plate.
 std::pair<int, int> EffectiveSquares(const Intrinsics& plate);
-// Interpolates the result of EffectiveCounts() between the middles of the squares, ignoring numbers
-// that are 0. Returns one number for each element, [height][width]; 0 if all squares around it have
-// 0.
+// Interpolates the result of EffectiveCountsOf() between the middles of the squares, ignoring
+// numbers that are 0. Returns one number for each element, [height][width]; 0 if all squares around
+// it have 0.
 Image<float> SpreadOverPlate(const Image<float>& effective_counts, const Intrinsics& plate);
 
 }  // namespace lf

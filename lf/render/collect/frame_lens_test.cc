@@ -277,6 +277,72 @@ TEST(FrameLens, EffectiveCountsAreThoseOfRecordedImages) {
 }
 
 // Rays then need both a weight and the opening of the lens.
+// A pinhole beside an LF camera has one weight of 255, and one between four LF cameras four of
+// them: without a common unit, the second would count four times as much.
+TEST(FrameLens, InstantsOfAFrameCountEqually) {
+  const LightField field = testing::NoiseField();
+  const ImageIndex index(field);
+  ThreadPool pool(2);
+  std::vector<RenderCamera> instants;
+  const auto centre = [&](uint32_t id) { return field.Camera({id}).CentreWorld(); };
+  const Vec3 beside = centre(24);
+  const Vec3 between = (centre(24) + centre(25) + centre(31) + centre(32)) / 4;
+  for (const double share : {0.0, 0.5, 1.0}) {
+    RenderCamera camera = testing::NoiseFrames()[0];
+    camera.pinhole.cam_from_world =
+        *LookAlong(beside + share * (between - beside), {0, 0, 1}, {0, -1, 0});
+    camera.aperture = {};
+    camera.focus_plane = FocusPlane(camera.pinhole, 1, {});
+    instants.push_back(camera);
+  }
+  instants.push_back(instants.front());
+  instants.back().aperture.radius_w = 0.015;
+  const std::vector<FrameLens> lenses = LensesOf(index, instants, LensWeights::kAuto, {}, pool);
+  double least = 1e9, most = 0, most_alone = 0;
+  for (const FrameLens& lens : lenses) {
+    least = std::min(least, lens.weights()->SumOfWeights());
+    most = std::max(most, lens.weights()->SumOfWeights());
+    const FrameLens alone(index, instants[&lens - lenses.data()], LensWeights::kAuto, {}, pool);
+    most_alone = std::max(most_alone, alone.weights()->SumOfWeights());
+    EXPECT_LE(lens.weights()->SumOfWeights(), alone.weights()->SumOfWeights());
+    double sum = 0;
+    for (uint32_t i = 0; i < field.size(); ++i) sum += lens.WeightsOf({i}).At(40, 30);
+    EXPECT_NEAR(sum, lens.weights()->SumOfWeights(), 0.06 * sum);
+  }
+  EXPECT_GT(most_alone, 2 * most);
+  EXPECT_NEAR(least, most, 1e-9 * most);
+  const FrameLens::Facts facts = *FactsOf(lenses);
+  EXPECT_GT(facts.hat_share, 0.7);
+  EXPECT_LT(facts.hat_share, 0.8);
+  // One instant is not changed.
+  const FrameLens alone(index, instants[3], LensWeights::kAuto, {}, pool);
+  const std::vector<FrameLens> one =
+      LensesOf(index, std::span(instants).last(1), LensWeights::kAuto, {}, pool);
+  EXPECT_EQ(one[0].weights()->SumOfWeights(), alone.weights()->SumOfWeights());
+}
+
+TEST(FrameLens, EffectiveCountsOfInstantsAreThoseOfTheirSums) {
+  const LightField field = testing::NoiseField();
+  const ImageIndex index(field);
+  ThreadPool pool(2);
+  RenderCamera frame = testing::NoiseFrames()[0];
+  frame.aperture = {0.01, 0, 0};
+  const std::vector<RenderCamera> same = {frame, frame, frame};
+  const std::vector<FrameLens> lenses = LensesOf(index, same, LensWeights::kArea, {}, pool);
+  const FrameLens alone(index, frame, LensWeights::kArea, {}, pool);
+  EXPECT_EQ(EffectiveCountsOf(lenses).pixels(), alone.EffectiveCounts().pixels());
+  // A camera that moves sees other LF images.
+  std::vector<RenderCamera> moving = {frame, frame};
+  moving[0].pinhole.cam_from_world.translation.x() -= 0.015;
+  moving[1].pinhole.cam_from_world.translation.x() += 0.015;
+  const double of_one = alone.EffectiveCounts().at(4, 4);
+  const double of_both =
+      EffectiveCountsOf(LensesOf(index, moving, LensWeights::kArea, {}, pool)).at(4, 4);
+  EXPECT_GT(of_both, 1.5 * of_one);
+  EXPECT_LT(of_both, 2.5 * of_one);
+  EXPECT_TRUE(EffectiveCountsOf(LensesOf(index, moving, LensWeights::kNone, {}, pool)).empty());
+}
+
 TEST(FrameLens, KeepsTheOpeningIfVeryManyLfImagesShareIt) {
   ThreadPool pool(2);
   const LightField field = testing::NoiseField(70);

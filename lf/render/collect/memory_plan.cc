@@ -7,6 +7,7 @@
 #include "lf/film/plate/sensor_plate.h"
 #include "lf/render/collect/collected_frame.h"
 #include "lf/render/collect/defocus.h"
+#include "lf/selection/lens_weights/frame_weights.h"
 
 namespace lf {
 namespace {
@@ -31,6 +32,9 @@ constexpr size_t kMostSheetPictures = 12;
 // decoder's own memory. The second number is for float files.
 constexpr size_t kDecodeBytesPerPixel = 16;
 constexpr size_t kDecodeFloatBytesPerPixel = 32;
+// Upper bound of the lens weights of one lens, which FrameWeights keeps for each LF camera around
+// it: nodes (selection/lens_weights/frame_weights.h) and their bytes.
+constexpr size_t kMostWeightNodes = 48 * 48;
 constexpr size_t kTileBytes = kMiB;  // sums of the tile that one thread works on
 
 // Limits of the number of LF images in a batch (PlanMemory()). In a batch that reaches them, adding
@@ -55,7 +59,7 @@ struct ImageNeed {
 };
 
 ImageNeed NeedOf(const LightField& light_field, Estimator estimator, int plate_width,
-                 int plate_height, bool is_guarded) {
+                 int plate_height, bool is_guarded, size_t instants) {
   // kBilinear needs RGB, so mosaics are demosaicked.
   const bool is_rgb =
       light_field.encoding.bayer == BayerPattern::kNone || estimator == Estimator::kBilinear;
@@ -74,8 +78,8 @@ ImageNeed NeedOf(const LightField& light_field, Estimator estimator, int plate_w
     need.pixels = std::max(need.pixels, pixels);
     need.kept_bytes = std::max(need.kept_bytes, pixels * bytes_per_pixel);
     need.decode_bytes = std::max(need.decode_bytes, pixels * decode_bytes_per_pixel);
-    const size_t plan_bytes = PlanBytes(estimator, k.has_distortion(), k.width_px, k.height_px,
-                                        plate_width, plate_height);
+    const size_t plan_bytes = instants * PlanBytes(estimator, k.has_distortion(), k.width_px,
+                                                   k.height_px, plate_width, plate_height);
     need.plan_bytes = std::max(
         need.plan_bytes,
         is_guarded ? 2 * plan_bytes + DefocusBytes({0, 0, k.width_px, k.height_px}) : plan_bytes);
@@ -88,10 +92,10 @@ ImageNeed NeedOf(const LightField& light_field, Estimator estimator, int plate_w
 Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field,
                               const RayReading& reading, int plate_width, int plate_height,
                               size_t frame_count, int thread_count, size_t bytes_per_frame,
-                              bool is_guarded) {
+                              bool is_guarded, size_t instants) {
   const size_t element_count = static_cast<size_t>(plate_width) * plate_height;
   const ImageNeed need =
-      NeedOf(light_field, reading.estimator, plate_width, plate_height, is_guarded);
+      NeedOf(light_field, reading.estimator, plate_width, plate_height, is_guarded, instants);
   MemoryPlan plan;
   const bool has_opacity = light_field.encoding.HasOpacity();
   const auto channels = static_cast<size_t>(PlateKindOf(light_field.encoding, is_guarded));
@@ -107,9 +111,11 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
       static_cast<size_t>(thread_count) * (need.decode_bytes + kTileBytes);
   // Memory for one LF image in each of the two batches, for its filtered copy in one of them, and
   // for one plan.
-  const size_t copies = reading.Prefilters() ? 3 : 2;
+  const size_t copies = reading.Prefilters() ? (instants > 1 ? 4 : 3) : 2;
   const size_t pair_bytes = copies * need.kept_bytes + need.plan_bytes;
-  const size_t frame_bytes = plan.plate_bytes + bytes_per_frame;
+  const size_t weights_bytes =
+      std::min(light_field.size() * kMostWeightNodes, FrameWeights::kMostShares) * sizeof(uint16_t);
+  const size_t frame_bytes = plan.plate_bytes + bytes_per_frame + (instants - 1) * weights_bytes;
   const size_t least = set_aside + frame_bytes + pair_bytes;
   if (memory_bytes < least)
     return OutputError(

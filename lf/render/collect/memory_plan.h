@@ -35,9 +35,14 @@ struct MemoryPlan {
 // each of its LF images.
 //   bytes_per_frame  further memory for each frame, such as its moments (noise_moments.h)
 //   is_guarded       true: the plates are guarded (PlateKind::kGuarded)
+//   instants         number of lenses of each frame (CameraPath::Instants()). Each further one
+//   needs
+//                    plans of its own and its lens weights. With prefilters, there is memory for a
+//                    second filtered copy of each LF image, because elements may become wider than
+//                    the next step of the filters while a frame is exposed; a fast zoom needs more
 Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field,
                               const RayReading& reading, int plate_width, int plate_height,
                               size_t frame_count, int thread_count, size_t bytes_per_frame = 0,
-                              bool is_guarded = false);
+                              bool is_guarded = false, size_t instants = 1);
 
 }  // namespace lf

@@ -88,5 +88,22 @@ TEST(MemoryPlan, NamesTheLeastMemoryThatIsEnough) {
   EXPECT_TRUE(PlanMemory(least * kMiB, Field(960, 640), Estimator::kNearest, 1920, 1080, 1, 2));
 }
 
+TEST(MemoryPlan, FurtherInstantsNeedPlansAndWeights) {
+  const LightField field = Field(960, 640);
+  const auto plan = [&](size_t instants, const RayReading& reading) {
+    return *PlanMemory(1024 * kMiB, field, reading, 1920, 1080, 900, 2, 0, false, instants);
+  };
+  for (const Estimator estimator : {Estimator::kNearest, Estimator::kBilinear}) {
+    const MemoryPlan one = plan(1, estimator), many = plan(64, estimator);
+    EXPECT_EQ(one.plan_bytes,
+              PlanMemory(1024 * kMiB, field, estimator, 1920, 1080, 900, 2)->plan_bytes);
+    EXPECT_LE(many.batch_image_count, one.batch_image_count);
+    EXPECT_LT(many.frames_per_pass, one.frames_per_pass);
+    EXPECT_GE(many.plan_bytes / many.batch_image_count,
+              64 * PlanBytes(estimator, false, 960, 640, 1920, 1080));
+    EXPECT_LE(many.total_bytes, 1024 * kMiB);
+  }
+}
+
 }  // namespace
 }  // namespace lf

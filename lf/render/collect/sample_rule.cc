@@ -11,6 +11,7 @@
 #include "lf/camera/distortion.h"
 #include "lf/camera/hood.h"
 #include "lf/camera/ray_through.h"
+#include "lf/core/check.h"
 #include "lf/render/collect/collect.h"
 #include "lf/selection/ideal_cells.h"
 #include "lf/selection/overlap.h"
@@ -99,8 +100,8 @@ ReachableElements::ReachableElements(const ImageIndex& index, const RenderCamera
                        select.reach != PixelReach::kOwn ? BorderOf(lf_camera, camera, reading) : 0,
                        std::move(counts)});
   }
-  const int width = camera.pinhole.intrinsics.width_px;
-  const int height = camera.pinhole.intrinsics.height_px;
+  const int width = width_ = camera.pinhole.intrinsics.width_px;
+  const int height = height_ = camera.pinhole.intrinsics.height_px;
   columns_ = static_cast<size_t>((width + kGrid - 1) / kGrid);
   const auto rows = static_cast<size_t>((height + kGrid - 1) / kGrid);
   is_reachable_.assign(rows * columns_, 0);
@@ -116,8 +117,20 @@ ReachableElements::ReachableElements(const ImageIndex& index, const RenderCamera
           });
     }
   });
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) count_ += Holds(x, y) ? 1 : 0;
+  CountElements();
+}
+
+void ReachableElements::CountElements() {
+  count_ = 0;
+  for (int y = 0; y < height_; ++y)
+    for (int x = 0; x < width_; ++x) count_ += Holds(x, y) ? 1 : 0;
+}
+
+void ReachableElements::Join(const ReachableElements& other) {
+  LF_CHECK(width_ == other.width_ && height_ == other.height_);
+  for (size_t i = 0; i < is_reachable_.size(); ++i) is_reachable_[i] |= other.is_reachable_[i];
+  image_count_ = std::max(image_count_, other.image_count_);
+  CountElements();
 }
 
 uint32_t DecisionPlaces(size_t light_field_image_count, size_t frame_image_count) {

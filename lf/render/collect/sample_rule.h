@@ -43,6 +43,10 @@ class ReachableElements {
                     const SelectOptions& select, const PixelReading& reading, ThreadPool& pool,
                     const std::function<RayWeights(LfImageId)>& weights = {});
 
+  // Adds the elements that are reachable at another instant of the same frame. image_count()
+  // becomes the larger one of both.
+  void Join(const ReachableElements& other);
+
   bool Holds(int x, int y) const {
     return is_reachable_[static_cast<size_t>(y / kGrid) * columns_ + x / kGrid] != 0;
   }
@@ -52,6 +56,10 @@ class ReachableElements {
   size_t image_count() const { return image_count_; }
 
  private:
+  void CountElements();
+
+  int width_ = 0;
+  int height_ = 0;
   size_t columns_ = 0;
   std::vector<uint8_t> is_reachable_;  // [rows][columns] of squares: 1 if reachable, else 0
   size_t count_ = 0;

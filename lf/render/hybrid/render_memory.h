@@ -25,6 +25,7 @@ struct RenderMemory {
 //   measured_bytes  memory of the noise moments of one frame (collect/noise_moments.h), in addition
 //                   to its plate; 0 if noise is not measured. With kRebin, frames have plates only
 //                   if this is above 0.
+//   instants        number of lenses of each frame; 1 unless the mode is kCollect
 // kOutput: the memory does not suffice for max_cells rebinned rays (at least
 // RebinnedRays::kLeastCells), for one frame, or, with kRebin and plates, for all frames. The
 // message says what takes how much memory.
@@ -32,6 +33,6 @@ Result<RenderMemory> PlanRenderMemory(size_t memory_bytes, RenderMode mode, size
                                       const LightField& light_field, const RayReading& reading,
                                       int plate_width, int plate_height, size_t frame_count,
                                       int thread_count, size_t measured_bytes = 0,
-                                      bool is_guarded = false);
+                                      bool is_guarded = false, size_t instants = 1);
 
 }  // namespace lf

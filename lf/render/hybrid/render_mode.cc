@@ -43,4 +43,18 @@ Result<void> CheckLenses(std::span<const RenderCamera> cameras, RenderMode mode)
   return {};
 }
 
+Result<void> CheckShutter(bool has_shutter, RenderMode mode, bool is_guarded) {
+  if (!has_shutter) return {};
+  if (Rebins(mode))
+    return UsageError(fmt::format(
+        "--mode {} cannot render a path with a shutter, because rebinned rays are queried for one "
+        "lens of each frame: use --mode collect, or remove 'shutter' from the path",
+        NameOf(mode)));
+  if (is_guarded)
+    return UsageError(
+        "the light field is densified, and frames of a path with a shutter cannot be guarded: add "
+        "--no-guard, or remove 'shutter' from the path");
+  return {};
+}
+
 }  // namespace lf

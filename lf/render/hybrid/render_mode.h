@@ -31,4 +31,9 @@ Result<void> CheckOpacity(const RadianceEncoding& encoding, RenderMode mode);
 // rays are queried at the same lens points for all elements.
 Result<void> CheckLenses(std::span<const RenderCamera> cameras, RenderMode mode);
 
+// Returns kUsage if there is a shutter (CameraPath::shutter) but the mode rebins, or the frames are
+// guarded: rebinned rays are queried for one lens, and a guarded plate compares the rays of one
+// lens.
+Result<void> CheckShutter(bool has_shutter, RenderMode mode, bool is_guarded);
+
 }  // namespace lf

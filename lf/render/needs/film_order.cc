@@ -16,9 +16,9 @@ Result<ImagePlaces> PlacesOfFilm(ImageOrder order, uint64_t seed, const LightFie
   if (unlimited.select.reach == PixelReach::kElement)
     unlimited.select.reach = PixelReach::kNeighbours;
   std::vector<std::vector<ImageRays>> taken;
-  for (const RenderCamera& frame : path.cameras) {
+  for (uint32_t n = 1; n <= path.frame_count(); ++n) {
     taken.emplace_back();
-    for (const FrameNeeds::Image& image : NeedsOf(index, frame, unlimited, pool).images)
+    for (const FrameNeeds::Image& image : NeedsOf(index, path, FrameId{n}, unlimited, pool).images)
       taken.back().push_back({image.id, image.ray_count});
     if (needs.select.interrupted != nullptr && *needs.select.interrupted)
       return Error{ErrorKind::kInterrupted, "interrupted"};

@@ -27,20 +27,29 @@ std::optional<double> DistanceOf(const std::optional<FrameSampling>& sampling) {
 
 class NeedsFinder {
  public:
-  NeedsFinder(const ImageIndex& index, const RenderCamera& frame, const NeedsOptions& options,
-              ThreadPool& pool, const std::optional<FrameSampling>& sampling)
+  //   lens  lens of the frame; must outlive the object
+  NeedsFinder(const ImageIndex& index, const RenderCamera& frame, const FrameLens& lens,
+              const NeedsOptions& options, ThreadPool& pool,
+              const std::optional<FrameSampling>& sampling)
       : index_(index),
         frame_(frame),
         options_(options),
         pool_(pool),
         distance_w_(DistanceOf(sampling)),
-        lens_(index, frame, options.lens_weights, options.select, pool, distance_w_) {
+        lens_(lens) {
     if (&index.recorded() != &index || (sampling && sampling->recorded_distance_w))
       recorded_lens_.emplace(index.recorded(), frame, options.lens_weights, options.select, pool,
                              sampling ? sampling->recorded_distance_w : std::nullopt);
     LF_CHECK(options.mode == RenderMode::kCollect || !options.max_image_count);
     LF_CHECK(options.mode != RenderMode::kRebin || options.lens_weights == LensWeights::kNone);
     needs_.sampling = sampling;
+  }
+
+  // Returns the needs of the lens without those that follow from collected or rebinned rays: the
+  // LF cameras around the lens are neighbours.
+  FrameNeeds FindAround() {
+    FindNeighbours();
+    return std::move(needs_);
   }
 
   FrameNeeds Find() {
@@ -176,7 +185,7 @@ class NeedsFinder {
   const NeedsOptions& options_;
   ThreadPool& pool_;
   const std::optional<double> distance_w_;
-  const FrameLens lens_;
+  const FrameLens& lens_;
   std::optional<FrameLens> recorded_lens_;  // set if the whole light field has virtual LF images
   FrameNeeds needs_;
 };
@@ -206,7 +215,59 @@ std::optional<FrameSampling> SamplingOf(const Package& package, FrameId frame) {
 
 FrameNeeds NeedsOf(const ImageIndex& index, const RenderCamera& frame, const NeedsOptions& options,
                    ThreadPool& pool, const std::optional<FrameSampling>& sampling) {
-  return NeedsFinder(index, frame, options, pool, sampling).Find();
+  const FrameLens lens(index, frame, options.lens_weights, options.select, pool,
+                       DistanceOf(sampling));
+  return NeedsFinder(index, frame, lens, options, pool, sampling).Find();
+}
+
+FrameNeeds NeedsOf(const ImageIndex& index, const CameraPath& path, FrameId frame,
+                   const NeedsOptions& options, ThreadPool& pool, const Package* package) {
+  const std::optional<FrameSampling> sampling =
+      package != nullptr ? SamplingOf(*package, frame) : std::nullopt;
+  if (!path.shutter.exists()) return NeedsOf(index, path.Camera(frame), options, pool, sampling);
+  LF_CHECK(options.mode == RenderMode::kCollect && !options.guard);
+  const std::span<const RenderCamera> instants = path.Instants(frame);
+  const std::span<const double> distances_w =
+      package != nullptr ? package->InstantDistances(frame) : std::span<const double>();
+  const std::vector<FrameLens> lenses =
+      LensesOf(index, instants, options.lens_weights, options.select, pool, distances_w);
+  std::vector<TakingFrame> taking;
+  for (const FrameLens& lens : lenses) {
+    taking.push_back({lens.camera()});
+    if (options.lens_weights != LensWeights::kNone)
+      taking.back().takes = [&lens](LfImageId id) { return lens.Takes(id); };
+  }
+  if (options.max_image_count) {
+    const PlaceRange places =
+        PlacesOfFirst(*options.max_image_count, index, taking, options.select);
+    for (TakingFrame& instant : taking) instant.places = places;
+  }
+  FrameNeeds needs;
+  for (const SelectedImage& image : SelectImages(index, taking, options.select, pool))
+    needs.images.push_back({image.id, image.rect, image.ray_count});
+  if (!options.HasNeighbours()) return needs;
+
+  needs.sampling =
+      sampling ? *sampling : SamplingOf(index, path.Camera(frame), options.select, pool);
+  std::vector<LfImageId> around, read;
+  for (size_t i = 0; i < instants.size(); ++i) {
+    std::optional<FrameSampling> of_instant;
+    if (sampling && !distances_w.empty()) {
+      of_instant = *sampling;
+      of_instant->lf.camera_distance_w = distances_w[i];
+    }
+    const FrameNeeds found =
+        NeedsFinder(index, instants[i], lenses[i], options, pool, of_instant).FindAround();
+    around.insert(around.end(), found.neighbours.begin(), found.neighbours.end());
+    needs.instant_distances_w.push_back(found.sampling->lf.camera_distance_w);
+  }
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  for (const FrameNeeds::Image& image : needs.images) read.push_back(image.id);
+  std::sort(read.begin(), read.end());
+  std::set_difference(around.begin(), around.end(), read.begin(), read.end(),
+                      std::back_inserter(needs.neighbours));
+  return needs;
 }
 
 Result<void> CheckKept(const LfImageStore& store, const LightField& light_field, FrameId frame,

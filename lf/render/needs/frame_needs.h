@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "lf/camera/path/camera_path.h"
 #include "lf/camera/render_camera.h"
 #include "lf/core/geometry.h"
 #include "lf/core/ids.h"
@@ -50,8 +51,8 @@ struct FrameNeeds {
   struct Image {
     LfImageId id;
     PixelRect rect;  // bounds of all pixels that are read
-    // number of pixels that are tested as rays of the frame, plus number of pixels that are
-    // rebinned
+    // number of pixels that are tested as rays of the frame, at all of its instants, plus number of
+    // pixels that are rebinned
     uint64_t ray_count = 0;
   };
   std::vector<Image> images;  // the LF images that are read, by ascending ranks
@@ -64,6 +65,9 @@ struct FrameNeeds {
   // Density of the LF cameras around the lens; set if NeedsOptions::HasNeighbours() is true, or if
   // a sampling was passed to NeedsOf().
   std::optional<FrameSampling> sampling;
+  // If the path has a shutter and NeedsOptions::HasNeighbours() is true: distance between
+  // neighbouring LF cameras around the lens of each instant. Otherwise empty.
+  std::vector<double> instant_distances_w;
 
   std::optional<double> camera_distance_w() const;
   uint64_t RayCount() const;
@@ -75,7 +79,16 @@ FrameSurroundings SurroundingsOf(const FrameSampling& sampling);
 // stores no samplings.
 std::optional<FrameSampling> SamplingOf(const Package& package, FrameId frame);
 
-// Returns the LF images, pixels and LF cameras that a frame needs.
+// Returns the LF images, pixels and LF cameras that a frame of a path needs: those that its camera
+// needs or, with a shutter, those that any of its instants needs. CheckShutter() must accept the
+// path.
+//   package  the package whose LF cameras `index` covers, which tells samplings and distances in
+//   the
+//            whole light field; null: they are measured in `index`
+FrameNeeds NeedsOf(const ImageIndex& index, const CameraPath& path, FrameId frame,
+                   const NeedsOptions& options, ThreadPool& pool, const Package* package = nullptr);
+
+// Returns the LF images, pixels and LF cameras that one camera needs.
 //   sampling  density of the LF cameras around the lens in the whole light field. Must be set if
 //             `index` covers only a part of the light field; unset: measured in `index` if
 //             options.HasNeighbours() is true

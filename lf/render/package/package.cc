@@ -24,6 +24,15 @@ std::optional<double> Package::RecordedCameraDistance(FrameId frame) const {
   return surroundings[frame.value - 1].recorded_distance_w.value_or(*of_all);
 }
 
+std::span<const double> Package::InstantDistances(FrameId frame) const {
+  if (instant_distances_w.empty()) return {};
+  const auto samples = static_cast<size_t>(path.shutter.samples);
+  LF_CHECK(frame.value >= 1 && frame.value * samples <= instant_distances_w.size());
+  const std::span<const double> distances_w =
+      std::span(instant_distances_w).subspan((frame.value - 1) * samples, samples);
+  return distances_w.front() < 0 ? std::span<const double>() : distances_w;
+}
+
 Package PackageOfAll(LightField light_field, CameraPath path, uint64_t seed) {
   Package package;
   package.whole = IdentityOf(light_field);

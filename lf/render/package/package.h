@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -86,6 +87,10 @@ struct Package {
   // One for each frame of the film, [frame - 1]. Empty: not measured, because
   // choices.has_neighbours is false, or because PackageOfAll() made the package.
   std::vector<FrameSurroundings> surroundings;
+  // FrameLens's camera distance of each instant of each frame of the film, measured in the whole
+  // light field, [frame - 1][instant]; -1: not measured, because no package has the frame. Empty:
+  // none is measured, or the path has no shutter.
+  std::vector<double> instant_distances_w;
 
   std::vector<FrameId> FrameIds() const;
   // Returns FrameSurroundings::camera_distance_w of a frame of the film; nullopt if it was not
@@ -93,6 +98,9 @@ struct Package {
   std::optional<double> CameraDistance(FrameId frame) const;
   // Returns the same among recorded LF cameras.
   std::optional<double> RecordedCameraDistance(FrameId frame) const;
+  // Returns the camera distances of the instants of a frame with a shutter; empty if they were not
+  // measured.
+  std::span<const double> InstantDistances(FrameId frame) const;
 };
 
 // Returns a whole light field and path as one package, with the LF images in an order shuffled by

@@ -119,6 +119,67 @@ TEST_F(PackageFileTest, KeepsTheMarksOfVirtualImages) {
     EXPECT_EQ(read->light_field.cameras[i].is_virtual, i % 5 == 3) << i;
 }
 
+Package PackageWithShutter() {
+  Package package = TestPackage();
+  package.path.shutter = {172.8, 3};
+  for (uint32_t i = 0; i < 36; ++i) {
+    package.path.instants.push_back(testing::RandomCameraPair(100 + i).render_camera);
+    package.path.instants.back().transmission = package.path.cameras.front().transmission;
+    package.instant_distances_w.push_back(i / 3 % 3 == 0 ? i / 7.0 : -1);
+  }
+  return package;
+}
+
+TEST_F(PackageFileTest, KeepsTheInstantsOfAShutter) {
+  const Package package = PackageWithShutter();
+  Write(package);
+  const Result<Package> read = ReadPackage(path_);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->path.shutter.angle_deg, 172.8);
+  EXPECT_EQ(read->path.shutter.samples, 3);
+  ASSERT_EQ(read->path.instants.size(), 36u);
+  for (size_t i = 0; i < 36; ++i) {
+    EXPECT_EQ(NumbersOfCamera(read->path.instants[i]), NumbersOfCamera(package.path.instants[i]));
+    EXPECT_TRUE(
+        AreEqual(read->path.instants[i].transmission, package.path.instants[i].transmission));
+  }
+  EXPECT_EQ(read->instant_distances_w, package.instant_distances_w);
+  EXPECT_EQ(read->InstantDistances(FrameId{4})[2], 11 / 7.0);
+  EXPECT_TRUE(read->InstantDistances(FrameId{2}).empty());
+  Write(TestPackage());
+  EXPECT_FALSE(ReadPackage(path_)->path.shutter.exists());
+  EXPECT_EQ(ReadFile(path_)->find("shutter"), std::string::npos);
+  EXPECT_EQ(ReadFile(path_)->find("instants"), std::string::npos);
+}
+
+TEST_F(PackageFileTest, WrongInstantsAreDamage) {
+  for (const auto& [sql, words] :
+       {std::pair("delete from instants where frame = 5 and instant = 2",
+                  "expected instant 2 of frame 5, found instant 3 of frame 5"),
+        std::pair("delete from instants where frame = 12", "33 instants, expected 36"),
+        std::pair("insert into instants select 13, 1, time_s, camera, camera_distance from "
+                  "instants where frame = 12 and instant = 1",
+                  "expected instant 1 of frame 13"),
+        std::pair("update instants set camera_distance = -2 where frame = 2",
+                  "the distance between LF cameras at instant 1 of frame 2 is impossible"),
+        std::pair("update instants set camera_distance = -1 where frame = 4 and instant = 3",
+                  "instants of frame 4 are missing or impossible"),
+        std::pair("update settings set value = '65' where key = 'shutter_samples'",
+                  "setting shutter_samples"),
+        std::pair("update settings set value = '2.5' where key = 'shutter_samples'",
+                  "setting shutter_samples"),
+        std::pair("update settings set value = '361' where key = 'shutter_angle_deg'",
+                  "setting shutter_angle_deg"),
+        std::pair("delete from settings where key = 'shutter_samples'",
+                  "only one of the shutter and the cameras of its instants")}) {
+    Write(PackageWithShutter());
+    ASSERT_TRUE(Database::OpenToAppend(path_, kPackageFormat).value().Execute(sql)) << sql;
+    const Result<Package> read = ReadPackage(path_, {.check_seal = false});
+    ASSERT_FALSE(read) << sql;
+    EXPECT_NE(read.error().message.find(words), std::string::npos) << read.error().message;
+  }
+}
+
 TEST_F(PackageFileTest, WrongMarksOfVirtualImagesAreDamage) {
   Package package = TestPackage();
   package.whole_virtual_count = 1;

@@ -25,6 +25,12 @@ create table frames (frame integer primary key, time_s real, x real, y real, z r
 inline constexpr const char* kVirtualTable =
     "create table virtual_images (id integer primary key);";
 
+// Further table of a package whose path has a shutter: the cameras of all instants of the film, as
+// the cameras of frames, and the distance between LF cameras around their lenses.
+inline constexpr const char* kInstantsTable =
+    "create table instants (frame integer, instant integer, time_s real, camera blob, "
+    "camera_distance real);";
+
 // Number of values that describe a frame's camera exactly, unless HasShape(camera): fx, fy,
 // cx, cy, skew, width, height; pose; radius, blades and rotation of the aperture; normal and offset
 // of the focus plane; time, focal length, sensor width, focus distance, horizontal and vertical

@@ -34,6 +34,7 @@ class Reader {
     LF_ASSIGN_OR_RETURN(package_.light_field.intrinsics, ReadIntrinsics(settings_, &database_));
     LF_RETURN_IF_ERROR(ReadImages());
     LF_RETURN_IF_ERROR(ReadFrames());
+    LF_RETURN_IF_ERROR(ReadShutter());
     return std::move(package_);
   }
 
@@ -47,12 +48,16 @@ class Reader {
   Result<void> ReadImage(const Statement& row);
   Result<void> ReadVirtual();
   Result<void> ReadFrames();
+  Result<void> ReadShutter();
+  Result<void> ReadInstants();
+  Result<RenderCamera> CameraIn(const Statement& row, int column, const std::string& of) const;
   Result<void> ReadSurroundings(const std::vector<double>& numbers, int64_t frame);
   fs::path Folder() const;
 
   Database database_;
   const fs::path& path_;
   Settings settings_;
+  TransmissionPtr transmission_;  // of the cameras of all frames and instants; null: there is none
   Package package_;
 };
 
@@ -222,58 +227,122 @@ Result<void> Reader::ReadSurroundings(const std::vector<double>& numbers, int64_
   return {};
 }
 
+// Reads the camera in a column.
+//   of  names the frame or instant in messages
+Result<RenderCamera> Reader::CameraIn(const Statement& row, int column,
+                                      const std::string& of) const {
+  LF_ASSIGN_OR_RETURN(const std::string_view bytes, row.Blob(column));
+  const std::vector<double> numbers = NumbersOf<double>(bytes);
+  if (numbers.size() != kCameraNumbers && numbers.size() != kCameraNumbers + kShapeNumbers)
+    return Damaged(fmt::format("the camera of {} has {} bytes, expected {} or {}", of, bytes.size(),
+                               kCameraNumbers * sizeof(double),
+                               (kCameraNumbers + kShapeNumbers) * sizeof(double)));
+  const bool are_finite = std::all_of(numbers.begin(), numbers.end(),
+                                      [](double x) { return std::abs(x) <= kMostNumber; }) &&
+                          IsWithin(numbers[5], 1, kMostSide_px) &&
+                          IsWithin(numbers[6], 1, kMostSide_px);
+  RenderCamera camera = are_finite ? CameraOfNumbers(numbers) : RenderCamera();
+  camera.transmission = transmission_;
+  const Intrinsics& plate = camera.pinhole.intrinsics;
+  const std::vector<RenderCamera>& film = package_.path.cameras;
+  const bool has_size =
+      film.empty() || (plate.width_px == film.front().pinhole.intrinsics.width_px &&
+                       plate.height_px == film.front().pinhole.intrinsics.height_px);
+  if (!are_finite || !IsRenderCamera(camera) || !has_size)
+    return Damaged(fmt::format(
+        "the camera of {} has impossible values, or another resolution than frame 1", of));
+  return camera;
+}
+
+// Reads the shutter and its instants. A package has both or none of them.
+Result<void> Reader::ReadShutter() {
+  LF_ASSIGN_OR_RETURN(const bool has_instants, HasTable(&database_, "instants"));
+  if (settings_.Text("shutter_samples").empty() != !has_instants)
+    return Damaged("it has only one of the shutter and the cameras of its instants");
+  if (!has_instants) return {};
+  Shutter& shutter = package_.path.shutter;
+  LF_ASSIGN_OR_RETURN(shutter.angle_deg, settings_.Number("shutter_angle_deg", 0, 360));
+  LF_ASSIGN_OR_RETURN(const double samples,
+                      settings_.Number("shutter_samples", 2, kMostShutterSamples));
+  if (samples != std::floor(samples)) return settings_.Wrong("shutter_samples", "a whole number");
+  shutter.samples = static_cast<int>(samples);
+  return ReadInstants();
+}
+
+Result<void> Reader::ReadInstants() {
+  CameraPath& film = package_.path;
+  const auto samples = static_cast<int64_t>(film.shutter.samples);
+  LF_RETURN_IF_ERROR(ForEachRow(
+      database_, "select frame, instant, camera, camera_distance from instants order by rowid",
+      [&](const Statement& row) -> Result<void> {
+        const auto index = static_cast<int64_t>(film.instants.size());
+        const int64_t frame = index / samples + 1, instant = index % samples + 1;
+        LF_ASSIGN_OR_RETURN(const int64_t row_frame, row.Integer(0));
+        LF_ASSIGN_OR_RETURN(const int64_t row_instant, row.Integer(1));
+        const std::string of = fmt::format("instant {} of frame {}", instant, frame);
+        if (row_frame != frame || row_instant != instant ||
+            frame > static_cast<int64_t>(film.frame_count()))
+          return Damaged(
+              fmt::format("expected {}, found instant {} of frame {}", of, row_instant, row_frame));
+        LF_ASSIGN_OR_RETURN(const RenderCamera camera, CameraIn(row, 2, of));
+        film.instants.push_back(camera);
+        LF_ASSIGN_OR_RETURN(const double distance_w, row.Real(3));
+        if (!(distance_w <= kMostNumber) || !(distance_w >= 0 || distance_w == -1))
+          return Damaged(fmt::format("the distance between LF cameras at {} is impossible", of));
+        package_.instant_distances_w.push_back(distance_w);
+        return {};
+      }));
+  if (film.instants.size() != film.frame_count() * static_cast<size_t>(samples))
+    return Damaged(fmt::format("it has the cameras of {} instants, expected {}",
+                               film.instants.size(),
+                               film.frame_count() * static_cast<size_t>(samples)));
+  const std::vector<double>& distances_w = package_.instant_distances_w;
+  const auto is_measured = [](double distance_w) { return distance_w >= 0; };
+  for (const PackageFrame& frame : package_.frames) {
+    const auto first = distances_w.begin() +
+                       static_cast<ptrdiff_t>((frame.id.value - 1) * static_cast<size_t>(samples));
+    const auto count = std::count_if(first, first + samples, is_measured);
+    if (count != (package_.choices.has_neighbours ? samples : 0))
+      return Damaged(fmt::format(
+          "the distances between LF cameras at the instants of frame {} are missing or impossible",
+          frame.id.value));
+  }
+  return {};
+}
+
 Result<void> Reader::ReadFrames() {
   CameraPath& film = package_.path;
-  TransmissionPtr transmission;
   if (const std::string& places = settings_.Text("transmission"); !places.empty()) {
     const Result<Transmission> read = Transmission::FromText(places);
     if (!read) return settings_.Wrong("transmission", read.error().message);
-    transmission = std::make_shared<const Transmission>(*read);
+    transmission_ = std::make_shared<const Transmission>(*read);
   }
-  LF_RETURN_IF_ERROR(ForEachRow(
-      database_,
-      "select frame, camera, is_rendered, lf_images, rays, surroundings from frames "
-      "order by frame",
-      [&](const Statement& row) -> Result<void> {
-        LF_ASSIGN_OR_RETURN(const int64_t number, row.Integer(0, 1, kMostFrames));
-        if (number != static_cast<int64_t>(film.frame_count()) + 1)
-          return Damaged(fmt::format("frame {} is missing", film.frame_count() + 1));
-        LF_ASSIGN_OR_RETURN(const std::string_view bytes, row.Blob(1));
-        const std::vector<double> numbers = NumbersOf<double>(bytes);
-        if (numbers.size() != kCameraNumbers && numbers.size() != kCameraNumbers + kShapeNumbers)
-          return Damaged(fmt::format("the camera of frame {} has {} bytes, expected {} or {}",
-                                     number, bytes.size(), kCameraNumbers * sizeof(double),
-                                     (kCameraNumbers + kShapeNumbers) * sizeof(double)));
-        const bool are_finite = std::all_of(numbers.begin(), numbers.end(),
-                                            [](double x) { return std::abs(x) <= kMostNumber; }) &&
-                                IsWithin(numbers[5], 1, kMostSide_px) &&
-                                IsWithin(numbers[6], 1, kMostSide_px);
-        RenderCamera camera = are_finite ? CameraOfNumbers(numbers) : RenderCamera();
-        camera.transmission = transmission;
-        const Intrinsics& plate = camera.pinhole.intrinsics;
-        const bool has_size =
-            film.cameras.empty() ||
-            (plate.width_px == film.cameras.front().pinhole.intrinsics.width_px &&
-             plate.height_px == film.cameras.front().pinhole.intrinsics.height_px);
-        if (!are_finite || !IsRenderCamera(camera) || !has_size)
-          return Damaged(fmt::format(
-              "the camera of frame {} has impossible values, or another resolution than frame 1",
-              number));
-        film.cameras.push_back(camera);
-        LF_ASSIGN_OR_RETURN(const int64_t is_rendered, row.Integer(2, 0, 1));
-        LF_ASSIGN_OR_RETURN(const int64_t images, row.Integer(3, 0, kMostImages));
-        LF_ASSIGN_OR_RETURN(const int64_t rays, row.Integer(4, 0, INT64_MAX));
-        LF_ASSIGN_OR_RETURN(const std::string_view surroundings, row.Blob(5));
-        // LF_RETURN_IF_ERROR cannot be used here, because this lambda is an argument of that macro.
-        const auto read = ReadSurroundings(NumbersOf<double>(surroundings), number);
-        if (!read || is_rendered == 0) return read;
-        PackageFrame frame;
-        frame.id = FrameId{static_cast<uint32_t>(number)};
-        frame.image_count = static_cast<uint64_t>(images);
-        frame.ray_count = static_cast<uint64_t>(rays);
-        package_.frames.push_back(frame);
-        return {};
-      }));
+  LF_RETURN_IF_ERROR(
+      ForEachRow(database_,
+                 "select frame, camera, is_rendered, lf_images, rays, surroundings from frames "
+                 "order by frame",
+                 [&](const Statement& row) -> Result<void> {
+                   LF_ASSIGN_OR_RETURN(const int64_t number, row.Integer(0, 1, kMostFrames));
+                   if (number != static_cast<int64_t>(film.frame_count()) + 1)
+                     return Damaged(fmt::format("frame {} is missing", film.frame_count() + 1));
+                   LF_ASSIGN_OR_RETURN(const RenderCamera camera,
+                                       CameraIn(row, 1, fmt::format("frame {}", number)));
+                   film.cameras.push_back(camera);
+                   LF_ASSIGN_OR_RETURN(const int64_t is_rendered, row.Integer(2, 0, 1));
+                   LF_ASSIGN_OR_RETURN(const int64_t images, row.Integer(3, 0, kMostImages));
+                   LF_ASSIGN_OR_RETURN(const int64_t rays, row.Integer(4, 0, INT64_MAX));
+                   LF_ASSIGN_OR_RETURN(const std::string_view surroundings, row.Blob(5));
+                   // LF_RETURN_IF_ERROR cannot be used here, because this lambda is an argument of
+                   // that macro.
+                   const auto read = ReadSurroundings(NumbersOf<double>(surroundings), number);
+                   if (!read || is_rendered == 0) return read;
+                   PackageFrame frame;
+                   frame.id = FrameId{static_cast<uint32_t>(number)};
+                   frame.image_count = static_cast<uint64_t>(images);
+                   frame.ray_count = static_cast<uint64_t>(rays);
+                   package_.frames.push_back(frame);
+                   return {};
+                 }));
   if (package_.frames.empty()) return Damaged("it has no frame to render");
   const bool has_all = package_.surroundings.size() == film.frame_count();
   if (package_.choices.has_neighbours ? !has_all : !package_.surroundings.empty())
@@ -288,7 +357,9 @@ bool IsPackageName(const fs::path& path) { return path.extension() == ".lfp"; }
 Result<Package> ReadPackage(const fs::path& path, const ReadPackageOptions& options) {
   const std::string tables = std::string(kSettingsTable) + kIntrinsicsTable + kPackageTables;
   LF_ASSIGN_OR_RETURN(Database database,
-                      Database::Open(path, kPackageFormat, {tables, tables + kVirtualTable}));
+                      Database::Open(path, kPackageFormat,
+                                     {tables, tables + kVirtualTable, tables + kInstantsTable,
+                                      tables + kVirtualTable + kInstantsTable}));
   if (options.check_seal) LF_RETURN_IF_ERROR(CheckSeal(path, kPackageFormat.name));
   return Reader(std::move(database), path).Read();
 }

@@ -32,6 +32,7 @@ class Writer {
     LF_RETURN_IF_ERROR(WriteImages());
     if (package_.whole_virtual_count > 0) LF_RETURN_IF_ERROR(WriteVirtual());
     LF_RETURN_IF_ERROR(WriteFrames());
+    if (package_.path.shutter.exists()) LF_RETURN_IF_ERROR(WriteInstants());
     return database_.Execute("commit");
   }
 
@@ -67,6 +68,10 @@ class Writer {
       settings.emplace_back("light_field.virtual", fmt::format("{}", package_.whole_virtual_count));
     if (const TransmissionPtr& of_film = package_.path.cameras.front().transmission)
       settings.emplace_back("transmission", of_film->Text());
+    if (const Shutter& shutter = package_.path.shutter; shutter.exists()) {
+      settings.emplace_back("shutter_angle_deg", fmt::format("{}", shutter.angle_deg));
+      settings.emplace_back("shutter_samples", fmt::format("{}", shutter.samples));
+    }
     settings.insert(settings.end(), pixels.begin(), pixels.end());
     settings.insert(settings.end(), of_choices.begin(), of_choices.end());
     return settings;
@@ -119,11 +124,15 @@ class Writer {
 
   // Writes all frames of the film, and marks those that this package renders (is_rendered).
   Result<void> WriteFrames() {
-    for (const RenderCamera& camera : package_.path.cameras)
-      if (!AreEqual(camera.transmission, package_.path.cameras.front().transmission))
-        return UsageError(
-            "the frames have lenses with different transmissions, but a package holds one: "
-            "render the film without packages, or divide the path");
+    const CameraPath& path = package_.path;
+    const auto differs = [&](const RenderCamera& camera) {
+      return !AreEqual(camera.transmission, path.cameras.front().transmission);
+    };
+    if (std::any_of(path.cameras.begin(), path.cameras.end(), differs) ||
+        std::any_of(path.instants.begin(), path.instants.end(), differs))
+      return UsageError(
+          "the frames have lenses with different transmissions, but a package holds one: "
+          "render the film without packages, or divide the path");
     LF_ASSIGN_OR_RETURN(
         Statement insert,
         database_.Prepare("insert into frames values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"));
@@ -146,6 +155,26 @@ class Writer {
       const std::vector<double> surroundings = SurroundingsOf(n);
       insert.BindBlob(12, BytesOf(std::span<const double>(surroundings)));
       LF_RETURN_IF_ERROR(insert.Run());
+    }
+    return {};
+  }
+
+  // Makes and writes the table that only packages of a path with a shutter have.
+  Result<void> WriteInstants() {
+    LF_RETURN_IF_ERROR(database_.Execute(kInstantsTable));
+    LF_ASSIGN_OR_RETURN(Statement insert,
+                        database_.Prepare("insert into instants values (?, ?, ?, ?, ?)"));
+    for (uint32_t n = 1; n <= package_.path.frame_count(); ++n) {
+      const std::span<const RenderCamera> instants = package_.path.Instants(FrameId{n});
+      const std::span<const double> distances_w = package_.InstantDistances(FrameId{n});
+      for (size_t k = 0; k < instants.size(); ++k) {
+        const std::vector<double> numbers = NumbersOfCamera(instants[k]);
+        insert.Bind(0, int64_t{n}).Bind(1, static_cast<int64_t>(k + 1));
+        insert.Bind(2, instants[k].time_s);
+        insert.BindBlob(3, BytesOf(std::span<const double>(numbers)));
+        insert.Bind(4, distances_w.empty() ? -1.0 : distances_w[k]);  // -1: not measured
+        LF_RETURN_IF_ERROR(insert.Run());
+      }
     }
     return {};
   }

@@ -52,6 +52,8 @@ Result<void> CheckRebinnedRays(const Package& package, const FilmOptions& film,
         "hybrid");
   LF_RETURN_IF_ERROR(CheckOpacity(package.light_field.encoding, film.mode));
   LF_RETURN_IF_ERROR(CheckLenses(package.path.cameras, film.mode));
+  LF_RETURN_IF_ERROR(CheckShutter(package.path.shutter.exists(), film.mode,
+                                  film.guard && package.whole_virtual_count > 0));
   LF_RETURN_IF_ERROR(CheckSlab(package, film, frames));
   if (film.Rebins() && !package.choices.has_neighbours)
     return UsageError(fmt::format(
@@ -97,7 +99,8 @@ Result<void> CheckLensWeights(const Package& package, const FilmOptions& film,
                     name));
   if (film.lens_weights == LensWeights::kArea)
     for (const FrameId frame : frames)
-      LF_RETURN_IF_ERROR(CheckHasArea(package.path.Camera(frame), frame));
+      for (const RenderCamera& camera : package.path.Instants(frame))
+        LF_RETURN_IF_ERROR(CheckHasArea(camera, frame));
   return {};
 }
 

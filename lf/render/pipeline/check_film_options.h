@@ -16,9 +16,10 @@ namespace lf {
 //   options  need not be resolved: the function calls Resolved()
 //   frames   numbers of the frames to render; empty: all frames of the package
 // Returns kUsage if the options are not compatible; if the lens of a frame is a pinhole but lens
-// weights by area need its area; or if the light field is densified but its frames cannot be
-// guarded, because they have rebinned rays, LF images have opacities or mosaics, or the package
-// lacks the LF cameras beside the lens.
+// weights by area need its area; if the path has a shutter but the mode is not kCollect; or if the
+// light field is densified but its frames cannot be guarded, because they have rebinned rays, the
+// path has a shutter, LF images have opacities or mosaics, or the package lacks the LF cameras
+// beside the lens.
 Result<void> CheckFilmOptions(const Package& package, const FilmOptions& options,
                               const std::vector<FrameId>& frames);
 

@@ -26,14 +26,15 @@ double MedianOfSeen(const LargeVector<float>& values) {
 }  // namespace
 
 PlateNotes MakePlateNotes(FrameId frame, const RenderCamera& camera, const FrameRays& rays,
-                          const FrameLens& lens, const RadianceEncoding& encoding) {
+                          std::span<const FrameLens> lenses, const RadianceEncoding& encoding) {
   PlateNotes notes;
   notes.frame = frame;
   notes.camera = camera;
   notes.rays = rays;
   notes.develop = DevelopOptionsOf(encoding);
-  if (const std::optional<FrameLens::Facts> facts = lens.facts())
-    notes.weighed = PlateNotes::Weighed{facts->hat_share, facts->coverage, lens.EffectiveCounts()};
+  if (const std::optional<FrameLens::Facts> facts = FactsOf(lenses))
+    notes.weighed =
+        PlateNotes::Weighed{facts->hat_share, facts->coverage, EffectiveCountsOf(lenses)};
   return notes;
 }
 
@@ -51,7 +52,7 @@ RenderedFrame DevelopFrame(const PlateNotes& notes, const SensorPlate& plate,
   frame.picture = Develop(plate, develop, pool);
   if (is_interrupted && is_interrupted()) return frame;
   frame.report = MakeFrameReport(notes.frame, notes.rays, frame.picture);
-  frame.report.camera = InputsOfCamera(notes.frame, notes.camera);
+  frame.report.camera = InputsOfCamera(notes.frame, notes.camera, notes.shutter);
   frame.report.places_done = notes.places_done;
   if (notes.weighed) {
     const Image<float>& counts = notes.weighed->effective_counts;

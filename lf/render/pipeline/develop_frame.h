@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 
 #include "lf/core/parallel.h"
 #include "lf/film/develop/develop.h"
@@ -19,10 +20,10 @@ struct RenderedFrame {
 };
 
 // Returns the notes from which DevelopFrame() makes the picture of the frame. The caller must still
-// set estimator, fps, develop.smooth_below and develop.fill_radius_px. It may set version,
+// set estimator, fps, shutter, develop.smooth_below and develop.fill_radius_px. It may set version,
 // places_done and the skipped LF images.
 PlateNotes MakePlateNotes(FrameId frame, const RenderCamera& camera, const FrameRays& rays,
-                          const FrameLens& lens, const RadianceEncoding& encoding);
+                          std::span<const FrameLens> lenses, const RadianceEncoding& encoding);
 
 // Develops the plate.
 //   completion        the part of the picture that is interpolated from rebinned rays; null if

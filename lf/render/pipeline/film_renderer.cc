@@ -46,7 +46,7 @@ Result<void> FilmRenderer::Begin(const EarlierRun* earlier) {
   if (film_.max_image_count)
     setup_.pool().ForEach(frames_.size(), [this](size_t f) {
       frames_[f].places = PlacesOfFirst(*film_.max_image_count, counted_index(),
-                                        Taking(frames_[f], *frames_[f].lens), select_);
+                                        TakingInstants(frames_[f]), select_);
     });
   if (film_.Rebins()) LF_RETURN_IF_ERROR(PrepareRebinning(earlier));
   if (film_.HasPlates()) LF_RETURN_IF_ERROR(PreparePlates(earlier));
@@ -66,14 +66,18 @@ Result<void> FilmRenderer::Begin(const EarlierRun* earlier) {
 Result<void> FilmRenderer::FindLenses() {
   for (Frame& frame : frames_) {
     if (setup_.work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
-    const RenderCamera& camera = setup_.path().Camera(frame.id);
+    const CameraPath& path = setup_.path();
     const Package& package = setup_.package();
-    frame.lens.emplace(counted_index(), camera, film_.lens_weights, select_, setup_.pool(),
-                       setup_.is_guarded() ? package.RecordedCameraDistance(frame.id)
-                                           : package.CameraDistance(frame.id));
+    std::span<const double> distances_w = package.InstantDistances(frame.id);
+    const std::optional<double> distance_w = setup_.is_guarded()
+                                                 ? package.RecordedCameraDistance(frame.id)
+                                                 : package.CameraDistance(frame.id);
+    if (!path.shutter.exists() && distance_w) distances_w = {&*distance_w, 1};
+    frame.lenses = LensesOf(counted_index(), path.Instants(frame.id), film_.lens_weights, select_,
+                            setup_.pool(), distances_w);
     if (setup_.is_guarded())
-      frame.all_lens.emplace(setup_.index(), camera, film_.lens_weights, select_, setup_.pool(),
-                             package.CameraDistance(frame.id));
+      frame.all_lens.emplace(setup_.index(), path.Camera(frame.id), film_.lens_weights, select_,
+                             setup_.pool(), package.CameraDistance(frame.id));
   }
   return {};
 }
@@ -85,6 +89,21 @@ TakingFrame FilmRenderer::Taking(const Frame& frame, const FrameLens& lens) cons
   if (film_.lens_weights != LensWeights::kNone || setup_.is_guarded())
     taking.takes = [&lens](LfImageId id) { return lens.Takes(id); };
   return taking;
+}
+
+std::vector<TakingFrame> FilmRenderer::TakingInstants(const Frame& frame) const {
+  std::vector<TakingFrame> taking;
+  for (const FrameLens& lens : frame.lenses) taking.push_back(Taking(frame, lens));
+  return taking;
+}
+
+// Returns the weights of rays in a lens, which must outlive the result; an empty function if all
+// rays have weight 1.
+ImageWeights FilmRenderer::WeightsIn(const FrameLens& lens) const {
+  if (film_.lens_weights == LensWeights::kNone && !setup_.package().choices.max_angle_rad &&
+      !setup_.is_guarded())
+    return {};
+  return [&lens](LfImageId id) { return lens.WeightsOf(id); };
 }
 
 CollectOptions FilmRenderer::OptionsOfCollector() const {
@@ -99,6 +118,8 @@ CollectOptions FilmRenderer::OptionsOfCollector() const {
   collect.interrupted = work.interrupted;
   collect.place_end = setup_.index().place_end();
   collect.decision_places = 0;
+  // The rays of all instants of a frame are collected before an interruption.
+  collect.batch_frame_ray_count /= static_cast<uint64_t>(setup_.path().shutter.samples);
   if (rebinned_) {
     collect.consumer = rebinned_.get();
     collect.decision_places = kDecisionPlaces;
@@ -110,10 +131,10 @@ std::vector<CollectedFrame> FilmRenderer::FramesOfCollector() {
   std::vector<CollectedFrame> collected;
   if (!film_.HasPlates()) return collected;
   for (Frame& frame : frames_) {
-    collected.push_back({frame.lens->camera(), &frame.plate, frame.places});
-    if (film_.lens_weights != LensWeights::kNone || setup_.package().choices.max_angle_rad ||
-        setup_.is_guarded())
-      collected.back().weights = [&frame](LfImageId id) { return frame.lens->WeightsOf(id); };
+    const FrameLens& first = frame.lenses.front();
+    collected.push_back({first.camera(), &frame.plate, frame.places, WeightsIn(first)});
+    for (const FrameLens& lens : std::span(frame.lenses).subspan(1))
+      collected.back().further.push_back({lens.camera(), WeightsIn(lens)});
     if (setup_.is_guarded()) collected.back().guard = GuardOf(frame);
     if (film_.MeasuresNoise()) collected.back().moments = &frame.moments;
   }
@@ -124,7 +145,7 @@ FrameGuard FilmRenderer::GuardOf(const Frame& frame) const {
   FrameGuard guard;
   guard.camera = frame.all_lens->camera();
   guard.weights = [&frame](LfImageId id) { return frame.all_lens->WeightsOf(id); };
-  guard.camera_distance_w = frame.lens->camera_distance_w();
+  guard.camera_distance_w = frame.lenses.front().camera_distance_w();
   if (film_.lens_weights == LensWeights::kNone)
     guard.camera_distance_w = setup_.package().RecordedCameraDistance(frame.id).value_or(
         CameraDistanceAround(counted_index(), guard.camera));
@@ -132,7 +153,7 @@ FrameGuard FilmRenderer::GuardOf(const Frame& frame) const {
 }
 
 SensorPlate FilmRenderer::EmptyPlateOf(const Frame& frame) const {
-  const Intrinsics& plate = frame.lens->camera().pinhole.intrinsics;
+  const Intrinsics& plate = frame.lenses.front().camera().pinhole.intrinsics;
   return {plate.width_px, plate.height_px,
           PlateKindOf(setup_.light_field().encoding, setup_.is_guarded())};
 }
@@ -204,9 +225,9 @@ Result<void> FilmRenderer::PrepareRebinning(const EarlierRun* earlier) {
     if (setup_.work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
     CollectedWeights collected;
     if (film_.Collects())
-      collected = [&frame](LfImageId image) { return frame.lens->WeightsOf(image); };
+      collected = [&frame](LfImageId image) { return frame.lenses.front().WeightsOf(image); };
     LensGaps gaps(setup_.index(), setup_.path().Camera(frame.id), collected,
-                  !film_.Collects() || frame.lens->tests_opening(), frame.places, select_,
+                  !film_.Collects() || frame.lenses.front().tests_opening(), frame.places, select_,
                   film_.rebin.query, setup_.pool(), setup_.package().CameraDistance(frame.id));
     LF_RETURN_IF_ERROR(CheckReach(gaps, frame.id));
     rebinned.push_back({frame.id, std::move(gaps)});
@@ -236,7 +257,7 @@ void FilmRenderer::SelectForFrames() {
     select.whole_images = setup_.work().whole_images;
     std::vector<TakingFrame> taking;
     for (const Frame& frame : frames_) {
-      taking.push_back(Taking(frame, *frame.lens));
+      for (TakingFrame& instant : TakingInstants(frame)) taking.push_back(std::move(instant));
       if (frame.all_lens) taking.push_back(Taking(frame, *frame.all_lens));
     }
     images_ = SelectImages(setup_.index(), taking, select, setup_.pool());
@@ -326,7 +347,7 @@ RenderedFrame FilmRenderer::Develop(size_t f, const std::optional<Completion>& c
                         setup_.pool(), is_interrupted);
   };
   if (film_.Collects()) return develop(frames_[f].plate);
-  const Intrinsics& plate = lens(f).camera().pinhole.intrinsics;
+  const Intrinsics& plate = lenses(f).front().camera().pinhole.intrinsics;
   // The plate is empty, because the whole picture is interpolated.
   return develop(SensorPlate(plate.width_px, plate.height_px));
 }
@@ -334,9 +355,10 @@ RenderedFrame FilmRenderer::Develop(size_t f, const std::optional<Completion>& c
 PlateNotes FilmRenderer::NotesOf(size_t f) const {
   const FrameId id = frames_[f].id;
   PlateNotes notes = MakePlateNotes(id, setup_.path().Camera(id),
-                                    film_.Collects() ? Progress(f).rays : FrameRays(), lens(f),
+                                    film_.Collects() ? Progress(f).rays : FrameRays(), lenses(f),
                                     setup_.light_field().encoding);
   notes.fps = setup_.path().fps;
+  notes.shutter = ShutterOf(setup_.path(), id);
   notes.estimator = film_.reading.estimator;
   notes.develop.smooth_below = film_.smooth_below;
   notes.develop.fill_radius_px = film_.fill_radius_px;

@@ -101,9 +101,9 @@ class FilmRenderer {
   const NoiseMoments* moments(size_t f) const {
     return frames_[f].has_noise ? &frames_[f].moments : nullptr;
   }
-  // The lens of the LF images that the frame's plate has or, if the plate is guarded, of the
-  // recorded LF images alone.
-  const FrameLens& lens(size_t f) const { return *frames_[f].lens; }
+  // The lenses of the frame's instants, one without a shutter: of the LF images that the frame's
+  // plate has or, if the plate is guarded, of the recorded LF images alone.
+  std::span<const FrameLens> lenses(size_t f) const { return frames_[f].lenses; }
   // The lens of all LF images if the plate is guarded; otherwise null.
   const FrameLens* all_lens(size_t f) const {
     return frames_[f].all_lens ? &*frames_[f].all_lens : nullptr;
@@ -162,7 +162,7 @@ class FilmRenderer {
  private:
   struct Frame {
     FrameId id;
-    std::optional<FrameLens> lens;      // unset until Begin()
+    std::vector<FrameLens> lenses;      // of its instants; empty until Begin()
     std::optional<FrameLens> all_lens;  // set if the plate is guarded
     SensorPlate plate{0, 0};
     NoiseMoments moments;  // moments of the plate; empty if noise is not measured
@@ -182,6 +182,8 @@ class FilmRenderer {
 
   Result<void> FindLenses();
   TakingFrame Taking(const Frame& frame, const FrameLens& lens) const;
+  std::vector<TakingFrame> TakingInstants(const Frame& frame) const;
+  ImageWeights WeightsIn(const FrameLens& lens) const;
   FrameGuard GuardOf(const Frame& frame) const;
   SensorPlate EmptyPlateOf(const Frame& frame) const;
   // The index of the LF images that stop rules and reports count.

@@ -11,12 +11,18 @@ namespace lf {
 const ReachableElements& FilmRenderer::ReachableOf(size_t f) {
   Frame& frame = frames_[f];
   if (!frame.reachable) {
-    ImageWeights weights;
-    if (film_.lens_weights != LensWeights::kNone || setup_.is_guarded())
-      weights = [&frame](LfImageId id) { return frame.lens->WeightsOf(id); };
-    frame.reachable = std::make_unique<ReachableElements>(counted_index(), frame.lens->camera(),
-                                                          PlaceRange{0, frame.places.end}, select_,
-                                                          film_.reading, setup_.pool(), weights);
+    for (const FrameLens& lens : frame.lenses) {
+      ImageWeights weights;
+      if (film_.lens_weights != LensWeights::kNone || setup_.is_guarded())
+        weights = [&lens](LfImageId id) { return lens.WeightsOf(id); };
+      auto reachable = std::make_unique<ReachableElements>(counted_index(), lens.camera(),
+                                                           PlaceRange{0, frame.places.end}, select_,
+                                                           film_.reading, setup_.pool(), weights);
+      if (frame.reachable)
+        frame.reachable->Join(*reachable);
+      else
+        frame.reachable = std::move(reachable);
+    }
   }
   return *frame.reachable;
 }

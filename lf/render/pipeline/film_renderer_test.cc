@@ -93,6 +93,89 @@ TEST_F(FilmRendererTest, FramesAreThoseOfAFolderInEveryMode) {
     }
 }
 
+// Adds to every frame of a film a shutter of three instants.
+void AddShutterTo(CameraPath* path) {
+  path->shutter = {180, 3};
+  for (const RenderCamera& camera : path->cameras)
+    for (int k = 0; k < 3; ++k) {
+      RenderCamera instant = camera;
+      instant.pinhole.cam_from_world.translation.x() += 0.004 * (k - 1);
+      instant.aperture.radius_w *= 1 + 0.05 * k;
+      path->instants.push_back(instant);
+    }
+}
+
+TEST_F(FilmRendererTest, AFrameWithAShutterIsTheSumOfItsInstants) {
+  options_.reading.estimator = Estimator::kBilinear;
+  const std::vector<RenderCamera> frames = film_.path.cameras;
+  AddShutterTo(&film_.path);
+  const auto renderer = Open();
+  Finish(*renderer);
+  for (size_t f = 0; f < 3; ++f) {
+    Package alone = film_;
+    alone.path.shutter = {};
+    alone.path.instants.clear();
+    const auto instants = film_.path.Instants(FrameId{static_cast<uint32_t>(f + 1)});
+    alone.path.cameras.assign(instants.begin(), instants.end());
+    auto other = FilmRenderer::Open(alone, options_, work_, {}, pool_).value();
+    Finish(*other);
+    SensorPlate sum(renderer->plate(f).width(), renderer->plate(f).height());
+    for (size_t k = 0; k < 3; ++k) sum.Merge(other->plate(k));
+    EXPECT_EQ(renderer->plate(f), sum);
+  }
+  EXPECT_EQ(renderer->NotesOf(0).shutter->shutter.samples, 3);
+  for (const LensWeights weights : {LensWeights::kNone, LensWeights::kAuto}) {
+    options_.lens_weights = weights;
+    const auto weighted = Open();
+    Finish(*weighted);
+    ExpectSame(OfFolder(weighted->id(1)), weighted->Develop(1).picture.rgb);
+  }
+}
+
+TEST_F(FilmRendererTest, RulesAndLimitsHoldForAShutter) {
+  options_.reading.estimator = Estimator::kBilinear;
+  // The view is so narrow that the LF images see all of it.
+  for (RenderCamera& camera : film_.path.cameras)
+    camera.pinhole.intrinsics.fx_px = camera.pinhole.intrinsics.fy_px = 200;
+  AddShutterTo(&film_.path);
+  options_.max_image_count = 5;
+  auto renderer = Open();
+  Finish(*renderer);
+  for (size_t f = 0; f < 3; ++f) EXPECT_EQ(renderer->Progress(f).rays.image_count, 5u);
+  options_.max_image_count.reset();
+  options_.stop_at_noise = 0.08;
+  renderer = Open();
+  Finish(*renderer);
+  FrameReport report;
+  ASSERT_TRUE(renderer->Measure(1, &report));
+  ASSERT_TRUE(report.noise && report.noise->reached);
+  EXPECT_LE(report.noise.value().reached.value(), 0.08);
+  EXPECT_LT(renderer->PlaceOfEnd(1), 144u);
+  ExpectSame(OfFolder(renderer->id(1)), renderer->Develop(1).picture.rgb);
+  options_.stop_at_noise.reset();
+  options_.stop_at_samples = 12;  // four at each instant
+  renderer = Open();
+  Finish(*renderer);
+  EXPECT_EQ(renderer->StoppedFrames(), (std::vector<size_t>{0, 1, 2}));
+  EXPECT_LT(renderer->PlaceOfEnd(1), 144u);
+}
+
+TEST_F(FilmRendererTest, RebinnedRaysRefuseAShutter) {
+  AddShutterTo(&film_.path);
+  for (const RenderMode mode : {RenderMode::kRebin, RenderMode::kHybrid}) {
+    options_.mode = mode;
+    const auto renderer = FilmRenderer::Open(film_, options_, work_, {}, pool_);
+    ASSERT_FALSE(renderer);
+    EXPECT_EQ(renderer.error().kind, ErrorKind::kUsage);
+    EXPECT_NE(renderer.error().message.find("use --mode collect"), std::string::npos);
+  }
+  options_.mode = RenderMode::kCollect;
+  film_.whole_virtual_count = 1;
+  const auto guarded = FilmRenderer::Open(film_, options_, work_, {}, pool_);
+  ASSERT_FALSE(guarded);
+  EXPECT_NE(guarded.error().message.find("add --no-guard"), std::string::npos);
+}
+
 TEST_F(FilmRendererTest, StopRulesAreThoseOfAFolder) {
   options_.reading.estimator = Estimator::kBilinear;
   options_.stop_at_samples = 4;

@@ -61,8 +61,7 @@ Result<void> FilmSetup::CheckStore() const {
   if (!store_->IsPartial()) return {};
   const NeedsOptions needs = Needs();
   for (const FrameId frame : frames_) {
-    const FrameNeeds wanted =
-        NeedsOf(index_, path().Camera(frame), needs, pool_, SamplingOf(package_, frame));
+    const FrameNeeds wanted = NeedsOf(index_, path(), frame, needs, pool_, &package_);
     if (work_.IsStopped()) return {};
     LF_RETURN_IF_ERROR(CheckKept(*store_, light_field(), frame, wanted));
   }
@@ -84,7 +83,7 @@ Result<void> FilmSetup::PlanMemory() {
       PlanRenderMemory(work_.memory_bytes, film_.mode, film_.rebin.max_cells, light_field(),
                        film_.reading, plate.width_px, plate.height_px, frames_.size(),
                        pool_.thread_count(), film_.MeasuresNoise() ? NoiseMoments::kMostBytes : 0,
-                       is_guarded()));
+                       is_guarded(), static_cast<size_t>(path().shutter.samples)));
   plan_ = memory.plan;
   max_cells_ = memory.max_cells;
   return {};

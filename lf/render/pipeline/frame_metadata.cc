@@ -53,7 +53,8 @@ std::array<float, 8> ChromaticitiesOf(ColourSpace colours) {
 }  // namespace
 
 ImageMetadata FrameMetadata(FrameId frame, const RenderCamera& camera, const FrameRays& rays,
-                            Estimator estimator, double fps, const std::string& version) {
+                            Estimator estimator, double fps, const std::string& version,
+                            const std::optional<FrameShutter>& shutter) {
   const PinholeCamera& pinhole = camera.pinhole;
   const double mm_per_w = 1000 * camera.unit_m;
   const double diameter_w = 2 * camera.aperture.radius_w;
@@ -94,6 +95,10 @@ ImageMetadata FrameMetadata(FrameId frame, const RenderCamera& camera, const Fra
     metadata.emplace_back("lf:shift_horizontal_mm", shift_w.x() * mm_per_w);
     metadata.emplace_back("lf:shift_vertical_mm", shift_w.y() * mm_per_w);
   }
+  if (shutter) {
+    metadata.emplace_back("lf:shutter_angle_deg", shutter->shutter.angle_deg);
+    metadata.emplace_back("lf:shutter_samples", shutter->shutter.samples);
+  }
   if (rays.virtual_count > 0)
     metadata.emplace_back("lf:virtual_lf_images", fmt::format("{}", rays.virtual_count));
   const double f_number = FNumber(camera.focal_length_w, diameter_w);
@@ -102,7 +107,7 @@ ImageMetadata FrameMetadata(FrameId frame, const RenderCamera& camera, const Fra
 }
 
 ImageMetadata StandardAttributes(FrameId frame, const RenderCamera& camera, double fps,
-                                 ColourSpace colours) {
+                                 ColourSpace colours, const std::optional<FrameShutter>& shutter) {
   const auto number = [](double value) { return static_cast<float>(value); };
   const Intrinsics& sensor = camera.pinhole.intrinsics;
   const double mm_per_w = 1000 * camera.unit_m;
@@ -130,16 +135,18 @@ ImageMetadata StandardAttributes(FrameId frame, const RenderCamera& camera, doub
                                                      (sensor.width_px * sensor.fy_px))}}};
   const double f_number = FNumber(camera.focal_length_w, 2 * camera.aperture.radius_w);
   if (std::isfinite(f_number)) attributes.emplace_back("aperture", number(f_number));
+  if (shutter) attributes.emplace_back("expTime", number(shutter->shutter.angle_deg / 360 / fps));
   return attributes;
 }
 
 ImageMetadata FileMetadata(const PlateNotes& notes, FrameFormat format, ColourSpace colours) {
   ImageMetadata metadata = FrameMetadata(notes.frame, notes.camera, notes.rays, notes.estimator,
-                                         notes.fps, notes.version);
+                                         notes.fps, notes.version, notes.shutter);
   if (notes.places_done)
     metadata.emplace_back("lf:finished_early_before_place", static_cast<int>(*notes.places_done));
   if (!IsExr(format)) return metadata;
-  for (auto& entry : StandardAttributes(notes.frame, notes.camera, notes.fps, colours))
+  for (auto& entry :
+       StandardAttributes(notes.frame, notes.camera, notes.fps, colours, notes.shutter))
     metadata.push_back(std::move(entry));
   return metadata;
 }

@@ -15,7 +15,8 @@ namespace lf {
 // in the unit of its value, if it has one. No entry is a time of day, so that equal frames have
 // equal files.
 ImageMetadata FrameMetadata(FrameId frame, const RenderCamera& camera, const FrameRays& rays,
-                            Estimator estimator, double fps, const std::string& version);
+                            Estimator estimator, double fps, const std::string& version,
+                            const std::optional<FrameShutter>& shutter);
 
 // Returns the entries that EXR files have under the names and types of OpenEXR's standard
 // attributes (ImfStandardAttributes.h).
@@ -27,9 +28,11 @@ ImageMetadata FrameMetadata(FrameId frame, const RenderCamera& camera, const Fra
 //                  g the focus distance
 //
 // screenWindowWidth, screenWindowCenter and pinholeFocalLength state the field of view; the
-// aperture is missing for a pinhole, because its f-number is infinite.
+// aperture is missing for a pinhole, because its f-number is infinite. expTime, the open time in
+// seconds, is there only if there is a shutter.
 ImageMetadata StandardAttributes(FrameId frame, const RenderCamera& camera, double fps,
-                                 ColourSpace colours);
+                                 ColourSpace colours,
+                                 const std::optional<FrameShutter>& shutter = {});
 
 // Returns all entries of the file of a frame: those of FrameMetadata() and, in EXR files,
 // StandardAttributes().

@@ -96,6 +96,20 @@ TEST(StandardAttributes, LensAndSensorAreInMillimetresAndTheFocusIsInMetres) {
             nullptr);
 }
 
+TEST(FileMetadata, StatesTheShutter) {
+  PlateNotes notes;
+  notes.camera = TurnedCamera();
+  notes.fps = 25;
+  const ImageMetadata without = FileMetadata(notes, FrameFormat::kExrHalf, ColourSpace::kRec709);
+  notes.shutter = FrameShutter{{180, 8}, ""};
+  const ImageMetadata with = FileMetadata(notes, FrameFormat::kExrHalf, ColourSpace::kRec709);
+  EXPECT_EQ(with.size(), without.size() + 3);
+  EXPECT_EQ(Get<double>(with, "lf:shutter_angle_deg"), 180);
+  EXPECT_EQ(Get<int>(with, "lf:shutter_samples"), 8);
+  EXPECT_EQ(Get<float>(with, "expTime"), 0.02F);
+  EXPECT_EQ(Find(without, "expTime"), nullptr);
+}
+
 TEST(FileMetadata, OnlyExrFilesHaveStandardAttributes) {
   PlateNotes notes;
   notes.camera = TurnedCamera();

@@ -282,7 +282,8 @@ class Merger {
                                                 const MergedFrame& frame) const {
     if (const auto difference = FirstDifference(film_before, FilmInputs())) return difference;
     const PlateNotes& notes = frame.plates.front().notes;
-    return FirstDifference(frame.report->camera, InputsOfCamera(notes.frame, notes.camera));
+    return FirstDifference(frame.report->camera,
+                           InputsOfCamera(notes.frame, notes.camera, notes.shutter));
   }
 
   Result<void> WriteFrameOf(MergedFrame* frame) {

@@ -237,7 +237,10 @@ Result<void> Renderer::CheckAnyContributes(std::span<const FrameId> frames) cons
   // these.
   if (setup_->film().lens_weights != LensWeights::kNone) return {};
   std::vector<RenderCamera> cameras;
-  for (const FrameId frame : frames) cameras.push_back(setup_->path().Camera(frame));
+  for (const FrameId frame : frames) {
+    const std::span<const RenderCamera> instants = setup_->path().Instants(frame);
+    cameras.insert(cameras.end(), instants.begin(), instants.end());
+  }
   const bool any_contributes =
       !SelectImages(setup_->index(), cameras, setup_->Select(), pool_).empty();
   if (IsStopped()) return Interrupted();

@@ -196,7 +196,7 @@ Result<FrameReport> RenderPass::WriteFiles(size_t f, const std::optional<Complet
     FrameReport report;
     report.frame = id;
     report.rays = renderer_.Progress(f).rays;
-    report.camera = InputsOfCamera(id, context_.setup.path().Camera(id));
+    report.camera = InputsOfFrame(context_.setup.path(), id);
     return report;
   }
   LF_ASSIGN_OR_RETURN(FrameReport report,
@@ -211,7 +211,8 @@ Result<void> RenderPass::WriteFinishedPlate(size_t f, std::filesystem::path path
   progress.places_done = renderer_.PlaceOfEnd(f);  // must not depend on the division into passes
   PlateEntries text = context_.state.PlateText(renderer_.id(f), progress, renderer_.moments(f));
   PlateNotes notes = NotesOf(f);
-  std::vector<const FrameLens*> lenses = {&renderer_.lens(f)};
+  std::vector<const FrameLens*> lenses;
+  for (const FrameLens& lens : renderer_.lenses(f)) lenses.push_back(&lens);
   if (const FrameLens* const all = renderer_.all_lens(f)) lenses.push_back(all);
   notes.skipped = SkippedOf(
       Totals().skipped, setup.index(),

@@ -131,6 +131,23 @@ Mat3 Mat3Of(std::span<const double> rows) {
   return matrix;
 }
 
+// Returns the shutter in the text that TextOf() writes; nullopt if the text is not of this form.
+std::optional<FrameShutter> ShutterIn(const std::string& text) {
+  FrameShutter read;
+  const char* const end = text.data() + text.size();
+  const auto angle = std::from_chars(text.data(), end, read.shutter.angle_deg);
+  if (angle.ec != std::errc{} || angle.ptr == end || *angle.ptr != ' ') return std::nullopt;
+  const auto samples = std::from_chars(angle.ptr + 1, end, read.shutter.samples);
+  if (samples.ec != std::errc{} || samples.ptr == end || *samples.ptr != ' ') return std::nullopt;
+  read.cameras.assign(samples.ptr + 1, end);
+  const bool is_hash = read.cameras.size() == 16 &&
+                       read.cameras.find_first_not_of("0123456789abcdef") == std::string::npos;
+  const bool is_shutter = read.shutter.angle_deg >= 0 && read.shutter.angle_deg <= 360 &&
+                          read.shutter.exists() && read.shutter.samples <= kMostShutterSamples;
+  if (!is_hash || !is_shutter) return std::nullopt;
+  return read;
+}
+
 Vec3 Vec3Of(std::span<const double> v) { return {v[0], v[1], v[2]}; }
 
 }  // namespace
@@ -173,6 +190,10 @@ PlateEntries TextOf(const PlateNotes& notes) {
     text.emplace_back("sheet.lens_shape", words({camera.aperture.ratio, camera.aperture.roundness,
                                                  camera.hood.distance_w, camera.hood.radius_w}));
   if (camera.transmission) text.emplace_back("sheet.transmission", camera.transmission->Text());
+  if (notes.shutter)
+    text.emplace_back("sheet.shutter",
+                      fmt::format("{} {} {}", notes.shutter->shutter.angle_deg,
+                                  notes.shutter->shutter.samples, notes.shutter->cameras));
   if (notes.rays.virtual_count > 0)
     text.emplace_back("sheet.virtual_lf_images", fmt::format("{}", notes.rays.virtual_count));
   if (notes.places_done)
@@ -243,6 +264,13 @@ Result<PlateNotes> PlateNotesOf(const PlateEntries& entries, int width_px, int h
   notes.camera.focus_tilt = {lens[4], lens[5]};
   notes.camera.unit_m = lens[6];
   notes.fps = reader.Numbers("sheet.fps", 1)[0];
+  if (FindEntry(entries, "sheet.shutter") != nullptr) {
+    notes.shutter = ShutterIn(reader.Text("sheet.shutter"));
+    if (!notes.shutter)
+      reader.Fault(
+          "sheet.shutter",
+          fmt::format("an angle from 0 to 360, 2 to {} samples, and a hash", kMostShutterSamples));
+  }
   const auto estimator =
       ValueNamed(reader.Text("sheet.estimator"), {Estimator::kNearest, Estimator::kBilinear});
   if (!estimator) reader.Fault("sheet.estimator", "nearest or bilinear");

@@ -14,6 +14,7 @@
 #include "lf/film/develop/develop.h"
 #include "lf/film/plate/plate_file.h"
 #include "lf/render/collect/collect.h"
+#include "lf/render/state/run_inputs.h"
 #include "lf/render/state/shard.h"
 #include "lf/selection/lens_weights/lens_coverage.h"
 
@@ -23,6 +24,7 @@ struct PlateNotes {
   FrameId frame;
   RenderCamera camera;
   double fps = 0;
+  std::optional<FrameShutter> shutter = std::nullopt;  // unset if the path has none
   Estimator estimator = Estimator::kBilinear;
   std::string version;  // version of the program
   FrameRays rays;       // rays in the plate

@@ -60,6 +60,27 @@ TEST(PlateNotes, ComesBackAsTheSameBits) {
   EXPECT_EQ(read->weighed->effective_counts.pixels(), notes.weighed->effective_counts.pixels());
 }
 
+TEST(PlateNotes, TheShutterComesBack) {
+  PlateNotes notes = Notes();
+  EXPECT_EQ(FindEntry(TextOf(notes), "sheet.shutter"), nullptr);
+  notes.shutter = FrameShutter{{172.8, 8}, "0123456789abcdef"};
+  const Result<PlateNotes> read = PlateNotesOf(TextOf(notes), 96, 64, "p");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->shutter->shutter.angle_deg, 172.8);
+  EXPECT_EQ(read->shutter->shutter.samples, 8);
+  EXPECT_EQ(read->shutter->cameras, "0123456789abcdef");
+  for (const char* const wrong :
+       {"", "180", "180 8", "180 8 ", "361 8 0123456789abcdef", "-1 8 0123456789abcdef",
+        "180 1 0123456789abcdef", "180 65 0123456789abcdef", "180 8 0123456789abcdeg",
+        "180 8 0123456789abcdef0", "180  8 0123456789abcdef", "nan 8 0123456789abcdef"}) {
+    PlateEntries entries = TextOf(Notes());
+    entries.emplace_back("sheet.shutter", wrong);
+    const Result<PlateNotes> fault = PlateNotesOf(entries, 96, 64, "p");
+    ASSERT_FALSE(fault) << wrong;
+    EXPECT_NE(fault.error().message.find("sheet.shutter"), std::string::npos);
+  }
+}
+
 TEST(PlateNotes, NamesOfLfImagesThatAreMissingComeBackInAnyBytes) {
   PlateNotes notes = Notes();
   notes.skipped = {"a, b.png", "c\n\"d\".png", "\xc3\xa9.png"};

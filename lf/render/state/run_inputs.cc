@@ -118,21 +118,39 @@ RunInputs InputsOfRays(const LightFieldIdentity& light_field, const RadianceEnco
   return inputs;
 }
 
-RunInputs InputsOfCamera(FrameId frame, const RenderCamera& camera) {
+std::optional<FrameShutter> ShutterOf(const CameraPath& path, FrameId frame) {
+  if (!path.shutter.exists()) return std::nullopt;
+  ValueHasher hasher;
+  for (const RenderCamera& camera : path.Instants(frame)) hasher.Add(CameraHash(camera));
+  return FrameShutter{path.shutter, hasher.Text()};
+}
+
+RunInputs InputsOfFrame(const CameraPath& path, FrameId frame) {
+  return InputsOfCamera(frame, path.Camera(frame), ShutterOf(path, frame));
+}
+
+RunInputs InputsOfCamera(FrameId frame, const RenderCamera& camera,
+                         const std::optional<FrameShutter>& shutter) {
   const PinholeCamera& pinhole = camera.pinhole;
   const Intrinsics& k = pinhole.intrinsics;
-  return {{"frame", fmt::format("{}", frame.value)},
-          {"frame.resolution", fmt::format("{} {}", k.width_px, k.height_px)},
-          {"frame.fx_px", fmt::format("{}", k.fx_px)},
-          {"frame.position", Text(pinhole.CentreWorld())},
-          {"frame.forward", Text(pinhole.ForwardWorld())},
-          {"frame.up", Text(pinhole.UpWorld())},
-          {"frame.aperture_diameter_w", fmt::format("{}", 2 * camera.aperture.radius_w)},
-          {"frame.blades", fmt::format("{}", camera.aperture.blades)},
-          {"frame.focus_distance_w", fmt::format("{}", camera.focus_distance_w)},
-          {"frame.focus_plane",
-           fmt::format("{} {}", Text(camera.focus_plane.normal), camera.focus_plane.offset_w)},
-          {"frame.camera", CameraHash(camera)}};
+  RunInputs inputs = {
+      {"frame", fmt::format("{}", frame.value)},
+      {"frame.resolution", fmt::format("{} {}", k.width_px, k.height_px)},
+      {"frame.fx_px", fmt::format("{}", k.fx_px)},
+      {"frame.position", Text(pinhole.CentreWorld())},
+      {"frame.forward", Text(pinhole.ForwardWorld())},
+      {"frame.up", Text(pinhole.UpWorld())},
+      {"frame.aperture_diameter_w", fmt::format("{}", 2 * camera.aperture.radius_w)},
+      {"frame.blades", fmt::format("{}", camera.aperture.blades)},
+      {"frame.focus_distance_w", fmt::format("{}", camera.focus_distance_w)},
+      {"frame.focus_plane",
+       fmt::format("{} {}", Text(camera.focus_plane.normal), camera.focus_plane.offset_w)},
+      {"frame.camera", CameraHash(camera)}};
+  if (shutter)
+    inputs.emplace_back("frame.shutter",
+                        fmt::format("{} degrees, {} samples ({})", shutter->shutter.angle_deg,
+                                    shutter->shutter.samples, shutter->cameras));
+  return inputs;
 }
 
 RunInputs InputsOfPicture(const RunChoices& choices) {
@@ -150,6 +168,7 @@ RunInputs InputsOfPicture(const RunChoices& choices) {
 std::string HashOfCameras(const CameraPath& path) {
   ValueHasher hasher;
   for (const RenderCamera& camera : path.cameras) hasher.Add(CameraHash(camera));
+  for (const RenderCamera& camera : path.instants) hasher.Add(CameraHash(camera));
   return hasher.Text();
 }
 

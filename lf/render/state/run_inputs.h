@@ -64,9 +64,20 @@ inline constexpr int kMosaicReadingVersion = 2;
 RunInputs InputsOfRays(const LightFieldIdentity& light_field, const RadianceEncoding& encoding,
                        const RunChoices& choices);
 
-// Returns the inputs of one frame: its number, readable values of its camera, and a hash of the
-// exact camera.
-RunInputs InputsOfCamera(FrameId frame, const RenderCamera& camera);
+// The shutter of a frame, and a hash of the exact cameras of its instants.
+struct FrameShutter {
+  Shutter shutter;
+  std::string cameras;
+};
+// Returns nullopt if the path has no shutter.
+std::optional<FrameShutter> ShutterOf(const CameraPath& path, FrameId frame);
+
+// Returns the inputs of one frame: its number, readable values of its camera, a hash of the exact
+// camera, and the shutter, if there is one.
+RunInputs InputsOfCamera(FrameId frame, const RenderCamera& camera,
+                         const std::optional<FrameShutter>& shutter = {});
+// Returns the inputs of a frame of a path.
+RunInputs InputsOfFrame(const CameraPath& path, FrameId frame);
 
 // Returns the inputs that decide only the pictures.
 RunInputs InputsOfPicture(const RunChoices& choices);

@@ -18,6 +18,29 @@ RunInputs AllInputs(const LightField& field, const RunChoices& choices,
   return all;
 }
 
+TEST(RunInputs, AnotherShutterIsAnotherInput) {
+  CameraPath path;
+  path.cameras = testing::NoiseFrames();
+  const RunInputs without = InputsOfFrame(path, FrameId{2});
+  const std::string cameras = HashOfCameras(path);
+  EXPECT_EQ(FirstDifference(without, InputsOfCamera(FrameId{2}, path.cameras[1])), std::nullopt);
+  path.shutter = {180, 2};
+  for (const RenderCamera& camera : path.cameras)
+    path.instants.insert(path.instants.end(), 2, camera);
+  const RunInputs with = InputsOfFrame(path, FrameId{2});
+  EXPECT_EQ(FirstDifference(without, with)->key, "frame.shutter");
+  EXPECT_NE(HashOfCameras(path), cameras);
+  CameraPath moved = path, longer = path;
+  moved.instants[3].pinhole.cam_from_world.translation.x() += 1e-9;
+  longer.shutter.angle_deg = 90;
+  for (const CameraPath* other : {&moved, &longer}) {
+    EXPECT_EQ(FirstDifference(with, InputsOfFrame(*other, FrameId{2}))->key, "frame.shutter");
+    EXPECT_EQ(FirstDifference(InputsOfFrame(path, FrameId{1}), InputsOfFrame(*other, FrameId{1}))
+                  .has_value(),
+              other == &longer);
+  }
+}
+
 TEST(RunInputs, EveryInputMakesADifferenceAndItsKeyNamesIt) {
   struct Inputs {
     Inputs() { choices.reading.estimator = Estimator::kBilinear; }

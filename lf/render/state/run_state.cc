@@ -286,7 +286,7 @@ Result<void> RunState::Check(const std::string& place, FrameId frame, const RunI
         place, frame.value, path_.frame_count(), kAdvice));
   RunInputs wanted = options_.rays;
   if (has_picture) wanted = Joined(wanted, options_.picture);
-  wanted = Joined(wanted, InputsOfCamera(frame, path_.Camera(frame)));
+  wanted = Joined(wanted, InputsOfFrame(path_, frame));
   if (const auto difference = FirstDifference(recorded, wanted))
     return UsageError(fmt::format("{}: {}, so that --resume cannot continue; {}", place,
                                   difference->Text("was made with", "this call has"), kAdvice));
@@ -295,7 +295,7 @@ Result<void> RunState::Check(const std::string& place, FrameId frame, const RunI
 
 PlateEntries RunState::PlateText(FrameId frame, const FrameProgress& progress,
                                  const NoiseMoments* moments) const {
-  PlateEntries text = Joined(options_.rays, InputsOfCamera(frame, path_.Camera(frame)));
+  PlateEntries text = Joined(options_.rays, InputsOfFrame(path_, frame));
   text.emplace_back(kPlacesDone, fmt::format("{}", progress.places_done));
   text.emplace_back("progress.lf_images", fmt::format("{}", progress.rays.image_count));
   text.emplace_back("progress.rays_tested", fmt::format("{}", progress.rays.tested_count));

@@ -320,7 +320,10 @@ void FrameWeights::SetWeights(const std::vector<Node>& nodes) {
   const double most = std::min(*std::max_element(shares.begin(), shares.end()),
                                kMostSmallShares * ShareOfFirstTenth(shares));
   const double scale = kUnit * std::min(kMaxWeight / most, kMostTogether / together);
-  for (size_t n = 0; n < nodes.size(); ++n)
+  int64_t sum = 0;
+  size_t node_count = 0;  // number of nodes with a share
+  for (size_t n = 0; n < nodes.size(); ++n) {
+    node_count += nodes[n].empty() ? 0 : 1;
     for (const CameraShare& share : nodes[n]) {
       farthest_w_ = std::max(farthest_w_, share.distance_w);
       size_t& begin = nodes_begin_[share.camera];
@@ -330,7 +333,20 @@ void FrameWeights::SetWeights(const std::vector<Node>& nodes) {
       }
       weights_[begin + n] = static_cast<uint16_t>(
           std::min(std::lround(share.share * scale), std::lround(kUnit * kMaxWeight)));
+      if (!keeps_opening_ || share.distance_w <= radius_w_) sum += weights_[begin + n];
     }
+  }
+  sum_of_weights_ = static_cast<double>(sum) / (kUnit * static_cast<double>(node_count));
+}
+
+double FrameWeights::LargestWeight() const {
+  return weights_.empty() ? 0 : *std::max_element(weights_.begin(), weights_.end()) / kUnit;
+}
+
+void FrameWeights::Reduce(double factor) {
+  LF_CHECK(factor >= 0 && factor <= 1);
+  for (uint16_t& weight : weights_) weight = static_cast<uint16_t>(std::lround(factor * weight));
+  sum_of_weights_ *= factor;
 }
 
 std::optional<uint8_t> FrameWeights::ConstantOf(size_t camera) const {

@@ -74,6 +74,15 @@ class FrameWeights {
   void OfRow(size_t camera, int end_x, int end_y, int count, uint8_t* weights) const;
   WeightBlocks BlocksOf(size_t camera) const;
 
+  // Returns the sum of the weights of all LF cameras whose rays pass through the opening, as the
+  // mean over the nodes that have any; 0 if none has.
+  double SumOfWeights() const { return sum_of_weights_; }
+  // Returns the largest weight at any node.
+  double LargestWeight() const;
+  // Multiplies all weights by a factor of at most 1, and rounds them as before. The frame stays the
+  // same but for this rounding, and its weights count less beside those of other instants.
+  void Reduce(double factor);
+
   // True if the LF camera has a share above 0 at some node.
   bool TakesPart(size_t camera) const { return nodes_begin_[camera] != kNone; }
 
@@ -152,6 +161,7 @@ class FrameWeights {
   int height_px_;
   int columns_ = 1;
   int rows_ = 1;
+  double sum_of_weights_ = 0;
   double farthest_w_ = 0;             // largest CameraShare::distance_w at any node
   double step_w_ = 0;                 // largest movement of lens points from one node to the next
   std::vector<Place> places_across_;  // [end_x] of a block: position of its middle, across

@@ -1,0 +1,74 @@
+// Finds the depth of every element of a frame by a plane sweep over the LF images behind its lens,
+// and makes a picture in which everything is in focus.
+//
+// Surfaces without texture, beyond the range of distances, or seen by too few LF cameras have no
+// depth: nothing is invented. In front of a surface without texture, the borders of a near surface
+// are wider by up to two elements.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "lf/camera/render_camera.h"
+#include "lf/core/geometry.h"
+#include "lf/core/image.h"
+#include "lf/core/parallel.h"
+#include "lf/core/result.h"
+#include "lf/film/plate/sensor_plate.h"
+#include "lf/render/collect/collect.h"
+#include "lf/render/state/plate_notes.h"
+#include "lf/selection/image_index.h"
+#include "lf/storage/load/lf_image_store.h"
+
+namespace lf {
+
+struct DepthMapOptions {
+  DepthRange range;        // distances along the optical axis; 0 < near_w < far_w
+  size_t plane_count = 0;  // distances that are tested; 0: as many as PlanesFor() returns
+  int window_radius = 2;   // elements; costs are means over windows of 2 r + 1 elements
+  // An element whose confidence is below this has no depth.
+  double least_confidence = 0.5;
+  size_t most_views = 200;  // largest number of LF images, spread evenly over the lens; 3 to 4096
+  size_t memory_bytes = size_t{8} << 30;    // bounds the LF images in memory
+  bool strict = false;                      // true: a broken LF image is an error
+  const std::atomic<bool>* stop = nullptr;  // once true, the function ends; may be null
+};
+inline constexpr size_t kMostDepthPlanes = 1024;
+
+struct DepthMap {
+  // [height][width] distance along the optical axis in world units; NaN: unknown.
+  Image<float> depth_w;
+  // [height][width] from 0 (no distance is better than others) to 1, also of unknown elements.
+  Image<float> confidence;
+  // [height][width] depth_w with the unknown elements filled from those around them.
+  Image<float> filled_w;
+  // Light of the elements at filled_w, of a pinhole, and what DevelopFrame() needs to develop it.
+  SensorPlate sharp{0, 0};
+  PlateNotes notes;
+  std::vector<double> planes_w;  // distances of the sweep
+  size_t view_count = 0;         // LF images that were compared
+  // Number of elements with a depth.
+  size_t known_count = 0;
+  std::vector<SkippedImage> skipped;  // broken LF images
+};
+
+// Returns the number of planes between which a point moves by at most half an element in the LF
+// images at the rim of a lens of this radius, from 8 to 256.
+size_t PlanesFor(const RenderCamera& frame, const DepthRange& range, double lens_radius_w);
+
+// Makes the depth map of a frame. Its lens says which LF cameras are compared; a lens with fewer
+// than 12 is widened until it has as many. Virtual LF images are left out. The result has the same
+// bits for any number of threads and any memory_bytes.
+//   index     of the whole light field
+//   store     must load RGB (Mosaics::kToRgb)
+//   progress  called with the share that is done, from 0 to 1, by any thread; may be empty
+// kUsage: options out of range. kInput: fewer than 3 LF cameras see the scene, or a broken LF image
+// with `strict`. kOutput: the machine lacks something. kInterrupted: *stop became true.
+Result<DepthMap> MakeDepthMap(const ImageIndex& index, const LfImageStore& store, FrameId id,
+                              const RenderCamera& frame, const DepthMapOptions& options,
+                              ThreadPool& pool, const std::function<void(double)>& progress);
+
+}  // namespace lf

@@ -1,0 +1,253 @@
+#include "lf/film/develop/view_film.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "lf/core/file.h"
+#include "lf/core/log.h"
+#include "lf/film/develop/join_views.h"
+#include "lf/film/develop/video.h"
+#include "lf/film/develop/view_frames.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int64_t kMostPixels = int64_t{1} << 30;
+constexpr double kDefaultFps = 30;
+
+// One picture or video that is written.
+struct Target {
+  fs::path file;
+  std::span<const ViewMoment> moments;  // one for a picture
+  std::optional<int> eye = {};          // kLeftRight: index of the view that is taken
+  bool is_kept = false;
+};
+
+class FilmWriter {
+ public:
+  FilmWriter(const ViewFilmOptions& options, ThreadPool& pool,
+             const std::function<void(size_t, size_t)>& on_progress)
+      : options_(options), pool_(pool), on_progress_(on_progress) {}
+
+  Result<ViewFilmReport> Write(std::span<const fs::path> frames);
+
+ private:
+  bool is_video() const { return options_.output.extension() == ".mp4"; }
+  bool is_left_right() const { return options_.layout == ViewLayout::kLeftRight; }
+  JoinOptions join() const { return {options_.layout, options_.grid, is_video()}; }
+
+  Result<void> CheckOutput() const;
+  Result<void> CheckShape() const;
+  Result<void> PlanTargets();
+  Result<void> CheckTarget(Target* target) const;
+  Result<void> ChooseRate();
+  Result<void> WriteTarget(const Target& target);
+  Result<void> WriteVideo(const Target& target);
+  Result<void> CopyFrame(const Target& target);
+  Result<StoredImage> Join(const ViewMoment& moment, std::optional<int> eye);
+  bool CountView();
+
+  const ViewFilmOptions& options_;
+  ThreadPool& pool_;
+  const std::function<void(size_t, size_t)>& on_progress_;
+  std::vector<ViewMoment> moments_;
+  PictureHeader header_;
+  std::vector<Target> targets_;
+  ViewFilmReport report_;
+  std::mutex mutex_;  // guards the two below
+  size_t done_ = 0;
+  size_t total_ = 0;
+};
+
+Error Interrupted() {
+  return {ErrorKind::kInterrupted,
+          "interrupted; the files that are complete stay, and --resume writes the others"};
+}
+
+// Checks what does not depend on the headers of the frames.
+Result<void> FilmWriter::CheckOutput() const {
+  const fs::path& out = options_.output;
+  const fs::path of_frames = moments_[0].files[0].extension();
+  if (!is_video() && out.extension() != of_frames)
+    return UsageError(
+        fmt::format("-o {}: its extension is \"{}\": expected \"{}\" as the frames have, or "
+                    "\".mp4\" for a video",
+                    out.string(), out.extension().string(), of_frames.string()));
+  if (options_.fps && !is_video())
+    return UsageError(fmt::format(
+        "--fps is for videos, but {} is a picture: leave it out, or give a name that ends in .mp4",
+        out.string()));
+  const fs::path folder = out.has_parent_path() ? out.parent_path() : ".";
+  std::error_code error;
+  if (!fs::is_directory(folder, error))
+    return OutputError(
+        fmt::format("-o {}: the folder {} does not exist: make it, or give another name",
+                    out.string(), folder.string()));
+  if (is_video()) return CheckVideoTool();
+  return {};
+}
+
+Result<void> FilmWriter::CheckShape() const {
+  const int64_t pixels = int64_t{report_.width} * report_.height;
+  if (pixels > kMostPixels)
+    return InputError(fmt::format(
+        "{} views of {} x {} pixels would become a picture of {} pixels: expected at "
+        "most {}; render smaller views",
+        report_.view_count, header_.info.width, header_.info.height, pixels, kMostPixels));
+  // A video of odd size is cropped by a pixel, which would move the tiles of a quilt.
+  if (is_video() && options_.layout == ViewLayout::kQuilt &&
+      (report_.width % 2 != 0 || report_.height % 2 != 0))
+    return InputError(
+        fmt::format("{} x {} views of {} x {} pixels become a quilt of {} x {}, and a video needs "
+                    "an even width and height: render views of even size",
+                    options_.grid.columns, options_.grid.rows, header_.info.width,
+                    header_.info.height, report_.width, report_.height));
+  return {};
+}
+
+// Checks that the file may be written, and decides whether it is kept.
+Result<void> FilmWriter::CheckTarget(Target* target) const {
+  std::error_code error;
+  if (!fs::exists(target->file, error)) return {};
+  for (const ViewMoment& moment : moments_)
+    for (const fs::path& frame : moment.files)
+      if (fs::equivalent(frame, target->file, error))
+        return UsageError(fmt::format("-o {}: would replace the frame {}: give another name",
+                                      options_.output.string(), frame.string()));
+  target->is_kept = options_.resume;
+  if (options_.resume || options_.overwrite) return {};
+  return UsageError(fmt::format(
+      "{}: exists: give another name, keep what exists with --resume, or replace it with "
+      "--overwrite",
+      target->file.string()));
+}
+
+Result<void> FilmWriter::PlanTargets() {
+  const int eye_count = is_left_right() ? 2 : 1;
+  const std::span<const ViewMoment> moments = moments_;
+  const size_t picture_count = is_video() ? 1 : moments.size();
+  for (size_t i = 0; i < picture_count; ++i)
+    for (int eye = 0; eye < eye_count; ++eye) {
+      ViewFileName name = {options_.layout, options_.grid, header_.info.width, header_.info.height};
+      if (picture_count > 1) name.moment = moments[i].number;
+      name.eye = eye;
+      Target target;
+      LF_ASSIGN_OR_RETURN(target.file, PathOfViews(options_.output, name));
+      target.moments = is_video() ? moments : moments.subspan(i, 1);
+      if (is_left_right()) target.eye = eye;
+      LF_RETURN_IF_ERROR(CheckTarget(&target));
+      targets_.push_back(std::move(target));
+    }
+  for (const Target& target : targets_) {
+    report_.files.push_back(target.file);
+    const size_t views = target.eye ? 1 : static_cast<size_t>(report_.view_count);
+    total_ += target.is_kept ? 0 : target.moments.size() * views;
+    report_.kept_count += target.is_kept ? 1 : 0;
+  }
+  return {};
+}
+
+Result<void> FilmWriter::ChooseRate() {
+  if (!is_video()) return {};
+  report_.fps = options_.fps ? options_.fps : header_.colours.frames_per_second;
+  if (report_.fps) return {};
+  report_.fps = kDefaultFps;
+  LogWarning("{}: states no frames per second ({} are used: --fps)", moments_[0].files[0].string(),
+             kDefaultFps);
+  return {};
+}
+
+// Counts a view that has been joined. Returns false if the film is interrupted.
+bool FilmWriter::CountView() {
+  const std::lock_guard lock(mutex_);
+  ++done_;
+  if (on_progress_) on_progress_(done_, total_);
+  return !(options_.is_interrupted && options_.is_interrupted());
+}
+
+Result<StoredImage> FilmWriter::Join(const ViewMoment& moment, std::optional<int> eye) {
+  std::span<const fs::path> files = moment.files;
+  JoinOptions options = join();
+  if (eye) {
+    // A single view is a quilt of one tile.
+    files = files.subspan(static_cast<size_t>(*eye), 1);
+    options.layout = ViewLayout::kQuilt;
+    options.grid = {};
+  }
+  return JoinViews(files, header_, options, pool_, [this] { return CountView(); });
+}
+
+Result<void> FilmWriter::WriteVideo(const Target& target) {
+  LF_ASSIGN_OR_RETURN(const std::unique_ptr<VideoWriter> video,
+                      VideoWriter::Open(target.file, report_.width, report_.height, *report_.fps));
+  for (const ViewMoment& moment : target.moments) {
+    LF_ASSIGN_OR_RETURN(const StoredImage joined, Join(moment, target.eye));
+    LF_RETURN_IF_ERROR(video->Add(std::get<Image<uint8_t>>(joined)));
+  }
+  return video->Close();
+}
+
+Result<void> FilmWriter::CopyFrame(const Target& target) {
+  const fs::path& frame = target.moments[0].files[static_cast<size_t>(*target.eye)];
+  LF_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(frame));
+  LF_RETURN_IF_ERROR(WriteFileAtomically(target.file, bytes));
+  if (!CountView()) return Interrupted();
+  return {};
+}
+
+Result<void> FilmWriter::WriteTarget(const Target& target) {
+  if (is_video()) return WriteVideo(target);
+  if (target.eye) return CopyFrame(target);
+  const ViewMoment& moment = target.moments[0];
+  LF_ASSIGN_OR_RETURN(const StoredImage joined, Join(moment, std::nullopt));
+  LF_ASSIGN_OR_RETURN(const std::vector<std::string> names,
+                      JoinedChannels(header_, join(), moment.files[0].string()));
+  const ImageMetadata metadata = {
+      {"lf:layout", options_.layout == ViewLayout::kQuilt
+                        ? fmt::format("quilt {}x{}", options_.grid.columns, options_.grid.rows)
+                        : std::string(NameOf(options_.layout))},
+      {"imageCounter", moment.number}};
+  return WriteStoredImage(target.file, joined, names, header_.colours, metadata,
+                          options_.is_interrupted);
+}
+
+Result<ViewFilmReport> FilmWriter::Write(std::span<const fs::path> frames) {
+  report_.view_count = ViewCountOf(options_.layout, options_.grid);
+  LF_ASSIGN_OR_RETURN(moments_, FindViewMoments(frames, report_.view_count));
+  report_.moment_count = moments_.size();
+  LF_RETURN_IF_ERROR(CheckOutput());
+  LF_ASSIGN_OR_RETURN(header_, CommonHeader(moments_, pool_));
+  if (is_video() || !is_left_right())
+    LF_RETURN_IF_ERROR(JoinedChannels(header_, join(), moments_[0].files[0].string()));
+  const ViewGrid grid = GridOf(options_.layout, options_.grid);
+  report_.width = grid.columns * header_.info.width;
+  report_.height = grid.rows * header_.info.height;
+  LF_RETURN_IF_ERROR(CheckShape());
+  LF_RETURN_IF_ERROR(PlanTargets());
+  LF_RETURN_IF_ERROR(ChooseRate());
+  for (const Target& target : targets_) {
+    if (target.is_kept) continue;
+    if (options_.is_interrupted && options_.is_interrupted()) return Interrupted();
+    const Result<void> written = WriteTarget(target);
+    if (!written && written.error().kind == ErrorKind::kInterrupted) return Interrupted();
+    if (!written) return written.error();
+  }
+  return report_;
+}
+
+}  // namespace
+
+Result<ViewFilmReport> WriteViewFilm(std::span<const fs::path> frames,
+                                     const ViewFilmOptions& options, ThreadPool& pool,
+                                     const std::function<void(size_t, size_t)>& on_progress) {
+  return FilmWriter(options, pool, on_progress).Write(frames);
+}
+
+}  // namespace lf

@@ -1,0 +1,36 @@
+// Finds the frames of a film of views, and divides them into moments.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "lf/core/parallel.h"
+#include "lf/core/result.h"
+#include "lf/pixels/files/picture_header.h"
+
+namespace lf {
+
+// The frames of all views at one moment of a film.
+struct ViewMoment {
+  int number = 1;                            // of the moment in the film, from 1
+  std::vector<std::filesystem::path> files;  // one for each view, left to right
+};
+
+// Returns the moments of a film whose frames are in the order that lfpath gives them: all views of
+// moment 1, then those of moment 2, and so on.
+//   paths       a folder, whose files frame_0001.png or frame_0001.exr, ... are taken; or the files
+//               of the frames, in their order
+//   view_count  views of each moment
+// Frames of a folder may begin and end with any moment. kInput: there are no frames, a frame of a
+// view is missing, or a folder has frames of both formats. kUsage: several folders, folders beside
+// files, files that are no .png and no .exr, or of both, or a number of files that is no multiple
+// of view_count.
+Result<std::vector<ViewMoment>> FindViewMoments(std::span<const std::filesystem::path> paths,
+                                                int view_count);
+
+// Reads the headers of all frames, and returns the header of the first. kInput: a file cannot be
+// read, or differs from the first in size, type, channels or colours.
+Result<PictureHeader> CommonHeader(std::span<const ViewMoment> moments, ThreadPool& pool);
+
+}  // namespace lf

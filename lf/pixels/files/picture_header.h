@@ -1,0 +1,54 @@
+// Reads the statements of a picture's file about its colours and its film, and writes a picture
+// with the same statements: for programs that join pictures.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lf/core/result.h"
+#include "lf/pixels/files/image_file.h"
+
+namespace lf {
+
+inline constexpr const char* kFrameRateText = "lf:fps";
+
+struct ColourFacts {
+  // Type of the values. kHalf if R, G, B and A of an EXR file are half; kFloat if some of them are
+  // not, and for other files of floats.
+  PixelType type = PixelType::kUint8;
+  // EXR: x and y of red, green, blue and white.
+  std::optional<std::array<float, 8>> chromaticities = {};
+  // EXR: the attribute framesPerSecond. PNG: the text with this key, which must be a number above
+  // 0.
+  std::optional<double> frames_per_second = {};
+  bool is_srgb = false;  // PNG: the file states that its values are sRGB
+  friend bool operator==(const ColourFacts&, const ColourFacts&) = default;
+};
+
+struct PictureHeader {
+  ImageFileInfo info;
+  ColourFacts colours;
+};
+
+// Reads the header alone. Errors as for ReadImageInfo().
+Result<PictureHeader> ReadPictureHeader(const std::filesystem::path& path);
+// Reads the header of a file that is in memory; messages call the file `name`.
+Result<PictureHeader> ReadPictureHeaderBytes(std::string_view bytes, const std::string& name);
+
+// Writes pixels as they are, atomically, as a file that states these facts; the extension of `path`
+// chooses the format. Errors as for WriteImage().
+//   pixels          of the type that colours.type stands for
+//   channel_names   as for WriteImage()
+//   metadata        further entries
+//   is_interrupted  as for WriteImage()
+Result<void> WriteStoredImage(const std::filesystem::path& path, const StoredImage& pixels,
+                              const std::vector<std::string>& channel_names,
+                              const ColourFacts& colours, const ImageMetadata& metadata = {},
+                              const std::function<bool()>& is_interrupted = {});
+
+}  // namespace lf

@@ -1,0 +1,86 @@
+#include "lf/pixels/files/picture_header.h"
+
+#include <gtest/gtest.h>
+
+#include "lf/pixels/files/test_folder.h"
+
+namespace lf {
+namespace {
+
+using PictureHeaderTest = FolderTest;
+
+constexpr std::array<float, 8> kSomePrimaries = {0.7f, 0.3f, 0.2f, 0.7f, 0.1f, 0.1f, 0.3f, 0.3f};
+
+// Expects that a picture that is written with these facts states them, and has the same pixels.
+void ExpectKept(const std::filesystem::path& path, const StoredImage& pixels,
+                const std::vector<std::string>& names, const ColourFacts& colours) {
+  const auto written =
+      WriteStoredImage(path, pixels, names, colours, {{"lf:more", std::string("yes")}});
+  ASSERT_TRUE(written) << written.error().message;
+  const auto header = ReadPictureHeader(path);
+  ASSERT_TRUE(header) << header.error().message;
+  EXPECT_EQ(header->colours, colours);
+  EXPECT_EQ(header->info.channel_names, names);
+  const StoredImage read = ReadImage(path).value();
+  ASSERT_EQ(read.index(), pixels.index());
+  std::visit(
+      [&](const auto& image) {
+        using Kind = std::remove_cvref_t<decltype(image)>;
+        EXPECT_EQ(image.pixels(), std::get<Kind>(pixels).pixels());
+      },
+      read);
+}
+
+TEST_F(PictureHeaderTest, FactsAndPixelsOfExrFilesAreKept) {
+  Image<float> image(5, 3, 4);
+  for (int i = 0; i < 60; ++i) image.pixels()[i] = static_cast<float>(i) / 8;  // exact as half
+  for (const PixelType type : {PixelType::kHalf, PixelType::kFloat}) {
+    ExpectKept(folder_ / "a.exr", image, {"R", "G", "B", "A"}, {type, kSomePrimaries, 12.5});
+    ExpectKept(folder_ / "b.exr", image, {"R", "G", "B", "A"}, {type});
+  }
+}
+
+TEST_F(PictureHeaderTest, FactsAndPixelsOfPngFilesAreKept) {
+  for (const bool is_srgb : {true, false}) {
+    ColourFacts facts = {PixelType::kUint8, std::nullopt, 23.976, is_srgb};
+    ExpectKept(folder_ / "a.png", NoiseImage<uint8_t>(7, 4, 3), {"R", "G", "B"}, facts);
+    facts = {PixelType::kUint16, std::nullopt, std::nullopt, is_srgb};
+    ExpectKept(folder_ / "b.png", NoiseImage<uint16_t>(7, 4, 4), {"R", "G", "B", "A"}, facts);
+  }
+}
+
+TEST_F(PictureHeaderTest, ColoursAreHalfOnlyIfAllOfThemAre) {
+  const Image<float> image = NoiseImage<float>(4, 4, 1);
+  const Image<uint32_t> counts = NoiseImage<uint32_t>(4, 4, 1);
+  const auto type_of = [&](bool blue_is_half) {
+    const std::vector<ExrChannel> channels = {{"R", image.view(), 0, true},
+                                              {"G", image.view(), 0, true},
+                                              {"B", image.view(), 0, blue_is_half},
+                                              {"Z", image.view(), 0, false},
+                                              {"count.R", counts.view(), 0}};
+    EXPECT_TRUE(WriteExr(folder_ / "a.exr", channels));
+    return ReadPictureHeader(folder_ / "a.exr").value().colours.type;
+  };
+  EXPECT_EQ(type_of(true), PixelType::kHalf);
+  EXPECT_EQ(type_of(false), PixelType::kFloat);
+}
+
+TEST_F(PictureHeaderTest, ARateThatIsNoNumberIsNotStated) {
+  for (const char* rate : {"fast", "25 fps", "0", "-3", "inf", "nan", ""}) {
+    ASSERT_TRUE(WriteStoredImage(folder_ / "a.png", NoiseImage<uint8_t>(3, 3, 3), {"R", "G", "B"},
+                                 {}, {{kFrameRateText, std::string(rate)}}));
+    EXPECT_EQ(ReadPictureHeader(folder_ / "a.png").value().colours.frames_per_second, std::nullopt)
+        << rate;
+  }
+}
+
+TEST_F(PictureHeaderTest, NothingIsWrittenAfterAnInterruption) {
+  const auto written = WriteStoredImage(folder_ / "a.png", NoiseImage<uint8_t>(3, 3, 3),
+                                        {"R", "G", "B"}, {}, {}, [] { return true; });
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().kind, ErrorKind::kInterrupted);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a.png"));
+}
+
+}  // namespace
+}  // namespace lf

@@ -1,0 +1,186 @@
+"""Camera paths."""
+from __future__ import annotations
+
+import logging
+import os
+from typing import Iterable, Iterator, List, Optional, Sequence, Tuple, Union, overload
+
+from . import _core, arguments
+from .camera import Camera
+from .errors import UsageError
+
+
+class Path(Sequence[Camera]):
+    """A camera path: one camera for each frame. Frames are numbered from 1, the items of this sequence from 0.
+
+    Parameters
+    ----------
+    cameras : iterable of Camera
+        The cameras of the frames. All must have the same resolution and `unit_m`.
+    fps : float, optional
+        Frames per second.
+    shutter : tuple of float and int, optional
+        Angle in degrees, from 0 to 360, and number of samples, from 1 to 64: each frame is exposed for this part of its
+        duration, centred at its time, and is the mean of this many cameras. Between the frames, cameras are
+        interpolated. None: each frame is one moment.
+
+    Examples
+    --------
+    >>> import lfrendertools as lf
+    >>> near = lf.open("capture/").camera(focus_distance=0.8)
+    >>> path = lf.Path([near, near.replace(focus_distance=1.6)], fps=25)
+    >>> path.save("path.yaml")
+    >>> [round(camera.focus_distance, 3) for camera in lf.Path.load("path.yaml")]
+    [0.8, 1.6]
+    """
+
+    def __init__(self, cameras: Iterable[Camera], fps: float = 24,
+                 shutter: Optional[Tuple[float, int]] = None) -> None:
+        self._cameras: List[Camera] = list(arguments.iterator("cameras", cameras, "lf.Camera objects"))
+        self.fps = fps
+        for camera in self._cameras:
+            if not isinstance(camera, Camera):
+                raise TypeError(f"a path consists of lf.Camera objects, found {camera!r}")
+        if not self._cameras:
+            raise UsageError("a path needs at least one camera")
+        for what in ("resolution", "unit_m"):
+            values = {getattr(camera, what) for camera in self._cameras}
+            if len(values) > 1:
+                raise UsageError(f"the cameras of a path must have one {what}, found {sorted(values)[:4]}")
+        # Angle, number of samples, and the cameras of all instants; None if each frame is one moment.
+        self._shutter: _core._Shutter = None
+        if shutter is not None:
+            angle, samples = _angle_and_samples(shutter)
+            if samples > 1:
+                self._shutter = (angle, samples, _core.instants([camera._core for camera in self._cameras], self.fps,
+                                                                angle, samples))
+
+    @classmethod
+    def _of(cls, cameras: Iterable[_core.RenderCamera], fps: float, shutter: _core._Shutter) -> Path:
+        path = cls((Camera._of(core) for core in cameras), fps)
+        path._shutter = shutter
+        return path
+
+    @property
+    def shutter(self) -> Optional[Tuple[float, int]]:
+        """Angle in degrees and number of samples of the shutter; None if each frame is one moment."""
+        return None if self._shutter is None else self._shutter[:2]
+
+    @property
+    def fps(self) -> float:
+        """Frames per second. Frame i, from 1, is at the time (i - 1) / fps."""
+        return self._fps
+
+    @fps.setter
+    def fps(self, fps: float) -> None:
+        self._fps = arguments.within("fps", fps, 0.001, 1e6)
+
+    @classmethod
+    def load(cls, path: Union[str, os.PathLike[str]], unit_m: Optional[float] = None) -> Path:
+        """Read a camera path of any form: our own (doc/formats/path.md) or that of another program
+        (doc/formats/foreign_paths.md).
+
+        What the file does not state has a default, which a message tells; :meth:`Camera.replace` changes it.
+
+        Parameters
+        ----------
+        path : path
+            The file, or the folder of a COLMAP model or a transforms.json, whose cameras become the frames.
+        unit_m : float, optional
+            Metres per world unit of the light field.
+
+        Raises
+        ------
+        InputError
+            The file cannot be read, has a mistake, or states another unit than `unit_m`.
+        """
+        unit = None if unit_m is None else arguments.positive("unit_m", unit_m)
+        cameras, fps, _, shutter = _core.read_path(arguments.file_name("path", path), unit)
+        return cls._of(cameras, fps, shutter)
+
+    @classmethod
+    def parse(cls, text: str, name: str = "path", unit_m: Optional[float] = None) -> Path:
+        """Read a camera path as :meth:`load` does, but from the text of a file. Error messages call it `name`."""
+        # Text that is not Unicode cannot be in a path, and stands in messages with question marks.
+        utf8, utf8_name = (arguments.text(what, value).encode("utf-8", "replace")
+                           for what, value in (("text", text), ("name", name)))
+        cameras, fps, _, shutter = _core.parse_path(utf8, utf8_name, None if unit_m is None
+                                                    else arguments.positive("unit_m", unit_m))
+        return cls._of(cameras, fps, shutter)
+
+    def save(self, path: Union[str, os.PathLike[str]], format: Optional[str] = None) -> None:
+        """Write a camera path file. Each frame gets a camera of its own. Only YAML keeps the shutter, and interpolates
+        its cameras between those of the frames.
+
+        When a YAML file is read again, directions and fields of view differ by at most 1e-12 (entries of the rotation
+        matrix, and relative), and other values by no more than the rounding of double precision. JSON files give the
+        same bits. The file appears only when it is whole.
+
+        Parameters
+        ----------
+        path : path
+            The file.
+        format : str, optional
+            "yaml", "nerfstudio", "instant-ngp", "chan" or "usda" (doc/formats/foreign_paths.md). By default, the
+            extension tells: .json for nerfstudio, .chan or .usda; files of other names are YAML.
+
+        Raises
+        ------
+        UsageError
+            The format is unknown, or is "yaml" and cannot express the cameras, such as numbers of blades that differ.
+        OutputError
+            The file cannot be written.
+        """
+        file = arguments.file_name("path", path)
+        if format is None and os.path.splitext(os.fsdecode(file))[1] not in (".json", ".chan", ".usda"):
+            format = "yaml"
+        lost = _core.save_path(file, [camera._core for camera in self._cameras], self.fps,
+                               self._shutter, None if format is None else arguments.text("format", format))
+        if lost:
+            logging.getLogger("lfrendertools").warning("%s: the format has no place for %s", os.fsdecode(file),
+                                                       "; for ".join(lost))
+
+    @property
+    def cameras(self) -> Sequence[Camera]:
+        """The cameras of the frames."""
+        return tuple(self._cameras)
+
+    def __len__(self) -> int:
+        return len(self._cameras)
+
+    @overload
+    def __getitem__(self, i: int) -> Camera:
+        ...
+
+    @overload
+    def __getitem__(self, i: slice) -> Path:
+        ...
+
+    def __getitem__(self, i: Union[int, slice]) -> Union[Camera, Path]:
+        if isinstance(i, slice):
+            part = Path(self._cameras[i], self.fps)
+            if self._shutter is not None:
+                angle, samples, instants = self._shutter
+                part._shutter = (angle, samples, [instants[frame * samples + k]
+                                                  for frame in range(len(self))[i] for k in range(samples)])
+            return part
+        return self._cameras[i]
+
+    def __iter__(self) -> Iterator[Camera]:
+        return iter(self._cameras)
+
+    def __eq__(self, other: object) -> bool:
+        return (isinstance(other, Path) and self.fps == other.fps and self._cameras == other._cameras
+                and self._shutter == other._shutter)
+
+    def __repr__(self) -> str:
+        shutter = "" if self._shutter is None else f", shutter {self._shutter[0]:g} degrees"
+        return f"<Path of {len(self)} frames, {self.fps:g} per second{shutter}>"
+
+
+def _angle_and_samples(shutter: Tuple[float, int]) -> Tuple[float, int]:
+    try:
+        angle, samples = shutter
+    except (TypeError, ValueError):
+        raise UsageError(f"shutter={shutter!r}: expected an angle in degrees and a number of samples") from None
+    return (arguments.within("shutter", angle, 0, 360), arguments.whole_within("shutter", samples, 1, 64))

@@ -1,0 +1,223 @@
+#!/usr/bin/python3
+"""Tests lffocus depth and lffocus sharp: depths of known scenes, sharp pictures against true ones, all file formats.
+
+usage: focus_depth_test.py LFFOCUS LFSYNTH
+"""
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+from exr_file import attributes_of, channels_of
+from program_test_case import ProgramTestCase
+
+FOCUS = SYNTH = None
+GROUNDTRUTH = pathlib.Path(os.environ.get("LF_TEST_DATA", "../shared")) / "groundtruth"
+NEAR, FAR = 0.5, 2
+PATH = """format: lfpath 1
+fps: 25
+frames: 1
+resolution: [240, 160]
+camera: {{field_of_view_deg: 50, position: [0.0012, 0.0007, -1], look_at: [0, 0, 0]}}
+lens: {{aperture_diameter: {diameter}, focus_distance: 1}}
+"""
+GROUNDTRUTH_PATH = """format: lfpath 1
+fps: 25
+frames: 1
+resolution: [280, 210]
+camera: {{field_of_view_deg: {fov_x_deg}, position: {position}, look_at: {target}, up: {up}}}
+lens: {{aperture_diameter: 0.008, focus_distance: 0.5}}
+"""
+
+
+def rgb(channels):
+    return np.clip(np.stack([channels[c] for c in "RGB"], -1).astype(float), 0, 1)
+
+
+def psnr_db(a, b):
+    return -10 * np.log10(np.mean((a - b) ** 2))
+
+
+def read_pfm(file):
+    with open(file, "rb") as opened:
+        kind, size, scale = (opened.readline().decode().strip() for _ in range(3))
+        width, height = map(int, size.split())
+        values = np.frombuffer(opened.read(), "<f4" if float(scale) < 0 else ">f4")
+        return kind, values.reshape(height, width)[::-1]
+
+
+def read_ply(file):
+    data = file.read_bytes()
+    header, points = data.split(b"end_header\n", 1)
+    count = int(header.split(b"element vertex ")[1].split()[0])
+    record = np.dtype([("xyz", "<f4", 3), ("rgb", "u1", 3), ("confidence", "<f4")])
+    assert len(points) == count * record.itemsize
+    return np.frombuffer(points, record)
+
+
+def widened(mask, by):
+    """Returns the elements that are at most `by` elements away, across or down, from one of the mask."""
+    padded = np.pad(mask, by)
+    height, width = mask.shape
+    return np.any([padded[j:j + height, i:i + width] for j in range(2 * by + 1) for i in range(2 * by + 1)], axis=0)
+
+
+class FocusDepthTest(ProgramTestCase):
+    @classmethod
+    def setUpClass(cls):
+        temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(temporary.cleanup)
+        cls.shared = pathlib.Path(temporary.name)
+        cls.path, pinhole = cls.shared / "path.yaml", cls.shared / "pinhole.yaml"
+        cls.path.write_text(PATH.format(diameter=0.04))
+        pinhole.write_text(PATH.format(diameter=0))
+        cls.field = cls.shared / "chart"
+        subprocess.run([SYNTH, "chart", "-o", cls.field, "--count", "169", "--size", "240x160", "--spacing", "0.004",
+                        "--format", "png", "--truth", pinhole, "-q"], check=True)
+        cls.truth = channels_of(cls.field / "truth/frame_0001.exr")
+
+    def depth(self, *files, code=0, field=None, options=()):
+        outputs = [word for file in files for word in ("-o", self.folder / file)]
+        return self.succeeds(FOCUS, "depth", field or self.field, self.path, *outputs, "--near", NEAR, "--far", FAR,
+                             *options, code=code)
+
+    def sharp(self, file):
+        self.succeeds(FOCUS, "sharp", self.field, self.path, "-o", self.folder / file, "--near", NEAR, "--far", FAR)
+
+    def planes_off(self, depths, planes):
+        """Returns by how many of the tested distances the depths are wrong; beyond any for surfaces that do not
+        exist."""
+        step = (1 / NEAR - 1 / FAR) / (planes - 1)
+        return np.abs(1 / depths - 1 / self.truth["Z"]) / step
+
+    def test_depths_are_true_where_they_are_known(self):
+        report = json.loads(self.depth("depth.exr", options=["--json"]))
+        channels = channels_of(self.folder / "depth.exr")
+        depths, truth = channels["Z"], self.truth["Z"]
+        is_known, is_surface = np.isfinite(depths), np.isfinite(truth)
+        self.assertAlmostEqual(report["known_share"], is_known.mean(), 6)
+        self.assertGreater(is_known[is_surface].mean(), 0.6)
+        off = self.planes_off(depths, report["planes"])
+        self.assertLess(np.median(off[is_known]), 0.25)
+        # In front of the flat background, borders are wider by up to two elements: these may as well be a flat strip
+        # of the near surface.
+        jump = widened(is_surface, 2) & widened(~is_surface, 2)
+        self.assertLess((off[is_known & ~jump] > 2).mean(), 0.02)
+        self.assertFalse(is_known[~widened(is_surface, 3)].any(), "the flat background has a depth")
+        self.assertTrue((channels["confidence"][is_known] >= 0.499).all())
+        self.assertIn("worldToCamera", attributes_of(self.folder / "depth.exr"))
+
+    def test_threads_and_memory_change_no_bit(self):
+        self.depth("one.exr", options=["--threads", 1])
+        self.depth("three.exr", options=["--threads", 3, "--memory", "1M"])
+        self.assertEqual((self.folder / "one.exr").read_bytes(), (self.folder / "three.exr").read_bytes())
+
+    def test_all_files_tell_the_same(self):
+        self.depth("depth.exr", "depth.pfm", "points.ply", "depth.png")
+        channels = channels_of(self.folder / "depth.exr")
+        kind, depths = read_pfm(self.folder / "depth.pfm")
+        self.assertEqual(kind, "Pf")
+        self.assertEqual(depths.tobytes(), channels["Z"].tobytes())
+        is_known = np.isfinite(depths)
+        points = read_ply(self.folder / "points.ply")
+        self.assertEqual(len(points), is_known.sum())
+        # The camera looks almost along z, from z = -1.
+        focal = 120 / np.tan(np.radians(25))
+        y, x = np.nonzero(is_known)
+        self.assertLess(np.abs(points["xyz"][:, 2] + 1 - depths[is_known]).max(), 0.01)
+        self.assertLess(np.abs(points["xyz"][:, 0] - (x + 0.5 - 120) / focal * depths[is_known]).max(), 0.01)
+        linear = rgb(channels)[is_known]
+        display = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055) * 255
+        self.assertLess(np.abs(points["rgb"] - display).max(), 1.1)
+
+    def test_filled_depths_keep_the_known_ones(self):
+        self.depth("depth.pfm")
+        self.depth("filled.pfm", options=["--fill"])
+        depths, filled = (read_pfm(self.folder / f"{name}.pfm")[1] for name in ("depth", "filled"))
+        self.assertTrue(np.isfinite(filled).all() and (filled > 0).all())
+        self.assertTrue(np.array_equal(filled[np.isfinite(depths)], depths[np.isfinite(depths)]))
+
+    def test_the_sharp_picture_is_that_of_depth(self):
+        self.sharp("sharp.exr")
+        self.depth("depth.exr")
+        sharp, depth = (channels_of(self.folder / f"{name}.exr") for name in ("sharp", "depth"))
+        self.assertEqual(sharp["G"].tobytes(), depth["G"].tobytes())
+        self.sharp("sharp.png")
+        self.assertTrue((self.folder / "sharp.png").read_bytes().startswith(b"\x89PNG"))
+
+    def test_the_sharp_picture_is_that_of_a_pinhole(self):
+        if not GROUNDTRUTH.is_dir():
+            self.skipTest(f"{GROUNDTRUTH} is missing")
+        cases = json.loads((GROUNDTRUTH / "cases.json").read_text())
+        cases = cases["cases"] if isinstance(cases, dict) else cases
+        case = next(one for one in cases if one["name"] == "planar_pinhole_between")
+        pose = np.array(case["transform_matrix"])
+        path = self.folder / "path.yaml"
+        path.write_text(GROUNDTRUTH_PATH.format(fov_x_deg=case["fov_x_deg"], position=pose[:3, 3].tolist(),
+                                                target=(pose[:3, 3] - pose[:3, 2]).tolist(),
+                                                up=pose[:3, 1].tolist()))
+        self.succeeds(FOCUS, "sharp", GROUNDTRUTH / "data/planar", path, "-o", self.folder / "sharp.exr")
+        with open(GROUNDTRUTH / case["linear"], "rb") as opened:
+            _, size, _ = (opened.readline() for _ in range(3))
+            width, height = map(int, size.split())
+            truth = np.frombuffer(opened.read(), "<f4").reshape(height, width, 3)[::-1]
+        found = rgb(channels_of(self.folder / "sharp.exr"))
+        self.assertGreater(psnr_db(found, np.clip(truth, 0, 1)), 35)
+
+    # Errors
+
+    def test_wrong_calls_are_refused(self):
+        for words, arguments in ((["depth.tif", ".exr, .pfm, .ply or .png"], ["-o", "depth.tif"]),
+                                 (["--window 4", "odd"], ["-o", "d.exr", "--window", 4]),
+                                 (["--near below --far"], ["-o", "d.exr", "--near", 2, "--far", 1]),
+                                 (["--frame 2", "1 frame"], ["-o", "d.exr", "--frame", 2])):
+            with self.subTest(words):
+                self.fails(2, words, FOCUS, "depth", self.field, self.path, *arguments)
+        self.fails(2, ["sharp.tif", ".exr or .png"], FOCUS, "sharp", self.field, self.path, "-o", "sharp.tif")
+
+    def test_a_file_that_exists_is_kept(self):
+        self.depth("depth.pfm")
+        before = (self.folder / "depth.pfm").read_bytes()
+        arguments = [self.field, self.path, "-o", self.folder / "depth.pfm", "--near", NEAR, "--far", 1.5]
+        self.fails(2, ["depth.pfm exists already", "--overwrite"], FOCUS, "depth", *arguments)
+        self.assertEqual((self.folder / "depth.pfm").read_bytes(), before)
+        self.succeeds(FOCUS, "depth", *arguments, "--overwrite")
+        self.assertNotEqual((self.folder / "depth.pfm").read_bytes(), before)
+
+    def test_a_broken_lf_image_is_left_out_and_told(self):
+        field = self.folder / "field"
+        field.mkdir()
+        (field / "images").symlink_to(self.field / "images")
+        calibration = json.loads((self.field / "transforms.json").read_text())
+        middle = calibration["frames"][len(calibration["frames"]) // 2]
+        broken = self.folder / "broken.png"
+        broken.write_bytes((self.field / middle["file_path"]).read_bytes()[:2000])
+        middle["file_path"] = str(broken)
+        (field / "transforms.json").write_text(json.dumps(calibration))
+        arguments = [field, self.path, "--near", NEAR, "--far", FAR]
+        self.fails(6, ["1 of", "left out", "broken.png"], FOCUS, "depth", *arguments, "-o", self.folder / "a.pfm")
+        self.assertTrue(np.isfinite(read_pfm(self.folder / "a.pfm")[1]).any())
+        self.succeeds(FOCUS, "depth", *arguments, "-o", self.folder / "b.pfm", "--allow-missing", 1)
+        self.fails(3, ["broken.png"], FOCUS, "depth", *arguments, "-o", self.folder / "c.pfm", "--strict")
+        self.assertFalse((self.folder / "c.pfm").exists())
+
+    def test_interrupted_it_writes_nothing(self):
+        output = self.folder / "depth.exr"
+        process = subprocess.Popen([FOCUS, "depth", self.field, self.path, "-o", output, "--near", str(NEAR), "--far",
+                                    str(FAR), "--planes", "1000", "--progress", "json"], stderr=subprocess.PIPE)
+        process.stderr.readline()  # the work has begun
+        process.send_signal(signal.SIGTERM)
+        process.communicate()
+        self.assertEqual(process.returncode, 5)
+        self.assertEqual(list(self.folder.glob("depth*")), [])
+
+
+if __name__ == "__main__":
+    FOCUS, SYNTH = sys.argv[1:3]
+    unittest.main(argv=sys.argv[:1])
