@@ -40,6 +40,9 @@ for shard in 1 2; do
   check lfrenderer field path.yaml -o "shard $shard" --shard "$shard/2"
 done
 check lfmerge "shard 1" "shard 2" -o merged
+check lffocus stack field path.yaml -o stack.exr --planes 2 --near 1 --far 2
+check lffocus epi field --row 30 -o epi.exr
+check lffocus views field --grid 3x4 -o views.npy --focus-distance 1
 check lfvisualizer field path.yaml --text
 check lfvisualizer field path.yaml --export page
 check lfcammvminfo path.yaml --csv

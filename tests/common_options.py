@@ -41,6 +41,8 @@ OFFERED = {
     # lffocus alone only lists its commands, whose options follow their names.
     "lffocus": set(),
     "lffocus stack": set(COMMON),
+    "lffocus epi": set(COMMON) - {"--seed"},
+    "lffocus views": set(COMMON) - {"--seed"},
     "lffocus depth": set(COMMON) - {"--seed"},
     "lffocus sharp": set(COMMON) - {"--seed"},
     # --allow-missing follows the two dashes, because it is an option of lfrenderer.

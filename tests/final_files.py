@@ -5,8 +5,8 @@ import re
 import sqlite3
 
 TEMPORARY = re.compile(r"^\..*\.tmp|\.unfinished|-journal$|(^|\.)lock$")
-# Folders of checkpoints and jobs: only the results made from them are judged.
-OWN_FOLDERS = {"partial", "cluster"}
+# Folders of checkpoints and jobs, such as partial and stack.exr.partial: only the results made from them are judged.
+OWN_FOLDER = re.compile(r"^(partial|cluster|.*\.partial)$")
 
 
 def store_digest(path):
@@ -45,10 +45,10 @@ def files_of(folder):
             continue
         if TEMPORARY.search(path.name):
             is_kept_lock = "cluster" in name.parts and path.name.endswith("lock")
-            if "partial" not in name.parts and not is_kept_lock:
+            if not any(part.endswith("partial") for part in name.parts) and not is_kept_lock:
                 temporary.append(str(name))
             continue
-        if OWN_FOLDERS.intersection(name.parts):
+        if any(map(OWN_FOLDER.search, name.parts)):
             continue
         try:
             final[str(name)] = digest(path)

@@ -2,7 +2,7 @@
 """Tests lffocus stack from a user's view: its pictures have the bits of single renders, each LF image is read once, and
 files and folders obey the rules of lfrenderer.
 
-usage: lffocus_test.py LFFOCUS LFRENDERER
+usage: lffocus_test.py LFFOCUS LFRENDERER LFSYNTH
 """
 import json
 import re
@@ -18,7 +18,7 @@ from exr_file import channels_of, parts_of
 from opened_files import OpenedFiles
 from program_test_case import ProgramTestCase, wait_until
 
-FOCUS = RENDERER = None
+FOCUS = RENDERER = SYNTH = None
 DISTANCES = (0.3, 0.5, 0.8, 2)
 
 
@@ -117,6 +117,34 @@ class FocusStackTest(ProgramTestCase):
         self.assertEqual(sum(name.endswith(".png") for name in of_a_frame), 25)
         self.assertEqual(of_the_stack, of_a_frame)
         self.assertEqual((len(report["frames"]), report["passes"], report["lf_images_selected"]), (12, 1, 25))
+
+    def test_a_densified_light_field_is_rendered(self):
+        """Virtual LF images are made in the folder of the frames, which is removed when a file is complete."""
+        self.field = self.folder / "still-life"
+        self.succeeds(SYNTH, "still-life", "-o", self.field, "--count", 16, "--size", "160x120", "--spacing", 0.02,
+                      "-q")
+        poses = [np.array(frame["transform_matrix"])
+                 for frame in json.loads((self.field / "transforms.json").read_text())["frames"]]
+        centre, axes = np.mean([pose[:3, 3] for pose in poses], axis=0), poses[0][:3, :3]
+        text = self.path.read_text().replace("[0, 1, 0]", str(axes[:, 1].tolist())).replace("0.045", "0.05")
+        for old, new in (("[0, 0, 0]", centre), ("[0, 0, -1]", centre - axes[:, 2])):
+            text = text.replace(old, str(new.tolist()))
+        self.path.write_text(text)
+        options = ["--distances", "0.8,1.2", "--densify", "--filter", "bilinear"]
+        self.stack("stack", *options)
+        self.stack("stack.exr", *options)
+        self.assertTrue((self.folder / "stack/densified.lfs").exists())
+        self.assertFalse((self.folder / "stack.exr.partial").exists())
+        self.refused(["stack.exr: exists"], "stack.exr", *options)
+        self.assertFalse((self.folder / "stack.exr.partial").exists())
+        dense = self.folder / "stack/densified.lfs"
+        self.succeeds(FOCUS, "stack", dense, self.path, "-o", self.folder / "again", *options[:2], "--filter",
+                      "bilinear")
+        for number, (_, channels) in enumerate(parts_of(self.folder / "stack.exr"), 1):
+            name = f"frame_{number:04}.exr"
+            self.assertIn("densified", channels)
+            self.assert_same_channels(channels, channels_of(self.folder / "stack" / name))
+            self.assert_same_channels(channels, channels_of(self.folder / "again" / name))
 
     # Planes
 
@@ -259,5 +287,5 @@ class FocusStackTest(ProgramTestCase):
 
 
 if __name__ == "__main__":
-    FOCUS, RENDERER = sys.argv[1:3]
+    FOCUS, RENDERER, SYNTH = sys.argv[1:4]
     unittest.main(argv=sys.argv[:1], verbosity=2)

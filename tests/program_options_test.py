@@ -28,6 +28,8 @@ CALLS = {
     "lfexample": ["no", "-o", "no.yaml"],
     "lffocus": [],
     "lffocus stack": ["no", "no.yaml", "-o", "no"],
+    "lffocus epi": ["no", "--row", "1"],
+    "lffocus views": ["no", "--grid", "2x2", "-o", "no"],
     "lffocus depth": ["no", "no.yaml", "-o", "no.exr"],
     "lffocus sharp": ["no", "no.yaml", "-o", "no.exr"],
     "lfimport": ["no"],
@@ -146,6 +148,9 @@ class ProgramOptionsTest(ProgramTestCase):
         yield "lfrenderer", [field, path, "-o", out / "frames"], "instruction set"
         yield "lfrenderer", [field, path, "-o", out / "shards", "--shard", "1/1"], "memory: "
         yield "lffocus stack", [field, path, "-o", out / "stack", "--near", 0.3, "--far", 1], "instruction set"
+        yield "lffocus epi", [field, "--row", 3, "-o", out / "epi.png", "--overwrite"], "transforms.json: opened"
+        yield "lffocus views", [field, "--grid", "3x3", "-o", out / "views", "--overwrite", "--focus-distance",
+                                1], "transforms.json: opened"
         for command in ("depth", "sharp"):
             yield f"lffocus {command}", [field, path, "-o", out / "a.exr", "--near", 0.3, "--far", 1,
                                          "--overwrite"], "transforms.json: opened"

@@ -87,6 +87,12 @@ class TinyCalls:
         packages = self.preprocess(self.path, out)
         convert_path = [self.programs / "lfpath", str(self.path), "-o", str(out.with_suffix(".json")), "-q"]
         merge = self.words("lfmerge", self.shards / "partial" / "shards", "-o", out)
+        stack = self.words("lffocus", "stack", self.field, self.path, "--planes", "2", "--near", "2", "--far", "4",
+                           "-o", out.with_suffix(".exr"))
+        epi = self.words("lffocus", "epi", self.field, "--row", "9", "-o", out.with_suffix(".png"))
+        views = self.words("lffocus", "views", self.field, "--grid", "3x3", "-o", out)
+        array = self.words("lffocus", "views", self.field, "--grid", "2x4", "--focus-distance", "3", "-o",
+                           out.with_suffix(".npy"))
         quilt = self.quilt()
         return [Call("lfsynth", synth, [[*synth, "--overwrite"]]),
                 Call("lfimport", convert, [[*convert, "--force"]]),
@@ -100,6 +106,10 @@ class TinyCalls:
                 Call("lfrenderer, hybrid", hybrid, [[*hybrid, "--resume"]]),
                 Call("lfrenderer, rebin", rebin, [[*rebin, "--resume"]]),
                 Call("lfmerge", merge, [[*merge, "--resume"], [*merge, "--overwrite"]]),
+                Call("lffocus stack", stack, [[*stack, "--resume"], [*stack, "--overwrite"]]),
+                Call("lffocus epi", epi, [[*epi, "--overwrite"]]),
+                Call("lffocus views", views, [[*views, "--overwrite"]]),
+                Call("lffocus views, an array", array, [[*array, "--overwrite"]]),
                 Call("lfquilt", quilt, [[*quilt, "--resume"], [*quilt, "--overwrite"]])]
 
     def submitters(self):

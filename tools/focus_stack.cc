@@ -238,6 +238,7 @@ Result<Rendered> RenderStack(const Arguments& a, const CommonOptions& common, Th
   options.render.signals = signals;
   options.render.folder.inputs = {a.render.light_field.path, a.path};
   options.render.folder.output_folder = StackFolder(options.output);
+  LF_RETURN_IF_ERROR(CheckFocusStack(light_field, options));
   MissingImages missing;
   if (a.render.densify) {
     Result<DensifiedFilm> densified =

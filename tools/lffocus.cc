@@ -7,20 +7,26 @@
 
 #include "tools/common/program.h"
 #include "tools/focus_depth.h"
+#include "tools/focus_epi.h"
 #include "tools/focus_stack.h"
+#include "tools/focus_views.h"
 
 namespace {
 
 constexpr lf::HelpTexts kHelp = {
-    .summary = "Makes focus stacks, depth maps and sharp pictures of a light field.",
+    .summary = "Makes focus stacks, depths, sharp and epipolar pictures, and grids of views.",
     .usage = R"(  lffocus stack LIGHTFIELD PATH -o OUT [OPTIONS]
   lffocus depth LIGHTFIELD PATH -o FILE [-o FILE...] [OPTIONS]
-  lffocus sharp LIGHTFIELD PATH -o FILE [OPTIONS])",
+  lffocus sharp LIGHTFIELD PATH -o FILE [OPTIONS]
+  lffocus epi LIGHTFIELD --row Y [-o FILE] [OPTIONS]
+  lffocus views LIGHTFIELD --grid COLUMNSxROWS -o OUT [OPTIONS])",
     .examples = R"(  lffocus stack --help
   lffocus stack capture/ path.yaml -o stack.exr --planes 30
   lffocus stack capture/ path.yaml --frame 12 -o rack.mp4 --near 0.4 --far 2 --planes 75
   lffocus depth capture/ path.yaml -o depth.exr -o points.ply
-  lffocus sharp capture/ path.yaml -o sharp.png)",
+  lffocus sharp capture/ path.yaml -o sharp.png
+  lffocus epi capture/ --row 240 -o epi.png
+  lffocus views capture/ --grid 9x9 -o views)",
     .details =
         R"(Each command has options and a help of its own: lffocus stack --help. doc/focus.md has examples.)",
 };
@@ -32,7 +38,9 @@ struct Command {
 };
 constexpr std::array kCommands = {Command{"stack", lf::RunFocusStack},
                                   Command{"depth", lf::RunFocusDepth},
-                                  Command{"sharp", lf::RunFocusSharp}};
+                                  Command{"sharp", lf::RunFocusSharp},
+                                  Command{"epi", lf::RunFocusEpi},
+                                  Command{"views", lf::RunFocusViews}};
 
 std::string Names() {
   std::string names;
@@ -51,11 +59,13 @@ int main(int argc, char** argv) {
   lf::Program program("lffocus", kHelp);
   std::string word;
   lf::OptionGroup input(program.app(), lf::kInputGroup);
-  input.Add(
-      "COMMAND", word,
-      "Command, the first word of the call\n"
-      "stack: pictures of one camera that differ in their focus distance; depth: the depth of "
-      "every element; sharp: a picture in which everything is in focus");
+  input.Add("COMMAND", word,
+            "Command, the first word of the call\n"
+            "stack: pictures of one camera that differ in their focus distance\n"
+            "depth: the depth of every element\n"
+            "sharp: a picture in which everything is in focus\n"
+            "epi: the same pixel row or column of a row of LF cameras, in one picture\n"
+            "views: the light field as a regular grid of views in one orientation");
   return program.Run(argc, argv, [&]() -> lf::Result<void> {
     return lf::UsageError(fmt::format(
         "{}: expected one of the commands {} as the first word, as in lffocus {} --help",

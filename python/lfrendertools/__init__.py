@@ -24,6 +24,7 @@ from .camera_path import Path
 from .captures import compress, forecast, report, synth, write_packages
 from .depth_maps import DepthMap, depth_map
 from .display import display_values
+from .epipolar import EpipolarPicture, epi
 from .errors import (BelowRequired, BlackFrameWarning, Error, InputError, InterruptedRender, MissingImagesWarning,
                      OutputError, UncertainFocusWarning, UsageError)
 from .focus_stacks import FocusStack, focus_stack
@@ -32,13 +33,14 @@ from .light_field import Intrinsics, LightField, read_image
 from .opening import open
 from .rendering import Renderer, Selection, film, render, select
 from .rig import Grid
+from .view_grids import Views, views
 
 __version__: str = _core.version
 
-__all__ = ["BelowRequired", "BlackFrameWarning", "Camera", "DepthMap", "Error", "FocusStack", "Frame", "Grid",
-           "InputError", "InterruptedRender", "Intrinsics", "LightField", "MissingImagesWarning", "OutputError",
-           "Path", "Plate", "Renderer", "Selection", "UncertainFocusWarning", "UsageError", "compress", "depth_map",
-           "display_values", "film", "focus_stack", "forecast", "open", "read_image", "render", "report", "select",
-           "synth", "write_packages"]
+__all__ = ["BelowRequired", "BlackFrameWarning", "Camera", "DepthMap", "EpipolarPicture", "Error", "FocusStack",
+           "Frame", "Grid", "InputError", "InterruptedRender", "Intrinsics", "LightField", "MissingImagesWarning",
+           "OutputError", "Path", "Plate", "Renderer", "Selection", "UncertainFocusWarning", "UsageError", "Views",
+           "compress", "depth_map", "display_values", "epi", "film", "focus_stack", "forecast", "open", "read_image",
+           "render", "report", "select", "synth", "views", "write_packages"]
 
 logging.getLogger("lfrendertools").addHandler(logging.NullHandler())

@@ -186,6 +186,23 @@ class Film:
 
 def even_distances(arg0: float, arg1: float, arg2: int) -> List[float]: ...
 
+def describe_views(arg0: LightField, arg1: int,
+                   arg2: int) -> Tuple[int, int, List[Tuple[npt.NDArray[np.float64], npt.NDArray[np.float64],
+                                                            npt.NDArray[np.float64], int]]]: ...
+
+def epi(arg0: LightField, arg1: bool, arg2: int, arg3: int, arg4: Optional[float], arg5: Optional[float], arg6: int,
+        arg7: Optional[int], arg8: bool,
+        arg9: int) -> Tuple[npt.NDArray[np.float32], List[float], List[int], int, float, npt.NDArray[np.float64],
+                            npt.NDArray[np.float64], List[str]]: ...
+
+def id_of_name(arg0: LightField, arg1: str) -> int: ...
+
+def make_views(arg0: LightField, arg1: int, arg2: int, arg3: Optional[float], arg4: str, arg5: bool, arg6: int,
+               arg7: Callable[[int, npt.NDArray[np.float32]], None],
+               arg8: _Tell) -> Tuple[Optional[float], List[str]]: ...
+
+def middle_id(arg0: LightField) -> int: ...
+
 def focus_range(arg0: LightField, arg1: RenderCamera, arg2: int) -> Tuple[float, float]: ...
 
 def depth_map(arg0: LightField, arg1: RenderCamera, arg2: Optional[float], arg3: Optional[float], arg4: int, arg5: int,

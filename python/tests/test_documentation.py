@@ -10,7 +10,8 @@ import pytest
 
 import lfrendertools as lf
 
-PAGE = pathlib.Path(__file__).resolve().parents[2] / "doc/python/README.md"
+DOC = pathlib.Path(__file__).resolve().parents[2] / "doc"
+PAGE = DOC / "python/README.md"
 MODULES = ["lfrendertools"] + [f"lfrendertools.{module.name}" for module in pkgutil.iter_modules(lf.__path__)
                                if module.name != "_core"]
 
@@ -33,6 +34,13 @@ def test_page(beside_capture, capsys):
         exec(compile(block, str(PAGE), "exec"), {})
     assert blocks and "(320, 480, 3)" not in capsys.readouterr().err
     assert lf.read_image("frame.png").dtype == np.uint8
+
+
+def test_page_of_focus_tools(beside_capture):
+    blocks = re.findall(r"```python\n(.*?)```", (DOC / "focus.md").read_text(), re.S)
+    for block in blocks:
+        exec(compile(block, "focus.md", "exec"), {})
+    assert blocks and np.load("views.npy").shape == (3, 3, 120, 160, 3)
 
 
 def test_every_public_function_is_documented():

@@ -27,27 +27,28 @@ bool Exists(const fs::path& path) {
   return fs::exists(path, error);
 }
 
-// Returns true if the folder is missing, empty, or one that RenderFocusStack() has left.
+// Returns true if the folder is missing, empty, or one that RenderFocusStack() has left: with a
+// state, a report, or the densified light field that is to be rendered.
 bool IsOurs(const fs::path& folder) {
   std::error_code error;
-  return !fs::exists(folder, error) || fs::is_empty(folder, error) ||
-         fs::is_directory(folder / "partial", error) || fs::exists(folder / "report.json", error);
+  if (!fs::exists(folder, error) || fs::is_empty(folder, error)) return true;
+  if (fs::is_directory(folder / "partial", error) || Exists(folder / "report.json")) return true;
+  return std::any_of(fs::directory_iterator(folder, error), fs::directory_iterator(),
+                     [](const fs::directory_entry& entry) {
+                       return entry.path().filename().string().starts_with("densified.lfs");
+                     });
 }
 
-// Returns the files of the light field that the package reads.
-std::vector<fs::path> FilesOf(const Package& package, const RenderOptions& options) {
-  std::vector<fs::path> files = options.folder.inputs;
-  const LightField& field = package.light_field;
-  for (const std::vector<std::string>* names : {&field.image_names, &field.mask_names})
-    for (const std::string& name : *names)
-      if (!name.empty()) files.push_back(field.folder / name);
+// Returns the files that the render reads.
+std::vector<fs::path> InputsOf(const LightField& light_field, const RenderOptions& options) {
+  std::vector<fs::path> files = FilesOfLightField(light_field);
+  files.insert(files.end(), options.folder.inputs.begin(), options.folder.inputs.end());
   return files;
 }
 
-Result<void> CheckFile(const Package& package, const FocusStackOptions& options) {
+Result<void> CheckFile(const FocusStackOptions& options) {
   const FolderOptions& folder = options.render.folder;
   const fs::path partial = StackFolder(options.output);
-  LF_RETURN_IF_ERROR(CheckReplacesNone({options.output}, FilesOf(package, options.render)));
   if (!IsOurs(partial))
     return UsageError(fmt::format(
         "{}: is a folder of something else, but the render of {} keeps its state in a folder of "
@@ -142,6 +143,14 @@ fs::path StackFolder(const fs::path& output) {
   return output.string() + ".partial";
 }
 
+Result<void> CheckFocusStack(const LightField& light_field, const FocusStackOptions& options) {
+  const bool is_folder = FormOfStack(options.output) == FocusStackForm::kFolder;
+  LF_RETURN_IF_ERROR(
+      CheckReplacesNone({is_folder ? options.output / "planes.json" : options.output},
+                        InputsOf(light_field, options.render)));
+  return is_folder ? Result<void>() : CheckFile(options);
+}
+
 Result<RenderReport> RenderFocusStack(Package package, const FocusStackOptions& options,
                                       ThreadPool& pool,
                                       const std::function<void(const RenderProgress&)>& progress) {
@@ -149,11 +158,7 @@ Result<RenderReport> RenderFocusStack(Package package, const FocusStackOptions& 
   const bool is_file = FormOfStack(options.output) != FocusStackForm::kFolder;
   const fs::path folder = StackFolder(options.output);
   const CameraPath stack = package.path;
-  if (is_file)
-    LF_RETURN_IF_ERROR(CheckFile(package, options));
-  else
-    LF_RETURN_IF_ERROR(
-        CheckReplacesNone({folder / "planes.json"}, FilesOf(package, options.render)));
+  LF_RETURN_IF_ERROR(CheckFocusStack(package.light_field, options));
   const StackOutputs outputs(stack, options, folder);
   RenderOptions render = options.render;
   render.folder.output_folder = folder;

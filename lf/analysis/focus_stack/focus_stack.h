@@ -5,11 +5,13 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
 
 #include "lf/camera/path/camera_path.h"
 #include "lf/core/ids.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
+#include "lf/light_field/model/light_field.h"
 #include "lf/render/package/package.h"
 #include "lf/render/pipeline/render.h"
 #include "lf/render/state/report.h"
@@ -45,13 +47,16 @@ struct FocusStackOptions {
   RenderOptions render;
 };
 
+// Checks the output before any work, which RenderFocusStack() does as well.
+// kUsage: a file of this name exists, and neither overwrite is set nor is an unfinished render of
+// it resumed; the output would replace a file that the render reads; FILE.partial is a folder of
+// something else. kOutput: ffmpeg is missing.
+Result<void> CheckFocusStack(const LightField& light_field, const FocusStackOptions& options);
+
 // Renders the frames of the package, whose path is that of FocusStackPath(), and writes the stack.
 // A file appears under its name only when it is complete, and FILE.partial is then removed. Results
-// and errors are those of Render(), and:
-//   kUsage   a file of this name exists, and neither overwrite is set nor is an unfinished render
-//            of it resumed; the output would replace a file that the render reads; FILE.partial is
-//            a folder of something else
-//   kOutput  the output cannot be written, or ffmpeg is missing
+// and errors are those of Render() and CheckFocusStack(), and kOutput if the output cannot be
+// written.
 Result<RenderReport> RenderFocusStack(Package package, const FocusStackOptions& options,
                                       ThreadPool& pool,
                                       const std::function<void(const RenderProgress&)>& progress);

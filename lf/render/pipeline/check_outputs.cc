@@ -14,6 +14,7 @@
 
 #include "lf/render/pipeline/frame_output.h"
 #include "lf/render/state/run_state.h"
+#include "lf/storage/packed/packed_store_file.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -127,6 +128,15 @@ Result<void> CheckReplacesNone(const std::vector<fs::path>& outputs,
                                const std::vector<fs::path>& inputs) {
   const Replaced replaced(outputs);
   return replaced.empty() ? Result<void>() : CheckFiles(inputs, replaced);
+}
+
+std::vector<fs::path> FilesOfLightField(const LightField& light_field) {
+  if (HoldsPackedStore(light_field)) return {light_field.folder};
+  std::vector<fs::path> files;
+  for (const std::vector<std::string>* names : {&light_field.image_names, &light_field.mask_names})
+    for (const std::string& name : *names)
+      if (!name.empty()) files.push_back(light_field.folder / name);
+  return files;
 }
 
 Result<void> CheckOutputs(const Package& package, const RenderOptions& options) {

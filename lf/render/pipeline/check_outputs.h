@@ -16,6 +16,10 @@ namespace lf {
 Result<void> CheckReplacesNone(const std::vector<std::filesystem::path>& outputs,
                                const std::vector<std::filesystem::path>& inputs);
 
+// Returns the image files and masks of a light field or, if it is a packed store, the file of the
+// store.
+std::vector<std::filesystem::path> FilesOfLightField(const LightField& light_field);
+
 // Returns kUsage if a file that the render writes into its folder is an LF image or a mask of the
 // package, or one of options.folder.inputs. CheckVideoTarget() checks the video. Links to folders
 // are followed. Links to image files and masks are followed only if the light field has at most

@@ -1,0 +1,183 @@
+#include "lf/analysis/views/view_files.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <span>
+#include <utility>
+
+#include "lf/core/file.h"
+#include "lf/light_field/transforms_json/transforms_json.h"
+#include "lf/pixels/files/image_file.h"
+
+namespace lf {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr uint32_t kMost8 = 255, kMost16 = 65535;
+
+template <class T>
+std::vector<std::byte> BytesOf(const std::vector<T>& values) {
+  const std::span<const std::byte> bytes = std::as_bytes(std::span(values));
+  return {bytes.begin(), bytes.end()};
+}
+
+// Returns the values of a view as they are in a file of NumPy.
+std::vector<std::byte> BytesOfView(const Image<float>& light, ViewValues values) {
+  const auto& from = light.pixels();
+  if (values == ViewValues::kLinear) return BytesOf(std::vector<float>(from.begin(), from.end()));
+  if (values == ViewValues::kSrgb16) {
+    std::vector<uint16_t> numbers;
+    for (const float value : from)
+      numbers.push_back(static_cast<uint16_t>(DisplayNumber(value, kMost16)));
+    return BytesOf(numbers);
+  }
+  std::vector<uint8_t> numbers;
+  for (const float value : from)
+    numbers.push_back(static_cast<uint8_t>(DisplayNumber(value, kMost8)));
+  return BytesOf(numbers);
+}
+
+Result<void> WriteViewImage(const fs::path& path, const Image<float>& light, ViewValues values) {
+  if (values == ViewValues::kLinear)
+    return WriteImage(path, light.view(), {"R", "G", "B"}, PixelType::kFloat);
+  Image<float> shown(light.width(), light.height(), 3);
+  std::transform(light.pixels().begin(), light.pixels().end(), shown.pixels().begin(),
+                 [](float value) {
+                   return std::isnan(value) ? 0 : static_cast<float>(SrgbFromLinear(value));
+                 });
+  return WriteImage(path, shown.view(), {"R", "G", "B"},
+                    values == ViewValues::kSrgb8 ? PixelType::kUint8 : PixelType::kUint16);
+}
+
+// Returns the views as a light field.
+LightField FieldOfViews(const LightField& light_field, const ViewGrid& grid, ViewValues values) {
+  LightField views;
+  views.unit_m = light_field.unit_m;
+  views.depth_range = light_field.depth_range;
+  if (values == ViewValues::kLinear) {
+    views.encoding.transfer = Transfer::kLinear;
+    views.encoding.max_radiance = light_field.encoding.max_radiance;
+  }
+  for (size_t view = 0; view < grid.size(); ++view) {
+    const PinholeCamera camera = grid.Camera(view);
+    const auto known =
+        std::find(views.intrinsics.begin(), views.intrinsics.end(), camera.intrinsics);
+    LfCamera made;
+    made.cam_from_world = camera.cam_from_world;
+    made.intrinsics_index = static_cast<uint32_t>(known - views.intrinsics.begin());
+    if (known == views.intrinsics.end()) views.intrinsics.push_back(camera.intrinsics);
+    views.cameras.push_back(made);
+    views.image_names.push_back(ViewName(grid, view, light_field.unit_m, values));
+  }
+  return views;
+}
+
+std::string NumpyHeader(const ViewGrid& grid, ViewValues values) {
+  const char* const type = values == ViewValues::kSrgb8    ? "|u1"
+                           : values == ViewValues::kSrgb16 ? "<u2"
+                                                           : "<f4";
+  std::string text =
+      fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}, {}, {}, {}, 3), }}", type,
+                  grid.rows(), grid.columns(), grid.height_px(), grid.width_px());
+  // The values begin at a multiple of 64 bytes.
+  constexpr size_t kBefore = 10, kAlignment = 64;
+  const size_t length = (kBefore + text.size() + kAlignment) / kAlignment * kAlignment - kBefore;
+  text.resize(length - 1, ' ');
+  std::string header = "\x93NUMPY";
+  header += {'\x01', '\x00', static_cast<char>(length & 0xff), static_cast<char>(length >> 8)};
+  return header + text + "\n";
+}
+
+// A file whose parts are written in any order.
+class PartsFile {
+ public:
+  explicit PartsFile(const fs::path& path)
+      : path_(path), fd_(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {}
+  ~PartsFile() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  PartsFile(const PartsFile&) = delete;
+  PartsFile& operator=(const PartsFile&) = delete;
+
+  Result<void> Write(std::span<const std::byte> bytes, size_t offset) const {
+    while (fd_ >= 0 && !bytes.empty()) {
+      const ssize_t n = ::pwrite(fd_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+      if (n < 0 && errno == EINTR) continue;
+      if (n < 0) break;
+      bytes = bytes.subspan(static_cast<size_t>(n));
+      offset += static_cast<size_t>(n);
+    }
+    if (bytes.empty() && fd_ >= 0) return {};
+    return OutputError(
+        fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(errno)));
+  }
+
+ private:
+  const fs::path path_;
+  int fd_;
+};
+
+}  // namespace
+
+uint32_t DisplayNumber(float linear, uint32_t most) {
+  if (!(linear > 0)) return 0;
+  const double shown = std::min(1.0, SrgbFromLinear(linear));
+  return static_cast<uint32_t>(std::lround(shown * most));
+}
+
+std::string ViewName(const ViewGrid& grid, size_t view, double unit_m, ViewValues values) {
+  const Vec2 at_mm = grid.Position_w(view) * unit_m * 1000;
+  // A position of 0 has no sign.
+  const auto shown = [](double mm) { return std::abs(mm) < 5e-7 ? 0.0 : mm; };
+  return fmt::format("out_{:02}_{:02}_{:.6f}_{:.6f}.{}", grid.row_of(view), grid.column_of(view),
+                     shown(at_mm.y()), shown(at_mm.x()),
+                     values == ViewValues::kLinear ? "exr" : "png");
+}
+
+std::vector<fs::path> FilesOfViews(const ViewGrid& grid, const fs::path& folder, double unit_m,
+                                   ViewValues values) {
+  std::vector<fs::path> files = {folder / "transforms.json"};
+  for (size_t view = 0; view < grid.size(); ++view)
+    files.push_back(folder / ViewName(grid, view, unit_m, values));
+  return files;
+}
+
+Result<ViewsReport> WriteViewFolder(const LightField& light_field, const ViewGrid& grid,
+                                    const fs::path& folder, ViewValues values,
+                                    const MakeAllViews& make) {
+  LF_RETURN_IF_ERROR(CreateFolder(folder));
+  LF_ASSIGN_OR_RETURN(ViewsReport report, make([&](size_t view, const Image<float>& light) {
+                        return WriteViewImage(
+                            folder / ViewName(grid, view, light_field.unit_m, values), light,
+                            values);
+                      }));
+  LF_RETURN_IF_ERROR(WriteTransformsJson(FieldOfViews(light_field, grid, values),
+                                         folder / "transforms.json", "lffocus"));
+  return report;
+}
+
+Result<ViewsReport> WriteViewArray(const ViewGrid& grid, const fs::path& file, ViewValues values,
+                                   const MakeAllViews& make) {
+  ViewsReport report;
+  const Result<void> written =
+      WriteAtomically(file, [&](const fs::path& temporary) -> Result<void> {
+        const PartsFile parts(temporary);
+        const std::string header = NumpyHeader(grid, values);
+        LF_RETURN_IF_ERROR(parts.Write(std::as_bytes(std::span(header)), 0));
+        LF_ASSIGN_OR_RETURN(report, make([&](size_t view, const Image<float>& light) {
+                              const std::vector<std::byte> bytes = BytesOfView(light, values);
+                              return parts.Write(bytes, header.size() + view * bytes.size());
+                            }));
+        return {};
+      });
+  if (!written) return written.error();
+  return report;
+}
+
+}  // namespace lf

@@ -1,0 +1,50 @@
+// Writes the views of a grid: a folder of images with Stanford names and a transforms.json, or one
+// array of NumPy.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lf/analysis/views/render_views.h"
+#include "lf/analysis/views/view_grid.h"
+#include "lf/core/image.h"
+#include "lf/core/result.h"
+#include "lf/light_field/model/light_field.h"
+
+namespace lf {
+
+// The values of views in files.
+//   kSrgb8, kSrgb16  sRGB for display, with 8 or 16 bits: clipped; black where there is no light
+//   kLinear          linear light as 32-bit floats; NaN where there is none
+enum class ViewValues { kSrgb8, kSrgb16, kLinear };
+
+// Returns the value of a linear light in kSrgb8 (most = 255) or kSrgb16 (most = 65535).
+uint32_t DisplayNumber(float linear, uint32_t most);
+
+// Returns the name of a view: out_VV_UU_Y_X.png (kLinear: .exr), where VV is its row, UU its
+// column, and Y and X its position in millimetres, down and to the right (doc/formats/stanford.md).
+std::string ViewName(const ViewGrid& grid, size_t view, double unit_m, ViewValues values);
+
+// Returns the files that WriteViewFolder() writes.
+std::vector<std::filesystem::path> FilesOfViews(const ViewGrid& grid,
+                                                const std::filesystem::path& folder, double unit_m,
+                                                ViewValues values);
+
+// Makes all views by `make`, which gets the sink that writes them, and writes
+// - WriteViewFolder(): an image file for each view and, in the end, transforms.json, so that the
+//   folder is a light field. Its cameras are in the world of `light_field`.
+// - WriteViewArray(): one file of NumPy, [row][column][height][width][channel], which appears when
+//   it is complete.
+// Errors are those of `make`, and kOutput if a file cannot be written.
+using MakeAllViews = std::function<Result<ViewsReport>(const ViewSink& sink)>;
+Result<ViewsReport> WriteViewFolder(const LightField& light_field, const ViewGrid& grid,
+                                    const std::filesystem::path& folder, ViewValues values,
+                                    const MakeAllViews& make);
+Result<ViewsReport> WriteViewArray(const ViewGrid& grid, const std::filesystem::path& file,
+                                   ViewValues values, const MakeAllViews& make);
+
+}  // namespace lf
