@@ -20,7 +20,7 @@ NUMBERS = {  # the variable of each batch system, and the number of its first ta
     "JOB_COMPLETION_INDEX": 0, "AWS_BATCH_JOB_ARRAY_INDEX": 0,
 }
 LAST_FRAMES = ("frame_0008.exr", "frame_0009.exr")  # of the nine frames of the path
-OFTEN = ["--threads", 1, "--", "--dump-every", "0.05s"]  # packages get a checkpoint soon
+OFTEN = ["--threads", 1, "--", "--dump-every", "0.001s"]  # packages get a checkpoint with their first LF images
 
 
 class ProgressTest(ClusterTestCase):

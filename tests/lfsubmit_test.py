@@ -265,7 +265,7 @@ class LongLocalJobTest(ClusterTestCase):
     frames = 6
     side, pitch = 12, 0.004
     resolution = [320, 240]
-    OPTIONS = ("--jobs", 2, "--threads", 1, "--", "--dump-every", "0.05s")
+    OPTIONS = ("--jobs", 2, "--threads", 1, "--", "--dump-every", "0.001s")
 
     def start_held(self):
         return self.start("--lfrenderer", self.held_renderer(), *self.OPTIONS)
