@@ -40,6 +40,7 @@ TABLES = {
     "noise_remedies": ("rebinning", "bench/noise_remedies.py {build} {data}/groundtruth", "--only nothing"),
     "noise_rule": ("checkpoints", "bench/noise_rule.py {build} --data {data}", None),
     "codec_speed": ("codec", "bench/codec_speed.py {build} --data {data} --runs 3", "--runs 2"),
+    "focus_numpy": ("focus", "bench/focus_numpy.py {build} {data}/data/stanford-cards-9x9", "--runs 1 --planes 2"),
     "scale": ("performance", "bench/scale.py {build}", "--counts 100,200 --weighed 100 --frames 5 --packages 2"),
     "memory_bound": ("performance", "bench/memory_bound.py {build} {data}/data/blender-shop", "--frames 1 --images 4"),
     "packed_stores": ("codec", "bench/packed_stores.py {build}", "--count 4 --size 64x64 --runs 1"),
