@@ -36,11 +36,10 @@ struct Command {
   // Runs the command with the whole command line, and returns the exit code.
   int (*run)(int argc, char** argv);
 };
-constexpr std::array kCommands = {Command{"stack", lf::RunFocusStack},
-                                  Command{"depth", lf::RunFocusDepth},
-                                  Command{"sharp", lf::RunFocusSharp},
-                                  Command{"epi", lf::RunFocusEpi},
-                                  Command{"views", lf::RunFocusViews}};
+constexpr std::array kCommands = {
+    Command{"stack", lf::RunFocusStack}, Command{"depth", lf::RunFocusDepth},
+    Command{"sharp", lf::RunFocusSharp}, Command{"epi", lf::RunFocusEpi},
+    Command{"views", lf::RunFocusViews}};
 
 std::string Names() {
   std::string names;

@@ -115,7 +115,7 @@ Result<StoredImage> JoinViews(std::span<const fs::path> files, const PictureHead
   LF_ASSIGN_OR_RETURN(const std::vector<std::string> names,
                       JoinedChannels(header, options, files[0].string()));
   const int channels = static_cast<int>(names.size());
-  const ViewGrid grid = GridOf(options.layout, options.grid);
+  const TileCounts grid = GridOf(options.layout, options.grid);
   StoredImage joined =
       EmptyPicture(options.is_for_display ? PixelType::kUint8 : header.colours.type,
                    header.info.width * grid.columns, header.info.height * grid.rows, channels);

@@ -17,7 +17,7 @@ namespace lf {
 // The arrangement of the views, and the kind of the joined picture.
 struct JoinOptions {
   ViewLayout layout = ViewLayout::kQuilt;  // not kLeftRight, unless the pictures are for display
-  ViewGrid grid = {};                      // of a quilt
+  TileCounts grid = {};                    // of a quilt
   // True: the joined picture is 8-bit sRGB, composited over black, for a video. False: it has the
   // type and the colours of the views.
   bool is_for_display = false;

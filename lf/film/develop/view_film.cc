@@ -226,7 +226,7 @@ Result<ViewFilmReport> FilmWriter::Write(std::span<const fs::path> frames) {
   LF_ASSIGN_OR_RETURN(header_, CommonHeader(moments_, pool_));
   if (is_video() || !is_left_right())
     LF_RETURN_IF_ERROR(JoinedChannels(header_, join(), moments_[0].files[0].string()));
-  const ViewGrid grid = GridOf(options_.layout, options_.grid);
+  const TileCounts grid = GridOf(options_.layout, options_.grid);
   report_.width = grid.columns * header_.info.width;
   report_.height = grid.rows * header_.info.height;
   LF_RETURN_IF_ERROR(CheckShape());

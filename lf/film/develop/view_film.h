@@ -16,7 +16,7 @@ namespace lf {
 
 struct ViewFilmOptions {
   ViewLayout layout = ViewLayout::kQuilt;
-  ViewGrid grid = {};  // of a quilt
+  TileCounts grid = {};  // of a quilt
   // FOLDER/NAME.png or .exr, as the frames, or .mp4. PathOfViews() gives the names of the files; a
   // film of one moment has pictures without a number.
   std::filesystem::path output;

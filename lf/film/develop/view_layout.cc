@@ -46,11 +46,11 @@ const char* NameOf(ViewLayout layout) {
   return kNames[static_cast<int>(layout)];
 }
 
-int ViewCountOf(ViewLayout layout, const ViewGrid& grid) {
+int ViewCountOf(ViewLayout layout, const TileCounts& grid) {
   return layout == ViewLayout::kQuilt ? grid.view_count() : 2;
 }
 
-ViewGrid GridOf(ViewLayout layout, const ViewGrid& grid) {
+TileCounts GridOf(ViewLayout layout, const TileCounts& grid) {
   switch (layout) {
     case ViewLayout::kQuilt:
       return grid;
@@ -65,7 +65,7 @@ ViewGrid GridOf(ViewLayout layout, const ViewGrid& grid) {
   return {1, 1};
 }
 
-ViewTile TileOf(ViewLayout layout, const ViewGrid& grid, int view) {
+ViewTile TileOf(ViewLayout layout, const TileCounts& grid, int view) {
   switch (layout) {
     case ViewLayout::kQuilt:
       return {view % grid.columns, grid.rows - 1 - view / grid.columns};

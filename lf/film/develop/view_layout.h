@@ -20,18 +20,18 @@ std::optional<ViewLayout> ParseViewLayout(std::string_view name);
 const char* NameOf(ViewLayout layout);
 
 // Numbers of views side by side and above each other.
-struct ViewGrid {
+struct TileCounts {
   int columns = 1;
   int rows = 1;
   int view_count() const { return columns * rows; }
 };
 
 // Returns the number of views of one moment: 2 unless the layout is a quilt of `grid`.
-int ViewCountOf(ViewLayout layout, const ViewGrid& grid);
+int ViewCountOf(ViewLayout layout, const TileCounts& grid);
 
 // Returns the grid of the picture: `grid` for a quilt, 1 x 1 if views do not stand beside each
 // other.
-ViewGrid GridOf(ViewLayout layout, const ViewGrid& grid);
+TileCounts GridOf(ViewLayout layout, const TileCounts& grid);
 
 // Position of a view in GridOf(): its column from the left and its row from the top, from 0 on.
 struct ViewTile {
@@ -39,12 +39,12 @@ struct ViewTile {
   int row = 0;
 };
 //   view  index of the view, from 0: the leftmost of a quilt, or the left eye
-ViewTile TileOf(ViewLayout layout, const ViewGrid& grid, int view);
+ViewTile TileOf(ViewLayout layout, const TileCounts& grid, int view);
 
 // The name of the file of a picture.
 struct ViewFileName {
   ViewLayout layout = ViewLayout::kQuilt;
-  ViewGrid grid = {};         // of a quilt
+  TileCounts grid = {};       // of a quilt
   int width = 0, height = 0;  // of one view, in pixels
   std::optional<int> moment =
       {};       // number of the moment; none: the file is the only one, or a video

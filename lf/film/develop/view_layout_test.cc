@@ -19,7 +19,7 @@ TEST(ViewLayout, NamesAreParsed) {
 }
 
 TEST(ViewLayout, AQuiltBeginsAtTheLowerLeftAndEndsAtTheUpperRight) {
-  const ViewGrid grid = {3, 2};
+  const TileCounts grid = {3, 2};
   std::set<std::pair<int, int>> places;
   for (int view = 0; view < 6; ++view) {
     const ViewTile tile = TileOf(ViewLayout::kQuilt, grid, view);

@@ -54,10 +54,15 @@ TEST_F(WriteTruthTest, AFrameOfInstantsIsTheirMean) {
   const Image<float> first = ThinLensPhotograph(scene_, cameras_[2], {4, 0}, pool_);
   const Image<float> second = ThinLensPhotograph(scene_, cameras_[3], {4, 0}, pool_);
   EXPECT_NE(first.pixels(), second.pixels());
-  for (size_t i = 0; i < stored.pixels().size(); ++i)
-    ASSERT_EQ(
-        stored.pixels()[i],
-        static_cast<float>((static_cast<double>(first.pixels()[i]) + second.pixels()[i]) / 2));
+  const Image<float> depths = DepthsSeen(scene_, cameras_[3].pinhole, pool_);
+  for (int y = 0; y < stored.height(); ++y)
+    for (int x = 0; x < stored.width(); ++x) {
+      for (int c = 0; c < 3; ++c)
+        ASSERT_EQ(
+            stored.at(x, y, c),
+            static_cast<float>((static_cast<double>(first.at(x, y, c)) + second.at(x, y, c)) / 2));
+      ASSERT_EQ(stored.at(x, y, 3), depths.at(x, y));
+    }
 }
 
 TEST_F(WriteTruthTest, StoppedItKeepsTheFramesThatAreDone) {
