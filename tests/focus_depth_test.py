@@ -190,6 +190,21 @@ class FocusDepthTest(ProgramTestCase):
         self.succeeds(FOCUS, "depth", *arguments, "--overwrite")
         self.assertNotEqual((self.folder / "depth.pfm").read_bytes(), before)
 
+    def test_inputs_are_never_replaced(self):
+        image = self.field / json.loads((self.field / "transforms.json").read_text())["frames"][0]["file_path"]
+        before = image.read_bytes()
+        for command in ("depth", "sharp"):
+            self.fails(2, [image.name, "input"], FOCUS, command, self.field, self.path, "-o", image, "--near", NEAR,
+                       "--far", FAR, "--overwrite")
+        self.assertEqual(image.read_bytes(), before)
+
+    def test_a_map_without_any_depth_is_warned_of(self):
+        result = self.call(FOCUS, "depth", self.field, self.path, "-o", self.folder / "a.pfm", "--near", 100, "--far",
+                           200)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("no element has a depth", result.stderr)
+        self.assertFalse(np.isfinite(read_pfm(self.folder / "a.pfm")[1]).any())
+
     def test_a_broken_lf_image_is_left_out_and_told(self):
         field = self.folder / "field"
         field.mkdir()

@@ -27,6 +27,7 @@
 #include "lf/core/log.h"
 #include "lf/film/develop/frame_file.h"
 #include "lf/import/paths/open_path.h"
+#include "lf/render/pipeline/check_outputs.h"
 #include "lf/render/pipeline/develop_frame.h"
 #include "lf/render/pipeline/frame_metadata.h"
 #include "lf/selection/image_index.h"
@@ -132,14 +133,17 @@ void AddRunning(CLI::App& app, DepthArguments& a) {
   running.AddFlag("--overwrite", a.overwrite, "Replace files that exist");
 }
 
-Result<void> CheckOutputs(const DepthArguments& a) {
+Result<void> CheckOutputs(const DepthArguments& a, const LightField& light_field) {
   for (const std::string& output : a.outputs) {
     std::error_code error;
     if (!a.overwrite && std::filesystem::exists(output, error))
       return UsageError(fmt::format(
           "{} exists already: give another name, or --overwrite to replace it", output));
   }
-  return {};
+  std::vector<std::filesystem::path> inputs = FilesOfLightField(light_field);
+  inputs.emplace_back(a.light_field.path);
+  inputs.emplace_back(a.path);
+  return CheckReplacesNone({a.outputs.begin(), a.outputs.end()}, inputs);
 }
 
 Result<DepthRange> RangeOf(const DepthArguments& a, const LightField& light_field,
@@ -166,12 +170,12 @@ struct Made {
 Result<Made> Make(const DepthArguments& a, const CommonOptions& common, ThreadPool& pool,
                   const std::atomic<bool>& interrupted) {
   LF_RETURN_IF_ERROR(a.allow_missing.Limit());
-  LF_RETURN_IF_ERROR(CheckOutputs(a));
   if (a.window % 2 == 0)
     return UsageError(fmt::format("--window {}: expected an odd number of elements", a.window));
   DepthMapOptions options;
   LF_ASSIGN_OR_RETURN(options.memory_bytes, ParseByteSize(a.memory, "--memory"));
   LF_ASSIGN_OR_RETURN(const LightField light_field, a.light_field.Open());
+  LF_RETURN_IF_ERROR(CheckOutputs(a, light_field));
   LF_ASSIGN_OR_RETURN(const CameraPath path,
                       OpenPath(a.path, PathOptionsFor(light_field, a.light_field.path)));
   if (a.frame > path.frame_count())
@@ -232,6 +236,11 @@ Result<void> Finish(const DepthArguments& a, const CommonOptions& common, const 
       "elements have a depth",
       map.view_count, map.planes_w.size() - 2, made.range.near_w, made.range.far_w,
       100 * KnownShare(map));
+  if (map.known_count == 0)
+    LogWarning(
+        "no element has a depth: give the distances of the scene by --near and --far, open the "
+        "lens "
+        "wider, or accept less sure depths by --confidence");
   if (common.json) LF_RETURN_IF_ERROR(PrintReport(ReportJson(a, made)));
   if (map.skipped.empty()) return {};
   LF_ASSIGN_OR_RETURN(const MissingLimit limit, a.allow_missing.Limit());

@@ -167,6 +167,8 @@ Result<void> Run(const Arguments& a, const CommonOptions& common) {
   LF_ASSIGN_OR_RETURN(const ViewGrid grid,
                       ViewGrid::Make(light_field, a.grid.first, a.grid.second));
   LF_RETURN_IF_ERROR(CheckOutputs(a, light_field, grid));
+  if (light_field.encoding.HasOpacity())
+    LogWarning("the views lose the opacity of the LF images: they are composited over black");
   ViewOptions options;
   LF_ASSIGN_OR_RETURN(options.memory_bytes, ParseByteSize(a.memory, "--memory"));
   if (!a.focus_distance.empty()) {

@@ -299,7 +299,8 @@ lf::Result<void> Write(const Arguments& a, lf::PathOptions options, const lf::Ca
   if (path.shutter.exists() && format == lf::PathFormat::kYaml)
     lf::LogWarning(
         "{}: the cameras at which the shutter exposes a frame are interpolated between the cameras "
-        "of the frames",
+        "of the frames; before the first frame and after the last one, the camera stands still, so "
+        "that these two frames are blurred less",
         a.output);
   if (!lost.empty())
     lf::LogWarning("{}: the format has no place for {}", a.output, fmt::join(lost, "; for "));

@@ -15,20 +15,19 @@
 
 namespace lf {
 
-// The picture is a square that the circle around the opening (Aperture::radius_w) touches from
-// within. The photographer behind the camera sees it upright. It turns with the blades and is
-// squeezed with the opening, and only its part within the opening counts.
+// The picture is the square around the circle of Aperture::radius_w. The photographer behind the
+// camera sees it upright. It turns with the blades and is squeezed with the opening, and only its
+// part within the opening counts.
 class Transmission {
  public:
-  // Finer pictures are reduced, because there are fewer LF cameras in a lens than places in 64 x
-  // 64.
+  // Finer pictures are reduced, because a lens holds far fewer than 64 x 64 LF cameras.
   static constexpr int kMostSide = 64;
 
   // Returns a transmission of a picture of any size and shape. A picture that is no square is
   // centred in a dark one. Blocks of pixels become their mean if a side exceeds kMostSide.
   //   shares  [height][width][1]: 0 lets no light through, 255 all of it. Linear: half the value is
   //           half the light
-  // kInput: the picture is empty, or wholly dark.
+  // kInput: the picture is empty, or wholly dark within the circle.
   static Result<Transmission> Of(const Image<uint8_t>& shares);
 
   // Text() returns the picture as rows of two hexadecimal digits for each place, with a '/' between
@@ -39,7 +38,7 @@ class Transmission {
 
   // Number of places across and down.
   int side() const { return shares_.width(); }
-  // The light that a place lets through, from 0 to 255.
+  // Returns the share of the light that a place lets through, times 255.
   int Share(int column, int row) const { return shares_.at(column, row); }
   // Mean of all places, from 0 to 1.
   double Mean() const;
@@ -55,8 +54,8 @@ using TransmissionPtr = std::shared_ptr<const Transmission>;
 // Returns true if both are null or equal.
 bool AreEqual(const TransmissionPtr& a, const TransmissionPtr& b);
 
-// Converts lens coordinates to places of the picture: column and row are linear in the point. The
-// picture is [0, side] across and down.
+// Converts lens coordinates to continuous coordinates of the picture, from 0 to side; both are
+// linear in the point.
 struct TransmissionAxes {
   TransmissionAxes(const Transmission& transmission, const Aperture& aperture);
   double Column(const Vec2& point_lens) const { return across.dot(point_lens) + middle; }

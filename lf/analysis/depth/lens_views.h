@@ -68,8 +68,8 @@ class LensViews {
   // memory_bytes, but at least 16 rows each.
   std::vector<PixelRect> CutPlate(size_t memory_bytes) const;
 
-  // Makes views() those that elements of `part` see. Does nothing if they are loaded already. Views
-  // that see nothing are left out. kInput, kOutput: as LfImageStore::Load(). kInterrupted: *stop
+  // Loads the views that the elements of `part` see; views() returns them. Does nothing if they are
+  // loaded already. kInput, kOutput: as LfImageStore::Load(). kInterrupted: *stop
   // became true.
   Result<void> Load(const PixelRect& part, ThreadPool& pool, const std::atomic<bool>* stop);
   std::span<const LensView> views() const { return views_; }

@@ -26,7 +26,7 @@
 
 namespace lf {
 
-// The largest number of views, so that 64 bits hold n sum r^2.
+// The largest number of views for which n sum r^2 fits into 64 bits.
 inline constexpr size_t kMostSweptViews = 4096;
 // A distance has a cost only if at least this number of views sees the element.
 inline constexpr uint32_t kLeastViews = 3;

@@ -166,7 +166,8 @@ Result<EpipolarPicture> MakeEpipolarPicture(
                                                    options.tolerance_w));
   picture.lines = options.lines;
   if (options.lines == EpipolarLines::kAuto)
-    picture.lines = picture.line.is_even ? EpipolarLines::kRecorded : EpipolarLines::kNearest;
+    picture.lines = picture.line.is_even && !options.line_count ? EpipolarLines::kRecorded
+                                                                : EpipolarLines::kNearest;
   const size_t count = options.line_count.value_or(picture.line.ids.size());
   if (count < 2 || count > kMostEpipolarLines)
     return UsageError(fmt::format("{} lines: expected 2 to {}", count, kMostEpipolarLines));

@@ -181,7 +181,7 @@ Result<DepthRange> FindFocusRange(const LightField& light_field, const RenderCam
   if (!depths || light_field.size() == 0)
     return InputError(
         "the depths of the scene are not stated by the light field, and comparing LF images did "
-        "not find them surely: give the nearest and the farthest focus distance");
+        "not find them surely: state the focus distance yourself");
   const PinholeCamera lf_camera = light_field.Camera(NearestCamera(light_field, centre_world));
   const DepthRange near = DepthsFrom(camera, lf_camera, depths->near_w);
   const DepthRange far = DepthsFrom(camera, lf_camera, depths->far_w);
@@ -190,7 +190,7 @@ Result<DepthRange> FindFocusRange(const LightField& light_field, const RenderCam
   if (!(range.near_w < range.far_w))
     return InputError(
         fmt::format("the depths of the scene, {:.6g} to {:.6g}, {}, are not in front of the render "
-                    "camera: give the nearest and the farthest focus distance",
+                    "camera: state the focus distance yourself",
                     depths->near_w, depths->far_w, source));
   LogDebug("depths of the scene, {}: {:.6g} to {:.6g}; focus distances {:.6g} to {:.6g}", source,
            depths->near_w, depths->far_w, range.near_w, range.far_w);

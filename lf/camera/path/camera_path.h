@@ -54,7 +54,7 @@ struct CameraPath {
     LF_CHECK(instants.size() == cameras.size() * count);
     return std::span(instants).subspan((frame.value - 1) * count, count);
   }
-  // Returns the same cameras of all frames.
+  // Returns the cameras of Instants() of all frames, one frame after the other.
   std::span<const RenderCamera> AllInstants() const {
     return shutter.exists() ? instants : cameras;
   }

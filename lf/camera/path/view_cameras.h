@@ -1,9 +1,9 @@
 // The cameras of several views of a film: stereo pairs, and the views of a light field display.
 //
 // All views of a frame are parallel: they stand side by side on the right axis of its camera, and
-// their plates are shifted instead of turned (off-axis; never toed in), so that every point of the
-// plane of convergence is at the same position in all views. A camera that is moved to the right by
-// b has the principal point
+// their plates are shifted instead of turned (off-axis; cameras are never turned towards a point),
+// so that every point of the plane of convergence is at the same position in all views. A camera
+// that is moved to the right by b has the principal point
 //
 //   cx' = cx + fx b / c
 //

@@ -26,7 +26,8 @@ inline constexpr int kPlaneKindCount = 2;
 struct DensifiedPlan {
   std::string settings;  // all settings of the densifier, in words; not empty
   // Inverse depths, in 1 / world unit along the axis of the LF camera, that the numbers 1 and 65535
-  // of a plane stand for; 0 <= least <= greatest <= 1e12. The number 0 means unknown.
+  // of a plane stand for; least <= greatest, both at most 1e12. Below 0, points are beyond
+  // infinity, as in images that are rectified to a plane. The number 0 means unknown.
   double plane_least = 0;
   double plane_greatest = 0;
   // A plane has one number for plane_divisor x plane_divisor LF pixels. From 1 to kMostDivisor.

@@ -304,7 +304,7 @@ TEST_F(PackedPlanesTest, WrongMarksAndSettingsAreDamage) {
                      "= null where id = 3; update lf_images set whole_id = 3 where id = 4",
                      "differ from the recorded checksum"),
            std::pair("delete from settings where key = 'densified'", "setting densified"),
-           std::pair("update settings set value = '-1' where key = 'planes.least'",
+           std::pair("update settings set value = '-1e13' where key = 'planes.least'",
                      "setting planes.least"),
            std::pair("update settings set value = '0.1' where key = 'planes.greatest'",
                      "setting planes.greatest"),

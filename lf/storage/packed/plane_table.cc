@@ -34,7 +34,7 @@ Result<std::optional<DensifiedPlan>> ReadDensified(OpenedStore* store) {
   DensifiedPlan plan;
   plan.settings = settings.Text(kDensifiedKey);
   if (plan.settings.empty()) return settings.Wrong(kDensifiedKey, "settings in words");
-  LF_ASSIGN_OR_RETURN(plan.plane_least, settings.Number("planes.least", 0, kMostNumber));
+  LF_ASSIGN_OR_RETURN(plan.plane_least, settings.Number("planes.least", -kMostNumber, kMostNumber));
   LF_ASSIGN_OR_RETURN(plan.plane_greatest,
                       settings.Number("planes.greatest", plan.plane_least, kMostNumber));
   LF_ASSIGN_OR_RETURN(const uint64_t divisor, settings.Whole("planes.divisor"));
