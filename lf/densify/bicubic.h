@@ -1,23 +1,17 @@
-// Bicubic interpolation of RGB pixels (Keys 1981, a = -1/2). Internal to this folder.
+// Bicubic interpolation of RGB pixels. Internal to this folder.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
+#include "lf/core/catmull_rom.h"
 #include "lf/core/image.h"
 #include "lf/light_field/model/lf_pixels.h"
 
 namespace lf {
-
-// Returns the weights of the pixels at -1, 0, 1 and 2 for a position t in [0, 1] behind pixel 0.
-inline void BicubicWeights(float t, float weights[4]) {
-  const float t2 = t * t, t3 = t2 * t;
-  weights[0] = -0.5f * t3 + t2 - 0.5f * t;
-  weights[1] = 1.5f * t3 - 2.5f * t2 + 1;
-  weights[2] = -1.5f * t3 + 2 * t2 + 0.5f * t;
-  weights[3] = 0.5f * t3 - 0.5f * t2;
-}
 
 // Interpolates between the pixels [height][width][4] around continuous position (x, y). Positions
 // beyond the border pixels' centres take these pixels. Returns false if the position is outside the
@@ -31,9 +25,8 @@ inline bool SampleBicubic(const Image<uint16_t>& light, float x_px, float y_px, 
     return false;
   const float x = x_px - 0.5f, y = y_px - 0.5f;
   const float left = std::floor(x), top = std::floor(y);
-  float across[4], down[4];
-  BicubicWeights(x - left, across);
-  BicubicWeights(y - top, down);
+  const std::array<float, 4> across = CatmullRomWeights(x - left);
+  const std::array<float, 4> down = CatmullRomWeights(y - top);
   const int column = static_cast<int>(left), row = static_cast<int>(top);
   int columns[4], rows[4];
   for (int i = 0; i < 4; ++i) {
@@ -53,9 +46,10 @@ inline bool SampleBicubic(const Image<uint16_t>& light, float x_px, float y_px, 
         pixel = nearest;
       }
       for (int lane = 0; lane < kLanes; ++lane)
-        sums[lane] += across[i] * static_cast<float>(pixel[lane]);
+        sums[lane] += across[static_cast<size_t>(i)] * static_cast<float>(pixel[lane]);
     }
-    for (int lane = 0; lane < kLanes; ++lane) colour[lane] += down[j] * sums[lane];
+    for (int lane = 0; lane < kLanes; ++lane)
+      colour[lane] += down[static_cast<size_t>(j)] * sums[lane];
   }
   return true;
 }

@@ -7,13 +7,10 @@
 #include <optional>
 #include <vector>
 
+#include "lf/core/catmull_rom.h"
+
 namespace lf {
 namespace {
-
-std::array<double, 4> CatmullRom(double t) {
-  return {0.5 * t * (t * (2 - t) - 1), 0.5 * (t * t * (3 * t - 5) + 2),
-          0.5 * t * (t * (4 - 3 * t) + 1), 0.5 * t * t * (t - 1)};
-}
 
 // Returns the light at a position of the view; none if a pixel that it needs is missing. Pixels
 // beyond the border are those at the border.
@@ -21,7 +18,8 @@ std::optional<std::array<uint16_t, 3>> LightAt(const LensView& view, double x, d
   const int width = view.light.width(), height = view.light.height();
   if (!(x >= 0 && x <= width - 1 && y >= 0 && y <= height - 1)) return std::nullopt;
   const int column = static_cast<int>(x), row = static_cast<int>(y);
-  const std::array<double, 4> across = CatmullRom(x - column), down = CatmullRom(y - row);
+  const std::array<double, 4> across = CatmullRomWeights(x - column),
+                              down = CatmullRomWeights(y - row);
   std::array<double, 3> light = {};
   for (int j = 0; j < 4; ++j) {
     std::array<double, 3> of_row = {};

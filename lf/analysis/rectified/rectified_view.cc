@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "lf/core/catmull_rom.h"
 #include "lf/light_field/model/lf_light.h"
 
 namespace lf {
@@ -13,12 +14,6 @@ namespace {
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 // Number of pixels around a position that the cubics read, on either side.
 constexpr int kMargin = 2;
-
-// Weights of four pixels, of which the second is before the position by `t`, in [0, 1).
-std::array<double, 4> CubicWeights(double t) {
-  return {((-0.5 * t + 1) * t - 0.5) * t, (1.5 * t - 2.5) * t * t + 1,
-          ((-1.5 * t + 2) * t + 0.5) * t, (0.5 * t - 0.5) * t * t};
-}
 
 // The pixel before a position, and the way from its centre to the position.
 struct Between {
@@ -61,7 +56,7 @@ class WeightedSum {
 
 WeightedSum Cubic(const Image<float>& light, const PixelRect& rect, const Between& x,
                   const Between& y) {
-  const std::array<double, 4> across = CubicWeights(x.t), down = CubicWeights(y.t);
+  const std::array<double, 4> across = CatmullRomWeights(x.t), down = CatmullRomWeights(y.t);
   WeightedSum sum(light, rect);
   for (int row = 0; row < 4; ++row)
     for (int column = 0; column < 4; ++column)
