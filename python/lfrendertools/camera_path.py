@@ -1,7 +1,7 @@
 """Camera paths."""
 from __future__ import annotations
 
-import logging
+import warnings
 import os
 from typing import Iterable, Iterator, List, Optional, Sequence, Tuple, Union, overload
 
@@ -114,7 +114,7 @@ class Path(Sequence[Camera]):
 
         When a YAML file is read again, directions and fields of view differ by at most 1e-12 (entries of the rotation
         matrix, and relative), and other values by no more than the rounding of double precision. JSON files give the
-        same bits. The file appears only when it is whole.
+        same bits. The file appears only when it is whole. A warning tells what the file does not hold.
 
         Parameters
         ----------
@@ -137,8 +137,10 @@ class Path(Sequence[Camera]):
         lost = _core.save_path(file, [camera._core for camera in self._cameras], self.fps,
                                self._shutter, None if format is None else arguments.text("format", format))
         if lost:
-            logging.getLogger("lfrendertools").warning("%s: the format has no place for %s", os.fsdecode(file),
-                                                       "; for ".join(lost))
+            warnings.warn(f"{os.fsdecode(file)}: the format has no place for {'; for '.join(lost)}", stacklevel=2)
+        if self._shutter and format == "yaml":
+            warnings.warn(f"{os.fsdecode(file)}: before the first frame and after the last one, the camera stands "
+                          "still, so that these two frames are blurred less", stacklevel=2)
 
     @property
     def cameras(self) -> Sequence[Camera]:
