@@ -198,6 +198,21 @@ class FocusDepthTest(ProgramTestCase):
                        "--far", FAR, "--overwrite")
         self.assertEqual(image.read_bytes(), before)
 
+    def test_the_picture_in_the_lens_is_an_input(self):
+        picture = self.folder / "heart.png"
+        picture.write_bytes((self.field / "images/0000.png").read_bytes())
+        path = self.folder / "path.yaml"
+        path.write_text(self.path.read_text().replace("focus_distance", "transmission: heart.png, focus_distance"))
+        for output in (picture, path):
+            before = output.read_bytes()
+            renamed = output if output == picture else self.folder / "linked.png"
+            if renamed != output:
+                renamed.symlink_to(output)
+            for words in (["depth", "-o", renamed], ["sharp", "-o", renamed]):
+                self.fails(2, ["input"], FOCUS, words[0], self.field, path, *words[1:], "--near", NEAR, "--far", FAR,
+                           "--overwrite")
+            self.assertEqual(output.read_bytes(), before)
+
     def test_a_map_without_any_depth_is_warned_of(self):
         result = self.call(FOCUS, "depth", self.field, self.path, "-o", self.folder / "a.pfm", "--near", 100, "--far",
                            200)

@@ -90,6 +90,8 @@ class TinyCalls:
         stack = self.words("lffocus", "stack", self.field, self.path, "--planes", "2", "--near", "2", "--far", "4",
                            "-o", out.with_suffix(".exr"))
         epi = self.words("lffocus", "epi", self.field, "--row", "9", "-o", out.with_suffix(".png"))
+        depth = self.words("lffocus", "depth", self.field, self.path, "--planes", "3", "--near", "2", "--far", "4",
+                           "-o", out.with_suffix(".exr"), "-o", out.with_suffix(".ply"))
         views = self.words("lffocus", "views", self.field, "--grid", "3x3", "-o", out)
         array = self.words("lffocus", "views", self.field, "--grid", "2x4", "--focus-distance", "3", "-o",
                            out.with_suffix(".npy"))
@@ -108,6 +110,7 @@ class TinyCalls:
                 Call("lfmerge", merge, [[*merge, "--resume"], [*merge, "--overwrite"]]),
                 Call("lffocus stack", stack, [[*stack, "--resume"], [*stack, "--overwrite"]]),
                 Call("lffocus epi", epi, [[*epi, "--overwrite"]]),
+                Call("lffocus depth", depth, [[*depth, "--overwrite"]]),
                 Call("lffocus views", views, [[*views, "--overwrite"]]),
                 Call("lffocus views, an array", array, [[*array, "--overwrite"]]),
                 Call("lfquilt", quilt, [[*quilt, "--resume"], [*quilt, "--overwrite"]])]

@@ -20,6 +20,7 @@
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
 #include "tools/common/validators.h"
+#include "tools/focus_frame.h"
 
 #include "lf/analysis/depth/depth_files.h"
 #include "lf/analysis/depth/depth_map.h"
@@ -65,23 +66,20 @@ the depths of those around them.)",
 
 struct DepthArguments {
   LightFieldArgument light_field;
-  std::string path, near, far, memory = "8G";
+  FrameArgument frame;
+  std::string near, far, memory = "8G";
   std::vector<std::string> outputs;
-  uint32_t frame = 1;
   size_t planes = 0, views = 200;
   int window = 5;
   double confidence = 0.5;
   bool fill = false, overwrite = false;
-  std::string format;
   AllowMissing allow_missing;
 };
 
 void AddInput(CLI::App& app, DepthArguments& a) {
   a.light_field.AddTo(app);
   OptionGroup input(app, kInputGroup);
-  input.Add("PATH", a.path, kPathHelp)->required();
-  input.Add("--frame N", a.frame, "Frame of PATH whose camera is used, from 1")
-      ->check(CLI::Range(1, kMostFrames));
+  a.frame.AddTo(input);
   a.allow_missing.AddTo(app, "the LF images that are compared");
 }
 
@@ -142,7 +140,7 @@ Result<void> CheckOutputs(const DepthArguments& a, const LightField& light_field
   }
   std::vector<std::filesystem::path> inputs = FilesOfLightField(light_field);
   inputs.emplace_back(a.light_field.path);
-  inputs.emplace_back(a.path);
+  for (std::filesystem::path& file : FilesOfPath(a.frame.path)) inputs.push_back(std::move(file));
   return CheckReplacesNone({a.outputs.begin(), a.outputs.end()}, inputs);
 }
 
@@ -176,13 +174,8 @@ Result<Made> Make(const DepthArguments& a, const CommonOptions& common, ThreadPo
   LF_ASSIGN_OR_RETURN(options.memory_bytes, ParseByteSize(a.memory, "--memory"));
   LF_ASSIGN_OR_RETURN(const LightField light_field, a.light_field.Open());
   LF_RETURN_IF_ERROR(CheckOutputs(a, light_field));
-  LF_ASSIGN_OR_RETURN(const CameraPath path,
-                      OpenPath(a.path, PathOptionsFor(light_field, a.light_field.path)));
-  if (a.frame > path.frame_count())
-    return UsageError(fmt::format("--frame {}: {} has {} frame{}: give a number from 1 to {}",
-                                  a.frame, a.path, path.frame_count(),
-                                  path.frame_count() == 1 ? "" : "s", path.frame_count()));
-  const RenderCamera& camera = path.Camera(FrameId{a.frame});
+  LF_ASSIGN_OR_RETURN(const CameraPath path, a.frame.Open(light_field, a.light_field.path));
+  const RenderCamera& camera = path.Camera(a.frame.id());
   Made made;
   LF_ASSIGN_OR_RETURN(made.range, RangeOf(a, light_field, camera, pool));
   options.range = made.range;
@@ -200,8 +193,7 @@ Result<Made> Make(const DepthArguments& a, const CommonOptions& common, ThreadPo
                      static_cast<uint64_t>(camera.pinhole.intrinsics.height_px);
   std::mutex mutex;
   LF_ASSIGN_OR_RETURN(
-      made.map,
-      MakeDepthMap(index, *store, FrameId{a.frame}, camera, options, pool, [&](double share) {
+      made.map, MakeDepthMap(index, *store, a.frame.id(), camera, options, pool, [&](double share) {
         const std::lock_guard lock(mutex);
         meter.Update(static_cast<uint64_t>(share * static_cast<double>(total)), total,
                      std::string("depth"));
@@ -217,7 +209,7 @@ double KnownShare(const DepthMap& map) {
 }
 
 std::string ReportJson(const DepthArguments& a, const Made& made) {
-  nlohmann::ordered_json report = {{"frame", a.frame},
+  nlohmann::ordered_json report = {{"frame", a.frame.frame},
                                    {"files", a.outputs},
                                    {"near_w", made.range.near_w},
                                    {"far_w", made.range.far_w},

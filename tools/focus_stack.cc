@@ -16,6 +16,7 @@
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
 #include "tools/common/validators.h"
+#include "tools/focus_frame.h"
 #include "tools/render_arguments.h"
 #include "tools/render_densified.h"
 #include "tools/render_summary.h"
@@ -56,8 +57,8 @@ program writes the state and ends with exit code 5; --resume continues.)",
 
 struct Arguments {
   RenderArguments render;
-  std::string path, distances, near, far;
-  uint32_t frame = 1;
+  FrameArgument frame;
+  std::string distances, near, far;
   uint32_t planes = 30;
   std::optional<double> fps;
   bool back_and_forth = false;
@@ -66,9 +67,7 @@ struct Arguments {
 void AddInput(CLI::App& app, Arguments& a) {
   a.render.light_field.AddTo(app);
   OptionGroup input(app, kInputGroup);
-  input.Add("PATH", a.path, kPathHelp)->required();
-  input.Add("--frame N", a.frame, "Frame of PATH whose camera is used, from 1")
-      ->check(CLI::Range(1, kMostFrames));
+  a.frame.AddTo(input);
   a.render.allow_missing.AddTo(app, "the LF images that the largest pass reads");
 }
 
@@ -203,19 +202,14 @@ Result<std::vector<double>> DistancesOf(const Arguments& a, const LightField& li
 }
 
 Result<CameraPath> OpenStack(const Arguments& a, const LightField& light_field, ThreadPool& pool) {
-  LF_ASSIGN_OR_RETURN(CameraPath path,
-                      OpenPath(a.path, PathOptionsFor(light_field, a.render.light_field.path)));
-  if (a.frame > path.frame_count())
-    return UsageError(fmt::format("--frame {}: {} has {} frame{}: give a number from 1 to {}",
-                                  a.frame, a.path, path.frame_count(),
-                                  path.frame_count() == 1 ? "" : "s", path.frame_count()));
+  LF_ASSIGN_OR_RETURN(CameraPath path, a.frame.Open(light_field, a.render.light_field.path));
   if (a.fps) path.fps = *a.fps;
   LF_ASSIGN_OR_RETURN(const std::vector<double> distances_w,
-                      DistancesOf(a, light_field, path.Camera(FrameId{a.frame}), pool));
-  LogInfo("focus stack of frame {}: {} plane{} from {:.6g} to {:.6g} world units", a.frame,
+                      DistancesOf(a, light_field, path.Camera(a.frame.id()), pool));
+  LogInfo("focus stack of frame {}: {} plane{} from {:.6g} to {:.6g} world units", a.frame.frame,
           distances_w.size(), distances_w.size() == 1 ? "" : "s", distances_w.front(),
           distances_w.back());
-  return FocusStackPath(path, FrameId{a.frame}, distances_w);
+  return FocusStackPath(path, a.frame.id(), distances_w);
 }
 
 struct Rendered {
@@ -232,11 +226,12 @@ Result<Rendered> RenderStack(const Arguments& a, const CommonOptions& common, Th
   LF_ASSIGN_OR_RETURN(CameraPath stack, OpenStack(a, light_field, pool));
   FocusStackOptions options;
   options.output = a.render.output;
-  options.frame = FrameId{a.frame};
+  options.frame = a.frame.id();
   options.back_and_forth = a.back_and_forth;
   LF_ASSIGN_OR_RETURN(options.render, a.render.MakeOptions(common, stack.frame_count()));
   options.render.signals = signals;
-  options.render.folder.inputs = {a.render.light_field.path, a.path};
+  options.render.folder.inputs = FilesOfPath(a.frame.path);
+  options.render.folder.inputs.emplace_back(a.render.light_field.path);
   options.render.folder.output_folder = StackFolder(options.output);
   LF_RETURN_IF_ERROR(CheckFocusStack(light_field, options));
   MissingImages missing;
@@ -267,7 +262,7 @@ Result<void> Run(Arguments* a, const Program& program, bool has_format, int argc
   const CommonOptions& common = program.common();
   LF_RETURN_IF_ERROR(CheckForm(a, has_format));
   LF_RETURN_IF_ERROR(a->render.allow_missing.Limit());
-  a->render.inputs = {a->render.light_field.path, a->path};
+  a->render.inputs = {a->render.light_field.path, a->frame.path};
   RenderSignals& signals = CatchRenderSignals();
   ThreadPool pool(common.threads);
   ProgressMeter meter(ParseProgressStyle(common.progress),

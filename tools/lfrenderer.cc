@@ -83,7 +83,8 @@ lf::Result<Rendered> RenderLightField(const lf::RenderArguments& arguments,
   LF_ASSIGN_OR_RETURN(lf::RenderOptions options, arguments.MakeOptions(common, path.frame_count()));
   if (arguments.HasNoFrame(options)) return NoFrames(arguments, std::move(options));
   options.signals = signals;
-  options.folder.inputs.assign(arguments.inputs.begin(), arguments.inputs.end());
+  options.folder.inputs = lf::FilesOfPath(arguments.inputs[1]);
+  options.folder.inputs.emplace_back(arguments.inputs[0]);
   lf::MissingImages missing;
   if (arguments.densify) {
     lf::Result<lf::DensifiedFilm> densified =

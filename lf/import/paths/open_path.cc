@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "lf/camera/path/path_yaml.h"
 #include "lf/import/paths/chan_path.h"
@@ -64,6 +67,18 @@ PathOptions PathOptionsFor(const LightField& light_field, const fs::path& path) 
 Result<bool> IsPathYaml(const fs::path& path) {
   LF_ASSIGN_OR_RETURN(const PathPlace place, FindPath(path));
   return place.kind == PathKind::kYaml;
+}
+
+std::vector<fs::path> FilesOfPath(const fs::path& path) {
+  std::vector<fs::path> files = {path};
+  const auto place = FindPath(path);
+  if (!place || place->kind != PathKind::kYaml) return files;
+  // The reader of pictures only takes their names, so that the path is not read to its end.
+  const auto read = ReadPathYaml(path, std::nullopt, [&](const std::string& picture) {
+    files.push_back(path.parent_path() / picture);
+    return Result<Transmission>(InputError(""));
+  });
+  return files;
 }
 
 Result<CameraPath> OpenPath(const fs::path& path, const PathOptions& options) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "lf/camera/path/camera_path.h"
 #include "lf/core/geometry.h"
@@ -57,6 +58,10 @@ PathOptions PathOptionsFor(const LightField& light_field, const std::filesystem:
 
 // Returns true if a file is a path in our own YAML, or cannot be read. Errors as for OpenPath().
 Result<bool> IsPathYaml(const std::filesystem::path& path);
+
+// Returns the files that a path is read from, which no output may replace: itself and, if it is our
+// own YAML, the picture that lens.transmission names.
+std::vector<std::filesystem::path> FilesOfPath(const std::filesystem::path& path);
 
 // Returns the cameras of a path, one for each frame. The form of the file is found by its content:
 // - our own YAML: camera/path/path_yaml.h

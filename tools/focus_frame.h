@@ -1,0 +1,28 @@
+// The frame of PATH whose camera a command of lffocus uses.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "tools/common/help.h"
+
+#include "lf/camera/path/camera_path.h"
+#include "lf/core/ids.h"
+#include "lf/core/result.h"
+#include "lf/light_field/model/light_field.h"
+
+namespace lf {
+
+struct FrameArgument {
+  std::string path;  // PATH
+  uint32_t frame = 1;
+
+  FrameId id() const { return FrameId{frame}; }
+  // Adds the positional argument PATH, and --frame N.
+  void AddTo(OptionGroup& input);
+  // Opens the path for a light field that was opened from `source`. kUsage: the path has no such
+  // frame. Other errors are those of OpenPath().
+  Result<CameraPath> Open(const LightField& light_field, const std::string& source) const;
+};
+
+}  // namespace lf
