@@ -6,7 +6,8 @@ usage: bench/focus_numpy.py BUILD_DIR CARDS [--planes 16] [--runs 5] [--name NAM
 
 CARDS  the folder stanford-cards-9x9: 9 x 9 JPEG pictures of 768 x 768 pixels, rectified to one plane
 
-Both read the 81 files, refocus them at the same planes, and write a PNG picture for each. NumPy shifts every LF image
+Both read the 81 files, refocus them at the same planes, and write a PNG picture for each. Pictures that differ by more
+than interpolation does (30 dB in the worst plane) are an error: then the programs would not do the same work. NumPy shifts every LF image
 by a fraction of a pixel (bilinear interpolation) and sums. lffocus has a square lens of all 81 LF cameras, once with
 its defaults and once with bilinear interpolation and equal weights, as NumPy does. Figures are medians of the runs,
 which alternate.
@@ -20,14 +21,17 @@ import tempfile
 
 import record as results
 
+# The names count rows and columns from 0 to 16 in steps of 2, and a pitch is the distance of 1: the LF cameras are 16
+# world units apart at the most. The square lens is a little larger, so that those at its corners are in it.
 PITCH, FOCAL_PX, SIDE, SIZE = 1, 768, 9, 768
 NEAR, FAR = 250, 1600
+APERTURE = 1.001 * PITCH * 2 * (SIDE - 1) * 2 ** 0.5
 PATH = f"""format: lfpath 1
 fps: 25
 frames: 1
 resolution: [{SIZE}, {SIZE}]
 camera: {{field_of_view_deg: 53.13, position: [0, 0, 0], look_at: [0, 0, 1]}}
-lens: {{aperture_diameter: {PITCH * (SIDE - 1) * 2 ** 0.5:.6f}, blades: 4, blade_rotation_deg: 45, focus_distance: 600}}
+lens: {{aperture_diameter: {APERTURE:.6f}, blades: 4, blade_rotation_deg: 45, focus_distance: 600}}
 """
 PEER = """
 import pathlib, re, sys
@@ -46,7 +50,7 @@ for plane in range(int(planes)):
     total = np.zeros((height, width, 3), np.float32)
     count = np.zeros((height, width, 1), np.float32)
     for (row, column), view in views.items():
-        down, right = (focal * inverse * (k - middle) for k in (row, column))
+        down, right = (focal * inverse * (middle - k) for k in (row, column))
         top, left = int(np.floor(down)), int(np.floor(right))
         v, u = down - top, right - left
         y0, y1 = max(0, -top), min(height, height - top - 1)
@@ -66,6 +70,20 @@ WAYS = {
 SINGLE = "`lfrenderer`, one frame (the default)"
 
 
+def worst_psnr(ours, theirs, planes):
+    """Returns the least PSNR in dB, over all planes, of the pictures of lffocus in `ours` against those of NumPy."""
+    import cv2
+    import numpy as np
+    worst = float("inf")
+    for plane in range(planes):
+        first, second = cv2.imread(str(ours / f"frame_{plane + 1:04}.png")), cv2.imread(str(theirs / f"plane_{plane}.png"))
+        square = np.mean((first.astype(float) - second) ** 2)
+        worst = min(worst, 10 * np.log10(255 ** 2 / square))
+    if worst < 30:
+        raise SystemExit(f"{ours}: {worst:.1f} dB from the pictures of NumPy, expected at least 30")
+    return worst
+
+
 def measure(arguments):
     binaries = arguments.build / "bin"
     used = {}
@@ -77,7 +95,8 @@ def measure(arguments):
                       FOCAL_PX, "-q"])
         ours = [binaries / "lffocus", "stack", folder / "cards", folder / "path.yaml", "--near", NEAR, "--far", FAR,
                 "--planes", arguments.planes, "--format", "png", "--no-contact-sheet", "-q", "--overwrite"]
-        calls = {name: [*ours, "-o", folder / "stack", *options] for name, options in WAYS.items()}
+        calls = {name: [*ours, "-o", folder / f"stack{number}", *options]
+                 for number, (name, options) in enumerate(WAYS.items())}
         calls[SINGLE] = [binaries / "lfrenderer", folder / "cards", folder / "path.yaml", "-o", folder / "frame",
                          "--format", "png", "--no-contact-sheet", "-q", "--overwrite"]
         calls["NumPy, shifts and sums"] = [sys.executable, folder / "peer.py", arguments.cards / "images", folder,
@@ -86,19 +105,22 @@ def measure(arguments):
             for name, call in calls.items():
                 one = results.timed(call)
                 used.setdefault(name, []).append({"seconds": one["seconds"], "cpu_s": one["cpu_s"]})
-    return [{"name": name, **{key: statistics.median(run[key] for run in runs) for key in ("seconds", "cpu_s")}}
-            for name, runs in used.items()]
+        psnr = {name: worst_psnr(folder / f"stack{number}", folder, arguments.planes) for number, name in enumerate(WAYS)}
+    return [{"name": name, **{key: statistics.median(run[key] for run in runs) for key in ("seconds", "cpu_s")},
+             "psnr_db": psnr.get(name)} for name, runs in used.items()]
 
 
 def table_of(record):
     planes, rows = record["planes"], record["rows"]
     peer = rows[-1]
     text = f"{planes} planes of 768 x 768 elements from 81 JPEG files.\n\n"
-    text += "| program | s | CPU s | CPU s of a plane | NumPy's CPU / this |\n| --- | --- | --- | --- | --- |\n"
+    text += "| program | s | CPU s | CPU s of a plane | NumPy's CPU / this | dB from NumPy, worst plane |\n"
+    text += "| --- | --- | --- | --- | --- | --- |\n"
     for row in rows:
         count = 1 if row["name"] == SINGLE else planes
         text += f"| {row['name']} | {row['seconds']:.2f} | {row['cpu_s']:.2f} | {row['cpu_s'] / count:.3f} | "
-        text += ("" if row["name"] == SINGLE else f"{peer['cpu_s'] / row['cpu_s']:.1f}") + " |\n"
+        text += ("" if row["name"] == SINGLE else f"{peer['cpu_s'] / row['cpu_s']:.1f}") + " | "
+        text += ("" if row["psnr_db"] is None else f"{row['psnr_db']:.1f}") + " |\n"
     return text + "\n" + results.sentence(record) + "\n"
 
 
