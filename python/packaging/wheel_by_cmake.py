@@ -37,6 +37,21 @@ def tag():
     return f"{python}-{python}-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"
 
 
+def info_files():
+    """Returns the contents of the files about the package in its .dist-info folder, by name."""
+    wheel = f"Wheel-Version: 1.0\nGenerator: {NAME}\nRoot-Is-Purelib: false\nTag: {tag()}\n"
+    return {"METADATA": metadata().encode(), "WHEEL": wheel.encode(), "LICENSE": (ROOT / "LICENSE").read_bytes()}
+
+
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    """Writes the files about the package, for which pip would otherwise build the whole wheel once more."""
+    folder = pathlib.Path(metadata_directory) / dist_info()
+    folder.mkdir()
+    for name, content in info_files().items():
+        (folder / name).write_bytes(content)
+    return folder.name
+
+
 def build(folder):
     """Compiles the extension, and returns the folder of the whole package."""
     options = ["-DLF_PYTHON=ON", "-DLF_TESTS=OFF", "-DLF_VISUALIZER=OFF", f"-DPython3_EXECUTABLE={sys.executable}"]
@@ -54,10 +69,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     with tempfile.TemporaryDirectory() as folder:
         package = build(os.environ.get("LF_WHEEL_BUILD") or folder)
         files = {f"{NAME}/{path.name}": path.read_bytes() for path in sorted(package.iterdir()) if path.is_file()}
-    files[f"{dist_info()}/METADATA"] = metadata().encode()
-    files[f"{dist_info()}/WHEEL"] = (f"Wheel-Version: 1.0\nGenerator: {NAME}\nRoot-Is-Purelib: false\n"
-                                     f"Tag: {tag()}\n").encode()
-    files[f"{dist_info()}/LICENSE"] = (ROOT / "LICENSE").read_bytes()
+    files |= {f"{dist_info()}/{name}": content for name, content in info_files().items()}
     record = f"{dist_info()}/RECORD"
     files[record] = ("".join(record_line(name, content) for name, content in files.items()) +
                      f"{record},,\n").encode()
