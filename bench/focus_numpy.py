@@ -7,10 +7,10 @@ usage: bench/focus_numpy.py BUILD_DIR CARDS [--planes 16] [--runs 5] [--name NAM
 CARDS  the folder stanford-cards-9x9: 9 x 9 JPEG pictures of 768 x 768 pixels, rectified to one plane
 
 Both read the 81 files, refocus them at the same planes, and write a PNG picture for each. Pictures that differ by more
-than interpolation does (30 dB in the worst plane) are an error: then the programs would not do the same work. NumPy shifts every LF image
-by a fraction of a pixel (bilinear interpolation) and sums. lffocus has a square lens of all 81 LF cameras, once with
-its defaults and once with bilinear interpolation and equal weights, as NumPy does. Figures are medians of the runs,
-which alternate.
+than interpolation does (30 dB in the worst plane) are an error: then the programs would not do the same work. NumPy shifts
+every LF image by a fraction of a pixel (bilinear interpolation) and sums. lffocus has a square lens of all 81 LF
+cameras, once with its defaults and once with bilinear interpolation and equal weights, as NumPy does. Figures are
+medians of the runs, which alternate.
 """
 import argparse
 import json
@@ -76,7 +76,8 @@ def worst_psnr(ours, theirs, planes):
     import numpy as np
     worst = float("inf")
     for plane in range(planes):
-        first, second = cv2.imread(str(ours / f"frame_{plane + 1:04}.png")), cv2.imread(str(theirs / f"plane_{plane}.png"))
+        first = cv2.imread(str(ours / f"frame_{plane + 1:04}.png"))
+        second = cv2.imread(str(theirs / f"plane_{plane}.png"))
         square = np.mean((first.astype(float) - second) ** 2)
         worst = min(worst, 10 * np.log10(255 ** 2 / square))
     if worst < 30:
@@ -105,7 +106,8 @@ def measure(arguments):
             for name, call in calls.items():
                 one = results.timed(call)
                 used.setdefault(name, []).append({"seconds": one["seconds"], "cpu_s": one["cpu_s"]})
-        psnr = {name: worst_psnr(folder / f"stack{number}", folder, arguments.planes) for number, name in enumerate(WAYS)}
+        psnr = {name: worst_psnr(folder / f"stack{number}", folder, arguments.planes)
+                for number, name in enumerate(WAYS)}
     return [{"name": name, **{key: statistics.median(run[key] for run in runs) for key in ("seconds", "cpu_s")},
              "psnr_db": psnr.get(name)} for name, runs in used.items()]
 

@@ -49,5 +49,6 @@ OFFERED = {
     "lfsubmit": set(COMMON) - {"--seed", "--allow-missing"},
     "lfmerge": set(COMMON) - {"--seed", "--strict"},
     "lfquilt": {"--threads", "--progress", "--quiet", "--json"},
+    "lfcompare": {"--threads", "--progress", "--quiet", "--json"},
     "lfvisualizer": set(COMMON) - {"--strict", "--json"},
 }

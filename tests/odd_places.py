@@ -98,6 +98,9 @@ class OddNames:
         self.call("lfquilt", film, "-o", here / f"{name} quilt.exr", "--layout", "left-right")
         self.same("lfquilt", len(list(here.glob("*quilt_*.exr"))) == 2)
         yield "lfquilt"
+        self.call("lfcompare", film, here / f"{name} merged", "-o", here / f"{name} differences", "--max-flip", "0")
+        self.same("lfcompare", len(list((here / f"{name} differences").iterdir())) == 2)
+        yield "lfcompare"
         self.call("lfsubmit", *sorted(packages.glob("*.lfp")), "-o", here / f"{name} job", "--progress", "none")
         self.same("lfsubmit", frames_of(here / f"{name} job") == self.expected["frames"])
         yield "lfsubmit"
@@ -190,6 +193,7 @@ class Inputs:
             yield "lfvisualizer", [self.calls.programs / "lfvisualizer", field, path, "--export", place], set()
             yield "lfmerge", words("lfmerge", self.shards / "partial/shards", "-o", place), set()
             yield "lfquilt", words("lfquilt", self.image, self.image, "-o", place, "--layout", "over-under"), set()
+            yield "lfcompare", words("lfcompare", self.image, self.image, "-o", place), set()
             yield "lfsubmit", [self.calls.programs / "lfsubmit", package, "-o", place, "--progress", "none"], set()
         yield "lfcompressor", words("lfcompressor", store, "-o", store, "--overwrite"), set()
         yield "lfcompressor", words("lfcompressor", package, "-o", package, "--overwrite"), set()
@@ -200,6 +204,7 @@ class Inputs:
                                "--overwrite"), set()
         yield "lfquilt", words("lfquilt", self.image, self.image, "-o", self.image, "--layout", "anaglyph",
                                "--overwrite"), set()
+        yield "lfcompare", words("lfcompare", self.image, self.image, "-o", self.image, "--overwrite"), set()
         yield "lfsubmit", [self.calls.programs / "lfsubmit", package, "-o", self.packages, "--overwrite",
                            "--progress", "none"], set()
         yield "lfsynth", words("lfsynth", "chart", "-o", self.folder / "truth", "--count", "4", "--size", "32x32",

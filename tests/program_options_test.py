@@ -23,6 +23,7 @@ VALUES = {"--threads": ["1"], "--seed": ["1"], "--progress": ["none"], "--allow-
 CALLS = {
     "lfcammvminfo": ["no.yaml"],
     "lfpath": ["no.yaml"],
+    "lfcompare": ["no.png", "no.png"],
     "lfcompressor": ["no", "-o", "no.lfs"],
     "lfdensify": ["no", "-o", "no.lfs"],
     "lfexample": ["no", "-o", "no.yaml"],

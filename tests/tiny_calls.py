@@ -96,6 +96,8 @@ class TinyCalls:
         array = self.words("lffocus", "views", self.field, "--grid", "2x4", "--focus-distance", "3", "-o",
                            out.with_suffix(".npy"))
         quilt = self.quilt()
+        images = sorted(self.field.rglob("*.png"))
+        compare = self.words("lfcompare", *images[:2], "-o", out.with_suffix(".png"))
         return [Call("lfsynth", synth, [[*synth, "--overwrite"]]),
                 Call("lfimport", convert, [[*convert, "--force"]]),
                 Call("lfexample", self.words("lfexample", self.field, "-o", out.with_suffix(".yaml"))),
@@ -113,7 +115,8 @@ class TinyCalls:
                 Call("lffocus depth", depth, [[*depth, "--overwrite"]]),
                 Call("lffocus views", views, [[*views, "--overwrite"]]),
                 Call("lffocus views, an array", array, [[*array, "--overwrite"]]),
-                Call("lfquilt", quilt, [[*quilt, "--resume"], [*quilt, "--overwrite"]])]
+                Call("lfquilt", quilt, [[*quilt, "--resume"], [*quilt, "--overwrite"]]),
+                Call("lfcompare", compare, [[*compare, "--overwrite"]])]
 
     def submitters(self):
         """Returns calls of lfsubmit, in which lfsubmit or its lfrenderer is disturbed, and calls that resume or

@@ -1,4 +1,4 @@
-// Converts linear light to sRGB display values and back (IEC 61966-2-1). Internal to this folder.
+// Converts linear light to sRGB display values and back (IEC 61966-2-1).
 #pragma once
 
 #include <array>
