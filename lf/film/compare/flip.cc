@@ -119,7 +119,7 @@ Image<float> FeatureStrength(const Image<float>& lightness, bool points, double 
   return strength;
 }
 
-// Of one of the two pictures.
+// One of the two pictures as the eye resolves it.
 struct Seen {
   std::array<Image<float>, 3> filtered;  // opponent colours as the eye resolves them
   Image<float> edges, points;
