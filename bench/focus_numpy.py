@@ -7,8 +7,8 @@ usage: bench/focus_numpy.py BUILD_DIR CARDS [--planes 16] [--runs 5] [--name NAM
 CARDS  the folder stanford-cards-9x9: 9 x 9 JPEG pictures of 768 x 768 pixels, rectified to one plane
 
 Both read the 81 files, refocus them at the same planes, and write a PNG picture for each. Pictures that differ by more
-than interpolation does (30 dB in the worst plane) are an error: then the programs would not do the same work. NumPy shifts
-every LF image by a fraction of a pixel (bilinear interpolation) and sums. lffocus has a square lens of all 81 LF
+than interpolation does (30 dB in the worst plane) are an error: then the programs would not do the same work. NumPy
+shifts every LF image by a fraction of a pixel (bilinear interpolation) and sums. lffocus has a square lens of all 81 LF
 cameras, once with its defaults and once with bilinear interpolation and equal weights, as NumPy does. Figures are
 medians of the runs, which alternate.
 """
