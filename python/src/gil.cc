@@ -84,6 +84,12 @@ GilHold::~GilHold() {
   door->Leave();
 }
 
+EndDelay::EndDelay() : is_inside_(door->Enter()) {}
+
+EndDelay::~EndDelay() {
+  if (is_inside_) door->Leave();
+}
+
 bool PythonEnds() {
   const std::lock_guard lock(door->mutex);
   return door->Stops();

@@ -39,6 +39,19 @@ class GilHold {
   PyGILState_STATE state_ = PyGILState_UNLOCKED;
 };
 
+// While one exists, Python waits before it ends, for a few seconds at most. For work in the
+// background, which does not need Python.
+class EndDelay {
+ public:
+  EndDelay();
+  ~EndDelay();
+  EndDelay(const EndDelay&) = delete;
+  EndDelay& operator=(const EndDelay&) = delete;
+
+ private:
+  bool is_inside_;
+};
+
 // True if Python ends and the calling thread is not the one that ends it. Work should end soon.
 bool PythonEnds();
 

@@ -53,8 +53,8 @@ std::shared_ptr<OpenedField> Open(const std::string& path, double focal_px, doub
   argument.image_scale = image_scale;
   argument.image_alpha = image_alpha;
   argument.background = background;
-  auto field = std::make_shared<OpenedField>();
-  RunWithoutGil([&] {
+  return CallOrAbandon([=] {
+    auto field = std::make_shared<OpenedField>();
     OpenOptions options = Take(argument.Options());
     if (pitch) options.pitch_w = Vec2((*pitch)[0], (*pitch)[1]);
     options.plane_distance_w = plane_distance;
@@ -62,8 +62,8 @@ std::shared_ptr<OpenedField> Open(const std::string& path, double focal_px, doub
     options.flip_y = flips[1];
     field->light_field = Take(OpenLightField(path, options));
     field->store = Take(OpenStore(field->light_field, Mosaics::kToRgb));
+    return field;
   });
-  return field;
 }
 
 // Bytes from one LF camera to the next.
@@ -169,10 +169,10 @@ Numbers RayDirections(const OpenedField& field, py::ssize_t i, const Numbers& pi
   return directions;
 }
 
-py::array LoadImage(const OpenedField& field, py::ssize_t i,
+py::array LoadImage(const std::shared_ptr<OpenedField>& field, py::ssize_t i,
                     const std::optional<std::array<int, 4>>& part, float masked) {
-  const LfImageId id = IdOf(field, i);
-  const Intrinsics& k = field.light_field.Camera(id).intrinsics;
+  const LfImageId id = IdOf(*field, i);
+  const Intrinsics& k = field->light_field.Camera(id).intrinsics;
   const PixelRect whole{0, 0, k.width_px, k.height_px};
   const PixelRect rect = part ? PixelRect{(*part)[0], (*part)[1], (*part)[2], (*part)[3]} : whole;
   if (rect.empty() || Intersection(rect, whole) != rect)
@@ -180,23 +180,19 @@ py::array LoadImage(const OpenedField& field, py::ssize_t i,
         "rect ({}, {}, {}, {}): expected x_begin, y_begin, x_end, y_end within the {} x {} pixels "
         "of LF image {}, with at least one pixel",
         rect.x_begin, rect.y_begin, rect.x_end, rect.y_end, k.width_px, k.height_px, i)));
-  Image<float> light;
-  {
-    const GilPause pause;
+  return ArrayOf(CallOrAbandon([field, id, rect, masked] {
     const LfPixels loaded = Take(LoadWithoutThrowing(
-        *field.store, id, rect, field.light_field.image_names[id.value], LfPixels()));
-    light = LightOf(loaded, field.light_field.encoding, masked);
+        *field->store, id, rect, field->light_field.image_names[id.value], LfPixels()));
+    Image<float> light = LightOf(loaded, field->light_field.encoding, masked);
+    if (loaded.rect == rect) return light;
     // A store may load more than it was asked for.
-    if (loaded.rect != rect) {
-      Image<float> cut(rect.width(), rect.height(), 3);
-      for (int y = 0; y < cut.height(); ++y)
-        std::copy_n(light.row(y + rect.y_begin - loaded.rect.y_begin) +
-                        static_cast<ptrdiff_t>(rect.x_begin - loaded.rect.x_begin) * 3,
-                    static_cast<ptrdiff_t>(rect.width()) * 3, cut.row(y));
-      light = std::move(cut);
-    }
-  }
-  return ArrayOf(std::move(light));
+    Image<float> cut(rect.width(), rect.height(), 3);
+    for (int y = 0; y < cut.height(); ++y)
+      std::copy_n(light.row(y + rect.y_begin - loaded.rect.y_begin) +
+                      static_cast<ptrdiff_t>(rect.x_begin - loaded.rect.x_begin) * 3,
+                  static_cast<ptrdiff_t>(rect.width()) * 3, cut.row(y));
+    return cut;
+  }));
 }
 
 // Returns an LF image [height][width][3] in linear light, reduced to a width of at most
@@ -221,7 +217,7 @@ py::array Thumbnail(const OpenedField& field, py::ssize_t i, int width_px) {
 
 // Returns the values of an image file as it stores them, [height][width][channels].
 py::array ReadFile(const std::string& path) {
-  StoredImage image = CallWithoutGil([&] { return Take(ReadImage(path)); });
+  StoredImage image = CallOrAbandon([path] { return Take(ReadImage(path)); });
   return std::visit([](auto& stored) -> py::array { return ArrayOf(std::move(stored)); }, image);
 }
 

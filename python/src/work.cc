@@ -101,6 +101,32 @@ void RunWithoutGil(const std::function<void()>& work, WorkSignals* signals) {
   TellNews(signals);
 }
 
+void RunOrAbandon(std::function<void()> work) {
+  struct Shared {
+    std::function<void()> work;
+    Ending ending;
+    std::exception_ptr failure = nullptr;
+  };
+  const auto shared = std::make_shared<Shared>();
+  shared->work = std::move(work);
+  std::exception_ptr raised;
+  {
+    const GilPause pause;
+    std::thread([shared] {
+      const EndDelay delay;
+      try {
+        shared->work();
+      } catch (...) {
+        shared->failure = std::current_exception();
+      }
+      shared->ending.Tell();
+    }).detach();
+    while (!raised && !PythonEnds() && !shared->ending.WaitFor(kPatience)) raised = Look(nullptr);
+  }
+  if (raised) std::rethrow_exception(raised);
+  if (shared->failure) std::rethrow_exception(shared->failure);
+}
+
 ThreadPool& PoolOf(int thread_count) {
   // Never freed: threads of Python may still use the pools while the process ends.
   static auto* const pools = new std::map<int, std::unique_ptr<ThreadPool>>;

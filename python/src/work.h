@@ -5,6 +5,7 @@
 #include <atomic>
 #include <exception>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -65,6 +66,20 @@ auto CallWithoutGil(const Work& work, WorkSignals* signals = nullptr) {
   std::optional<decltype(work())> result;
   RunWithoutGil([&] { result.emplace(work()); }, signals);
   return *std::move(result);
+}
+
+// Calls work() on another thread and waits for its end, as RunWithoutGil(), for work that has no
+// place where it can be interrupted. If a signal handler of Python raises meanwhile, throws that at
+// once; the work goes on in the background, and what it returns or throws is lost.
+//   work  owns everything that it uses, because the caller may be gone when it ends
+void RunOrAbandon(std::function<void()> work);
+
+// Does the same as RunOrAbandon(), and returns what work() returns.
+template <class Work>
+auto CallOrAbandon(Work work) {
+  const auto result = std::make_shared<std::optional<decltype(work())>>();
+  RunOrAbandon([result, work = std::move(work)] { result->emplace(work()); });
+  return **std::move(result);
 }
 
 // Returns threads of this process. All calls with the same thread_count return the same ones, which

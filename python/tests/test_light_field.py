@@ -1,6 +1,8 @@
 """Light fields as arrays."""
 import json
 import pathlib
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -183,3 +185,29 @@ def test_what_is_no_light_field(tmp_path):
 def test_notebooks_show_the_rig(field):
     html = field._repr_html_()
     assert html.count("<circle") == 49 and "160 x 120" in html
+
+
+def test_ctrl_c_interrupts_the_opening(tmp_path):
+    code = """
+import os, signal, threading, time
+import lfrendertools as lf
+lf.synth("still-life", "many", capture="hemisphere", count=150000, calibration_only=True)
+lf.open("many")
+def threads():
+    return len(os.listdir("/proc/self/task"))
+before = threads()
+def interrupt():
+    while threads() < before + 2:  # this thread, and that of the opening
+        time.sleep(0.001)
+    signal.raise_signal(signal.SIGINT)
+thread = threading.Thread(target=interrupt)
+thread.start()
+try:
+    lf.open("many")
+except KeyboardInterrupt:
+    thread.join()
+    print("it goes on in the background:", threads() > before)
+print("next:", len(lf.open("many")) > 140000)
+"""
+    end = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert end.stdout == "it goes on in the background: True\nnext: True\n", (end.stdout, end.stderr)
