@@ -31,7 +31,7 @@ constexpr std::array kOfTheJob = {"-o",         "--output", "--resume",         
                                   "--progress", "--json",   "--frames",           "--video",
                                   "--shard",    "--finish", "--threads",          "--memory",
                                   "-q",         "--quiet",  "--no-contact-sheet", "--clamp-frames"};
-constexpr std::array kRenderNothing = {"--help", "-h", "--help-all", "--version"};
+constexpr std::array kRenderNothing = {"--help", "-h", "--help-all", "--version", "--describe"};
 
 uint64_t MachineMemoryBytes() {
   const long pages = ::sysconf(_SC_PHYS_PAGES), page_bytes = ::sysconf(_SC_PAGESIZE);

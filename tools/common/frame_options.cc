@@ -109,7 +109,8 @@ Result<PictureOptions> PictureArguments::Make(FrameFormat format) const {
 
 void AddFilmFiles(OptionGroup& output, std::string& video, bool& no_contact_sheet) {
   output.Add("--video FILE", video, "Also write the frames as this mp4 file; needs ffmpeg")
-      ->check(NotEmpty());
+      ->check(NotEmpty())
+      ->check(TakesFiles(".mp4"));
   output.AddFlag("--no-contact-sheet", no_contact_sheet,
                  "Do not write contact_sheet.png\n"
                  "The contact sheet shows a dozen frames on one page.");
