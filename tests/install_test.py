@@ -77,7 +77,7 @@ class InstallTest(unittest.TestCase):
     def test_programs_and_documents_are_installed(self):
         for name in ("lfrenderer", "lfexample", "lfsynth", "lfimport", "lfcammvminfo", "lfpath",
                      "lfpreprocessor", "lfcompressor", "lfdensify", "lffocus", "lfmerge", "lfquilt", "lfsubmit",
-                     "lfcompare", "lfvisualizer"):
+                     "lfcompare", "lfvisualizer", "lfr"):
             self.run_tool(self.prefix / "bin" / name, "--version")
         for name in ("README.md", "LICENSE", "CITATION.cff", "doc/conventions.md"):
             self.assertTrue(list(self.prefix.rglob(name)), name)

@@ -45,6 +45,8 @@ inline constexpr std::array kPrograms = {
     ListedProgram{
         "lfquilt", "quilt",
         "Joins the rendered views of a film: quilts for light field displays, stereo pairs."},
+    ListedProgram{"lfcompare", "compare",
+                  "Measures how far pictures are from references: PSNR, SSIM and FLIP."},
     ListedProgram{"lfvisualizer", "visualize",
                   "Shows a light field and the part of it that a camera path needs, in the browser "
                   "or as text."},
