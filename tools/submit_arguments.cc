@@ -152,8 +152,8 @@ void AddNewJob(CLI::App& app, SubmitArguments& a) {
   AddFilmFiles(output, a.video, a.no_contact_sheet);
   output.AddFlag("--overwrite", a.overwrite,
                  "Remove an earlier job and frames of PACKAGES from DIR\n"
-                 "Removed from DIR are the files of the earlier job, and the frames, reports and "
-                 "unfinished states of PACKAGES. The files PACKAGES are kept, and so are frames of "
+                 "The files of the earlier job, and the frames, reports and unfinished states of "
+                 "PACKAGES are removed from DIR. The files PACKAGES are kept, and so are frames of "
                  "other packages in DIR.");
 }
 

@@ -25,7 +25,7 @@ std::vector<CLI::Option*> FrameRangeArguments::AddTo(OptionGroup& output, const 
       "--clamp-frames", clamp,
       fmt::format("Leave out frames of --frames beyond the end of the path\n"
                   "Without this option they are an error. If none is left, {}, and "
-                  "the exit code is 0. Farms need this whose last chunk may be too long.",
+                  "the exit code is 0. Render farms need this if their last chunk may be too long.",
                   if_none));
   return {frames, clamps};
 }
