@@ -61,12 +61,14 @@ else()
   message(STATUS "OpenColorIO is missing: lfrenderer and lfmerge are built without --view")
 endif()
 
+# Debian's Python has the modules that tests use; another Python on the PATH may lack them.
+if(NOT Python3_EXECUTABLE AND EXISTS /usr/bin/python3)
+  set(Python3_EXECUTABLE /usr/bin/python3)
+endif()
 if(LF_TESTS OR LF_PYTHON)
-  # Debian's Python has the modules that tests use; another Python on the PATH may lack them.
-  if(NOT Python3_EXECUTABLE AND EXISTS /usr/bin/python3)
-    set(Python3_EXECUTABLE /usr/bin/python3)
-  endif()
   find_package(Python3 REQUIRED COMPONENTS Interpreter OPTIONAL_COMPONENTS Development.Module)
+else()
+  find_package(Python3 COMPONENTS Interpreter)  # makes man pages
 endif()
 if(LF_PYTHON)
   find_package(pybind11 2.10 CONFIG)

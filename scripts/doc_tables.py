@@ -94,12 +94,21 @@ def field_of(help_texts, name):
     return match["raw"] or joined(match["strings"])
 
 
+def listed_summaries(root):
+    """Returns {program: summary} of tools/common/programs.h, which lfr lists."""
+    listed = root / "tools/common/programs.h"
+    text = listed.read_text() if listed.exists() else ""
+    entry = rf'ListedProgram\{{\s*"(\w+)",\s*"\w+",\s*((?:{STRING}\s*)+)\}}'
+    return {name: joined(strings) for name, strings in re.findall(entry, text)}
+
+
 def programs(root):
-    rows = []
+    rows, listed = [], listed_summaries(root)
     for name in re.findall(r"^lf_tool\((\w+)", (root / "tools/CMakeLists.txt").read_text(), re.M):
         text = (root / f"tools/{name}.cc").read_text()
         calls = [line.strip().replace(" [OPTIONS]", "") for line in field_of(text, "usage").splitlines()]
-        rows.append([code(name), field_of(text, "summary").rstrip("."), ", ".join(map(code, calls))])
+        summary = listed.get(name) or field_of(text, "summary")
+        rows.append([code(name), summary.rstrip("."), ", ".join(map(code, calls))])
     return table(["program", "what it does", "call"], rows)
 
 
@@ -137,11 +146,11 @@ def exit_codes(root):
 
 
 def exit_codes_in_help(root):
-    text = (root / "tools/common/help.cc").read_text()
+    text = (root / "tools/common/help.h").read_text()
     sentence = joined(re.search(rf"kExitCodes =\s*((?:{STRING}\s*)+);", text)[1])
     numbers = [int(number) for number in re.findall(r"\b(\d) [a-z]", sentence)]
     if numbers != sorted(exit_codes_of(root)):
-        raise ValueError(f"kExitCodes in tools/common/help.cc lists {numbers}, ErrorKind {sorted(exit_codes_of(root))}")
+        raise ValueError(f"kExitCodes in tools/common/help.h lists {numbers}, ErrorKind {sorted(exit_codes_of(root))}")
     return textwrap.fill(sentence, 118, break_long_words=False) + "\n"
 
 

@@ -51,4 +51,5 @@ check lfpath path.json -o path-again.yaml --fps 12
 check lfpath path.yaml -o views.yaml --quilt 3x2
 check lfquilt merged -o quilt.exr --views 1x1
 check lfcompare merged merged -o differences
+check lfr path path.yaml
 ((failed == 0)) || { echo "$failed failed"; exit 1; }

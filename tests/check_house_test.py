@@ -234,19 +234,21 @@ enum class ErrorKind {
 
     def test_exit_codes_of_pages_and_help_are_those_of_the_enumeration(self):
         self.plant("lf/base/core/result.h", self.KINDS)
-        self.plant("tools/common/help.cc", 'kExitCodes =\n    "Exit codes: 0 done, 1 a "\n    "bug, 2 usage.";\n')
+        self.plant("tools/common/help.h", 'kExitCodes =\n    "Exit codes: 0 done, 1 a "\n    "bug, 2 usage.";\n')
         self.plant_generated("doc/codes.md", "exit-codes", "| code | means |\n| --- | --- |\n| 0 | done |\n"
                              "| 1 | a bug |\n| 2 | wrong usage: see `--help` |\n")
         self.plant_generated("README.md", "exit-codes-in-help", "Exit codes: 0 done, 1 a bug, 2 usage.\n")
         self.expect("check_house.py", "tables", faults=[])
         self.plant("lf/base/core/result.h", self.KINDS.replace("kUsage = 2", "kUsage = 3"))
         self.expect("check_house.py", "tables", faults=["doc/codes.md:2: the sources say something else",
-                                                        "README.md:2: kExitCodes in tools/common/help.cc lists"])
+                                                        "README.md:2: kExitCodes in tools/common/help.h lists"])
 
     def test_programs_and_their_options_are_those_of_the_sources(self):
         self.plant("tools/CMakeLists.txt", "lf_tool(lfone)\nlf_tool(lftwo LIBS x)\n")
         self.plant("tools/lfone.cc", '.summary =\n    "Does one "\n    "thing.",\n.usage = "  lfone A|B [OPTIONS]",\n')
-        self.plant("tools/lftwo.cc", '.summary = "Does two.",\n.usage = R"(  lftwo A -o B [OPTIONS]\n  lftwo C)",\n')
+        self.plant("tools/common/programs.h", 'ListedProgram{"lftwo", "two",\n  "Does "\n  "two."},\n')
+        self.plant("tools/lftwo.cc", '.summary = lf::SummaryOf("lftwo"),\n'
+                   '.usage = R"(  lftwo A -o B [OPTIONS]\n  lftwo C)",\n')
         self.plant("tests/common_options.py", 'COMMON = {"-q": ("-q A|B", "no words"), "-v": ("-v", "more")}\n'
                                               'OFFERED = {"lfone": {"-q", "-v"}, "lftwo": {"-v"}}\n')
         programs = ("| program | what it does | call |\n| --- | --- | --- |\n"

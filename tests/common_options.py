@@ -38,7 +38,8 @@ OFFERED = {
     "lfcompressor": set(COMMON) - {"--seed"},
     "lfdensify": set(COMMON) - {"--seed"},
     "lfrenderer": set(COMMON),
-    # lffocus alone only lists its commands, whose options follow their names.
+    # lfr and lffocus alone only list commands, whose options follow their names.
+    "lfr": set(),
     "lffocus": set(),
     "lffocus stack": set(COMMON),
     "lffocus epi": set(COMMON) - {"--seed"},

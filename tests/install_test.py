@@ -77,10 +77,20 @@ class InstallTest(unittest.TestCase):
     def test_programs_and_documents_are_installed(self):
         for name in ("lfrenderer", "lfexample", "lfsynth", "lfimport", "lfcammvminfo", "lfpath",
                      "lfpreprocessor", "lfcompressor", "lfdensify", "lffocus", "lfmerge", "lfquilt", "lfsubmit",
-                     "lfcompare", "lfvisualizer"):
+                     "lfcompare", "lfvisualizer", "lfr"):
             self.run_tool(self.prefix / "bin" / name, "--version")
         for name in ("README.md", "LICENSE", "CITATION.cff", "doc/conventions.md"):
             self.assertTrue(list(self.prefix.rglob(name)), name)
+
+    def test_man_pages_and_completion_are_installed(self):
+        share = self.prefix / "share"
+        for name in ("man/man1/lfrenderer.1", "man/man1/lffocus-stack.1", "man/man1/lfr.1",
+                     "bash-completion/completions/lfrenderer", "bash-completion/completions/lfr",
+                     "zsh/site-functions/_lfrendertools", "fish/vendor_completions.d/lfrenderer.fish",
+                     "doc/lfrendertools/doc/programs.md"):
+            self.assertGreater((share / name).stat().st_size, 500, name)
+        page = self.run_tool("man", "-l", share / "man/man1/lfrenderer.1")
+        self.assertIn("EXIT STATUS", page)
 
     def test_internal_headers_stay_behind(self):
         headers = sorted(p.name for p in (self.prefix / "include").rglob("*.h"))

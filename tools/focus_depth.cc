@@ -292,7 +292,8 @@ int RunFocusDepth(int argc, char** argv) {
            "colours; .png: a picture of 1 / Z. Z is in world units along the optical axis, and "
            "infinite where it is not known.")
       ->required()
-      ->check(NotEmpty());
+      ->check(NotEmpty())
+      ->check(TakesFiles(".exr .pfm .ply .png"));
   output.AddFlag("--fill", a.fill,
                  "Also give elements without a depth one\n"
                  "It is a mean of the depths around them.");
@@ -310,7 +311,8 @@ int RunFocusSharp(int argc, char** argv) {
   std::string file;
   output.Add("-o,--output FILE", file, "File to write: .exr, or .png in sRGB")
       ->required()
-      ->check(NotEmpty());
+      ->check(NotEmpty())
+      ->check(TakesFiles(".exr .png"));
   AddSweep(program.app(), a);
   AddRunning(program.app(), a);
   program.AddCommonOptions(kCommon);

@@ -92,7 +92,8 @@ void AddOptions(CLI::App& app, Arguments& a) {
       .Add("-o,--output FILE", a.output,
            "Picture to write: .png or .exr\n"
            "PNG: sRGB, 8 bits. EXR: linear light, float.")
-      ->check(NotEmpty());
+      ->check(NotEmpty())
+      ->check(TakesFiles(".png .exr"));
   output.AddFlag("--overwrite", a.overwrite, "Replace FILE");
   OptionGroup picture(app, kPictureGroup);
   picture

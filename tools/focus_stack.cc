@@ -107,7 +107,8 @@ void AddOutput(CLI::App& app, Arguments& a) {
   OptionGroup output(app, kOutputGroup);
   output.Add("-o,--output OUT", a.render.output, "Folder, or file: stack.exr or rack.mp4")
       ->required()
-      ->check(NotEmpty());
+      ->check(NotEmpty())
+      ->check(TakesFiles(".exr .mp4 folder"));
   AddFrameFormat(output, a.render.format);
   a.render.picture.AddTo(output);
   AddFilmFiles(output, a.render.video, a.render.no_contact_sheet);

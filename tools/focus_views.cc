@@ -70,7 +70,8 @@ void AddOptions(CLI::App& app, Arguments& a) {
   OptionGroup output(app, kOutputGroup);
   output.Add("-o,--output OUT", a.output, "Folder, or file: views.npy")
       ->required()
-      ->check(NotEmpty());
+      ->check(NotEmpty())
+      ->check(TakesFiles(".npy folder"));
   output.AddChoice("--values", a.values, {"srgb8", "srgb16", "linear"},
                    "Values of the views\n"
                    "srgb8, srgb16: sRGB for display, clipped, with 8 or 16 bits (PNG, or uint8 or "

@@ -5,6 +5,7 @@
 
 #include "tools/camera_table.h"
 #include "tools/common/program.h"
+#include "tools/common/programs.h"
 
 #include "lf/core/log.h"
 #include "lf/import/paths/open_path.h"
@@ -12,9 +13,7 @@
 namespace {
 
 constexpr lf::HelpTexts kHelp = {
-    .summary =
-        "Shows the camera of every frame of a path: position, orientation, aperture, focus, "
-        "field of view, depth of field.",
+    .summary = lf::SummaryOf("lfcammvminfo"),
     .usage = "  lfcammvminfo PATH [OPTIONS]",
     .examples = R"(  lfcammvminfo path.yaml                        # all frames, a line each
   lfcammvminfo path.yaml --frame 12             # one frame, a line per number

@@ -13,6 +13,7 @@
 
 #include "tools/common/interrupt.h"
 #include "tools/common/program.h"
+#include "tools/common/programs.h"
 #include "tools/common/progress.h"
 #include "tools/common/validators.h"
 #include "tools/compare_report.h"
@@ -29,7 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr lf::HelpTexts kHelp = {
-    .summary = "Measures how far pictures are from references: PSNR, SSIM and FLIP.",
+    .summary = lf::SummaryOf("lfcompare"),
     .usage = "  lfcompare REFERENCE TEST [OPTIONS]",
     .examples = R"(  lfcompare truth.exr frame_0001.exr
   lfcompare reference/ frames/ -o differences         # all frames, and where they differ
@@ -63,10 +64,12 @@ void AddOptions(CLI::App& app, Arguments& a) {
   lf::OptionGroup quality(app, lf::kQualityGroup);
   input.Add("REFERENCE", a.reference, "Picture, or folder of pictures, that is right")
       ->required()
-      ->check(lf::NotEmpty());
+      ->check(lf::NotEmpty())
+      ->check(lf::TakesFiles("image folder"));
   input.Add("TEST", a.test, "Picture, or folder of pictures, that is judged")
       ->required()
-      ->check(lf::NotEmpty());
+      ->check(lf::NotEmpty())
+      ->check(lf::TakesFiles("image folder"));
   input.AddFlag("--common", a.common,
                 "Compare only the names that both folders have\n"
                 "Without this option a picture that one of them lacks is an error.");
@@ -74,7 +77,8 @@ void AddOptions(CLI::App& app, Arguments& a) {
       .Add("-o,--output OUT", a.output,
            "Pictures of the differences: NAME.png, or, for folders, a folder\n"
            "The folder is made if it does not exist.")
-      ->check(lf::NotEmpty());
+      ->check(lf::NotEmpty())
+      ->check(lf::TakesFiles(".png folder"));
   output.AddChoice("--show", a.show, {"flip", "difference"},
                    "What the pictures of --output show\n"
                    "flip: FLIP, from black (no difference) over violet and orange to yellow\n"

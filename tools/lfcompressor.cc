@@ -12,6 +12,7 @@
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
+#include "tools/common/programs.h"
 #include "tools/common/progress.h"
 #include "tools/common/store_options.h"
 #include "tools/common/validators.h"
@@ -25,9 +26,7 @@
 namespace {
 
 constexpr lf::HelpTexts kHelp = {
-    .summary =
-        "Compresses the LF images of a light field, or the part that packages need, into a packed "
-        "store.",
+    .summary = lf::SummaryOf("lfcompressor"),
     .usage = R"(  lfcompressor LIGHTFIELD -o STORE.lfs [OPTIONS]
   lfcompressor PACKAGE... -o STORE.lfs [OPTIONS])",
     .examples = R"(  lfcompressor capture/ -o capture.lfs                        # about 45 dB
@@ -64,7 +63,8 @@ void AddInput(CLI::App& app, Arguments& a) {
            "LIGHTFIELD: a light field of any supported kind, except a packed store\n"
            "PACKAGE: a file that lfpreprocessor has written (NAME.lfp)")
       ->required()
-      ->check(lf::NotEmpty());
+      ->check(lf::NotEmpty())
+      ->check(lf::TakesFiles("light_field package"));
   input
       .Add("--lightfield LIGHTFIELD", a.light_field.path,
            "Light field of the packages, if it was moved\n"

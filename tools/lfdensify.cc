@@ -9,6 +9,7 @@
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
+#include "tools/common/programs.h"
 #include "tools/common/progress.h"
 #include "tools/common/store_options.h"
 #include "tools/common/validators.h"
@@ -21,9 +22,7 @@
 namespace {
 
 constexpr lf::HelpTexts kHelp = {
-    .summary =
-        "Puts virtual LF images between the recorded ones of a sparse light field, so that blur "
-        "is smooth.",
+    .summary = lf::SummaryOf("lfdensify"),
     .usage = R"(  lfdensify LIGHTFIELD -o STORE.lfs [OPTIONS]
   lfdensify LIGHTFIELD PATH -o STORE.lfs [OPTIONS])",
     .examples = R"(  lfdensify capture/ -o dense.lfs                 # for any camera path

@@ -8,6 +8,7 @@
 
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
+#include "tools/common/programs.h"
 
 #include "lf/camera/path/path_yaml.h"
 #include "lf/core/file.h"
@@ -20,7 +21,7 @@
 namespace {
 
 constexpr lf::HelpTexts kHelp = {
-    .summary = "Writes a commented, working camera path for a light field.",
+    .summary = lf::SummaryOf("lfexample"),
     .usage = "  lfexample LIGHTFIELD -o PATH.yaml [OPTIONS]",
     .examples = R"(  lfexample capture/ -o path.yaml
   lfexample capture/transforms.json -o orbit.yaml --move orbit --camera 364

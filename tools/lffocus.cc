@@ -4,8 +4,10 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "tools/common/program.h"
+#include "tools/common/programs.h"
 #include "tools/focus_depth.h"
 #include "tools/focus_epi.h"
 #include "tools/focus_stack.h"
@@ -14,7 +16,7 @@
 namespace {
 
 constexpr lf::HelpTexts kHelp = {
-    .summary = "Makes focus stacks, depths, sharp and epipolar pictures, and grids of views.",
+    .summary = lf::SummaryOf("lffocus"),
     .usage = R"(  lffocus stack LIGHTFIELD PATH -o OUT [OPTIONS]
   lffocus depth LIGHTFIELD PATH -o FILE [-o FILE...] [OPTIONS]
   lffocus sharp LIGHTFIELD PATH -o FILE [OPTIONS]
@@ -65,6 +67,10 @@ int main(int argc, char** argv) {
             "sharp: a picture in which everything is in focus\n"
             "epi: the same pixel row or column of a row of LF cameras, in one picture\n"
             "views: the light field as a regular grid of views in one orientation");
+  std::vector<lf::CommandText> commands;
+  for (const Command& command : kCommands)
+    commands.push_back({std::string(command.name), fmt::format("lffocus {}", command.name), ""});
+  program.SetCommands(commands);
   return program.Run(argc, argv, [&]() -> lf::Result<void> {
     return lf::UsageError(fmt::format(
         "{}: expected one of the commands {} as the first word, as in lffocus {} --help",

@@ -9,6 +9,7 @@
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
+#include "tools/common/programs.h"
 #include "tools/common/progress.h"
 #include "tools/import_exposure.h"
 #include "tools/import_report.h"
@@ -24,9 +25,7 @@
 namespace {
 
 constexpr lf::HelpTexts kHelp = {
-    .summary =
-        "Reports what a light field contains and what looks wrong in it, and converts its "
-        "calibration to a transforms.json.",
+    .summary = lf::SummaryOf("lfimport"),
     .usage = "  lfimport LIGHTFIELD [-o DIR] [OPTIONS]",
     .examples =
         R"(  lfimport capture/                                   # only the report: is it complete?

@@ -10,6 +10,7 @@
 #include "tools/common/frame_options.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/program.h"
+#include "tools/common/programs.h"
 #include "tools/common/progress.h"
 #include "tools/common/validators.h"
 #include "tools/render_end.h"
@@ -21,7 +22,7 @@
 namespace {
 
 constexpr lf::HelpTexts kHelp = {
-    .summary = "Adds the plates of a divided render and writes its frames.",
+    .summary = lf::SummaryOf("lfmerge"),
     .usage = "  lfmerge PLATES... -o DIR [OPTIONS]",
     .examples =
         R"(  lfrenderer capture/ path.yaml -o frames --frames 7 --shard 1/3   # and 2/3, 3/3 elsewhere
@@ -62,7 +63,8 @@ void AddOptions(CLI::App& app, Arguments& a, lf::MergeOptions& options) {
   lf::OptionGroup running(app, lf::kRunningGroup);
   input.Add("PLATES", a.plates, "Plates of lfrenderer --shard or --keep-plates, or folders")
       ->required()
-      ->check(lf::NotEmpty());
+      ->check(lf::NotEmpty())
+      ->check(lf::TakesFiles("plate"));
   a.allow_missing.AddTo(app, "the LF images of the frame with the most LF images");
   output.Add("-o,--output DIR", a.output, "Folder of the frames")
       ->required()

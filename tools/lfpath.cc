@@ -12,6 +12,7 @@
 
 #include "tools/camera_table.h"
 #include "tools/common/program.h"
+#include "tools/common/programs.h"
 #include "tools/common/validators.h"
 
 #include "lf/camera/path/view_cameras.h"
@@ -25,8 +26,7 @@
 namespace {
 
 constexpr lf::HelpTexts kHelp = {
-    .summary =
-        "Converts camera paths between programs, moves and resamples them, or tells about one.",
+    .summary = lf::SummaryOf("lfpath"),
     .usage = R"(  lfpath PATH [OPTIONS]
   lfpath PATH -o OUT [OPTIONS])",
     .examples = R"(  lfpath camera_path.json                       # what is in it
@@ -85,13 +85,15 @@ void AddInput(CLI::App& app, Arguments& a) {
       .Add("--dataparser-transforms FILE", a.dataparser,
            "dataparser_transforms.json for PATH (beside PATH)\n"
            "The file states the space in which nerfstudio trained; PATH is moved back from it.")
-      ->check(lf::NotEmpty());
+      ->check(lf::NotEmpty())
+      ->check(lf::TakesFiles(".json"));
   spaces
       .Add("--out-dataparser-transforms FILE", a.out_dataparser,
            "dataparser_transforms.json for OUT (none)\n"
            "OUT is moved into the space in which nerfstudio trained, so that nerfstudio can render "
            "it. Without it, OUT is in the world of the light field.")
-      ->check(lf::NotEmpty());
+      ->check(lf::NotEmpty())
+      ->check(lf::TakesFiles(".json"));
   spaces
       .Add("--ngp-scale X", a.ngp_scale,
            "Scale of the space of instant-ngp (0.33)\n"
@@ -115,7 +117,9 @@ void AddInput(CLI::App& app, Arguments& a) {
 
 void AddOutput(CLI::App& app, Arguments& a) {
   lf::OptionGroup output(app, lf::kOutputGroup);
-  auto* out = output.Add("-o,--output OUT", a.output, "Path to write")->check(lf::NotEmpty());
+  auto* out = output.Add("-o,--output OUT", a.output, "Path to write")
+                  ->check(lf::NotEmpty())
+                  ->check(lf::TakesFiles(".yaml .json .chan .usda"));
   output
       .AddChoice("--format", a.format, {"yaml", "nerfstudio", "instant-ngp", "chan", "usda"},
                  "Format of OUT (by its extension)\n"

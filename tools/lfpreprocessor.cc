@@ -11,6 +11,7 @@
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
+#include "tools/common/programs.h"
 #include "tools/common/progress.h"
 #include "tools/common/validators.h"
 #include "tools/forecast_report.h"
@@ -22,9 +23,7 @@
 namespace {
 
 constexpr lf::HelpTexts kHelp = {
-    .summary =
-        "Selects the part of a light field that a film needs, and divides it into packages for "
-        "many machines.",
+    .summary = lf::SummaryOf("lfpreprocessor"),
     .usage = R"(  lfpreprocessor LIGHTFIELD PATH --plan [OPTIONS]
   lfpreprocessor LIGHTFIELD PATH -o DIR [OPTIONS])",
     .examples =

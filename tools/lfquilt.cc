@@ -10,6 +10,7 @@
 
 #include "tools/common/interrupt.h"
 #include "tools/common/program.h"
+#include "tools/common/programs.h"
 #include "tools/common/progress.h"
 #include "tools/common/validators.h"
 
@@ -19,7 +20,7 @@
 namespace {
 
 constexpr lf::HelpTexts kHelp = {
-    .summary = "Joins the rendered views of a film: quilts for light field displays, stereo pairs.",
+    .summary = lf::SummaryOf("lfquilt"),
     .usage = "  lfquilt FRAMES... -o OUT [OPTIONS]",
     .examples =
         R"(  lfpath path.yaml -o views.yaml --quilt 8x6       # cameras of the views
@@ -58,7 +59,8 @@ void AddOptions(CLI::App& app, Arguments& a) {
            "Folder of the frames, or their files in order\n"
            "Of a folder, the files frame_0001.png or frame_0001.exr and so on are taken.")
       ->required()
-      ->check(lf::NotEmpty());
+      ->check(lf::NotEmpty())
+      ->check(lf::TakesFiles(".png .exr folder"));
   output
       .Add("-o,--output OUT", a.output,
            "Picture or video to write: NAME.png, .exr or .mp4\n"
@@ -67,7 +69,8 @@ void AddOptions(CLI::App& app, Arguments& a) {
            "displays "
            "know columns, rows and the width of a view divided by its height.")
       ->required()
-      ->check(lf::NotEmpty());
+      ->check(lf::NotEmpty())
+      ->check(lf::TakesFiles(".png .exr .mp4"));
   output.AddChoice("--layout", a.layout,
                    {"quilt", "side-by-side", "over-under", "anaglyph", "left-right"},
                    "How views are joined\n"

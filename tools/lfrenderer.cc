@@ -12,6 +12,7 @@
 
 #include "tools/common/interrupt.h"
 #include "tools/common/program.h"
+#include "tools/common/programs.h"
 #include "tools/common/progress.h"
 #include "tools/render_arguments.h"
 #include "tools/render_densified.h"
@@ -26,7 +27,7 @@
 namespace {
 
 constexpr lf::HelpTexts kHelp = {
-    .summary = "Films a densely recorded light field with a thin-lens camera on a path.",
+    .summary = lf::SummaryOf("lfrenderer"),
     .usage = R"(  lfrenderer LIGHTFIELD PATH -o DIR [OPTIONS]
   lfrenderer PACKAGE... -o DIR [OPTIONS])",
     .examples = R"(  lfrenderer capture/transforms.json path.yaml -o frames

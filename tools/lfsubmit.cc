@@ -8,6 +8,7 @@
 
 #include "tools/common/interrupt.h"
 #include "tools/common/program.h"
+#include "tools/common/programs.h"
 #include "tools/common/progress.h"
 #include "tools/job_table.h"
 #include "tools/run_job.h"
@@ -26,7 +27,7 @@
 
 namespace {
 constexpr lf::HelpTexts kHelp = {
-    .summary = "Renders the packages of a film in many processes or on many machines.",
+    .summary = lf::SummaryOf("lfsubmit"),
     .usage = R"(  lfsubmit PACKAGE... -o DIR [OPTIONS] [-- OPTIONS OF lfrenderer]
   lfsubmit --status DIR | --cancel DIR | --resume DIR | --finish DIR FRAMES)",
     .examples = R"(  lfpreprocessor capture/ path.yaml -o packages --packages 8

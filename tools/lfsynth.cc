@@ -3,13 +3,14 @@
 
 #include "tools/common/interrupt.h"
 #include "tools/common/program.h"
+#include "tools/common/programs.h"
 #include "tools/common/progress.h"
 #include "tools/synthetic_field.h"
 
 namespace {
 
 constexpr lf::HelpTexts kHelp = {
-    .summary = "Photographs a synthetic scene as a light field.",
+    .summary = lf::SummaryOf("lfsynth"),
     .usage = "  lfsynth SCENE -o DIR [OPTIONS]",
     .examples = R"(  lfsynth still-life -o still-life
   lfsynth chart -o chart --capture band --count 600 --jitter 0.2 --format png

@@ -10,6 +10,7 @@
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
+#include "tools/common/programs.h"
 #include "tools/common/progress.h"
 #include "tools/common/validators.h"
 #include "tools/visualizer/export_page.h"
@@ -22,9 +23,7 @@
 namespace {
 
 constexpr lf::HelpTexts kHelp = {
-    .summary =
-        "Shows a light field and the part of it that a camera path needs, in the browser or as "
-        "text.",
+    .summary = lf::SummaryOf("lfvisualizer"),
     .usage = "  lfvisualizer LIGHTFIELD PATH [PACKAGE...] [OPTIONS]",
     .examples =
         R"(  lfvisualizer capture/ path.yaml                   # open the address that it prints

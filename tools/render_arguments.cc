@@ -43,7 +43,8 @@ void AddInput(CLI::App& app, RenderArguments& a) {
            "cameras of a "
            "calibration (doc/formats/foreign_paths.md)\n"
            "PACKAGE: a file that lfpreprocessor has written")
-      ->required();
+      ->required()
+      ->check(TakesFiles("light_field path package"));
   input
       .Add("--lightfield LIGHTFIELD", a.light_field.path,
            "Light field of the packages, if it was moved\n"
@@ -80,7 +81,7 @@ void AddPicture(CLI::App& app, RenderArguments& a) {
       "--estimator", a.estimator, {"auto", "nearest", "bilinear"},
       "How LF pixels contribute to elements\n"
       "An element is a pixel of the frame before it is developed.\n"
-      "bilinear (auto): every element reads each LF image at the point that it sees, interpolated "
+      "auto, bilinear: every element reads each LF image at the point that it sees, interpolated "
       "as --filter says\n"
       "nearest: every LF pixel is added to one element; mosaics are not interpolated");
   picture.AddChoice(

@@ -31,7 +31,7 @@ constexpr std::array kOfTheJob = {"-o",         "--output", "--resume",         
                                   "--progress", "--json",   "--frames",           "--video",
                                   "--shard",    "--finish", "--threads",          "--memory",
                                   "-q",         "--quiet",  "--no-contact-sheet", "--clamp-frames"};
-constexpr std::array kRenderNothing = {"--help", "-h", "--help-all", "--version"};
+constexpr std::array kRenderNothing = {"--help", "-h", "--help-all", "--version", "--describe"};
 
 uint64_t MachineMemoryBytes() {
   const long pages = ::sysconf(_SC_PHYS_PAGES), page_bytes = ::sysconf(_SC_PAGESIZE);
@@ -152,8 +152,8 @@ void AddNewJob(CLI::App& app, SubmitArguments& a) {
   AddFilmFiles(output, a.video, a.no_contact_sheet);
   output.AddFlag("--overwrite", a.overwrite,
                  "Remove an earlier job and frames of PACKAGES from DIR\n"
-                 "Removed from DIR are the files of the earlier job, and the frames, reports and "
-                 "unfinished states of PACKAGES. The files PACKAGES are kept, and so are frames of "
+                 "The files of the earlier job, and the frames, reports and unfinished states of "
+                 "PACKAGES are removed from DIR. The files PACKAGES are kept, and so are frames of "
                  "other packages in DIR.");
 }
 

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "tools/common/allow_missing.h"
 #include "tools/common/byte_size.h"
+#include "tools/common/describe.h"
 #include "tools/common/duration.h"
 #include "tools/common/help.h"
 #include "tools/common/program.h"
@@ -150,7 +152,7 @@ class HelpTest : public testing::Test {
     try {
       app_.parse(words);
     } catch (const CLI::ParseError& error) {
-      return error.what();
+      return MessageOf(error);
     }
     return "";
   }
@@ -202,9 +204,54 @@ TEST_F(HelpTest, LongDetailsAreWrapped) {
 
 TEST_F(HelpTest, ErrorsNameTheAllowedValues) {
   EXPECT_EQ(Parse("a --format gif"), "--format: gif not in {exr,png}");
-  EXPECT_EQ(Parse("a --threads"), "--threads: 1 required N:INT in [0 - 512] missing");
+  EXPECT_EQ(Parse("a --threads"), "--threads: expected a value, found nothing: --threads N");
   EXPECT_NE(Parse("a --threads 999").find("999 not in range 0 to 512"), std::string::npos);
   EXPECT_EQ(Parse("a --slab-position 1 nan 2"), "--slab-position: expected a number, found 'nan'");
+}
+
+// Returns the option of that name from a description.
+nlohmann::json OptionIn(const nlohmann::json& description, const std::string& name) {
+  for (const nlohmann::json& group : description["groups"])
+    for (const nlohmann::json& option : group["options"])
+      for (const std::string known : option["names"])
+        if (known == name) return option;
+  return nullptr;
+}
+
+TEST_F(HelpTest, DescriptionStatesWhatTheParserKnows) {
+  std::string kind = "a", store;
+  OptionGroup other(app_, "Rare");
+  other.AddChoice("--kind", kind, {"a", "b", "c"},
+                  "Kind of film (either)\nThe film is cut.\na: the first\nb, c: the others\nd: no");
+  other.Add("--store STORE.lfs", store, "Store")->check(TakesFiles("package .exr folder"));
+  OptionGroup(app_, "").AddFlag("--hidden", plan_, "Hidden");
+  const auto description = nlohmann::json::parse(DescriptionOf(
+      app_, {.summary = "Films.", .usage = "  film A\n  film B"}, {{"a", "film a", ""}}));
+  EXPECT_EQ(description["usage"], (std::vector<std::string>{"film A", "film B"}));
+  EXPECT_EQ(description["commands"][0]["call"], "film a");
+  EXPECT_EQ(description["groups"][0]["name"], kOutputGroup);
+  EXPECT_EQ(description["groups"][0]["options"][0]["names"][0], "PATH");
+  EXPECT_EQ(OptionIn(description, "PATH")["files"]["kinds"][0], "path");
+  EXPECT_EQ(OptionIn(description, "-o")["names"], (std::vector<std::string>{"-o", "--output"}));
+  EXPECT_EQ(OptionIn(description, "-o")["excludes"][0], "--plan");
+  EXPECT_EQ(OptionIn(description, "-o")["files"]["folders"], true);
+  EXPECT_EQ(OptionIn(description, "--plan")["type"], "flag");
+  const nlohmann::json threads = OptionIn(description, "--threads");
+  EXPECT_EQ(threads["type"], "whole number");
+  EXPECT_EQ(threads["summary"], "Threads");
+  EXPECT_EQ(threads["default"], "0");
+  EXPECT_EQ(threads["default_means"], "all");
+  EXPECT_EQ(threads["values"], "0 to 512");
+  EXPECT_TRUE(threads["files"].is_null());
+  EXPECT_EQ(OptionIn(description, "--slab-position")["value_count"], 3);
+  EXPECT_EQ(OptionIn(description, "--slab-position")["type"], "number");
+  const nlohmann::json with_choices = OptionIn(description, "--kind");
+  EXPECT_EQ(with_choices["choices"][2],
+            (nlohmann::json{{"value", "c"}, {"meaning", "the others"}}));
+  EXPECT_EQ(with_choices["details"], (std::vector<std::string>{"The film is cut.", "d: no"}));
+  EXPECT_EQ(OptionIn(description, "--store")["files"]["extensions"],
+            (std::vector<std::string>{".lfp", ".exr"}));
+  EXPECT_TRUE(OptionIn(description, "--hidden").is_null());
 }
 
 TEST(Progress, FarmsGetTheLinesThatTheyLookFor) {

@@ -25,7 +25,7 @@ std::vector<CLI::Option*> FrameRangeArguments::AddTo(OptionGroup& output, const 
       "--clamp-frames", clamp,
       fmt::format("Leave out frames of --frames beyond the end of the path\n"
                   "Without this option they are an error. If none is left, {}, and "
-                  "the exit code is 0. Farms need this whose last chunk may be too long.",
+                  "the exit code is 0. Render farms need this if their last chunk may be too long.",
                   if_none));
   return {frames, clamps};
 }
@@ -109,7 +109,8 @@ Result<PictureOptions> PictureArguments::Make(FrameFormat format) const {
 
 void AddFilmFiles(OptionGroup& output, std::string& video, bool& no_contact_sheet) {
   output.Add("--video FILE", video, "Also write the frames as this mp4 file; needs ffmpeg")
-      ->check(NotEmpty());
+      ->check(NotEmpty())
+      ->check(TakesFiles(".mp4"));
   output.AddFlag("--no-contact-sheet", no_contact_sheet,
                  "Do not write contact_sheet.png\n"
                  "The contact sheet shows a dozen frames on one page.");

@@ -15,7 +15,11 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
+
+#include "tools/common/file_kinds.h"
 
 namespace lf {
 
@@ -45,6 +49,27 @@ struct HelpTexts {
   const char* examples = "";  // one line for each command
   const char* details = "";   // paragraphs of --help-all: what is written, signals, ...
 };
+
+// A command, which is the first word of a call and has a help of its own.
+struct CommandText {
+  std::string name;     // stack
+  std::string call;     // program or command that runs: lffocus stack
+  std::string summary;  // shown in the list of commands of --help; empty: the command is not listed
+};
+
+// The last lines of --help-all.
+inline constexpr const char* kExitCodes =
+    "Exit codes: 0 success, 1 internal error (a bug), 2 wrong usage, 3 bad input, 4 failed output, "
+    "full disk or lack of memory, 5 interrupted, 6 finished, but with LF images left out or less "
+    "quality than required. The last line on stderr states the reason.";
+
+// Returns the text with the lines of each paragraph joined. Empty lines and lines that begin with
+// two spaces stay as they are.
+std::string WithJoinedLines(std::string_view text);
+
+// Returns the message of a command line that cannot be parsed. CLI11 would list all that it knows
+// about a value that is missing: "--threads: 1 required N:INT in [0 - 512] missing".
+std::string MessageOf(const CLI::ParseError& error);
 
 // Adds options to one group of a program.
 class OptionGroup {
@@ -88,11 +113,15 @@ class HelpFormatter : public CLI::Formatter {
  public:
   explicit HelpFormatter(const HelpTexts& texts) : texts_(texts) {}
 
+  // Adds a list of commands to the help. Called before the command line is parsed.
+  void SetCommands(std::vector<CommandText> commands) { commands_ = std::move(commands); }
+
   std::string make_help(const CLI::App* app, std::string name,
                         CLI::AppFormatMode mode) const override;
 
  private:
   HelpTexts texts_;
+  std::vector<CommandText> commands_;
 };
 
 }  // namespace lf

@@ -8,6 +8,7 @@
 #include <memory>
 #include <system_error>
 
+#include "tools/common/describe.h"
 #include "tools/common/process_start.h"
 #include "tools/common/progress.h"
 #include "tools/common/validators.h"
@@ -28,13 +29,27 @@ Result<void> PrintReport(const std::string& text) {
 
 const char* Version() { return LF_VERSION; }
 
-Program::Program(std::string name, const HelpTexts& texts) : app_(texts.summary, std::move(name)) {
+Program::Program(std::string name, const HelpTexts& texts)
+    : app_(texts.summary, std::move(name)), texts_(texts) {
   app_.formatter(std::make_shared<HelpFormatter>(texts));
   app_.set_help_flag("-h,--help", "Show the options that most people need")->group(kHelpGroup);
   app_.set_help_all_flag("--help-all", "Show all options and the details")->group(kHelpGroup);
   app_.set_version_flag("--version", app_.get_name() + " " + Version(), "Show the version")
       ->group(kHelpGroup);
+  app_.add_flag_callback(kDescribe,
+                         [this] {
+                           std::cout << DescriptionOf(app_, texts_, commands_);
+                           throw CLI::Success();
+                         })
+      ->group("");
   app_.option_defaults()->always_capture_default();
+}
+
+void Program::SetCommands(const std::vector<CommandText>& commands) {
+  commands_ = commands;
+  const auto formatter = std::make_shared<HelpFormatter>(texts_);
+  formatter->SetCommands(commands);
+  app_.formatter(formatter);
 }
 
 void Program::AddCommonOptions(const OfferedOptions& offered) {
@@ -85,7 +100,7 @@ int Program::Run(int argc, char** argv, const std::function<Result<void>()>& bod
     return static_cast<int>(printed.error().kind);
   } catch (const CLI::ParseError& error) {
     std::fprintf(stderr, "Try '%s --help'.\n", app_.get_name().c_str());
-    LogMessage(LogLevel::kError, error.what());
+    LogMessage(LogLevel::kError, MessageOf(error));
     return static_cast<int>(ErrorKind::kUsage);
   }
   SetLogLevel(quiet_ ? LogLevel::kWarning : verbosity_ > 0 ? LogLevel::kDebug : LogLevel::kInfo);

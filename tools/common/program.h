@@ -1,4 +1,5 @@
-// Shared by all programs: common options, exit codes for errors, help and version.
+// Shared by all programs: common options, exit codes for errors, help, version, and the description
+// as JSON (describe.h).
 //
 //   int main(int argc, char** argv) {
 //     lf::Program program("lfexample", {.summary = "Writes a camera path ...", ...});
@@ -16,6 +17,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "tools/common/help.h"
 
@@ -56,11 +58,16 @@ class Program {
   // first.
   void AddCommonOptions(const OfferedOptions& offered);
 
+  // Tells the help and the description which commands the program has.
+  void SetCommands(const std::vector<CommandText>& commands);
+
   // Parses the command line, runs `body` and returns the exit code for main().
   int Run(int argc, char** argv, const std::function<Result<void>()>& body);
 
  private:
   CLI::App app_;
+  HelpTexts texts_;
+  std::vector<CommandText> commands_;
   CommonOptions common_;
   int verbosity_ = 0;
   bool quiet_ = false;
