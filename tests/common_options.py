@@ -46,6 +46,7 @@ OFFERED = {
     "lffocus views": set(COMMON) - {"--seed"},
     "lffocus depth": set(COMMON) - {"--seed"},
     "lffocus sharp": set(COMMON) - {"--seed"},
+    "lffocus through": set(COMMON) - {"--seed"},
     # --allow-missing follows the two dashes, because it is an option of lfrenderer.
     "lfsubmit": set(COMMON) - {"--seed", "--allow-missing"},
     "lfmerge": set(COMMON) - {"--seed", "--strict"},

@@ -33,6 +33,7 @@ CALLS = {
     "lffocus views": ["no", "--grid", "2x2", "-o", "no"],
     "lffocus depth": ["no", "no.yaml", "-o", "no.exr"],
     "lffocus sharp": ["no", "no.yaml", "-o", "no.exr"],
+    "lffocus through": ["no", "no.yaml", "-o", "no.exr"],
     "lfimport": ["no"],
     "lfmerge": ["no", "-o", "no"],
     "lfquilt": ["no.png", "-o", "no.png", "--views", "1x1"],

@@ -92,6 +92,7 @@ class TinyCalls:
         epi = self.words("lffocus", "epi", self.field, "--row", "9", "-o", out.with_suffix(".png"))
         depth = self.words("lffocus", "depth", self.field, self.path, "--planes", "3", "--near", "2", "--far", "4",
                            "-o", out.with_suffix(".exr"), "-o", out.with_suffix(".ply"))
+        through = self.words("lffocus", "through", self.field, self.path, "-o", out.with_suffix(".exr"))
         views = self.words("lffocus", "views", self.field, "--grid", "3x3", "-o", out)
         array = self.words("lffocus", "views", self.field, "--grid", "2x4", "--focus-distance", "3", "-o",
                            out.with_suffix(".npy"))
@@ -113,6 +114,7 @@ class TinyCalls:
                 Call("lffocus stack", stack, [[*stack, "--resume"], [*stack, "--overwrite"]]),
                 Call("lffocus epi", epi, [[*epi, "--overwrite"]]),
                 Call("lffocus depth", depth, [[*depth, "--overwrite"]]),
+                Call("lffocus through", through, [[*through, "--overwrite"]]),
                 Call("lffocus views", views, [[*views, "--overwrite"]]),
                 Call("lffocus views, an array", array, [[*array, "--overwrite"]]),
                 Call("lfquilt", quilt, [[*quilt, "--resume"], [*quilt, "--overwrite"]]),

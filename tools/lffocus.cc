@@ -11,6 +11,7 @@
 #include "tools/focus_depth.h"
 #include "tools/focus_epi.h"
 #include "tools/focus_stack.h"
+#include "tools/focus_through.h"
 #include "tools/focus_views.h"
 
 namespace {
@@ -20,6 +21,7 @@ constexpr lf::HelpTexts kHelp = {
     .usage = R"(  lffocus stack LIGHTFIELD PATH -o OUT [OPTIONS]
   lffocus depth LIGHTFIELD PATH -o FILE [-o FILE...] [OPTIONS]
   lffocus sharp LIGHTFIELD PATH -o FILE [OPTIONS]
+  lffocus through LIGHTFIELD PATH -o FILE [-o FILE...] [OPTIONS]
   lffocus epi LIGHTFIELD --row Y [-o FILE] [OPTIONS]
   lffocus views LIGHTFIELD --grid COLUMNSxROWS -o OUT [OPTIONS])",
     .examples = R"(  lffocus stack --help
@@ -27,6 +29,7 @@ constexpr lf::HelpTexts kHelp = {
   lffocus stack capture/ path.yaml --frame 12 -o rack.mp4 --near 0.4 --far 2 --planes 75
   lffocus depth capture/ path.yaml -o depth.exr -o points.ply
   lffocus sharp capture/ path.yaml -o sharp.png
+  lffocus through capture/ path.yaml -o seen.png --statistic median
   lffocus epi capture/ --row 240 -o epi.png
   lffocus views capture/ --grid 9x9 -o views)",
     .details =
@@ -40,8 +43,8 @@ struct Command {
 };
 constexpr std::array kCommands = {
     Command{"stack", lf::RunFocusStack}, Command{"depth", lf::RunFocusDepth},
-    Command{"sharp", lf::RunFocusSharp}, Command{"epi", lf::RunFocusEpi},
-    Command{"views", lf::RunFocusViews}};
+    Command{"sharp", lf::RunFocusSharp}, Command{"through", lf::RunFocusThrough},
+    Command{"epi", lf::RunFocusEpi},     Command{"views", lf::RunFocusViews}};
 
 std::string Names() {
   std::string names;
@@ -65,6 +68,7 @@ int main(int argc, char** argv) {
             "stack: pictures of one camera that differ in their focus distance\n"
             "depth: the depth of every element\n"
             "sharp: a picture in which everything is in focus\n"
+            "through: a frame that sees through leaves and rain, by a statistic over the lens\n"
             "epi: the same pixel row or column of a row of LF cameras, in one picture\n"
             "views: the light field as a regular grid of views in one orientation");
   std::vector<lf::CommandText> commands;

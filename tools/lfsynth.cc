@@ -23,6 +23,7 @@ constexpr lf::HelpTexts kHelp = {
   still-life  glass, mirrors and marbles in front of strings of lights
   lights      only lights, at seven depths, on black
   chart       flat test charts at known depths and slants
+  foliage     test charts behind sunlit leaves
 
 The program writes DIR/images/0000.exr ... and DIR/transforms.json. With --truth it also writes
 DIR/truth/frame_0001.exr ..., the frames that a real lens would film along the camera path. The world
@@ -133,7 +134,8 @@ void AddQuality(CLI::App& app, lf::SyntheticFieldOptions& a) {
 void AddOptions(CLI::App& app, lf::SyntheticFieldOptions& a) {
   lf::OptionGroup input(app, lf::kInputGroup);
   input
-      .AddChoice("SCENE", a.scene, {"still-life", "lights", "chart"}, "still-life, lights or chart")
+      .AddChoice("SCENE", a.scene, {"still-life", "lights", "chart", "foliage"},
+                 "still-life, lights, chart or foliage")
       ->required();
   AddOutput(app, a);
   AddRig(app, a);

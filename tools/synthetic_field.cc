@@ -125,7 +125,7 @@ Result<void> WriteSyntheticField(const SyntheticFieldOptions& options, ThreadPoo
   const BuiltInScene* const built_in = FindBuiltInScene(options.scene);
   if (built_in == nullptr)
     return UsageError(
-        fmt::format("scene {}: expected one of still-life, lights, chart", options.scene));
+        fmt::format("scene {}: expected one of still-life, lights, chart, foliage", options.scene));
   LF_ASSIGN_OR_RETURN(const LfImageFormat format, FormatOf(options));
   LF_ASSIGN_OR_RETURN(const RigOptions rig, RigOf(options, *built_in));
   LF_ASSIGN_OR_RETURN(const std::vector<RigidTransform> poses, MakeRig(rig));

@@ -246,7 +246,7 @@ def synth(scene: str, folder: FilePath, *, capture: str = "planar", count: Optio
 
     Parameters
     ----------
-    scene : {"still-life", "lights", "chart"}
+    scene : {"still-life", "lights", "chart", "foliage"}
         The scene.
     folder : path
         Folder of the light field.
@@ -308,7 +308,7 @@ def synth(scene: str, folder: FilePath, *, capture: str = "planar", count: Optio
     <LightField ...chart: 4 LF images>
     """
     words = _core.SyntheticFieldOptions()
-    words.scene = arguments.choice("scene", scene, ("still-life", "lights", "chart"))
+    words.scene = arguments.choice("scene", scene, ("still-life", "lights", "chart", "foliage"))
     words.output = arguments.file_name("folder", folder)
     words.capture = arguments.choice("capture", capture, ("planar", "band", "hemisphere"))
     words.format = arguments.choice("format", format, ("exr", "png", "png16"))

@@ -37,8 +37,9 @@ inline constexpr std::array kPrograms = {
                   "that blur is smooth."},
     ListedProgram{"lfrenderer", "render",
                   "Films a densely recorded light field with a thin-lens camera on a path."},
-    ListedProgram{"lffocus", "focus",
-                  "Makes focus stacks, depths, sharp and epipolar pictures, and grids of views."},
+    ListedProgram{
+        "lffocus", "focus",
+        "Makes focus stacks, depths, sharp and epipolar pictures, views; sees through foliage."},
     ListedProgram{"lfsubmit", "submit",
                   "Renders the packages of a film in many processes or on many machines."},
     ListedProgram{"lfmerge", "merge", "Adds the plates of a divided render and writes its frames."},

@@ -5,7 +5,7 @@
 namespace lf {
 namespace {
 
-std::array<BuiltInScene, 3> MakeScenes() {
+std::array<BuiltInScene, 4> MakeScenes() {
   BuiltInScene still_life{"still-life",
                           "glass, mirrors and marbles in front of strings of lights",
                           DescribeStillLife,
@@ -22,13 +22,17 @@ std::array<BuiltInScene, 3> MakeScenes() {
 
   BuiltInScene chart{"chart", "flat test charts at known depths and slants", DescribeChart, {}};
   chart.samples = 9;
-  return {still_life, lights, chart};
+
+  BuiltInScene foliage{"foliage", "test charts behind sunlit leaves", DescribeFoliage, {}};
+  foliage.rig.count = 121;
+  foliage.rig.spacing_w = 0.02;
+  return {still_life, lights, chart, foliage};
 }
 
 }  // namespace
 
 std::span<const BuiltInScene> BuiltInScenes() {
-  static const std::array<BuiltInScene, 3> scenes = MakeScenes();
+  static const std::array<BuiltInScene, 4> scenes = MakeScenes();
   return scenes;
 }
 

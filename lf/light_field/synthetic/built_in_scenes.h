@@ -14,6 +14,11 @@
 //               (right); above the star, bars slanted from 0.8 (left) to 1.2 (right); below it, a
 //               flat checkered board from 0.6 to 1.4 (for tilted focus planes). Bright parts have
 //               radiance 0.8, dark parts 0.03, the background 0.02.
+// `foliage`     Test charts at depth 1, digits and a Siemens star, behind leaves at depths 0.44 to
+//               0.62, which hide about a quarter of them from each camera. White parts have
+//               radiance 0.14, dark parts 0.05, the background 0.04, and leaves at least 0.33 in
+//               each colour. A lens of 0.2 sees an element past several leaves, focused on the
+//               charts.
 //
 // How dense a capture must be: in a frame that is focused at depth g, a light at depth z is
 // displaced from one camera to the next by
@@ -61,5 +66,6 @@ Intrinsics IntrinsicsFor(const BuiltInScene& scene, int width_px, int height_px)
 SceneDescription DescribeStillLife();
 SceneDescription DescribeLights();
 SceneDescription DescribeChart();
+SceneDescription DescribeFoliage();
 
 }  // namespace lf

@@ -20,7 +20,7 @@ std::vector<PinholeCamera> Cameras(const BuiltInScene& scene) {
 }
 
 TEST(BuiltInScenes, EachIsFoundByItsName) {
-  ASSERT_EQ(BuiltInScenes().size(), 3U);
+  ASSERT_EQ(BuiltInScenes().size(), 4U);
   for (const BuiltInScene& scene : BuiltInScenes()) EXPECT_EQ(FindBuiltInScene(scene.name), &scene);
   EXPECT_EQ(FindBuiltInScene("still life"), nullptr);
 }

@@ -1,0 +1,292 @@
+#include "tools/focus_through.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "tools/common/allow_missing.h"
+#include "tools/common/byte_size.h"
+#include "tools/common/interrupt.h"
+#include "tools/common/light_field_argument.h"
+#include "tools/common/program.h"
+#include "tools/common/progress.h"
+#include "tools/common/validators.h"
+#include "tools/focus_frame.h"
+
+#include "lf/analysis/lens_statistics/lens_statistics.h"
+#include "lf/core/geometry.h"
+#include "lf/core/log.h"
+#include "lf/core/value_named.h"
+#include "lf/film/develop/frame_file.h"
+#include "lf/import/paths/open_path.h"
+#include "lf/render/pipeline/check_outputs.h"
+#include "lf/render/pipeline/frame_metadata.h"
+
+namespace lf {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr HelpTexts kHelp = {
+    .summary = "Sees through leaves and rain: a statistic over the lens instead of the mean.",
+    .usage = R"(  lffocus through LIGHTFIELD PATH -o FILE [-o FILE...] [OPTIONS])",
+    .examples = R"(  lffocus through capture/ path.yaml -o seen.exr
+  lffocus through capture/ path.yaml --frame 12 -o seen.png --statistic min
+  lffocus through capture/ path.yaml -o seen.exr -o seen.png --statistic trimmed --trim 0.3)",
+    .details =
+        R"(A frame is the mean of the rays that pass the lens. Things in front of the focus plane become a blur
+over it. This command takes the median of the rays of each element instead, or another statistic, so
+that things which hide the focus plane from some LF cameras vanish. Focus on what is to be seen:
+everything else becomes wrong, because the statistics of blur are no blur.
+
+min shows what is behind bright things, max what is behind dark things, however many rays they hide,
+as long as one ray is free. median needs more than half of the rays free. trimmed has less noise
+than median, and needs the hidden rays within the share --trim at either end. Open the lens as wide
+as the LF cameras reach: --json and the channel count tell the number of rays.
+
+Each LF camera has one ray, and all count the same. Virtual LF images are left out.)",
+};
+
+struct Arguments {
+  LightFieldArgument light_field;
+  FrameArgument frame;
+  AllowMissing allow_missing;
+  std::vector<std::string> outputs;
+  std::string statistic = "median", order = "channels", filter = "auto", lf_pixels = "auto";
+  std::string format = "auto", memory = "8G";
+  double trim = 0.25, max_angle_deg = 0;
+  bool overwrite = false;
+};
+
+void AddOptions(CLI::App& app, Arguments& a) {
+  a.light_field.AddTo(app);
+  OptionGroup input(app, kInputGroup);
+  a.frame.AddTo(input);
+  a.allow_missing.AddTo(app, "the LF images that the lens sees");
+  OptionGroup output(app, kOutputGroup);
+  output
+      .Add("-o,--output FILE", a.outputs,
+           "File to write: .exr, or .png in sRGB\n"
+           "May be given several times. Channels and attributes are those of a frame. The channels "
+           "count.R, count.G and count.B tell the number of rays of which the statistic is taken.")
+      ->required()
+      ->check(NotEmpty());
+  output.AddChoice("--format", a.format, {"auto", "exr", "exr-float", "png", "png16"},
+                   "Values in the files\n"
+                   "auto: exr or png, by the extension of the name\n"
+                   "exr, exr-float: linear light as floating-point numbers of 16 or 32 bits\n"
+                   "png, png16: sRGB of 8 or 16 bits");
+  output.AddFlag("--overwrite", a.overwrite, "Replace files that exist");
+  OptionGroup picture(app, kPictureGroup);
+  picture.AddChoice("--statistic", a.statistic, {"median", "trimmed", "min", "max", "mean"},
+                    "Statistic of the rays of each element\n"
+                    "median: the value in the middle; the mean of the two in the middle of an even "
+                    "number\n"
+                    "trimmed: the mean without the share --trim of the values at each end\n"
+                    "min, max: the lowest and the highest value\n"
+                    "mean: the mean, as in a frame with --lens-weights none");
+  CLI::Option* const trim =
+      picture.Add("--trim SHARE", a.trim,
+                  "Share of the values that trimmed leaves out at each end\n"
+                  "From 0 to below 0.5. Of n values, SHARE times n are left out at each end, "
+                  "rounded down.");
+  trim->check(CLI::Range(0.0, 0.5));
+  picture.AddChoice(
+      "--order", a.order, {"channels", "luminance"},
+      "Values that are sorted\n"
+      "channels: each colour by itself, so that a colour may be one that no ray has\n"
+      "luminance: whole rays by their luminance, so that their colours stay together");
+  picture.AddChoice(
+      "--filter", a.filter, {"auto", "nearest", "bilinear", "bicubic", "prefiltered"},
+      "Interpolation between LF pixels\n"
+      "auto: bilinear for min and max, because other filters undershoot and overshoot "
+      "beside edges; bicubic for brackets (LF images of one pose with different "
+      "exposures); otherwise prefiltered");
+  picture.AddChoice("--lf-pixels", a.lf_pixels, {"auto", "areas", "points"},
+                    "What LF pixels show, for --filter prefiltered\n"
+                    "areas: the mean light of their area, as in photographs\n"
+                    "points: the light of their centre, as in renders without anti-aliasing\n"
+                    "auto: as lf_pixels of the light field says, otherwise measured");
+  picture
+      .Add("--max-angle DEGREES", a.max_angle_deg,
+           "Largest angle between LF camera and frame axes (no limit)\n"
+           "LF cameras whose optical axis is farther from that of the frame are left out.")
+      ->check(CLI::Range(0.0, 180.0));
+  OptionGroup running(app, kRunningGroup);
+  running
+      .Add("--memory SIZE", a.memory,
+           "Upper limit of the memory that is used\n"
+           "SIZE: such as 8G or 512M. If the values of all rays need more, the frame is made in "
+           "parts, and LF images are read once for each.")
+      ->check(NotEmpty());
+}
+
+LensStatistic StatisticOf(const Arguments& a) {
+  return *ValueNamed(a.statistic, {LensStatistic::kMedian, LensStatistic::kTrimmed,
+                                   LensStatistic::kMin, LensStatistic::kMax, LensStatistic::kMean});
+}
+
+// Returns the format of a file. kUsage: its name does not fit.
+Result<FrameFormat> FormatOf(const Arguments& a, const std::string& output) {
+  const std::string extension = fs::path(output).extension().string();
+  if (extension != ".exr" && extension != ".png")
+    return UsageError(fmt::format("-o {}: expected a name that ends in .exr or .png", output));
+  if (a.format == "auto") return extension == ".exr" ? FrameFormat::kExrHalf : FrameFormat::kPng8;
+  const FrameFormat format = *ParseFrameFormat(a.format);
+  if (IsExr(format) == (extension == ".exr")) return format;
+  return UsageError(fmt::format("-o {}: --format {} needs a name that ends in {}", output, a.format,
+                                IsExr(format) ? ".exr" : ".png"));
+}
+
+Result<LensStatisticOptions> OptionsOf(const Arguments& a, const CommonOptions& common,
+                                       const std::atomic<bool>& interrupted, bool has_trim) {
+  LensStatisticOptions options;
+  options.statistic = StatisticOf(a);
+  if (has_trim && options.statistic != LensStatistic::kTrimmed)
+    return UsageError(fmt::format(
+        "--trim cannot be used with --statistic {}: add --statistic trimmed, or leave it out",
+        a.statistic));
+  options.trim = a.trim;
+  if (options.statistic == LensStatistic::kTrimmed && !(a.trim < 0.5))
+    return UsageError(fmt::format(
+        "--trim {}: expected a share from 0 to below 0.5: median is the limit", a.trim));
+  options.order = a.order == "channels" ? StatisticOrder::kChannels : StatisticOrder::kLuminance;
+  options.filter = ValueNamed(a.filter, {PixelFilter::kNearest, PixelFilter::kBilinear,
+                                         PixelFilter::kBicubic, PixelFilter::kPrefiltered})
+                       .value_or(PixelFilter::kAuto);
+  if (a.lf_pixels != "auto")
+    options.footprint = a.lf_pixels == "areas" ? PixelFootprint::kArea : PixelFootprint::kPoint;
+  if (a.max_angle_deg > 0) options.max_angle_rad = RadiansFromDegrees(a.max_angle_deg);
+  LF_ASSIGN_OR_RETURN(options.memory_bytes, ParseByteSize(a.memory, "--memory"));
+  options.strict = common.strict;
+  options.stop = &interrupted;
+  return options;
+}
+
+Result<void> CheckOutputs(const Arguments& a, const LightField& light_field) {
+  for (const std::string& output : a.outputs) {
+    std::error_code error;
+    if (!a.overwrite && fs::exists(output, error))
+      return UsageError(fmt::format(
+          "{} exists already: give another name, or --overwrite to replace it", output));
+  }
+  std::vector<fs::path> inputs = FilesOfLightField(light_field);
+  inputs.emplace_back(a.light_field.path);
+  for (fs::path& file : FilesOfPath(a.frame.path)) inputs.push_back(std::move(file));
+  return CheckReplacesNone({a.outputs.begin(), a.outputs.end()}, inputs);
+}
+
+Result<StatisticFrame> Make(const Arguments& a, const LensStatisticOptions& options,
+                            const CommonOptions& common, ThreadPool& pool) {
+  LF_ASSIGN_OR_RETURN(LightField light_field, a.light_field.Open());
+  LF_RETURN_IF_ERROR(CheckOutputs(a, light_field));
+  LF_ASSIGN_OR_RETURN(const CameraPath path, a.frame.Open(light_field, a.light_field.path));
+  if (path.shutter.exists())
+    return UsageError(fmt::format(
+        "{}: the path has a shutter, whose blur has no share in an order of rays: leave the "
+        "shutter out",
+        a.frame.path));
+  ProgressMeter meter(ParseProgressStyle(common.progress), "LF images");
+  LF_ASSIGN_OR_RETURN(
+      StatisticFrame frame,
+      MakeStatisticFrame(
+          std::move(light_field), a.frame.id(), path.Camera(a.frame.id()), options, pool,
+          [&](size_t done, size_t total) { meter.Update(done, total, std::string(a.statistic)); }));
+  frame.notes.fps = path.fps;
+  frame.notes.version = Version();
+  return frame;
+}
+
+// The largest and the median number of rays of the elements that have some.
+struct RayCounts {
+  uint32_t median = 0, most = 0;
+  double seen_share = 0;
+};
+RayCounts CountsOf(const DevelopedFrame& picture) {
+  std::vector<uint32_t> counts;
+  for (int y = 0; y < picture.ray_count.height(); ++y)
+    for (int x = 0; x < picture.ray_count.width(); ++x)
+      if (const uint32_t count = picture.ray_count.at(x, y, 0); count > 0) counts.push_back(count);
+  RayCounts result;
+  if (counts.empty()) return result;
+  std::sort(counts.begin(), counts.end());
+  result.median = counts[counts.size() / 2];
+  result.most = counts.back();
+  result.seen_share =
+      static_cast<double>(counts.size()) / picture.ray_count.width() / picture.ray_count.height();
+  return result;
+}
+
+std::string ReportJson(const Arguments& a, const StatisticFrame& frame, const RayCounts& counts) {
+  nlohmann::ordered_json report = {{"frame", a.frame.frame},
+                                   {"files", a.outputs},
+                                   {"statistic", a.statistic},
+                                   {"order", a.order}};
+  if (StatisticOf(a) == LensStatistic::kTrimmed) report["trim"] = a.trim;
+  report["lf_images"] = frame.image_count;
+  report["lf_images_skipped"] = frame.skipped.size();
+  report["parts"] = frame.part_count;
+  report["rays_median"] = counts.median;
+  report["rays_most"] = counts.most;
+  report["seen_share"] = counts.seen_share;
+  return report.dump(2) + "\n";
+}
+
+Result<void> Run(const Arguments& a, const Program& program, bool has_trim) {
+  std::vector<FrameFormat> formats;
+  for (const std::string& output : a.outputs) {
+    LF_ASSIGN_OR_RETURN(const FrameFormat format, FormatOf(a, output));
+    formats.push_back(format);
+  }
+  LF_ASSIGN_OR_RETURN(const MissingLimit limit, a.allow_missing.Limit());
+  const std::atomic<bool>& interrupted = CatchInterrupts();
+  LF_ASSIGN_OR_RETURN(const LensStatisticOptions options,
+                      OptionsOf(a, program.common(), interrupted, has_trim));
+  ThreadPool pool(program.common().threads);
+  LF_ASSIGN_OR_RETURN(const StatisticFrame frame, Make(a, options, program.common(), pool));
+  for (size_t i = 0; i < formats.size(); ++i) {
+    ImageMetadata metadata = FileMetadata(frame.notes, formats[i], ColourSpace::kRec709);
+    metadata.emplace_back("lf:statistic", a.statistic);
+    metadata.emplace_back("lf:statistic_order", a.order);
+    if (options.statistic == LensStatistic::kTrimmed)
+      metadata.emplace_back("lf:statistic_trim", a.trim);
+    LF_RETURN_IF_ERROR(WriteFrame(a.outputs[i], frame.picture, formats[i], metadata,
+                                  [&] { return interrupted.load(); }));
+  }
+  const RayCounts counts = CountsOf(frame.picture);
+  LogInfo("{} of {} LF images, {} to {} rays in most elements{}", a.statistic, frame.image_count,
+          counts.median, counts.most,
+          frame.part_count > 1 ? fmt::format("; made in {} parts", frame.part_count) : "");
+  if (program.common().json) LF_RETURN_IF_ERROR(PrintReport(ReportJson(a, frame, counts)));
+  if (frame.skipped.empty()) return {};
+  return EndWithMissing({frame.skipped.size(), frame.image_count,
+                         fmt::format("{} of {} LF images were left out: {}", frame.skipped.size(),
+                                     frame.image_count, frame.skipped.front().reason),
+                         ""},
+                        limit);
+}
+
+}  // namespace
+
+int RunFocusThrough(int argc, char** argv) {
+  Program program("lffocus through", kHelp);
+  Arguments arguments;
+  AddOptions(program.app(), arguments);
+  program.AddCommonOptions({.threads = true,
+                            .strict = "A broken LF image is an error (it is left out)",
+                            .json = "Print what was made as JSON",
+                            .progress = true,
+                            .verbose = true,
+                            .quiet = true});
+  return program.Run(argc - 1, argv + 1,
+                     [&] { return Run(arguments, program, program.app().count("--trim") > 0); });
+}
+
+}  // namespace lf

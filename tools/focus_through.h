@@ -1,0 +1,10 @@
+// lffocus through: a frame by a statistic over its lens, which sees through leaves and rain.
+#pragma once
+
+namespace lf {
+
+// Runs the command and returns the exit code.
+//   argc, argv  the whole command line; argv[1] is the name of the command
+int RunFocusThrough(int argc, char** argv);
+
+}  // namespace lf
