@@ -41,6 +41,17 @@ def test_less_confidence_knows_more(found, field, path):
     np.testing.assert_array_equal(more.confidence, found.confidence)
 
 
+def test_clean_maps_know_more_and_keep_what_was_right(found, field, path, capture, path_file, run, tmp_path):
+    clean = lf.depth_map(field, path, frame=2, clean=True, **RANGE)
+    is_known = np.isfinite(found.depth)
+    assert np.isfinite(clean.depth).sum() > is_known.sum() and np.isfinite(clean.depth)[is_known].all()
+    assert (clean.depth == found.depth)[is_known].mean() > 0.9
+    run("lffocus", "depth", capture, path_file, "-o", tmp_path / "clean.exr", "--frame", 2, "--near", 0.5, "--far", 3,
+        "--clean")
+    np.testing.assert_array_equal(np.where(np.isfinite(clean.depth), clean.depth, np.inf),
+                                  lf.read_image(tmp_path / "clean.exr")[..., 3])
+
+
 def test_progress_is_told(field, path):
     told = []
     lf.depth_map(field, path, planes=4, progress=lambda done, total: told.append((done, total)), **RANGE)
