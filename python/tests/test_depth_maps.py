@@ -36,7 +36,7 @@ def test_unknown_depths_are_nan_and_filled(found):
 
 
 def test_less_confidence_knows_more(found, field, path):
-    more = lf.depth_map(field, path, frame=2, confidence=0.1, threads=1, memory="1M", **RANGE)
+    more = lf.depth_map(field, path, frame=2, confidence=0.1, threads=1, memory="3M", **RANGE)
     assert np.isfinite(more.depth).sum() > np.isfinite(found.depth).sum()
     np.testing.assert_array_equal(more.confidence, found.confidence)
 
