@@ -126,7 +126,7 @@ class FocusDepthTest(ProgramTestCase):
 
     def test_threads_and_memory_change_no_bit(self):
         self.depth("one.exr", options=["--threads", 1, "--clean"])
-        self.depth("three.exr", options=["--threads", 3, "--memory", "1M", "--clean"])
+        self.depth("three.exr", options=["--threads", 3, "--memory", "8M", "--clean"])
         self.assertEqual((self.folder / "one.exr").read_bytes(), (self.folder / "three.exr").read_bytes())
 
     def test_all_files_tell_the_same(self):
@@ -196,7 +196,7 @@ class FocusDepthTest(ProgramTestCase):
         self.depth("depth.pfm")
         before = (self.folder / "depth.pfm").read_bytes()
         arguments = [self.field, self.path, "-o", self.folder / "depth.pfm", "--near", NEAR, "--far", 1.5]
-        self.fails(2, ["depth.pfm exists already", "--overwrite"], FOCUS, "depth", *arguments)
+        self.fails(2, ["depth.pfm: exists already", "--overwrite"], FOCUS, "depth", *arguments)
         self.assertEqual((self.folder / "depth.pfm").read_bytes(), before)
         self.succeeds(FOCUS, "depth", *arguments, "--overwrite")
         self.assertNotEqual((self.folder / "depth.pfm").read_bytes(), before)
@@ -247,6 +247,23 @@ class FocusDepthTest(ProgramTestCase):
         self.succeeds(FOCUS, "depth", *arguments, "-o", self.folder / "b.pfm", "--allow-missing", 1)
         self.fails(3, ["broken.png"], FOCUS, "depth", *arguments, "-o", self.folder / "c.pfm", "--strict")
         self.assertFalse((self.folder / "c.pfm").exists())
+
+    def test_too_little_memory_is_refused(self):
+        self.fails(4, ["--memory 1 KiB", "16 rows", "at least"], FOCUS, "depth", self.field, self.path, "-o",
+                   self.folder / "a.pfm", "--near", NEAR, "--far", FAR, "--memory", "1K")
+
+    def test_lf_images_that_hide_the_depths_are_named(self):
+        field = self.folder / "field"
+        field.mkdir()
+        content = (self.field / "transforms.json").read_text()
+        (field / "transforms.json").write_text(content)
+        (field / "images").mkdir()
+        self.fails(3, ["depths of the scene", ".png", "--near and --far"], FOCUS, "depth", field, self.path, "-o",
+                   self.folder / "a.pfm")
+
+    def test_a_missing_folder_is_named(self):
+        self.fails(4, [f"{self.folder}/none/a.pfm", "the folder", "does not exist"], FOCUS, "depth", self.field,
+                   self.path, "-o", self.folder / "none/a.pfm", "--near", NEAR, "--far", FAR, "--planes", 2)
 
     def test_interrupted_it_writes_nothing(self):
         output = self.folder / "depth.exr"

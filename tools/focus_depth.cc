@@ -143,7 +143,7 @@ Result<void> CheckOutputs(const DepthArguments& a, const LightField& light_field
     std::error_code error;
     if (!a.overwrite && std::filesystem::exists(output, error))
       return UsageError(fmt::format(
-          "{} exists already: give another name, or --overwrite to replace it", output));
+          "{}: exists already: give another name, or replace it with --overwrite", output));
   }
   std::vector<std::filesystem::path> inputs = FilesOfLightField(light_field);
   inputs.emplace_back(a.light_field.path);

@@ -164,7 +164,8 @@ class DepthMaker {
           in_lens_.cameras.size(), in_lens_.cameras.size() == 1 ? " sees" : "s see", kLeastViews));
     const Intrinsics& plate = frame_.pinhole.intrinsics;
     map_.view_count = in_lens_.cameras.size();
-    const std::vector<PixelRect> parts = views_->CutPlate(options_.memory_bytes);
+    LF_ASSIGN_OR_RETURN(const std::vector<PixelRect> parts,
+                        views_->CutPlate(options_.memory_bytes));
     for (const PixelRect& part : parts) {
       LF_RETURN_IF_ERROR(views_->Load(part, pool_, options_.stop));
       LF_RETURN_IF_ERROR(Sweep(part));

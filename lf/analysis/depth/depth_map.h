@@ -77,7 +77,8 @@ size_t PlanesFor(const RenderCamera& frame, const DepthRange& range, double lens
 //   store     must load RGB (Mosaics::kToRgb)
 //   progress  called with the share that is done, from 0 to 1, by any thread; may be empty
 // kUsage: options out of range. kInput: fewer than 3 LF cameras see the scene, or a broken LF image
-// with `strict`. kOutput: the machine lacks something. kInterrupted: *stop became true.
+// with `strict`. kOutput: memory_bytes is too small for the views of 16 rows, or the machine lacks
+// something. kInterrupted: *stop became true.
 Result<DepthMap> MakeDepthMap(const ImageIndex& index, const LfImageStore& store, FrameId id,
                               const RenderCamera& frame, const DepthMapOptions& options,
                               ThreadPool& pool, const std::function<void(double)>& progress);
