@@ -21,8 +21,8 @@ class Path(Sequence[Camera]):
         Frames per second.
     shutter : tuple of float and int, or mapping, optional
         Angle in degrees, from 0 to 360, and number of samples, from 1 to 64; or a mapping with the keys angle_deg and
-        samples. Each frame is exposed for this part of its duration, centred at its time, and is the mean of this many cameras. Between the frames, cameras are
-        interpolated. None: each frame is one moment.
+        samples. Each frame is exposed for this part of its duration, centred at its time, and is the mean of this many
+        cameras. Between the frames, cameras are interpolated. None: each frame is one moment.
 
     Examples
     --------
