@@ -144,6 +144,22 @@ class ViewsTest(ProgramTestCase):
         self.assertAlmostEqual(report["focus_distance_w"], 2 / (1 / 0.2 + 1 / 0.6))
         self.assertEqual((report["views_of_lf_images"], report["views_rendered"]), (4, 12))
 
+    def test_overwriting_removes_views_of_a_larger_grid(self):
+        self.write_grid()
+        self.views("views", "5x5")
+        folder = self.folder / "views"
+        mine = folder / "out_09_09_mine.png"
+        mine.write_text("mine")
+        self.views("views", "3x3", "--overwrite")
+        left = sorted(path.name for path in folder.iterdir())
+        self.assertEqual(len(left), 9 + 2, left)
+        self.assertEqual(mine.read_text(), "mine")
+        # A list that somebody changed is no longer ours.
+        listing = folder / "transforms.json"
+        listing.write_text(listing.read_text().replace("PINHOLE", "OPENCV"))
+        self.views("views", "2x2", "--overwrite")
+        self.assertEqual(len(list(folder.glob("out_*_*_*.*_*.*.png"))), 9 + 3)  # one has the name of an old one
+
     # Errors
 
     def test_missing_lf_images_are_told(self):
@@ -166,7 +182,9 @@ class ViewsTest(ProgramTestCase):
         for words, code, options in (
                 (["--grid"], 2, ["-o", "a.npy"]),
                 (["--grid"], 2, ["--grid", "0x3", "-o", "a.npy"]),
-                (["--grid"], 2, ["--grid", "5", "-o", "a.npy"]),
+                (["--grid COLUMNSxROWS", "'5'"], 2, ["--grid", "5", "-o", "a.npy"]),
+                (["--grid COLUMNSxROWS", "numbers from 1 to 4096", "'3*3'"], 2, ["--grid", "3*3", "-o", "a.npy"]),
+                (["vx.png", "no .png file", "views.npy"], 2, ["--grid", "3x3", "-o", "vx.png"]),
                 (["no HDF5", "lf.views(field, (2, 3), file="], 2, ["--grid", "3x2", "-o", "a.h5"]),
                 (["old.npy: exists", "--overwrite"], 2, ["--grid", "3x3", "-o", self.folder / "old.npy"]),
                 (["old.txt: is a file"], 2, ["--grid", "3x3", "-o", self.folder / "old.txt"]),

@@ -247,6 +247,20 @@ class FocusStackTest(ProgramTestCase):
         self.assertEqual(out.read_bytes(), (self.folder / "whole.exr").read_bytes())
         self.assertFalse((self.folder / "stack.exr.partial").exists())
 
+    def test_a_finished_file_is_kept_by_resume(self):
+        for name in ("stack.exr", "rack.mp4"):
+            self.stack_of_distances(name)
+            before = (self.folder / name).read_bytes()
+            result = self.call(FOCUS, "stack", self.field, self.path, "-o", self.folder / name, "--distances",
+                               ",".join(map(str, DISTANCES)), "--resume", "--json")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertIn(f"{name}: is complete already", result.stderr)
+            self.assertEqual(len(json.loads(result.stdout)["focus_stack"]["planes"]), len(DISTANCES))
+            self.assertEqual((self.folder / name).read_bytes(), before)
+        for words, distances in ((f"has {len(DISTANCES)} planes", "1"),
+                                 ("its plane 1 is at", ",".join(str(2 * one) for one in DISTANCES))):
+            self.refused(["stack.exr", words, "--overwrite"], "stack.exr", "--distances", distances, "--resume")
+
     # Errors
 
     def test_wrong_calls_are_refused(self):
@@ -264,7 +278,9 @@ class FocusStackTest(ProgramTestCase):
                 (["--keep-plates", "give a folder"], "stack.exr", ["--keep-plates", "--distances", "1"]),
                 (["--no-contact-sheet"], "stack.exr", ["--no-contact-sheet", "--distances", "1"]),
                 (["--video", "give a folder"], "stack.exr", ["--video", "film.mp4", "--distances", "1"]),
-                (["--planes", "10001"], "stack", ["--planes", "10001"]),
+                (["--planes N", "from 1 to 10000", "'10001'"], "stack", ["--planes", "10001"]),
+                (["--fps RATE", "from 0.001 to 1000", "'0'"], "stack", ["--fps", "0"]),
+                (["vx.png", "no .png file", "folder", "stack.exr or rack.mp4"], "vx.png", ["--distances", "1"]),
                 (["--planes excludes --distances"], "stack", ["--distances", "1", "--planes", "3"])):
             with self.subTest(options=options):
                 self.refused(words, out, *options)

@@ -253,7 +253,15 @@ class StereoTest(ProgramTestCase):
             moved = np.subtract(right["position_w"], left["position_w"])
             self.assertLessEqual(np.abs(moved - [0.65, 0, 0]).max(), 1e-12)
 
+    def test_the_convergence_may_be_in_millimetres(self):
+        in_units, in_mm = (self.succeeds(PATH, self.path, "--unit-m", 0.1, "--stereo", 0.3, "--convergence", length,
+                                         "--json") for length in ("4", "400mm"))
+        self.assertEqual(in_units, in_mm)
+        self.fails(2, ["--convergence 4cm", "400mm"], PATH, self.path, "--stereo", 0.3, "--convergence", "4cm")
+
     def test_wrong_calls_of_lfpath(self):
+        self.fails(2, ["--stereo SEPARATION", "from 1e-09 to 1e+09", "found '0'"], PATH, self.path, "--stereo", 0)
+        self.fails(2, ["--quilt CxR", "found '8'"], PATH, self.path, "--quilt", 8)
         self.fails(2, ["--convergence", "--quilt"], PATH, self.path, "--convergence", 2)
         self.fails(2, ["1x1", "at least 2"], PATH, self.path, "--quilt", "1x1")
         for words in (("--stereo", 1, "--stereo-mm", 1), ("--stereo", 1, "--quilt", "2x1"), ("--stereo", 0),

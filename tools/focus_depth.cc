@@ -41,8 +41,9 @@ constexpr const char* kMethod =
     R"(The camera is that of one frame of PATH. The LF images behind its lens are compared at many distances
 (a plane sweep): where they agree, there is a surface. The wider the lens, the finer the depths; a
 lens with fewer than 12 LF cameras is widened. Surfaces without texture, beyond --near and --far, or
-seen by too few LF cameras have no depth. In front of a surface without texture, the borders of near
-surfaces are wider by up to two elements. Virtual LF images are left out.)";
+seen by too few LF cameras have no depth. An element
+has no depth either if most elements of its colour around it have none or another one: a border
+beside it may belong to another surface. Virtual LF images are left out.)";
 
 const HelpTexts kDepthHelp = {
     .summary = "Finds the depth of every element of a frame.",
@@ -72,7 +73,7 @@ struct DepthArguments {
   size_t planes = 0, views = 200;
   int window = 5;
   double confidence = 0.5;
-  bool fill = false, overwrite = false;
+  bool fill = false, clean = false, overwrite = false;
   AllowMissing allow_missing;
 };
 
@@ -119,6 +120,12 @@ void AddSweep(CLI::App& app, DepthArguments& a) {
            "Least confidence of a depth, from 0 to 1\n"
            "How much better the LF images agree at this depth than at others.")
       ->check(CLI::Range(0.0, 1.0));
+  sweep.AddFlag(
+      "--clean", a.clean,
+      "Mend wrong and missing depths by the colours around them\n"
+      "They become the median of the depths of the elements of their colour around them, if "
+      "most of these have about the same depth. Edges stay sharp, and large places without "
+      "texture stay unknown.");
 }
 
 void AddRunning(CLI::App& app, DepthArguments& a) {
@@ -136,7 +143,7 @@ Result<void> CheckOutputs(const DepthArguments& a, const LightField& light_field
     std::error_code error;
     if (!a.overwrite && std::filesystem::exists(output, error))
       return UsageError(fmt::format(
-          "{} exists already: give another name, or --overwrite to replace it", output));
+          "{}: exists already: give another name, or replace it with --overwrite", output));
   }
   std::vector<std::filesystem::path> inputs = FilesOfLightField(light_field);
   inputs.emplace_back(a.light_field.path);
@@ -182,6 +189,7 @@ Result<Made> Make(const DepthArguments& a, const CommonOptions& common, ThreadPo
   options.plane_count = a.planes;
   options.window_radius = a.window / 2;
   options.least_confidence = a.confidence;
+  options.clean = a.clean;
   options.most_views = a.views;
   options.strict = common.strict;
   options.stop = &interrupted;

@@ -162,7 +162,7 @@ Result<void> CheckOutput(const Arguments& a, const LightField& light_field) {
   std::error_code error;
   if (!a.overwrite && std::filesystem::exists(a.output, error))
     return UsageError(fmt::format(
-        "{}: exists: give another name, or replace the file with --overwrite", a.output));
+        "{}: exists already: give another name, or replace it with --overwrite", a.output));
   std::vector<std::filesystem::path> inputs = FilesOfLightField(light_field);
   inputs.emplace_back(a.light_field.path);
   return CheckReplacesNone({a.output}, inputs);

@@ -2,6 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <iterator>
+#include <system_error>
+
 #include "lf/import/paths/open_path.h"
 
 namespace lf {
@@ -20,6 +26,24 @@ Result<CameraPath> FrameArgument::Open(const LightField& light_field,
                                   frame, path, opened.frame_count(),
                                   opened.frame_count() == 1 ? "" : "s", opened.frame_count()));
   return opened;
+}
+
+Result<void> CheckFolderName(const std::string& output, const std::string& files) {
+  constexpr const char* kFiles[] = {
+      ".avi", ".bmp", ".dng", ".exr",  ".gif", ".h5",  ".hdf5", ".hdr",  ".jpeg", ".jpg",
+      ".jxl", ".lfp", ".lfs", ".json", ".mkv", ".mov", ".mp4",  ".npy",  ".npz",  ".pfm",
+      ".ply", ".png", ".ppm", ".tif",  ".txt", ".yml", ".tiff", ".webm", ".webp", ".yaml"};
+  std::string extension = std::filesystem::path(output).extension().string();
+  for (char& letter : extension)
+    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  std::error_code error;
+  if (std::find(std::begin(kFiles), std::end(kFiles), extension) == std::end(kFiles) ||
+      std::filesystem::is_directory(output, error))
+    return {};
+  return UsageError(
+      fmt::format("-o {}: no {} file is written: expected the name of a folder, or of a file such "
+                  "as {}",
+                  output, extension, files));
 }
 
 }  // namespace lf

@@ -25,4 +25,9 @@ struct FrameArgument {
   Result<CameraPath> Open(const LightField& light_field, const std::string& source) const;
 };
 
+// Refuses a name for a folder that ends as a file of pictures, videos, arrays or texts, such as
+// vx.png, unless there is a folder of this name. kUsage.
+//   files  names of the files that may be written instead, such as "views.npy"
+Result<void> CheckFolderName(const std::string& output, const std::string& files);
+
 }  // namespace lf

@@ -144,6 +144,8 @@ void AddRestart(CLI::App& app, Arguments& a) {
 //   has_format  true if --format is given
 Result<void> CheckForm(Arguments* a, bool has_format) {
   const FocusStackForm form = FormOfStack(a->render.output);
+  if (form == FocusStackForm::kFolder)
+    LF_RETURN_IF_ERROR(CheckFolderName(a->render.output, "stack.exr or rack.mp4"));
   const auto refuse = [a](std::string_view option, std::string_view why) {
     return UsageError(
         fmt::format("{} cannot be used with -o {}, {}", option, a->render.output, why));
@@ -214,7 +216,7 @@ Result<CameraPath> OpenStack(const Arguments& a, const LightField& light_field, 
 }
 
 struct Rendered {
-  Result<RenderReport> report;
+  std::optional<Result<RenderReport>> report;  // unset: OUT was complete already
   FocusStackOptions options;
   CameraPath stack;
   MissingImages missing = {};  // LF images that --densify left out
@@ -234,6 +236,8 @@ Result<Rendered> RenderStack(const Arguments& a, const CommonOptions& common, Th
   options.render.folder.inputs = FilesOfPath(a.frame.path);
   options.render.folder.inputs.emplace_back(a.render.light_field.path);
   options.render.folder.output_folder = StackFolder(options.output);
+  LF_ASSIGN_OR_RETURN(const bool is_finished, IsFinishedStack(stack, options));
+  if (is_finished) return Rendered{std::nullopt, options, std::move(stack)};
   LF_RETURN_IF_ERROR(CheckFocusStack(light_field, options));
   MissingImages missing;
   if (a.render.densify) {
@@ -251,9 +255,10 @@ Result<Rendered> RenderStack(const Arguments& a, const CommonOptions& common, Th
                   std::move(stack), std::move(missing)};
 }
 
-// Returns the report of the render with the list of the planes.
+// Returns the report of the render, if there was one, with the list of the planes.
 std::string ReportJson(const Rendered& rendered) {
-  auto report = nlohmann::ordered_json::parse(ToJson(*rendered.report));
+  nlohmann::ordered_json report;
+  if (rendered.report) report = nlohmann::ordered_json::parse(ToJson(**rendered.report));
   report["focus_stack"] =
       nlohmann::ordered_json::parse(FocusPlanesJson(rendered.stack, rendered.options));
   return report.dump(2) + "\n";
@@ -274,10 +279,15 @@ Result<void> Run(Arguments* a, const Program& program, bool has_format, int argc
                                      {{"LF image", now.image_count, now.image_total},
                                       {"plane", now.frame_count, now.frame_total}});
                       }));
-  if (!rendered.report) return WithResumeCommand(rendered.report.error(), argc, argv);
-  SummariseRender(*rendered.report, a->render.output);
+  if (!rendered.report) {
+    LogInfo("{}: is complete already", a->render.output);
+    return common.json ? PrintReport(ReportJson(rendered)) : Result<void>();
+  }
+  const Result<RenderReport>& report = *rendered.report;
+  if (!report) return WithResumeCommand(report.error(), argc, argv);
+  SummariseRender(*report, a->render.output, a->render.lens_weights == "auto");
   if (common.json) LF_RETURN_IF_ERROR(PrintReport(ReportJson(rendered)));
-  return OutcomeOf(*rendered.report, rendered.options.render.film, a->render.allow_missing,
+  return OutcomeOf(*report, rendered.options.render.film, a->render.allow_missing,
                    rendered.missing);
 }
 

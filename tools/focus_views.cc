@@ -18,6 +18,7 @@
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
 #include "tools/common/validators.h"
+#include "tools/focus_frame.h"
 
 #include "lf/analysis/focus_stack/focus_planes.h"
 #include "lf/analysis/views/render_views.h"
@@ -77,7 +78,10 @@ void AddOptions(CLI::App& app, Arguments& a) {
                    "srgb8, srgb16: sRGB for display, clipped, with 8 or 16 bits (PNG, or uint8 or "
                    "uint16); black where no LF image shows anything\n"
                    "linear: linear light as floats (EXR, or float32); not-a-number there");
-  output.AddFlag("--overwrite", a.overwrite, "Replace files of the same names");
+  output.AddFlag("--overwrite", a.overwrite,
+                 "Replace the views of OUT\n"
+                 "Files of the same names are replaced, and those of a larger grid that "
+                 "transforms.json lists are removed.");
   OptionGroup picture(app, kPictureGroup);
   picture.Add("--grid COLUMNSxROWS", a.grid, "Number of columns and rows of views, such as 9x9")
       ->delimiter('x')
@@ -117,20 +121,24 @@ Result<void> CheckOutputs(const Arguments& a, const LightField& light_field, con
   if (!IsArray(a) && fs::exists(a.output, error) && !is_folder)
     return UsageError(fmt::format(
         "{}: is a file: give the name of a folder, or of a file that ends in .npy", a.output));
-  const std::vector<fs::path> files =
+  if (!IsArray(a)) LF_RETURN_IF_ERROR(CheckFolderName(a.output, "views.npy"));
+  std::vector<fs::path> files =
       IsArray(a) ? std::vector<fs::path>{a.output}
                  : FilesOfViews(grid, a.output, light_field.unit_m, ValuesOf(a.values));
   std::vector<fs::path> inputs = FilesOfLightField(light_field);
   inputs.emplace_back(a.light_field.path);
   if (fs::is_directory(a.light_field.path, error))
     inputs.push_back(fs::path(a.light_field.path) / "transforms.json");
+  if (!IsArray(a))
+    for (fs::path& other : OtherViews(grid, a.output, light_field.unit_m, ValuesOf(a.values)))
+      files.push_back(std::move(other));
   LF_RETURN_IF_ERROR(CheckReplacesNone(files, inputs));
   if (a.overwrite) return {};
   const auto old = std::find_if(files.begin(), files.end(),
                                 [&](const fs::path& file) { return fs::exists(file, error); });
   if (old == files.end()) return {};
-  return UsageError(
-      fmt::format("{}: exists: give another -o, or replace it with --overwrite", old->string()));
+  return UsageError(fmt::format(
+      "{}: exists already: give another -o, or replace it with --overwrite", old->string()));
 }
 
 std::string ReportJson(const ViewGrid& grid, const ViewsReport& report, double unit_m) {

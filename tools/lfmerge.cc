@@ -112,8 +112,8 @@ int main(int argc, char** argv) {
                                        {{"frame", now.frame_count, now.frame_total}});
                         }));
     lf::LogInfo(
-        "{} frames in {:.1f} s, peak memory {} MiB; see {}", report.frames.size(), report.total_s,
-        report.peak_memory_bytes >> 20,
+        "{} frame{} in {:.1f} s, peak memory {} MiB; see {}", report.frames.size(),
+        report.frames.size() == 1 ? "" : "s", report.total_s, report.peak_memory_bytes >> 20,
         (options.output_folder / (arguments.no_contact_sheet ? "" : "contact_sheet.png")).string());
     if (common.json) LF_RETURN_IF_ERROR(lf::PrintReport(lf::ToJson(report)));
     return lf::EndWithMissing(

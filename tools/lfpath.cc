@@ -15,6 +15,7 @@
 #include "tools/common/programs.h"
 #include "tools/common/validators.h"
 
+#include "lf/analysis/focus_stack/focus_planes.h"
 #include "lf/camera/path/view_cameras.h"
 #include "lf/core/log.h"
 #include "lf/import/check/similarity.h"
@@ -62,7 +63,8 @@ struct Arguments {
   std::vector<double> ngp_offset;
   std::optional<uint32_t> frames;
   double scale = 1;
-  std::optional<double> separation_w, separation_mm, view_angle_deg, convergence_w;
+  std::optional<double> separation_w, separation_mm, view_angle_deg;
+  std::string convergence;
   std::optional<std::pair<int, int>> quilt;  // columns, rows
   bool overwrite = false;
 
@@ -179,13 +181,12 @@ void AddViews(CLI::App& app, Arguments& a) {
       ->check(CLI::Range(lf::kLeastViewAngle_deg, lf::kMostViewAngle_deg))
       ->needs(quilt);
   output
-      .Add("--convergence X", a.convergence_w,
+      .Add("--convergence DISTANCE", a.convergence,
            "Distance where all views agree (the focus distance)\n"
-           "In world units along the optical axis, for --stereo and --quilt: points at this "
-           "distance "
-           "appear on the screen, nearer ones in front of it. Without it, each frame has its own "
-           "focus distance.")
-      ->check(CLI::Range(1e-9, 1e9));
+           "Along the optical axis, in world units, such as 0.4, or in millimetres, such as 400mm, "
+           "for --stereo and --quilt: points at this distance appear on the screen, nearer ones in "
+           "front of it. Without it, each frame has its own focus distance.")
+      ->check(lf::NotEmpty());
 }
 
 void AddPicture(CLI::App& app, Arguments& a) {
@@ -247,20 +248,25 @@ lf::Result<lf::PathOptions> OptionsOf(const Arguments& a) {
 // Returns the cameras of all views, or the path as it is if no views are asked for.
 lf::Result<lf::CameraPath> ViewsOf(const Arguments& a, lf::CameraPath path) {
   constexpr double kDefaultViewAngle_deg = 35;
-  if (!a.makes_views() && a.convergence_w)
+  if (!a.makes_views() && !a.convergence.empty())
     return lf::UsageError(
         "--convergence can only be used with --stereo, --stereo-mm or --quilt: leave it out, or "
         "give one of them");
   if (!a.makes_views()) return path;
+  std::optional<double> convergence_w;
+  if (!a.convergence.empty()) {
+    LF_ASSIGN_OR_RETURN(convergence_w,
+                        lf::ParseFocusDistance(a.convergence, "--convergence", path.unit_m));
+  }
   if (!a.quilt)
     return lf::StereoPath(path,
                           a.separation_w.value_or(a.separation_mm.value_or(0) * 1e-3 / path.unit_m),
-                          a.convergence_w);
+                          convergence_w);
   const int view_count = a.quilt->first * a.quilt->second;
   if (view_count < 2) return lf::UsageError("--quilt 1x1 has a single view: expected at least 2");
   return lf::QuiltPath(path, view_count,
                        lf::RadiansFromDegrees(a.view_angle_deg.value_or(kDefaultViewAngle_deg)),
-                       a.convergence_w);
+                       convergence_w);
 }
 
 lf::Result<lf::CameraPath> Changed(const Arguments& a, lf::CameraPath path) {
@@ -296,7 +302,7 @@ lf::Result<void> Write(const Arguments& a, lf::PathOptions options, const lf::Ca
   std::error_code error;
   if (!a.overwrite && std::filesystem::exists(a.output, error))
     return lf::UsageError(fmt::format(
-        "{}: exists: give another name, or replace the file with --overwrite", a.output));
+        "{}: exists already: give another name, or replace it with --overwrite", a.output));
   options.dataparser_transforms = a.out_dataparser;
   LF_ASSIGN_OR_RETURN(const std::vector<std::string> lost,
                       lf::WritePath(path, a.output, format, options));

@@ -155,7 +155,7 @@ int main(int argc, char** argv) {
       look_at /= arguments.HasPackages()
                      ? lf::ContactSheetName({arguments.inputs.begin(), arguments.inputs.end()})
                      : "contact_sheet.png";
-    lf::SummariseRender(report, look_at.string());
+    lf::SummariseRender(report, look_at.string(), arguments.lens_weights == "auto");
     if (common.json && !(std::cout << lf::ToJson(report) << std::flush))
       return lf::OutputError(
           "--json: the report cannot be written to stdout: is the disk full, or was the pipe "

@@ -75,7 +75,8 @@ void TellRebinning(const RenderReport& report) {
 }
 
 // Reports which lens weights the frames have: area, hat, or a mix of both.
-void TellLensWeights(const RenderReport& report) {
+//   is_chosen  true: by the program, not by an option
+void TellLensWeights(const RenderReport& report, bool is_chosen) {
   size_t cells = 0, hats = 0, both = 0;
   for (const FrameReport& frame : report.frames) {
     if (!frame.weighed) continue;
@@ -84,7 +85,8 @@ void TellLensWeights(const RenderReport& report) {
   }
   if (cells + hats + both == 0) return;
   if (cells + both == 0)
-    LogInfo("lens weights: hat (interpolation between LF images), because the lenses are small");
+    LogInfo("lens weights: hat (interpolation between LF images){}",
+            is_chosen ? ", because the lenses are small" : "");
   else if (hats + both == 0)
     LogInfo(
         "lens weights: area (each LF image has the area of the lens that is nearest to its camera "
@@ -166,7 +168,8 @@ void WarnOfLenses(const RenderReport& report) {
 
 }  // namespace
 
-void SummariseRender(const RenderReport& report, const std::string& look_at) {
+void SummariseRender(const RenderReport& report, const std::string& look_at,
+                     bool weights_are_chosen) {
   const uint64_t rays = report.AcceptedRays();
   const std::string collected =
       rays == 0 && report.rebinning
@@ -174,8 +177,9 @@ void SummariseRender(const RenderReport& report, const std::string& look_at) {
           : fmt::format("{}rays, {:.3g} M/s per core, ", ShortNumber(static_cast<double>(rays)),
                         report.MraysPerSecondPerCore());
   LogInfo(
-      "{} frames {}x{} in {}: {}{} of {} LF images{}, peak memory {} MiB", report.frames.size(),
-      report.width, report.height, ShortDuration(report.total_s), collected,
+      "{} frame{} {}x{} in {}: {}{} of {} LF images{}, peak memory {} MiB", report.frames.size(),
+      report.frames.size() == 1 ? "" : "s", report.width, report.height,
+      ShortDuration(report.total_s), collected,
       report.selected_image_count - std::min(report.selected_image_count, report.skipped.size()),
       report.lf_image_count,
       report.selected_virtual_count > 0
@@ -183,7 +187,7 @@ void SummariseRender(const RenderReport& report, const std::string& look_at) {
           : "",
       report.peak_memory_bytes >> 20);
   TellRebinning(report);
-  TellLensWeights(report);
+  TellLensWeights(report, weights_are_chosen);
   TellNoise(report);
   WarnOfEmptyElements(report);
   WarnOfLenses(report);

@@ -11,6 +11,7 @@
 #include "tools/common/duration.h"
 #include "tools/common/frame_options.h"
 #include "tools/common/help.h"
+#include "tools/common/parse_errors.h"
 #include "tools/common/validators.h"
 #include "tools/render_arguments.h"
 
@@ -124,8 +125,9 @@ Result<RenderOptions> TryArguments(const std::vector<fs::path>& packages, const 
   try {
     renderer.app().parse(static_cast<int>(argv.size()), argv.data());
   } catch (const CLI::ParseError& error) {
-    return UsageError(
-        fmt::format("lfrenderer would refuse the options after --: {}", error.what()));
+    return UsageError(fmt::format(
+        "lfrenderer would refuse the options after --: {}",
+        ParseErrorText(renderer.app(), error, static_cast<int>(argv.size()), argv.data())));
   }
   LF_RETURN_IF_ERROR(render.Check(renderer.app().count("--seed") > 0));
   std::optional<LightFieldPlace> place;

@@ -38,6 +38,14 @@ fs::path ParentOf(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
+// Returns the error with one name in its message replaced by another.
+Error Renamed(Error error, const std::string& from, const std::string& to) {
+  for (size_t at = error.message.find(from); at != std::string::npos;
+       at = error.message.find(from, at + to.size()))
+    error.message.replace(at, from.size(), to);
+  return error;
+}
+
 // Returns the file that a write to `path` replaces: `path`, or if it is a link, the file that it
 // leads to. kOutput for a link to a missing file, and for a folder, a device or a pipe (the rename
 // would replace a device or a pipe by a file).
@@ -141,8 +149,14 @@ Result<void> WriteFileAtomically(const fs::path& path, std::string_view bytes) {
 Result<void> WriteAtomically(const fs::path& path,
                              const std::function<Result<void>(const fs::path&)>& write) {
   LF_ASSIGN_OR_RETURN(const fs::path target, WriteTarget(path));
+  std::error_code error;
+  if (const fs::path folder = ParentOf(target); !fs::exists(folder, error) && !error)
+    return OutputError(fmt::format(
+        "{}: cannot be written: the folder {} does not exist: make it, or give another name",
+        path.string(), folder.string()));
   TemporaryFile temporary(target);
-  LF_RETURN_IF_ERROR(write(temporary.path()));
+  const Result<void> written = write(temporary.path());
+  if (!written) return Renamed(written.error(), temporary.path().string(), path.string());
   CopyPermissions(target, temporary.path());
   LF_RETURN_IF_ERROR(RenameFlushed(temporary.path(), target));
   temporary.Keep();

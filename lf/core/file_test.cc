@@ -38,6 +38,18 @@ TEST_F(FileTest, GivesBackWhatWasWritten) {
   EXPECT_EQ(FileCount(), 1u);
 }
 
+TEST_F(FileTest, ErrorsNameTheFileAndNotItsTemporaryName) {
+  const fs::path file = folder_ / "none" / "file.txt";
+  const Result<void> missing = WriteFileAtomically(file, "text");
+  ASSERT_FALSE(missing);
+  EXPECT_NE(missing.error().message.find("none does not exist"), std::string::npos);
+  const Result<void> failed = WriteAtomically(folder_ / "file.txt", [](const fs::path& temporary) {
+    return Result<void>(OutputError(temporary.string() + ": is odd"));
+  });
+  ASSERT_FALSE(failed);
+  EXPECT_EQ(failed.error().message, (folder_ / "file.txt").string() + ": is odd");
+}
+
 TEST_F(FileTest, AFailedWriteLeavesTheOldFileAlone) {
   ASSERT_TRUE(WriteFileAtomically(folder_ / "a.txt", "old"));
   const Result<void> result =

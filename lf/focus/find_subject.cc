@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "lf/core/log.h"
@@ -19,21 +21,28 @@ constexpr size_t kMostAtOnce = 4;  // largest number of LF images in memory in f
 
 // Loads the images of all views. Removes views whose image cannot be loaded, and rings that then
 // have too few views. kOutput: the machine lacks memory or open files.
+//   missing  receives the reasons why images were not loaded
 Result<void> LoadRings(const LightField& field, const LfImageStore& store, ThreadPool& pool,
-                       Rings* rings) {
+                       Rings* rings, std::vector<std::string>* missing) {
   MachineFailure failure;
   std::vector<View*> views;
   for (std::vector<View>& ring : *rings)
     for (View& view : ring) views.push_back(&view);
+  std::vector<std::string> reasons(views.size());
   for (size_t begin = 0; begin < views.size(); begin += kMostAtOnce)
     pool.ForEach(std::min(kMostAtOnce, views.size() - begin), [&](size_t i) {
       View& view = *views[begin + i];
-      if (Result<ReducedImage> image = LoadReducedImage(field, store, view.id))
+      Result<ReducedImage> image = LoadReducedImage(field, store, view.id);
+      if (image) {
         view.image = std::make_shared<const ReducedImage>(*std::move(image));
-      else
-        failure.Note(image.error());
+        return;
+      }
+      failure.Note(image.error());
+      reasons[begin + i] = image.error().message;
     });
   LF_RETURN_IF_ERROR(failure.Check());
+  std::copy_if(reasons.begin(), reasons.end(), std::back_inserter(*missing),
+               [](const std::string& reason) { return !reason.empty(); });
   for (std::vector<View>& ring : *rings)
     std::erase_if(ring, [](const View& view) { return view.image == nullptr; });
   std::erase_if(*rings,
@@ -48,7 +57,7 @@ Result<Subject> FindSubject(const LightField& light_field, const LfImageStore& s
   Subject subject;
   LF_ASSIGN_OR_RETURN(const ReducedImage image, LoadReducedImage(light_field, store, camera));
   Rings rings = ChooseRings(light_field, camera);
-  LF_RETURN_IF_ERROR(LoadRings(light_field, store, pool, &rings));
+  LF_RETURN_IF_ERROR(LoadRings(light_field, store, pool, &rings, &subject.missing));
   const std::vector<Place> places = TexturedPlaces(light_field, camera, image);
   subject.textured_count = places.size();
   if (rings.empty()) return subject;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "lf/core/ids.h"
@@ -28,6 +29,8 @@ struct Subject {
   // near_w and far_w are 0 if no depth was found.
   double near_w = 0;
   double far_w = 0;
+  // Reasons why LF images could not be loaded; each names its file.
+  std::vector<std::string> missing;
 };
 
 // Searches the depth of up to 176 places with texture, spread evenly over the image of `camera`.

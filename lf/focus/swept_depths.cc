@@ -1,5 +1,7 @@
 #include "lf/focus/swept_depths.h"
 
+#include <fmt/format.h>
+
 #include "lf/core/log.h"
 #include "lf/focus/find_subject.h"
 
@@ -18,16 +20,24 @@ LfImageId NearestCamera(const LightField& light_field, const Vec3& position_worl
 }
 
 std::optional<DepthRange> SweptDepths(const LightField& light_field, const LfImageStore& store,
-                                      const Vec3& position_world, ThreadPool& pool) {
+                                      const Vec3& position_world, ThreadPool& pool,
+                                      std::string* why) {
   if (light_field.size() < 3) return std::nullopt;
   const Result<Subject> subject =
       FindSubject(light_field, store, NearestCamera(light_field, position_world), pool);
   if (!subject) {
     LogDebug("depths of the scene: {}", subject.error().message);
+    if (why != nullptr) *why = subject.error().message;
     return std::nullopt;
   }
   constexpr double kMargin = 1.05;
-  if (!subject->is_sure) return std::nullopt;
+  if (!subject->is_sure) {
+    const size_t count = subject->missing.size();
+    if (why != nullptr && count > 0)
+      *why = fmt::format("{} LF image{} could not be loaded: {}", count, count == 1 ? "" : "s",
+                         subject->missing.front());
+    return std::nullopt;
+  }
   return DepthRange{subject->near_w / kMargin, subject->far_w * kMargin};
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "lf/core/geometry.h"
 #include "lf/core/ids.h"
@@ -20,7 +21,10 @@ LfImageId NearestCamera(const LightField& light_field, const Vec3& position_worl
 // 5 % at either end. None if the subject is not sure, if FindSubject() fails, or if there are fewer
 // than three LF images.
 //   store  a store with Mosaics::kToRgb
+//   why    receives, if there is no range, which LF images could not be loaded: "" if all could;
+//          may be null
 std::optional<DepthRange> SweptDepths(const LightField& light_field, const LfImageStore& store,
-                                      const Vec3& position_world, ThreadPool& pool);
+                                      const Vec3& position_world, ThreadPool& pool,
+                                      std::string* why = nullptr);
 
 }  // namespace lf

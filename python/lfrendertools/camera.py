@@ -62,7 +62,7 @@ class Camera:
     hood : tuple of float, optional
         Distance from the lens, and diameter, of a round opening in front of the lens, which cuts off oblique rays:
         lights in the corners have the shape of a cat's eye. (0, 0): there is none.
-    transmission : str, path-like or array_like of shape (height, width), optional
+    transmission : str, path-like or array_like of shape (height, width) or (height, width, 1), optional
         How much light each place of the opening lets through: the file of a picture, shares from 0 to 1, or whole
         numbers of the type uint8 up to 255. The picture is a square around the opening, upright for the photographer
         behind the camera; it is reduced to at most 64 x 64 places. Out-of-focus lights have its shape.
@@ -312,9 +312,11 @@ def _transmission_text(transmission: Union[str, "os.PathLike[str]", npt.ArrayLik
     if isinstance(transmission, (str, os.PathLike)):
         return _core.transmission_of_file(arguments.file_name("transmission", transmission))
     shares = np.asarray(transmission)
+    if shares.ndim == 3 and shares.shape[2] == 1:
+        shares = shares[..., 0]
     if shares.ndim != 2 or shares.size == 0:
-        raise UsageError(f"transmission: expected a file or an array of shape (height, width), found the shape "
-                         f"{shares.shape}")
+        raise UsageError(f"transmission: expected a file, or an array of shape (height, width) or (height, width, 1), "
+                         f"found the shape {shares.shape}")
     if shares.dtype != np.uint8:
         reals = arguments.reals("transmission", shares)
         if not (reals.min() >= 0 and reals.max() <= 1):

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import warnings
 import os
-from typing import Iterable, Iterator, List, Optional, Sequence, Tuple, Union, overload
+from typing import Any, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple, Union, overload
 
 from . import _core, arguments
 from .camera import Camera
@@ -19,10 +19,10 @@ class Path(Sequence[Camera]):
         The cameras of the frames. All must have the same resolution and `unit_m`.
     fps : float, optional
         Frames per second.
-    shutter : tuple of float and int, optional
-        Angle in degrees, from 0 to 360, and number of samples, from 1 to 64: each frame is exposed for this part of its
-        duration, centred at its time, and is the mean of this many cameras. Between the frames, cameras are
-        interpolated. None: each frame is one moment.
+    shutter : tuple of float and int, or mapping, optional
+        Angle in degrees, from 0 to 360, and number of samples, from 1 to 64; or a mapping with the keys angle_deg and
+        samples. Each frame is exposed for this part of its duration, centred at its time, and is the mean of this many
+        cameras. Between the frames, cameras are interpolated. None: each frame is one moment.
 
     Examples
     --------
@@ -35,7 +35,7 @@ class Path(Sequence[Camera]):
     """
 
     def __init__(self, cameras: Iterable[Camera], fps: float = 24,
-                 shutter: Optional[Tuple[float, int]] = None) -> None:
+                 shutter: Union[None, Tuple[float, int], Mapping[str, Any]] = None) -> None:
         self._cameras: List[Camera] = list(arguments.iterator("cameras", cameras, "lf.Camera objects"))
         self.fps = fps
         for camera in self._cameras:
@@ -180,9 +180,18 @@ class Path(Sequence[Camera]):
         return f"<Path of {len(self)} frames, {self.fps:g} per second{shutter}>"
 
 
-def _angle_and_samples(shutter: Tuple[float, int]) -> Tuple[float, int]:
+def _angle_and_samples(shutter: Union[Tuple[float, int], Mapping[str, Any]]) -> Tuple[float, int]:
+    names = ("angle_deg", "samples")
+    if isinstance(shutter, Mapping):
+        for key in (*shutter, *names):
+            if key not in names or key not in shutter:
+                found = f"found the key {key!r}" if key in shutter else f"{key} is missing"
+                raise UsageError(f"shutter={dict(shutter)!r}: {found}; expected angle_deg and samples")
+        shutter = (shutter["angle_deg"], shutter["samples"])
     try:
         angle, samples = shutter
     except (TypeError, ValueError):
-        raise UsageError(f"shutter={shutter!r}: expected an angle in degrees and a number of samples") from None
-    return (arguments.within("shutter", angle, 0, 360), arguments.whole_within("shutter", samples, 1, 64))
+        raise UsageError(f"shutter={shutter!r}: expected an angle in degrees and a number of samples, such as "
+                         f"(180, 8)") from None
+    return (arguments.within("shutter: angle_deg", angle, 0, 360),
+            arguments.whole_within("shutter: samples", samples, 1, 64))

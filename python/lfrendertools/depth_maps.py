@@ -66,8 +66,8 @@ class DepthMap:
 
 def depth_map(field: LightField, camera: Union[Camera, Path], *, near: Optional[float] = None,
               far: Optional[float] = None, planes: Optional[int] = None, views: int = 200, window: int = 5,
-              confidence: float = 0.5, frame: int = 1, strict: bool = False, memory: str = "8G", threads: int = 0,
-              progress: Progress = None) -> DepthMap:
+              confidence: float = 0.5, clean: bool = False, frame: int = 1, strict: bool = False, memory: str = "8G",
+              threads: int = 0, progress: Progress = None) -> DepthMap:
     """Find the depth of every element of a frame by a plane sweep, as `lffocus depth`.
 
     Parameters
@@ -88,6 +88,9 @@ def depth_map(field: LightField, camera: Union[Camera, Path], *, near: Optional[
         Width of the windows over which LF images are compared; odd.
     confidence : float
         Least confidence of a depth, from 0 to 1.
+    clean : bool
+        True: wrong and missing depths become the median of the depths of the elements of their colour around them, if
+        most of these have about the same depth.
     frame : int
         Number of the frame of a path whose camera is used, from 1.
     strict : bool
@@ -126,7 +129,8 @@ def depth_map(field: LightField, camera: Union[Camera, Path], *, near: Optional[
         depth, sure, filled, rgb, distances, images, skipped = _core.depth_map(
             field._core, chosen._core, _distance("near", near), _distance("far", far), count,
             arguments.whole_within("views", views, 3, _MOST_VIEWS), width,
-            arguments.within("confidence", confidence, 0, 1), arguments.flag("strict", strict),
+            arguments.within("confidence", confidence, 0, 1), arguments.flag("clean", clean),
+            arguments.flag("strict", strict),
             arguments.memory(memory), arguments.thread_count(threads), tell)
     warn_of_missing([reason for _, reason in skipped], stacklevel=3)
     return DepthMap(depth, sure, filled, rgb, np.array(distances), images, chosen)

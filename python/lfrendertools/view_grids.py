@@ -4,6 +4,7 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import importlib
+import math
 import os
 import pathlib
 from typing import Any, Callable, Iterator, Optional, Tuple
@@ -149,7 +150,7 @@ def _converted(light: npt.NDArray[np.float32], values: str) -> npt.NDArray[Any]:
 def _target(shape: Tuple[int, ...], kind: Any, out: Any, file: Optional[FilePath], made: Views) -> Iterator[Any]:
     """Provide the array that the views are put into."""
     if file is None:
-        yield _checked_out(out, shape, kind) if out is not None else np.empty(shape, kind)
+        yield _checked_out(out, shape, kind) if out is not None else _empty(shape, kind)
         return
     path = pathlib.Path(os.fsdecode(arguments.file_name("file", file)))
     if path.suffix == ".npy":
@@ -171,6 +172,16 @@ def _target(shape: Tuple[int, ...], kind: Any, out: Any, file: Optional[FilePath
         raise OutputError(f"{path}: cannot be written: {error}") from error
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def _empty(shape: Tuple[int, ...], kind: Any) -> Any:
+    try:
+        return np.empty(shape, kind)
+    except (MemoryError, ValueError) as error:  # ValueError: more elements than NumPy can count
+        size = math.prod(shape) * np.dtype(kind).itemsize
+        raise MemoryError(f"{shape[0]} x {shape[1]} views of {shape[3]} x {shape[2]} pixels need {size} bytes "
+                          f"({size / 2**30:.3g} GiB): write them into a file (file=\"views.npy\"), or ask for fewer "
+                          f"views or for values=\"srgb8\"") from error
 
 
 def _checked_out(out: Any, shape: Tuple[int, ...], kind: Any) -> Any:

@@ -30,7 +30,7 @@ using Tell = std::function<void(size_t done, size_t total, int phase)>;
 // compared LF images, and name and reason of each broken one.
 py::tuple MakeMap(const OpenedField& field, const RenderCamera& camera,
                   std::optional<double> near_w, std::optional<double> far_w, size_t planes,
-                  size_t views, int window, double confidence, bool strict,
+                  size_t views, int window, double confidence, bool clean, bool strict,
                   const std::string& memory, int threads, const Tell& tell) {
   ThreadPool& pool = PoolOf(threads);
   WorkSignals signals;
@@ -41,6 +41,7 @@ py::tuple MakeMap(const OpenedField& field, const RenderCamera& camera,
   options.most_views = views;
   options.window_radius = window / 2;
   options.least_confidence = confidence;
+  options.clean = clean;
   options.strict = strict;
   options.stop = &signals.stop;
   DevelopedFrame picture;

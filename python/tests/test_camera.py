@@ -211,6 +211,7 @@ def test_transmission(tmp_path):
     shares = np.rint(255 * np.random.default_rng(3).random((6, 6))) / 255
     stopped = camera.replace(transmission=shares)
     assert np.array_equal(stopped.transmission, shares) and stopped != camera
+    assert camera.replace(transmission=shares[..., np.newaxis]) == stopped
     assert camera.replace(transmission=np.rint(shares * 255).astype(np.uint8)) == stopped
     assert pickle.loads(pickle.dumps(stopped)) == stopped and hash(stopped) != hash(camera)
     assert np.array_equal(stopped.replace(f_number=2).transmission, shares)

@@ -36,9 +36,20 @@ def test_unknown_depths_are_nan_and_filled(found):
 
 
 def test_less_confidence_knows_more(found, field, path):
-    more = lf.depth_map(field, path, frame=2, confidence=0.1, threads=1, memory="1M", **RANGE)
+    more = lf.depth_map(field, path, frame=2, confidence=0.1, threads=1, memory="3M", **RANGE)
     assert np.isfinite(more.depth).sum() > np.isfinite(found.depth).sum()
     np.testing.assert_array_equal(more.confidence, found.confidence)
+
+
+def test_clean_maps_know_more_and_keep_what_was_right(found, field, path, capture, path_file, run, tmp_path):
+    clean = lf.depth_map(field, path, frame=2, clean=True, **RANGE)
+    is_known = np.isfinite(found.depth)
+    assert np.isfinite(clean.depth).sum() > is_known.sum() and np.isfinite(clean.depth)[is_known].all()
+    assert (clean.depth == found.depth)[is_known].mean() > 0.9
+    run("lffocus", "depth", capture, path_file, "-o", tmp_path / "clean.exr", "--frame", 2, "--near", 0.5, "--far", 3,
+        "--clean")
+    np.testing.assert_array_equal(np.where(np.isfinite(clean.depth), clean.depth, np.inf),
+                                  lf.read_image(tmp_path / "clean.exr")[..., 3])
 
 
 def test_progress_is_told(field, path):

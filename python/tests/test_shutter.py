@@ -94,6 +94,17 @@ def test_focus_stacks_and_ground_truth_are_exposed(field, path, tmp_path):
     assert frames[0][1].read_bytes() != frames[1][1].read_bytes()
 
 
+def test_a_shutter_may_be_a_mapping(path):
+    cameras = path.cameras
+    assert lf.Path(cameras, path.fps, shutter={"angle_deg": 270, "samples": 3}).shutter == (270, 3)
+    for shutter, words in (({"angle": 270, "samples": 3}, "'angle'; expected angle_deg and samples"),
+                           ({"angle_deg": 270}, "samples is missing"),
+                           ({"angle_deg": 400, "samples": 3}, "angle_deg=400: expected a number from 0 to 360"),
+                           ({"angle_deg": 90, "samples": 99}, "samples=99: expected a whole number from 1 to 64")):
+        with pytest.raises(lf.UsageError, match=words):
+            lf.Path(cameras, path.fps, shutter=shutter)
+
+
 @pytest.mark.parametrize("shutter", [(361, 2), (-1, 2), (180, 65), (180, 0), (180, 2.5), (180,), 180, "180"])
 def test_a_wrong_shutter_is_refused(path, shutter):
     with pytest.raises((lf.UsageError, TypeError), match="shutter"):

@@ -79,3 +79,11 @@ def test_wrong_arguments_are_named(field, tmp_path):
             ("focus_distance=-1", lf.UsageError, {"focus_distance": -1})):
         with pytest.raises(error, match=words):
             lf.views(field, **{"grid": (2, 2), **given})
+
+
+def test_too_many_views_tell_the_bytes(field, monkeypatch):
+    def empty(*_):
+        raise MemoryError
+    monkeypatch.setattr(np, "empty", empty)
+    with pytest.raises(MemoryError, match=r"7 x 6 views of 160 x 120 pixels need 9676800 bytes .*file="):
+        lf.views(field, (7, 6))

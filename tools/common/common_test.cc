@@ -12,6 +12,7 @@
 #include "tools/common/describe.h"
 #include "tools/common/duration.h"
 #include "tools/common/help.h"
+#include "tools/common/parse_errors.h"
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
 #include "tools/common/validators.h"
@@ -152,12 +153,15 @@ class HelpTest : public testing::Test {
     try {
       app_.parse(words);
     } catch (const CLI::ParseError& error) {
-      return MessageOf(error);
+      const char* const argv[] = {"film", "a", "--slab-position=1"};
+      text_ = ParseErrorText(app_, error, 3, argv);
+      return error.what();
     }
     return "";
   }
 
   CLI::App app_;
+  std::string text_;  // the message of the last error as programs print it
   std::string path_, format_ = "exr";
   std::vector<double> position_;
   int threads_ = 0;
@@ -204,8 +208,12 @@ TEST_F(HelpTest, LongDetailsAreWrapped) {
 
 TEST_F(HelpTest, ErrorsNameTheAllowedValues) {
   EXPECT_EQ(Parse("a --format gif"), "--format: gif not in {exr,png}");
-  EXPECT_EQ(Parse("a --threads"), "--threads: expected a value, found nothing: --threads N");
   EXPECT_NE(Parse("a --threads 999").find("999 not in range 0 to 512"), std::string::npos);
+  EXPECT_EQ(text_, "--threads N: expected a number from 0 to 512, found '999'");
+  Parse("a --threads");
+  EXPECT_EQ(text_, "--threads: expected a value, found nothing: --threads N");
+  Parse("a --slab-position 1");
+  EXPECT_EQ(text_, "--slab-position X Y Z: expected a value of this form, found '1'");
   EXPECT_EQ(Parse("a --slab-position 1 nan 2"), "--slab-position: expected a number, found 'nan'");
 }
 

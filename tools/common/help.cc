@@ -106,20 +106,6 @@ std::string WithJoinedLines(std::string_view text) {
   return joined;
 }
 
-std::string MessageOf(const CLI::ParseError& error) {
-  const std::string message = error.what();
-  const size_t name_end = message.find(": "), end = message.rfind(" missing");
-  const std::string required = " required ";
-  const size_t found = message.find(required);
-  if (error.get_name() != "ArgumentMismatch" || name_end == std::string::npos ||
-      found == std::string::npos || end == std::string::npos)
-    return message;
-  const std::string name = message.substr(0, name_end);
-  const std::string value = message.substr(found + required.size());
-  return fmt::format("{}: expected a value, found nothing: {} {}", name, name,
-                     value.substr(0, value.find_first_of(": ")));
-}
-
 OptionGroup::OptionGroup(CLI::App& app, std::string name) : app_(app), name_(std::move(name)) {}
 
 CLI::Option* OptionGroup::Present(CLI::Option* option, const std::string& placeholder) const {

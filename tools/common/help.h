@@ -67,10 +67,6 @@ inline constexpr const char* kExitCodes =
 // two spaces stay as they are.
 std::string WithJoinedLines(std::string_view text);
 
-// Returns the message of a command line that cannot be parsed. CLI11 would list all that it knows
-// about a value that is missing: "--threads: 1 required N:INT in [0 - 512] missing".
-std::string MessageOf(const CLI::ParseError& error);
-
 // Adds options to one group of a program.
 class OptionGroup {
  public:

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "tools/common/describe.h"
+#include "tools/common/parse_errors.h"
 #include "tools/common/process_start.h"
 #include "tools/common/progress.h"
 #include "tools/common/validators.h"
@@ -100,7 +101,7 @@ int Program::Run(int argc, char** argv, const std::function<Result<void>()>& bod
     return static_cast<int>(printed.error().kind);
   } catch (const CLI::ParseError& error) {
     std::fprintf(stderr, "Try '%s --help'.\n", app_.get_name().c_str());
-    LogMessage(LogLevel::kError, MessageOf(error));
+    LogMessage(LogLevel::kError, ParseErrorText(app_, error, argc, argv));
     return static_cast<int>(ErrorKind::kUsage);
   }
   SetLogLevel(quiet_ ? LogLevel::kWarning : verbosity_ > 0 ? LogLevel::kDebug : LogLevel::kInfo);

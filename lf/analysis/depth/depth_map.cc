@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "lf/analysis/depth/fill_depths.h"
+#include "lf/analysis/depth/guided_depths.h"
 #include "lf/analysis/depth/lens_views.h"
 #include "lf/analysis/depth/plane_sweep.h"
 #include "lf/analysis/depth/sharp_plate.h"
@@ -24,6 +25,9 @@ namespace {
 constexpr int kTileSide = 64;
 constexpr size_t kLeastInLens = 12;
 constexpr size_t kLeastPlanes = 8, kMostPlanes = 256;
+// Radius of the windows in which elements of one colour are compared, in radii of the windows of
+// costs: elements beside a border get its depth up to one such radius away.
+constexpr int kGuideRadius = 3;
 constexpr double kSweepShare = 0.9;  // of the work, for progress
 
 Error Interrupted() { return {ErrorKind::kInterrupted, "interrupted"}; }
@@ -137,7 +141,8 @@ class DepthMaker {
         progress_(progress),
         frame_(Pinhole(frame, options.range)),
         lens_(index.recorded(), frame_, LensWeights::kHat, SelectFor(), pool),
-        in_lens_(CamerasIn(light_field_, frame, options.range, options.most_views)) {
+        in_lens_(CamerasIn(light_field_, frame, options.range, options.most_views)),
+        swept_(frame.pinhole.intrinsics.width_px, frame.pinhole.intrinsics.height_px) {
     const size_t count = options.plane_count > 0
                              ? options.plane_count
                              : PlanesFor(frame, options.range, in_lens_.radius_w);
@@ -158,13 +163,14 @@ class DepthMaker {
           "{} LF camera{} the scene through the lens: expected at least {} to compare",
           in_lens_.cameras.size(), in_lens_.cameras.size() == 1 ? " sees" : "s see", kLeastViews));
     const Intrinsics& plate = frame_.pinhole.intrinsics;
-    map_.depth_w = map_.confidence = Image<float>(plate.width_px, plate.height_px);
     map_.view_count = in_lens_.cameras.size();
-    const std::vector<PixelRect> parts = views_->CutPlate(options_.memory_bytes);
+    LF_ASSIGN_OR_RETURN(const std::vector<PixelRect> parts,
+                        views_->CutPlate(options_.memory_bytes));
     for (const PixelRect& part : parts) {
       LF_RETURN_IF_ERROR(views_->Load(part, pool_, options_.stop));
       LF_RETURN_IF_ERROR(Sweep(part));
     }
+    Judge();
     Fill();
     map_.sharp = SensorPlate(plate.width_px, plate.height_px);
     for (auto part = parts.rbegin(); part != parts.rend(); ++part) {
@@ -209,7 +215,7 @@ class DepthMaker {
   Result<void> Sweep(const PixelRect& part) {
     const SweepOptions sweep{map_.planes_w, options_.window_radius, ElementStep()};
     const std::vector<PixelRect> tiles = TilesOf(part);
-    const auto whole = static_cast<double>(map_.depth_w.width()) * map_.depth_w.height();
+    const auto whole = static_cast<double>(swept_.index.width()) * swept_.index.height();
     pool_.ForEach(tiles.size(), [&](size_t t) {
       if (IsStopped()) return;
       std::vector<SweptDepth> swept;
@@ -225,10 +231,31 @@ class DepthMaker {
   }
 
   void Set(int x, int y, const SweptDepth& depth) {
-    map_.confidence.at(x, y) = depth.confidence;
-    const bool is_known = depth.confidence >= options_.least_confidence && depth.confidence > 0;
-    map_.depth_w.at(x, y) = is_known ? static_cast<float>(DistanceAt(map_.planes_w, depth.index))
-                                     : std::numeric_limits<float>::quiet_NaN();
+    swept_.index.at(x, y) = depth.index;
+    swept_.confidence.at(x, y) = depth.confidence;
+    for (int c = 0; c < 3; ++c) swept_.roots.at(x, y, c) = depth.roots[static_cast<size_t>(c)];
+  }
+
+  // Decides which of the swept depths hold.
+  void Judge() {
+    GuideOptions guide;
+    guide.radius = kGuideRadius * std::max(1, options_.window_radius);
+    guide.same_depth = 1.25f * static_cast<float>(ElementStep());
+    guide.least_confidence = static_cast<float>(options_.least_confidence);
+    guide.white_root =
+        RootOfLight(static_cast<uint16_t>(std::clamp(light_field_.encoding.Scale(), 1.0, 65535.0)));
+    DoubtLonelyDepths(guide, pool_, &swept_);
+    if (options_.clean) MendDepths(guide, pool_, &swept_);
+    map_.depth_w = Image<float>(swept_.index.width(), swept_.index.height(), 1,
+                                std::numeric_limits<float>::quiet_NaN());
+    for (int y = 0; y < swept_.index.height(); ++y)
+      for (int x = 0; x < swept_.index.width(); ++x) {
+        const float confidence = swept_.confidence.at(x, y);
+        if (confidence >= options_.least_confidence && confidence > 0)
+          map_.depth_w.at(x, y) =
+              static_cast<float>(DistanceAt(map_.planes_w, swept_.index.at(x, y)));
+      }
+    map_.confidence = std::move(swept_.confidence);
   }
 
   // Inverse distances are filled, because they are linear on planes.
@@ -267,6 +294,7 @@ class DepthMaker {
   const FrameLens lens_;
   const LensCameras in_lens_;
   std::optional<LensViews> views_;
+  SweptMap swept_;
   std::atomic<size_t> done_ = 0;
   DepthMap map_;
 };

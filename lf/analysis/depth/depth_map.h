@@ -2,8 +2,8 @@
 // and makes a picture in which everything is in focus.
 //
 // Surfaces without texture, beyond the range of distances, or seen by too few LF cameras have no
-// depth: nothing is invented. In front of a surface without texture, the borders of a near surface
-// are wider by up to two elements.
+// depth: nothing is invented. An element has no depth either if most elements of its colour around
+// it have none or another one, because a border beside it may belong to another surface.
 #pragma once
 
 #include <atomic>
@@ -31,6 +31,9 @@ struct DepthMapOptions {
   int window_radius = 2;   // elements; costs are means over windows of 2 r + 1 elements
   // An element whose confidence is below this has no depth.
   double least_confidence = 0.5;
+  // True: wrong and missing depths become the median of the depths of the elements of their colour
+  // around them, if most of these have about the same depth.
+  bool clean = false;
   size_t most_views = 200;  // largest number of LF images, spread evenly over the lens; 3 to 4096
   size_t memory_bytes = size_t{8} << 30;    // bounds the LF images in memory
   bool strict = false;                      // true: a broken LF image is an error
@@ -74,7 +77,8 @@ size_t PlanesFor(const RenderCamera& frame, const DepthRange& range, double lens
 //   store     must load RGB (Mosaics::kToRgb)
 //   progress  called with the share that is done, from 0 to 1, by any thread; may be empty
 // kUsage: options out of range. kInput: fewer than 3 LF cameras see the scene, or a broken LF image
-// with `strict`. kOutput: the machine lacks something. kInterrupted: *stop became true.
+// with `strict`. kOutput: memory_bytes is too small for the views of 16 rows, or the machine lacks
+// something. kInterrupted: *stop became true.
 Result<DepthMap> MakeDepthMap(const ImageIndex& index, const LfImageStore& store, FrameId id,
                               const RenderCamera& frame, const DepthMapOptions& options,
                               ThreadPool& pool, const std::function<void(double)>& progress);

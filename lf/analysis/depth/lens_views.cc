@@ -120,23 +120,33 @@ PixelRect LensViews::SeenFrom(const PinholeCamera& camera, const PixelRect& part
           pixel(right + kMargin_px + 1, k.width_px), pixel(bottom + kMargin_px + 1, k.height_px)};
 }
 
-std::vector<PixelRect> LensViews::CutPlate(size_t memory_bytes) const {
+Result<std::vector<PixelRect>> LensViews::CutPlate(size_t memory_bytes) const {
   const int width = frame_.pinhole.intrinsics.width_px;
   const int height = frame_.pinhole.intrinsics.height_px;
-  const auto fits = [&](const PixelRect& part) {
+  const auto bytes_of = [&](const PixelRect& part) {
     size_t bytes = 0;
     for (const Source& source : sources_)
       bytes += kBytesPerPixel * static_cast<size_t>(std::max<int64_t>(
                                     0, SeenFrom(source.camera, part).pixel_count()));
-    return bytes <= memory_bytes;
+    return bytes;
+  };
+  const auto largest = [&](int rows) {
+    size_t bytes = 0;
+    for (int y = 0; y < height; y += rows)
+      bytes = std::max(bytes, bytes_of({0, y, width, std::min(height, y + rows)}));
+    return bytes;
   };
   int rows = height;
-  const auto all_fit = [&] {
-    for (int y = 0; y < height; y += rows)
-      if (!fits({0, y, width, std::min(height, y + rows)})) return false;
-    return true;
-  };
-  while (rows > kLeastRows && !all_fit()) rows = std::max(kLeastRows, (rows + 1) / 2);
+  size_t needed = largest(rows);
+  while (rows > kLeastRows && needed > memory_bytes) {
+    rows = std::max(kLeastRows, (rows + 1) / 2);
+    needed = largest(rows);
+  }
+  if (needed > memory_bytes)
+    return OutputError(
+        fmt::format("--memory {} KiB is too small: the LF images of {} rows of {} elements need at "
+                    "least {} KiB; give more, or compare fewer LF images by --views",
+                    memory_bytes >> 10, rows, width, (needed >> 10) + 1));
   std::vector<PixelRect> parts;
   for (int y = 0; y < height; y += rows) parts.push_back({0, y, width, std::min(height, y + rows)});
   return parts;

@@ -64,9 +64,9 @@ class LensViews {
   LensViews(const LightField& light_field, const LfImageStore& store, const RenderCamera& frame,
             std::vector<LensCamera> cameras, const DepthRange& depths, int margin, bool strict);
 
-  // Returns the parts of the plate, bands of whole rows from above, whose views take at most
-  // memory_bytes, but at least 16 rows each.
-  std::vector<PixelRect> CutPlate(size_t memory_bytes) const;
+  // Returns the parts of the plate, bands of whole rows from above, of at least 16 rows each, whose
+  // views take at most memory_bytes. kOutput: the views of 16 rows take more.
+  Result<std::vector<PixelRect>> CutPlate(size_t memory_bytes) const;
 
   // Loads the views that the elements of `part` see; views() returns them. Does nothing if they are
   // loaded already. kInput, kOutput: as LfImageStore::Load(). kInterrupted: *stop

@@ -24,8 +24,6 @@ constexpr float kHalfBelow = 0.4f;
 // An element's own cost should be this much higher one element away from its least cost.
 constexpr float kOwnRise = 1.5f;
 constexpr float kOwnFloor = kFloor / 4;
-// Factor of the confidence if it is not.
-constexpr float kBesideBorder = 0.45f;
 // Minima within this number of distances from the best one belong to it.
 constexpr int kSameMinimum = 2;
 
@@ -89,6 +87,51 @@ float CostOf(const CellSums& cell, unsigned quarters) {
   return static_cast<float>(static_cast<double>(spread) /
                             (static_cast<double>(count) * static_cast<double>(count - 1)));
 }
+
+// The mean roots of each set of views at its least cost so far.
+class LeastColours {
+ public:
+  explicit LeastColours(const PixelRect& tile)
+      : area_(static_cast<size_t>(tile.pixel_count())),
+        least_(kSets * area_, kNoCost),
+        roots_(kSets * area_) {}
+
+  // Adds the sums of a distance.
+  //   costs  means over windows of the set, of each element of the tile
+  //   cells  of the tile and `radius` elements around it
+  void Add(size_t set, const float* costs, const std::vector<CellSums>& cells,
+           const PixelRect& tile, int radius) {
+    const int stride = tile.width() + 2 * radius;
+    for (size_t i = 0; i < area_; ++i) {
+      if (!(costs[i] < least_[set * area_ + i])) continue;
+      least_[set * area_ + i] = costs[i];
+      const int x = static_cast<int>(i) % tile.width(), y = static_cast<int>(i) / tile.width();
+      roots_[set * area_ + i] =
+          MeanOf(cells[static_cast<size_t>((y + radius) * stride + x + radius)], kQuartersOf[set]);
+    }
+  }
+  const std::array<uint16_t, 3>& At(size_t set, size_t element) const {
+    return roots_[set * area_ + element];
+  }
+
+ private:
+  static std::array<uint16_t, 3> MeanOf(const CellSums& cell, unsigned quarters) {
+    uint32_t count = 0;
+    std::array<uint64_t, 3> sums = {};
+    for (size_t q = 0; q < kQuarters; ++q) {
+      if ((quarters >> q & 1) == 0) continue;
+      count += cell[q].count;
+      for (size_t c = 0; c < 3; ++c) sums[c] += cell[q].roots[c];
+    }
+    std::array<uint16_t, 3> mean = {};
+    for (size_t c = 0; c < 3; ++c) mean[c] = static_cast<uint16_t>(sums[c] / count);
+    return mean;
+  }
+
+  size_t area_;
+  std::vector<float> least_;                    // [set][element]
+  std::vector<std::array<uint16_t, 3>> roots_;  // [set][element]
+};
 
 // The costs of a tile: [set][distance][element].
 class CostVolume {
@@ -213,8 +256,8 @@ bool Rises(const CostVolume& own, size_t set, size_t element, size_t index, size
   return own.At(set, before, element) > limit && own.At(set, after, element) > limit;
 }
 
-SweptDepth DepthOf(const CostVolume& costs, const CostVolume& own, size_t element_step,
-                   size_t element) {
+SweptDepth DepthOf(const CostVolume& costs, const CostVolume& own, const LeastColours& colours,
+                   size_t element_step, size_t element) {
   size_t set = 0;
   Minimum best = MinimumOf(costs, 0, element);
   // Only relative to the cost of the whole lens is a half better.
@@ -229,13 +272,14 @@ SweptDepth DepthOf(const CostVolume& costs, const CostVolume& own, size_t elemen
   if (best.least == kNoCost) return {};
   SweptDepth depth;
   depth.index = static_cast<float>(best.index);
+  depth.roots = colours.At(set, element);
   if (best.index == 0 || best.index + 1 == costs.distance_count()) return depth;
   depth.index = Vertex(costs, set, element, best.index);
   const float least = best.least + kFloor;
   // A local minimum elsewhere that is nearly as low may be the right one.
   const float rival = best.rival == kNoCost ? best.mean + kFloor : best.rival + kFloor;
   depth.confidence = std::clamp(1 - least / std::min(best.mean + kFloor, rival), 0.0f, 1.0f);
-  if (!Rises(own, set, element, best.index, element_step)) depth.confidence *= kBesideBorder;
+  if (!Rises(own, set, element, best.index, element_step)) depth.confidence *= kDoubtful;
   return depth;
 }
 
@@ -249,6 +293,7 @@ void SweepTile(std::span<const LensView> views, const RenderCamera& frame,
                           tile.y_end + radius};
   CostVolume costs(options.distances_w.size(), tile);  // means over windows
   CostVolume own(options.distances_w.size(), tile);    // of single elements
+  LeastColours colours(tile);
   std::vector<CellSums> cells(static_cast<size_t>(area.pixel_count()));
   std::vector<float> of_distance(cells.size());
   for (size_t d = 0; d < options.distances_w.size(); ++d) {
@@ -258,12 +303,13 @@ void SweepTile(std::span<const LensView> views, const RenderCamera& frame,
     for (size_t set = 0; set < kSets; ++set) {
       for (size_t i = 0; i < cells.size(); ++i) of_distance[i] = CostOf(cells[i], kQuartersOf[set]);
       MeanOverWindows(of_distance, tile, radius, costs.Layer(set, d));
+      colours.Add(set, costs.Layer(set, d), cells, tile, radius);
       CopyInner(of_distance, tile, radius, own.Layer(set, d));
     }
   }
   depths->clear();
   for (size_t i = 0; i < static_cast<size_t>(tile.pixel_count()); ++i)
-    depths->push_back(DepthOf(costs, own, options.element_step, i));
+    depths->push_back(DepthOf(costs, own, colours, options.element_step, i));
 }
 
 }  // namespace lf

@@ -13,10 +13,12 @@
 //
 // Beside the border of a surface, a window has the texture of the border although the element has
 // none. The element's own cost then is low at many distances: it rises only where the border moves
-// over the element. The confidence of such an element is below 0.5.
+// over the element. The confidence of such an element is multiplied by kDoubtful.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -30,6 +32,9 @@ namespace lf {
 inline constexpr size_t kMostSweptViews = 4096;
 // A distance has a cost only if at least this number of views sees the element.
 inline constexpr uint32_t kLeastViews = 3;
+
+// Factor of the confidence of depths that the element itself does not confirm.
+inline constexpr float kDoubtful = 0.45f;
 
 struct SweepOptions {
   // Distances along the optical axis, even in 1 / distance, the nearest first; at least 3. Depths
@@ -48,6 +53,8 @@ struct SweptDepth {
   // From 0 to 1: how much lower the cost is than at other distances. 0 if the best distance is the
   // first or the last.
   float confidence = 0;
+  // Mean of the roots of R, G and B (lens_views.h) in the views that agree best, at this distance.
+  std::array<uint16_t, 3> roots = {};
 };
 
 // Finds the depths of the elements of `tile`, which must lie in the part of the plate that the

@@ -172,16 +172,18 @@ Result<DepthRange> FindFocusRange(const LightField& light_field, const RenderCam
                                   ThreadPool& pool) {
   const Vec3 centre_world = camera.pinhole.CentreWorld();
   std::optional<DepthRange> depths = light_field.depth_range;
+  std::string why;
   const char* source = "stated by the light field";
   if (!depths) {
     LF_ASSIGN_OR_RETURN(const auto store, OpenStore(light_field, Mosaics::kToRgb));
-    depths = SweptDepths(light_field, *store, centre_world, pool);
+    depths = SweptDepths(light_field, *store, centre_world, pool, &why);
     source = "found by comparing LF images";
   }
   if (!depths || light_field.size() == 0)
     return InputError(
-        "the depths of the scene are not stated by the light field, and comparing LF images did "
-        "not find them surely: state the focus distance yourself");
+        fmt::format("the depths of the scene are not stated by the light field, and comparing LF "
+                    "images did not find them surely{}: state the focus distance yourself",
+                    why.empty() ? "" : " (" + why + ")"));
   const PinholeCamera lf_camera = light_field.Camera(NearestCamera(light_field, centre_world));
   const DepthRange near = DepthsFrom(camera, lf_camera, depths->near_w);
   const DepthRange far = DepthsFrom(camera, lf_camera, depths->far_w);

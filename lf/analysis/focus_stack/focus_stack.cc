@@ -62,7 +62,7 @@ Result<void> CheckFile(const FocusStackOptions& options) {
                     options.output.string(), options.output.extension().string()));
   if (Exists(options.output) && !folder.overwrite && !(folder.resume && Exists(partial)))
     return UsageError(
-        fmt::format("{}: exists: give another name, or replace the file with --overwrite",
+        fmt::format("{}: exists already: give another name, or replace it with --overwrite",
                     options.output.string()));
   if (FormOfStack(options.output) != FocusStackForm::kVideo) return {};
   LF_RETURN_IF_ERROR(CheckVideoTool());
@@ -149,6 +149,34 @@ Result<void> CheckFocusStack(const LightField& light_field, const FocusStackOpti
       CheckReplacesNone({is_folder ? options.output / "planes.json" : options.output},
                         InputsOf(light_field, options.render)));
   return is_folder ? Result<void>() : CheckFile(options);
+}
+
+Result<bool> IsFinishedStack(const CameraPath& stack, const FocusStackOptions& options) {
+  const FocusStackForm form = FormOfStack(options.output);
+  std::error_code error;
+  if (form == FocusStackForm::kFolder || !options.render.folder.resume ||
+      !fs::is_regular_file(options.output, error) || Exists(StackFolder(options.output)))
+    return false;
+  if (form == FocusStackForm::kVideo) return true;
+  const Result<std::vector<double>> distances_w =
+      NumbersOfParts(options.output, "lf:focus_distance_w");
+  const auto refuse = [&options](const std::string& why) {
+    return UsageError(
+        fmt::format("{}: exists already, but {}, so that --resume cannot continue; give another "
+                    "name, or --overwrite instead of --resume",
+                    options.output.string(), why));
+  };
+  if (!distances_w) return refuse("is no focus stack");
+  if (distances_w->size() != stack.frame_count())
+    return refuse(fmt::format("has {} planes, and this call asks for {}", distances_w->size(),
+                              stack.frame_count()));
+  for (size_t i = 0; i < distances_w->size(); ++i) {
+    const double asked_w = stack.Camera(FrameId{static_cast<uint32_t>(i + 1)}).focus_distance_w;
+    if ((*distances_w)[i] != asked_w)
+      return refuse(fmt::format("its plane {} is at {} world units, and this call asks for {}",
+                                i + 1, (*distances_w)[i], asked_w));
+  }
+  return true;
 }
 
 Result<RenderReport> RenderFocusStack(Package package, const FocusStackOptions& options,

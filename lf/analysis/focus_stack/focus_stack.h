@@ -53,6 +53,12 @@ struct FocusStackOptions {
 // something else. kOutput: ffmpeg is missing.
 Result<void> CheckFocusStack(const LightField& light_field, const FocusStackOptions& options);
 
+// Returns true if `resume` is set, the output is a file that exists, and no render of it is
+// unfinished: there is nothing left to do. kUsage: it is an EXR file with other planes than the
+// stack, or of something else. Videos do not tell their planes.
+//   stack  path of FocusStackPath()
+Result<bool> IsFinishedStack(const CameraPath& stack, const FocusStackOptions& options);
+
 // Renders the frames of the package, whose path is that of FocusStackPath(), and writes the stack.
 // A file appears under its name only when it is complete, and FILE.partial is then removed. Results
 // and errors are those of Render() and CheckFocusStack(), and kOutput if the output cannot be

@@ -8,7 +8,9 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <regex>
 #include <span>
+#include <system_error>
 #include <utility>
 
 #include "lf/core/file.h"
@@ -19,6 +21,7 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr const char* kViewsProgram = "lffocus";  // lf_written_by
 constexpr uint32_t kMost8 = 255, kMost16 = 65535;
 
 template <class T>
@@ -76,6 +79,12 @@ LightField FieldOfViews(const LightField& light_field, const ViewGrid& grid, Vie
     views.image_names.push_back(ViewName(grid, view, light_field.unit_m, values));
   }
   return views;
+}
+
+// Returns true for names that ViewName() makes.
+bool IsViewName(const std::string& name) {
+  static const std::regex pattern(R"(out_\d{2,}_\d{2,}_-?\d+\.\d{6}_-?\d+\.\d{6}\.(png|exr))");
+  return std::regex_match(name, pattern);
 }
 
 std::string NumpyHeader(const ViewGrid& grid, ViewValues values) {
@@ -148,17 +157,44 @@ std::vector<fs::path> FilesOfViews(const ViewGrid& grid, const fs::path& folder,
   return files;
 }
 
+std::vector<fs::path> OtherViews(const ViewGrid& grid, const fs::path& folder, double unit_m,
+                                 ViewValues values) {
+  const fs::path list = folder / "transforms.json";
+  std::error_code error;
+  if (!fs::exists(list, error)) return {};
+  const Result<bool> is_ours = IsAsWritten(list, kViewsProgram);
+  if (!is_ours || !*is_ours) return {};
+  const Result<LightField> old = ReadTransformsJson(list);
+  if (!old) return {};
+  std::vector<fs::path> kept = FilesOfViews(grid, folder, unit_m, values);
+  std::sort(kept.begin(), kept.end());
+  std::vector<fs::path> others;
+  for (const std::string& name : old->image_names) {
+    const fs::path file = folder / fs::path(name).filename();
+    if (IsViewName(file.filename().string()) &&
+        !std::binary_search(kept.begin(), kept.end(), file) && fs::exists(file, error))
+      others.push_back(file);
+  }
+  return others;
+}
+
 Result<ViewsReport> WriteViewFolder(const LightField& light_field, const ViewGrid& grid,
                                     const fs::path& folder, ViewValues values,
                                     const MakeAllViews& make) {
   LF_RETURN_IF_ERROR(CreateFolder(folder));
+  for (const fs::path& file : OtherViews(grid, folder, light_field.unit_m, values)) {
+    std::error_code error;
+    fs::remove(file, error);
+    if (error)
+      return OutputError(fmt::format("{}: cannot be removed: {}", file.string(), error.message()));
+  }
   LF_ASSIGN_OR_RETURN(ViewsReport report, make([&](size_t view, const Image<float>& light) {
                         return WriteViewImage(
                             folder / ViewName(grid, view, light_field.unit_m, values), light,
                             values);
                       }));
   LF_RETURN_IF_ERROR(WriteTransformsJson(FieldOfViews(light_field, grid, values),
-                                         folder / "transforms.json", "lffocus"));
+                                         folder / "transforms.json", kViewsProgram));
   return report;
 }
 

@@ -288,7 +288,7 @@ TEST(PathYaml, ChecksTheShutter) {
                   "shutter.samples is missing; write for instance 'samples: 8'"),
         std::pair("{samples: 8}", "shutter.angle_deg is missing"),
         std::pair("{angle: 180, samples: 8}",
-                  "unknown key 'angle' in shutter; known are: angle_deg, samples"),
+                  "unknown key 'angle' in shutter; did you mean 'angle_deg'? known are: angle_deg"),
         std::pair("180", "shutter")})
     EXPECT_NE(error(shutter).find(words), std::string::npos) << error(shutter);
   EXPECT_NE(

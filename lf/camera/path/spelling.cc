@@ -31,7 +31,8 @@ std::string NearestWord(std::string_view word, std::span<const std::string> word
   std::string nearest;
   size_t smallest = kLongestWord;
   for (const std::string& candidate : words) {
-    const size_t distance = EditDistance(word, candidate);
+    const bool lacks_unit = word.size() > 1 && candidate.starts_with(std::string(word) + "_");
+    const size_t distance = lacks_unit ? 1 : EditDistance(word, candidate);
     if (distance >= smallest || 3 * distance > std::max(word.size(), candidate.size())) continue;
     smallest = distance;
     nearest = candidate;

@@ -95,13 +95,13 @@ Result<std::vector<std::string>> JoinedChannels(const PictureHeader& header,
   if (needs_colours && !(is(0, 'R') && is(1, 'G') && is(2, 'B')))
     return InputError(
         fmt::format("{}: has the channels {}: expected R, G and B", name, fmt::join(names, " ")));
-  if (options.is_for_display) return std::vector<std::string>{"R", "G", "B"};
   if (options.layout == ViewLayout::kAnaglyph && is(3, 'A'))
     return InputError(
         fmt::format("{}: has alpha, but an anaglyph takes its colours from two views, which may be "
                     "transparent at different places: composite the views first, or choose "
                     "another layout",
                     name));
+  if (options.is_for_display) return std::vector<std::string>{"R", "G", "B"};
   if (!header.info.is_float) return names;
   std::vector<std::string> kept = {"R", "G", "B"};
   if (is(3, 'A')) kept.emplace_back("A");

@@ -124,7 +124,7 @@ Result<void> FilmWriter::CheckTarget(Target* target) const {
   target->is_kept = options_.resume;
   if (options_.resume || options_.overwrite) return {};
   return UsageError(fmt::format(
-      "{}: exists: give another name, keep what exists with --resume, or replace it with "
+      "{}: exists already: give another name, keep what exists with --resume, or replace it with "
       "--overwrite",
       target->file.string()));
 }

@@ -230,6 +230,8 @@ TEST_F(ViewFilmTest, OutputsThatFitNothingAreRefused) {
               {"no does not exist"});
   ExpectWords(ErrorOf({ViewLayout::kAnaglyph, {}, folder_ / "s.png"}, ErrorKind::kInput),
               {"has alpha", "anaglyph"});
+  ExpectWords(ErrorOf({ViewLayout::kAnaglyph, {}, folder_ / "s.mp4"}, ErrorKind::kInput),
+              {"has alpha", "anaglyph"});
   ExpectWords(ErrorOf({ViewLayout::kSideBySide, {}, folder_ / "s.png", 25}, ErrorKind::kUsage),
               {"--fps is for videos"});
   ExpectWords(

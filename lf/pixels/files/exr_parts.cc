@@ -1,8 +1,10 @@
 #include "lf/pixels/files/exr_parts.h"
 
+#include <OpenEXR/ImfDoubleAttribute.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
@@ -148,6 +150,26 @@ Result<void> JoinExr(const std::filesystem::path& path, std::span<const ExrPart>
   return WriteAtomically(path, [&](const std::filesystem::path& temporary) -> Result<void> {
     return WriteParts(temporary, parts, headers, is_interrupted);
   });
+}
+
+Result<std::vector<double>> NumbersOfParts(const std::filesystem::path& path,
+                                           const std::string& attribute) {
+  std::vector<double> numbers;
+  try {
+    const Imf::MultiPartInputFile file(path.c_str(), kThreadsOfParts);
+    for (int i = 0; i < file.parts(); ++i) {
+      const auto* const number = file.header(i).findTypedAttribute<Imf::DoubleAttribute>(attribute);
+      if (number == nullptr)
+        return InputError(
+            fmt::format("{}: part {} has no number \"{}\"", path.string(), i + 1, attribute));
+      numbers.push_back(number->value());
+    }
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    return InputError(fmt::format("{}: cannot be read: {}", path.string(), error.what()));
+  }
+  return numbers;
 }
 
 }  // namespace lf

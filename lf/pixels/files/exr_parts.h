@@ -5,6 +5,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "lf/core/result.h"
 
@@ -24,5 +25,10 @@ struct ExrPart {
 // disk fails. kInterrupted: is_interrupted returned true; nothing is written.
 Result<void> JoinExr(const std::filesystem::path& path, std::span<const ExrPart> parts,
                      const std::function<bool()>& is_interrupted = {});
+
+// Returns the value of an attribute of type double in each part of an EXR file. kInput: the file
+// cannot be read, or a part has no such attribute.
+Result<std::vector<double>> NumbersOfParts(const std::filesystem::path& path,
+                                           const std::string& attribute);
 
 }  // namespace lf

@@ -1,0 +1,93 @@
+#include "tools/common/parse_errors.h"
+
+#include <fmt/format.h>
+
+#include <cctype>
+#include <cstdlib>
+#include <regex>
+#include <string_view>
+
+namespace lf {
+namespace {
+
+// Returns the word behind an option or, if there is none, "".
+std::string WordOf(const std::string& option, int argc, const char* const* argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    if (word == option && i + 1 < argc && !std::string_view(argv[i + 1]).starts_with("--"))
+      return argv[i + 1];
+    if (word.starts_with(option + "=")) return std::string(word.substr(option.size() + 1));
+  }
+  return {};
+}
+
+// Returns the option and its placeholder, such as "--grid COLUMNSxROWS".
+std::string Usage(const CLI::App& app, const std::string& name) {
+  const CLI::Option* const option = app.get_option_no_throw(name);
+  if (option == nullptr) return name;
+  // The name of the type begins with the placeholder: "N:UINT in [1 - 9]".
+  const std::string type = option->get_type_name();
+  const std::string placeholder = type.substr(0, type.find(':'));
+  return placeholder.empty() || !option->nonpositional() ? name : name + " " + placeholder;
+}
+
+// Returns the limits of an option's values, such as "from 1 to 9", as its type has them. The
+// message of CLI11 rounds them to six digits.
+std::string Limits(const CLI::App& app, const std::string& name) {
+  static const std::regex limits(R"(in \[(.+) - (.+)\])");
+  const CLI::Option* const option = app.get_option_no_throw(name);
+  const std::string type = option == nullptr ? "" : option->get_type_name();
+  std::smatch part;
+  return std::regex_search(type, part, limits)
+             ? fmt::format(" from {} to {}", part[1].str(), part[2].str())
+             : "";
+}
+
+std::string Found(const std::string& word) {
+  return word.empty() ? "found nothing" : fmt::format("found '{}'", word);
+}
+
+bool IsNumber(const std::string& word) {
+  char* end = nullptr;
+  std::strtod(word.c_str(), &end);
+  return !word.empty() && *end == '\0';
+}
+
+}  // namespace
+
+std::string ParseErrorText(const CLI::App& app, const CLI::ParseError& error, int argc,
+                           const char* const* argv) {
+  const std::string text = error.what();
+  std::smatch part;
+  static const std::regex range("(.+): Value (.*) not in range .+ to .+");
+  static const std::regex above("(.+): Number less or equal to 0: (.*)");
+  static const std::regex not_below("(.+): Number less than 0: (.*)");
+  static const std::regex missing(
+      "(.+): (?:\\d+ required .* missing|At least \\d+ required but received \\d+)");
+  static const std::regex type("Could not convert: (.+) = (.*)");
+  if (std::regex_match(text, part, range)) {
+    const std::string usage = Usage(app, part[1]);
+    std::string word = part[2];
+    // A list that is written in another form is one word for CLI11, which takes the next option for
+    // its second number.
+    const bool is_list = !IsNumber(word) && usage.find_first_of("x,") != std::string::npos;
+    if (is_list && word.starts_with("-")) word = WordOf(part[1], argc, argv);
+    return fmt::format("{}: expected {}{}, {}", usage, is_list ? "numbers" : "a number",
+                       Limits(app, part[1]), Found(word));
+  }
+  if (std::regex_match(text, part, above))
+    return fmt::format("{}: expected a number above 0, {}", Usage(app, part[1]), Found(part[2]));
+  if (std::regex_match(text, part, not_below))
+    return fmt::format("{}: expected a number from 0, {}", Usage(app, part[1]), Found(part[2]));
+  if (std::regex_match(text, part, missing)) {
+    const std::string word = WordOf(part[1], argc, argv), usage = Usage(app, part[1]);
+    return word.empty()
+               ? fmt::format("{}: expected a value, found nothing: {}", part[1].str(), usage)
+               : fmt::format("{}: expected a value of this form, {}", usage, Found(word));
+  }
+  if (std::regex_match(text, part, type))
+    return fmt::format("{}: expected a number, {}", Usage(app, part[1]), Found(part[2]));
+  return text;
+}
+
+}  // namespace lf
