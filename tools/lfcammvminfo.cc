@@ -44,7 +44,8 @@ lf::Result<std::vector<lf::FrameId>> ChooseFrames(const Arguments& arguments,
 
 lf::Result<void> Report(const Arguments& arguments, bool json) {
   LF_ASSIGN_OR_RETURN(const lf::CameraPath path,
-                      lf::OpenPath(arguments.path, {.light_field_unit_m = arguments.unit_m}));
+                      lf::OpenPath(arguments.path, {.light_field_unit_m = arguments.unit_m,
+                                                    .surface = lf::PathOptions::Surface::kName}));
   LF_ASSIGN_OR_RETURN(const auto frames, ChooseFrames(arguments, path));
   if (json) return lf::PrintReport(lf::CameraJson(path, frames));
   if (arguments.csv) return lf::PrintReport(lf::CameraCsv(path, frames));

@@ -233,6 +233,7 @@ lf::Result<lf::PathOptions> OptionsOf(const Arguments& a) {
   options.dataparser_transforms = a.dataparser;
   options.ngp_scale = a.ngp_scale;
   if (!a.ngp_offset.empty()) options.ngp_offset = lf::Vec3(a.ngp_offset.data());
+  options.surface = lf::PathOptions::Surface::kName;
   if (a.resolution) options.resolution_px = {a.resolution->first, a.resolution->second};
   options.sensor_width_mm = a.sensor_width_mm;
   options.focal_length_mm = a.focal_length_mm;
@@ -319,9 +320,22 @@ lf::Result<void> Write(const Arguments& a, lf::PathOptions options, const lf::Ca
   return {};
 }
 
+// Makes the name of the focal surface relative to the folder of the path that is written.
+void NameFromOutput(const Arguments& a, lf::CameraPath* path) {
+  namespace fs = std::filesystem;
+  if (a.output.empty() || !path->focal_surface) return;
+  const fs::path file = path->focal_surface->file;
+  if (file.is_absolute()) return;
+  const fs::path from = fs::absolute(a.path).lexically_normal().parent_path();
+  const fs::path to = fs::absolute(a.output).lexically_normal().parent_path();
+  if (from != to)
+    path->focal_surface->file = (from / file).lexically_normal().lexically_relative(to).string();
+}
+
 lf::Result<void> Run(const Arguments& a, bool json) {
   LF_ASSIGN_OR_RETURN(const lf::PathOptions options, OptionsOf(a));
   LF_ASSIGN_OR_RETURN(lf::CameraPath opened, lf::OpenPath(a.path, options));
+  NameFromOutput(a, &opened);
   LF_ASSIGN_OR_RETURN(lf::CameraPath changed, Changed(a, std::move(opened)));
   LF_ASSIGN_OR_RETURN(const lf::CameraPath path, ViewsOf(a, std::move(changed)));
   if (!a.output.empty()) LF_RETURN_IF_ERROR(Write(a, options, path));

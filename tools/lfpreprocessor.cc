@@ -209,8 +209,9 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   LF_ASSIGN_OR_RETURN(const lf::LightField light_field, a.light_field.Open());
   const double read_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  LF_ASSIGN_OR_RETURN(const lf::CameraPath path,
-                      lf::OpenPath(a.path, lf::PathOptionsFor(light_field, a.light_field.path)));
+  LF_ASSIGN_OR_RETURN(
+      const lf::CameraPath path,
+      lf::OpenPath(a.path, lf::PathOptionsToRender(light_field, a.light_field.path)));
   LF_ASSIGN_OR_RETURN(lf::PreprocessOptions options,
                       MakeOptions(a, common, path, light_field.encoding));
   if (a.frames.IsNone(options.frames)) return ReportNoFrames(a, common, light_field, path);

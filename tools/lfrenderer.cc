@@ -80,7 +80,7 @@ lf::Result<Rendered> RenderLightField(const lf::RenderArguments& arguments,
   LF_ASSIGN_OR_RETURN(lf::LightField light_field, argument.Open());
   LF_ASSIGN_OR_RETURN(
       lf::CameraPath path,
-      lf::OpenPath(arguments.inputs[1], lf::PathOptionsFor(light_field, arguments.inputs[0])));
+      lf::OpenPath(arguments.inputs[1], lf::PathOptionsToRender(light_field, arguments.inputs[0])));
   LF_ASSIGN_OR_RETURN(lf::RenderOptions options, arguments.MakeOptions(common, path.frame_count()));
   if (arguments.HasNoFrame(options)) return NoFrames(arguments, std::move(options));
   options.signals = signals;

@@ -133,7 +133,8 @@ Result<void> WriteSyntheticField(const SyntheticFieldOptions& options, ThreadPoo
   auto instants = static_cast<size_t>(options.truth_instants);
   if (!options.truth.empty()) {
     LF_ASSIGN_OR_RETURN(const CameraPath path,
-                        OpenPath(options.truth, {.light_field_unit_m = 1.0}));
+                        OpenPath(options.truth, {.light_field_unit_m = 1.0,
+                                                 .surface = PathOptions::Surface::kMake}));
     truth.assign(path.AllInstants().begin(), path.AllInstants().end());
     instants = static_cast<size_t>(path.shutter.samples);
   }

@@ -8,7 +8,10 @@
 
 namespace lf {
 
-double Magnification(const PinholeCamera& lf_camera, const RenderCamera& render_camera) {
+double Magnification(const PinholeCamera& lf_camera, const RenderCamera& frame) {
+  // One width holds for the whole frame: that on focus_plane, even if there is a focal surface.
+  RenderCamera render_camera = frame;
+  render_camera.surface = nullptr;
   const Intrinsics& k = lf_camera.intrinsics;
   const Intrinsics& plate = render_camera.pinhole.intrinsics;
   const RayThrough ray(lf_camera, render_camera.pinhole.ForwardWorld());

@@ -49,15 +49,15 @@ std::array<PixelForm, kPlateHalfPlanes> PlateHalfPlanes(const RayForms& forms,
                                                         int plane_sign, double margin_px) {
   LF_CHECK(plane_sign == 1 || plane_sign == -1);
   const double s = plane_sign;
-  const Intrinsics& plate = render_camera.pinhole.intrinsics;
+  const PixelRect elements = ElementsOf(render_camera);
   return {
       -s * forms.plane,
       -forms.forward,
       -s * forms.front,
-      -s * (forms.sensor_x + margin_px * forms.front),
-      s * (forms.sensor_x - (plate.width_px + margin_px) * forms.front),
-      -s * (forms.sensor_y + margin_px * forms.front),
-      s * (forms.sensor_y - (plate.height_px + margin_px) * forms.front),
+      -s * (forms.sensor_x - (elements.x_begin - margin_px) * forms.front),
+      s * (forms.sensor_x - (elements.x_end + margin_px) * forms.front),
+      -s * (forms.sensor_y - (elements.y_begin - margin_px) * forms.front),
+      s * (forms.sensor_y - (elements.y_end + margin_px) * forms.front),
   };
 }
 

@@ -66,7 +66,7 @@ RayForms MakeRayForms(const Mat3& direction, const Vec3& centre_world,
 
 // Returns the half-planes of the conditions plane_sign `plane p` >= 0, `forward p` >= 0 and
 // plane_sign `front p` >= 0 (the form of a condition a >= 0 is -a), and the half-planes of the four
-// edges of the plate. Each edge is moved outwards by margin_px elements.
+// edges of the plate, or of the camera's window. Each edge is moved outwards by margin_px elements.
 inline constexpr size_t kPlateHalfPlanes = 7;
 std::array<PixelForm, kPlateHalfPlanes> PlateHalfPlanes(const RayForms& forms,
                                                         const RenderCamera& render_camera,

@@ -44,8 +44,22 @@ Vec3 LensPointWorld(const RenderCamera& camera, const Vec2& point_lens) {
          point_lens.y() * camera.pinhole.UpWorld();
 }
 
+PixelRect ElementsOf(const RenderCamera& camera) {
+  const Intrinsics& plate = camera.pinhole.intrinsics;
+  return camera.window.value_or(PixelRect{0, 0, plate.width_px, plate.height_px});
+}
+
+RenderCamera FocusedAsAt(const RenderCamera& camera, double x_px, double y_px) {
+  RenderCamera focused = camera;
+  if (!camera.surface) return focused;
+  focused.focus_plane = PlaneOfPiece(camera.pinhole, camera.surface->PieceAt(x_px, y_px));
+  focused.surface = nullptr;
+  return focused;
+}
+
 std::optional<Vec3> FocusPointOfElement(const RenderCamera& camera, double x_px, double y_px) {
   const Ray ray = RayOfPixel(camera.pinhole, x_px, y_px);
+  if (camera.surface) return ray.At(1 / camera.surface->PieceAt(x_px, y_px).At(x_px, y_px));
   const std::optional<Vec3> point = IntersectLine(ray, camera.focus_plane);
   if (!point) return std::nullopt;
   const double depth = camera.pinhole.ForwardWorld().dot(*point - ray.origin);

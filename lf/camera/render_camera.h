@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "lf/camera/aperture.h"
+#include "lf/camera/focal_surface.h"
 #include "lf/camera/pinhole.h"
 #include "lf/camera/transmission.h"
 #include "lf/core/geometry.h"
@@ -32,6 +33,12 @@ struct RenderCamera {
   Plane focus_plane;      // in world coordinates
   Hood hood;
   TransmissionPtr transmission;  // null: the whole opening lets all light through
+  // The depth at which each element is in focus, in place of focus_plane, which is then the plane
+  // by which the frame is described to people, and by which the filter of an LF image is chosen.
+  // Null: all elements are in focus on focus_plane.
+  FocalSurfacePtr surface;
+  // The elements that take rays. Unset: all. ForEachPiece() sets it.
+  std::optional<PixelRect> window;
 
   // The settings that the members above were computed from, for people and metadata.
   double time_s = 0;
@@ -41,6 +48,31 @@ struct RenderCamera {
   FocusTilt focus_tilt;
   double unit_m = 1;  // metres per world unit
 };
+
+// Returns the elements that take rays: the window, or the whole plate.
+PixelRect ElementsOf(const RenderCamera& camera);
+
+// Returns the camera with one focus plane for all elements: that of its surface at the element
+// position (x, y), or focus_plane if there is no surface.
+RenderCamera FocusedAsAt(const RenderCamera& camera, double x_px, double y_px);
+
+// Calls body(camera) for the camera or, if it has a surface, for each of its pieces: with the focus
+// plane of the piece, its elements as the window, and no surface. Rays and elements are mapped by
+// such a camera as by the whole one, so that the pieces together are the frame.
+template <class Body>
+void ForEachPiece(const RenderCamera& camera, const Body& body) {
+  if (!camera.surface) {
+    body(camera);
+    return;
+  }
+  RenderCamera of_piece = camera;
+  of_piece.surface = nullptr;
+  for (const FocalPiece& piece : camera.surface->pieces()) {
+    of_piece.window = piece.elements;
+    of_piece.focus_plane = PlaneOfPiece(camera.pinhole, piece);
+    body(of_piece);
+  }
+}
 
 // Returns the focus plane at distance g > 0 in front of `camera`, with tilts within +-90 degrees.
 Plane FocusPlane(const PinholeCamera& camera, double focus_distance_w, const FocusTilt& tilt);
@@ -62,9 +94,9 @@ bool IsShape(const RenderCamera& camera);
 // Converts a point of the lens from lens coordinates (right, up) to world coordinates.
 Vec3 LensPointWorld(const RenderCamera& camera, const Vec2& point_lens);
 
-// Returns the point of the focus plane that element position (x, y) sees through every point of the
-// lens, by the refraction of a thin lens (thesis 2.3.2). None if the line from (x, y) through the
-// lens centre meets the tilted plane only behind the lens or never.
+// Returns the point of the focus plane, or of the focal surface, that element position (x, y) sees
+// through every point of the lens, by the refraction of a thin lens (thesis 2.3.2). None if the
+// line from (x, y) through the lens centre meets the tilted plane only behind the lens or never.
 std::optional<Vec3> FocusPointOfElement(const RenderCamera& camera, double x_px, double y_px);
 
 }  // namespace lf

@@ -1,5 +1,10 @@
 #include "lf/camera/testing_scenes.h"
 
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <vector>
+
 #include "lf/core/random.h"
 
 namespace lf::testing {
@@ -81,6 +86,30 @@ CameraPair ParallelPair(int column, int row, double pitch_w, double radius_w) {
   pair.lf_camera.intrinsics = render.pinhole.intrinsics;
   pair.lf_camera.cam_from_world.translation = {-column * pitch_w, -row * pitch_w, 0};
   return pair;
+}
+
+bool SetRandomSurface(int side, double relief, uint64_t seed, RenderCamera* camera) {
+  const PinholeCamera& lens = camera->pinhole;
+  const Plane& plane = camera->focus_plane;
+  const int width = lens.intrinsics.width_px, height = lens.intrinsics.height_px;
+  const double distance_w = plane.offset_w - plane.normal.dot(lens.CentreWorld());
+  const Vec3 inverse_depth = (plane.normal.transpose() * lens.cam_from_world.rotation.transpose() *
+                              lens.intrinsics.InverseMatrix() / distance_w)
+                                 .transpose();
+  std::vector<FocalPiece> pieces;
+  RandomSequence random(seed);
+  for (int y = 0; y < height; y += side)
+    for (int x = 0; x < width; x += side) {
+      const double factor = 1 + relief * random.Uniform(-1, 1);
+      pieces.push_back({{x, y, std::min(width, x + side), std::min(height, y + side)},
+                        relief == 0 ? inverse_depth : Vec3(inverse_depth * factor)});
+    }
+  const Result<FocalSurface> surface = FocalSurface::Of(width, height, std::move(pieces));
+  if (!surface) return false;
+  for (const FocalBlock& block : surface->blocks())
+    if (block.q_low * 100 < 1 / camera->focus_distance_w) return false;
+  camera->surface = std::make_shared<const FocalSurface>(*surface);
+  return true;
 }
 
 }  // namespace lf::testing

@@ -33,4 +33,11 @@ CameraPair RandomDistortedPair(uint64_t seed);
 // rays may lie exactly on the rim of the lens and on element borders.
 CameraPair ParallelPair(int column, int row, double pitch_w, double radius_w);
 
+// Gives the camera a focal surface whose pieces are rectangles of about `side` elements. Returns
+// false, and changes nothing, if the camera's focus plane has a horizon on the plate, or is more
+// than a hundred times as far away somewhere.
+//   relief  largest difference of the inverse depth of a piece from that of the focus plane, as a
+//           share of it; 0: all pieces have the focus plane
+bool SetRandomSurface(int side, double relief, uint64_t seed, RenderCamera* camera);
+
 }  // namespace lf::testing

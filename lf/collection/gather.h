@@ -10,6 +10,7 @@
 //      polynomial.
 //   2. GatherTile, called once per (LF image, frame, tile of the plate), adds the rays of these
 //      elements.
+// A camera with a focal surface is collected piece by piece (ForEachPiece()), with one sampling.
 // Tolerance: both accept the same rays, except for rays that a relative error of 1e-9 would move
 // across a border of lens or image. Positions of the fast back end are accurate to 1e-4 px. Its
 // interpolation weights, in steps of 1/256, may therefore differ by one step from those of the

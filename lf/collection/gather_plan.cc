@@ -90,11 +90,31 @@ std::vector<PixelForm> HalfPlanes(const GatherForms& forms, const Intrinsics& k,
   return half_planes;
 }
 
+// Sorts segments by rows, and by columns within a row.
+void SortByRows(int row_count, std::vector<Segment>* segments) {
+  thread_local std::vector<Segment> sorted;
+  thread_local std::vector<size_t> begin;
+  begin.assign(static_cast<size_t>(row_count) + 1, 0);
+  for (const Segment& segment : *segments) ++begin[segment.y + 1];
+  for (size_t row = 1; row < begin.size(); ++row) begin[row] += begin[row - 1];
+  sorted.resize(segments->size());
+  std::vector<size_t>& next = begin;  // each entry advances from its row's begin to its end
+  for (const Segment& segment : *segments) sorted[next[segment.y]++] = segment;
+  size_t row_begin = 0;
+  for (int row = 0; row < row_count; ++row) {
+    std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(row_begin),
+              sorted.begin() + static_cast<std::ptrdiff_t>(next[row]),
+              [](const Segment& a, const Segment& b) { return a.x_begin < b.x_begin; });
+    row_begin = next[row];
+  }
+  std::swap(sorted, *segments);
+}
+
 class GatherPlanner {
  public:
-  //   finer  the render camera with the finer plate of `sampling`
+  //   finer  the render camera with the finer plate of the sampling; has no surface
   GatherPlanner(const PinholeCamera& lf_camera, const RenderCamera& finer,
-                const GatherSampling& sampling, GatherPlan memory)
+                std::vector<Segment>* segments)
       : k_(lf_camera.intrinsics),
         model_(lf_camera, finer),
         forms_(MakeForms(lf_camera, finer)),
@@ -103,7 +123,7 @@ class GatherPlanner {
         patches_{
             PositionPatches([this](double x, double y) { return DistortedPosition(1, x, y); }),
             PositionPatches([this](double x, double y) { return DistortedPosition(-1, x, y); })},
-        plan_(std::move(memory)) {
+        segments_(*segments) {
     for (const int side : {0, 1})
       rows_.half_planes[side] = HalfPlanes(forms_, k_, finer, side == 0 ? -1 : 1);
     // All rays of an LF camera in the lens plane cross this plane at one point. Unless the point is
@@ -113,39 +133,31 @@ class GatherPlanner {
       rows_.model_decides = !IsSurelyInDisk(lf_camera, finer);
     else if (is_disk)
       rows_.disk = {forms_.lens_right, forms_.lens_up, forms_.forward, finer.aperture.radius_w};
-    width_ = finer.pinhole.intrinsics.width_px;
-    height_ = finer.pinhole.intrinsics.height_px;
-    rows_.RestrictTo({0, 0, width_, height_});
-    plan_.sampling = sampling;
-    plan_.plate_width = width_ / sampling.samples;
-    plan_.plate_height = height_ / sampling.samples;
-    plan_.segments.clear();
-    plan_.row_begin.clear();
+    elements_ = ElementsOf(finer);
+    rows_.RestrictTo(elements_);
   }
 
   // patches_ calls functions that refer to this object.
   GatherPlanner(const GatherPlanner&) = delete;
   GatherPlanner& operator=(const GatherPlanner&) = delete;
 
-  GatherPlan Run() {
-    for (int y = 0; y < height_; ++y) {
-      plan_.row_begin.push_back(plan_.segments.size());
+  // Appends the segments of the accepted elements, by rows, and by columns within a row.
+  void Run() {
+    for (int y = elements_.y_begin; y < elements_.y_end; ++y) {
       const auto accepted = [&](int side, int x) {
         const double forward = Value(forms_.forward, x + 0.5, y + 0.5);
         if (!(side == 0 ? forward < 0 : forward > 0)) return false;
         return k_.has_distortion() ? model_.Direction(x, y).has_value()
                                    : model_.Position(x, y).has_value();
       };
-      rows_.Find(y, 0, width_, accepted, &spans_);
+      rows_.Find(y, elements_.x_begin, elements_.x_end, accepted, &spans_);
       for (const auto& [begin, end] : spans_) {
         if (k_.has_distortion())
           AddDistorted(y, begin, end);
         else
-          maker_.Add(y, begin, end, &plan_.segments);
+          maker_.Add(y, begin, end, &segments_);
       }
     }
-    plan_.row_begin.push_back(plan_.segments.size());
-    return std::move(plan_);
   }
 
  private:
@@ -208,9 +220,9 @@ class GatherPlanner {
   // adjacent, because they share the polynomials.
   void AppendPart(const Segment& part) {
     if (part.x_begin == part_end_)
-      plan_.segments.back().count += part.count;
+      segments_.back().count += part.count;
     else
-      plan_.segments.push_back(part);
+      segments_.push_back(part);
     part_end_ = part.x_begin + part.count;
   }
 
@@ -221,8 +233,8 @@ class GatherPlanner {
   SegmentMaker maker_;
   PositionPatches patches_[2];  // [1]: of rays that run away from the focus point
   RowSpans rows_;
-  GatherPlan plan_;
-  int width_, height_;          // size of the finer plate, in its elements
+  std::vector<Segment>& segments_;
+  PixelRect elements_;          // elements of the finer plate that take rays
   std::vector<RowSpan> spans_;  // spans of the current row
   std::vector<Segment> found_;  // segments of the current span
   int part_end_ = -1;           // x_end of the part appended last; -1 at a new segment
@@ -232,10 +244,20 @@ class GatherPlanner {
 
 GatherPlan PlanGather(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
                       GatherPlan memory, const PixelReading& reading) {
-  const GatherSampling sampling = SamplingOf(lf_camera, render_camera, reading);
-  return GatherPlanner(lf_camera, WithFinerPlate(render_camera, sampling.samples), sampling,
-                       std::move(memory))
-      .Run();
+  GatherPlan plan = std::move(memory);
+  plan.sampling = SamplingOf(lf_camera, render_camera, reading);
+  plan.plate_width = render_camera.pinhole.intrinsics.width_px;
+  plan.plate_height = render_camera.pinhole.intrinsics.height_px;
+  plan.segments.clear();
+  ForEachPiece(render_camera, [&](const RenderCamera& piece) {
+    GatherPlanner(lf_camera, WithFinerPlate(piece, plan.sampling.samples), &plan.segments).Run();
+  });
+  if (render_camera.surface) SortByRows(plan.plate_height * plan.sampling.samples, &plan.segments);
+  plan.row_begin.assign(static_cast<size_t>(plan.plate_height) * plan.sampling.samples + 1, 0);
+  for (const Segment& segment : plan.segments) ++plan.row_begin[segment.y + 1];
+  for (size_t row = 1; row < plan.row_begin.size(); ++row)
+    plan.row_begin[row] += plan.row_begin[row - 1];
+  return plan;
 }
 
 }  // namespace lf

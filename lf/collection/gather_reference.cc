@@ -161,9 +161,8 @@ uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& recorde
     FilterPixelsReference(sampling.prefilter, recorded, &filtered);
   const LfPixels& pixels = sampling.prefilter.changes_nothing() ? recorded : filtered;
   const int samples = sampling.samples;
-  const GatherModel model(lf_camera, WithFinerPlate(render_camera, samples));
   // Returns the ray of element (x, y); none if the LF image did not record it.
-  const auto ray_of = [&](int x, int y) -> std::optional<RgbRay> {
+  const auto ray_of = [&](const GatherModel& model, int x, int y) -> std::optional<RgbRay> {
     std::array<uint32_t, 3> sum = {}, counted = {};
     uint32_t rays = 0;
     for (int i = 0; i < samples * samples; ++i) {
@@ -189,16 +188,20 @@ uint64_t GatherReference(const PinholeCamera& lf_camera, const LfPixels& recorde
     return mean;
   };
   uint64_t accepted = 0;
-  for (int y = 0; y < plate->height(); ++y)
-    for (int x = 0; x < plate->width(); ++x) {
-      const auto ray = ray_of(x, y);
-      if (!ray) continue;
-      for (int channel = 0; channel < SensorPlate::kChannels; ++channel) {
-        const uint64_t count = uint64_t{weights.At(x, y)} * ray->count[channel];
-        plate->Add(x, y, channel, {count * ray->value[channel], count});
+  ForEachPiece(render_camera, [&](const RenderCamera& piece) {
+    const GatherModel model(lf_camera, WithFinerPlate(piece, samples));
+    const PixelRect elements = ElementsOf(piece);
+    for (int y = elements.y_begin; y < elements.y_end; ++y)
+      for (int x = elements.x_begin; x < elements.x_end; ++x) {
+        const auto ray = ray_of(model, x, y);
+        if (!ray) continue;
+        for (int channel = 0; channel < SensorPlate::kChannels; ++channel) {
+          const uint64_t count = uint64_t{weights.At(x, y)} * ray->count[channel];
+          plate->Add(x, y, channel, {count * ray->value[channel], count});
+        }
+        ++accepted;
       }
-      ++accepted;
-    }
+  });
   return accepted;
 }
 

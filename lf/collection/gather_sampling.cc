@@ -73,6 +73,10 @@ RenderCamera WithFinerPlate(const RenderCamera& render_camera, int samples) {
   ScaleResolution(samples, &k);
   k.width_px *= samples;
   k.height_px *= samples;
+  if (finer.window)
+    for (int* const border : {&finer.window->x_begin, &finer.window->y_begin, &finer.window->x_end,
+                              &finer.window->y_end})
+      *border *= samples;
   return finer;
 }
 

@@ -34,8 +34,7 @@ RayModel::RayModel(const PinholeCamera& lf_camera, const RenderCamera& render_ca
                         render_camera.pinhole.cam_from_world.rotation),
       aperture_(render_camera.aperture),
       hood_(render_camera),
-      width_px_(render_camera.pinhole.intrinsics.width_px),
-      height_px_(render_camera.pinhole.intrinsics.height_px) {
+      elements_(ElementsOf(render_camera)) {
   if (intrinsics_.has_distortion()) distortion_.emplace(intrinsics_.distortion);
 }
 
@@ -70,7 +69,8 @@ std::optional<PlateElement> RayModel::CollectIdeal(const Vec3& position) const {
   const Vec3 p = plate_from_world_ * (*focus_point - lens_centre_);
   const double element_x = std::floor(p.x() / p.z());
   const double element_y = std::floor(p.y() / p.z());
-  if (!(element_x >= 0 && element_x < width_px_ && element_y >= 0 && element_y < height_px_))
+  if (!(element_x >= elements_.x_begin && element_x < elements_.x_end &&
+        element_y >= elements_.y_begin && element_y < elements_.y_end))
     return std::nullopt;
   return PlateElement{static_cast<int>(element_x), static_cast<int>(element_y)};
 }

@@ -48,7 +48,7 @@ class RayModel {
   Mat3 plate_from_world_;  // K' R' of doc/ray.md: maps X - c' to the plate, for a focus point X
   ApertureTest aperture_;
   HoodTest hood_;
-  int width_px_, height_px_;
+  PixelRect elements_;  // the elements that take rays: those of the plate, or of the window
 };
 
 }  // namespace lf

@@ -9,9 +9,11 @@
 //      the segments at the borders of tiles.
 //   2. ScatterTile, called once per (LF image, frame, tile of the plate), adds the rays that land
 //      in the tile.
-// Tolerance: both accept exactly the same rays. A ray within 1e-4 elements of an element's border
-// may land in the next element, because the fast back end evaluates positions in single precision.
-// A tile collects exactly the rays whose element, computed in this way, lies in it. Results are
+// A camera with a focal surface is collected piece by piece (ForEachPiece()). A ray may then land
+// on several elements, one of each piece that it passes through, and counts as often. Tolerance:
+// both accept exactly the same rays. A ray within 1e-4 elements of an element's border may land in
+// the next element, because the fast back end evaluates positions in single precision. A tile
+// collects exactly the rays whose element, computed in this way, lies in it. Results are
 // bit-identical for any cut of the plate into tiles, for any cut of the LF image into rectangles,
 // and on every instruction set. With lens distortion, the reference undistorts by iteration and the
 // fast back end by curves fitted to ideal positions: rays within IdealPixels::kTolerance_px of a

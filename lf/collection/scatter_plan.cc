@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
 #include <utility>
 
 #include "lf/camera/ray_forms.h"
@@ -13,6 +16,38 @@ namespace {
 // Share of the radius by which candidate spans reach beyond the edges of polygonal lenses; the ray
 // model then decides at the ends of these spans.
 constexpr double kLensMargin = 1e-7;
+
+// Returns the part of `rect` that can see the window of a camera on its focus plane, or all of
+// `rect` if there is no window or the LF camera stands among the corners of that region.
+PixelRect PixelsOfWindow(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
+                         const PixelRect& rect) {
+  if (!render_camera.window) return rect;
+  const PixelRect& window = *render_camera.window;
+  const Mat3 pixel = lf_camera.intrinsics.Matrix() * lf_camera.cam_from_world.rotation;
+  const Vec3 centre = lf_camera.CentreWorld();
+  Vec2 low = Vec2::Constant(INFINITY), high = -low;
+  int in_front = 0;
+  for (const int y : {window.y_begin, window.y_end})
+    for (const int x : {window.x_begin, window.x_end}) {
+      const std::optional<Vec3> corner = FocusPointOfElement(render_camera, x, y);
+      if (!corner) return rect;
+      const Vec3 p = pixel * (*corner - centre);
+      if (!(std::abs(p.z()) > 1e-6 * (*corner - centre).norm())) return rect;
+      in_front += p.z() > 0 ? 1 : 0;
+      const Vec2 at(p.x() / p.z(), p.y() / p.z());
+      low = low.cwiseMin(at);
+      high = high.cwiseMax(at);
+    }
+  // A projective map takes the region to a quadrilateral, unless a line of it is mapped to
+  // infinity.
+  if (in_front != 0 && in_front != 4) return rect;
+  constexpr double kMargin_px = 2;
+  const auto rounded = [](double v) { return static_cast<int>(std::clamp(v, -1e8, 1e8)); };
+  const PixelRect seen = {
+      rounded(std::floor(low.x() - kMargin_px)), rounded(std::floor(low.y() - kMargin_px)),
+      rounded(std::ceil(high.x() + kMargin_px)), rounded(std::ceil(high.y() + kMargin_px))};
+  return Intersection(rect, seen);
+}
 
 void PlanOnLines(const PinholeCamera& lf_camera, const RenderCamera& render_camera,
                  const PixelRect& rect, std::vector<Segment>* segments) {
@@ -61,12 +96,13 @@ ScatterPlan PlanScatter(const PinholeCamera& lf_camera, const RenderCamera& rend
   ScatterPlan plan = std::move(memory);
   plan.grid = grid;
   plan.segments.clear();
-  if (lf_camera.intrinsics.has_distortion()) {
-    LF_CHECK(ideal_pixels != nullptr);
-    PlanScatterOnPatches(lf_camera, render_camera, rect, *ideal_pixels, &plan.segments);
-  } else {
-    PlanOnLines(lf_camera, render_camera, rect, &plan.segments);
-  }
+  LF_CHECK(ideal_pixels != nullptr || !lf_camera.intrinsics.has_distortion());
+  ForEachPiece(render_camera, [&](const RenderCamera& piece) {
+    if (lf_camera.intrinsics.has_distortion())
+      PlanScatterOnPatches(lf_camera, piece, rect, *ideal_pixels, &plan.segments);
+    else
+      PlanOnLines(lf_camera, piece, PixelsOfWindow(lf_camera, piece, rect), &plan.segments);
+  });
   plan.pieces.Cut(plan.segments, grid);
   return plan;
 }

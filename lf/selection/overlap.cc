@@ -165,6 +165,45 @@ bool Excludes(const PixelForm& form, const IdealCell& cell) {
   return Value(form, cell.middle) > form.cwiseAbs().dot(cell.extent.transpose());
 }
 
+// Returns half-planes of the LF pixels whose rays can pass through the points that the elements of
+// a block see between the depths of their pieces. The points are in the convex hull of eight
+// corners; the LF image of this hull is within the bounds of the corners, if all of these are on
+// one side of the LF camera.
+std::vector<PixelForm> BlockHalfPlanes(const PinholeCamera& lf_camera, const RenderCamera& frame,
+                                       const FocalBlock& block, const RayForms& forms) {
+  constexpr double kRounding = 1e-9, kMargin_px = 1e-3;
+  std::vector<PixelForm> half_planes = {-forms.forward};
+  const Mat3 pixel = lf_camera.intrinsics.Matrix() * lf_camera.cam_from_world.rotation;
+  const Vec3 centre = lf_camera.CentreWorld();
+  Vec2 low = Vec2::Constant(INFINITY), high = -low;
+  int in_front = 0;
+  for (const int y : {block.elements.y_begin, block.elements.y_end})
+    for (const int x : {block.elements.x_begin, block.elements.x_end}) {
+      const Ray ray = RayOfPixel(frame.pinhole, x, y);
+      for (const double q : {block.q_low * (1 - kRounding), block.q_high * (1 + kRounding)}) {
+        const Vec3 point = ray.At(1 / q);
+        const Vec3 p = pixel * (point - centre);
+        if (!(std::abs(p.z()) > 1e-6 * (point - centre).norm())) return half_planes;
+        // A fish-eye may record a ray at more than 90 degrees, whose ideal position is behind it.
+        if (lf_camera.intrinsics.has_distortion() &&
+            !(p.z() > 0 && frame.pinhole.ForwardWorld().dot(point - centre) > 0))
+          return half_planes;
+        in_front += p.z() > 0 ? 1 : 0;
+        const Vec2 at(p.x() / p.z(), p.y() / p.z());
+        low = low.cwiseMin(at);
+        high = high.cwiseMax(at);
+      }
+    }
+  if (in_front != 0 && in_front != 8) return half_planes;
+  // Positions beyond 1e8 px are beyond every image, and could lose the digits of the margin.
+  low = low.cwiseMax(-1e8) - Vec2::Constant(kMargin_px);
+  high = high.cwiseMin(1e8) + Vec2::Constant(kMargin_px);
+  half_planes.insert(half_planes.end(),
+                     {PixelForm(0, 0, -1), PixelForm(-1, 0, low.x()), PixelForm(1, 0, -high.x()),
+                      PixelForm(0, -1, low.y()), PixelForm(0, 1, -high.y())});
+  return half_planes;
+}
+
 PixelRect BoundsOfCells(std::span<const IdealCell> cells, std::span<const PixelForm> plate,
                         std::span<const PixelForm> lens) {
   PixelRect rect;
@@ -270,12 +309,17 @@ PixelRect ImageOverlap::Rect(const FrameOutline& frame) const {
   std::vector<PixelForm> lens;
   if (distorted) lens = LensHalfPlanes(forms, frame.camera, kLensMargin);
   PixelRect rect;
-  for (const int plane_sign : {-1, 1}) {
-    if (!distorted && IsBelowZero(plane_sign * forms.plane, image)) continue;
-    const std::array<PixelForm, kPlateHalfPlanes> plate =
-        PlateHalfPlanes(forms, frame.camera, plane_sign, kPlateMarginPx);
+  const auto add = [&](std::span<const PixelForm> plate) {
     rect = Bounds(rect, distorted ? BoundsOfCells(cells_, plate, lens)
                                   : ClippedRect(image, plate, forms, frame, beyond));
+  };
+  if (frame.camera.surface)
+    for (const FocalBlock& block : frame.camera.surface->blocks())
+      add(BlockHalfPlanes(lf_camera_, frame.camera, block, forms));
+  for (const int plane_sign : {-1, 1}) {
+    if (frame.camera.surface) break;
+    if (!distorted && IsBelowZero(plane_sign * forms.plane, image)) continue;
+    add(PlateHalfPlanes(forms, frame.camera, plane_sign, kPlateMarginPx));
   }
   // ClippedRect() has added the neighbours on each side of a ray. BoundsOfCells() has not, and they
   // may lie beyond its rectangle.

@@ -26,6 +26,9 @@ enum class PixelReach {
 // sees, and the pixels that rays of the overlap need (`reach`). Empty if nothing of the image is in
 // the overlap; then no ray is accepted.
 //
+// With a focal surface, the region consists of blocks (FocalSurface::blocks()), each bounded by the
+// LF image of its corners at the smallest and the largest depth of its pieces.
+//
 // The rectangle contains the pixel of every accepted ray (doc/ray.md) for any position of the LF
 // camera: in front of, behind or in the lens plane, in the focus plane, or looking away from the
 // lens; also if the plate sees beyond the horizon of a tilted focus plane. The thesis projects the

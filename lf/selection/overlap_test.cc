@@ -4,7 +4,9 @@
 
 #include <tuple>
 
+#include "lf/camera/ray.h"
 #include "lf/camera/testing_scenes.h"
+#include "lf/selection/seen_region.h"
 #include "lf/selection/test_rays.h"
 
 namespace lf {
@@ -40,6 +42,51 @@ TEST(Overlap, NoContributingRayLiesOutsideTheRectangle) {
   // contributing rays.
   EXPECT_LE(selected_images, contributing_images + contributing_images * 3 / 100);
   EXPECT_LE(pixels, 2 * rays);
+}
+
+// Returns true if a piece of the frame's focal surface accepts the ray of a pixel.
+bool ContributesToPiece(const PinholeCamera& lf_camera, const DistortionMap& map,
+                        const RenderCamera& frame, int x, int y) {
+  bool any = false;
+  ForEachPiece(frame, [&](const RenderCamera& piece) {
+    if (any || !Contributes(lf_camera, map, piece, x, y)) return;
+    const Ray ray{lf_camera.CentreWorld(),
+                  lf_camera.cam_from_world.rotation.transpose() *
+                      (lf_camera.intrinsics.InverseMatrix() *
+                       *IdealPosition(lf_camera.intrinsics, map, x + 0.5, y + 0.5))};
+    const Vec2 element = *Project(piece.pinhole, *IntersectLine(ray, piece.focus_plane));
+    any = piece.window->Contains(static_cast<int>(element.x()), static_cast<int>(element.y()));
+  });
+  return any;
+}
+
+TEST(Overlap, NoRayOfAFocalSurfaceLiesOutsideTheRectangleOrTheSeenRegion) {
+  size_t rays = 0, pixels = 0, images = 0;
+  for (uint64_t seed = 0; seed < 600; ++seed) {
+    testing::CameraPair pair =
+        seed % 4 == 0 ? testing::RandomDistortedPair(seed / 4) : testing::RandomCameraPair(seed);
+    if (!testing::SetRandomSurface(40, 0.4, seed, &pair.render_camera)) continue;
+    const Intrinsics& k = pair.lf_camera.intrinsics;
+    std::vector<IdealCell> cells;
+    if (k.has_distortion()) cells = MakeIdealCells(k);
+    const PixelRect rect = ContributingRect(pair.lf_camera, pair.render_camera, cells);
+    const SeenRegion region(pair.render_camera);
+    const DistortionMap map(k.distortion);
+    const int step = k.has_distortion() ? 7 : 1;
+    bool any = false;
+    for (int y = static_cast<int>(seed) % step; y < k.height_px; y += step)
+      for (int x = static_cast<int>(seed / 7) % step; x < k.width_px; x += step)
+        if (ContributesToPiece(pair.lf_camera, map, pair.render_camera, x, y)) {
+          any = true;
+          rays += static_cast<size_t>(step) * static_cast<size_t>(step);
+          ASSERT_TRUE(rect.Contains(x, y)) << seed << ": " << x << ", " << y;
+        }
+    EXPECT_FALSE(any && region.Misses(pair.lf_camera.CentreWorld())) << seed;
+    images += any;
+    pixels += static_cast<size_t>(rect.pixel_count());
+  }
+  EXPECT_GT(images, 100u);
+  EXPECT_LE(pixels, 4 * rays);
 }
 
 TEST(Overlap, NoContributingRayOfADistortedImageLiesOutsideTheRectangle) {

@@ -44,9 +44,15 @@ SeenRegion::SeenRegion(const RenderCamera& frame)
       t_low = t_low.cwiseMin(t);
       t_high = t_high.cwiseMax(t);
       const Vec3 direction = right_ * t.x() + up_ * t.y() + forward_;
+      if (frame.surface) continue;
       const double q = frame.focus_plane.normal.dot(direction) / height;
       q_low_ = std::min(q_low_, q);
       q_high_ = std::max(q_high_, q);
+    }
+  if (frame.surface)
+    for (const FocalBlock& block : frame.surface->blocks()) {
+      q_low_ = std::min(q_low_, block.q_low);
+      q_high_ = std::max(q_high_, block.q_high);
     }
   if (!std::isfinite(q_low_) || !std::isfinite(q_high_)) {
     is_everything_ = true;

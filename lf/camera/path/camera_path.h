@@ -2,9 +2,11 @@
 // shutter the cameras of the instants at which each frame is exposed.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "lf/camera/path/focal_surface_source.h"
 #include "lf/camera/render_camera.h"
 #include "lf/core/check.h"
 #include "lf/core/ids.h"
@@ -38,6 +40,10 @@ struct CameraPath {
   Shutter shutter = {};
   // The cameras of the instants, [frame - 1][instant]; empty if there is no shutter.
   std::vector<RenderCamera> instants = {};
+  // The picture that the focal surfaces of the cameras are made of, if the file of the path names
+  // it. The cameras have surfaces only if the path was opened to be rendered
+  // (PathOptions::surface).
+  std::optional<FocalSurfaceSource> focal_surface = {};
 
   size_t frame_count() const { return cameras.size(); }
   // Returns the camera at the time of the frame, for metadata, previews and depths.

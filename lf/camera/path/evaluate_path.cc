@@ -233,6 +233,7 @@ Result<CameraPath> EvaluatePath(const PathDescription& path) {
   CameraPath evaluated;
   evaluated.fps = path.fps;
   evaluated.unit_m = path.unit_m;
+  evaluated.focal_surface = path.focal_surface;
   evaluated.cameras.reserve(static_cast<size_t>(path.frame_count));
   for (int frame = 1; frame <= path.frame_count; ++frame) {
     LF_ASSIGN_OR_RETURN(RenderCamera camera, CameraAt({path, frame, (frame - 1) / path.fps}));

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "lf/camera/path/camera_path.h"
+#include "lf/camera/path/focal_surface_source.h"
 #include "lf/camera/path/motion.h"
 #include "lf/camera/path/yaml_schema.h"
 #include "lf/camera/transmission.h"
@@ -63,6 +64,7 @@ struct PathDescription {
   double hood_distance_w = 0;
   double hood_diameter_w = 0;  // 0: there is no hood
   TransmissionPtr transmission;
+  std::optional<FocalSurfaceSource> focal_surface;
 };
 
 }  // namespace lf

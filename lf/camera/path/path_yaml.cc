@@ -104,6 +104,7 @@ PathDescription Describe(const YamlNode& root, std::optional<double> light_field
   ReadResolution(&file, &path);
   const YamlEntry* camera = file.Require("camera", "camera: {position: [0, 0, -0.4], ...}");
   const YamlEntry* lens = file.Require("lens", "lens: {aperture_diameter_mm: 4, ...}");
+  if (const YamlEntry* focus = file.Find("focus")) ReadFocusSection(*focus->value, &path, errors);
   QuantityReader quantities(file.Find("keyframes"), file.Find("accelerations"), path.unit_m,
                             errors);
   file.CheckKeys();

@@ -183,6 +183,28 @@ std::string ShapeText(const RenderCamera& camera) {
   return text;
 }
 
+// Returns the section of the focal surface.
+std::string FocusText(const FocalSurfaceSource& source) {
+  std::string quoted;
+  for (const char c : source.file) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  const bool is_depth = source.kind == FocalSurfaceSource::Kind::kDepths;
+  std::string text =
+      fmt::format("focus:\n  surface: \"{}\"\n  kind: {}\n", quoted, is_depth ? "depth" : "height");
+  if (source.scale != 1) text += fmt::format("  scale: {}\n", source.scale);
+  if (source.nodata) text += fmt::format("  nodata: {}\n", *source.nodata);
+  if (source.most_blur_px != 0.5) text += fmt::format("  blur: {}\n", source.most_blur_px);
+  if (is_depth) return text;
+  text += fmt::format("  origin: {}\n  cell: {}\n  right: {}\n  down: {}\n  up: {}\n",
+                      PointText(source.origin_w), source.right_w.norm(),
+                      PointText(source.right_w.normalized()), PointText(source.down_w.normalized()),
+                      PointText(source.up));
+  if (source.offset_w != 0) text += fmt::format("  offset: {}\n", source.offset_w);
+  return text;
+}
+
 std::vector<std::string> LostOf(const CameraPath& path) {
   const std::string shape = ShapeText(path.cameras[0]);
   size_t stretched = 0, shapes = 0;
@@ -213,6 +235,7 @@ Result<PathYaml> PathYamlOf(const CameraPath& path) {
   if (path.shutter.exists())
     yaml.text += fmt::format("shutter: {{angle_deg: {}, samples: {}}}\n", path.shutter.angle_deg,
                              path.shutter.samples);
+  if (path.focal_surface) yaml.text += FocusText(*path.focal_surface);
   AddSection("camera", camera, "", &yaml.text);
   AddSection("lens", lens, ShapeText(path.cameras[0]), &yaml.text);
   if (AnyMoves(camera) || AnyMoves(lens)) yaml.text += "keyframes:\n";

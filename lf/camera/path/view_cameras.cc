@@ -21,7 +21,13 @@ Result<CameraPath> PathOfViews(const CameraPath& path, int view_count,
     return InputError(
         "the path has a shutter, but a path of views has none, because its cameras jump from view "
         "to view: remove the shutter from the path");
+  if (path.focal_surface && path.focal_surface->kind == FocalSurfaceSource::Kind::kDepths)
+    return InputError(
+        "the path has a depth picture as its focal surface, which is seen from the camera of one "
+        "frame, not from those of its views: use a height map (focus.kind: height), or remove "
+        "'focus' from the path");
   CameraPath views;
+  views.focal_surface = path.focal_surface;
   views.fps = path.fps;
   views.unit_m = path.unit_m;
   views.cameras.reserve(path.frame_count() * static_cast<size_t>(view_count));

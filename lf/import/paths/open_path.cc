@@ -9,6 +9,7 @@
 
 #include "lf/camera/path/path_yaml.h"
 #include "lf/import/paths/chan_path.h"
+#include "lf/import/paths/focal_surface_file.h"
 #include "lf/import/paths/foreign_path.h"
 #include "lf/import/paths/frames_path.h"
 #include "lf/import/paths/nerfstudio_path.h"
@@ -64,6 +65,13 @@ PathOptions PathOptionsFor(const LightField& light_field, const fs::path& path) 
   return options;
 }
 
+PathOptions PathOptionsToRender(const LightField& light_field, const fs::path& path) {
+  PathOptions options = PathOptionsFor(light_field, path);
+  options.surface = PathOptions::Surface::kMake;
+  options.camera_distance_w = NearestCameraDistance(light_field);
+  return options;
+}
+
 Result<bool> IsPathYaml(const fs::path& path) {
   LF_ASSIGN_OR_RETURN(const PathPlace place, FindPath(path));
   return place.kind == PathKind::kYaml;
@@ -78,6 +86,13 @@ std::vector<fs::path> FilesOfPath(const fs::path& path) {
     files.push_back(path.parent_path() / picture);
     return Result<Transmission>(InputError(""));
   });
+  // The path cannot be read to its end if it has a transmission, so that it is read once more.
+  const auto whole = read ? read : ReadPathYaml(path, std::nullopt, PicturesBeside(path));
+  if (whole && whole->focal_surface)
+    for (uint32_t frame = 1; frame <= whole->frame_count(); ++frame) {
+      files.push_back(path.parent_path() / FileOfFrame(*whole->focal_surface, frame));
+      if (!HasFilePerFrame(*whole->focal_surface)) break;
+    }
   return files;
 }
 
@@ -93,6 +108,13 @@ Result<CameraPath> OpenPath(const fs::path& path, const PathOptions& options) {
     LF_ASSIGN_OR_RETURN(opened, CompletePath(std::move(read), path, options));
   }
   LF_RETURN_IF_ERROR(ReplaceQuantities(options, path, &opened));
+  if (opened.focal_surface && options.surface == PathOptions::Surface::kRefuse)
+    return InputError(fmt::format(
+        "{}: focus.surface: this program knows focus planes only, no focal surfaces: render the "
+        "path with lfrenderer, or remove 'focus' from the path to focus on lens.focus_distance",
+        path.string()));
+  if (options.surface == PathOptions::Surface::kMake)
+    LF_RETURN_IF_ERROR(MakeFocalSurfaces(path.parent_path(), options.camera_distance_w, &opened));
   return opened;
 }
 

@@ -31,6 +31,14 @@ struct PathOptions {
   // If it has a transforms.json, this file states the light field's world and instant-ngp's space.
   std::filesystem::path light_field = {};
 
+  // Use of the focal surface that the path may have (CameraPath::focal_surface).
+  //   kRefuse  it is an error, because the program knows focus planes only
+  //   kName    the path names it, but the cameras have none: to show or convert a path
+  //   kMake    the cameras get it (MakeFocalSurfaces()): to render the path
+  enum class Surface { kRefuse, kName, kMake };
+  Surface surface = Surface::kRefuse;
+  double camera_distance_w = 0;  // for kMake: NearestCameraDistance() of the light field
+
   // The members below replace what the file states.
   // Width and height; the field of view of the width is kept. 1920 x 1080 if nothing is stated.
   std::optional<std::array<int, 2>> resolution_px = {};
@@ -56,11 +64,14 @@ struct PathOptions {
 // Returns the options of a path for a light field that was opened from the file or folder `path`.
 PathOptions PathOptionsFor(const LightField& light_field, const std::filesystem::path& path);
 
+// Returns PathOptionsFor() a light field whose frames are rendered with their focal surfaces.
+PathOptions PathOptionsToRender(const LightField& light_field, const std::filesystem::path& path);
+
 // Returns true if a file is a path in our own YAML, or cannot be read. Errors as for OpenPath().
 Result<bool> IsPathYaml(const std::filesystem::path& path);
 
 // Returns the files that a path is read from, which no output may replace: itself and, if it is our
-// own YAML, the picture that lens.transmission names.
+// own YAML, the picture that lens.transmission names, and the pictures that focus.surface names.
 std::vector<std::filesystem::path> FilesOfPath(const std::filesystem::path& path);
 
 // Returns the cameras of a path, one for each frame. The form of the file is found by its content:
@@ -74,7 +85,8 @@ std::vector<std::filesystem::path> FilesOfPath(const std::filesystem::path& path
 // does not state, and the value that is used.
 //
 // kInput: the file cannot be read, or an error of the reader; a camera type other than perspective;
-// another unit_m than the light field's. kUsage: an option that the form of the file does not
+// another unit_m than the light field's; a focal surface (PathOptions::surface,
+// MakeFocalSurfaces()). kUsage: an option that the form of the file does not
 // allow.
 Result<CameraPath> OpenPath(const std::filesystem::path& path, const PathOptions& options);
 

@@ -107,7 +107,13 @@ Result<CameraPath> ResamplePath(const CameraPath& path, std::optional<double> fp
                                   new_fps, count, kMostFrames));
   // Distance of two new frames, in old frames.
   const double step = frame_count ? last / std::max(count - 1, 1.0) : path.fps / new_fps;
+  if (path.focal_surface && path.focal_surface->kind == FocalSurfaceSource::Kind::kDepths)
+    return InputError(
+        "the path has depth pictures as its focal surface, one for each of its frames as they are: "
+        "leave --fps and --frames out, use a height map (focus.kind: height), or remove 'focus' "
+        "from the path");
   CameraPath resampled;
+  resampled.focal_surface = path.focal_surface;
   resampled.fps = new_fps;
   resampled.unit_m = path.unit_m;
   resampled.cameras.reserve(static_cast<size_t>(count));

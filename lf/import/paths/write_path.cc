@@ -63,6 +63,7 @@ std::vector<std::string> LostIn(PathFormat format, const CameraPath& path) {
         "the shape of the opening, the hood and the tilt of the focus");
   else
     add(AnyCamera(path, HasLens), "the lens");
+  if (path.focal_surface) lost.emplace_back("the focal surface (only YAML keeps it)");
   if (path.shutter.exists())
     lost.emplace_back("the shutter, so that a moving camera does not blur its frames");
   return lost;
@@ -163,6 +164,15 @@ Result<std::vector<std::string>> WritePath(const CameraPath& path, const fs::pat
 Result<void> MovePath(const Similarity& b_from_a, const fs::path& file, CameraPath* path) {
   for (size_t i = 0; i < path->frame_count(); ++i)
     LF_RETURN_IF_ERROR(MoveCamera(b_from_a, file, i, &path->cameras[i]));
+  if (path->focal_surface) {
+    FocalSurfaceSource& source = *path->focal_surface;
+    source.origin_w = b_from_a.scale * (b_from_a.rotation * source.origin_w) + b_from_a.translation;
+    for (Vec3* const axis : {&source.right_w, &source.down_w})
+      *axis = b_from_a.scale * (b_from_a.rotation * *axis);
+    source.up = b_from_a.rotation * source.up;
+    source.scale *= b_from_a.scale;
+    source.offset_w *= b_from_a.scale;
+  }
   for (size_t i = 0; i < path->instants.size(); ++i)
     LF_RETURN_IF_ERROR(MoveCamera(b_from_a, file, i / path->shutter.samples, &path->instants[i]));
   return {};

@@ -12,7 +12,7 @@ std::vector<LfImageId> CamerasAroundLens(const ImageIndex& index, const RenderCa
   const Intrinsics& k = frame.pinhole.intrinsics;
   const std::optional<Vec3> focus = FocusPointOfElement(frame, 0.5 * k.width_px, 0.5 * k.height_px);
   if (!focus) return {};
-  RenderCamera middle = frame;
+  RenderCamera middle = FocusedAsAt(frame, 0.5 * k.width_px, 0.5 * k.height_px);
   middle.pinhole.intrinsics.cx_px -= 0.5 * k.width_px;
   middle.pinhole.intrinsics.cy_px -= 0.5 * k.height_px;
   middle.pinhole.intrinsics.width_px = middle.pinhole.intrinsics.height_px = 0;

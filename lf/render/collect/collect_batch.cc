@@ -48,7 +48,7 @@ PixelReach ReachOf(const RayReading& reading) {
 }
 
 size_t PlanBytes(Estimator estimator, bool has_distortion, int image_width, int image_height,
-                 int plate_width, int plate_height) {
+                 int plate_width, int plate_height, const FocalSurface* surface) {
   const bool is_nearest = estimator == Estimator::kNearest;
   // kBilinear may plan a finer plate, with at most twice the resolution of the LF image.
   const auto width =
@@ -58,7 +58,13 @@ size_t PlanBytes(Estimator estimator, bool has_distortion, int image_width, int 
   // A scanline has a few segments; they are shorter if lens distortion bends them. The borders of
   // tiles cut a segment into two or three pieces.
   const size_t segment_width = has_distortion ? 64 : 256;
-  return height * (2 + width / segment_width) *
+  // A piece of a focal surface has its own segments in each of its rows, as often as the plate has
+  // finer rows, or LF images have more scanlines.
+  const size_t of_pieces =
+      surface == nullptr ? 0
+                         : 2 * surface->row_count() *
+                               std::max<size_t>(1, height / static_cast<size_t>(plate_height));
+  return (height * (2 + width / segment_width) + of_pieces) *
          (sizeof(Segment) + (is_nearest ? 3 * sizeof(TilePiece) : 0));
 }
 
@@ -104,7 +110,8 @@ void BatchCollector::Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>
         exposure_count() * PlanBytes(reading_.estimator,
                                      light_field_.Camera(image.id).intrinsics.has_distortion(),
                                      image.Pixels().rect.width(), image.Pixels().rect.height(),
-                                     frames_[0].plate->width(), frames_[0].plate->height());
+                                     frames_[0].plate->width(), frames_[0].plate->height(),
+                                     frames_[0].camera.surface.get());
     if (is_guarded() && !light_field_.cameras[image.id.value].is_virtual)
       frame_bytes += DefocusBytes(image.Pixels().rect);
   }

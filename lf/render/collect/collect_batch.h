@@ -108,8 +108,10 @@ struct OtherItems {
 // ScatterPlan (kNearest) or GatherPlan (kBilinear). kNearest plans the scanlines of the LF image.
 // kBilinear plans the scanlines of the plate, or of a finer plate with at most twice the resolution
 // of the LF image.
+//   surface  the focal surface of the frame, each piece of which has segments of its own; null:
+//            there is none
 size_t PlanBytes(Estimator estimator, bool has_distortion, int image_width, int image_height,
-                 int plate_width, int plate_height);
+                 int plate_width, int plate_height, const FocalSurface* surface = nullptr);
 
 class FilteredImages;
 

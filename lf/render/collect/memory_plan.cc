@@ -59,7 +59,7 @@ struct ImageNeed {
 };
 
 ImageNeed NeedOf(const LightField& light_field, Estimator estimator, int plate_width,
-                 int plate_height, bool is_guarded, size_t instants) {
+                 int plate_height, bool is_guarded, size_t instants, const FocalSurface* surface) {
   // kBilinear needs RGB, so mosaics are demosaicked.
   const bool is_rgb =
       light_field.encoding.bayer == BayerPattern::kNone || estimator == Estimator::kBilinear;
@@ -79,7 +79,7 @@ ImageNeed NeedOf(const LightField& light_field, Estimator estimator, int plate_w
     need.kept_bytes = std::max(need.kept_bytes, pixels * bytes_per_pixel);
     need.decode_bytes = std::max(need.decode_bytes, pixels * decode_bytes_per_pixel);
     const size_t plan_bytes = instants * PlanBytes(estimator, k.has_distortion(), k.width_px,
-                                                   k.height_px, plate_width, plate_height);
+                                                   k.height_px, plate_width, plate_height, surface);
     need.plan_bytes = std::max(
         need.plan_bytes,
         is_guarded ? 2 * plan_bytes + DefocusBytes({0, 0, k.width_px, k.height_px}) : plan_bytes);
@@ -92,10 +92,10 @@ ImageNeed NeedOf(const LightField& light_field, Estimator estimator, int plate_w
 Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field,
                               const RayReading& reading, int plate_width, int plate_height,
                               size_t frame_count, int thread_count, size_t bytes_per_frame,
-                              bool is_guarded, size_t instants) {
+                              bool is_guarded, size_t instants, const FocalSurface* surface) {
   const size_t element_count = static_cast<size_t>(plate_width) * plate_height;
-  const ImageNeed need =
-      NeedOf(light_field, reading.estimator, plate_width, plate_height, is_guarded, instants);
+  const ImageNeed need = NeedOf(light_field, reading.estimator, plate_width, plate_height,
+                                is_guarded, instants, surface);
   MemoryPlan plan;
   const bool has_opacity = light_field.encoding.HasOpacity();
   const auto channels = static_cast<size_t>(PlateKindOf(light_field.encoding, is_guarded));

@@ -40,9 +40,11 @@ struct MemoryPlan {
 //                    plans of its own and its lens weights. With prefilters, there is memory for a
 //                    second filtered copy of each LF image, because elements may become wider than
 //                    the next step of the filters while a frame is exposed; a fast zoom needs more
+//   surface          the focal surface with the most rows of pieces; null: there is none
 Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field,
                               const RayReading& reading, int plate_width, int plate_height,
                               size_t frame_count, int thread_count, size_t bytes_per_frame = 0,
-                              bool is_guarded = false, size_t instants = 1);
+                              bool is_guarded = false, size_t instants = 1,
+                              const FocalSurface* surface = nullptr);
 
 }  // namespace lf

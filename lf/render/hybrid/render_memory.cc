@@ -31,13 +31,13 @@ Result<RenderMemory> PlanRenderMemory(size_t memory_bytes, RenderMode mode, size
                                       const LightField& light_field, const RayReading& reading,
                                       int plate_width, int plate_height, size_t frame_count,
                                       int thread_count, size_t measured_bytes, bool is_guarded,
-                                      size_t instants) {
+                                      size_t instants, const FocalSurface* surface) {
   RenderMemory memory;
   const bool has_plates = Collects(mode) || measured_bytes > 0;
   if (Rebins(mode)) LF_RETURN_IF_ERROR(SetAsideForRays(memory_bytes, mode, max_cells, &memory));
-  const Result<MemoryPlan> plan =
-      PlanMemory(memory_bytes - memory.rebin_bytes, light_field, reading, plate_width, plate_height,
-                 has_plates ? frame_count : 1, thread_count, measured_bytes, is_guarded, instants);
+  const Result<MemoryPlan> plan = PlanMemory(
+      memory_bytes - memory.rebin_bytes, light_field, reading, plate_width, plate_height,
+      has_plates ? frame_count : 1, thread_count, measured_bytes, is_guarded, instants, surface);
   if (!plan && memory.rebin_bytes > 0)
     return Error{plan.error().kind,
                  fmt::format("{} (in addition to {} MiB for {} rebinned rays: increase --memory, "

@@ -33,6 +33,7 @@ Result<RenderMemory> PlanRenderMemory(size_t memory_bytes, RenderMode mode, size
                                       const LightField& light_field, const RayReading& reading,
                                       int plate_width, int plate_height, size_t frame_count,
                                       int thread_count, size_t measured_bytes = 0,
-                                      bool is_guarded = false, size_t instants = 1);
+                                      bool is_guarded = false, size_t instants = 1,
+                                      const FocalSurface* surface = nullptr);
 
 }  // namespace lf

@@ -39,6 +39,11 @@ Result<void> CheckLenses(std::span<const RenderCamera> cameras, RenderMode mode)
           fmt::format("--mode {} cannot render a lens with a transmission (lens.transmission in "
                       "the path): use --mode collect, or leave the transmission out",
                       NameOf(mode)));
+    if (camera.surface)
+      return UsageError(
+          fmt::format("--mode {} cannot render a focal surface (focus.surface in the path): use "
+                      "--mode collect, or remove 'focus' from the path",
+                      NameOf(mode)));
   }
   return {};
 }

@@ -28,7 +28,8 @@ inline bool Rebins(RenderMode mode) { return mode != RenderMode::kCollect; }
 Result<void> CheckOpacity(const RadianceEncoding& encoding, RenderMode mode);
 
 // Returns kUsage if the mode rebins and a camera has a hood or a transmission, because rebinned
-// rays are queried at the same lens points for all elements.
+// rays are queried at the same lens points for all elements, or a focal surface, because they are
+// queried on one focus plane.
 Result<void> CheckLenses(std::span<const RenderCamera> cameras, RenderMode mode);
 
 // Returns kUsage if there is a shutter (CameraPath::shutter) but the mode rebins, or the frames are

@@ -31,6 +31,11 @@ inline constexpr const char* kInstantsTable =
     "create table instants (frame integer, instant integer, time_s real, camera blob, "
     "camera_distance real);";
 
+// Further table of a package whose path has focal surfaces: FocalSurface::Bytes() of each camera,
+// first of all frames (instant 0), then of all instants.
+inline constexpr const char* kSurfacesTable =
+    "create table focal_surfaces (frame integer, instant integer, pieces blob);";
+
 // Number of values that describe a frame's camera exactly, unless HasShape(camera): fx, fy,
 // cx, cy, skew, width, height; pose; radius, blades and rotation of the aperture; normal and offset
 // of the focus plane; time, focal length, sensor width, focus distance, horizontal and vertical

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "lf/light_field/model/brackets.h"
 #include "lf/render/package/package_file.h"
@@ -35,6 +38,7 @@ class Reader {
     LF_RETURN_IF_ERROR(ReadImages());
     LF_RETURN_IF_ERROR(ReadFrames());
     LF_RETURN_IF_ERROR(ReadShutter());
+    LF_RETURN_IF_ERROR(ReadSurfaces());
     return std::move(package_);
   }
 
@@ -50,6 +54,7 @@ class Reader {
   Result<void> ReadFrames();
   Result<void> ReadShutter();
   Result<void> ReadInstants();
+  Result<void> ReadSurfaces();
   Result<RenderCamera> CameraIn(const Statement& row, int column, const std::string& of) const;
   Result<void> ReadSurroundings(const std::vector<double>& numbers, int64_t frame);
   fs::path Folder() const;
@@ -310,6 +315,40 @@ Result<void> Reader::ReadInstants() {
   return {};
 }
 
+// Reads the focal surfaces of all frames and instants. A package has all or none of them.
+Result<void> Reader::ReadSurfaces() {
+  LF_ASSIGN_OR_RETURN(const bool has_surfaces, HasTable(&database_, "focal_surfaces"));
+  if (!has_surfaces) return {};
+  CameraPath& film = package_.path;
+  const auto samples = static_cast<size_t>(film.shutter.samples);
+  size_t count = 0;
+  LF_RETURN_IF_ERROR(ForEachRow(
+      database_, "select frame, instant, pieces from focal_surfaces order by rowid",
+      [&](const Statement& row) -> Result<void> {
+        const size_t i = count++, k = i - std::min(i, film.cameras.size());
+        if (i >= film.cameras.size() + film.instants.size())
+          return Damaged("it has more focal surfaces than cameras");
+        const bool is_frame = i < film.cameras.size();
+        LF_ASSIGN_OR_RETURN(const int64_t frame, row.Integer(0));
+        LF_ASSIGN_OR_RETURN(const int64_t instant, row.Integer(1));
+        if (frame != static_cast<int64_t>(is_frame ? i + 1 : k / samples + 1) ||
+            instant != static_cast<int64_t>(is_frame ? 0 : k % samples + 1))
+          return Damaged("its focal surfaces are not in the order of frames and instants");
+        LF_ASSIGN_OR_RETURN(const std::string_view pieces, row.Blob(2));
+        RenderCamera& camera = is_frame ? film.cameras[i] : film.instants[k];
+        const Intrinsics& plate = camera.pinhole.intrinsics;
+        Result<FocalSurface> surface =
+            FocalSurface::FromBytes(pieces, plate.width_px, plate.height_px);
+        if (!surface) return Damaged(fmt::format("frame {}: {}", frame, surface.error().message));
+        camera.surface = std::make_shared<const FocalSurface>(*std::move(surface));
+        return {};
+      }));
+  if (count != film.cameras.size() + film.instants.size())
+    return Damaged(fmt::format("it has {} focal surfaces, expected {}", count,
+                               film.cameras.size() + film.instants.size()));
+  return {};
+}
+
 Result<void> Reader::ReadFrames() {
   CameraPath& film = package_.path;
   if (const std::string& places = settings_.Text("transmission"); !places.empty()) {
@@ -356,10 +395,12 @@ bool IsPackageName(const fs::path& path) { return path.extension() == ".lfp"; }
 
 Result<Package> ReadPackage(const fs::path& path, const ReadPackageOptions& options) {
   const std::string tables = std::string(kSettingsTable) + kIntrinsicsTable + kPackageTables;
-  LF_ASSIGN_OR_RETURN(Database database,
-                      Database::Open(path, kPackageFormat,
-                                     {tables, tables + kVirtualTable, tables + kInstantsTable,
-                                      tables + kVirtualTable + kInstantsTable}));
+  std::vector<std::string> allowed;
+  for (const char* const of_virtual : {"", kVirtualTable})
+    for (const char* const of_instants : {"", kInstantsTable})
+      for (const char* const of_surfaces : {"", kSurfacesTable})
+        allowed.push_back(tables + of_virtual + of_instants + of_surfaces);
+  LF_ASSIGN_OR_RETURN(Database database, Database::Open(path, kPackageFormat, allowed));
   if (options.check_seal) LF_RETURN_IF_ERROR(CheckSeal(path, kPackageFormat.name));
   return Reader(std::move(database), path).Read();
 }

@@ -33,6 +33,7 @@ class Writer {
     if (package_.whole_virtual_count > 0) LF_RETURN_IF_ERROR(WriteVirtual());
     LF_RETURN_IF_ERROR(WriteFrames());
     if (package_.path.shutter.exists()) LF_RETURN_IF_ERROR(WriteInstants());
+    if (package_.path.cameras.front().surface) LF_RETURN_IF_ERROR(WriteSurfaces());
     return database_.Execute("commit");
   }
 
@@ -176,6 +177,28 @@ class Writer {
         LF_RETURN_IF_ERROR(insert.Run());
       }
     }
+    return {};
+  }
+
+  // Makes and writes the table that only packages of a path with focal surfaces have.
+  Result<void> WriteSurfaces() {
+    LF_RETURN_IF_ERROR(database_.Execute(kSurfacesTable));
+    LF_ASSIGN_OR_RETURN(Statement insert,
+                        database_.Prepare("insert into focal_surfaces values (?, ?, ?)"));
+    const CameraPath& path = package_.path;
+    const auto write = [&](const RenderCamera& camera, size_t frame,
+                           size_t instant) -> Result<void> {
+      LF_CHECK(camera.surface != nullptr);
+      const std::string bytes = camera.surface->Bytes();
+      insert.Bind(0, static_cast<int64_t>(frame)).Bind(1, static_cast<int64_t>(instant));
+      insert.BindBlob(2, bytes);
+      return insert.Run();
+    };
+    for (size_t i = 0; i < path.cameras.size(); ++i)
+      LF_RETURN_IF_ERROR(write(path.cameras[i], i + 1, 0));
+    const auto samples = static_cast<size_t>(path.shutter.samples);
+    for (size_t i = 0; i < path.instants.size(); ++i)
+      LF_RETURN_IF_ERROR(write(path.instants[i], i / samples + 1, i % samples + 1));
     return {};
   }
 

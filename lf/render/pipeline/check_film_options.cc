@@ -107,6 +107,12 @@ Result<void> CheckLensWeights(const Package& package, const FilmOptions& film,
 // Checks that the frames of a densified light field can be guarded.
 Result<void> CheckGuard(const Package& package, const FilmOptions& film) {
   constexpr const char* kRemedy = "add --no-guard";
+  for (const RenderCamera& camera : package.path.cameras)
+    if (camera.surface)
+      return UsageError(fmt::format(
+          "the light field is densified, and frames with a focal surface (focus.surface in the "
+          "path) cannot be guarded: {}",
+          kRemedy));
   if (film.Rebins())
     return UsageError(fmt::format(
         "--mode {}: the light field is densified, and rebinned rays cannot be guarded: use --mode "

@@ -24,6 +24,17 @@ Package WithRoomBesideEdges(Package package, const RayReading& reading) {
   return package;
 }
 
+// Returns the focal surface with the most rows of pieces; null if there is none.
+const FocalSurface* LargestSurface(const CameraPath& path, std::span<const FrameId> frames) {
+  const FocalSurface* largest = nullptr;
+  for (const FrameId frame : frames)
+    for (const RenderCamera& camera : path.Instants(frame))
+      if (camera.surface &&
+          (largest == nullptr || camera.surface->row_count() > largest->row_count()))
+        largest = camera.surface.get();
+  return largest;
+}
+
 }  // namespace
 
 FilmSetup::FilmSetup(Package package, const FilmOptions& film, const WorkOptions& work,
@@ -83,7 +94,8 @@ Result<void> FilmSetup::PlanMemory() {
       PlanRenderMemory(work_.memory_bytes, film_.mode, film_.rebin.max_cells, light_field(),
                        film_.reading, plate.width_px, plate.height_px, frames_.size(),
                        pool_.thread_count(), film_.MeasuresNoise() ? NoiseMoments::kMostBytes : 0,
-                       is_guarded(), static_cast<size_t>(path().shutter.samples)));
+                       is_guarded(), static_cast<size_t>(path().shutter.samples),
+                       LargestSurface(path(), frames_)));
   plan_ = memory.plan;
   max_cells_ = memory.max_cells;
   return {};

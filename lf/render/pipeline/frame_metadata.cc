@@ -142,6 +142,8 @@ ImageMetadata StandardAttributes(FrameId frame, const RenderCamera& camera, doub
 ImageMetadata FileMetadata(const PlateNotes& notes, FrameFormat format, ColourSpace colours) {
   ImageMetadata metadata = FrameMetadata(notes.frame, notes.camera, notes.rays, notes.estimator,
                                          notes.fps, notes.version, notes.shutter);
+  if (const std::string digest = notes.FocalSurface(); !digest.empty())
+    metadata.emplace_back("lf:focal_surface", digest);
   if (notes.places_done)
     metadata.emplace_back("lf:finished_early_before_place", static_cast<int>(*notes.places_done));
   if (!IsExr(format)) return metadata;

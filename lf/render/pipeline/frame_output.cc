@@ -29,7 +29,8 @@ Image<float> FocusDepths(const RenderCamera& camera) {
   Image<float> depths(sensor.width_px, sensor.height_px);
   for (int y = 0; y < depths.height(); ++y)
     for (int x = 0; x < depths.width(); ++x) {
-      const double inverse = Value(inverse_depth, x + 0.5, y + 0.5);
+      const double inverse = camera.surface ? camera.surface->PieceAt(x, y).At(x + 0.5, y + 0.5)
+                                            : Value(inverse_depth, x + 0.5, y + 0.5);
       depths.at(x, y) =
           inverse > 0 ? static_cast<float>(1 / inverse) : std::numeric_limits<float>::infinity();
     }
@@ -44,6 +45,11 @@ Result<void> WritePicture(const PlateNotes& notes, DevelopedFrame picture,
                           const std::function<bool()>& is_interrupted) {
   if (is_interrupted && is_interrupted())
     return Error{ErrorKind::kInterrupted, fmt::format("{}: interrupted", to.string())};
+  if (options.has_focus_depth && !notes.camera.surface && !notes.FocalSurface().empty())
+    return UsageError(fmt::format(
+        "{}: --z: the frame has a focal surface, which plates only name: leave --z out, or render "
+        "the frame as a whole",
+        to.string()));
   ConvertFromRec709(options.colours, &picture.rgb);
   if (options.has_focus_depth) picture.focus_depth_w = FocusDepths(notes.camera);
   return WriteFrame(to, picture, format, FileMetadata(notes, format, options.colours),

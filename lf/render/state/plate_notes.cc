@@ -190,6 +190,8 @@ PlateEntries TextOf(const PlateNotes& notes) {
     text.emplace_back("sheet.lens_shape", words({camera.aperture.ratio, camera.aperture.roundness,
                                                  camera.hood.distance_w, camera.hood.radius_w}));
   if (camera.transmission) text.emplace_back("sheet.transmission", camera.transmission->Text());
+  if (const std::string digest = notes.FocalSurface(); !digest.empty())
+    text.emplace_back("sheet.focal_surface", digest);
   if (notes.shutter)
     text.emplace_back("sheet.shutter",
                       fmt::format("{} {} {}", notes.shutter->shutter.angle_deg,
@@ -253,6 +255,12 @@ Result<PlateNotes> PlateNotesOf(const PlateEntries& entries, int width_px, int h
       notes.camera.transmission = std::make_shared<const Transmission>(*transmission);
     else
       reader.Fault("sheet.transmission", transmission.error().message);
+  }
+  if (const std::string* const digest = FindEntry(entries, "sheet.focal_surface")) {
+    const auto is_digit = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
+    notes.focal_surface = *digest;
+    if (digest->size() != 16 || !std::all_of(digest->begin(), digest->end(), is_digit))
+      reader.Fault("sheet.focal_surface", "16 hexadecimal digits");
   }
   const std::vector<double> focus = reader.Numbers("sheet.focus_plane", 4);
   notes.camera.focus_plane = {Vec3Of(focus), focus[3]};

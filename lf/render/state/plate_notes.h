@@ -25,6 +25,12 @@ struct PlateNotes {
   RenderCamera camera;
   double fps = 0;
   std::optional<FrameShutter> shutter = std::nullopt;  // unset if the path has none
+  // FocalSurface::Digest() of the frame's focal surface, in notes that were read from a plate,
+  // which names the surface but does not hold it (camera.surface is null). Empty: there is none.
+  std::string focal_surface = {};
+  std::string FocalSurface() const {
+    return camera.surface ? camera.surface->Digest() : focal_surface;
+  }
   Estimator estimator = Estimator::kBilinear;
   std::string version;  // version of the program
   FrameRays rays;       // rays in the plate

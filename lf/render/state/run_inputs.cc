@@ -78,6 +78,7 @@ std::string CameraHash(const RenderCamera& camera) {
     hasher.Add(camera.hood.radius_w);
   }
   if (camera.transmission) hasher.Add(camera.transmission->Text());
+  if (camera.surface) hasher.Add("surface " + camera.surface->Digest());
   hasher.AddMatrix(camera.focus_plane.normal);
   hasher.Add(camera.focus_plane.offset_w);
   return hasher.Text();
@@ -144,8 +145,9 @@ RunInputs InputsOfCamera(FrameId frame, const RenderCamera& camera,
       {"frame.blades", fmt::format("{}", camera.aperture.blades)},
       {"frame.focus_distance_w", fmt::format("{}", camera.focus_distance_w)},
       {"frame.focus_plane",
-       fmt::format("{} {}", Text(camera.focus_plane.normal), camera.focus_plane.offset_w)},
-      {"frame.camera", CameraHash(camera)}};
+       fmt::format("{} {}", Text(camera.focus_plane.normal), camera.focus_plane.offset_w)}};
+  if (camera.surface) inputs.emplace_back("frame.focal_surface", camera.surface->Digest());
+  inputs.emplace_back("frame.camera", CameraHash(camera));
   if (shutter)
     inputs.emplace_back("frame.shutter",
                         fmt::format("{} degrees, {} samples ({})", shutter->shutter.angle_deg,

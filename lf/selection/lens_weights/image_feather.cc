@@ -23,7 +23,16 @@ double FeatherAt(const Intrinsics& lf_image, double x_px, double y_px) {
 }
 
 ImageFeather::ImageFeather(const PinholeCamera& lf_camera, const RenderCamera& frame)
-    : intrinsics_(lf_camera.intrinsics) {
+    : intrinsics_(lf_camera.intrinsics),
+      lf_camera_(lf_camera),
+      frame_(frame),
+      maps_(MapsOf(lf_camera, frame)) {
+  constexpr double kRounding_px = 1e-6;
+  border_px_ =
+      0.5 + kRounding_px + kFeatherShare * std::min(intrinsics_.width_px, intrinsics_.height_px);
+}
+
+ImageFeather::Maps ImageFeather::MapsOf(const PinholeCamera& lf_camera, const RenderCamera& frame) {
   const PinholeCamera& lens = frame.pinhole;
   const Vec3& n = frame.focus_plane.normal;
   const Vec3 offset = lf_camera.CentreWorld() - lens.CentreWorld();
@@ -34,29 +43,37 @@ ImageFeather::ImageFeather(const PinholeCamera& lf_camera, const RenderCamera& f
   // and c' the centre of the lens: X - c' = distance (direction e) / n.(direction e), and
   // X - c = X - c' - offset. If X is in front of the lens, to_focus e = (X - c) |n.(direction e)|.
   const Mat3 to_focus = sign * (distance * Mat3::Identity() - offset * n.transpose()) * direction;
-  to_focus_ = lf_camera.cam_from_world.rotation * to_focus;
-  to_pixel_ = intrinsics_.Matrix() * to_focus_;
-  constexpr double kRounding_px = 1e-6;
-  border_px_ =
-      0.5 + kRounding_px + kFeatherShare * std::min(intrinsics_.width_px, intrinsics_.height_px);
-  before_lens_ = (sign * n.transpose() * direction).transpose();
-  runs_forward_ = (lens.ForwardWorld().transpose() * to_focus).transpose();
+  Maps maps;
+  maps.to_focus = lf_camera.cam_from_world.rotation * to_focus;
+  maps.to_pixel = lf_camera.intrinsics.Matrix() * maps.to_focus;
+  maps.before_lens = (sign * n.transpose() * direction).transpose();
+  maps.runs_forward = (lens.ForwardWorld().transpose() * to_focus).transpose();
+  return maps;
 }
 
 void ImageFeather::OfRow(int x, int y, int count, uint16_t* feather) const {
   const bool is_distorted = intrinsics_.has_distortion();
   if (is_distorted) std::call_once(map_is_made_, [this] { map_.emplace(intrinsics_.distortion); });
+  Maps of_piece;
+  const FocalPiece* piece = nullptr;
   for (int i = 0; i < count; ++i) {
     const Vec3 e(x + i * kWeightBlock, y, 1);
+    if (frame_.surface && (piece == nullptr || piece != &frame_.surface->PieceAt(e.x(), e.y()))) {
+      piece = &frame_.surface->PieceAt(e.x(), e.y());
+      RenderCamera camera = FocusedAsAt(frame_, e.x(), e.y());
+      of_piece = MapsOf(lf_camera_, camera);
+    }
+    const Maps& maps = frame_.surface ? of_piece : maps_;
     feather[i] = 0;
-    if (!(before_lens_.dot(e) > 0)) continue;
-    const double side = runs_forward_.dot(e) < 0 ? -1 : 1;
+    if (!(maps.before_lens.dot(e) > 0)) continue;
+    const double side = maps.runs_forward.dot(e) < 0 ? -1 : 1;
     // Most positions are farther inside the LF image than its feathered border. This test is five
     // times as fast as At().
-    if (!is_distorted && IsInside(side * (to_pixel_ * e)))
+    if (!is_distorted && IsInside(side * (maps.to_pixel * e)))
       feather[i] = kWholeFeather;
     else
-      feather[i] = static_cast<uint16_t>(std::lround(kWholeFeather * At(side * (to_focus_ * e))));
+      feather[i] =
+          static_cast<uint16_t>(std::lround(kWholeFeather * At(side * (maps.to_focus * e))));
   }
 }
 
@@ -64,14 +81,36 @@ void ImageFeather::OfRow(int x, int y, int count, uint16_t* feather) const {
 // quadrilateral in the LF image, which is within any rectangle that contains its corners.
 bool ImageFeather::IsWhole(const PixelRect& rect) const {
   if (intrinsics_.has_distortion()) return false;
+  if (!frame_.surface) return IsWhole(rect, maps_);
+  // Corners of blocks have the feather of their own piece. All pieces of the rectangle are between
+  // the depths of its blocks of pieces; at both depths, the points are in a convex region.
+  const Intrinsics& plate = frame_.pinhole.intrinsics;
+  if (Intersection(rect, {0, 0, plate.width_px, plate.height_px}) != rect) return false;
+  double q_low = INFINITY, q_high = 0;
+  for (const FocalBlock& block : frame_.surface->blocks())
+    if (block.elements.x_begin <= rect.x_end && block.elements.x_end >= rect.x_begin &&
+        block.elements.y_begin <= rect.y_end && block.elements.y_end >= rect.y_begin) {
+      q_low = std::min(q_low, block.q_low);
+      q_high = std::max(q_high, block.q_high);
+    }
+  if (!(q_low <= q_high)) return false;
+  for (const double q : {q_low, q_high}) {
+    RenderCamera at_depth = frame_;
+    at_depth.focus_plane = PlaneOfPiece(frame_.pinhole, {rect, {0, 0, q}});
+    if (!IsWhole(rect, MapsOf(lf_camera_, at_depth))) return false;
+  }
+  return true;
+}
+
+bool ImageFeather::IsWhole(const PixelRect& rect, const Maps& maps) const {
   double side = 0;
   for (const int y : {rect.y_begin, rect.y_end})
     for (const int x : {rect.x_begin, rect.x_end}) {
       const Vec3 e(x, y, 1);
-      const double forward = runs_forward_.dot(e);
-      if (!(before_lens_.dot(e) > 0) || forward * side < 0) return false;
+      const double forward = maps.runs_forward.dot(e);
+      if (!(maps.before_lens.dot(e) > 0) || forward * side < 0) return false;
       side = forward < 0 ? -1 : 1;
-      if (!IsInside(side * (to_pixel_ * e))) return false;
+      if (!IsInside(side * (maps.to_pixel * e))) return false;
     }
   return true;
 }

@@ -36,7 +36,7 @@ class ImageFeather {
 
   // Returns true only if OfRow() gives kWholeFeather at all positions of the plate in `rect`,
   // borders included. May return false although it gives this, always with lens distortion. Takes
-  // about 50 ns.
+  // about 50 ns, or half a microsecond with a focal surface.
   bool IsWhole(const PixelRect& rect) const;
 
  private:
@@ -51,12 +51,20 @@ class ImageFeather {
 
   Intrinsics intrinsics_;
   double border_px_;  // width of the feathered border, and a little more
-  // The following are linear in the position e = (x, y, 1) on the plate. X is the focus point of
-  // the position, c the centre of the LF camera.
-  Mat3 to_focus_;      // times e: X - c in axes of the LF camera, times a positive factor
-  Mat3 to_pixel_;      // times e: homogeneous position of X in the LF image, without distortion
-  Vec3 before_lens_;   // times e: > 0 if X is in front of the lens
-  Vec3 runs_forward_;  // times e: >= 0 if X - c points forward; otherwise c - X does
+  // Linear maps of the position e = (x, y, 1) on the plate, for one focus plane. X is the focus
+  // point of the position, c the centre of the LF camera.
+  struct Maps {
+    Mat3 to_focus;      // times e: X - c in axes of the LF camera, times a positive factor
+    Mat3 to_pixel;      // times e: homogeneous position of X in the LF image, without distortion
+    Vec3 before_lens;   // times e: > 0 if X is in front of the lens
+    Vec3 runs_forward;  // times e: >= 0 if X - c points forward; otherwise c - X does
+  };
+  static Maps MapsOf(const PinholeCamera& lf_camera, const RenderCamera& frame);
+  bool IsWhole(const PixelRect& rect, const Maps& maps) const;
+
+  PinholeCamera lf_camera_;
+  RenderCamera frame_;
+  Maps maps_;  // of the whole plate, unless the frame has a focal surface
   mutable std::once_flag map_is_made_;
   // Made by the first call of OfRow() if the LF camera has lens distortion, because making it is
   // slow.

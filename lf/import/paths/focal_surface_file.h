@@ -1,0 +1,49 @@
+// Reads depth pictures and height maps, and makes the focal surfaces of a path of them.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "lf/camera/path/camera_path.h"
+#include "lf/camera/path/focal_surface_source.h"
+#include "lf/camera/render_camera.h"
+#include "lf/core/image.h"
+#include "lf/core/result.h"
+#include "lf/light_field/model/light_field.h"
+
+namespace lf {
+
+// Reads a picture of one number for each place: the channel Z of an EXR file, the only channel of
+// any other file of ReadImage(), or a PFM file with one channel ("Pf"). Integers stay as stored:
+// 0 to 255 or 65535. Returns [height][width], from the uppermost row on.
+// kInput: the file cannot be read, has no such channel, or more than 2^28 places.
+Result<Image<float>> ReadSurfaceFile(const std::filesystem::path& file);
+
+// Reads a PFM file of one channel; messages call it `name`. kInput: it is damaged, truncated, or of
+// another kind.
+Result<Image<float>> ParsePfm(std::string_view bytes, const std::string& name);
+
+// Returns the inverse depth, along the optical axis of the camera, at which the line through the
+// centre of each element first meets the surface of a height map from above. 0: it meets the
+// surface nowhere.
+//   heights  [row][column], values of the file; NaN and infinities are unknown
+Image<float> InverseDepthsOfHeights(const PinholeCamera& camera, const Image<float>& heights,
+                                    const FocalSurfaceSource& source);
+
+// Returns the median distance from an LF camera to the nearest other one, in world units; 0 if
+// there are less than two. Takes some LF cameras as a sample.
+double NearestCameraDistance(const LightField& light_field);
+
+// Gives each camera of the path, and each instant of its shutter, the surface that
+// path->focal_surface describes.
+//   folder             of the path, to which names of files are relative
+//   camera_distance_w  between neighbouring LF cameras: the blur is that of a lens that is at least
+//                      two of them wide, because narrower lenses take light from so many
+// kInput: ReadSurfaceFile(); a depth picture that has not the shape of the frame, or holds no
+// depth; a height map that no element sees; a shutter and a depth picture.
+Result<void> MakeFocalSurfaces(const std::filesystem::path& folder, double camera_distance_w,
+                               CameraPath* path);
+
+}  // namespace lf

@@ -1,0 +1,190 @@
+#!/usr/bin/python3
+"""Tests frames with a focal surface: they are those of true lenses, whatever makes them, and other ways refuse it.
+
+usage: focal_surface_test.py LFSYNTH LFRENDERER LFPREPROCESSOR LFMERGE LFPATH LFFOCUS
+"""
+import os
+import sys
+import tempfile
+import unittest
+
+os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # must be set before cv2 is imported
+import cv2
+import numpy as np
+
+from program_test_case import ProgramTestCase
+
+SYNTH = RENDERER = PREPROCESSOR = MERGE = PATHS = FOCUS = None
+WIDTH, HEIGHT, FOCAL_PX, PLACE, TARGET = 160, 106, 160 * 50 / 36, (0, -0.125, -0.799), (0, -0.085, 0)
+PATH = """format: lfpath 1
+fps: 25
+frames: {frames}
+resolution: [160, 106]
+{more}
+camera: {{focal_length_mm: 50, position: [0, -0.125, -0.799], look_at: [0, -0.085, 0]}}
+lens: {{aperture_diameter: {aperture}, focus_distance: 0.62, focus_tilt_deg: {{horizontal: {tilt}, vertical: 0}}}}
+{focus}
+"""
+
+
+def picture(file):
+    return np.clip(cv2.imread(str(file), cv2.IMREAD_UNCHANGED)[..., :3], 0, 1)
+
+
+def psnr_db(a, b):
+    return -10 * np.log10(max(1e-12, np.mean((a.astype(float) - b) ** 2)))
+
+
+def write_pfm(file, depths):
+    height, width = depths.shape
+    file.write_bytes(f"Pf\n{width} {height}\n-1\n".encode() + depths[::-1].astype("<f4").tobytes())
+
+
+def wavy_depths(phase=0):
+    """Returns depths that rise and fall, with a step in the middle."""
+    y, x = np.mgrid[0:HEIGHT, 0:WIDTH] + 0.5
+    return 1 / (1.55 + 0.25 * np.sin(x / 25 + phase) * np.cos(y / 31) + np.where(x > 90, 0.2, 0))
+
+
+class FocalSurfaceTest(ProgramTestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.captured = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.captured.cleanup)
+
+    @property
+    def field(self):
+        field = os.path.join(self.captured.name, "field")
+        if not os.path.exists(field):
+            self.succeeds(SYNTH, "still-life", "-o", field, "--count", 225, "--size", "320x212", "--spacing", 0.0032,
+                          "-q")
+        return field
+
+    def path(self, name, focus="", aperture=0.04, tilt=0, more="", frames=1):
+        file = self.folder / f"{name}.yaml"
+        file.write_text(PATH.format(focus=focus, aperture=aperture, tilt=tilt, more=more, frames=frames))
+        return file
+
+    def depths(self, name="z.pfm", depths=None):
+        write_pfm(self.folder / name, wavy_depths() if depths is None else depths)
+        return f"focus: {{surface: {name}, kind: depth}}"
+
+    def frames(self, source, *options):
+        out = self.folder / f"frames-{len(list(self.folder.iterdir()))}"
+        self.succeeds(RENDERER, *source, "-o", out, "--format", "exr-float", "--no-contact-sheet", "-q", *options)
+        return out
+
+    def frame(self, path, *options):
+        return self.frames([self.field, path], *options) / "frame_0001.exr"
+
+    def truth(self, path):
+        out = self.folder / f"truth-{path.stem}"
+        self.succeeds(SYNTH, "still-life", "-o", out, "--calibration-only", "--truth", path, "--truth-samples", 400,
+                      "-q")
+        return picture(out / "truth/frame_0001.exr")
+
+    def test_frames_are_those_of_true_lenses_that_focus_each_element_on_its_depth(self):
+        path = self.path("wavy", self.depths())
+        truth = self.truth(path)
+        right = psnr_db(picture(self.frame(path)), truth)
+        self.assertGreater(right, 40)
+        self.assertLess(psnr_db(picture(self.frame(self.path("flat"))), truth), right - 6)
+        for options, least in ((["--lens-weights", "none"], 36), (["--estimator", "nearest"], 28),
+                               (["--filter", "bicubic"], 38), (["--filter", "bilinear"], 36)):
+            with self.subTest(options):
+                self.assertGreater(psnr_db(picture(self.frame(path, *options)), truth), least)
+
+    def test_a_plane_as_depths_is_the_focus_plane(self):
+        x = np.arange(WIDTH) + 0.5
+        inverse = (1 - np.tan(np.radians(20)) * (x - WIDTH / 2) / FOCAL_PX) / 0.62
+        tilted = self.depths("tilted.pfm", np.tile(1 / inverse, (HEIGHT, 1)))
+        flat = self.depths("plane.pfm", np.full((HEIGHT, WIDTH), 0.62))
+        for name, focus, tilt in (("tilted", tilted, 20), ("plane", flat, 0)):
+            by_plane = picture(self.frame(self.path(name, tilt=tilt)))
+            by_depths = picture(self.frame(self.path(f"{name}-depths", focus)))
+            self.assertGreater(psnr_db(by_depths, by_plane), 60)
+
+    def test_seams_between_pieces_are_no_larger_than_the_picture_itself_allows(self):
+        # A smooth surface of many pieces: no jump from one element to the next may exceed that of the true lens
+        # by more than the error of the whole frame.
+        y, x = np.mgrid[0:HEIGHT, 0:WIDTH] + 0.5
+        focus = self.depths("smooth.pfm", 1 / (1.5 + 0.3 * np.sin(x / 30) * np.cos(y / 25)))
+        path = self.path("smooth", focus)
+        frame, truth = picture(self.frame(path)), self.truth(path)
+        jump = np.abs(np.diff(frame, axis=1) - np.diff(truth, axis=1)).max(axis=(0, 2))
+        self.assertLess(np.percentile(jump, 90), 0.25)
+        self.assertGreater(psnr_db(frame, truth), 38)
+
+    def test_any_cut_of_the_work_gives_the_same_bits(self):
+        focus = [self.depths(f"z_{n:04}.pfm", wavy_depths(n)) for n in (1, 2)] and \
+            "focus: {surface: z_%04d.pfm, kind: depth}"
+        path = self.path("film", focus, frames=2)
+        whole = self.frames([self.field, path])
+        frames = [(whole / f"frame_{n:04}.exr").read_bytes() for n in (1, 2)]
+        self.assertNotEqual(frames[0], frames[1])
+        single = self.frames([self.field, path], "--threads", 1)
+        self.assertEqual((single / "frame_0002.exr").read_bytes(), frames[1])
+        packages = self.folder / "packages"
+        self.succeeds(PREPROCESSOR, self.field, path, "-o", packages, "--packages", 2, "-q")
+        for n in (1, 2):
+            of_package = self.frames([sorted(packages.glob("*.lfp"))[n - 1]])
+            self.assertEqual((of_package / f"frame_{n:04}.exr").read_bytes(), frames[n - 1])
+        shards = [self.frames([self.field, path], "--shard", f"{k}/2") for k in (1, 2)]
+        merged = self.folder / "merged"
+        self.succeeds(MERGE, *shards, "-o", merged, "--format", "exr-float", "-q")
+        self.assertEqual(picture(merged / "frame_0002.exr").tobytes(), picture(whole / "frame_0002.exr").tobytes())
+        self.fails(2, ["--z", "focal surface"], MERGE, *shards, "-o", self.folder / "with-z", "--z", "-q")
+        # A resumed render must have the same surface.
+        write_pfm(self.folder / "z_0002.pfm", wavy_depths(5))
+        result = self.call(RENDERER, self.field, path, "-o", whole, "--format", "exr-float", "--no-contact-sheet",
+                           "--resume", "-q")
+        self.assertNotEqual(result.returncode, 0)
+        self.assertIn("focal_surface", result.stderr)
+
+    def test_z_is_the_depth_of_the_surface(self):
+        path = self.path("z", self.depths())
+        frame = self.frame(path, "--z")
+        again = self.path("again", f"focus: {{surface: {frame}, kind: depth}}")
+        self.assertGreater(psnr_db(picture(self.frame(again)), picture(frame)), 45)
+
+    def test_a_height_map_is_sharp_where_the_table_is(self):
+        # The table of the scene is the plane y = 0 of the world, whose y axis points down.
+        focus = ("focus: {surface: table.pfm, kind: height, origin: [-5, 0, 5], cell: 1, right: [1, 0, 0], "
+                 "down: [0, 0, -1], up: [0, -1, 0]}")
+        write_pfm(self.folder / "table.pfm", np.zeros((11, 11)))
+        path = self.path("table", focus)
+        truth = self.truth(path)
+        self.assertGreater(psnr_db(picture(self.frame(path)), truth), 38)
+        with_shutter = self.path("open", focus, more="shutter: {angle_deg: 180, samples: 3}")
+        self.assertGreater(psnr_db(picture(self.frame(with_shutter)), truth), 38)
+
+    def test_what_knows_planes_only_refuses_a_surface(self):
+        path = self.path("refused", self.depths())
+        for mode in ("rebin", "hybrid"):
+            self.fails(2, ["focal surface", "--mode collect"], RENDERER, self.field, path, "-o", self.folder / "f",
+                       "--mode", mode)
+        for command in (["stack", "--planes", 3], ["depth"]):
+            self.fails(3, ["focus.surface", "lfrenderer"], FOCUS, command[0], self.field, path, "-o",
+                       self.folder / "f.exr", *command[1:])
+
+    def test_lfpath_keeps_the_surface_in_yaml_only(self):
+        path = self.path("kept", self.depths())
+        (self.folder / "below").mkdir()
+        to = self.folder / "below" / "kept.yaml"
+        self.succeeds(PATHS, path, "-o", to, "-q")
+        self.assertIn("../z.pfm", to.read_text())
+        self.assertGreater(psnr_db(picture(self.frame(to)), picture(self.frame(path))), 80)
+        result = self.call(PATHS, path, "-o", self.folder / "kept.json")
+        self.assertIn("focal surface", result.stderr)
+        self.fails(3, ["depth picture", "height map"], PATHS, path, "-o", self.folder / "s.yaml", "--stereo-mm", 60)
+
+    def test_outputs_do_not_replace_the_surface(self):
+        path = self.path("own", self.depths("frame_0001.exr"))
+        result = self.call(RENDERER, self.field, path, "-o", self.folder, "--overwrite", "-q")
+        self.assertNotEqual(result.returncode, 0)
+        self.assertTrue((self.folder / "frame_0001.exr").read_bytes().startswith(b"Pf"))
+
+
+if __name__ == "__main__":
+    SYNTH, RENDERER, PREPROCESSOR, MERGE, PATHS, FOCUS = sys.argv[1:7]
+    unittest.main(argv=sys.argv[:1] + sys.argv[7:])
