@@ -253,7 +253,8 @@ class PlantedFaults(unittest.TestCase):
         self.plant("lf/README.md", "| `core` | value | a task |\n")
         self.plant("lf/core/CMakeLists.txt", "lf_folder(core SOURCES a.cc)\n")
         self.plant("lf/optics/camera/CMakeLists.txt", "lf_folder(optics/camera DEPENDS core)\n")
-        names = ("rooms", "folders", "programs", "common-options", "exit-codes", "exit-codes-in-help")
+        names = ("rooms", "folders", "programs", "common-options", "exit-codes", "exit-codes-in-help",
+                 "format-versions")
         self.expect("check_house.py", "tables", faults=[
             "lf/README.md: no row of the table is that of lf/optics/camera",
             *(f"scripts/doc_tables.py: no page shows the table {name}" for name in names)])
