@@ -28,7 +28,7 @@ STATED_BY_DEP5 = {".md", ".json", ".txt", ".yaml", ".jpg", ".png", ".webp", ".sv
                   ".lfs", ".lfp", ".chan", ".typed", ".supp", ".cff", ".1"}
 # Settings of tools and other files whose names have no end, or none that tells their form.
 NAMES_IN_DEP5 = {"VERSION", ".clang-format", ".clang-tidy", ".editorconfig", ".flake8", ".gitignore", ".gitattributes",
-                 ".npmrc", ".prettierignore", ".containerignore"}
+                 ".npmrc", ".prettierignore", ".dockerignore"}
 # Folders whose files are inputs of tests, licences, or files whose form other programs prescribe.
 FOLDERS_IN_DEP5 = ("fuzz/corpus", "LICENSES", ".reuse", "debian")
 MUST_BE_FIRST = re.compile(r"#!|<!doctype", re.I)
