@@ -35,7 +35,7 @@ case $what in
     options=(-DLF_VISUALIZER=ON -DLF_TESTS=ON -DLF_PYTHON=ON)
     ;;
   *)
-    sed -n '4,6s/^# //p' scripts/build.sh >&2
+    sed -n '/^# usage:/,/^#$/s/^# //p' scripts/build.sh >&2
     exit 2
     ;;
 esac

@@ -11,7 +11,7 @@
 set -euo pipefail
 
 if ((EUID != 0)) || ! command -v debootstrap >/dev/null || (($# == 0)); then
-  sed -n '2,/^set/s/^# \{0,1\}//p' "$0" >&2
+  sed -n '/^# usage:/,/^set/s/^# \{0,1\}//p' "$0" >&2
   echo "error: needs a FOLDER, root, and the package debootstrap" >&2
   exit 2
 fi

@@ -17,6 +17,7 @@ usage: check_house.py REPOSITORY CHECK
   headers  a header says "Internal to" if its folder lists it as INTERNAL, and only then; installed headers
            include no internal ones (header_rules.py)
   comments comments begin and end as doc/style.md requires (comment_rules.py)
+  version  VERSION, CHANGELOG.md, CITATION.cff and the add-on of Blender state one version (version_rules.py)
   commits  the commits that tables were made from are ancestors of HEAD
   messages subjects and bodies of commits are as doc/style.md requires (commit_rules.py)
 
@@ -35,6 +36,7 @@ import folder_list
 import header_rules
 import mutant_list
 import table_rules
+import version_rules
 
 SOURCES = {".cc", ".h", ".c", ".py", ".sh", ".cmake", ".txt", ".ts", ".mjs", ".css", ""}
 LINE_LIMIT = 500
@@ -179,6 +181,10 @@ def check_headers(root, files):
     return header_rules.check_headers(root, text_lines)
 
 
+def check_version(root, files):
+    return version_rules.faults_of(root)
+
+
 def check_commits(root, files):
     return table_rules.check_commits(root, files, text_lines)
 
@@ -189,7 +195,7 @@ def check_messages(root, files):
 
 CHECKS = {"lengths": check_lengths, "paths": check_paths, "links": check_links,
           "pages": check_pages, "tables": check_tables, "mutants": check_mutants,
-          "headers": check_headers, "comments": check_comments, "commits": check_commits,
+          "headers": check_headers, "comments": check_comments, "version": check_version, "commits": check_commits,
           "messages": check_messages}
 OF_HISTORY = {"commits", "messages"}
 SKIPPED = 77

@@ -1,12 +1,15 @@
 """The rules for how a comment begins and ends (doc/style.md), and the house check that no comment breaks them.
 
-A comment is a run of whole lines of // or #, a comment behind code, or the first line of a Python docstring.
+A comment is a run of whole lines of // or #, a comment behind code, or the first line of a Python docstring. The line
+that states the licence (licence_headers.py) belongs to no comment.
 """
 import pathlib
 import re
 
 MARKS = {".cc": "//", ".h": "//", ".c": "//", ".ts": "//", ".mjs": "//", ".py": "#", ".sh": "#", ".cmake": "#",
          ".txt": "#"}
+# Begins the statement of a licence. In two parts, so that this line states none.
+LICENCE_TAG = "SPDX-License-" "Identifier:"
 OPENING = re.compile(r"(Of|Those|That|What|Where|Whether|The same|So|Else)\b(?! (is|are)\?)")
 ENDING = re.compile(r"\b(too|as well|alike)[.:;]?$")
 
@@ -16,7 +19,7 @@ def comments_of(lines: list, mark: str):
     begin, run = 0, []
     for number, line in enumerate(lines + [""], 1):
         text = line.strip()
-        if text.startswith(mark) and not text.startswith("#!"):
+        if text.startswith(mark) and not text.startswith("#!") and LICENCE_TAG not in text:
             if not run:
                 begin = number
             run.append(text.lstrip("/#<! ").strip())

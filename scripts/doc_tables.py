@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Makes the tables of pages whose content is in the sources: folders, programs, options, exit codes.
+"""Makes the tables of pages whose content is in the sources: folders, programs, options, exit codes, formats.
 
 usage: scripts/doc_tables.py REPOSITORY            prints what is wrong with these tables; exits with 1 if something is
        scripts/doc_tables.py REPOSITORY --write    makes them again in the pages, between their markers
@@ -16,6 +16,7 @@ import sys
 import textwrap
 
 import folder_list
+import format_versions
 from table_rules import END, GENERATED, tables_of
 
 SCRIPT = "scripts/doc_tables.py"
@@ -154,8 +155,12 @@ def exit_codes_in_help(root):
     return textwrap.fill(sentence, 118, break_long_words=False) + "\n"
 
 
+def versions_of_formats(root):
+    return table(["format", "version", "a file states it by"], format_versions.rows(root))
+
+
 TABLES = {"rooms": rooms, "folders": folders, "programs": programs, "common-options": common_options,
-          "exit-codes": exit_codes, "exit-codes-in-help": exit_codes_in_help}
+          "exit-codes": exit_codes, "exit-codes-in-help": exit_codes_in_help, "format-versions": versions_of_formats}
 
 
 def pages(root, files, text_lines):

@@ -11,7 +11,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 if [[ ! ${1:-} =~ ^[0-9]+$ ]]; then
-  sed -n '5s/^# //p' "$0" >&2
+  sed -n '/^# usage:/s/^# //p' "$0" >&2
   exit 2
 fi
 minutes=$1

@@ -4,6 +4,7 @@ that are not installed (cmake/LfFolder.cmake); the first comment of such a heade
 import pathlib
 import re
 
+import comment_rules
 import folder_list
 
 INCLUDE = re.compile(r'\s*#\s*include\s*"(lf/[^"]+)"')
@@ -11,9 +12,9 @@ OF_TESTS = ("test_", "testing_")
 
 
 def first_comment(lines) -> str:
-    """Returns the comment that a header begins with, in one line."""
+    """Returns the comment that a header begins with, in one line, without the line that states the licence."""
     comment = []
-    for line in lines:
+    for line in lines[1 if lines and comment_rules.LICENCE_TAG in lines[0] else 0:]:
         if not line.startswith("//"):
             break
         comment.append(line.lstrip("/ "))

@@ -85,7 +85,7 @@ while (($#)); do
     --list) list; exit ;;
     --resume) resume=true; shift ;;
     --one) "$2"; exit ;; # in a process of its own, in which the first failed command ends the step
-    -*) sed -n '4,5s/^# //p' scripts/hunt.sh >&2; exit 2 ;;
+    -*) sed -n '/^# usage:/,/^#$/s/^# //p' scripts/hunt.sh >&2; exit 2 ;;
     *) break ;;
   esac
 done

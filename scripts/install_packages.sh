@@ -11,7 +11,7 @@ cd "$(dirname "$0")/.."
 source scripts/patiently.sh
 
 if (($# == 0)); then
-  sed -n '4s/^# //p' scripts/install_packages.sh >&2
+  sed -n '/^# usage:/s/^# //p' scripts/install_packages.sh >&2
   exit 2
 fi
 lists=("${@/#/scripts/packages/}")

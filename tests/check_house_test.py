@@ -62,6 +62,42 @@ class PlantedFaults(unittest.TestCase):
         self.expect("check_house.py", "comments",
                     faults=["lf/core/a.h:2", "lf/core/a.h:4", "lf/core/a.h:7", "scripts/a.py:1", "scripts/a.py:2"])
 
+    def test_the_licence_is_stated_once_in_the_first_lines(self):
+        line = "SPDX-License-" "Identifier: Apache-2.0"
+        first = "// Internal to the tests. Returns 1.\n"
+        before = {"lf/core/a.cc": first + "int x;\n", "lf/core/b.h": f"// {line}\n{first}", "lf/core/empty.h": "",
+                  "lf/core/late.h": f"{first}// {line}\n",
+                  "scripts/a.py": '#!/usr/bin/python3\n"""Does a."""\n',
+                  "scripts/b.sh": "# Does b.\n", "run": "#!/usr/bin/env bash\n# Runs.\n", "web/a.css": "a {}\n",
+                  "web/a.html": "<!doctype html>\n<p>x\n", "README.md": "# A\n", "fuzz/corpus/a/x.h": "int\n"}
+        after = {**before, "lf/core/a.cc": f"// {line}\n{before['lf/core/a.cc']}",
+                 "lf/core/late.h": f"// {line}\n{first}",
+                 "scripts/a.py": f'#!/usr/bin/python3\n# {line}\n"""Does a."""\n',
+                 "scripts/b.sh": f"# {line}\n# Does b.\n", "run": f"#!/usr/bin/env bash\n# {line}\n# Runs.\n",
+                 "web/a.css": f"/* {line} */\na {{}}\n",
+                 "web/a.html": f"<!doctype html>\n<!-- {line} -->\n<p>x\n"}
+        for name, text in before.items():
+            self.plant(name, text)
+
+        def licence_headers(way):
+            command = [sys.executable, REPOSITORY / "scripts/licence_headers.py", way, self.root]
+            done = subprocess.run(command, capture_output=True, text=True)
+            return done.returncode, done.stdout.splitlines()
+
+        code, lines = licence_headers("--check")
+        self.assertEqual((code, sorted(line.split(":")[0] for line in lines)),
+                         (1, sorted(name for name in before if before[name] != after[name])))
+        for _ in range(2):  # the second call changes nothing
+            self.assertEqual(licence_headers("--write")[0], 0)
+            self.assertEqual({name: (self.root / name).read_text() for name in before}, after)
+        self.expect("check_house.py", "comments", faults=[])
+        self.plant("lf/core/a.cc", f"// {line}\n// What x is.\nint x;\n")
+        self.expect("check_house.py", "comments", faults=["lf/core/a.cc:2"])
+        self.plant("lf/core/a.xyz", "int x;\n")
+        self.plant("run", f"#!/usr/bin/env bash\n# {line}\nsed -n '4" "s/^# //p' run\n")
+        code, lines = licence_headers("--check")
+        self.assertEqual([line.split(": ")[0] for line in lines], ["lf/core/a.xyz:1", "run:3"])
+
     def test_links_must_lead_somewhere(self):
         self.plant("doc/there.md", "# A heading, here\n[up](#a-heading-here)\n")
         self.plant("README.md", "[a](doc/there.md#a-heading-here) [b](https://example.org/x)\n"
@@ -217,7 +253,8 @@ class PlantedFaults(unittest.TestCase):
         self.plant("lf/README.md", "| `core` | value | a task |\n")
         self.plant("lf/core/CMakeLists.txt", "lf_folder(core SOURCES a.cc)\n")
         self.plant("lf/optics/camera/CMakeLists.txt", "lf_folder(optics/camera DEPENDS core)\n")
-        names = ("rooms", "folders", "programs", "common-options", "exit-codes", "exit-codes-in-help")
+        names = ("rooms", "folders", "programs", "common-options", "exit-codes", "exit-codes-in-help",
+                 "format-versions")
         self.expect("check_house.py", "tables", faults=[
             "lf/README.md: no row of the table is that of lf/optics/camera",
             *(f"scripts/doc_tables.py: no page shows the table {name}" for name in names)])
