@@ -1,10 +1,12 @@
 #!/usr/bin/python3
 """Makes the documentation site: the pages of the project, of the C++ library and of the Python package, as HTML.
 
-usage: scripts/site.py OUT
+usage: scripts/site.py OUT [PROGRAMS.md]
 
-OUT  receives index.html and everything that it needs. Nothing in it is fetched from elsewhere, the search included: it
-     can be read from a folder, from an archive, or from any server. Pages of an earlier call are replaced.
+OUT          receives index.html and everything that it needs. Nothing in it is fetched from elsewhere, the search included: it
+             can be read from a folder, from an archive, or from any server. Pages of an earlier call are replaced.
+PROGRAMS.md  the page of all options that a build makes (build/release/program_pages/programs.md). Without it, the site
+             has the list of the programs instead.
 
 Needs the packages of scripts/packages/site.txt (scripts/site.sh installs them). Every warning of Sphinx is an error.
 Exit codes: 0 success, 1 a page has a fault, 2 wrong usage, 77 Sphinx or one of its extensions is missing.
@@ -36,6 +38,7 @@ examples.
    :imported-members:
 ```
 """
+PROGRAM_LIST = re.compile(r"<!-- table: scripts/doc_tables.py programs -->\n(.*?)<!-- end of table -->", re.S)
 TREE = re.compile(r"```\{toctree\}\n(?P<options>(?::.*\n)*)\n(?P<pages>(?:.+\n)*)```")
 
 
@@ -52,11 +55,20 @@ def add_unlisted_pages(site: site_pages.Site):
     index.write_text(text[:end] + "".join(f"{page}\n" for page in sorted(is_new)) + text[end:])
 
 
-def make_site(out: pathlib.Path) -> int:
+def page_of_programs(programs) -> str:
+    """Returns the page of all options, or, if no build made it, a page with the list of the programs."""
+    if programs:
+        return programs.read_text()
+    table = PROGRAM_LIST.search((ROOT / "README.md").read_text())[1]
+    return f"# The programs\n\n`--help-all` of each program shows all of its options.\n\n{table}"
+
+
+def make_site(out: pathlib.Path, programs) -> int:
     with tempfile.TemporaryDirectory(prefix="lf-site-") as scratch:
         site = site_pages.Site(ROOT, pathlib.Path(scratch) / "pages")
         site_library.write_library(site)
         site.write("python/api.md", PYTHON_PAGE)
+        site.write("programs.md", page_of_programs(programs))
         site.copy_pages()
         add_unlisted_pages(site)
         made = pathlib.Path(scratch) / "html"
@@ -75,7 +87,7 @@ def make_site(out: pathlib.Path) -> int:
 
 
 def main() -> int:
-    if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
+    if len(sys.argv) not in (2, 3) or sys.argv[1].startswith("-"):
         print(__doc__, file=sys.stderr)
         return 2
     missing = [package for module, package in NEEDED.items() if importlib.util.find_spec(module) is None]
@@ -87,7 +99,12 @@ def main() -> int:
     if out.exists() and not (out / "searchindex.js").exists() and (not out.is_dir() or any(out.iterdir())):
         print(f"error: {out} exists and is not a site that this script made; name another folder", file=sys.stderr)
         return 2
-    return make_site(out)
+    programs = pathlib.Path(sys.argv[2]) if len(sys.argv) == 3 else None
+    if programs and not programs.is_file():
+        print(f"error: there is no {programs}: build the target program_pages, or leave the argument out",
+              file=sys.stderr)
+        return 2
+    return make_site(out, programs)
 
 
 if __name__ == "__main__":

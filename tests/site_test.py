@@ -2,7 +2,7 @@
 """Tests the documentation site: it is made without a warning, its links lead to pages and headings that exist, and
 reading it fetches nothing from elsewhere. Skipped where Sphinx is missing.
 
-usage: site_test.py SOURCE
+usage: site_test.py SOURCE PROGRAM_PAGES
 """
 import html.parser
 import os
@@ -14,7 +14,8 @@ import tempfile
 import unittest
 import urllib.parse
 
-SOURCE = pathlib.Path(sys.argv.pop()).resolve()
+SOURCE, PROGRAM_PAGES = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
+del sys.argv[1:]
 SKIPPED = 77
 # Attributes whose file a browser fetches without being asked.
 FETCHED = {"link": "href", "script": "src", "img": "src", "source": "src", "video": "src", "iframe": "src"}
@@ -71,8 +72,8 @@ class Site(unittest.TestCase):
         cls.folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(cls.folder.cleanup)
         cls.site = pathlib.Path(cls.folder.name) / "site"
-        done = subprocess.run([sys.executable, SOURCE / "scripts/site.py", cls.site], text=True,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        done = subprocess.run([sys.executable, SOURCE / "scripts/site.py", cls.site, PROGRAM_PAGES / "programs.md"],
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         if done.returncode == SKIPPED:
             raise unittest.SkipTest(done.stdout.strip())
         if done.returncode:
@@ -87,6 +88,11 @@ class Site(unittest.TestCase):
             self.assertIn(word, index)
         for name in ("index", "tutorial", "gallery", "python/api", "cpp/camera", "formats/path"):
             self.assertTrue((self.site / f"{name}.html").is_file(), name)
+
+    def test_every_program_has_its_options(self):
+        page = Page((self.site / "programs.html").read_text())
+        self.assertLessEqual({"lfrenderer", "lffocus-stack", "lfsynth"}, page.anchors)
+        self.assertIn("--lens-weights", (self.site / "programs.html").read_text())
 
     def test_the_python_package_is_described_without_being_built(self):
         page = Page((self.site / "python/api.html").read_text())
