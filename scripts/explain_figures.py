@@ -3,7 +3,8 @@
 
 usage: scripts/explain_figures.py FOLDER
 
-FOLDER  receives how_lens.svg, how_capture.svg, how_focus.svg, how_weights.svg and how_rebinning.svg. Every ray is computed.
+FOLDER  receives how_lens.svg, how_capture.svg, how_focus.svg, how_weights.svg and how_rebinning.svg. Every ray is
+        computed.
 """
 import pathlib
 import sys
@@ -41,7 +42,8 @@ class Figure:
     def camera(self, x, y, colour=INK):
         """Draws a small camera that looks to the left."""
         self.box(x, y - 6, 15, 12, colour)
-        self.parts.append(f'<polygon points="{x},{y - 3} {x - 7},{y - 6} {x - 7},{y + 6} {x},{y + 3}" fill="{colour}"/>')
+        outline = f"{x},{y - 3} {x - 7},{y - 6} {x - 7},{y + 6} {x},{y + 3}"
+        self.parts.append(f'<polygon points="{outline}" fill="{colour}"/>')
 
     def save(self, file: pathlib.Path):
         file.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {self.width} {self.height}" '
@@ -85,7 +87,7 @@ def lens_figure():
 
 def capture_figure():
     """LF cameras stand where the lens will be; each records the rays through its own small hole."""
-    figure = Figure(720, 300, "Small cameras side by side record the rays that a large lens at their place would collect")
+    figure = Figure(720, 300, "Cameras side by side record the rays that a large lens at their place would collect")
     lens_x, middle, half = 500, 150, 92
     cameras = [middle + k * 2 * half / 8 for k in range(-4, 5)]
     for x, y, colour in ((170, 90, GREEN), (90, 205, RED)):
@@ -94,8 +96,8 @@ def capture_figure():
         figure.dot(x, y, colour)
     for camera_y in cameras:
         figure.camera(lens_x, camera_y)
-    figure.parts.append(f'<ellipse cx="{lens_x - 3}" cy="{middle}" rx="16" ry="{half + 14}" fill="none" stroke="{BLUE}" '
-                        'stroke-width="2" stroke-dasharray="7 5"/>')
+    figure.parts.append(f'<ellipse cx="{lens_x - 3}" cy="{middle}" rx="16" ry="{half + 14}" fill="none" '
+                        f'stroke="{BLUE}" stroke-width="2" stroke-dasharray="7 5"/>')
     figure.text(lens_x + 40, 60, "the lens of the film", BLUE, "start")
     figure.text(lens_x + 40, 78, "(not there yet)", BLUE, "start")
     figure.text(lens_x + 40, 150, "LF cameras: one", INK, "start")
@@ -163,7 +165,8 @@ def rebinning_figure():
     figure.parts.append(f'<circle cx="212" cy="140" r="32" fill="{AMBER}" opacity="0.25"/>')
     figure.dot(212, 140, AMBER, 6)
     for y, colour, first, second in ((70, BLUE, "recorded rays: pixels of photographs,", "sorted by four such numbers"),
-                                     (135, AMBER, "a ray of the film that was not recorded:", "a mean of the rays around it")):
+                                     (135, AMBER, "a ray of the film that was not recorded:",
+                                      "a mean of the rays around it")):
         figure.dot(385, y - 5, colour, 6)
         figure.text(402, y, first, INK, "start")
         figure.text(402, y + 20, second, INK, "start")

@@ -3,8 +3,9 @@
 
 usage: scripts/site.py OUT [PROGRAMS.md]
 
-OUT          receives index.html and everything that it needs. Nothing in it is fetched from elsewhere, the search included: it
-             can be read from a folder, from an archive, or from any server. Pages of an earlier call are replaced.
+OUT          receives index.html and everything that it needs. Nothing in it is fetched from elsewhere, the search
+             included: it can be read from a folder, from an archive, or from any server. Pages of an earlier call are
+             replaced.
 PROGRAMS.md  the page of all options that a build makes (build/release/program_pages/programs.md). Without it, the site
              has the list of the programs instead.
 

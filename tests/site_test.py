@@ -119,9 +119,10 @@ class Faults(unittest.TestCase):
             site = pathlib.Path(folder)
             (site / "a.html").write_text('<img src="https://x.org/badge.svg"><a href="b.html">b</a><a href="#c">c</a>'
                                          '<h1 id="d"></h1><a href="a.html#d">d</a><a href="https://x.org">x</a>')
-            (site / "a.css").write_text("@import url(/javascript/n.css); b { background: url(data:image/png;base64,x) }")
-            self.assertEqual(faults_of(site), ["a.html: fetches https://x.org/badge.svg", "a.html: b.html does not exist",
-                                               "a.html: #c is no heading", "a.css: fetches /javascript/n.css"])
+            (site / "a.css").write_text("@import url(/javascript/n.css); b { background: url(data:image/png,x) }")
+            self.assertEqual(faults_of(site), ["a.html: fetches https://x.org/badge.svg",
+                                               "a.html: b.html does not exist", "a.html: #c is no heading",
+                                               "a.css: fetches /javascript/n.css"])
 
 
 if __name__ == "__main__":

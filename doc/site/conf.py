@@ -26,6 +26,7 @@ autodoc_mock_imports = ["lfrendertools._core", "numpy"]
 autodoc_typehints = "none"  # the docstrings state the types
 autodoc_member_order = "bysource"
 napoleon_google_docstring = False
+default_role = "code"  # `name` in a docstring, as in Markdown
 napoleon_use_ivar = True
 napoleon_use_rtype = False
 python_use_unqualified_type_names = True
