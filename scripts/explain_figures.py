@@ -27,7 +27,7 @@ class Figure:
     def dot(self, x, y, colour, radius=5.0):
         self.parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius}" fill="{colour}"/>')
 
-    def text(self, x, y, words, colour=INK, anchor="middle", size=14):
+    def text(self, x, y, words, colour=INK, anchor="middle", size=17):
         self.parts.append(f'<text x="{x:.1f}" y="{y:.1f}" fill="{colour}" text-anchor="{anchor}" '
                           f'font-size="{size}">{words}</text>')
 
@@ -80,8 +80,8 @@ def lens_figure():
     figure.line(sensor_x, 35, sensor_x, 255, INK, 4)
     figure.text(sensor_x, 282, "sensor")
     figure.text(lens_x, 282, "lens")
-    figure.text(sensor_x + 10, 190, "sharp", GREEN, "start", 13)
-    figure.text(sensor_x + 10, 120, "a disk", RED, "start", 13)
+    figure.text(sensor_x + 10, 190, "sharp", GREEN, "start", 16)
+    figure.text(sensor_x + 10, 120, "a disk", RED, "start", 16)
     return figure
 
 
@@ -168,10 +168,10 @@ def rebinning_figure():
                                      (135, AMBER, "a ray of the film that was not recorded:",
                                       "a mean of the rays around it")):
         figure.dot(385, y - 5, colour, 6)
-        figure.text(402, y, first, INK, "start")
-        figure.text(402, y + 20, second, INK, "start")
-    figure.text(385, 205, "(drawn with two numbers instead of four:", GREY, "start", 13)
-    figure.text(385, 223, "across and down for lens and focus plane)", GREY, "start", 13)
+        figure.text(402, y, first, INK, "start", 14)
+        figure.text(402, y + 20, second, INK, "start", 14)
+    figure.text(385, 205, "(drawn with two numbers instead of four:", GREY, "start", 14)
+    figure.text(385, 223, "across and down for lens and focus plane)", GREY, "start", 14)
     return figure
 
 
