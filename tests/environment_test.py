@@ -72,6 +72,7 @@ class Run:
 
     def __init__(self, command, lack=None):
         environment = {**os.environ, **(lack.environment if lack else {})}
+        self.command, self.lack = command, lack
         try:
             done = subprocess.run([os.fspath(word) for word in command], stdin=subprocess.DEVNULL, capture_output=True,
                                   timeout=HANGS_S, env=environment, preexec_fn=lack.begin if lack else None)
@@ -82,7 +83,15 @@ class Run:
 
     @property
     def never_began(self):
-        return self.code == 127 and LOADER in self.errors
+        """True if the loader, or a library that is prepared before main(), has ended the process."""
+        if self.code == 127 and LOADER in self.errors:
+            return True
+        if self.code != 1 or self.errors:
+            return False
+        # Some libraries end the process without a word. They do so in any call of the program.
+        program = next(word for word in self.command if re.fullmatch(r"lf\w+", pathlib.Path(word).name))
+        least = Run([program, "--version"], self.lack)
+        return least.code == 1 and not least.errors and not least.out
 
 
 def free_user():
