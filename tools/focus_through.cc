@@ -253,10 +253,7 @@ Result<void> Run(const Arguments& a, const Program& program, bool has_trim) {
   LF_ASSIGN_OR_RETURN(const StatisticFrame frame, Make(a, options, program.common(), pool));
   for (size_t i = 0; i < formats.size(); ++i) {
     ImageMetadata metadata = FileMetadata(frame.notes, formats[i], ColourSpace::kRec709);
-    metadata.emplace_back("lf:statistic", a.statistic);
-    metadata.emplace_back("lf:statistic_order", a.order);
-    if (options.statistic == LensStatistic::kTrimmed)
-      metadata.emplace_back("lf:statistic_trim", a.trim);
+    for (auto& entry : StatisticMetadata(options)) metadata.push_back(std::move(entry));
     LF_RETURN_IF_ERROR(WriteFrame(a.outputs[i], frame.picture, formats[i], metadata,
                                   [&] { return interrupted.load(); }));
   }

@@ -29,6 +29,7 @@ from .errors import (BelowRequired, BlackFrameWarning, Error, InputError, Interr
                      OutputError, UncertainFocusWarning, UsageError)
 from .focus_stacks import FocusStack, focus_stack
 from .frames import Frame, Plate
+from .lens_statistics import through
 from .light_field import Intrinsics, LightField, read_image
 from .opening import open
 from .rendering import Renderer, Selection, film, render, select
@@ -41,6 +42,6 @@ __all__ = ["BelowRequired", "BlackFrameWarning", "Camera", "DepthMap", "Epipolar
            "Frame", "Grid", "InputError", "InterruptedRender", "Intrinsics", "LightField", "MissingImagesWarning",
            "OutputError", "Path", "Plate", "Renderer", "Selection", "UncertainFocusWarning", "UsageError", "Views",
            "compress", "depth_map", "display_values", "epi", "film", "focus_stack", "forecast", "open", "read_image",
-           "render", "report", "select", "synth", "views", "write_packages"]
+           "render", "report", "select", "synth", "through", "views", "write_packages"]
 
 logging.getLogger("lfrendertools").addHandler(logging.NullHandler())

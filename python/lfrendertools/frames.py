@@ -20,7 +20,7 @@ _FORMATS = {".exr": "exr", ".png": "png"}
 class Frame:
     """A frame of a light field. Its arrays share its memory: :meth:`save` writes changes that were made to them.
 
-    :func:`render`, :func:`film`, :class:`Renderer` and :meth:`Plate.develop` make frames.
+    :func:`render`, :func:`film`, :func:`through`, :class:`Renderer` and :meth:`Plate.develop` make frames.
     """
 
     def __init__(self, core: _core.Frame) -> None:

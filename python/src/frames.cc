@@ -38,9 +38,17 @@ py::object Show(Image<T>& image, const py::object& self, bool is_flat = true) {
   return py::array_t<T>(shape, image.pixels().data(), self);
 }
 
-ImageMetadata MetadataOf(const PlateNotes& notes) {
-  return FrameMetadata(notes.frame, notes.camera, notes.rays, notes.estimator, notes.fps,
-                       notes.version, notes.shutter);
+// Adds the entries that a frame has besides its notes.
+ImageMetadata WithMore(ImageMetadata metadata, const Frame& frame) {
+  metadata.insert(metadata.end(), frame.more_metadata.begin(), frame.more_metadata.end());
+  return metadata;
+}
+
+ImageMetadata MetadataOf(const Frame& frame) {
+  const PlateNotes& notes = frame.notes;
+  return WithMore(FrameMetadata(notes.frame, notes.camera, notes.rays, notes.estimator, notes.fps,
+                                notes.version, notes.shutter),
+                  frame);
 }
 
 // Returns the picture with the alpha and the primaries that a file gets.
@@ -71,7 +79,7 @@ void SaveFrame(const Frame& frame, const std::string& path, const std::string& f
         "pictures for display: leave it out, or save an EXR file",
         colour_space, format)));
   RunWithoutGil([&] {
-    const ImageMetadata metadata = FileMetadata(frame.notes, *known, *colours);
+    const ImageMetadata metadata = WithMore(FileMetadata(frame.notes, *known, *colours), frame);
     if (alpha || *colours != ColourSpace::kRec709)
       Take(WriteFrame(path, PictureFor(frame, *colours, alpha), *known, metadata));
     else
@@ -229,7 +237,7 @@ py::tuple StateOf(const Frame& frame) {
   return py::make_tuple(TextOf(frame.notes), ArrayCopy(p.rgb), ArrayCopy(p.ray_count),
                         ArrayCopy(p.coverage), ArrayCopy(p.opacity), ArrayCopy(p.effective_count),
                         ArrayCopy(p.interpolated), ArrayCopy(p.densified),
-                        ArrayCopy(frame.has_light));
+                        ArrayCopy(frame.has_light), frame.more_metadata);
 }
 
 Frame FrameOf(const py::tuple& state) {
@@ -239,7 +247,8 @@ Frame FrameOf(const py::tuple& state) {
                             ImageOf<float>(state[7])};
   PlateNotes notes = Take(PlateNotesOf(state[0].cast<PlateEntries>(), picture.rgb.width(),
                                        picture.rgb.height(), "a pickled frame"));
-  return {std::move(picture), std::move(notes), ImageOf<uint8_t>(state[8])};
+  return {std::move(picture), std::move(notes), ImageOf<uint8_t>(state[8]),
+          state[9].cast<ImageMetadata>()};
 }
 
 }  // namespace
@@ -289,7 +298,7 @@ void AddFrames(py::module_& module) {
           "densified",
           [](const py::object& self) { return Show(self.cast<Frame&>().picture.densified, self); })
       .def_property_readonly("image_count", [](const Frame& f) { return f.notes.rays.image_count; })
-      .def_property_readonly("metadata", [](const Frame& f) { return MetadataOf(f.notes); })
+      .def_property_readonly("metadata", [](const Frame& f) { return MetadataOf(f); })
       .def("save", &SaveFrame)
       .def(py::pickle([](const Frame& frame) { return StateOf(frame); }, &FrameOf));
   py::class_<Plate>(module, "Plate")

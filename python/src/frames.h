@@ -9,6 +9,7 @@
 
 #include "lf/film/develop/develop.h"
 #include "lf/film/plate/sensor_plate.h"
+#include "lf/pixels/files/image_file.h"
 #include "lf/render/state/plate_notes.h"
 #include "lf/render/state/run_inputs.h"
 
@@ -21,6 +22,7 @@ struct Frame {
   // [height][width] 1 where light was recorded, filled or interpolated: the alpha that a file may
   // get. Empty if the picture has opacities.
   Image<uint8_t> has_light = {};
+  ImageMetadata more_metadata = {};  // entries that its file gets after those of the notes
 };
 
 // Returns the frame of a picture that was developed with DevelopOptions::adds_opacity. Opacities

@@ -11,6 +11,7 @@
 #include "python/src/film.h"
 #include "python/src/frames.h"
 #include "python/src/gil.h"
+#include "python/src/lens_statistics.h"
 #include "python/src/light_field.h"
 #include "python/src/messages.h"
 
@@ -24,6 +25,7 @@ PYBIND11_MODULE(_core, module) {
   lf::python::AddFilm(module);
   lf::python::AddAnalysis(module);
   lf::python::AddDepthMaps(module);
+  lf::python::AddLensStatistics(module);
   lf::python::AddCaptures(module);
   module.attr("version") = LF_VERSION;
 }

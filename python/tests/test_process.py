@@ -32,7 +32,8 @@ time.sleep({seconds})
     "list(lf.film(field, lf.Path([camera] * 3)))", "lf.Renderer(field, camera).step()", "field.path()",
     "lf.report(field, check='pixels')", "lf.report(field, progress=lambda *now: None)", "lf.forecast(field, camera)",
     "lf.select(field, camera)", "lf.compress(field, 'a.lfs', overwrite=True)", "lf.synth('lights', 'more', count=1)",
-    "lf.write_packages(field, camera, 'packages', overwrite=True)", "lf.render(field, camera).save('frame.exr')"])
+    "lf.through(field, camera)", "lf.write_packages(field, camera, 'packages', overwrite=True)",
+    "lf.render(field, camera).save('frame.exr')"])
 def test_python_ends_while_a_daemon_thread_works(work, capture, path_file, tmp_path):
     for seconds in (0, 0.1):
         code = DAEMON.format(work=work, seconds=seconds)

@@ -319,13 +319,14 @@ def test_two_threads_render_at_once(field, path):
     assert all(np.array_equal(result, expected) for result in results)
 
 
-def test_a_forked_process_is_told_why_it_cannot_render(field, path):
+@pytest.mark.parametrize("function", [lf.render, lf.through])
+def test_a_forked_process_is_told_why_it_cannot_render(function, field, path):
     lf.render(field, path)
     read, write = os.pipe()
     child = os.fork()
     if child == 0:
         try:
-            lf.render(field, path)
+            function(field, path)
             text = "rendered"
         except lf.UsageError as error:
             text = str(error)

@@ -6,6 +6,7 @@
 #include <array>
 #include <memory>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "lf/analysis/lens_statistics/lens_ranks.h"
@@ -136,6 +137,8 @@ class StatisticMaker {
     frame.notes.skipped_count = skipped_.size();
     for (const SkippedImage& image : skipped_) frame.notes.skipped.push_back(image.name);
     frame.notes.develop = DevelopOptionsOf(light_field_.encoding);
+    frame.notes.develop.adds_opacity = options_.adds_opacity;
+    frame.keeps_opacity = plate_.has_opacity();
     frame.picture = DevelopFrame(frame.notes, plate_, nullptr, false, pool_, [this] {
                       return IsStopped();
                     }).picture;
@@ -334,6 +337,14 @@ const char* NameOf(LensStatistic statistic) {
 
 const char* NameOf(StatisticOrder order) {
   return order == StatisticOrder::kChannels ? "channels" : "luminance";
+}
+
+ImageMetadata StatisticMetadata(const LensStatisticOptions& options) {
+  ImageMetadata metadata = {{"lf:statistic", std::string(NameOf(options.statistic))},
+                            {"lf:statistic_order", std::string(NameOf(options.order))}};
+  if (options.statistic == LensStatistic::kTrimmed)
+    metadata.emplace_back("lf:statistic_trim", options.trim);
+  return metadata;
 }
 
 Result<StatisticFrame> MakeStatisticFrame(LightField light_field, FrameId id,

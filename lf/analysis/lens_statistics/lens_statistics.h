@@ -35,6 +35,7 @@
 #include "lf/core/result.h"
 #include "lf/film/develop/develop.h"
 #include "lf/light_field/model/light_field.h"
+#include "lf/pixels/files/image_file.h"
 #include "lf/render/collect/collect.h"
 #include "lf/render/state/plate_notes.h"
 
@@ -69,6 +70,7 @@ struct LensStatisticOptions {
   // bands of whole rows, and all LF images are read and collected again for each.
   size_t memory_bytes = size_t{8} << 30;
   bool strict = false;                      // true: a broken LF image is an error
+  bool adds_opacity = false;                // as DevelopOptions::adds_opacity
   const std::atomic<bool>* stop = nullptr;  // once true, the function ends; may be null
 };
 
@@ -78,10 +80,15 @@ struct StatisticFrame {
   // same statistic (kChannels), or that of the same rays (kLuminance).
   DevelopedFrame picture;
   PlateNotes notes;                   // for the metadata of its file
+  bool keeps_opacity = false;         // true: the opacity in `picture` is that of the LF images
   size_t image_count = 0;             // LF images that may have a ray, broken ones included
   size_t part_count = 1;              // parts in which the frame was made
   std::vector<SkippedImage> skipped;  // broken LF images, which were left out
 };
+
+// Returns the entries "lf:statistic", "lf:statistic_order" and, if it matters, "lf:statistic_trim",
+// for the metadata of the frame's file.
+ImageMetadata StatisticMetadata(const LensStatisticOptions& options);
 
 // Makes a frame of a camera by a statistic over its lens. Virtual LF images are left out.
 //   progress  called with the numbers of LF images that are done and in all, by one thread at a
