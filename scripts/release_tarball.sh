@@ -25,19 +25,20 @@ if [[ -n $(git -C "$repository" status --porcelain --untracked-files=no) ]]; the
 fi
 
 folder=$(mkdir -p "$1" && cd "$1" && pwd)
-version=$(git -C "$repository" show HEAD:VERSION | head -n 1)
+commit=$(git -C "$repository" rev-parse HEAD)
+version=$(git -C "$repository" show "$commit:VERSION" | head -n 1)
 name=lfrendertools-$version
 scratch=$(mktemp -d "$folder/tarball.XXXXXX")
 trap 'rm -rf "$scratch"' EXIT
 
 umask 022
-git -C "$repository" archive --prefix="$name/" HEAD | tar -x -C "$scratch"
+git -C "$repository" archive --prefix="$name/" "$commit" | tar -x -C "$scratch"
 web=$scratch/$name/web
 (cd "$web" && npm ci --no-fund --no-audit --loglevel=error) >&2
 node "$web/build.mjs" "$web/bundled" "$web/bundled/packages" >&2
 rm -rf "$web/node_modules"
 
-time=$(git -C "$repository" show --no-patch --format=%ct HEAD)
+time=$(git -C "$repository" show --no-patch --format=%ct "$commit")
 tar --sort=name --format=gnu --mtime="@$time" --owner=0 --group=0 --numeric-owner --mode=u+rw,go=rX \
   -C "$scratch" -cf "$scratch/$name.tar" "$name"
 xz --threads=1 -6 "$scratch/$name.tar"
