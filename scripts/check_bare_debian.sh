@@ -20,6 +20,7 @@ if [[ ${LF_UNSHARED:-} != yes ]]; then
   LF_UNSHARED=yes exec unshare --mount --propagation private "$0" "$@"
 fi
 
+source "$(dirname "$0")/bare_system.sh"
 repository=$(cd "$(dirname "$0")/.." && pwd)
 folder=$(mkdir -p "$1" && cd "$1" && pwd)
 shift
@@ -34,58 +35,27 @@ base=$folder/base
 root=$folder/root
 checkout=/home/user/lfrendertools
 
-say() { printf '%5d s  %s\n' "$SECONDS" "$*"; }
-
-# The first mirror of this machine's apt that has bookworm. apt-get prints one "SITE CODENAME" per line.
-mirror=$(apt-get indextargets --format '$(SITE) $(CODENAME)' 'Identifier: Packages' |
-  awk '$2 == "bookworm" { print $1; exit }')
-mirror=${mirror:-http://deb.debian.org/debian}
-
-if [[ ! -e $base/etc/debian_version ]]; then
-  say "making the base system"
-  debootstrap --variant=minbase --include=git bookworm "$base" "$mirror" >"$folder/base.log"
-fi
-say "bare Debian $(cat "$base/etc/debian_version"): $(du -sm "$base" | cut -f 1) MB," \
-  "$(chroot "$base" dpkg-query -f '.\n' -W | wc -l) packages"
-
-rm -rf --one-file-system "$root"
-cp -a "$base" "$root"
-apt-config dump Acquire | sed -nE '/::proxy|check-(valid|date)/Ip' >"$root/etc/apt/apt.conf.d/90host"
-cp -L /etc/resolv.conf "$root/etc/resolv.conf"
+base_system "$base" "$folder/base.log"
+copy_system "$base" "$root"
 certificates=
 if [[ -r ${NODE_EXTRA_CA_CERTS:-} ]]; then
   certificates=/etc/ssl/extra.pem
   install -D -m 644 "$NODE_EXTRA_CA_CERTS" "$root$certificates"
 fi
-mount -t proc proc "$root/proc"
-mount --rbind /dev "$root/dev"
-mount --rbind /sys "$root/sys" # cgroups, without which Slurm's nodes end
-chroot "$root" useradd --create-home --shell /bin/bash user
 git clone --quiet --no-local "$repository" "$root$checkout"
 chroot "$root" chown -R user:user /home/user
 chroot "$root" git config --system --add safe.directory "$checkout"
 say "cloned $(git -C "$repository" log -1 --format='%h %s')"
 
-# inside USER COMMAND...: runs the command as this user in the new system.
+# inside USER COMMAND...: runs the command as this user in the clone of the new system.
 inside() {
-  local user=$1 home=/root
+  local user=$1
   shift
-  if [[ $user != root ]]; then home=/home/$user; fi
-  chroot --userspec="$user:$user" "$root" env -i HOME="$home" USER="$user" LANG=C.UTF-8 \
-    PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin CI="${CI:-}" \
-    NODE_EXTRA_CA_CERTS="$certificates" \
-    bash -c 'cd "$0" && exec "$@"' "$checkout" "$@"
+  run_inside "$root" "$user" "$checkout" CI="${CI:-}" NODE_EXTRA_CA_CERTS="$certificates" "$@"
 }
 
 # step NAME USER COMMAND...: runs the command, and prints how long it took and the last lines that it wrote.
-step() {
-  local name=$1 user=$2 start=$SECONDS code=0
-  shift 2
-  inside "$user" "$@" >"$folder/$name.log" 2>&1 || code=$?
-  say "$* as $user: exit code $code after $((SECONDS - start)) s (log: $folder/$name.log)"
-  tail -n 4 "$folder/$name.log" | sed 's/^/         | /'
-  return "$code"
-}
+step() { run_step "$folder" "$@"; }
 
 # Prints the object files, each with the time of its last change.
 objects() {
