@@ -175,7 +175,7 @@ class ProgramPagesTest(ProgramTestCase):
         self.assertEqual(self.completed("lfrenderer --resume --overw"), {"--overwrite"})
         self.assertEqual(self.completed("lfrenderer -"), set(self.names("lfrenderer")))
         self.assertEqual(self.completed("lfrenderer --max-images "), set())
-        self.assertEqual(self.completed("lfsynth "), {"still-life", "lights", "chart"})
+        self.assertEqual(self.completed("lfsynth "), {"still-life", "lights", "chart", "foliage"})
         self.assertEqual(self.completed("lfsynth lights "), set())
         self.assertEqual(self.completed("lffocus s"), {"stack", "sharp"})
         self.assertEqual(self.completed("lffocus --he"), {"--help", "--help-all"})

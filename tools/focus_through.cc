@@ -94,7 +94,7 @@ void AddOptions(CLI::App& app, Arguments& a) {
                     "mean: the mean, as in a frame with --lens-weights none");
   CLI::Option* const trim =
       picture.Add("--trim SHARE", a.trim,
-                  "Share of the values that trimmed leaves out at each end\n"
+                  "Share of values that trimmed leaves out at each end\n"
                   "From 0 to below 0.5. Of n values, SHARE times n are left out at each end, "
                   "rounded down.");
   trim->check(CLI::Range(0.0, 0.5));

@@ -26,7 +26,7 @@ struct Node {
 
 class Fitter {
  public:
-  Fitter(const Image<float>& inverse_depths, const FitOptions& options)
+  Fitter(const Image<float>& inverse_depths, const SurfaceFitOptions& options)
       : q_(inverse_depths),
         options_(options),
         limit_(options.blur_px_w > 0 ? options.most_blur_px / options.blur_px_w : INFINITY) {}
@@ -158,7 +158,7 @@ class Fitter {
   }
 
   const Image<float>& q_;
-  const FitOptions& options_;
+  const SurfaceFitOptions& options_;
   const double limit_;  // largest difference of an inverse depth
 };
 
@@ -198,7 +198,7 @@ size_t FillUnknown(Image<float>* inverse_depths) {
   return unknown_count;
 }
 
-FittedSurface FitSurface(const Image<float>& inverse_depths, const FitOptions& options) {
+FittedSurface FitSurface(const Image<float>& inverse_depths, const SurfaceFitOptions& options) {
   LF_CHECK(!inverse_depths.pixels().empty() && options.least_side_px >= 1);
   return Fitter(inverse_depths, options).Run();
 }

@@ -9,7 +9,7 @@
 
 namespace lf {
 
-struct FitOptions {
+struct SurfaceFitOptions {
   // Diameter of the lens, in focal lengths of the plate times elements: an element whose inverse
   // depth is wrong by d is blurred over d * blur_px_w elements. It is the diameter in world units
   // times fx_px.
@@ -35,7 +35,7 @@ struct FittedSurface {
   FocalSurface surface;
   double most_blur_px = 0;  // largest blur of an element by the difference from the depths given
   double mean_blur_px = 0;  // mean blur
-  size_t beyond_count = 0;  // number of elements with a blur above FitOptions::most_blur_px
+  size_t beyond_count = 0;  // number of elements with a blur above SurfaceFitOptions::most_blur_px
 };
 
 // Returns a surface near the inverse depths of all elements, at their centres. The plate is divided
@@ -45,6 +45,6 @@ struct FittedSurface {
 // the limit. A piece that cannot be divided although its elements are beyond the limit takes the
 // plane, or the median depth, whichever is nearer to more of them (in the mean).
 //   inverse_depths  [height][width], all above 0 and finite
-FittedSurface FitSurface(const Image<float>& inverse_depths, const FitOptions& options);
+FittedSurface FitSurface(const Image<float>& inverse_depths, const SurfaceFitOptions& options);
 
 }  // namespace lf

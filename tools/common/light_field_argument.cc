@@ -83,7 +83,7 @@ void LightFieldArgument::AddOptionsTo(CLI::App& app) {
             "such as .png, may differ.");
   input
       .Add("--background COLOUR", background,
-           "Light behind transparent LF images\n"
+           "Light behind LF images with alpha\n"
            "Used if the alpha channel of the LF images is opacity (--image-alpha straight or "
            "premultiplied). If the option is not given, the background is the one that the "
            "calibration states; if it states none, the colour of the transparent pixels if the "

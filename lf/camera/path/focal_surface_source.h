@@ -21,7 +21,7 @@ struct FocalSurfaceSource {
   std::string file;
   Kind kind = Kind::kDepths;
   double scale = 1;  // depth or height in world units = scale * value (+ offset_w)
-  // The blur, in elements, beyond which a piece of the surface is divided (FitOptions).
+  // The blur, in elements, beyond which a piece of the surface is divided (SurfaceFitOptions).
   double most_blur_px = 0.5;
   std::optional<double> nodata;  // the value in the file of a place that is unknown
 

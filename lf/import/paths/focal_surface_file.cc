@@ -220,7 +220,7 @@ class SurfaceMaker {
                             "focus.origin, cell, right, down, up, scale and offset, and that the "
                             "light field and the map have one origin",
                             file_.string(), frame));
-    FitOptions options;
+    SurfaceFitOptions options;
     options.most_blur_px = source_.most_blur_px;
     options.blur_px_w =
         std::max(2 * camera->aperture.radius_w, 2 * camera_distance_w_) * std::abs(k.fx_px);
