@@ -15,7 +15,7 @@
 set -euo pipefail
 
 if ((EUID != 0 || $# != 1)) || ! command -v debootstrap >/dev/null || ! command -v piuparts >/dev/null; then
-  sed -n '2,/^set/s/^# \{0,1\}//p' "$0" >&2
+  sed -n '/^# usage:/,/^set/s/^# \{0,1\}//p' "$0" >&2
   echo "error: needs a FOLDER, root, and the packages debootstrap and piuparts" >&2
   exit 2
 fi
@@ -148,7 +148,7 @@ comm -13 "$folder/files-before" "$folder/files-after" >"$folder/files-new"
 while read -r path; do
   chroot "$root" dpkg -S "$path" >/dev/null 2>&1 || echo "$path"
 done < <(comm -12 "$folder/files-new" "$folder/files-of-packages") >"$folder/files-left"
-grep -i lfrender "$folder/files-new" >>"$folder/files-left" || true
+sed -n /lfrender/Ip "$folder/files-new" >>"$folder/files-left"
 if [[ -s $folder/files-left ]]; then
   cat "$folder/files-left" >&2
   fail "removal leaves these files behind"
