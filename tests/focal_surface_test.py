@@ -5,14 +5,13 @@ usage: focal_surface_test.py LFSYNTH LFRENDERER LFPREPROCESSOR LFMERGE LFPATH LF
 """
 import os
 import sys
-import tempfile
 import unittest
 
 os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # must be set before cv2 is imported
 import cv2
 import numpy as np
 
-from program_test_case import ProgramTestCase
+from still_life_case import StillLifeCase
 
 SYNTH = RENDERER = PREPROCESSOR = MERGE = PATHS = FOCUS = None
 WIDTH, HEIGHT, FOCAL_PX, PLACE, TARGET = 160, 106, 160 * 50 / 36, (0, -0.125, -0.799), (0, -0.085, 0)
@@ -46,20 +45,7 @@ def wavy_depths(phase=0):
     return 1 / (1.55 + 0.25 * np.sin(x / 25 + phase) * np.cos(y / 31) + np.where(x > 90, 0.2, 0))
 
 
-class FocalSurfaceTest(ProgramTestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.captured = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.captured.cleanup)
-
-    @property
-    def field(self):
-        field = os.path.join(self.captured.name, "field")
-        if not os.path.exists(field):
-            self.succeeds(SYNTH, "still-life", "-o", field, "--count", 225, "--size", "320x212", "--spacing", 0.0032,
-                          "-q")
-        return field
-
+class FocalSurfaceTest(StillLifeCase):
     def path(self, name, focus="", aperture=0.04, tilt=0, more="", frames=1):
         file = self.folder / f"{name}.yaml"
         file.write_text(PATH.format(focus=focus, aperture=aperture, tilt=tilt, more=more, frames=frames))
@@ -187,4 +173,5 @@ class FocalSurfaceTest(ProgramTestCase):
 
 if __name__ == "__main__":
     SYNTH, RENDERER, PREPROCESSOR, MERGE, PATHS, FOCUS = sys.argv[1:7]
+    StillLifeCase.SYNTH = SYNTH
     unittest.main(argv=sys.argv[:1] + sys.argv[7:])

@@ -5,14 +5,13 @@ usage: lens_shapes_test.py LFSYNTH LFRENDERER LFPREPROCESSOR LFMERGE
 """
 import os
 import sys
-import tempfile
 import unittest
 
 os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # must be set before cv2 is imported
 import cv2
 import numpy as np
 
-from program_test_case import ProgramTestCase
+from still_life_case import StillLifeCase
 
 SYNTH = RENDERER = PREPROCESSOR = MERGE = None
 PATH = """format: lfpath 1
@@ -52,20 +51,7 @@ def psnr_db(a, b):
     return -10 * np.log10(np.mean((a.astype(float) - b) ** 2))
 
 
-class LensShapesTest(ProgramTestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.captured = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.captured.cleanup)
-
-    @property
-    def field(self):
-        field = os.path.join(self.captured.name, "field")
-        if not os.path.exists(field):
-            self.succeeds(SYNTH, "still-life", "-o", field, "--count", 225, "--size", "320x212", "--spacing", 0.0032,
-                          "-q")
-        return field
-
+class LensShapesTest(StillLifeCase):
     def setUp(self):
         super().setUp()
         crescent = np.zeros((120, 120), np.uint8)
@@ -155,4 +141,5 @@ class LensShapesTest(ProgramTestCase):
 
 if __name__ == "__main__":
     SYNTH, RENDERER, PREPROCESSOR, MERGE = sys.argv[1:5]
+    StillLifeCase.SYNTH = SYNTH
     unittest.main(argv=sys.argv[:1])

@@ -8,7 +8,6 @@ import os
 import signal
 import subprocess
 import sys
-import tempfile
 import unittest
 
 os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # must be set before cv2 is imported
@@ -16,7 +15,8 @@ import cv2
 import numpy as np
 
 from exr_file import read_header
-from program_test_case import ProgramTestCase, wait_until
+from program_test_case import wait_until
+from still_life_case import StillLifeCase
 
 SYNTH = RENDERER = PREPROCESSOR = MERGE = PATH = INFO = None
 FPS, ANGLE_DEG, SAMPLES = 8, 240, 6
@@ -49,20 +49,7 @@ def psnr_db(a, b):
     return -10 * np.log10(max(np.mean((a.astype(float) - b) ** 2), 1e-20))
 
 
-class ShutterTest(ProgramTestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.captured = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.captured.cleanup)
-
-    @property
-    def field(self):
-        field = os.path.join(self.captured.name, "field")
-        if not os.path.exists(field):
-            self.succeeds(SYNTH, "still-life", "-o", field, "--count", 225, "--size", "320x212", "--spacing", 0.0032,
-                          "-q")
-        return field
-
+class ShutterTest(StillLifeCase):
     def path(self, name, shutter=SHUTTER, time_s=0.0, fps=FPS, frames=2, wide=0.03):
         """Writes a path that begins at another time of the same movement."""
         file = self.folder / f"{name}.yaml"
@@ -234,4 +221,5 @@ class ShutterTest(ProgramTestCase):
 
 if __name__ == "__main__":
     SYNTH, RENDERER, PREPROCESSOR, MERGE, PATH, INFO = sys.argv[1:7]
+    StillLifeCase.SYNTH = SYNTH
     unittest.main(argv=sys.argv[:1])
