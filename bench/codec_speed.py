@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Measures how fast LF images are encoded and decoded: 2048 x 2048 RGGB mosaics of 8 bits, one thread.
 
 usage: bench/codec_speed.py BUILD_DIR [--data ../shared] [--runs 5] [--name NAME] [--write doc/codec.md]

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Measures Table 5.3 of the thesis again: how small LF images become, and what that does to rendered frames.
 
 usage: bench/codec_table.py BUILD_DIR [--data ../shared] [--only shop,synth,noisy] [--no-peers] [--views 7]

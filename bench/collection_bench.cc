@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures our kernels and their peers on the same data in the same run, in turn: round 0 of every
 // contender, then round 1 and so on. Other load on the machine then disturbs all of them, and
 // ratios within a round are meaningful. bench/kernel_table.py makes the table.

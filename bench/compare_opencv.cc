@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Does the work of lfrenderer with OpenCV, for light fields whose cameras lie in the lens plane:
 // imread, sRGB to linear float by table, warpPerspective (bilinear, with the border's weights as a
 // fourth channel), accumulate, divide. Threads share the LF images; each adds to its own frames.

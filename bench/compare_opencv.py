@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Times whole programs on the same light field: lfrenderer, and the same thing written with OpenCV
 (bench/compare_opencv.cc), JPEG decoding included.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The measured contenders: our kernels and their peers. A contender adds LF images to its own
 // plate.
 #pragma once

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Makes and checks bench/defaults.txt: the defaults of the programs, which figures depend on.
 
 usage: bench/defaults.py FOLDER            prints the defaults of the programs in the folder

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Times focus stacks against a program of NumPy that shifts and sums LF images, as toolboxes for light fields do.
 
 usage: bench/focus_numpy.py BUILD_DIR CARDS [--planes 16] [--runs 5] [--name NAME] [--write PAGE]

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tabulates what lfpreprocessor forecasts for a light field of a million LF images, cut into more and more packages.
 
 usage: bench/forecast_table.py BUILD_DIR [--count 1000000] [--packages 1,8,64,300] [--name NAME]

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Measures how evenly the orders of LF images fill the frames of a film, as lfpreprocessor plans it.
 
 usage: bench/image_orders.py BUILD_DIR [--density 1] [--size 480x320] [--name NAME] [--write PAGE]

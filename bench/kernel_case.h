@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The data on which the kernels of ray collection and their peers are measured: a batch of LF
 // images around one frame, all of one flat picture in the focus plane, so that every contender
 // should compute the same frame.

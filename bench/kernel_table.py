@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Runs lf_collection_peers_bench and prints the table of our kernels against their peers.
 
 usage: bench/kernel_table.py BUILD_DIR [--rounds 5] [--cases REGEX] [--name NAME] [--write PAGE]

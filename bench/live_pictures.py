@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs lfvisualizer and asks it for live pictures, as its page does (doc/formats/page_data.md, POST live)."""
 import http.client
 import json

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Measures live pictures of lfvisualizer: how soon they come, how many LF images they are made of, and how fast.
 
 usage: bench/live_speed.py BUILD_DIR [--data ../shared] [--only shop,beer,many] [--count 256] [--pictures 60]

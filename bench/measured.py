@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Runs one command and writes how much time, memory, files and disk it used, as JSON, into RESULT.
 
 usage: measured.py RESULT PERIOD_S FOLDER COMMAND...

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Measures the peak memory of lfrenderer, to compare it with its limit --memory.
 
 usage: bench/memory_bound.py BUILD_DIR LIGHTFIELD [--bounds 1G,4G] [--frames 1,60] [--images 24]

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Times lfpreprocessor on a million LF cameras: the band of the thesis, and films along a tenth of it.
 
 usage: bench/million_cameras.py BUILD_DIR [--counts 10000,100000,1000000] [--frames 30,900]

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Measures how much the remedies of thesis 5.3 reduce noise in rebinned frames.
 
 usage: bench/noise_remedies.py BUILD_DIR GROUNDTRUTH [--electrons 1000] [--read-noise 5] [--seed 1]

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Checks that frames stopped by --stop-when "noise<=X" have the requested noise, and that this noise equals their
 difference from frames of all LF images.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The usual implementation with OpenCV: it demosaics the LF image (Bayer), warps it onto the focus
 // plane as the frame sees it (bilinear), and accumulates it where its rays pass the lens. All
 // values are linear light.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs our kernels on one thread, as the renderer calls them (lf/render/collect/collect_batch.cc).
 #include <hwy/targets.h>
 

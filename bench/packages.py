@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Measures how much time packages and rectangles save, on movements of Table 5.1 (workloads.py).
 
 usage: bench/packages.py BUILD_DIR [--density 0.03] [--size 480x320] [--runs 3] [--field DIR]

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Measures what rendering from a packed store costs, compared with rendering from pixels in memory.
 
 usage: bench/packed_stores.py BUILD_DIR [--count 64] [--size 1024x1024] [--runs 3] [--name NAME] [--write PAGE]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures the page with many LF cameras: time to the first picture, bytes sent, and JavaScript
 // time per frame of a scrub, in headless Chromium with software rendering.
 //

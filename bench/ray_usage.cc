@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lf_ray_usage LIGHTFIELD PATH.yaml: counts, for every LF image inside the widened frustum, the
 // pixels that all frames together would try, as whole images and within their rectangles, and the
 // rays among them that reach a plate (thesis, Figure 5.5). Uses the ray model's spans and reads no

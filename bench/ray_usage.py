@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Draws Figure 5.5 of the thesis: which share of the pixels that are tried are rays that a plate accepts.
 
 usage: bench/ray_usage.py BUILD_DIR [--density 1] [--size 480x320] [--name NAME] [--write PAGE]

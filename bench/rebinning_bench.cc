@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares rebinning with its peers on the same work in the same run: cells in a hash map
 // (sparsehash, which the thesis used), and a frame of 1920 x 1080 with 16 lens points (a k-d tree,
 // nanoflann).

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Compares rebinning with its peers (lf_rebinning_peers_bench): frames from splats and from a k-d tree, cells in hash
 maps.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The record of a table: its figures, and all that is needed to judge and to reproduce them.
 
 A script that makes a table does four things:

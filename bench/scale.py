@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Films light fields of up to 100,000 LF images that exist as files: time and memory of the programs, and their growth.
 
 usage: bench/scale.py BUILD_DIR [--counts 1000,10000,100000] [--weighed 1000,10000] [--frames 300]

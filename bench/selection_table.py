@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Times selection in the band of the thesis (lf_selection_bench): by the octree, and by testing every LF camera.
 
 usage: bench/selection_table.py BUILD_DIR [--name NAME] [--write PAGE]

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Measures how much sooner a film is done when its packages are rendered at the same time (thesis, Table 5.2).
 
 usage: bench/simultaneous_packages.py BUILD_DIR [--movement long] [--density 0.03] [--size 480x320]

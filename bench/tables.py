@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Makes the tables of doc/ again, one after the other, each with its record in bench/results/.
 
 usage: bench/tables.py BUILD_DIR [--only NAME,...] [--resume] [--tiny] [--data ../shared]

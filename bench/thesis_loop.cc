@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The loop of thesis 4.3.1 in a straightforward form with Eigen: for every pixel, the ray by K^-1
 // and the inverse of [R|t] (Eq. 4.1, 4.2), its intersections with lens plane and focus plane, the
 // projection by K'[R'|t'], and one addition to a plate of float sums and counts,

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Compares transforms, quantisers and packings as prototypes in NumPy, to choose those of the codec (doc/codec.md).
 
 usage: bench/wavelet_choice.py [--data ../shared] [--name NAME] [--write doc/codec.md]

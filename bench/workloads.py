@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Times whole renders: the five camera movements of Table 5.1 of the thesis, thinned out.
 
 usage: bench/workloads.py BUILD_DIR [--density 0.03] [--size 480x320] [--runs 3] [--most-seconds 15]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs a command of the add-on in Blender without a window; nothing needs to be installed.
 
 usage: blender -b SCENE.blend --python headless.py -- lfrendertools capture DIR [OPTIONS]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Finds all third-party libraries of the project (doc/design.md, "Dependencies"). A folder names the ones that it needs
 # under LIBS.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The compiler settings of everything we compile. -ffp-contract=off: the same bits on every
 # target need that no multiply-add is fused behind our back (doc/ray.md, "Same bits").
 add_library(lf_options INTERFACE)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Defines what `cmake --install` installs: the library as one archive with its public headers, for CMake's
 # find_package(lfrendertools) and for pkg-config; the programs; their documentation.
 include(GNUInstallDirs)

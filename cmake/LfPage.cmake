@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The visualiser's page: TypeScript in web/, bundled by esbuild and embedded in lfvisualizer.
 #
 # LF_PAGE is the folder of the bundled page. It is empty if the page cannot be built, without Node.js 18 and npm or

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The headers that most sources include are parsed once for all targets, which saves a third of a build. They are
 # those of the standard library and of other projects alone: a change of our own headers builds their users only.
 #

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Makes man pages, completion for shells and the reference page of the programs: the target program_pages, which is a
 # part of `all`. The programs are asked for their description (scripts/program_pages.py), so that no page is older than
 # its program. LF_PROGRAM_PAGES names the folder; it is empty if the programs cannot be run.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Defines how tests are told to ctest. Each test has a time limit, and labels to choose it by (ctest -L):
 #   unit      the C++ tests of one folder, and fuzz targets that replay their corpus
 #   program   whole programs

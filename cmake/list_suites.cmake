@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Writes the suites of a GoogleTest program as tests of ctest, GROUP.Suite. Run when the program is built:
 #
 #   cmake -D PROGRAM=... -D GROUP=... -D TIMEOUT=SECONDS -D LIST=FILE -P list_suites.cmake

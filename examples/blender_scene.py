@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Makes a small scene of Blender to try the tutorial with: glass, metal and lights on a table.
 
 usage: blender -b --factory-startup --python examples/blender_scene.py -- SCENE.blend

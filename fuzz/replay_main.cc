@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs a fuzz target over the files of its corpus folders without libFuzzer. Every test run replays
 // in this way the inputs that once broke a parser.
 //

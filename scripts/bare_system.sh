@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Functions that make bare Debian 12 systems in folders (to be sourced by bash, as root, in a mount namespace of its own).
 # Mirror and proxy are those of this machine's apt, certificates those of its Node.js.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Builds in build/PRESET: installs missing packages, configures, builds.
 #
 # usage: scripts/build.sh demo                 the programs that ./demo runs

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Compiles all programs but lfvisualizer for 64-bit ARM, in build/aarch64. Nothing is run.
 #
 # usage: scripts/build_aarch64.sh      (root, Debian 12; best in a container)

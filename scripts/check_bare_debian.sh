@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Tests ./demo and ./test on a bare Debian 12: a fresh system that has only git and a clone of the last commit. The two
 # commands must install everything else.
 #

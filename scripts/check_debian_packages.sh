@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Makes the Debian packages of the last commit as a release does, and checks them on bare Debian 12 systems.
 #
 # usage: scripts/check_debian_packages.sh FOLDER       (root; debootstrap, piuparts, Node.js and npm)

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Checks house rules that no compiler checks. Prints one line for each fault: file, place, what is wrong.
 
 usage: check_house.py REPOSITORY CHECK

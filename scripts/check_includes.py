@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Fails if a folder of lf/ includes what its lf_folder(... DEPENDS ...) does not allow, if a third-party header is
 included outside the folders that own it, if anything in lf/ includes tools/ or tests/, or if rooms depend on each other
 in a cycle. A room is a folder directly in lf/, with the folders inside it.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Checks by Debian 12's reuse that the licence of every file is stated, and that its text is in LICENSES/.
 #
 # usage: scripts/check_licences.sh    exit 1 if something is missing; exit 77 (skipped) without reuse or history

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Checks the Python files by the rules of .flake8 with Debian 12's flake8.
 #
 # usage: scripts/check_python.sh    exit 1 if a rule is broken; exit 77 (skipped) without flake8

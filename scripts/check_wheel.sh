@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Builds the wheel of the Python package as a user does, installs it into a fresh virtual environment without a package
 # index, lists its contents, and renders a frame with it without a display, in one process with NumPy, OpenCV and
 # scikit-learn, whose threads are those of OpenMP.

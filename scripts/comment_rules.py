@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The rules for how a comment begins and ends (doc/style.md), and the house check that no comment breaks them.
 
 A comment is a run of whole lines of // or #, a comment behind code, or the first line of a Python docstring. The line

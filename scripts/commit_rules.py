@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Checks the messages of commits, for check_house.py (doc/style.md, "Commits"): a subject `folder: Imperative summary`
 of at most 72 characters, and a body that says why, where more than 50 lines change."""
 import re

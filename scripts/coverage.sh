@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Says which share of the lines and branches of lf/ and tools/ the tests run. Builds everything in build/coverage with
 # counters, runs the tests and prints a summary; build/coverage/lines/index.html shows every line.
 #

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Thinned and spoiled light fields for densify_quality.py, and the frames in which they are compared."""
 import json
 import re

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Densifies thinned light fields, renders them, compares the frames with those of true lenses or of all LF images, and
 makes the tables of doc/densify.md.
 

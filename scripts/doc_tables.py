@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Makes the tables of pages whose content is in the sources: folders, programs, options, exit codes, formats.
 
 usage: scripts/doc_tables.py REPOSITORY            prints what is wrong with these tables; exits with 1 if something is

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Draws the figures of doc/how-it-works.md.
 
 usage: scripts/explain_figures.py FOLDER

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads the folders of the library from the lf_folder(...) calls in lf/ (cmake/LfFolder.cmake)."""
 import pathlib
 import re

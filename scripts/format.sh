@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Formats every C++ source by .clang-format with Debian 12's clang-format 14; other versions break lines differently.
 #
 # usage: scripts/format.sh [--check]    --check: changes nothing, exit 1 if something would change;

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The versions of the project's file formats, for the table of doc/formats/README.md that doc_tables.py makes."""
 import re
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Fuzzes every parser of foreign bytes for a while (clang 14, libFuzzer, address and undefined behaviour sanitizers),
 # with as many targets at a time as there are processors, and prints the results.
 #

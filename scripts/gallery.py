@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Runs the commands of doc/gallery.md, and compares the pictures that they make with those in doc/images/.
 
 usage: scripts/gallery.py PROGRAMS [--write]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Checks which headers are installed, for check_house.py. lf_folder(... INTERNAL ...) names the headers of its folder
 that are not installed (cmake/LfFolder.cmake); the first comment of such a header says so: "Internal to ...".
 """

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Runs the long tests that ./test has no time for, one after the other, and prints the outcome of each.
 #
 # usage: scripts/hunt.sh [--resume] [STEP...]      default: every step, some hours on two cores

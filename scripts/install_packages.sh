@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Installs the packages of some groups that are missing, and prints their names.
 #
 # usage: scripts/install_packages.sh GROUP...      the groups are the files scripts/packages/GROUP.txt

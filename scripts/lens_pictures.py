@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Makes the pictures of doc/lens-integral.md and doc/quality.md from scenes of lfsynth (which lies
 beside LFRENDERER).
 

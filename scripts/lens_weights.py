@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Renders light fields whose true thin-lens pictures are known, by every estimator and with every
 kind of lens weights, and prints the tables of doc/lens-integral.md.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """States the licence in the first lines of every source: one line, in the comment form of the language.
 
 usage: scripts/licence_headers.py --check [REPOSITORY]    prints the files whose line is missing or wrong; exits with 1

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes doc/images/visualizer_live.webp, a film of the live picture in use: focus, aperture, blades, tilt and orbit by the
 // mouse. Needs Chromium and ffmpeg, and the packages of web/.
 //

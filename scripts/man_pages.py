@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Makes man pages, in the macros of man(7), from descriptions of programs (tools/common/describe.h)."""
 import os
 import re

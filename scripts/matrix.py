@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Renders the matrix of doc/matrix.md, every mode in every way, and reports the wrong cells.
 
 scripts/matrix.py BIN -o matrix.json             renders all cells, in a shuffled order

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads the list of mutants, scripts/mutants.toml, and checks that it fits the code.
 
 A mutant is a mistake that somebody could make, planted into one file. Its fields:

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Plants mistakes into a copy of the project, one at a time, and reports those that no test notices.
 
 scripts/mutants.py BUILD_DIR -o mutants.json             every mutant of scripts/mutants.toml

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs the commands of a page, for gallery.py and the test of the tutorial.
 
 A block of commands begins with ```sh. A block that cannot run everywhere, because it needs COLMAP, Blender or

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes doc/images/visualizer.jpg, a picture of the page of lfvisualizer that shows an LF image. Needs Chromium and
 // ffmpeg, and the packages of web/.
 //

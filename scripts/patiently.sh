@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # patiently WHAT LOG COMMAND...   (to be sourced by bash)
 #
 # Runs COMMAND with its output in the file LOG. Prints every half minute that it is still running, with the last line of

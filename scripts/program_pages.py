@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Makes man pages, completion for shells and a reference page from what the programs say of themselves.
 
 usage: scripts/program_pages.py FOLDER_OF_THE_PROGRAMS OUT NAME...

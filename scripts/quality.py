@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Renders the ground truth cases, compares them with true thin-lens pictures and prints the tables
 of doc/quality.md.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Makes the pictures of doc/rebinning.md from scenes of lfsynth (which lies beside LFRENDERER).
 
 usage: rebinning_pictures.py LFRENDERER FOLDER

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Renders light fields whose true thin-lens pictures are known with collected rays, rebinned rays
 and both, and prints the table of doc/rebinning.md.
 

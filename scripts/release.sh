@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Makes a release of the last commit of the branch main: dates its section of the changelog, runs ./test, tags the commit,
 # and makes the files of the release. Never pushes.
 #

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Makes the tarball of a release from the last commit: its files, and the bundled page of lfvisualizer with its sources,
 # so that a build from the tarball needs neither Node.js nor npm nor a network.
 #
@@ -11,7 +12,7 @@
 set -euo pipefail
 repository=$(cd "$(dirname "$0")/.." && pwd)
 if (($# != 1)); then
-  sed -n '5s/^# //p' "$0" >&2
+  sed -n '/^# usage:/s/^# //p' "$0" >&2
   exit 2
 fi
 for program in git node npm tar xz; do

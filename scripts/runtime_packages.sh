@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Prints the Debian packages that programs need to run: those of the shared libraries that they load, and ffmpeg, which
 # they start. The libraries must be installed here.
 #

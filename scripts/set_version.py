@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Writes a version into every place that states it: VERSION, CHANGELOG.md, CITATION.cff and the add-on of Blender.
 
 usage: scripts/set_version.py VERSION [--released DATE] [--dry-run]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Makes completion for bash, zsh and fish from descriptions of programs (tools/common/describe.h)."""
 import shlex
 

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Makes the documentation site: the pages of the project, of the C++ library and of the Python package, as HTML.
 
 usage: scripts/site.py OUT [PROGRAMS.md]

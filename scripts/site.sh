@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Makes the documentation site in a folder. Installs missing Debian packages first (root or sudo).
 #
 # usage: scripts/site.sh [OUT]      OUT is build/site by default; open OUT/index.html in a browser

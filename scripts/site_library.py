@@ -1,8 +1,10 @@
+# SPDX-License-Identifier: Apache-2.0
 """Makes the pages of the C++ library from its headers, for site.py: a page for each folder, with every public header
 and the comment that it begins with."""
 import pathlib
 
 import folder_list
+from comment_rules import LICENCE_TAG
 from header_rules import OF_TESTS
 from site_pages import Site, fenced
 
@@ -18,7 +20,7 @@ are made from the headers. [The library, room by room](rooms.md) shows how the f
 
 def parts_of(text: str):
     """Returns the comment that a header begins with, and the rest."""
-    lines = text.splitlines()
+    lines = [line for line in text.splitlines() if LICENCE_TAG not in line]
     count = next((i for i, line in enumerate(lines) if not line.startswith("//")), len(lines))
     comment = "\n".join(line.removeprefix("//").removeprefix(" ") for line in lines[:count])
     return comment, "\n".join(lines[count:]).strip().removeprefix("#pragma once").strip()

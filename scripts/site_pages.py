@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Copies the pages of the project into a folder that Sphinx makes the site of, for site.py.
 
 Pages link to each other, to pictures, and to files and folders of the repository, by relative paths that a forge

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Mends faults of Debian's package of the theme furo (2022.12.07+dfsg) in a made site, for site.py. Each is left alone
 where another package does not have it.
 

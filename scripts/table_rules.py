@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Checks tables of figures, for check_house.py: each table needs a record that states when, by which programs and with
 which commands it was made (bench/record.py).
 

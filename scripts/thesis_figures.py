@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Makes the pictures of doc/thesis.md: what the figures of chapter 5 of the thesis show, from scenes
 of lfsynth (which lies beside LFRENDERER).
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Runs clang-tidy 14 (Debian package clang-tidy-14) with the checks of .clang-tidy.
 #
 # usage: scripts/tidy.sh [FILE.cc...]      default: every source of lf/ and tools/

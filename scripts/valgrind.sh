@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Runs every program once under valgrind (Debian package valgrind), on a light field of 25 small images: no byte may be
 # read before it is written or outside its memory, and no memory may be lost.
 #

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The places that state the version of the project, for check_house.py and set_version.py. The file VERSION decides;
 the other places must agree, and the first section of CHANGELOG.md is that of this version."""
 import pathlib

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests images with alpha: masks, and an object on any background, compared with exact lens pictures.
 
 usage: alpha_test.py LFRENDERER LFIMPORT LFCOMPRESSOR LFPREPROCESSOR

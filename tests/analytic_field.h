@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A light field without files, for tests of optics with known answers: dense parallel cameras in
 // the plane z = 0 whose pixels are given by a formula of the ray.
 #pragma once

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Builds scenes in Blender for blender_test.py, and renders what they are compared with. Everything in the scenes
 shines and nothing is lit, so that few samples have little noise.
 

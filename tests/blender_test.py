@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests the add-on of Blender: what it captures is filmed like Cycles' own depth of field, cameras of every kind are
 where transforms.json says, and a killed capture continues to the same files.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs programs on hostile files with limits of memory, time and temporary disk, and records how much of each they
 used."""
 import concurrent.futures

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Tests exposure brackets: three clipped 8-bit photographs of every pose become linear light.
 
 Usage: brackets_test.py IMPORTER RENDERER SYNTH EXAMPLE PREPROCESSOR COMPRESSOR

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Compares every camera model with OpenCV if it has the model, and otherwise with its formula in numpy.
 
 usage: camera_models_test.py PROJECT_POINTS

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests the first picture of real and rendered captures, both unchanged and as people change them: images with uneven
 exposure or dark corners, downscaled, renamed or moved. The subject must be sharp in all pictures.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests the checks of scripts/: each planted fault must be found, and nothing else.
 
 usage: check_house_test.py REPOSITORY

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A small light field with its packages, the frames of one lfrenderer, and jobs that render the packages."""
 import hashlib
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The common options, and the programs that offer them.
 
 tests/program_options_test.py compares the lists with the programs. scripts/doc_tables.py makes the table of

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Compares pictures by lfcompare, and checks every number with NumPy and SciPy, by the formulas of the papers.
 
 usage: compare_test.py LFCOMPARE LFSYNTH LFRENDERER

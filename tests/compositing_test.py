@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests what compositing programs read of frames: attributes of EXR files, --colour-space, --frame-alpha and --z.
 Places, colours and depths are compared with formulas of the OpenEXR documentation and of the standards, in NumPy.
 

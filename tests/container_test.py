@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Checks Containerfile without building it: its stages, that the files it copies exist and are not ignored, that the
 scripts it runs can be executed, that the image runs as an ordinary user; and scripts/runtime_packages.sh.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Chooses cells of a matrix that cover every combination of a few axes, to test N axes in few runs."""
 import itertools
 import random

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Computes the content of a disk after a power failure, from the log of tests/faults/written_log.c.
 
 Two disks are modelled. The patient disk does not store names before their folder is flushed. The hasty disk stores

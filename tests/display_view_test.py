@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests --view: PNG frames by a view of the user's OpenColorIO configuration. The configurations are made here, and the
 frames compared with formulas in NumPy.
 

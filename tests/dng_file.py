@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes DNG files for tests: a TIFF with one uncompressed strip of 16-bit pixels."""
 import struct
 

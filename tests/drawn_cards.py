@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Photographs cards of known light and opacity with planar light fields and with exact lenses."""
 import functools
 import json

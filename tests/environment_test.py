@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Runs every program on a machine that lacks something: memory, open files, processes, space on the disk, standard
 streams, a point in decimal numbers, plain names.
 

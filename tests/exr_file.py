@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads EXR files as lfrenderer writes them, for tests: written from the description of the file layout
 (openexr.com, "OpenEXR File Layout"), without OpenEXR."""
 import struct

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests what render farms need: their lines of progress, frame lists that are too long, job bundles of Open Job
 Description, and scripts for the arrays of batch systems.
 

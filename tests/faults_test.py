@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Runs every program while one system call fails: the k-th write, flush, rename, ... or allocation.
 
 A program may end with 0 only if its files are those of an undisturbed run, and no temporary file is

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Judges the files of a program that was disturbed: those with final names must be old or right."""
 import hashlib
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Makes the first picture of a capture with lfimport, lfexample and lfrenderer, and a sheet of such pictures."""
 import re
 

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests the first picture of captures as people have them: lfimport, lfexample and lfrenderer without further options
 make one whose subject is sharp.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests frames with a focal surface: they are those of true lenses, whatever makes them, and other ways refuse it.
 
 usage: focal_surface_test.py LFSYNTH LFRENDERER LFPREPROCESSOR LFMERGE LFPATH LFFOCUS

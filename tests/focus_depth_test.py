@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests lffocus depth and lffocus sharp: depths of known scenes, sharp pictures against true ones, all file formats.
 
 usage: focus_depth_test.py LFFOCUS LFSYNTH

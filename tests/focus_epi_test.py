@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests lffocus epi from a user's view: the slope of a light tells its depth, pixels are those of the LF images, and
 wrong calls are refused.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests lffocus through: statistics over the lens, with NumPy as the judge, and charts behind leaves.
 
 usage: focus_through_test.py LFFOCUS LFRENDERER LFSYNTH

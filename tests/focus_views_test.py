@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests lffocus views from a user's view: views at LF cameras are their LF images, bit for bit; others show points
 where a pinhole sees them; outputs can be read again.
 

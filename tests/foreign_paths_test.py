@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Reads camera paths in the formats of other programs. The files are written here, with NumPy and from the formats'
 documentation alone (doc/formats/foreign_paths.md); the cameras must be those they were written of. Writes such paths
 with lfpath, and reads them here; rendered again, they must give the same frames.

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Reads and renders one light field in every format; all results must agree.
 
 usage: formats_test.py LFSYNTH LFEXAMPLE LFIMPORT LFRENDERER

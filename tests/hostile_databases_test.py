@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests packages and packed stores made to do harm: with other schemas, values or pages, each under a correct seal and
 correct checksums. Programs must keep to the limits of memory and time and report one error.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests calibrations, camera paths, images and masks made to do harm, and things that are no files: pipes, devices,
 loops of links. Programs must keep to the limits of memory and time and report one error.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests lfsubmit with false programs sbatch, squeue and scancel in PATH, whose answers Slurm would never give. lfsubmit
 must believe none of them and report this in one line.
 

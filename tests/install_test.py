@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Installs the project and builds another project against it, with CMake and with pkg-config.
 
 usage: install_test.py CMAKE BUILD_FOLDER SOURCE_FOLDER

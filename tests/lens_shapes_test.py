@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests lenses that are shifted, squeezed or rounded: frames are those of true lenses, whatever makes them.
 
 usage: lens_shapes_test.py LFSYNTH LFRENDERER LFPREPROCESSOR LFMERGE

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests the kinds of files of LF images: the same light in any of them gives the same bits.
 
 usage: lf_images_test.py LFRENDERER LFIMPORT

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests lfcammvminfo from a user's view, on the examples and on the path of doc/formats/path.md.
 
 usage: lfcammvminfo_test.py LFCAMMVMINFO REPOSITORY

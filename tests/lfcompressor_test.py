@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests packed stores from a user's view: made by lfcompressor, killed, resumed, verified, damaged.
 
 usage: lfcompressor_test.py LFCOMPRESSOR LFRENDERER LFPREPROCESSOR

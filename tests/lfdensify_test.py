@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests densified light fields from a user's view: nearer to the truth than the recorded ones, the same bits however
 they were made, refused where they cannot be right.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests lfexample: its path renders, and is focused on what can be seen.
 
 usage: lfexample_test.py LFEXAMPLE LFRENDERER

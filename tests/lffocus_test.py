@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests lffocus stack from a user's view: its pictures have the bits of single renders, each LF image is read once, and
 files and folders obey the rules of lfrenderer.
 

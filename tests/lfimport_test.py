@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests lfimport: its light field gives the same film, and its report names the faults of a capture.
 
 usage: lfimport_test.py LFIMPORT LFSYNTH LFEXAMPLE LFRENDERER TEST_DATA

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests packages from a user's view: made by lfpreprocessor, rendered by lfrenderer to the same bits.
 
 usage: lfpreprocessor_test.py LFPREPROCESSOR LFRENDERER

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests lfr, which runs the other programs: names, exit codes, signals, and which program it finds.
 
 usage: lfr_test.py FOLDER_OF_THE_PROGRAMS

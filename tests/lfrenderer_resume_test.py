@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests lfrenderer when it is interrupted, killed and resumed: the bits do not change, and a damaged state never gives
 a wrong picture.
 

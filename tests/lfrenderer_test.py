@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests lfrenderer from a user's view: input and output files, exit codes, last lines.
 
 usage: lfrenderer_test.py LFRENDERER

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests lfsubmit on one machine: processes of packages die, fail, are interrupted, cancelled and resumed; the frames
 are always those of one lfrenderer.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests lfsynth: it writes a light field that the other programs can read.
 
 usage: lfsynth_test.py LFSYNTH LFEXAMPLE LFRENDERER

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests lfvisualizer --text: its output about cameras agrees with the light field, the path and a render.
 
 usage: lfvisualizer_test.py LFVISUALIZER LFRENDERER [pageless]

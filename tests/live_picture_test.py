@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests that a still live picture of all LF images is close to the frame that lfrenderer makes of the full-size ones.
 
 usage: live_picture_test.py LFVISUALIZER LFRENDERER TEST_DATA    exit 77 (skipped) without TEST_DATA/data/blender-shop

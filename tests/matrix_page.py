@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads doc/matrix.md: the axes of the matrix, and the cells that must be refused."""
 import pathlib
 import re

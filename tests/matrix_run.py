@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs cells of the matrix (doc/matrix.md), a few at a time, and collects their outcomes."""
 import concurrent.futures
 import time

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests that every mode rendered in every way gives the bits of the plain render, or the refusal of doc/matrix.md. The
 cells cover all pairs of values of different axes; scripts/matrix.py tests the whole matrix.
 

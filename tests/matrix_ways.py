@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Renders a cell of the matrix (doc/matrix.md) and compares it with its plain render."""
 import hashlib
 import json

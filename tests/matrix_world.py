@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Makes the films of the matrix (doc/matrix.md): captures, camera paths, packed stores and packages, each on first
 use."""
 import contextlib

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests missing and broken LF images: they are left out and counted on the last line, with exit code 6, and accepted
 with --allow-missing, for every program, mode and cut.
 

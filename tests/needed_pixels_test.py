@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests that packages, stores of needed pixels and renders agree about what frames need.
 
 usage: needed_pixels_test.py LFCOMPRESSOR LFRENDERER LFPREPROCESSOR LFSUBMIT

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests lfrenderer --stop-when "noise<=X" and --require: frames end early with the same bits in any run, in every mode
 and with every lens weights; a frame that cannot be measured never counts as good.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Tries odd names for light fields, paths, images and outputs, and outputs that are inputs of the same call."""
 import hashlib
 import json

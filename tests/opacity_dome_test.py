@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests frames with alpha of a dome: an object of lfsynth on an empty background, compared with exact lens pictures.
 
 usage: opacity_dome_test.py LFSYNTH LFRENDERER

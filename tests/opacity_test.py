@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests frames with alpha: a turntable of lfsynth on an empty background, compared with exact lens pictures.
 
 usage: opacity_test.py LFSYNTH LFRENDERER LFIMPORT LFCOMPRESSOR LFPREPROCESSOR LFMERGE LFSUBMIT

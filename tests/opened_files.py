@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Counts how often the files of a folder are opened, by inotify of Linux."""
 import collections
 import ctypes

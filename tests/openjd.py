@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs job templates of Open Job Description, for tests: a small interpreter of version 2023-09, written from its
 specification. It checks the parts of a template that lfsubmit writes, and refuses all others."""
 import pathlib

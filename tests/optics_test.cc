@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tests properties of a thin lens, from the pixels of LF images to the sensor plate.
 #include <gtest/gtest.h>
 

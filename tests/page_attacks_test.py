@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Attacks lfvisualizer's page as a hostile browser or program on the same machine would.
 
 Each attack has a server of its own. The answer must be the expected refusal, the server must answer a good request

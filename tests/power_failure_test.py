@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Runs every program that writes, and lets the power fail after each of its steps: what was not flushed is lost.
 
 A call is logged once (faults/written_log.c). Then the disk is composed as it would be if the power had failed after one

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Runs a private Slurm on the loopback, to be tried and to be killed: several nodes on this machine, in one folder,
 without root, systemd or limits by cgroups.
 

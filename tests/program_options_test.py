@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests that every program offers the common options that it obeys and refuses the others, and that its help can be
 scanned.
 

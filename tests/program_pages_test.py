@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests the descriptions of the programs, and what is made from them: man pages, completion, the reference page.
 
 usage: program_pages_test.py FOLDER_OF_THE_PROGRAMS FOLDER_OF_THE_PAGES

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A test case with a folder of its own, in which it calls programs."""
 import pathlib
 import subprocess

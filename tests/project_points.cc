@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Projects directions through a camera, for camera_models_test.py.
 //
 // stdin   fx fy cx cy  MODEL  p1 .. p12, then X Y Z of each direction

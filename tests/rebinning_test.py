@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests lfrenderer --mode rebin and hybrid: the bits do not depend on threads or kills, memory stays below its limit,
 and messages are correct.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests scripts/release.sh on a small repository: a dry run changes nothing, a release is whole, and a state that
 cannot be released is refused with its reason.
 

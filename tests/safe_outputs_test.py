@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests that wrong output names destroy nothing, that file names cannot forge messages, and that truncated pictures are
 not kept.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests lfrenderer --shard and lfmerge: parts of the LF images, merged in any order, give the frames of one machine bit
 for bit; missing parts are reported.
 

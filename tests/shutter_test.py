@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests frames that are exposed while the camera moves: they are the mean of true lenses, whatever makes them.
 
 usage: shutter_test.py LFSYNTH LFRENDERER LFPREPROCESSOR LFMERGE LFPATH LFCAMMVMINFO

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests signals at any moment of a program, from its start on, and starts in a poor environment: the program ends
 correctly, and the next call makes the right files and removes the files of the killed program.
 

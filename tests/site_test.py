@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests the documentation site: it is made without a warning, its links lead to pages and headings that exist, and
 reading it fetches nothing from elsewhere. Skipped where Sphinx is missing.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests lfsubmit --engine slurm on a cluster of four nodes on this machine (private_slurm.py): nodes and processes die,
 and the frames are those of one lfrenderer.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes a small light field of files, for tests of whole programs."""
 import json
 import pathlib

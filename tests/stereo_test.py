@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Makes stereo films and quilts of a small scene: paths of views by lfpath, frames by lfrenderer, pictures and videos
 by lfquilt. Tiles must be the frames bit for bit, and a light must be where NumPy projects it in every view.
 

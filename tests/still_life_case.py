@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A test case with a small light field of lfsynth's still life, which all tests of a class share."""
 import os
 import tempfile

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests light fields as users bring them: faults are reported with helpful messages, or do not matter.
 
 usage: strangers_test.py LFIMPORT LFEXAMPLE LFRENDERER

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tests that renders of synthetic light fields equal the pictures that the lens takes of the scene.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A tiny light field, a film of two frames, and one call of every program."""
 import subprocess
 

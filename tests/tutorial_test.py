@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Runs the commands of doc/tutorial.md that need no COLMAP and no phone: those of the gantry with recorded photographs,
 and those of Blender with a coarse rig. What is missing on this machine is skipped and named.
 

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests that lfimport matches photographs that were exposed unevenly through a lens with dark corners: the frames are
 then those of an even capture.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The main function of all unit test programs. It differs from GoogleTest's own in one point: a run
 // in which a test was skipped and none failed ends with 77, which ctest shows as skipped.
 #include <gtest/gtest.h>

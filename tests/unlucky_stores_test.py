@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests accidents around packed stores, which must be reported before they cost work: occupied names, captures that
 changed, signals, partial copies, edited calibrations.
 

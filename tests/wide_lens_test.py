@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests a lens that is wider than the capture: the part beyond the capture is empty and reported.
 
 usage: wide_lens_test.py LFRENDERER LFPREPROCESSOR

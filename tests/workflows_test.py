@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Checks what a forge reads: workflows and templates are well formed, each step runs one job of .ci/job and nothing of
 its own, every job is run by a workflow, and every script that is called exists and can be executed.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes the light field of a transforms.json in other formats: with numpy from their documentation, independently of
 the library.
 

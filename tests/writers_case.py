@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Calls of all programs on a tiny light field, in two ways each, and digests of what they write."""
 import contextlib
 import hashlib

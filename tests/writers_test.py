@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests two programs that write into one folder at the same time: one wins, or they work one after the other, and their
 files are never mixed.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shows the cameras of a path as text, for lfcammvminfo and lfpath.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How LF images are encoded, in the words of lfcompressor's options.
 #pragma once
 

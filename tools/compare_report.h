@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The reports of lfcompare: a table for people, JSON, and limits.
 #pragma once
 

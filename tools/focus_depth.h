@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lffocus depth and lffocus sharp: the depth of every element of a frame, and a picture in which
 // everything is in focus.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lffocus epi LIGHTFIELD --row Y | --column X: the epipolar picture of a row or a column of LF
 // cameras.
 #pragma once

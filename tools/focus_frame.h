@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The frame of PATH whose camera a command of lffocus uses.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lffocus stack LIGHTFIELD PATH -o OUT: pictures of one camera that differ in their focus distance.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lffocus through: a frame by a statistic over its lens, which sees through leaves and rain.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lffocus views LIGHTFIELD --grid COLUMNSxROWS -o OUT: the light field as a regular grid of views.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes changes of a path that remove the warnings of a forecast.
 #pragma once
 

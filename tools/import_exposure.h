@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The options of lfimport for exposure (--match-exposure, --gain-from-exif, --mask-clipped):
 // applies them to the light field and reports on them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The report of lfimport (doc/formats/import_report.md).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/known_depths.h"
 
 #include "lf/focus/swept_depths.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The depths of the scene that a forecast assumes.
 #pragma once
 

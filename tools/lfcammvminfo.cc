@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lfcammvminfo PATH: prints the camera of each frame of a path.
 #include <optional>
 #include <string>

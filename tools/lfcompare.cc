@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lfcompare REFERENCE TEST: measures how far pictures are from references.
 #include <fmt/format.h>
 

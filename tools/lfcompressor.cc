@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lfcompressor LIGHTFIELD|PACKAGE... -o STORE.lfs: compresses a light field into a packed store.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lfdensify LIGHTFIELD [PATH] -o STORE.lfs: puts virtual LF images between recorded ones.
 #include <fmt/format.h>
 

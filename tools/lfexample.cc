@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lfexample LIGHTFIELD -o PATH.yaml: writes a first camera path that is ready to render.
 #include <charconv>
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lffocus COMMAND ...: pictures of a light field for people and programs that analyse it.
 #include <fmt/format.h>
 

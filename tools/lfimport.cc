@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lfimport LIGHTFIELD [-o DIR]: converts any calibration to a transforms.json, and reports on the
 // capture.
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lfmerge PLATES... -o DIR: adds the plates of a divided render and writes its frames.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lfpath PATH [-o OUT]: tells what a camera path is, converts it and changes it.
 #include <fmt/format.h>
 #include <fmt/ranges.h>

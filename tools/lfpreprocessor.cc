@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lfpreprocessor LIGHTFIELD PATH -o DIR: makes packages to be rendered by many machines.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lfquilt FRAMES... -o OUT: joins the rendered views of stereo films and light field displays.
 #include <fmt/format.h>
 

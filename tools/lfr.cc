@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lfr COMMAND ...: runs one of the programs, so that one name has to be remembered.
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lfrenderer LIGHTFIELD PATH -o DIR, or PACKAGE... -o DIR: films a light field with a
 // thin-lens camera.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lfsubmit PACKAGES... -o DIR: renders the packages of a film with many processes or machines.
 #include <fmt/format.h>
 

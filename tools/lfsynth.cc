@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lfsynth SCENE -o DIR: writes a synthetic scene as a light field and as exact thin-lens frames.
 #include <atomic>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lfvisualizer LIGHTFIELD PATH: shows what was captured and what a camera path needs of it.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The options of lfrenderer for rebinned rays (doc/rebinning.md).
 #pragma once
 

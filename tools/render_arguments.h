@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command line of lfrenderer, of which `lffocus stack` has a part.
 #pragma once
 

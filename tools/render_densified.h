@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // lfrenderer --densify: makes the densified light field that is rendered.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The end of a render, when everything is written: the exit code depends on LF images that were
 // left out and on frames below the required quality.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The summary of lfrenderer at the end of a render.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs a job while the caller of lfsubmit watches its progress.
 #pragma once
 

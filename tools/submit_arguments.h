@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command line of lfsubmit, and the job it describes.
 #pragma once
 

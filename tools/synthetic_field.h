@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes a synthetic light field, in the words of lfsynth's options.
 #pragma once
 

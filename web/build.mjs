@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bundles the page: index.html, page.js, page.css.
 //
 // usage: node build.mjs FOLDER [SOURCES]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The recommended rules of ESLint and typescript-eslint; for the page itself also those that need types.
 import { fileURLToPath } from "node:url";
 import js from "@eslint/js";

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """lfrendertools for Blender: captures scenes as light fields, and exchanges camera paths (doc/blender.md)."""
 import bpy
 

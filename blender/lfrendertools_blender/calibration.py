@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The text of transforms.json (doc/formats/transforms_json.md)."""
 import json
 

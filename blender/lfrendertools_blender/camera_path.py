@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes the scene's camera as a camera path of lfrendertools (doc/formats/path.md), and reads such a path.
 
 The path has a key for each frame and quantity that moves, so that nothing depends on how either program interpolates.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Renders the LF images of a plan, and resumes a capture that was interrupted."""
 import contextlib
 import dataclasses

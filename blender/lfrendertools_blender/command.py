@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command line: blender -b SCENE.blend --python .../headless.py -- lfrendertools COMMAND ...
 
 The settings of a capture are those that the panel has stored in the scene, unless options replace them.

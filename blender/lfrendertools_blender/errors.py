@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The errors that a user can remedy. Each has the exit code that the programs of lfrendertools use for its kind."""
 
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Checks OpenEXR files, and removes attributes from them, so that equal pictures are equal files.
 
 Cycles writes the seconds that it rendered into every file (`cycles.*`), and has no option that leaves them out. The

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The panel "Light Field" in the sidebar of the 3D view, its operators, and their entries in the menu File."""
 import pathlib
 

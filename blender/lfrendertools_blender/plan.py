@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Plans a capture: the LF cameras in the world, their intrinsics, the depths of the scene, and what this costs."""
 import dataclasses
 import functools

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rigs: the LF cameras around a camera, and how densely they sample the light. Nothing here needs Blender.
 
 A pose of a rig is camera_from_lf, 4 x 4, with the axes x right, y up, z backward: the identity is the scene's camera.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The camera of a scene in numbers: intrinsics, pose and lens, by our conventions (doc/conventions.md).
 
 Pixel coordinates are continuous, and (0, 0) is the upper left corner of the image. Poses are world_from_camera with

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Settings of Sphinx for the site. scripts/site.py copies the pages into a folder and runs Sphinx on it."""
 import pathlib
 import sys

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Films a synthetic scene through wider and wider lenses, and compares the frames with what real lenses would record.
 
 usage: aperture_sweep.py FOLDER PICTURE.png [CAMERAS]

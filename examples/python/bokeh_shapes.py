@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Renders one view through lenses with different numbers of blades, focused in front of the scene.
 
 usage: bokeh_shapes.py LIGHTFIELD PICTURE.png [FOCUS_DISTANCE]      in world units

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Shows which of a million LF cameras one frame needs, without a single LF image.
 
 usage: million_cameras.py FOLDER PICTURE.png [CAMERAS]

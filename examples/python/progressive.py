@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Renders a frame step by step, prints how its error falls, and stops when its noise is small enough.
 
 usage: progressive.py LIGHTFIELD PICTURE.png [NOISE]

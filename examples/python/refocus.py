@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Renders one view of a light field at several focus distances, side by side.
 
 usage: refocus.py LIGHTFIELD PICTURE.png [NEAR FAR]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The opening of the lens: a disk, an ellipse, or a polygon of straight or rounded blades inscribed
 // in it (thesis 4.3.3, "Simulating Aperture Shapes").
 //

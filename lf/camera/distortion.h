@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Describes how a real lens bends rays. A model maps a direction (X, Y, Z) in camera axes to the
 // *distorted* normalised position (xd, yd), at the radius rd from the optical axis. The calibration
 // matrix K then converts (xd, yd) to pixels: x_px = fx xd + skew yd + cx, y_px = fy yd + cy.

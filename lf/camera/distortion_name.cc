@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/camera/distortion_name.h"
 
 #include "lf/core/check.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Names of the models of lens distortion, for people and reports.
 #pragma once
 

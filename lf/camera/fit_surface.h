@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes a focal surface of the depths of all elements of a camera.
 #pragma once
 

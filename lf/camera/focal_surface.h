@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A focal surface: the depth in which each element of one camera is in focus, in place of one focus
 // plane. It consists of pieces of the plate, each with a focus plane of its own, so that rays and
 // elements are still mapped by homographies (doc/ray.md, "Focal surface").

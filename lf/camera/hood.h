@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A round frame in front of the lens, such as the rim of a long lens's front element. It cuts off
 // oblique rays, so that blurred lights towards the corners of the picture have the shape of a cat's
 // eye.

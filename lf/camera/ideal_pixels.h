@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Undoes the lens distortion of an LF camera for the positions of its pixels, without resampling
 // its image.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Intrinsics as a list of numbers, for code that stores or compares them.
 #pragma once
 

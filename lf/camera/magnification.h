@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How large the pixels of an LF image are in a frame.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pinhole camera (thesis 2.2.2-2.2.4). An LF camera is a pinhole camera, whose lens may have
 // distortion. The rays through the lens centre of a render camera are those of a pinhole camera
 // without distortion.

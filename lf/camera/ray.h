@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rays are lines: the radiance that an LF camera recorded for a ray holds along the whole line
 // (thesis 2.1.1).
 #pragma once

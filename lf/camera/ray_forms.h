@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Maps LF pixels to the sensor plate by linear forms on the pixel position.
 //
 // For a fixed pair of LF camera and render camera, every quantity of doc/ray.md, steps 1-5, is a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ray of an LF camera through a point of the world. Its direction points forward for the camera
 // of a frame, as in the ray model (doc/ray.md, steps 2 and 3).
 #pragma once

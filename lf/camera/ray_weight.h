@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Weights of rays: how much a ray counts in the mean of an element (doc/ray.md, "What is added").
 #pragma once
 

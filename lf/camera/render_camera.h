@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The thin-lens camera of one frame: the calibration matrix K', rotation R', lens centre c', lens
 // and focus plane of doc/ray.md.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Changes the number of pixels of an image, for the same picture.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/camera/testing_scenes.h"
 
 #include <algorithm>

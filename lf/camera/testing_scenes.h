@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pairs of an LF camera and a render camera for tests. Random pairs have LF cameras in front of,
 // behind and in the lens plane of the render camera; focus planes tilted so far that their horizon
 // is in view; apertures that are disks, ellipses, polygons or rounded polygons; lenses

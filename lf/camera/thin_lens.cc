@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/camera/thin_lens.h"
 
 #include <fmt/format.h>

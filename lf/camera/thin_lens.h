@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The thin lens (thesis 2.2.5, 2.2.6): pure formulas, lengths in world units.
 #pragma once
 

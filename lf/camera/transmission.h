@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A picture in the opening of the lens: how much light each of its places lets through. It gives
 // out-of-focus lights any shape, and soft edges.
 #pragma once

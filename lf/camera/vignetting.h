@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The radial falloff of light in the images of an LF camera: its lens records less light towards
 // the corners (natural and optical vignetting).
 #pragma once

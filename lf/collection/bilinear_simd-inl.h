@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Adds several rays at once to their elements. Each ray is interpolated between four pixels.
 // Internal to collection. Highway includes this file once for each instruction set.
 #if defined(LF_COLLECTION_BILINEAR_SIMD_INL_H_) == \

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Adds one ray, interpolated between sixteen pixels with the weights of cubic_weights.h, to its
 // element. Internal to collection. Highway includes this file once for each instruction set.
 #if defined(LF_COLLECTION_CUBIC_SIMD_INL_H_) == \

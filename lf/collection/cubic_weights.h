@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The weights of Catmull and Rom's cubic interpolation as integers, so that results are
 // bit-identical everywhere. Internal to collection.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Adds the mean of several rays of an element as the element's one ray. Internal to collection.
 // Highway includes this file once for each instruction set.
 #if defined(LF_COLLECTION_ELEMENT_MEANS_SIMD_INL_H_) == \

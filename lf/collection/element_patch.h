@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Polynomials for the positions on the plate along the scanlines of a patch of ideal positions. One
 // fit yields the polynomials of all scanlines of the patch. Internal to collection.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ray collection, estimator *bilinear* (doc/ray.md, "What is added"): an element collects one ray
 // from each LF image: the ray through the centre of the element, interpolated between LF pixels. If
 // LF pixels are finer than elements, this ray is the mean of several rays through the element, or

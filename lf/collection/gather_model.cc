@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/collection/gather_model.h"
 
 #include "lf/collection/gather.h"

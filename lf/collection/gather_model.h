@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ray model of the estimator *bilinear* for one ray, applied literally, in double precision
 // (doc/ray.md, "What is added"). GatherReference() applies it to every element, PlanGather() only
 // to elements about which rounding or the border of the LF image might decide. Internal to

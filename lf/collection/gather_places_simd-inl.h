@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the positions in an LF image where the rays of consecutive elements were recorded. Internal
 // to collection. Highway includes this file once for each instruction set.
 #if defined(LF_COLLECTION_GATHER_PLACES_SIMD_INL_H_) == \

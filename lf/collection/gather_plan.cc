@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds which elements of a row get a ray, and from which position in the LF image. If an element's
 // ray is the mean of several rays, "element" means an element of the finer plate in this file.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decides how the estimator *bilinear* samples an LF image for an element (doc/ray.md, "What is
 // added"): with which filter, and at how many positions.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The inner loop of the estimator *bilinear*, compiled for every instruction set from one source
 // (Highway). Polynomials are evaluated for a vector of positions at a time. Four or sixteen pixels,
 // each of four lanes of 16 bits, are then mixed in integers (means of several rays and mosaics also

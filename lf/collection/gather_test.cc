@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares the two back ends of the estimator *bilinear* with each other, and with pictures known
 // in closed form.
 #include "lf/collection/gather.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The filter *mosaic*: for each colour, pixels that recorded this colour count more than pixels for
 // which it was interpolated (doc/ray.md, "What is added"). It calculates in integers and single
 // precision, so that results are bit-identical everywhere. Internal to collection.

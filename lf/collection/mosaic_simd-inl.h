@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Adds rays, interpolated between four or sixteen pixels with the shares of mosaic_filter.h, to
 // their elements. Internal to collection. Highway includes this file once for each instruction set.
 #if defined(LF_COLLECTION_MOSAIC_SIMD_INL_H_) == \

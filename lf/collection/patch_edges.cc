@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/collection/patch_edges.h"
 
 #include <algorithm>

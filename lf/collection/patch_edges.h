@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds where the scanlines of a patch of ideal positions cross the edges of lens and plate. The
 // accepted pixels of a scanline end there, so that the scanline need not be halved to find them.
 // Internal to collection.

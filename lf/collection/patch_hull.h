@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bounds of linear forms on an arc or a patch of ideal positions. Internal to collection.
 #pragma once
 

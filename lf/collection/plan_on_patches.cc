@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/collection/plan_on_patches.h"
 
 #include <algorithm>

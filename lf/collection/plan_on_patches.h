@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plans the scatter segments of LF cameras with lens distortion. Internal to collection.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tests the estimator *nearest* with LF cameras that have lens distortion.
 #include "lf/collection/plan_on_patches.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Evaluates the polynomials of a segment, a vector of positions at a time. Internal to collection.
 // Highway includes this file once for each instruction set.
 #if defined(LF_COLLECTION_POLYNOMIAL_SIMD_INL_H_) == \

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Positions of the rays of an LF camera with lens distortion, for the elements of a plate. Bending
 // a ray takes up to 100 ns, too long for the six positions and more that every piece of every row
 // needs. They are therefore computed for patches of many rows. Internal to collection.

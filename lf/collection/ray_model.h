@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ray model for one ray, applied literally: doc/ray.md, "Geometry" 1-5, in double precision.
 // ScatterReference() applies it to every pixel, PlanScatter() only to pixels about which rounding
 // might decide.

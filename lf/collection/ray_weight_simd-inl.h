@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The weights of rays in the three kinds that kernels read: all 1, all equal, or one for each
 // element. Internal to collection. Highway includes this file once for each instruction set.
 #if defined(LF_COLLECTION_RAY_WEIGHT_SIMD_INL_H_) == \

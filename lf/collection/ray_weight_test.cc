@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tests weighted rays with both estimators and both back ends.
 #include "lf/camera/ray_weight.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the positions of a row (pixels of a scanline, or elements of a row of the plate) that
 // fulfil linear conditions and the condition of a disk (doc/ray.md, "Spans"). Internal to
 // collection.

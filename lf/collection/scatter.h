@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ray collection, estimator *nearest* (thesis 4.3.1; doc/ray.md): every pixel of an LF image is one
 // ray, added to the element it hits.
 //

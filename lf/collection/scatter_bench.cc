@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures the rays per second of both back ends of the estimator *nearest*, for one LF image in
 // one frame that accepts nearly all its rays; also how long PlanScatter() takes, and how many
 // pixels per second IdealPixels prepares.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The inner loop of the estimator *nearest*, compiled for every instruction set from one source
 // (Highway). Polynomials are evaluated to addresses, for a vector of positions at a time. Values
 // are then added in integers: a whole vector at once if neighbouring LF pixels hit neighbouring

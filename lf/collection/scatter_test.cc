@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares the fast back end of the estimator *nearest* with the reference.
 #include "lf/collection/scatter.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cuts spans of a row of pixels into segments. Along each segment, a polynomial maps the pixels to
 // the positions of their rays on the plate. For the estimator *bilinear*, segments consist of
 // elements, and the polynomials map them to positions in the LF image. Kernels evaluate the

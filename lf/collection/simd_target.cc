@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/collection/simd_target.h"
 
 #include <hwy/highway.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Chooses the instruction set for all code of the program that is compiled with Highway, in every
 // folder: the best one that the processor has, unless a test or a benchmark chooses another.
 // Results are bit-identical on all instruction sets.

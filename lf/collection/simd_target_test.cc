@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tests that results are bit-identical on every instruction set.
 #include "lf/collection/simd_target.h"
 

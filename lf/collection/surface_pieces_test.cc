@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rays of frames with a focal surface, which are collected piece by piece.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Common parts of the tests of ray collection: LF images of noise, plates for a pair of cameras,
 // and the difference of two plates.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pieces of segments that land in each tile of a plate. Kernels read them; other code only
 // passes them on.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The weights of one LF image's rays in one tile, one byte per element. A weight has the same index
 // as the sums of its element (TileSums). Internal to collection.
 #pragma once

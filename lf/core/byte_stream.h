@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads a file from front to back, one block at a time, so that the file may be larger than memory.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The weights of Catmull and Rom's cubic interpolation (Keys 1981, a = -1/2).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Assertions that reveal our own bugs. LF_CHECK is on in release builds also: if the condition is
 // false, it prints file and line, and ends the program with exit code 1. LF_DCHECK, for inner
 // loops, is on in debug builds only.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs other programs as child processes: lfrenderer; the commands of a batch system, whose output
 // is read; and ffmpeg, which reads pictures from its standard input.
 #pragma once

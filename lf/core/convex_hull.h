@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The convex hull of points of the plane.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads and writes whole files. The results that our programs write get their final names through
 // these functions.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A lock file, which lets only one process at a time work in a folder, for example. The kernel
 // holds the lock, and releases it when the process ends, even if the process is killed.
 #pragma once

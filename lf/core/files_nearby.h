@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Describes for error messages what exists near a missing file, because most files that are not
 // found exist under a slightly different name.
 #pragma once

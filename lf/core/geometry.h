@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Points, transforms and regions shared by all folders.
 //
 // World: right-handed. Camera axes: x right, y down, z forward. Continuous pixel coordinates: the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checksums of bytes: XXH3, 64 bits. They reveal damage and differences, but do not protect against
 // forgery.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Integer identities. Each kind has its own type, so that the compiler rejects an id of another
 // kind.
 #pragma once

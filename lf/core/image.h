@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pixels in memory: [height][width][channels], with `stride` values from one row to the next.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Vectors for images and plates. They begin at the boundary of a cache line (64 bytes), so that
 // SIMD loads cross as few cache lines as possible. Vectors of 4 MiB and more request huge pages
 // from the system. With small pages, each access to a distant row walks through the page tables,

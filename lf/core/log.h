@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes messages for people to stderr, one line for each event. Results go to stdout, and not
 // through this file.
 #pragma once

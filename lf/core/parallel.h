@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs loops on threads. All use of oneTBB is in parallel.cc.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Polynomials of degree 5 through six points, which approximate smooth functions.
 #pragma once
 

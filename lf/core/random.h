@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counter-based random numbers: a number depends on (seed, stream, index) alone, so that it is the
 // same on any thread, in any order of calls, on any machine.
 #pragma once

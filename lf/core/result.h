@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Errors as values: bad input and failing machines (doc/style.md, "Errors"). LF_CHECK catches our
 // own bugs. Nothing in the library throws, except std::bad_alloc if memory runs out.
 #pragma once

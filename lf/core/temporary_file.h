@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files that do not have their final names yet, and the leftovers of programs that were killed.
 //
 // While FILE.EXT is written it is called .FILE.PROCESS-HOST.tmp.EXT, in the same folder. The

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Texture of the synthetic scenes that tests of focus, densify and import/exposure render.
 #pragma once
 

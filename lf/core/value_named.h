@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds a value of an enumeration by its name in options and files.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bicubic interpolation of RGB pixels. Internal to this folder.
 #pragma once
 

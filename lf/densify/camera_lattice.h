@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Places for virtual LF cameras among recorded ones.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The positions of LF cameras as points of a plane, and which of them are neighbours.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes a sparse light field dense: puts virtual LF images between the recorded ones, and writes
 // all of them into a packed store.
 //

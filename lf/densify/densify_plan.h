@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Everything that is decided before a light field is densified: what is compared at which depths,
 // and where virtual LF cameras stand.
 #pragma once

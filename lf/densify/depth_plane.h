@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The inverse depth of every pixel of an LF image, from the comparison with its neighbours.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the range of inverse depths of a scene from a few of its LF images.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/densify/folded_poses.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds LF images whose pictures contradict each other, because their poses are wrong.
 //
 // If a thing looks the same from two sides, a reconstruction may put the LF cameras of both sides

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How depths are kept: as inverse depths along the optical axis of a camera, because disparities
 // between LF images are proportional to these.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/densify/matching_costs.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares an LF image with its neighbours at a sequence of inverse depths (plane sweep).
 #pragma once
 

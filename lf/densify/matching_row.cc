@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Highway compiles these loops for several instruction sets, and the program chooses one of these
 // versions at run time. All compute the same bits.
 #include "lf/densify/matching_row.h"

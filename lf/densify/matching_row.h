@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The inner loops of ComputeMatchingCosts(), for one row of pixels. Internal to this folder.
 #pragma once
 

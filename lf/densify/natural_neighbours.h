@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The points around a place of the plane, with weights for interpolation.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Maps the pixels of one pinhole camera without distortion to the pixels of another.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The inner loop of semi-global matching. Internal to this folder.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts the light of virtual LF images to the numbers that a light field's images store.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tells from recorded LF images how right virtual ones are.
 #pragma once
 

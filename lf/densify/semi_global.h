@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Chooses one inverse depth for each pixel such that the costs are low and the depth changes little
 // from pixel to pixel.
 #pragma once

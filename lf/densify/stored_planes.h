@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts depth planes between working images and LF images as they were recorded, in which the
 // packed store keeps them. Internal to this folder.
 #pragma once

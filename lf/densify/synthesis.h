@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the image of an LF camera that recorded none, from LF images around it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A world of textured walls whose images are known exactly, for tests.
 #pragma once
 

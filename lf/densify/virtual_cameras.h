@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Places virtual LF cameras between recorded ones, and chooses the LF images that theirs are made
 // of.
 #pragma once

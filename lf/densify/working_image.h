@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An LF image in the form that the densifier works with: RGB, without lens distortion, perhaps
 // reduced.
 #pragma once

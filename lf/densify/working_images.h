@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The working images of a light field, loaded when they are needed, within a limit of memory.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/focus/best_depths.h"
 
 #include <algorithm>

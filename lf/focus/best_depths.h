@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the depths around which most of the depths found in an LF image lie. Internal to focus.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The depths that a plane sweep tests, and functions that find the best of them. Internal to focus.
 #pragma once
 

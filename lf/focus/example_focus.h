@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Chooses focus distance and aperture of an example path. Internal to example_path.cc.
 #pragma once
 

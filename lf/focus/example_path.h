@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes a first camera path for a light field, ready to render, with comments that tell how to
 // change it (the thesis's lrexample).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the depth of the subject of an LF image by comparing it with the LF images around it, and
 // tells whether the depth is sure, so that a first picture is not focused on a watermark.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the distance of the point that a person clicks on. A light field has no depths; therefore a
 // plane sweep searches the ray of the click for a depth at which the LF images around it agree.
 #pragma once

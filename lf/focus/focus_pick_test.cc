@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/focus/focus_pick.h"
 
 #include <gtest/gtest.h>

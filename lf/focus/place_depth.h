@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the depth of one textured place of an LF image by comparing it with the LF images around it
 // (plane sweep).
 #pragma once

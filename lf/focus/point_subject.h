@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the depth of the subject of an LF image from the points of a reconstruction that the image
 // shows, for scenes whose depth cannot be found from pixels.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Grey copies of LF images in reduced size, for the search of depths.
 #pragma once
 

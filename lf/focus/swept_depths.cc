@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/focus/swept_depths.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the range of depths of a scene from its LF images alone.
 #pragma once
 

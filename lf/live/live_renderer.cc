@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/live/live_renderer.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures through the lens at the speed of the hand: frames of a light field that is kept shrunken
 // in memory (resident_images.h).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The lens of a live picture as numbers: which LF images the picture takes, and how much their rays
 // count. With these numbers, a renderer elsewhere, such as that of a graphics card, makes the same
 // picture.

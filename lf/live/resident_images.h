@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The LF images that are kept in memory, shrunken, for live pictures. A thread loads those of the
 // lens that is looked through, and forgets others when the memory is full.
 #pragma once

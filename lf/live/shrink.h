@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shrinks LF images to about the size at which a small picture shows them, so that hundreds of them
 // fit in memory and each element reads one position of an LF image.
 #pragma once

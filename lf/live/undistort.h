@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Resamples LF images with lens distortion into those that pinhole cameras would have recorded, for
 // renderers that know no distortion, such as that of an exported page.
 #pragma once

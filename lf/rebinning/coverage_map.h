@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A map of the rays that some frames query, so that no other rays are kept (thesis 4.3.2, "coverage
 // map").
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The queries of one frame: the rays that it interpolates between rebinned rays, one for each
 // element and each lens point of the element's set (LensPointSets). Parts of the plate may query
 // only some of the lens points.

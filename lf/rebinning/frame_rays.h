@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rebinned rays as one frame sees them: each with its point of the lens and its position on the
 // plate. The frame's lens plane and focus plane take the place of the slab (thesis 4.3.2,
 // "reparameterization"). Tilted focus planes need no special case.

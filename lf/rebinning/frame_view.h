@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes where the rays through the middles of cells pass the lens and meet the plate of one
 // frame, for many rays at a time. Internal to rebinning.
 //

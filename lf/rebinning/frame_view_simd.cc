@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // FindSeenCells(), compiled for every instruction set; the program chooses one at run time
 // (Highway).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The points of the lens through which a frame queries rays (thesis 4.3.3, Eq. 4.7).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A 16-bit random number for every pixel of an LF image, and the pixels chosen by it. Internal to
 // rebinning.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // PixelChances::Choose(), compiled for every instruction set; the program chooses one at run time
 // (Highway).
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The share of the light through each lens point that a frame interpolates between rebinned rays:
 // from 0 (the point is not queried) to 1. The share differs from element to element: shares are
 // given at nodes on the plate and interpolated between these.

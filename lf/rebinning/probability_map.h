@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The probability p that the ray of an LF pixel is kept: p is higher where the image changes more
 // around the pixel (thesis 4.3.2, Eq. 4.4, Figure 4.8).
 //

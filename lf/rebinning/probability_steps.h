@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The steps of both implementations of probability_map.h, in integers. Internal to rebinning.
 //
 // A plane has one value for each pixel, or for each 2 x 2 pixels of a mosaic. It continues beyond

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rebinned rays: the radiance recorded in each cell of a slab, in memory that does not grow beyond
 // a limit (thesis 4.3.2).
 //

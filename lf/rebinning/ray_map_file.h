@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rebinned rays as one file: entries that state the inputs and the progress of rebinning, and all
 // cells of a map (doc/formats/rays.md). Interrupted rebinning resumes from such a file.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads any bytes as a file of rebinned rays: this must fail with an error, or return a map that
 // holds only cells that rays can make. The checksums of the head and of the shards are corrected
 // first, because otherwise the code after their tests would never be reached.

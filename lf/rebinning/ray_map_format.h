@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The layout of a file of rebinned rays (doc/formats/rays.md), for its writer and reader. Internal
 // to rebinning.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/rebinning/ray_query.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The radiance of a ray, interpolated between the rebinned rays near it (thesis Eq. 4.5, 4.6):
 //
 //   L   = sum w_i L_i / sum w_i

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sorts the rays of one LF image into the cells of a slab (thesis 4.3.2), and decides which rays
 // are kept.
 //

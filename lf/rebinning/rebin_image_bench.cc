@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures how long it takes to compute the probabilities of the pixels of one LF image of 2048 x
 // 2048 pixels, and to sort its rays into cells.
 #include <benchmark/benchmark.h>

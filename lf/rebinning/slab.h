@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The light slab: two planes that parameterize rays, and the cells that rays are sorted into
 // (thesis 2.1.1, 4.3.2).
 //

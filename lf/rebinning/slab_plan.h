@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Chooses the position of the slab and the width of its cells, so that the cells distinguish the
 // rays that some frames query (thesis 4.3.2, "primary slab").
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Renders a whole frame from rebinned rays: an element is the mean of one ray for each lens point,
 // interpolated as in ray_query.h (thesis 4.3.2, "Rendering Phase").
 //

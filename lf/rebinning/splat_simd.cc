@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes splats; compiled for every instruction set, of which the program chooses one at run time
 // (Highway).
 //

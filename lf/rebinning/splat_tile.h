@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sums of the rays of one tile of a frame, for eight lens points at a time. Internal to rebinning.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random rays for ray maps of tests.
 #pragma once
 

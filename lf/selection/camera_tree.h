@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An octree over the positions of the LF cameras (thesis 4.2.1). With it, selection tests a few
 // nodes for each frame instead of a million LF cameras.
 #pragma once

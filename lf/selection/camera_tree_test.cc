@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares the octree and SeenRegion with a test of every single LF camera.
 #include "lf/selection/camera_tree.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Boxes around the ideal positions (without lens distortion) of the pixels of an LF image. With
 // them, selection finds quickly which parts of the LF image may contribute.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/selection/image_index.h"
 
 #include <utility>

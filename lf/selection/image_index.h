@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An index of a light field, made once for many selections: an octree of the LF cameras, and the
 // place of each LF image in the order (image_order.h).
 #pragma once

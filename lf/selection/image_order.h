@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The order in which frames take LF images (thesis 4.2.1). The *place* of an LF image is its rank
 // in the order, from 0.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the pixels of an LF image that can contribute to a frame (thesis 4.2.1, "Extraction of
 // Relevant Area in Image Space", Fig. 4.5).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The region in which LF cameras may have rays for a frame: the widened viewing frustum of thesis
 // 4.2.1 ("Extraction of Relevant Images", Fig. 4.4).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Selects the LF images that frames need, by ascending places (thesis 4.2.1).
 #pragma once
 

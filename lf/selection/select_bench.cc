@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures selection in the band of the thesis (5.1): the LF cameras are on half a circle around
 // the scene, at about the same height, and look at its middle.
 #include <benchmark/benchmark.h>

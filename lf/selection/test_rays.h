@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decides with the ray model alone which rays a frame accepts: the reference in the tests of
 // selection.
 #pragma once

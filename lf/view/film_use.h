@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counts the LF images and rays that each frame of a film needs, in the background, while a person
 // looks at the first frames.
 #pragma once

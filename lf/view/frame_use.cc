@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/view/frame_use.h"
 
 #include <algorithm>

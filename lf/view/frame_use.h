@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds which LF cameras a frame uses, and why it does not use the others: the decisions of
 // selection (thesis 4.2.1), to be shown to people.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/view/lf_picture.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes pictures of LF images for people to look at.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Outlines the part of an LF image from which a frame may take rays (thesis Fig. 4.5).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/view/overlap_outline.h"
 
 #include <gtest/gtest.h>

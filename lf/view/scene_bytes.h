@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Encodes the data that the page of lfvisualizer draws as arrays of little-endian numbers, so that
 // a browser can use them without parsing (doc/formats/page_data.md).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes the cameras of the light field and of the path, and the LF images that each frame uses, as
 // plain text, for scripts that plot them (thesis 4.5).
 #pragma once

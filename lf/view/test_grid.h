@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A grid of LF cameras and a frame in its middle, for tests.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the frames of a running or finished render in the output folder of lfrenderer
 // (doc/checkpoints.md), and makes small pictures of them for the page of lfvisualizer.
 #pragma once

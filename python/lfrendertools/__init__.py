@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Films densely recorded light fields with a thin-lens camera.
 
 A light field is opened, looked at as arrays, and rendered through a lens:

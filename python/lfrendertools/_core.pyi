@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 from typing import Callable, List, Optional, Sequence, Tuple, Union
 
 import numpy as np

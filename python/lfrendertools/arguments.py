@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Checks of arguments, so that errors name the argument and say what is expected."""
 from __future__ import annotations
 

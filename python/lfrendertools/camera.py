@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Thin-lens cameras."""
 from __future__ import annotations
 

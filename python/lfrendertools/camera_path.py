@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Camera paths."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whole captures: reports, forecasts and packages, packed stores, and synthetic light fields."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The depth of every element of a frame, and a picture in which everything is in focus."""
 from __future__ import annotations
 

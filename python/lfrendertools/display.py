@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Linear light as values for a display."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Epipolar pictures: the same line of pixels of each LF image of a row or a column of LF cameras."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The exceptions of this package. Each has the exit code with which the programs report the same error."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The options that decide the rays and pictures of frames, which several functions take."""
 from __future__ import annotations
 

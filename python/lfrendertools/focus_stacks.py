@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Focus stacks: pictures of one camera that differ only in their focus distance."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Finished and unfinished frames, and their sensor plates."""
 from __future__ import annotations
 

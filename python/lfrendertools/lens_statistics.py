@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Frames by a statistic over the lens, which see through leaves, rain and fences."""
 from __future__ import annotations
 

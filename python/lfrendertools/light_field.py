@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Light fields: their LF cameras and LF images as arrays."""
 from __future__ import annotations
 

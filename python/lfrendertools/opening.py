@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Opens light fields."""
 from __future__ import annotations
 

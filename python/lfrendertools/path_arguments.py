@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Checks of the arguments `path` and `frames`, which several functions share."""
 from __future__ import annotations
 

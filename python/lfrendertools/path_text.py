@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The text of camera path files (doc/formats/path.md)."""
 from __future__ import annotations
 

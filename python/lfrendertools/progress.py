@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Progress of long work, for people and for functions of the caller."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads LF images in advance."""
 from __future__ import annotations
 

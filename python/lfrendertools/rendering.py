@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Frames of light fields: a single one, those of a film, or frames that are rendered step by step."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The places of the LF cameras of a light field: rows and columns, and a plot."""
 from __future__ import annotations
 

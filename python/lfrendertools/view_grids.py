@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Light fields as regular grids of views in one orientation, in memory or in a file."""
 from __future__ import annotations
 

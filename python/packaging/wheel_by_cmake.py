@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Builds the Python package for pip (PEP 517): CMake compiles the extension, and a wheel is a zip file.
 
 It needs nothing from a package index. The packages of scripts/packages/render.txt and python.txt must be installed.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "python/src/analysis.h"
 
 #include <pybind11/eigen.h>

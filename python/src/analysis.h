@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Focus stacks, epipolar pictures and views as Python sees them: the functions of lf/analysis/.
 #pragma once
 

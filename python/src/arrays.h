@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Arrays of NumPy that share the memory of C++ objects.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Thin-lens cameras of frames as Python sees them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Work on whole captures as Python sees it: reports, forecasts and packages, packed stores, and
 // synthetic light fields.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Depth maps for Python.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Turns errors of the library into Python's exceptions (lfrendertools/errors.py).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Films in memory as Python sees them: the renderer of film_renderer.h.
 #pragma once
 

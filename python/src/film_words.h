@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The options of a film as Python's keyword arguments.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frames and their plates as Python sees them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Python's lock (GIL), released and taken such that Python can end at any time.
 //
 // When Python ends, it ends each thread that tries to take its lock by unwinding the thread's

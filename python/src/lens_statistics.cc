@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "python/src/lens_statistics.h"
 
 #include <pybind11/functional.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The light field as Python sees it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "python/src/messages.h"
 
 #include <pybind11/pybind11.h>

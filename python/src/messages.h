@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hands messages of the library to Python's logging, as the logger "lfrendertools".
 #pragma once
 

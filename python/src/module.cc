@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The private extension of the package lfrendertools: lfrendertools._core. Its users call the typed
 // functions of the package, which check and explain their arguments.
 #include <pybind11/pybind11.h>

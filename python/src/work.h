@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs long work without Python's lock (GIL), so that other threads of Python go on, and so that
 // Ctrl-C is answered.
 #pragma once

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Checks the types of the Python package: mypy's strict rules, also for the examples, and the extension's stubs.
 
 Exit code 77: mypy is not installed.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Shared by the tests of the Python package: the programs, and a small synthetic light field.
 
 LF_BIN names the folder of the programs.

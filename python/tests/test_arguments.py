@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Wrong arguments: errors name the argument, and never the types of C++ or the options of programs."""
 import os
 import threading

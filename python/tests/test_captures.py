@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whole captures: reports, packages, packed stores and synthetic light fields are those of the programs."""
 import json
 import shutil

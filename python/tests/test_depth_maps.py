@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Depth maps: they are those of lffocus depth, and their points lie where the files say."""
 import numpy as np
 import pytest

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The examples in docstrings and in doc/python/ run."""
 import doctest
 import importlib

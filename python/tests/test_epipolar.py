@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Epipolar pictures: their pixels are those of the LF images and of lffocus epi."""
 import shutil
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The examples make the pictures that they promise."""
 import pathlib
 import subprocess

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Focus stacks: the pictures are those of lffocus stack and of single renders."""
 import json
 

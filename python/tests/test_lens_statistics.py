@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Statistics over the lens: they are those of lffocus through, and files have the same bytes."""
 import pickle
 import shutil

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Light fields as arrays."""
 import json
 import pathlib

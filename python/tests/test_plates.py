@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Plates: which can be added, and how they are kept."""
 import pickle
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The process of the caller: its end, its working directory, forks, and values for other processes."""
 import os
 import pickle

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Progress of long work: functions that are told, and bars of tqdm."""
 import shutil
 import sys

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Frames: their bits, plates and errors, and how renders treat the process of the caller."""
 import logging
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Grids of views: views at LF cameras are LF images, all are those of lffocus views, in memory and in files."""
 import numpy as np
 import pytest

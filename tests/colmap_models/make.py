@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Makes the COLMAP models in this folder, with COLMAP itself, so that the tests need no COLMAP.
 
 usage: make.py        needs COLMAP 3.8 (Debian 12: apt-get install --no-install-recommends colmap)

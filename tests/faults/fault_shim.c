@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A preload library that makes one system call or allocation fail: the k-th of a kind, on files
 // whose path contains a word. tests/faults_test.py judges what programs then do. For Linux and
 // glibc; one fault per process.

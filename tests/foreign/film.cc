@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Films a light field with the installed library: film LIGHTFIELD PATH.yaml DIR
 #include <cstdio>
 #include <utility>

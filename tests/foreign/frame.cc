@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Renders the first frame of a path into an array: frame LIGHTFIELD PATH.yaml
 #include <cstdio>
 #include <utility>

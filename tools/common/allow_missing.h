@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The option --allow-missing N|PERCENT: the number of LF images that a program may leave out
 // because they are missing or broken, and still end with exit code 0.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parses memory sizes as people write them: "8G", "512M", "1.5g", "100000".
 #pragma once
 

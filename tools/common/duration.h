@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parses times as people write them: "30s", "10m", "1.5h", "0".
 #pragma once
 

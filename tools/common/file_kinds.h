@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Kinds of files that options take, for completion in shells and for man pages.
 #pragma once
 

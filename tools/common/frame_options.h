@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The options that are common to programs that render frames or prepare their rendering.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The help of the programs: --help, which one can scan, and --help-all, which tells everything.
 //
 //   OptionGroup output(app, kOutputGroup);

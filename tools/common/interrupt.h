@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Turns SIGINT, SIGTERM and SIGHUP into a flag that long work polls.
 #pragma once
 

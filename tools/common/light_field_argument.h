@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The argument LIGHTFIELD and its options, which all programs share.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Facts about the options of a program, from which its help (help.h) and its description
 // (describe.h) are made.
 #pragma once

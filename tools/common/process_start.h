@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Handlers that are active from the first moment of a program on: before main(), and before the
 // constructors of its libraries, some of which start threads.
 #pragma once

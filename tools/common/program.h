@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shared by all programs: common options, exit codes for errors, help, version, and the description
 // as JSON (describe.h).
 //

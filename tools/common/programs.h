@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The programs, in the order of the data flow, and the commands of lfr that run them.
 #pragma once
 

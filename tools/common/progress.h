@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shows progress for people and for programs: one line that is updated (bar), lines now and then
 // (plain), or JSON objects (json), each with the rate and an estimate of the time left; or lines
 // that render farms look for (openjd, deadline, alfred).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/common/store_options.h"
 
 #include "tools/common/program.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks of the words of options, which CLI11 calls while it reads a command line.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Threads that answer requests of the page, so that a slow answer does not delay others.
 #pragma once
 

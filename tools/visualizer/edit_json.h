@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parses the bodies of edits: JSON objects with a few keys.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Holds the news for open pages, which page_streams.h sends as server-sent events.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The LF images in an exported page, from which it renders live pictures.
 #pragma once
 

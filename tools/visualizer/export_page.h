@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Exports the page and its data as files for any web server.
 #pragma once
 

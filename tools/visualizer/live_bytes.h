@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The data of live pictures as bytes for the page (doc/formats/page_data.md).
 #pragma once
 

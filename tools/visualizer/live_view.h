@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Live pictures for the page: frames that are rendered while a person drags something.
 #pragma once
 

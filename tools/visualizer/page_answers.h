@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Answers the requests of the page for data, by name (doc/formats/page_data.md). An export has the
 // same answers as files, except that scene.json says that there is no server.
 #pragma once

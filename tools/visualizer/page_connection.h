@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A connection of libmicrohttpd, and the head of its current request.
 #pragma once
 

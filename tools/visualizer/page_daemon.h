@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The HTTP server for the page. Only page_daemon, page_connection, page_responses and page_streams
 // use libmicrohttpd.
 #pragma once

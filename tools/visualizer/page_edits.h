@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Answers the POST requests of the page: checking and saving paths, previews, focus picking.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes the answers of the page that are JSON.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Opens the port that serves the page, on this machine only.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/visualizer/page_request.h"
 
 #include <fmt/format.h>

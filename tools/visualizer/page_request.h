@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decides from the head of a request whether it is answered, before any of its body is read.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sends any name and any body as a page would; the answer must be one that the page understands.
 // The input is a name to look up, or the name of an edit, a line feed and a body. FIRST stands for
 // the id of the first path.

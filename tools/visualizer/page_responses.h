@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts answers to responses of libmicrohttpd.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Everything that the page may ask about: the light field, the path and its drafts, packages, and
 // the render that is watched.
 #pragma once

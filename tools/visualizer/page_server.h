@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Serves the page and its data at http://127.0.0.1:PORT/TOKEN/.
 //
 // Requests are answered only with the token, 128 random bits in the address; only on this machine;

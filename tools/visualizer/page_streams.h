@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Server-sent events: a stream of news for each open page.
 #pragma once
 

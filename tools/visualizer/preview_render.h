@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Renders one frame in this process while the user looks at it. The page sends a path with a small
 // plate.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Answers requests of the page about the folder of a watched render: frames.json lists its frames,
 // and 7.bin is the picture of frame 7.
 #pragma once

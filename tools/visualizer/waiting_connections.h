@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Connections on which the headers of the next request are incomplete. They are limited so that
 // they cannot keep other connections out.
 #pragma once

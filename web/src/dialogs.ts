@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The dialogs of the page: the commands that make this film, the list of keys, and a question to be confirmed.
 
 import { byId, element } from "./element";

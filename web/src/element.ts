@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Creates elements of the page with one call.
 
 type Attribute = string | number | boolean | null | ((event: Event) => void);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The legend: explains the colours of LF cameras, counts the LF cameras of each kind, and chooses the kinds that are
 // shown.
 

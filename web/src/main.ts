@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Assembles the page of lfvisualizer and connects its parts.
 
 import type { PathNews, RenderFacts, SceneFacts, Vec3 } from "./data/scene";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The state of the page: the light field, the path as edited so far, the current frame, and the chosen LF camera. Views
 // listen to its changes, and make all changes through it.
 

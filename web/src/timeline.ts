@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The timeline of the film: plays and scrubs, and shows curves of quantities over the frames. Keys of the path are
 // diamonds that can be dragged.
 

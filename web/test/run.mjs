@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs the page's tests: node test/run.mjs [PART OF A NAME]...
 // LF_BIN is the folder of the programs: what the page writes is read by the real parser.
 import { spawnSync } from "node:child_process";

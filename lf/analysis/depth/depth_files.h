@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes depth maps as files (doc/focus.md).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the depth of every element of a frame by a plane sweep over the LF images behind its lens,
 // and makes a picture in which everything is in focus.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fills the unknown places of a depth map. Internal to this folder.
 #pragma once
 

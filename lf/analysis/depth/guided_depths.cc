@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/analysis/depth/guided_depths.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Judges and mends the depths of a sweep by the colours of the elements. Internal to this folder.
 //
 // An element's *fellows* are the elements in a window around it that have its colour. Each counts

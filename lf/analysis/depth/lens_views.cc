@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/analysis/depth/lens_views.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The LF images behind a lens, prepared for sampling at any position: without distortion, about as
 // fine as the elements of the frame, and cropped to what a part of the plate may see. Internal to
 // this folder.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A plane sweep: tests at many distances how much the LF images behind a lens differ at each
 // element. Where they agree, there is a surface. Internal to this folder.
 //

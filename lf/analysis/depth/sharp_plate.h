@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Collects a picture in which everything is in focus: every element has a focus distance of its
 // own. Internal to this folder.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the LF cameras that stand in a row or a column with one of them.
 #pragma once
 

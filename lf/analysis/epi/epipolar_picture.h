@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The epipolar picture of a row or a column of LF cameras: the same line of pixels of each LF
 // image, side by side. A point of the scene is a straight line in it, whose slope tells its depth.
 #pragma once

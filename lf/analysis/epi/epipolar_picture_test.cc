@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/analysis/epi/epipolar_picture.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The planes of a focus stack: pictures of one camera that differ only in their focus distance.
 #pragma once
 

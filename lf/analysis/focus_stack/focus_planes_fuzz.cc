@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parses any bytes as focus distances.
 #include <cstddef>
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/analysis/focus_stack/focus_stack.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Renders a focus stack: pictures of one camera that differ only in their focus distance. It is a
 // film whose frames are the planes of the stack, so that each LF image is read once for all planes
 // that fit in the memory together, and each picture has the bits of a single render.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/analysis/lens_statistics/lens_ranks.h"
 
 #include <algorithm>

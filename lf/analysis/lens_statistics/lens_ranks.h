@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Statistics of the values of one element as means of ranks. Internal to this folder.
 #pragma once
 

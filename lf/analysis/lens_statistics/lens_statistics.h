@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Statistics over the lens: a frame whose elements are the minimum, maximum, median or trimmed mean
 // of the rays of the LF cameras in the lens, instead of their mean. Things in front of the focus
 // plane that hide it from some LF cameras, such as leaves, rain or a fence, then vanish.

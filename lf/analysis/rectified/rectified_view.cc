@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/analysis/rectified/rectified_view.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Resamples LF images into those of pinhole cameras at the same places that all look in one
 // direction (thesis 6.2). Only rays that pass the LF camera's centre are needed, so that no depth
 // has to be known.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes the views of a grid: where an LF camera stands, of its LF image, elsewhere by rendering.
 #pragma once
 

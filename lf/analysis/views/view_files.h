@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes the views of a grid: a folder of images with Stanford names and a transforms.json, or one
 // array of NumPy.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A regular grid of views of a light field: pinhole cameras in a plane that look in one direction,
 // as 4D light fields have them (thesis 6.2).
 #pragma once

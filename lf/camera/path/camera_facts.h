@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Facts about the camera of one frame, as a photographer states them: named numbers, which
 // lfcammvminfo prints.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The camera path after evaluation: one thin-lens camera per frame (thesis 4.5.1), and with a
 // shutter the cameras of the instants at which each frame is exposed.
 #pragma once

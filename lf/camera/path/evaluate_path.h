@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the thin-lens camera of every frame from the description of a path.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The picture that the focal surface of a path is made of: a depth picture or a height map
 // (doc/formats/path.md, "The focal surface").
 #pragma once

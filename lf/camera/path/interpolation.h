@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Curves through given values, as pure functions. A "knot" is the parameter at which a value is
 // reached: a time, or for Catmull-Rom curves a length-like parameter.
 #pragma once

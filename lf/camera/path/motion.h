@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One quantity of a camera path as a function of time, given by accelerations (thesis 4.5.1) or by
 // keyframes.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Orientations of a camera as yaw, pitch and roll.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The camera path as its file describes it, checked as far as this is possible without evaluating
 // single frames. Lengths are world units and angles radians, independent of the file's units.
 #pragma once

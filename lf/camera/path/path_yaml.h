@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads the camera path file (doc/formats/path.md). No other folder uses yaml-cpp.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any bytes, read as a camera path, must give an error, or cameras with finite numbers only.
 #include <cmath>
 #include <cstddef>

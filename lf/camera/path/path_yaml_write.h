@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes a camera path as our own YAML file (doc/formats/path.md).
 #pragma once
 

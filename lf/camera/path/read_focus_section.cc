@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The section `focus` of a path file: the focal surface.
 #include <fmt/format.h>
 

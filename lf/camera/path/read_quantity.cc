@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/camera/path/read_quantity.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads the quantities of a path file that may change over time: their *start* (the value at time
 // 0) and their speed from a section of the file, and their `accelerations` or `keyframes`.
 #pragma once

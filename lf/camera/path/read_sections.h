@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sections `camera` and `lens` of a path file (doc/formats/path.md).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads one value of a quantity from a path file.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the known word that a misspelt word was meant to be.
 #pragma once
 

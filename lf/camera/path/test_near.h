@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares positions and directions in tests.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The text of a short valid path for tests, whose parts can be replaced.
 #pragma once
 

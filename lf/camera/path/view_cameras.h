@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The cameras of several views of a film: stereo pairs, and the views of a light field display.
 //
 // All views of a frame are parallel: they stand side by side on the right axis of its camera, and

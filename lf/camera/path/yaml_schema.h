@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads typed values from a YAML text, in whose maps every key must be known. Errors are collected:
 // readers continue with a default, so that the author of the file sees how many errors there are.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A YAML text as a tree of our own types, with the position of every key and value. No other file
 // uses yaml-cpp.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Filters an LF image once, before rays are read from it, so that every ray may be interpolated
 // linearly between only four values (doc/ray.md, "What is added").
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures how long FilterPixels() takes, in ns per pixel, for elements of several widths.
 #include <benchmark/benchmark.h>
 

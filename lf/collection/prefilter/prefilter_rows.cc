@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compiled for every instruction set from one source (Highway). All arithmetic is of integers, so
 // that results are bit-identical. A vector holds one to four pixels of four lanes.
 #include "lf/collection/prefilter/prefilter_rows.h"

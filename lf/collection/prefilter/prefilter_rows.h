@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The two loops of FilterPixels(). Internal to this folder.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files for render farms that lfsubmit does not control: the user submits them, and each task calls
 // lfsubmit --run-package or --run-finish. A package that was interrupted resumes from its
 // checkpoint whenever its task runs again.

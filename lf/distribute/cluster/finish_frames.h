@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The list of the frames of a job that the user wants to finish early, because they are good
 // enough: they are finished with the rays that they have, while the other frames continue
 // (lfrenderer --finish).

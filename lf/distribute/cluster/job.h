@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A job: the packages of a film, and how processes on this or many machines render them
 // (doc/cluster.md). There is no server: the job and its progress are files in the output folder.
 //

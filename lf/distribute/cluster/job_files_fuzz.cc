@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The parsers of a job's files and of a batch system's output must accept or refuse any text.
 // Accepted jobs and states must not change when they are written and read again.
 #include <cstddef>

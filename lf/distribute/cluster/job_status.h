@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The progress of a job. It is read from the job's files and from the queue of the batch system,
 // without contact to running programs.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/distribute/cluster/resume_job.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Prepares to start or resume a job in a folder, cancels it, or waits for it, without being its
 // engine.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs the tasks of a job: renders a package, from its checkpoint if there is one; when all
 // packages are done, makes the video and the contact sheet.
 #pragma once

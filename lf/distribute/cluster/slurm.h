@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Slurm as the engine of a job: an array of tasks, one for each package, followed by a finishing
 // task. Slurm is controlled with sbatch, squeue, scancel and scontrol. sacct is not used, because
 // it needs a database that many clusters lack.

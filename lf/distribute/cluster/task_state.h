@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The state of a task of a job, in a small file: the lfsubmit process that runs the task writes it,
 // and `lfsubmit --resume` resets it. Also reads the progress of the task from the log of
 // lfrenderer.

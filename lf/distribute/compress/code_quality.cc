@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/distribute/compress/code_quality.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures the difference between decoded pixels and the original ones.
 #pragma once
 

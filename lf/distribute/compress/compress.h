@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compresses LF images into a packed store (thesis 4.2.2, 4.5.3).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The input of a packed store: LF images of a light field, whole or in part.
 #pragma once
 

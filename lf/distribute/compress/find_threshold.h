@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the threshold for a given quality. Internal to this folder.
 #pragma once
 

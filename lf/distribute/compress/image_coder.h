@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Encodes one LF image and measures the error. Internal to this folder.
 #pragma once
 

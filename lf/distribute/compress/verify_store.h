@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks that a packed store on the disk matches its source. Internal to this folder.
 #pragma once
 

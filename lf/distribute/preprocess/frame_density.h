@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures whether the LF cameras are dense enough for a frame, so that a photographer knows this
 // before hours of rendering. Only recorded LF images count, because virtual ones show what the
 // recorded ones show, or a guess.

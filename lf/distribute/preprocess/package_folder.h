@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A folder in which all packages of a film appear at the same time.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes packages from a light field and a camera path (thesis 4.2.1), and forecasts the cost of
 // rendering the packages.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures how fast this machine renders a frame, with a few of the LF images that the frame needs.
 // The forecast of lfpreprocessor uses the result.
 #pragma once

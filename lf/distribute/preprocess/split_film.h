@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Divides a film into sections, one for each package.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures how far a picture is from a reference, for people who judge renders.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The difference that a person sees who alternates between two pictures.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/film/compare/picture_light.h"
 
 #include <fmt/format.h>

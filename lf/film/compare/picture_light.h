@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads any picture as linear light, for programs that compare pictures of different files.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Filters a picture of one channel by a weight for each column times a weight for each row.
 // Internal to this folder.
 #pragma once

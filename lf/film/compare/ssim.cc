@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/film/compare/ssim.h"
 
 #include "lf/film/compare/separable_filter.h"

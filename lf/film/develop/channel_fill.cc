@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/film/develop/channel_fill.h"
 
 #include <algorithm>

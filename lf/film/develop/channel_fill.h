@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fills thin elements (elements with too few rays) of one channel from the collected elements
 // (elements with rays) around them (develop.h). Internal to this folder.
 #pragma once

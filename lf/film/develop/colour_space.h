@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The colour spaces that frames in linear light may have: their primaries, and the conversion from
 // the one that Develop() gives.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/film/develop/colour_space.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contact sheet: up to a dozen frames, spread evenly over the sequence, on one page.
 #pragma once
 

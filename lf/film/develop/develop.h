@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Develops the sums and counts of a sensor plate into a picture: average, fill, white balance,
 // colour (thesis 4.3.1; doc/ray.md, "Develop").
 #pragma once

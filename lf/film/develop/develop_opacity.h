@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Develops the opacities of a plate, its fourth channel (develop.h). Internal to this folder.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts linear light to sRGB display values and back (IEC 61966-2-1).
 #pragma once
 

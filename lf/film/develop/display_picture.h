@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes a picture for display of the pixels of a frame's file. Internal to this folder.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A view of a display, as the user's configuration of OpenColorIO defines it: converts linear light
 // to the values of PNG frames, in place of the sRGB curve.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes the file of a finished frame, and reads a picture for display from it.
 #pragma once
 

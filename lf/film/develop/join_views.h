@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Joins the pictures of the views of one moment into one picture.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Encodes frames as a video with ffmpeg. This is a separate step that can be repeated.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Joins the frames of a film of views into pictures, or into a video.
 #pragma once
 

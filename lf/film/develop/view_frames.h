@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the frames of a film of views, and divides them into moments.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the pictures of several views are arranged in one picture, and the names of the files.
 #pragma once
 

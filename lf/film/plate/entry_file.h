@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Common part of the files of plates and of rebinned rays: these files begin with a head, the text
 // of their entries, and the checksum of both. Internal to film/plate and rebinning.
 #pragma once

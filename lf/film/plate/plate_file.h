@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A sensor plate as a file: what it was made from, its progress, and every sum and count, exact
 // (doc/formats/plate.md). The plates of a divided render are read from such files and added, and an
 // interrupted frame is resumed from such a file.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any bytes must give a plate or an error, and each sum of a plate must be possible for its number
 // of rays. All checksums are corrected first, because otherwise nothing behind their checks would
 // be reached.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The layout of a plate's file (doc/formats/plate.md), for its writer and reader. Internal to
 // this folder.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The synthetic sensor plate of one frame: sum and count of the rays of every element and channel
 // (thesis 4.3.1), exact.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plates with all kinds of words (empty, packed and wide), for tests of their files.
 #pragma once
 

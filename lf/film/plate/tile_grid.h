@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A plate cut into tiles: rectangles, to each of which one thread at a time adds rays.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sums of the rays that a batch of LF images adds to one tile of a plate, kept here until they are
 // added to the plate. They are small enough for the second level cache, and laid out so that the
 // rays of neighbouring LF pixels fall on neighbouring words.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reports what the calibration of a light field says about the capture, and which parts of the
 // calibration look wrong. No file is read.
 #pragma once

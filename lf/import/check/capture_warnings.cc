@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/import/check/capture_warnings.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds faults of a capture in the poses of its cameras. capture_report.h describes the kinds of
 // warnings. The functions return no warning if the fault is not there. Internal to this folder.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks the LF images of a packed store. Internal to this folder.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks if the files of a light field, or the encoded images of a packed store, exist and match
 // the calibration.
 #pragma once

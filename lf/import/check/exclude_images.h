@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Removes LF images from a light field, such as those whose calibration failed.
 #pragma once
 

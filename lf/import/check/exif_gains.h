@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes gains of LF images from the exposures that their files state.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/import/check/exif_gains.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/import/check/find_brackets.h"
 
 #include <algorithm>

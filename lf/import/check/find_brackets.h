@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds poses that were photographed several times with different exposures.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes a transforms.json into a folder, which may be the folder of the images or another one.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes nearest-neighbour distances, which tell the spacing of a capture. A million cameras take
 // seconds.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Moves a light field into another world: scaled, rotated and translated.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parses any bytes as a 4x4 matrix: the result must be a valid similarity or an error.
 #include <cmath>
 #include <cstddef>

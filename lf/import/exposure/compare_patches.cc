@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/import/exposure/compare_patches.h"
 
 #include <algorithm>

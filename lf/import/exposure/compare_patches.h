@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares the light of a patch in two LF images. Pixels at the edges of objects get little weight:
 // their light depends on where the pixel grid lies, and therefore differs between the images much
 // more than the light of smooth areas.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/import/exposure/exposure_views.h"
 
 #include <fmt/format.h>

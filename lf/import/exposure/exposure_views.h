@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reduced LF images (views, ExposureView) for the comparison of exposures. A view contains the
 // light in each channel, and a grey image to find depths. The views of a whole light field are in
 // memory at the same time.

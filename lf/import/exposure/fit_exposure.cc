@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/import/exposure/fit_exposure.h"
 
 #include <Eigen/Cholesky>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fits gains of LF images and falloffs of their lenses to samples: places of the scene that two LF
 // images show. The fit is a robust least squares fit of the logarithm of light.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Estimates how unevenly the LF images of a light field are exposed, and how much light their
 // lenses lose towards the corners, from places that neighbouring LF images both show.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the LF cameras around an LF camera. A k-d tree of their positions finds the neighbours of
 // all n LF cameras in n log n steps.
 #pragma once

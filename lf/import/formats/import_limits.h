@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Names and limits that the readers of all formats share. Internal to this folder.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads arrays of numbers in NumPy's format (.npy). Internal to this folder.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Opens any supported calibration as a LightField: all programs open their LIGHTFIELD with it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/import/formats/open_light_field.h"
 
 #include <fmt/format.h>

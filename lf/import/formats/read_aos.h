@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads poses of Airborne Optical Sectioning (JKU Linz; doc/formats/aos.md), a JSON file:
 //
 //   {"images": [{"imagefile": "a.png", "M3x4": [[r11, r12, r13, t1], [...], [...]]}, ...]}

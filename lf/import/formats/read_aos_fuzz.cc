@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parses any bytes as a poses.json of Airborne Optical Sectioning: the result must be valid poses
 // or an error.
 #include <cstddef>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads folders of the 4D Light Field Benchmark (HCI, Konstanz): parameters.cfg beside
 // input_Cam000.png, input_Cam001.png ... (doc/formats/hci.md).
 #pragma once

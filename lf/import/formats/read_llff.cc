@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/import/formats/read_llff.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads poses_bounds.npy of LLFF and of the NeRF data sets that follow it (doc/formats/llff.md): an
 // array of (N, 17) numbers beside a folder images/. The rows belong to the image files sorted by
 // name:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads Middlebury's multi-view calibrations, NAME_par.txt (doc/formats/middlebury.md): the number
 // of images, then a line for each image:
 //   imgname.png k11 k12 k13 k21 k22 k23 k31 k32 k33 r11 r12 r13 r21 r22 r23 r31 r32 r33 t1 t2 t3

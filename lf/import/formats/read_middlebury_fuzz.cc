@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parses any bytes as a Middlebury NAME_par.txt: the result must be a light field with valid
 // cameras or an error.
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads folders whose file names state where the cameras stood, as in the Stanford Light Field
 // Archive (doc/formats/stanford.md):
 //

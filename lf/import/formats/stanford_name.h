@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parses file names that state the position of a camera (doc/formats/stanford.md):
 //
 //   NAME_ROW_COL.ext

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parses any bytes as a file name: either the name does not have the Stanford form, or its values
 // must be finite and within their limits.
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads and writes .chan files of Nuke (doc/formats/foreign_paths.md): lines of
 //
 //   frame  tx ty tz  rx ry rz  [vertical field of view]

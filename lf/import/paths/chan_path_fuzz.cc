@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parses any bytes as a .chan of Nuke: the result must be an error, or cameras that can be
 // rendered.
 #include <cstddef>

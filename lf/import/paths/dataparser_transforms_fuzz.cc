@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parses any bytes as a dataparser_transforms.json of nerfstudio: the result must be an error, or a
 // similarity that can be undone.
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rotations as three angles about the axes, in any order. Internal to this folder.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/import/paths/focal_surface_file.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads depth pictures and height maps, and makes the focal surfaces of a path of them.
 #pragma once
 

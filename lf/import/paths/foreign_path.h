@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A camera path as a foreign file states it, before the missing quantities are completed. Internal
 // to this folder.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads the cameras of a calibration as the frames of a film, such as views that were held out of a
 // reconstruction (doc/formats/foreign_paths.md). Internal to this folder.
 #pragma once

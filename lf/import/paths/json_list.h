@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads a JSON file that is one long list of frames and a few keys beside it. Internal to this
 // folder.
 #pragma once

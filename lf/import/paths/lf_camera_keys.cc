@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/import/paths/lf_camera_keys.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The lf_* keys of JSON paths: the exact camera and its lens, for which the formats of others have
 // no place. Internal to this folder.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads and writes camera paths of nerfstudio's viewer, camera_path.json
 // (doc/formats/foreign_paths.md):
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The curve through the keyframes of a camera path of instant-ngp, as that program computes it.
 // Internal to this folder.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads and writes camera paths of instant-ngp, base_cam.json (doc/formats/foreign_paths.md):
 //
 //   {"path": [{"R": [x, y, z, w], "T": [x, y, z], "slice": 0, "scale": 1.5, "fov": 50.625,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Opens a camera path of any supported form: all programs open their PATH with it.
 #pragma once
 

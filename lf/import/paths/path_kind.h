@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds out in which form a camera path is written. Internal to this folder.
 #pragma once
 

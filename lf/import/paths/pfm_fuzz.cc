@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parses any bytes as a PFM file: the result must be an error, or the picture that the head states.
 #include <cstddef>
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Changes the number of frames of a camera path.
 #pragma once
 

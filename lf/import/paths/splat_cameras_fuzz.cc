@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parses any bytes as a cameras.json of 3D Gaussian splatting: the result must be an error, or
 // cameras that can be rendered.
 #include <cstddef>

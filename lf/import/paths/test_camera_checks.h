@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks that every camera of a path is one that can be rendered. For fuzz targets.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Texts of foreign camera paths for tests.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads the picture of a lens's transmission from an image file.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes a camera path as a scene of USD in its text form, .usda (doc/formats/foreign_paths.md).
 // Internal to this folder.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads the binary form of COLMAP's models: cameras.bin, images.bin, points3D.bin. The files are
 // little-endian and unaligned. Every list begins with its length, a uint64:
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parses any bytes: the result must be an error, or a light field that passes CheckIsSane(). The
 // input holds two uint16, the sizes of cameras.bin and images.bin, followed by cameras.bin,
 // images.bin and points3D.bin.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The camera models of COLMAP. Internal to this folder.
 #pragma once
 

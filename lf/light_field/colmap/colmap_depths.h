@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the range of the depths of a reconstruction's points. Internal to this folder.
 #pragma once
 

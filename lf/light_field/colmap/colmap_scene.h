@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts a COLMAP model to a LightField while the model's binary or text files are read. Internal
 // to this folder.
 #pragma once

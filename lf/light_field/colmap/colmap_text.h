@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads the text form of COLMAP's models: cameras.txt, images.txt, points3D.txt. Lines that start
 // with # are comments; a blank line is significant only as the second line of an image.
 //

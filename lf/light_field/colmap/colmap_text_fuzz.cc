@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parses any bytes: the result must be an error, or a light field that passes CheckIsSane(). The
 // input holds cameras.txt, images.txt and points3D.txt, separated by form feeds.
 #include <algorithm>

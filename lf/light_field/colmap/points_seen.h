@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the points of a COLMAP model that one of its images shows. These points describe the
 // geometry of the scene; no pixels have to be read for them.
 #pragma once

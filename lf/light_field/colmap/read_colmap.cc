@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/light_field/colmap/read_colmap.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads sparse models of COLMAP as light fields (doc/formats/colmap.md): cameras, images and
 // points3D, as .bin or .txt, from a folder such as sparse/0.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures the time and memory of reading models of a million images with 50 2D points each: 1.3 GB
 // of images.bin, 2.2 GB of images.txt. The files are first written into the temporary folder.
 // Reports the peak memory of the process before reading and at the end, and the size of the light

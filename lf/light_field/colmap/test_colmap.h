@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small COLMAP models in memory, for tests.
 #pragma once
 

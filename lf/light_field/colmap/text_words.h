@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Splits a text file into lines of words, block by block: lines may have any length. Used by the
 // readers of models and camera paths.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decides whether the alpha channel of LF images is a mask or an opacity, for calibrations that do
 // not state it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Brackets: LF images of one pose with different exposures. A bright image shows the shadows with
 // little noise, a dark one shows the highlights that are clipped in the bright ones.
 //

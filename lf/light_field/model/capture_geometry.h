@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Derives from the poses alone how dense a capture is and what it looks at.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tells which channels of an LF image's file are colours, and which is alpha.
 #pragma once
 

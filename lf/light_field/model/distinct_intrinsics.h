@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Collects LightField::intrinsics while a calibration is read: equal intrinsics are stored once.
 #pragma once
 

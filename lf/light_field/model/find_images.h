@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the image files of a light field if their paths or sizes differ from the calibration,
 // because the photographs were moved, renamed or downscaled after they were calibrated.
 #pragma once

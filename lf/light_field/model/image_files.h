@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Names and sizes of image files, for calibrations that do not state an image size.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decides whether an image file has the pixels that were calibrated.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The depths of the pixels of one recorded LF image of a densified light field.
 #pragma once
 

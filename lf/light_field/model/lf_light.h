@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pixels of an LF image as light for display and for programs that know no radiance encoding.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pixels of one LF image, ready for collection.
 #pragma once
 

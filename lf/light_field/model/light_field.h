@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The light field without its pixels: the cameras, the names of the image files, and how stored
 // numbers become light.
 #pragma once

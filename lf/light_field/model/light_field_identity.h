@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Identifies a light field by hashes, so that packages and resumed renders can check that a light
 // field is still the same.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parses numbers in text files, for the readers of calibrations.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts stored numbers to light, as the table "What is added" of doc/ray.md says.
 //
 // Radiance is linear light, 1 = display white. Collection kernels add it as a 16-bit integer

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads the encoding of camera raw files from the files themselves, for light fields that do not
 // state it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rotation matrices from files, where they are rounded to a few digits. Used by the readers of
 // calibrations.
 #pragma once

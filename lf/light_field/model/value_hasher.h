@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A hash of values that is equal on all machines, to find out whether two runs have the same
 // inputs.
 #pragma once

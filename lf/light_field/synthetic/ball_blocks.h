@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the few balls near a ray quickly. Up to eight balls near each other form a block: a ball
 // around the block is tested first, then the balls of the block are tested side by side. For about
 // a hundred balls, as in the built-in scenes, blocks are faster than a tree.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scenes that come with lfsynth, each with the capture for which it was composed.
 //
 // Lengths are metres. y points down. The origin is the point that the rig faces; in `still-life`,

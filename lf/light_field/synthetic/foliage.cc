@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Describes the scene `foliage`, composed for a camera at z = -1 m that looks along +z.
 #include <cmath>
 #include <numbers>

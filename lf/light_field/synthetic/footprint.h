@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The width of a ray (its footprint): the part of the scene over which one pixel averages.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The light of the glows that a ray passes: soft spots of light in the picture (Glow).
 #pragma once
 

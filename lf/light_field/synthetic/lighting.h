@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The light on diffuse surfaces. It comes from lamps, with soft shadows of spheres, and from the
 // ambient light of the room.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Describes the two scenes for measurements, `lights` and `chart`. Both are composed for a camera
 // at z = -1 m that looks along +z.
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reflection and refraction at mirrors and glass.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Procedural textures: the share of a material's second colour at a point of a surface. Lengths are
 // world units on the surface. `width_w` is the width over which the pattern is averaged (the
 // footprint of a pixel; 0 for a single point). Patterns are filtered analytically where there is a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Takes pictures of a scene: through a pinhole (an LF image), and through a thin lens (the ground
 // truth with which a render of the light field is compared).
 #pragma once

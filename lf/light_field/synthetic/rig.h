@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Camera arrangements: the positions from which the photographs of a light field are taken.
 #pragma once
 

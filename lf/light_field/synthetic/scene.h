@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scene as a light source: computes the radiance along any ray in closed form (an analytic ray
 // caster).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The parts of a synthetic scene, as plain values. lf::Scene (scene.h) computes its light.
 //
 // World units are metres (unit_m = 1), and y points down: the normal of a table top, half_right x

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Intersects rays with spheres and panels, and finds the first shape that a ray hits.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The still life: warm lights in a dark room, one large soft key light from the left, a cooler rim
 // light from behind on the right. Colours are amber against teal, with rose as the accent.
 #include <cmath>

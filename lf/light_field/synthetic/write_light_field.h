@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes a scene's photographs to disk with their exact calibration: a light field that every
 // program reads (doc/formats/transforms_json.md).
 #pragma once

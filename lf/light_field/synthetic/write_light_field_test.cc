@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/light_field/synthetic/write_light_field.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes the frames that a lens would record of the scene itself: the ground truth with which
 // renders of its light field are compared.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The lens distortion of transforms.json: camera_model and its parameters. They are keys of the top
 // level; each frame may override any of them. Internal to this folder.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Splits the text of a JSON file, such as a transforms.json, into the objects of one long list and
 // the rest. It only looks at brackets and quotation marks and does not parse values. Used by the
 // readers of calibrations and camera paths.

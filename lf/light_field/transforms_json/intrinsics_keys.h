@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The intrinsics of transforms.json: keys of the top level, which each frame may override. Internal
 // to this folder.
 #pragma once

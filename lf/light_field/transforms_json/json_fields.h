@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads the keys of a JSON object as checked values. Errors name the file, the frame, the key, the
 // value and what was expected. Used by the readers of calibrations and camera paths.
 #pragma once

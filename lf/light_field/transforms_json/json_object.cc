@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/light_field/transforms_json/json_object.h"
 
 #include <simdjson.h>

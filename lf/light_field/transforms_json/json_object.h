@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parses one object {...} of a JSON text fast. Used by the readers of calibrations and camera
 // paths.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes error messages about files that are not JSON. Used by the readers of calibrations and
 // camera paths.
 #pragma once

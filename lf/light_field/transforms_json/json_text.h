@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The text of a JSON file while it is written. Used by the writers of calibrations and camera
 // paths.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The lf_* keys of transforms.json that say how stored numbers become light. Internal to this
 // folder.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Poses as transforms.json writes them: camera-to-world matrices of OpenGL cameras (x right, y up,
 // looking along -z).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads and writes the native description of a light field: a transforms.json of nerfstudio or
 // instant-ngp with the lf_* keys of doc/formats/transforms_json.md. Its poses are camera-to-world
 // matrices with OpenGL's axes (x right, y up, looking along -z), which are converted on reading.

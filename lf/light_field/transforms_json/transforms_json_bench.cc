@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures the time and memory of reading a transforms.json with 10,000 to a million frames (300
 // bytes each). The file is first written into the temporary folder. Reports the peak memory of the
 // process before reading and at the end. The peak includes earlier benchmarks; therefore run one

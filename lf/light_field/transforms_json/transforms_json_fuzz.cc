@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parses any bytes: the result must be an error, or a light field that passes the checks below.
 // FrameCutter must find the same frames whether it is given the text byte by byte or at once.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/light_field/transforms_json/transforms_json.h"
 
 #include <fmt/format.h>

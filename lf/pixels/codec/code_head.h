@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The head of an encoded image: the fields before its table of contents (doc/formats/lf_image.md,
 // "Head"). Internal to this folder.
 #pragma once

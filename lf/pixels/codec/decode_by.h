@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // DecodeImage() with a chosen implementation of the transforms. Internal to this folder.
 #pragma once
 

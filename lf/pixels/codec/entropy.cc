@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/pixels/codec/entropy.h"
 
 #include <zstd.h>

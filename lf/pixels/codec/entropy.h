@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The lossless coder that compresses coefficients, zstd, and the numbers between the compressed
 // bytes (doc/formats/lf_image.md, "Numbers"). No other file of the folder uses zstd. Internal to
 // this folder.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The averaging Haar transform of a plane, one level at a time: thesis 2.5.1, equations 2.20 and
 // 2.21, nonstandard decomposition. Internal to this folder.
 //

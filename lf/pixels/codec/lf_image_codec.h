@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Encodes the pixels of one image into bytes and decodes them (thesis 2.5, 4.2.2); knows nothing of
 // light fields. doc/formats/lf_image.md describes the format with an example, doc/codec.md gives
 // the reasons for it with measurements.

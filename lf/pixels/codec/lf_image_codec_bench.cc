@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures how fast 2048x2048 mosaics and 1920x1280 RGB images, both of 8 bits, are encoded and
 // decoded. MB/s count the bytes of the unencoded pixels. The mosaic is read from the file
 // LF_BENCH_IMAGE (raw bytes of 2048x2048 pixels) if this environment variable is set; otherwise,

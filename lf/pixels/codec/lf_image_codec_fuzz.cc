@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any bytes must decode to an image or an error, with equal results from the reference and the fast
 // transforms.
 #include <cstddef>

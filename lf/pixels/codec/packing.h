@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Packs coefficients into bytes that zstd compresses well, compresses these, and reverses both
 // steps (doc/formats/lf_image.md, "Streams"). Internal to this folder.
 //

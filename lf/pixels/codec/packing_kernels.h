@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The two implementations that unpack the streams of packing.h, for unsigned numbers of 16 and 32
 // bits. Internal to this folder.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts colours to brightness and two colour differences, in integers and without loss: YCoCg-R
 // (Malvar and Sullivan 2003). Internal to this folder.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Encodes and decodes one tile of an image in the thesis's profile (thesis 4.2.2, 5.4). Internal to
 // this folder.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares the thesis's profile with the thesis itself: with its sections 2.5.1, 2.5.2, 4.2.2 and
 // 5.4, implemented here in real numbers without any code of pixels/codec/.
 #include "lf/pixels/codec/thesis_tile.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The reversible 5/3 wavelet transform of a plane, one level at a time (Le Gall and Tabatabai 1988;
 // as lifting: Calderbank, Daubechies, Sweldens, Yeo 1998). Internal to this folder.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The two implementations of the functions that wavelet53.h declares. Internal to this folder.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The formulas of wavelet53.h, applied to one line of values at a time.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The 5/3 transform with SIMD vectors along rows, compiled for every instruction set; the program
 // chooses one at run time (Highway). A level is one pass over its subbands: a few rows of
 // coefficients stay in the first-level cache between the vertical and the horizontal step.

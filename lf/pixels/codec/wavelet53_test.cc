@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/pixels/codec/wavelet53.h"
 
 #include <gtest/gtest.h>

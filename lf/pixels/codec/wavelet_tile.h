@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Encodes and decodes one tile of an image by wavelets, in the default and the lossless profile.
 // Internal to this folder.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads the numbers of JPEG and PNG files. Internal to this folder.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The exposure in the Exif data of a file, read without a decoder. Internal to this folder.
 #pragma once
 

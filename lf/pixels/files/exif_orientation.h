@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads the orientation from Exif data within another file. Internal to this folder.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The exposure that an image file states, in its Exif data or as LibRaw reads it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Joins EXR files into one file of several parts.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/pixels/files/exr_parts.h"
 
 #include <OpenEXR/ImfChannelList.h>

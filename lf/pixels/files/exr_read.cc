@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bytes of a file, on disk or in memory. Internal to this folder.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads image files (PNG, JPEG, TIFF, EXR, camera raw files) and writes them (all but raw files).
 // No other folder uses OpenEXR, libpng, libtiff, libjpeg or LibRaw.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks the structure of an image file before a decoder reads it. Internal to this folder.
 //
 // Decoders allocate as much memory as the size in a header requires, and some do so when they open

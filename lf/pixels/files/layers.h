@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the colour channels of an EXR file. Internal to this folder.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Opens TIFF files with libtiff, and collects its errors and warnings. Internal to this folder.
 //
 // libtiff continues after most errors. It reports them to a handler that belongs to one file here,

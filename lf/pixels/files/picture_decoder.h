@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The readers of PNG, TIFF and EXR files. Internal to this folder.
 //
 // Each uses the library of its format: libpng, libtiff, OpenEXR. A library for all formats, such as

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The writers of PNG, TIFF, JPEG and EXR files. They encode in memory. Internal to this folder.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads the statements of a picture's file about its colours and its film, and writes a picture
 // with the same statements: for programs that join pictures.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Calls of libpng whose errors become results. Internal to this folder.
 //
 // libpng leaves its functions by longjmp() when it meets an error. PngCalls confines these jumps:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Facts about the pixels of a camera raw file, from LibRaw. Internal to this folder.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Gives LibRaw the bytes of a file. Internal to this folder.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decodes JPEG files, whole or in part, with libjpeg-turbo. No other reader uses libjpeg. Internal
 // to this folder.
 #pragma once

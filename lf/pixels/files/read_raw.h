@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decodes camera raw files with LibRaw. No other reader uses it. Internal to this folder.
 #pragma once
 

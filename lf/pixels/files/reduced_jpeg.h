@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads JPEG files in a fraction of their size, in a fraction of the time.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes the rows of a picture block by block while they are encoded. Internal to this folder.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes DNG files for tests, with the tags that a test sets: one strip of uncompressed 16-bit
 // pixels, unless the test asks for packed bits, tiles or lossless JPEG.
 #pragma once

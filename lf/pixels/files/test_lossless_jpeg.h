@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes lossless JPEG (ITU T.81, process 14), as it is used in DNG files, for tests.
 #pragma once
 

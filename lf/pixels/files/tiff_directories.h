@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads the first directory and the Exif data of a TIFF or BigTIFF file without a decoder. The
 // first directory tells whether the file is a camera raw file. Internal to this folder.
 #pragma once

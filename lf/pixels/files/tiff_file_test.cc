@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tests OpenTiff() and EncodeTiff(), with files that libtiff writes as other programs do.
 #include <gtest/gtest.h>
 #include <tiffio.h>

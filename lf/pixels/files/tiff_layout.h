@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Describes how a TIFF file stores its first picture. Internal to this folder.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts the samples of a TIFF file to the types of a StoredImage. Internal to this folder.
 #pragma once
 

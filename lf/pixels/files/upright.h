@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rotates and mirrors pictures as their orientation tag says, if the tag exchanges width and
 // height.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks that a picture file is complete. An encoding library may not report that memory ran out,
 // and a frame of an earlier run may have been truncated by a copy or a disk. Such files look like
 // pictures until somebody decodes their last rows.

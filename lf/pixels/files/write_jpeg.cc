@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/pixels/files/write_jpeg.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Encodes JPEG files in memory, for web pages.
 #pragma once
 

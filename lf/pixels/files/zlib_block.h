@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Inflates a zlib stream, and verifies its end and its checksum. Internal to this folder.
 #pragma once
 

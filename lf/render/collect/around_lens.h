@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the LF cameras whose rays pass through the lens of a frame, and the distance between these
 // rays in the lens plane.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/render/collect/collect.h"
 
 #include <fmt/format.h>

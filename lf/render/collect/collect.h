@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Collects the rays of many LF images into the plates of many frames. Each LF image is read once,
 // by ascending places. The place of an LF image is its rank in the order (doc/terminology.md). All
 // CPU cores work together, even if there is only one frame (doc/design.md, "Work is cut by

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Adds the rays of a batch of decoded LF images to the plates of all frames, with all threads.
 #pragma once
 

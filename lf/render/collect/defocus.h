@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tells which pixels of a recorded LF image are out of focus in a frame (doc/densify.md, "The
 // guard"). There, the pictures of neighbouring LF cameras lie side by side in the frame.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The defocus of LF pixels with known depths, and guarded plates.
 #include "lf/render/collect/defocus.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/render/collect/develop_options.h"
 
 #include "lf/light_field/model/lf_pixels.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the plate of a light field is developed.
 #pragma once
 

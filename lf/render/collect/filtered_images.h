@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The LF images of a batch, filtered for the frames that read them. Internal to this folder.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The lens of one frame as collection uses it: which rays pass through it, and with which weights.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The interface of code, such as rebinning, that receives the LF images that are loaded for the
 // plates.
 #pragma once

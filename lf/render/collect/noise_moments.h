@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Exact second moments of the sums and counts that LF images add to an element. The standard error
 // of the element's mean is computed from them. Moments are kept for some elements, spread evenly
 // over the plate.

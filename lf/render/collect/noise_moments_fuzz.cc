@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // NoiseMoments::Read() must accept or refuse any text. The first line of the input describes a
 // plate of 2 x 1 elements: "sum count" for each of the three channels of both elements. The rest is
 // the text. If it is accepted, Text() must return it again, and the standard errors must not be

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The noise of a frame, and the rule "noise<=X" (such as "noise<=0.002"): --stop-when stops a frame
 // by it, --require fails if a frame breaks it.
 //

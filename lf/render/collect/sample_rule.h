@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The number of rays that the elements of a frame have, and the rule "samples>=N" (such as
 // "samples>=8"): --stop-when stops a frame by it, --require fails if a frame breaks it.
 #pragma once

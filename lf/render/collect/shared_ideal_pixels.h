@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ideal pixels (camera/ideal_pixels.h) of LF cameras with distortion, made once for all LF
 // images that share them.
 #pragma once

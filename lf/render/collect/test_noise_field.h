@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small light fields of noise, for tests of collection as a whole.
 #pragma once
 

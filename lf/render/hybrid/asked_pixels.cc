@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/render/hybrid/asked_pixels.h"
 
 #include "lf/render/collect/collect.h"

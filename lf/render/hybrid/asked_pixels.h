@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the pixels of LF images from which the rebinned rays of one frame are made. Needs only the
 // calibration of the LF cameras, no pixels.
 #pragma once

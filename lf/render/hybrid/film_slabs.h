@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The slabs of a film: the pairs of planes on which its rebinned rays are described
 // (rebinning/slab_plan.h). They are planned for all frames of the film together, so that the slab
 // of a frame, and therefore its cells, do not depend on which frames are rendered in the same pass

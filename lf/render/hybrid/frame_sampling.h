@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures the density of the LF cameras around the lens of a frame, and derives the frame's
 // queries: the rays that are interpolated from rebinned rays. Both need only the calibration of the
 // LF cameras, no pixels.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds, for each element, the parts of a frame's lens that no collected ray passes through. Needs
 // only the calibration of the LF cameras, so that gaps are known before an LF image is read (thesis
 // 4.3.3).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rebinned rays of the frames of one pass. Keeps the rays that the frames need, LF image after
 // LF image, and interpolates the frames from these rays (thesis 4.3.2, 4.3.3).
 //

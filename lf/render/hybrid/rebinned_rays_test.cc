@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/render/hybrid/rebinned_rays.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Divides the memory of a render (--memory) between rebinned rays, plates and LF images, for each
 // render mode.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The mode of a render says which rays its frames are made of (doc/rebinning.md).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/render/needs/film_order.h"
 
 #include <utility>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the order of the LF images (selection/image_order.h) from the needs of all frames of a
 // film.
 #pragma once

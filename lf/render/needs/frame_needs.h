@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes which LF images, pixels and LF cameras of a light field one frame needs (thesis 4.2.1).
 //
 // All parts of the program use FrameNeeds: packages contain these LF cameras, packed stores keep

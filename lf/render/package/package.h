@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A package contains all that one machine needs to render a section of a film (thesis 4.2): frames,
 // those LF cameras of the light field that the frames need, and the order in which LF images are
 // taken. A package is itself a small light field with a camera path. It is rendered like a whole

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads and writes the SQLite file of a package (doc/formats/package.md).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any bytes, read as a file, must give a package or an error. A package must have only valid
 // cameras and ranks. The checksum footer is not checked, because otherwise no damaged bytes would
 // reach the parser.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Definitions that the writer and the reader of package files share. Internal to this folder.
 #pragma once
 

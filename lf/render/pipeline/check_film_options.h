@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks that the options of a film are compatible with each other and with its package, before the
 // render starts and before a job waits in a queue.
 #pragma once

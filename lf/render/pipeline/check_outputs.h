@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks that a render does not overwrite the files that it reads.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The functions of render.h that run before a render starts: they check its options, and put the LF
 // images in order.
 #include "lf/render/needs/film_order.h"

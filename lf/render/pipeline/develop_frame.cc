@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/render/pipeline/develop_frame.h"
 
 #include <algorithm>

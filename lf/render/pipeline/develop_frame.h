@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Develops the plate of a frame into its picture, and reports what the picture contains.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The options of a film that is rendered in memory: what its frames are made of, and how the work
 // is done. render.h adds the folder that the frames are written into.
 #pragma once

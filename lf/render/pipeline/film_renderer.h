@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Renders frames of a film in memory: without folders, files or signals.
 //
 //   LF_ASSIGN_OR_RETURN(auto renderer, FilmRenderer::Open(package, film, work, {}, pool));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The parts of FilmRenderer that stop frames by a rule, and measure finished frames.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/render/pipeline/film_setup.h"
 
 #include <fmt/format.h>

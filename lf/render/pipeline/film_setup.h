@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Holds what the frames of a film share while they are rendered: the light field, its LF images,
 // the options, and the plan of the memory.
 #pragma once

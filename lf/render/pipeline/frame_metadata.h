@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The metadata in the file of a frame, which describe its render camera, its rays and its colours.
 #pragma once
 

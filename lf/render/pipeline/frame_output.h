@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes the picture of a frame, and makes the contact sheet and the video from the files of
 // frames. Internal to this folder.
 #pragma once

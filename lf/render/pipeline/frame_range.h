@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parses lists of frame numbers, such as "7", "1-10,50-60", and "1-100x2" or "1-100:2" (every
 // second frame: 1, 3, 5, ..., 99).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frames of a densified light field: never worse than those of its recorded LF images alone.
 #include <gtest/gtest.h>
 

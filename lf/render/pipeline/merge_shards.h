@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes frames from plate files. If a render was divided into shards, adds the plates of all shards
 // of a frame: the frames are bit-identical to those of an undivided render. Also develops the
 // plates of lfrenderer --keep-plates again, with other options.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A render from a packed store is bit-identical to the render from the image files.
 #include <gtest/gtest.h>
 

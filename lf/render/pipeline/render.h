@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Renders a package, that is a light field and a camera path (render/package/package.h), as an
 // image sequence into a folder (thesis 4.3). film_renderer.h renders in memory.
 #pragma once

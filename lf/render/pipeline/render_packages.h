@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Renders package files into one image sequence.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/render/pipeline/render_packages.h"
 
 #include <gtest/gtest.h>

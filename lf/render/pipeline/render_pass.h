@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One pass over the LF images: renders a group of frames, whose plates fit in the memory together,
 // into a folder, and writes the state of unfinished frames there. Internal to this folder.
 #pragma once

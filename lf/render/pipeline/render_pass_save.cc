@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The parts of RenderPass that write checkpoints.
 #include <algorithm>
 #include <functional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/render/pipeline/setup_inputs.h"
 
 #include <fmt/format.h>

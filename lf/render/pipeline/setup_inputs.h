@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The inputs that decide the rays of a film (render/state/run_inputs.h), from its setup.
 #pragma once
 

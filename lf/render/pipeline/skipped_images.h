@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the LF images that were skipped (SkippedImage) and whose rays a frame therefore lacks.
 // Internal to this folder.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decides when the next checkpoint is due: after the interval that the user chose, or after a
 // longer one if checkpoints would take more than kMostShare of the time.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // PlateNotesOf() must accept or refuse any lines "key: value". Notes that it accepts must not
 // change when they are written and read again.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads values from our own JSON files (reports, jobs), which may be damaged. To be included only
 // by sources that need nlohmann's JSON in any case.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The report of a render: the contents of report.json, from which programs also print numbers for
 // people. The state of an interrupted render also contains reports: one for each finished frame,
 // and one with the times and the skipped LF images.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ParseReport() must accept or refuse any text. A report that it accepts must have the same numbers
 // of frames and skipped LF images when it is written and read again.
 #include <cstddef>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The inputs of a frame as readable pairs of key and value. A resumed render compares its inputs
 // with the inputs that it was begun with. The error message names an input that differs.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/render/state/run_state.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The state of an unfinished render. It is in DIR/partial/ if DIR is the output folder, or in
 // DIR/partial/NAME/ for a package NAME. A render can be interrupted at any moment and resumes from
 // its state (doc/checkpoints.md).

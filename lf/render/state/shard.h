@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A shard: a part of the LF images of a render whose frames are too much work for one machine. The
 // sum of the plates of all shards is bit-identical to the plate of an undivided render.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/selection/lens_weights/convex_polygon.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Convex polygons in the lens plane, in world units.
 #pragma once
 

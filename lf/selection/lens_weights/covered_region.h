@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The part of the lens plane whose light the LF cameras have recorded. A lens may extend beyond it.
 #pragma once
 

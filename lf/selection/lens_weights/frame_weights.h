@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The weights of all LF cameras in one frame, for each of its elements. They are integers
 // (doc/ray.md, "What is added"), and are computed before any LF image is read.
 //

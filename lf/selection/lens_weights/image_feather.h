@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The feather of an LF image: the weight of its rays decreases towards its borders (doc/ray.md,
 // "What is added"), so that a frame shows no seam where an LF image ends that is brighter than its
 // neighbours.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the Voronoi cell of one place among points of the lens plane. Internal to this folder.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes the share of the lens that each LF camera represents, so that a sum over LF cameras
 // approximates the integral over the lens area (doc/ray.md, "What is added").
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures how well LF cameras cover a lens, so that a photographer knows this before hours of
 // rendering.
 #pragma once

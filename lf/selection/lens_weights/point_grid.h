@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sorts points of the plane into square buckets, about one in each, so that they can be visited
 // roughly in the order of their distance from a place. Internal to this folder.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The light that parts of an opening with a transmission let through.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes RGB pixels from the mosaic of a Bayer sensor, for the estimator that interpolates RGB.
 //
 // Malvar, He and Cutler, "High-quality linear interpolation for demosaicing of Bayer-patterned

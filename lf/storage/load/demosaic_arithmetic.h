@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fixed-point arithmetic that both implementations of demosaicing share. Internal to this folder.
 #pragma once
 

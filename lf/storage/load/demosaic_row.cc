@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The inner loop of demosaicing, a plain loop that compilers vectorise. Highway compiles it for
 // several instruction sets, and the program chooses one of these versions at run time. The version
 // for the baseline of x86-64 takes more than twice as long as those for newer instruction sets.

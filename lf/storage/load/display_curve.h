@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Maps stored values of linear light to the tone curve of a display (IEC 61966-2-1). Lossy encoding
 // works on the mapped values, because on this curve an error is equally visible in shadows and in
 // highlights, and photon noise is nearly constant.

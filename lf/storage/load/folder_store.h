@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads LF images from separate image files, as the calibration names them.
 #pragma once
 

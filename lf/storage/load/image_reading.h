@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads one LF image from its files, as stored. FolderStore and ReadRecordedImage() share it.
 // Internal to this folder.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A source of the pixels of LF images. It loads one LF image at a time, because a light field may
 // take a terabyte.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/storage/load/load_mosaics.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Loads pixels for any store, with mosaics as recorded or converted to RGB. Internal to this
 // folder.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds out from LF images whether an LF pixel shows the mean light of its area or the light of a
 // point.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/storage/load/measure_footprint.h"
 
 #include <gtest/gtest.h>

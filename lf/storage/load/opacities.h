@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads how much of the light behind each pixel of an LF image is covered, and composes pixels with
 // the background if alpha is light (RadianceEncoding::alpha). Internal to this folder.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/storage/load/open_store.h"
 
 #include <utility>

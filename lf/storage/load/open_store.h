@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Opens the store of a light field: image files or a packed store.
 #pragma once
 

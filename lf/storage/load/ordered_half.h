@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Represents the radiance of float files as 16-bit integers, so that packed stores can encode it:
 // the bit patterns of half floats (IEEE 754 binary16), mapped such that larger numbers become
 // larger integers.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Loads LF images from a packed store (storage/packed/packed_store_file.h).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts stored values of image files to radiance, a whole picture at a time.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures how long ConvertRadiance() takes for an 8-bit RGB image, in ns per pixel, with and
 // without a falloff.
 #include <benchmark/benchmark.h>

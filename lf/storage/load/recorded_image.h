@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An LF image that will be written to a packed store. It holds stored values and not radiance: the
 // light field's encoding is applied when the image is loaded from the store, by the code that also
 // converts separate files (packed_store.h).

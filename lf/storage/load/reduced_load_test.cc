@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tests LfImageStore::LoadReduced() of files.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Planes of a densified store: a packed store that also has virtual LF images
 // (doc/formats/packed_store.md, "Densified stores"). A plane holds numbers of 16 bits for the
 // pixels of a recorded LF image, such as its disparities. packed_store_writer.h writes planes.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads the file of a packed store: the encoded LF images of a light field with their calibration,
 // in one SQLite file (doc/formats/packed_store.md). A large store may keep its encoded images in
 // further files, its shards. packed_store_writer.h writes all of them. Here, encoded images are

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads any bytes as the file of a packed store: the result must be the facts of a store or an
 // error. The LF cameras of a store must be valid, and reading its encoded images and planes must
 // succeed or return an error.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes a packed store in batches over hours. Committed batches survive however the program ends,
 // and the next program resumes from them.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The settings of a packed store that follow from its plan, and how they differ from those of an
 // existing store. Internal to this folder.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The table of planes and the settings of a densified store, for its writer and its reader.
 // Internal to this folder.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "lf/storage/packed/unfinished_files.h"
 
 #include <system_error>

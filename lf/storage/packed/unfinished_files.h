@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tells to which store a file belongs, and removes the files of an unfinished store. Internal to
 // this folder.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads and writes our SQLite files: packages and packed stores (doc/design.md, "SQLite is the file
 // format"). No other folder uses SQLite.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes and checks a checksum footer behind the last page of an SQLite file, where SQLite does not
 // read. The footer covers every byte, including numbers, words and SQLite's own structures.
 // Checking reads the whole file, so the footer is for files that are read completely in any case.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stores a light field's calibration in our SQLite files, for packages and packed stores. Numbers
 // keep all their bits.
 #pragma once

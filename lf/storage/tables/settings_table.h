@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes and reads the table `settings`, which maps keys to text, of packages and packed stores.
 #pragma once
 

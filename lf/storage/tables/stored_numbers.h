@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts numbers to and from blobs (least significant byte first) and text, and checks the
 // numbers of packages and packed stores against limits. The readers of calibration files and camera
 // paths have the same limits.

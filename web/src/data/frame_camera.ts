@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The thin-lens camera of a frame, and the directions of its rays. Lengths are in world units, angles in radians; fx,
 // fy, cx, cy, width and height are in elements.
 

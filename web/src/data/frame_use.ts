@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads which LF cameras a frame uses, and why it does not use the others (CameraUse in lf/view/frame_use.h).
 
 export const USES = ["used", "outside", "angle", "sees-none", "limit", "no-weight"] as const;

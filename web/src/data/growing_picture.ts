@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The picture of a frame, finished or still being rendered: linear light and ray counts as half floats. It is shown
 // with a chosen exposure, or as a map of its ray counts.
 

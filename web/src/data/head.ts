@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Arrays that begin with the length of a JSON text and this text (doc/formats/page_data.md, POST live).
 
 // Returns the JSON at the beginning of an array, and the index of the byte behind it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The answer to the request of a live picture: facts about the picture, and the picture.
 
 import { readHead } from "./head";

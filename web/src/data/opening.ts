@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shape of the lens's opening (lf/camera/aperture.h), inscribed in a circle.
 
 export interface Opening {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Types of the JSON data that the page reads: scene.json and the others (doc/formats/page_data.md).
 
 export type Vec3 = [number, number, number];

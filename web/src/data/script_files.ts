@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The data of an exported page. Each is a script NAME.js that hands its bytes to the page, because a page that was
 // opened from the disk may load scripts, but no other data.
 

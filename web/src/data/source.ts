@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads the page's data by their names, relative to the folder of the page. They come from the server of lfvisualizer
 // or from exported files.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the focus plane through three points of the scene.
 
 import type { FrameCamera } from "./frame_camera";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Moves the camera of a frame: orbits round a point, slides sideways, dollies along the optical axis.
 
 import { add, cross, dot, unit, type FrameCamera } from "../data/frame_camera";

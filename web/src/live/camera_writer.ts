@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes a moved camera into the path: its position, and its direction in the way in which the path defines it.
 
 import { add, cross, dot, unit, type FrameCamera } from "../data/frame_camera";

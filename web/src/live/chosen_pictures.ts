@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Chooses who renders live pictures: WebGL if it uses a graphics card and is faster than the server, otherwise the
 // server.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares two settings: the picture that was kept as A lies on the left part of the live picture, B. The line between
 // them can be dragged.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tells where the LF images of a picture are too far apart: a point off the focus plane then appears once for each LF
 // camera, as double edges, instead of as a blur.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Focus peaking: colours the edges in a picture whose brightness changes steeply, because they are in focus.
 
 const STEEPEST = 0.995; // share of the elements that are less steep than a fully coloured edge

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Changes of the lens of a frame's camera, and how each is written into the path.
 
 import { add, dot, unit, type FrameCamera } from "../data/frame_camera";

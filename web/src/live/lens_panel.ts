@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The panel of the live picture: what the mouse does in it, sliders of the lens, exposure, focus peaking, and the
 // comparison of two settings.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes the parts of the live picture, and connects them.
 
 import type { State } from "../state";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The camera of the live picture: that of the current frame, or a changed one while a person changes it with the mouse.
 // The path changes only at the end of such a change, so that a drag is one undo step.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decides when a live picture is requested. While the camera changes, pictures are quick: each is requested when the
 // one before has come, of the newest state. A still picture, of all LF images that are loaded, follows after a pause.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The line below the live picture: the lens, the LF images of the picture, the share of the lens that was recorded, and
 // a warning of double edges.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Changes the lens and the camera by mouse, fingers and keys in the live picture. In the mode "focus", a drag changes
 // the focus distance, the wheel or a pinch the aperture, and a click focuses there. In the mode "camera", or with Alt, a
 // drag orbits round the point in focus, with Shift or another button it slides, and the wheel or a pinch dollies.

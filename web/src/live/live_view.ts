@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The live picture: a large picture of the current frame that is rendered anew whenever the camera changes.
 
 import { develop } from "../data/growing_picture";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes a path of one frame, which has a given camera. A live picture is requested with it, because it is parsed
 // quickly even if the film has thousands of frames.
 

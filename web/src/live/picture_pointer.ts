@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tells what a mouse or fingers do in a picture: clicks, drags, pinches, and turns of the wheel.
 
 export interface PointerHandlers {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sources of live pictures: the server, or WebGL in the browser.
 
 import type { FrameCamera } from "../data/frame_camera";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The panel that edits the path: the value and keys of each quantity at this frame, whole movements, and the text of
 // the file.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The setting of the exposure with which pictures of frames are shown. All panels share it.
 
 import { element } from "../element";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The panel that shows facts about this frame: its lens, the LF images that it needs, and how dense the LF cameras are.
 
 import { fNumber } from "../data/frame_camera";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The panel that shows the LF image of the chosen LF camera, and the pixels of it that this frame may use.
 
 import { USES } from "../data/frame_use";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures in which a click sets the focus.
 
 import type { FrameCamera } from "../data/frame_camera";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The panel that shows frames while they are rendered: the frames of a watched render, or a small preview of this
 // frame.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes the shell commands that render a film. Options with default values are left out, so that people can read and
 // copy the commands.
 

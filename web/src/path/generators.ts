@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes whole movements into a path. A movement replaces the previous motion of its quantity, and makes the film
 // longer if necessary. Each exported function returns the name of the edit.
 import type { PathDocument } from "./path_document";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The history of edits, for undo and redo: the texts of a path, each with the name of the edit that made it.
 
 interface Entry {

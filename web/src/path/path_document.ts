@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A camera path (doc/formats/path.md) that a person can edit as text and with the mouse. An edit changes only the lines
 // that it concerns; the rest of the file keeps its text and comments.
 import {

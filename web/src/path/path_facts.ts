@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Types of what a path file contains about quantities and constants, and functions that return their keys in the file.
 import type { ConstantSpec, ConstantValue, PathValue, QuantitySpec, Section, Shape, Unit } from "./path_quantities";
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Describes the contents of a path file (doc/formats/path.md): quantities, which may change over time, and constants.
 // Reads, checks and writes their values.
 

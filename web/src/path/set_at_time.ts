@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sets quantities at the time of a frame, as a person means it who looks at this frame: a quantity with keys gets a key
 // there, any other the value for the whole film. If PathDocument.addsKeys is true, every quantity gets a key.
 

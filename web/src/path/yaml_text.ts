@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A YAML text that is edited in place: an edit changes only the characters that it concerns. The package `yaml` is used
 // only to find the positions of values. Its own output would move comments and change the format of numbers; therefore
 // edits replace parts of the text.

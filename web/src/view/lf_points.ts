@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws LF cameras as points; one draw call draws a million. When the frame changes, only two bytes per LF camera
 // change: its use, and the share of its pixels that are read.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lines and faces whose points change often. New points are written into the memory of the old ones, if that is large
 // enough.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The colours in which LF cameras are drawn, by their use, on a dark and on a light background. Uses differ not only in
 // hue, but also in brightness and size.
 

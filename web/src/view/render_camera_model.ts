@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws the render camera of a frame: the lens with its blades, the viewing frustum up to the focus plane, the focus
 // plane, the widened frustum, and the nearest and farthest depth of the scene. The widened frustum consists of rays
 // from the rim of the lens through the corners of the focus plane.

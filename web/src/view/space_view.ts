@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shows the light field and the render camera in 3D. Draws only when something has changed.
 
 import * as THREE from "three";

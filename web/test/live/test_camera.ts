@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cameras of frames for the tests.
 import { cross, type FrameCamera } from "../../src/data/frame_camera";
 

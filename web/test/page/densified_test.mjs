@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tests the page of a densified light field: virtual LF cameras differ from recorded ones, and a preview shows the
 // picture with or without virtual LF images.
 import assert from "node:assert/strict";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tests an exported page that is opened from the disk, without a network.
 import assert from "node:assert/strict";
 import { join } from "node:path";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares live pictures that WebGL renders with those of the server. Chromium renders WebGL by software here.
 import assert from "node:assert/strict";
 import { join } from "node:path";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Opens the live picture in tests of the page, and measures it.
 import { readFile } from "node:fs/promises";
 

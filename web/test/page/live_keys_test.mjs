@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tests that every change in the live picture can become a key of the path, and is undone.
 import assert from "node:assert/strict";
 import { test } from "node:test";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tests the live picture of photographs: what a person focuses there, lfrenderer renders sharply.
 import assert from "node:assert/strict";
 import { copyFile } from "node:fs/promises";

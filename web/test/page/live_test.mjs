@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tests the live picture in a browser.
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";

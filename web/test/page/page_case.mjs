@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Opens a browser for the tests that import this, makes a light field, and serves pages of it. Without Chromium, ends
 // the process with 77: skipped.
 import assert from "node:assert/strict";

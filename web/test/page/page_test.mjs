@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tests the page in a browser: what a person sees and does, and what the programs then read.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";

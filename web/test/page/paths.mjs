@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The camera paths that the tests of the page begin with.
 export const SHOP_PATH = `# Through the shop, with a wide triangle.
 format: lfpath 1

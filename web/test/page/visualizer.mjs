@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs lfvisualizer as a process, and a browser that shows its page.
 import { spawn } from "node:child_process";
 import { existsSync } from "node:fs";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes hundreds of random edits in a row: the file remains a path, and only what was edited
 // changes.
 import assert from "node:assert/strict";

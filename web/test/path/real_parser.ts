@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads paths with the parser of the programs. Tests run in the folder web.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The LF images of an exported page: JPEG or PNG files within scripts, in sRGB.
 
 import { getBytes } from "../../data/source";

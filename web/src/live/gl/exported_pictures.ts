@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Live pictures of an exported page. There is no server: WebGL renders all pictures from the exported LF images, with
 // lens weights that are computed here. If there is not enough time, for example without a graphics card, pictures are
 // coarser or have fewer LF images (fitting.ts).

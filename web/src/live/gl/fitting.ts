@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes pictures coarser, and then of fewer LF images, until there is time for them.
 
 const LEAST_WIDTH = 160; // elements; coarser pictures do not show what is in focus

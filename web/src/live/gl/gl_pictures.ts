@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Live pictures that WebGL renders from LF images and lens weights of the server.
 
 import { readHead } from "../../data/head";

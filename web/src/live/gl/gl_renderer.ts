@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Renders live pictures by WebGL2: each element of the picture reads every LF image of the lens.
 
 import { arcOf, squeezeOf } from "../../data/opening";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The lens of a picture: which LF images it takes, and the weights of their rays (lf/live/picture_lens.h).
 
 import { readHead } from "../../data/head";

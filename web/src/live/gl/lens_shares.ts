@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lens weights that the browser computes for exported pages. The server's weights (doc/lens-integral.md) are areas of
 // cells. These weights are counts of points of the opening instead: each point counts for the nearest LF camera, or in
 // narrow lenses for the few LF cameras around it (hat weights).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The LF images on the graphics card: layers of array textures, whose memory is limited.
 
 import type { LfCamera } from "./ray_forms";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The geometry between the plate of a picture and one LF camera, as linear forms on the position on the plate
 // (doc/ray.md, "Geometry"): they are computed here in double precision, and evaluated on the graphics card.
 

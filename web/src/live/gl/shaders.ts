@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shaders of live pictures. They apply doc/ray.md ("Geometry", "Bilinear", "Lens weights", "Feather") to elements.
 
 export const IMAGES_PER_DRAW = 64;

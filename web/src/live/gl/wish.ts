@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The renderer of live pictures that the address of the page asks for, ?live=webgl or ?live=server, for tests and
 // measurements; "auto" if it asks for none.
 
