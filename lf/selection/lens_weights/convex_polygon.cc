@@ -2,6 +2,7 @@
 #include "lf/selection/lens_weights/convex_polygon.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -41,27 +42,34 @@ ConvexPolygon ConvexPolygon::SquareAround(const Vec2& middle, double half_side) 
 }
 
 bool ConvexPolygon::Clip(const Vec2& normal, double offset) {
-  // The memory is reused, because Clip() is called millions of times for a frame.
-  thread_local std::vector<double> past;
-  thread_local std::vector<Vec2> kept;
-  past.clear();
+  // Clip() is called millions of times for a frame, nearly always on less than ten vertices, so
+  // that memory on the stack is worthwhile.
+  constexpr size_t kFew = 32;
+  std::array<double, kFew> past_of_few;
+  std::vector<double> past_of_many;
+  const size_t count = vertices_.size();
+  double* past = past_of_few.data();
+  if (count > kFew) {
+    past_of_many.resize(count);
+    past = past_of_many.data();
+  }
   bool is_all = true;
-  for (const Vec2& v : vertices_) {
-    past.push_back(normal.dot(v) - offset);
-    is_all &= past.back() <= 0;
+  for (size_t i = 0; i < count; ++i) {
+    past[i] = normal.dot(vertices_[i]) - offset;
+    is_all &= past[i] <= 0;
   }
   if (is_all) return false;
-  kept.clear();
-  for (size_t i = 0; i < vertices_.size(); ++i) {
-    const size_t next = i + 1 < vertices_.size() ? i + 1 : 0;
+  kept_.clear();
+  for (size_t i = 0; i < count; ++i) {
+    const size_t next = i + 1 < count ? i + 1 : 0;
     const Vec2& a = vertices_[i];
     const Vec2& b = vertices_[next];
-    if (past[i] <= 0) kept.push_back(a);
+    if (past[i] <= 0) kept_.push_back(a);
     if ((past[i] < 0 && past[next] > 0) || (past[i] > 0 && past[next] < 0))
-      kept.push_back(a + past[i] / (past[i] - past[next]) * (b - a));
+      kept_.push_back(a + past[i] / (past[i] - past[next]) * (b - a));
   }
-  if (kept.size() < 3) kept.clear();
-  vertices_.assign(kept.begin(), kept.end());
+  if (kept_.size() < 3) kept_.clear();
+  vertices_.swap(kept_);
   return true;
 }
 

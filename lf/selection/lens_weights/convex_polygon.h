@@ -37,6 +37,7 @@ class ConvexPolygon {
 
  private:
   std::vector<Vec2> vertices_;
+  std::vector<Vec2> kept_;  // memory that Clip() uses again
 };
 
 }  // namespace lf

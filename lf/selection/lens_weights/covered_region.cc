@@ -37,9 +37,12 @@ void CoveredRegion::Clip(ConvexPolygon* polygon) const {
   }
 }
 
-bool CoveredRegion::Contains(const Vec2& place) const {
-  return std::all_of(sides_.begin(), sides_.end(),
-                     [&](const Side& side) { return side.normal.dot(place) <= side.offset_w; });
+bool CoveredRegion::Contains(const Vec2& place) const { return ContainsDisk(place, 0); }
+
+bool CoveredRegion::ContainsDisk(const Vec2& middle, double radius_w) const {
+  return std::all_of(sides_.begin(), sides_.end(), [&](const Side& side) {
+    return side.normal.dot(middle) + radius_w <= side.offset_w;
+  });
 }
 
 double CoveredRegion::LargestRadius_w() const {

@@ -250,13 +250,13 @@ void FrameWeights::SetGrid(const RenderCamera& frame, std::span<const Vec3> cent
   const int step_px = is_partial ? kWeightBlock : kLeastNodeStep_px;
   columns_ = NodeCount(movement.across, distance_w, width_px_, step_px);
   rows_ = NodeCount(movement.down, distance_w, height_px_, step_px);
-  const size_t most_nodes = kMostShares / centres_world.size();
-  if (static_cast<size_t>(columns_) * rows_ > most_nodes && hat_share_ == 0 &&
-      in_opening_count >= kManyInOpening && !HasHorizon(frame)) {
+  const size_t share_count = static_cast<size_t>(columns_) * rows_ * centres_world.size();
+  if (share_count > kMostShares && hat_share_ == 0 && in_opening_count >= kManyInOpening &&
+      !HasHorizon(frame)) {
     // With a hood, the opening is another one at every element; a transmission divides cells. The
     // weights state both.
     keeps_opening_ = !is_partial;
-    CoarsenTo(most_nodes);
+    CoarsenTo((keeps_opening_ ? kWholeCellShares : kMostShares) / centres_world.size());
   }
   if (columns_ > 1) step_w_ += movement.across / (columns_ - 1);
   if (rows_ > 1) step_w_ += movement.down / (rows_ - 1);

@@ -199,7 +199,7 @@ TEST(FrameWeights, OfVeryManyCamerasAreWholeCells) {
   const FrameWeights weights(frame, centres, LensWeights::kAuto, Pool());
   ASSERT_TRUE(weights.keeps_opening());
   EXPECT_GT(weights.columns() * weights.rows(), 1);
-  EXPECT_LE(weights.columns() * weights.rows() * centres.size(), FrameWeights::kMostShares);
+  EXPECT_LE(weights.columns() * weights.rows() * centres.size(), FrameWeights::kWholeCellShares);
   EXPECT_EQ(weights.reach_w(), frame.aperture.radius_w);
   const ApertureTest opening(frame.aperture);
   for (const auto& [x, y] : {std::pair(640, 400), std::pair(40, 700), std::pair(1270, 3)}) {

@@ -11,6 +11,9 @@
 namespace lf {
 namespace {
 
+// Half the side of the square that a cell is first cut from, in buckets of the grid.
+constexpr double kNearBuckets = 3;
+
 // Finds the natural neighbours of a place, and the area that a cell of this place would take from
 // each of them.
 class HatMaker {
@@ -20,9 +23,10 @@ class HatMaker {
   void AddAt(const Vec2& place, double share, std::vector<double>* shares) {
     neighbours_.clear();
     same_.clear();
-    const ConvexPolygon cell = CellOf(
-        place, points_, grid_, Surroundings(place), [this](size_t i) { neighbours_.push_back(i); },
-        [this](size_t i) { same_.push_back(i); });
+    ConvexPolygon cell = Surroundings(place);
+    CutCell(
+        place, points_, grid_, [this](size_t i) { neighbours_.push_back(i); },
+        [this](size_t i) { same_.push_back(i); }, &cell);
     if (!same_.empty()) {
       for (const size_t i : same_) (*shares)[i] += share / static_cast<double>(same_.size());
       return;
@@ -40,7 +44,7 @@ class HatMaker {
 
  private:
   // Adds the points that are at the same place as a neighbour. They are neighbours, too, although
-  // CellOf() does not report them, because they cut nothing more off.
+  // CutCell() does not report them, because they cut nothing more off.
   void AddThoseAtTheSamePlaces() {
     const size_t met_count = neighbours_.size();
     for (size_t k = 0; k < met_count; ++k)
@@ -83,18 +87,14 @@ class HatMaker {
   ConvexPolygon part_;  // a member, so that its memory is reused
 };
 
-// The Voronoi cell of a point, and the number of points at this place, itself included.
-struct SharedCell {
-  ConvexPolygon cell;
+// Cuts `cell` down to the Voronoi cell of a point. Returns the number of points at this place,
+// itself included; 0 if nothing of the cell is left.
+int CutSharedCell(const Vec2& point, std::span<const Vec2> points, const PointGrid& grid,
+                  ConvexPolygon* cell) {
   int sharing = 0;
-};
-
-SharedCell SharedCellOf(const Vec2& point, std::span<const Vec2> points, const PointGrid& grid,
-                        const ConvexPolygon& around) {
-  SharedCell shared;
-  shared.cell = CellOf(
-      point, points, grid, around, [](size_t) {}, [&](size_t) { ++shared.sharing; });
-  return shared;
+  CutCell(
+      point, points, grid, [](size_t) {}, [&](size_t) { ++sharing; }, cell);
+  return sharing;
 }
 
 // For a point outside of the circle around the opening, returns the other point that is nearest to
@@ -139,8 +139,8 @@ std::vector<double> SharesOf(std::span<const Vec2> points, ConvexPolygon around,
         continue;
       }
     }
-    const auto [cell, sharing] = SharedCellOf(point, points, grid, left);
-    shares.push_back(area_of(cell) / opening_area / std::max(1, sharing));
+    const int sharing = CutSharedCell(point, points, grid, &left);
+    shares.push_back(area_of(left) / opening_area / std::max(1, sharing));
   }
   return shares;
 }
@@ -172,12 +172,27 @@ std::vector<double> WholeCellShares(std::span<const Vec2> points, const Aperture
   for (const Vec2& point : points) farthest_w = std::max(farthest_w, point.norm());
   ConvexPolygon plane = ConvexPolygon::SquareAround(Vec2::Zero(), farthest_w);
   covered.Clip(&plane);
-  const PointGrid grid(points);
-  std::vector<double> shares;
-  shares.reserve(points.size());
-  for (const Vec2& point : points) {
-    const auto [cell, sharing] = SharedCellOf(point, points, grid, plane);
-    shares.push_back(cell.Area() / Area(aperture) / std::max(1, sharing));
+  // In the order of the grid, a point and its neighbours are near each other in memory.
+  const std::vector<size_t> order = PointGrid(points).sorted();
+  std::vector<Vec2> sorted;
+  sorted.reserve(points.size());
+  for (const size_t i : order) sorted.push_back(points[i]);
+  const PointGrid grid(sorted);
+  const double near_w = kNearBuckets * grid.bucket_size();
+  std::vector<double> shares(points.size());
+  for (size_t k = 0; k < sorted.size(); ++k) {
+    // Nearly all cells are small, and cut from a small square more quickly than from the plane.
+    const Vec2& point = sorted[k];
+    ConvexPolygon cell = ConvexPolygon::SquareAround(point, near_w);
+    int sharing = CutSharedCell(point, sorted, grid, &cell);
+    const double reach_w = cell.FarthestFrom(point);
+    const bool is_whole = reach_w < near_w && covered.ContainsDisk(point, reach_w) &&
+                          point.cwiseAbs().maxCoeff() + reach_w <= farthest_w;
+    if (!is_whole) {
+      cell = plane;
+      sharing = CutSharedCell(point, sorted, grid, &cell);
+    }
+    shares[order[k]] = cell.Area() / Area(aperture) / std::max(1, sharing);
   }
   return shares;
 }

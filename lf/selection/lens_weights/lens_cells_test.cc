@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "lf/core/convex_hull.h"
 #include "lf/core/random.h"
 
 namespace lf {
@@ -84,7 +85,7 @@ TEST(WholeCellShares, AreNotClippedByTheOpening) {
     const auto whole = WholeCellShares(points, aperture, CoveredRegion(points, 0));
     const auto clipped = CellShares(points, aperture);
     const ApertureTest opening(aperture);
-    EXPECT_NEAR(Sum(whole) * Area(aperture), 4 * 1.5 * 1.5, 0.1);
+    EXPECT_NEAR(Sum(whole) * Area(aperture), ConvexPolygon(ConvexHull(points)).Area(), 1e-10);
     EXPECT_EQ(whole[7], whole.back());
     double inside = 0;
     for (size_t i = 0; i < points.size(); ++i) {
@@ -95,6 +96,24 @@ TEST(WholeCellShares, AreNotClippedByTheOpening) {
       if (opening.Contains(points[i])) inside += whole[i];
     }
     EXPECT_NEAR(inside, 1, 0.02);
+  }
+}
+
+// Cells beside a gap are larger than the square that cells are first cut from, and cells at the
+// edge of the covered region are cut by it.
+TEST(WholeCellShares, LargeCellsAreWholeToo) {
+  std::vector<Vec2> points = RandomPoints(3000, 0.5, 2);
+  for (const Vec2& point : RandomPoints(300, 3, 3)) points.push_back(point);
+  for (const CoveredRegion& covered : {CoveredRegion(points, 0), CoveredRegion(points, 0.4)}) {
+    const Aperture wide = {100, 4, 0};  // contains the covered region
+    const auto whole = WholeCellShares(points, wide, covered);
+    const auto clipped = CellShares(points, wide, covered);
+    double most = 0;
+    for (const Vec2& point : points) most = std::max(most, point.norm());
+    for (size_t i = 0; i < points.size(); ++i) {
+      if (points[i].norm() > 0.5 * most) continue;
+      EXPECT_NEAR(whole[i] * Area(wide), clipped[i] * Area(wide), 1e-11) << i;
+    }
   }
 }
 

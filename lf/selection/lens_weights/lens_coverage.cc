@@ -3,9 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
 #include <cstdint>
-#include <set>
-#include <utility>
 #include <vector>
 
 #include "lf/selection/lens_weights/point_grid.h"
@@ -17,13 +16,22 @@ namespace {
 // camera on a tripod, for example, is recorded many times at slightly different positions.
 std::vector<Vec2> OneOfEachPlace(std::span<const Vec2> points, double distance) {
   constexpr double kSamePlace = 1.0 / 16;
-  std::vector<Vec2> kept;
-  std::set<std::pair<int64_t, int64_t>> taken;
-  for (const Vec2& point : points) {
-    const Vec2 place = point / (kSamePlace * distance);
-    if (taken.emplace(std::llround(place.x()), std::llround(place.y())).second)
-      kept.push_back(point);
+  struct Placed {
+    int64_t x, y;
+    size_t point;
+    auto operator<=>(const Placed&) const = default;
+  };
+  std::vector<Placed> placed;
+  placed.reserve(points.size());
+  for (size_t i = 0; i < points.size(); ++i) {
+    const Vec2 place = points[i] / (kSamePlace * distance);
+    placed.push_back({std::llround(place.x()), std::llround(place.y()), i});
   }
+  std::sort(placed.begin(), placed.end());
+  std::vector<Vec2> kept;
+  for (size_t k = 0; k < placed.size(); ++k)
+    if (k == 0 || placed[k].x != placed[k - 1].x || placed[k].y != placed[k - 1].y)
+      kept.push_back(points[placed[k].point]);
   return kept;
 }
 

@@ -21,6 +21,9 @@ class PointGrid {
   // Side of a bucket: about the distance between neighbouring points.
   double bucket_size() const { return bucket_size_; }
 
+  // Indices of all points, bucket by bucket.
+  const std::vector<size_t>& sorted() const { return sorted_; }
+
   // Number of the last ring that may have points. Ring 0 of a place is the bucket nearest to it.
   // Ring k consists of the buckets whose larger distance in columns or rows from this bucket is k.
   int ring_count() const { return std::max(columns_, rows_); }
