@@ -14,6 +14,24 @@ double Smooth(double t) {
   return t * t * (3 - 2 * t);
 }
 
+// The positions from begin to end, both included, of a row of corners of blocks: position i is
+// kWeightBlock * i elements to the right of the first one. Empty if begin > end.
+struct PositionRange {
+  double begin, end;
+
+  // Keeps only positions where a linear form of the place on the plate is not negative.
+  //   first  homogeneous place of position 0
+  void Keep(const Vec3& form, const Vec3& first) {
+    const double value = form.dot(first), slope = kWeightBlock * form.x();
+    if (slope > 0)
+      begin = std::max(begin, -value / slope);
+    else if (slope < 0)
+      end = std::min(end, -value / slope);
+    else if (!(value >= 0))
+      begin = INFINITY;
+  }
+};
+
 }  // namespace
 
 double FeatherAt(const Intrinsics& lf_image, double x_px, double y_px) {
@@ -53,6 +71,56 @@ ImageFeather::Maps ImageFeather::MapsOf(const PinholeCamera& lf_camera, const Re
 }
 
 void ImageFeather::OfRow(int x, int y, int count, uint16_t* feather) const {
+  if (intrinsics_.has_distortion() || frame_.surface) return ComputeRow(x, y, count, feather);
+  const auto [seen_begin, seen_end, whole_begin, whole_end] = PartsOfRow(x, y, count);
+  const auto compute = [&](int begin, int end) {
+    ComputeRow(x + begin * kWeightBlock, y, end - begin, feather + begin);
+  };
+  std::fill_n(feather, seen_begin, uint16_t{0});
+  compute(seen_begin, whole_begin);
+  std::fill(feather + whole_begin, feather + whole_end, uint16_t{kWholeFeather});
+  compute(whole_end, seen_end);
+  std::fill(feather + seen_end, feather + count, uint16_t{0});
+}
+
+// Each edge of a part is where a linear form of the position is 0. Rounding does not matter: seen
+// positions are one more on either side, and whole ones lie within border_px_, where ComputeRow()
+// rounds to kWholeFeather.
+ImageFeather::RowParts ImageFeather::PartsOfRow(int x, int y, int count) const {
+  const Vec3 first(x, y, 1);
+  const double forward = maps_.runs_forward.dot(first);
+  const double forward_at_end =
+      forward + maps_.runs_forward.x() * static_cast<double>((count - 1) * kWeightBlock);
+  if (!(forward * forward_at_end > 0)) return {0, count, count, count};
+  const double side = forward < 0 ? -1 : 1;
+  PositionRange seen{0, count - 1.0};
+  seen.Keep(maps_.before_lens, first);
+  const Mat3 to_pixel = side * maps_.to_pixel;
+  const Vec3 across = to_pixel.row(0).transpose(), down = to_pixel.row(1).transpose(),
+             depth = to_pixel.row(2).transpose();
+  seen.Keep(depth, first);
+  const auto keep_within = [&](double border_px, PositionRange* range) {
+    range->Keep(across - border_px * depth, first);
+    range->Keep((intrinsics_.width_px - border_px) * depth - across, first);
+    range->Keep(down - border_px * depth, first);
+    range->Keep((intrinsics_.height_px - border_px) * depth - down, first);
+  };
+  PositionRange whole = seen;
+  keep_within(0.5, &seen);
+  keep_within(border_px_, &whole);
+  const auto index = [](double position, int least, int most) {
+    return static_cast<int>(
+        std::clamp(position, static_cast<double>(least), static_cast<double>(most)));
+  };
+  RowParts parts;
+  parts.seen_begin = index(std::floor(seen.begin) - 1, 0, count);
+  parts.seen_end = index(std::ceil(seen.end) + 2, parts.seen_begin, count);
+  parts.whole_begin = index(std::ceil(whole.begin), parts.seen_begin, parts.seen_end);
+  parts.whole_end = index(std::floor(whole.end) + 1, parts.whole_begin, parts.seen_end);
+  return parts;
+}
+
+void ImageFeather::ComputeRow(int x, int y, int count, uint16_t* feather) const {
   const bool is_distorted = intrinsics_.has_distortion();
   if (is_distorted) std::call_once(map_is_made_, [this] { map_.emplace(intrinsics_.distortion); });
   Maps of_piece;
@@ -68,8 +136,7 @@ void ImageFeather::OfRow(int x, int y, int count, uint16_t* feather) const {
     feather[i] = 0;
     if (!(maps.before_lens.dot(e) > 0)) continue;
     const double side = maps.runs_forward.dot(e) < 0 ? -1 : 1;
-    // Most positions are farther inside the LF image than its feathered border. This test is five
-    // times as fast as At().
+    // This test is five times as fast as At().
     if (!is_distorted && IsInside(side * (maps.to_pixel * e)))
       feather[i] = kWholeFeather;
     else
