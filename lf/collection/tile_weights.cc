@@ -10,23 +10,21 @@ namespace lf {
 namespace {
 
 // Writes the weights of the elements in row j of a block, like FeatheredWeight(). `above` and
-// `below` are the feather at the two upper and the two lower corners of the block. Floats hold
-// these integers exactly, and compilers vectorise the loop.
+// `below` are the feather at the two upper and the two lower corners of the block. From element to
+// element, the weight changes by the same amount, so that additions suffice.
 void FillFeathered(uint32_t weight, const uint16_t* above, const uint16_t* below, int j,
                    uint8_t (&weights)[kWeightBlock]) {
   constexpr int kOne = 2 * kWeightBlock;
-  const int down = 2 * j + 1;
+  constexpr int kWhole = kWholeFeather * kOne * kOne;
+  const int down = 2 * j + 1, full = static_cast<int>(weight), least = std::min(full, 1);
   const int left = above[0] * (kOne - down) + below[0] * down;
   const int right = above[1] * (kOne - down) + below[1] * down;
-  constexpr float kWhole = kWholeFeather * kOne * kOne;
-  const auto full = static_cast<float>(weight);
-  const auto first = static_cast<float>(kOne * left + (right - left));
-  const auto step = static_cast<float>(2 * (right - left));
-  const float least = std::min(full, 1.0F);
+  int feathered = full * (kOne * left + (right - left)) + kWhole / 2;
+  const int step = full * 2 * (right - left);
   for (int i = 0; i < kWeightBlock; ++i) {
-    const float feather = first + step * static_cast<float>(i);
-    const float feathered = (full * feather + kWhole / 2) * (1 / kWhole);
-    weights[i] = static_cast<uint8_t>(static_cast<int>(std::max(feathered, least)));
+    weights[i] = static_cast<uint8_t>(
+        std::max(static_cast<int>(static_cast<uint32_t>(feathered) / kWhole), least));
+    feathered += step;
   }
 }
 
