@@ -169,6 +169,11 @@ class PathSchemaTest(ProgramTestCase):
             self.succeeds(PATH, self.file, "-o", out, *words)
             self.assertEqual(self.schemas.faults("path", parsed(out.read_text())), [], words)
 
+    def test_examples_name_the_schema_for_editors(self):
+        for file in SOURCE.glob("examples/*.yaml"):
+            named = re.match(r"# yaml-language-server: \$schema=(\S+)\n", file.read_text())[1]
+            self.assertEqual((file.parent / named).resolve(), (SOURCE / "schemas/path.schema.json").resolve())
+
     def test_planted_faults_are_refused_by_both(self):
         good = parsed(GOOD)
         self.assertTrue(self.accepts(written(good)))
