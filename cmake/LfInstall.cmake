@@ -51,4 +51,6 @@ if(LF_PROGRAM_PAGES)
   install(FILES ${LF_PROGRAM_PAGES}/programs.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/doc)
 endif()
 install(FILES README.md CHANGELOG.md LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY doc examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# Pages link to the schemas, and editors name them by a path that does not change.
+install(DIRECTORY doc examples schemas DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/lfrendertools)

@@ -81,6 +81,7 @@ def make_site(out: pathlib.Path, programs) -> int:
             return 1
         (made / ".buildinfo").unlink(missing_ok=True)
         site_theme.mend(made)
+        shutil.copytree(ROOT / "schemas", made / "schemas")  # editors read them by their addresses
         if out.exists():
             shutil.rmtree(out)
         shutil.copytree(made, out)

@@ -83,6 +83,11 @@ class InstallTest(unittest.TestCase):
         for name in ("README.md", "LICENSE", "CITATION.cff", "doc/conventions.md"):
             self.assertTrue(list(self.prefix.rglob(name)), name)
 
+    def test_schemas_are_installed_for_editors_and_beside_the_pages_that_link_to_them(self):
+        names = sorted(path.name for path in (SOURCE / "schemas").iterdir())
+        for folder in "share/lfrendertools/schemas", "share/doc/lfrendertools/schemas":
+            self.assertEqual(sorted(path.name for path in (self.prefix / folder).iterdir()), names)
+
     def test_man_pages_and_completion_are_installed(self):
         share = self.prefix / "share"
         for name in ("man/man1/lfrenderer.1", "man/man1/lffocus-stack.1", "man/man1/lfr.1",

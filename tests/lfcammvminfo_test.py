@@ -115,7 +115,7 @@ class CameraMovementTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "path.yaml"
             path.write_text(self.path.read_text().replace("focal_length_mm", "focal_lenght_mm"))
-            self.fails(3, [f"{path}:11:3: ", "did you mean 'focal_length_mm'?"], path)
+            self.fails(3, [f"{path}:12:3: ", "did you mean 'focal_length_mm'?"], path)
 
     def test_a_full_disk_is_an_error(self):
         with open("/dev/full", "w") as full:

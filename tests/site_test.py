@@ -90,6 +90,11 @@ class Site(unittest.TestCase):
         for name in ("index", "tutorial", "gallery", "python/api", "cpp/camera", "formats/path"):
             self.assertTrue((self.site / f"{name}.html").is_file(), name)
 
+    def test_schemas_are_files_that_editors_read(self):
+        for path in (SOURCE / "schemas").iterdir():
+            self.assertEqual((self.site / "schemas" / path.name).read_text(), path.read_text())
+        self.assertTrue((self.site / "files/schemas/path.schema.json.html").is_file())
+
     def test_every_program_has_its_options(self):
         page = Page((self.site / "programs.html").read_text())
         self.assertLessEqual({"lfrenderer", "lffocus-stack", "lfsynth"}, page.anchors)

@@ -23,6 +23,7 @@ from . import _core
 from .camera import Camera
 from .camera_path import Path
 from .captures import compress, forecast, report, synth, write_packages
+from .comparisons import Comparison, compare
 from .depth_maps import DepthMap, depth_map
 from .display import display_values
 from .epipolar import EpipolarPicture, epi
@@ -39,10 +40,11 @@ from .view_grids import Views, views
 
 __version__: str = _core.version
 
-__all__ = ["BelowRequired", "BlackFrameWarning", "Camera", "DepthMap", "EpipolarPicture", "Error", "FocusStack",
-           "Frame", "Grid", "InputError", "InterruptedRender", "Intrinsics", "LightField", "MissingImagesWarning",
-           "OutputError", "Path", "Plate", "Renderer", "Selection", "UncertainFocusWarning", "UsageError", "Views",
-           "compress", "depth_map", "display_values", "epi", "film", "focus_stack", "forecast", "open", "read_image",
-           "render", "report", "select", "synth", "through", "views", "write_packages"]
+__all__ = ["BelowRequired", "BlackFrameWarning", "Camera", "Comparison", "DepthMap", "EpipolarPicture", "Error",
+           "FocusStack", "Frame", "Grid", "InputError", "InterruptedRender", "Intrinsics", "LightField",
+           "MissingImagesWarning", "OutputError", "Path", "Plate", "Renderer", "Selection", "UncertainFocusWarning",
+           "UsageError", "Views", "compare", "compress", "depth_map", "display_values", "epi", "film", "focus_stack",
+           "forecast", "open", "read_image", "render", "report", "select", "synth", "through", "views",
+           "write_packages"]
 
 logging.getLogger("lfrendertools").addHandler(logging.NullHandler())

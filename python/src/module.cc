@@ -7,6 +7,7 @@
 #include "python/src/analysis.h"
 #include "python/src/cameras.h"
 #include "python/src/captures.h"
+#include "python/src/comparisons.h"
 #include "python/src/depth_maps.h"
 #include "python/src/errors.h"
 #include "python/src/film.h"
@@ -28,5 +29,6 @@ PYBIND11_MODULE(_core, module) {
   lf::python::AddDepthMaps(module);
   lf::python::AddLensStatistics(module);
   lf::python::AddCaptures(module);
+  lf::python::AddComparisons(module);
   module.attr("version") = LF_VERSION;
 }

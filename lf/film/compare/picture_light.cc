@@ -77,6 +77,18 @@ Primaries PrimariesOf(const std::array<float, 8>& xy) {
   return {point(0), point(1), point(2), point(3)};
 }
 
+// Returns true if a file states the primaries of sRGB, as files do, in single precision. A matrix
+// between the two would change the last bits of the light.
+bool AreOfSrgb(const std::array<float, 8>& xy) {
+  const Primaries srgb = PrimariesOf(ColourSpace::kRec709);
+  const std::array points = {srgb.red, srgb.green, srgb.blue, srgb.white};
+  for (size_t i = 0; i < points.size(); ++i)
+    if (xy[2 * i] != static_cast<float>(points[i].x()) ||
+        xy[2 * i + 1] != static_cast<float>(points[i].y()))
+      return false;
+  return true;
+}
+
 }  // namespace
 
 Result<PictureLight> ReadPictureLight(const std::filesystem::path& path) {
@@ -87,7 +99,7 @@ Result<PictureLight> ReadPictureLight(const std::filesystem::path& path) {
   picture.rgb = std::visit([&](const auto& stored) { return RgbOf(stored, channels); }, file.image);
   const auto* const floats = std::get_if<Image<float>>(&file.image);
   if (floats == nullptr) return picture;
-  if (header.colours.chromaticities)
+  if (header.colours.chromaticities && !AreOfSrgb(*header.colours.chromaticities))
     Multiply(LinearFromLinear(PrimariesOf(ColourSpace::kRec709),
                               PrimariesOf(*header.colours.chromaticities)),
              &picture.rgb);
@@ -99,6 +111,17 @@ Result<PictureLight> ReadPictureLight(const std::filesystem::path& path) {
       for (int x = 0; x < floats->width(); ++x)
         picture.coverage->at(x, y) = floats->at(x, y, channel);
   }
+  return picture;
+}
+
+Result<PictureLight> PictureLightOf(const StoredImage& image) {
+  constexpr std::array<std::array<int, 4>, 4> kChannels = {
+      {{0, 0, 0, -1}, {0, 0, 0, 1}, {0, 1, 2, -1}, {0, 1, 2, 3}}};
+  const int count = std::visit([](const auto& stored) { return stored.channels(); }, image);
+  if (count > 4) return InputError(fmt::format("has {} channels, expected 1 to 4", count));
+  PictureLight picture;
+  picture.rgb =
+      std::visit([&](const auto& stored) { return RgbOf(stored, kChannels[count - 1]); }, image);
   return picture;
 }
 

@@ -7,6 +7,7 @@
 
 #include "lf/core/image.h"
 #include "lf/core/result.h"
+#include "lf/pixels/files/image_file.h"
 
 namespace lf {
 
@@ -24,5 +25,10 @@ struct PictureLight {
 // kInput: errors of ReadImage(); a mosaic of a camera raw file; two channels that are not grey and
 // alpha, or more channels without R, G and B among their names.
 Result<PictureLight> ReadPictureLight(const std::filesystem::path& path);
+
+// Returns the light of an image in memory by the same rules: one channel is grey, two are grey and
+// alpha, three are R, G and B, four are these and alpha. Floats have the primaries of sRGB.
+// kInput: the image has more channels.
+Result<PictureLight> PictureLightOf(const StoredImage& image);
 
 }  // namespace lf

@@ -25,6 +25,17 @@ class PictureLightTest : public FolderTest {
     std::copy(values.begin(), values.end(), pixel.pixels().begin());
     return pixel;
   }
+  // Returns the facts of a file of floats that states primaries.
+  static ColourFacts FactsWith(ColourSpace space) {
+    const Primaries primaries = PrimariesOf(space);
+    ColourFacts facts{.type = PixelType::kFloat};
+    facts.chromaticities.emplace();
+    int i = 0;
+    for (const Vec2& point : {primaries.red, primaries.green, primaries.blue, primaries.white})
+      for (int axis = 0; axis < 2; ++axis)
+        (*facts.chromaticities)[i++] = static_cast<float>(point[axis]);
+    return facts;
+  }
 };
 
 TEST_F(PictureLightTest, IntegersAreSrgbAndMultipliedByAlpha) {
@@ -46,16 +57,17 @@ TEST_F(PictureLightTest, PrimariesThatAFileStatesAreConverted) {
   Image<float> light = Pixel<float>({0.2f, 0.5f, 3.0f});
   const Image<float> expected = light;
   ConvertFromRec709(ColourSpace::kAcesCg, &light);
-  const Primaries aces = PrimariesOf(ColourSpace::kAcesCg);
-  ColourFacts facts{.type = PixelType::kFloat};
-  facts.chromaticities.emplace();
-  int i = 0;
-  for (const Vec2& point : {aces.red, aces.green, aces.blue, aces.white})
-    for (int axis = 0; axis < 2; ++axis)
-      (*facts.chromaticities)[i++] = static_cast<float>(point[axis]);
-  ASSERT_TRUE(WriteStoredImage(folder_ / "aces.exr", light, {"R", "G", "B"}, facts));
+  ASSERT_TRUE(WriteStoredImage(folder_ / "aces.exr", light, {"R", "G", "B"},
+                               FactsWith(ColourSpace::kAcesCg)));
   const Image<float> found = RgbOf("aces.exr");
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(found.at(0, 0, c), expected.at(0, 0, c), 1e-5);
+}
+
+TEST_F(PictureLightTest, FloatsWithThePrimariesOfSrgbStayAsTheyAre) {
+  const Image<float> pixel = Pixel<float>({0.1f, 0.7f, 3.3f});
+  ASSERT_TRUE(WriteStoredImage(folder_ / "rec709.exr", pixel, {"R", "G", "B"},
+                               FactsWith(ColourSpace::kRec709)));
+  EXPECT_EQ(RgbOf("rec709.exr").pixels(), pixel.pixels());
 }
 
 TEST_F(PictureLightTest, CoverageIsReadAndChannelsAreFoundByName) {
@@ -84,6 +96,29 @@ TEST_F(PictureLightTest, PicturesWithoutColoursAreErrors) {
   EXPECT_NE(picture.error().message.find("has the channels X, Z, expected R, G and B"),
             std::string::npos)
       << picture.error().message;
+}
+
+TEST_F(PictureLightTest, AnImageInMemoryIsReadAsItsFile) {
+  const auto expect_equal = [&](const auto& pixel) {
+    ASSERT_TRUE(WriteImage(folder_ / "a.png", pixel.view()));
+    const auto picture = PictureLightOf(pixel);
+    ASSERT_TRUE(picture) << picture.error().message;
+    EXPECT_EQ(picture->rgb.pixels(), RgbOf("a.png").pixels());
+    EXPECT_FALSE(picture->coverage);
+  };
+  expect_equal(Pixel<uint8_t>({200}));
+  expect_equal(Pixel<uint8_t>({200, 100}));
+  expect_equal(Pixel<uint16_t>({65535, 30000, 7}));
+  expect_equal(Pixel<uint8_t>({200, 100, 50, 128}));
+}
+
+TEST_F(PictureLightTest, FloatsInMemoryAreLightThatAlphaIsMultipliedInto) {
+  const auto picture = PictureLightOf(Pixel<float>({0.5f, 0.25f, -1, 0.1f}));
+  ASSERT_TRUE(picture);
+  EXPECT_EQ(picture->rgb.pixels(), Pixel<float>({0.5f, 0.25f, -1}).pixels());
+  const auto wide = PictureLightOf(Image<float>(1, 1, 5));
+  ASSERT_FALSE(wide);
+  EXPECT_EQ(wide.error().message, "has 5 channels, expected 1 to 4");
 }
 
 }  // namespace

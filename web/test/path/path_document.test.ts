@@ -180,7 +180,7 @@ test("a list in brackets that grows too long becomes one key per line", () => {
       ].join("\n"),
     ),
   );
-  assertOtherLinesKept(before, path.text(), [18]);
+  assertOtherLinesKept(before, path.text(), [19]);
   readByPrograms(path.text());
 });
 
