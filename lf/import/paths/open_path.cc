@@ -12,6 +12,7 @@
 #include "lf/import/paths/chan_path.h"
 #include "lf/import/paths/foreign_path.h"
 #include "lf/import/paths/frames_path.h"
+#include "lf/import/paths/map_place.h"
 #include "lf/import/paths/nerfstudio_path.h"
 #include "lf/import/paths/ngp_path.h"
 #include "lf/import/paths/path_kind.h"
@@ -118,6 +119,8 @@ Result<CameraPath> OpenPath(const fs::path& path, const PathOptions& options) {
         "{}: focus.surface: this program knows focus planes only, no focal surfaces: render the "
         "path with lfrenderer, or remove 'focus' from the path to focus on lens.focus_distance",
         path.string()));
+  if (opened.focal_surface)
+    LF_RETURN_IF_ERROR(PlaceMap(path.parent_path(), opened.unit_m, &*opened.focal_surface));
   if (options.surface == PathOptions::Surface::kMake)
     LF_RETURN_IF_ERROR(
         MakeFocalSurfaces(path.parent_path(), options.camera_distance_w, {}, &opened));
