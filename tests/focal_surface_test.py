@@ -5,6 +5,8 @@
 usage: focal_surface_test.py LFSYNTH LFRENDERER LFPREPROCESSOR LFMERGE LFPATH LFFOCUS
 """
 import os
+import signal
+import subprocess
 import sys
 import unittest
 
@@ -150,9 +152,72 @@ class FocalSurfaceTest(StillLifeCase):
         for mode in ("rebin", "hybrid"):
             self.fails(2, ["focal surface", "--mode collect"], RENDERER, self.field, path, "-o", self.folder / "f",
                        "--mode", mode)
-        for command in (["stack", "--planes", 3], ["depth"]):
-            self.fails(3, ["focus.surface", "lfrenderer"], FOCUS, command[0], self.field, path, "-o",
-                       self.folder / "f.exr", *command[1:])
+        self.fails(3, ["focus.surface", "lfrenderer"], FOCUS, "stack", self.field, path, "-o", self.folder / "f.exr",
+                   "--planes", 3)
+
+    def test_depths_of_a_frame_do_not_depend_on_its_surface(self):
+        for command in ("depth", "sharp"):
+            files = []
+            for path in (self.path("with", self.depths()), self.path("without")):
+                files.append(self.folder / f"{command}-{path.stem}.exr")
+                self.succeeds(FOCUS, command, self.field, path, "-o", files[-1], "--near", 0.4, "--far", 1.5,
+                              "--planes", 8, "-q")
+            self.assertEqual(files[0].read_bytes(), files[1].read_bytes())
+
+    def test_frames_that_a_stop_rule_finishes_early_are_left_alone(self):
+        # The frames have different numbers of pieces, and the first one is finished first.
+        self.depths("z_1.pfm", np.full((HEIGHT, WIDTH), 0.7))
+        self.depths("z_2.pfm", wavy_depths(1))
+        path = self.path("rules", "focus: {surface: z_%d.pfm, kind: depth, blur: 0.05}", frames=2)
+        for rule in ("samples>=1", "noise<=0.05"):
+            options = ["--stop-when", rule, "--lens-weights", "none"]
+            out = [self.frames([self.field, path], *options, *more) for more in ([], ["--threads", 1])]
+            for n in (1, 2):
+                self.assertEqual(*((folder / f"frame_000{n}.exr").read_bytes() for folder in out))
+
+    def test_only_the_surfaces_of_the_frames_that_are_rendered_are_made(self):
+        self.depths("z_2.pfm", wavy_depths(2))
+        path = self.path("part", "focus: {surface: z_%d.pfm, kind: depth}", frames=3)
+        out = self.frames([self.field, path], "--frames", 2)
+        self.fails(3, ["z_1.pfm"], RENDERER, self.field, path, "-o", self.folder / "all")
+        for n in (1, 3):
+            self.depths(f"z_{n}.pfm", wavy_depths(n))
+        # A resumed render has the surfaces of frames that other calls have finished.
+        self.succeeds(RENDERER, self.field, path, "-o", out, "--format", "exr-float", "--no-contact-sheet", "--resume",
+                      "-q")
+        whole = self.frames([self.field, path], "--threads", 3)
+        for n in (1, 2, 3):
+            self.assertEqual((out / f"frame_000{n}.exr").read_bytes(), (whole / f"frame_000{n}.exr").read_bytes())
+
+    def test_a_signal_ends_the_making_of_surfaces(self):
+        write_pfm(self.folder / "hills.pfm", 0.02 * np.random.default_rng(1).random((200, 200)))
+        path = self.path("long", "focus: {surface: hills.pfm, kind: height, origin: [-1, 0, 1], cell: 0.01, "
+                         "right: [1, 0, 0], down: [0, 0, -1], up: [0, -1, 0]}", frames=5000)
+        for program, out in ((RENDERER, "film"), (PREPROCESSOR, "packages"), (FOCUS, "through")):
+            command = ["through"] if program == FOCUS else []
+            words = [program, *command, self.field, path, "-o", self.folder / out, "-v"]
+            with subprocess.Popen(list(map(str, words)), stderr=subprocess.PIPE, text=True) as process:
+                for line in process.stderr:
+                    if "focal surface of frame" in line:
+                        break
+                process.send_signal(signal.SIGTERM)
+                said = process.stderr.read()
+            self.assertEqual(process.returncode, 5, said)
+            self.assertLess(said.count("focal surface of frame"), 4000)
+            self.assertEqual(list((self.folder / out).glob("*")), [])
+
+    def test_both_eyes_of_a_stereo_pair_are_sharp_on_a_height_map(self):
+        write_pfm(self.folder / "table.pfm", np.zeros((11, 11)))
+        path = self.path("pair", "focus: {surface: table.pfm, kind: height, origin: [-5, 0, 5], cell: 1, "
+                         "right: [1, 0, 0], down: [0, 0, -1], up: [0, -1, 0]}")
+        stereo = self.folder / "stereo.yaml"
+        self.succeeds(PATHS, path, "-o", stereo, "--stereo-mm", 10, "-q")
+        eyes = self.frames([self.field, stereo])
+        self.succeeds(SYNTH, "still-life", "-o", self.folder / "truth", "--calibration-only", "--truth", stereo,
+                      "--truth-samples", 400, "-q")
+        for n in (1, 2):
+            truth = picture(self.folder / f"truth/truth/frame_000{n}.exr")
+            self.assertGreater(psnr_db(picture(eyes / f"frame_000{n}.exr"), truth), 36)
 
     def test_lfpath_keeps_the_surface_in_yaml_only(self):
         path = self.path("kept", self.depths())

@@ -198,7 +198,7 @@ class FocusThroughTest(ProgramTestCase):
                     self.assertTrue((median["A"] <= 1).all() and (median["A"] == 1).any())
 
     def test_wrong_calls_are_refused(self):
-        for words, arguments in ((["a.tif", ".exr or .png"], ["-o", "a.tif"]),
+        for words, arguments in ((["a.tif", "seen.exr or seen.png"], ["-o", "a.tif"]),
                                  (["--trim cannot be used with --statistic median"], ["-o", "a.exr", "--trim", 0.1]),
                                  (["--trim 0.5"], ["-o", "a.exr", "--statistic", "trimmed", "--trim", 0.5]),
                                  (["--format png", ".png"], ["-o", "a.exr", "--format", "png"]),

@@ -17,7 +17,7 @@ import numpy as np
 
 from exr_file import read_header
 from matrix_world import (BROKEN, FRAMES, MISSING, MODES, MOST_IMAGES, OF_FILES, Difference,
-                          ProgramFailed, World, is_of_packages, last_line, once,
+                          ProgramFailed, World, is_flawed, is_of_packages, last_line, once,
                           packaged_input, run)
 
 SHARDS = 2
@@ -38,7 +38,7 @@ RUNS = {  # options with which a run changes the content of the frames
 INPUTS = ("folder", "store", "lossy store", "store of packages", "lossy store of packages",
           "needed pixels", "lossy needed pixels", "densified store")
 CUTS = ("whole", "packages", "moved packages", "shards", "shards of packages", "lfsubmit")
-FIELDS = ("rgb", "mosaic", "alpha", "opacity", "falloff", "shutter", "flawed", "flawed mosaic")
+FIELDS = ("rgb", "mosaic", "alpha", "opacity", "falloff", "shutter", "depths", "heights", "flawed", "flawed mosaic")
 VALUES = {"field": FIELDS, "input": INPUTS, "cut": CUTS, "mode": tuple(MODES), "run": tuple(RUNS)}
 
 
@@ -139,7 +139,7 @@ class Matrix(World):
         if (cell.input, cell.cut) == ("lossy needed pixels", "moved packages"):
             self.check_near(cell)
         unasked = set(plain.skipped) - {self.name_of(index) for index in (BROKEN, MISSING)}
-        if unasked or (plain.skipped and "flawed" not in cell.field):
+        if unasked or (plain.skipped and not is_flawed(cell.field)):
             raise Difference(f"the plain render skipped {len(plain.skipped)} LF images that are not "
                              f"broken, the first: {min(unasked or plain.skipped)}")
         return plain

@@ -43,6 +43,7 @@ fps: 25
 frames: {frames}
 resolution: [160, 120]
 {clock}
+{focus}
 camera:
   field_of_view_deg: 44
   focal_length_mm: 35
@@ -62,6 +63,11 @@ keyframes:
                       {{time: 0.32, value: {last}}}]
   focus_distance: [{{time: 0, value: 0.8}}, {{time: 0.32, value: 2}}]
 """
+# The focal surfaces of paths: a depth picture for each frame, and a map of a hilly wall across the optical axis.
+SURFACES = {
+    "depths": "focus: {surface: depth_%d.pfm, kind: depth}",
+    "heights": "focus: {surface: heights.pfm, kind: height, origin: [-1.2, 1, -1.1], cell: 0.1, nodata: -9}",
+}
 # Entries of a path, and of its sections camera and lens, of the fields that are no plain disk at one moment.
 SHAPES = {
     "mosaic": ("", "", "blades: 5\n  blade_roundness: 0.5"),
@@ -121,7 +127,7 @@ def picture_of(field, index):
     rgb = np.clip(waves[..., None] + [0, 15, -20] + noise, 0, 255)
     if "mosaic" in field:
         return (rgb[..., 1] * 200).astype(np.uint16)
-    if field in ("alpha", "opacity"):
+    if field in ("alpha", "opacity", "depths"):
         opacity = 600 - 25 * np.hypot(x - WIDTH / 2 - index % SIDE, y - HEIGHT / 2)
         rgb = np.dstack([rgb, np.clip(opacity, 0, 255)])
     return rgb.astype(np.uint8)
@@ -132,7 +138,7 @@ def write_capture(folder, field):
     keys = {}
     if field == "alpha":
         keys = {"lf_alpha": "straight", "lf_background": [0.1, 0.3, 0.2]}
-    if field == "opacity":
+    if field in ("opacity", "depths"):
         keys = {"lf_alpha": "straight", "lf_background": "none"}
     if field == "falloff":
         keys = {"lf_vignetting": [-0.3, 0.05, -0.1]}
@@ -141,9 +147,34 @@ def write_capture(folder, field):
                 "lf_white_level": 52000, "lf_white_balance": [2, 1, 1.5],
                 "camera_model": "OPENCV", "k1": 0.03, "k2": -0.01, "p1": 0.001, "p2": 0.0}
     calibration = small_field.write_field(folder, functools.partial(picture_of, field), **keys)
-    if "flawed" in field or field == "alpha":
+    if is_flawed(field) or field == "alpha":
         add_flaws(field, calibration)
     return calibration
+
+
+def is_flawed(field):
+    """Returns True if a light field has broken and missing files."""
+    return "flawed" in field or field == "heights"
+
+
+def write_pfm(file, values):
+    height, width = values.shape
+    file.write_bytes(f"Pf\n{width} {height}\n-1\n".encode() + values[::-1].astype("<f4").tobytes())
+
+
+def write_surfaces(folder, field):
+    """Writes the pictures that SURFACES names. They have steps, waves and unknown places."""
+    if field == "depths":
+        for frame in range(1, FRAMES + 1):
+            y, x = np.mgrid[0:120, 0:160]
+            depths = 1.1 + 0.3 * np.sin(x / 25 + frame) * np.cos(y / 31) - np.where(x > 60 + 5 * frame, 0.4, 0)
+            depths[40:50, 100:120] = np.inf
+            write_pfm(folder / f"depth_{frame}.pfm", depths)
+    if field == "heights":
+        y, x = np.mgrid[0:21, 0:25]
+        heights = 0.25 * np.sin(x / 3) * np.cos(y / 2)
+        heights[8:10, 12] = -9
+        write_pfm(folder / "heights.pfm", heights)
 
 
 def add_masks(folder, frames):
@@ -158,7 +189,7 @@ def add_masks(folder, frames):
 def add_flaws(field, calibration):
     folder, text = calibration.parent, json.loads(calibration.read_text())
     add_masks(folder, text["frames"])
-    if "flawed" in field:
+    if is_flawed(field):
         (folder / text["frames"][BROKEN]["file_path"]).write_text("no picture")
         (folder / text["frames"][MISSING]["file_path"]).unlink()
     calibration.write_text(json.dumps(text))
@@ -209,10 +240,11 @@ class World:
     def path_of(self, field):
         has_pinhole = field in ("rgb", "flawed mosaic")
         path = self.folder_of(field).parent / "path.yaml"
+        write_surfaces(path.parent, field)
         clock, camera, lens = SHAPES.get(field, ("", "", ""))
         path.write_text(PATH_YAML.format(frames=FRAMES, first=0 if has_pinhole else 0.012,
                                          last=0.015 if has_pinhole else 0.02, clock=clock, camera=camera,
-                                         lens=lens))
+                                         lens=lens, focus=SURFACES.get(field, "")))
         return path
 
     @once

@@ -94,6 +94,7 @@ class TinyCalls:
         depth = self.words("lffocus", "depth", self.field, self.path, "--planes", "3", "--near", "2", "--far", "4",
                            "-o", out.with_suffix(".exr"), "-o", out.with_suffix(".ply"))
         through = self.words("lffocus", "through", self.field, self.path, "-o", out.with_suffix(".exr"))
+        through_film = self.words("lffocus", "through", self.field, self.path, "--frames", "1-2", "-o", out)
         views = self.words("lffocus", "views", self.field, "--grid", "3x3", "-o", out)
         array = self.words("lffocus", "views", self.field, "--grid", "2x4", "--focus-distance", "3", "-o",
                            out.with_suffix(".npy"))
@@ -116,6 +117,7 @@ class TinyCalls:
                 Call("lffocus epi", epi, [[*epi, "--overwrite"]]),
                 Call("lffocus depth", depth, [[*depth, "--overwrite"]]),
                 Call("lffocus through", through, [[*through, "--overwrite"]]),
+                Call("lffocus through, a film", through_film, [[*through_film, "--resume"]]),
                 Call("lffocus views", views, [[*views, "--overwrite"]]),
                 Call("lffocus views, an array", array, [[*array, "--overwrite"]]),
                 Call("lfquilt", quilt, [[*quilt, "--resume"], [*quilt, "--overwrite"]]),

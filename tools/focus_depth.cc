@@ -182,7 +182,8 @@ Result<Made> Make(const DepthArguments& a, const CommonOptions& common, ThreadPo
   LF_ASSIGN_OR_RETURN(options.memory_bytes, ParseByteSize(a.memory, "--memory"));
   LF_ASSIGN_OR_RETURN(const LightField light_field, a.light_field.Open());
   LF_RETURN_IF_ERROR(CheckOutputs(a, light_field));
-  LF_ASSIGN_OR_RETURN(const CameraPath path, a.frame.Open(light_field, a.light_field.path));
+  LF_ASSIGN_OR_RETURN(const CameraPath path,
+                      a.frame.Open(light_field, a.light_field.path, PathOptions::Surface::kName));
   const RenderCamera& camera = path.Camera(a.frame.id());
   Made made;
   LF_ASSIGN_OR_RETURN(made.range, RangeOf(a, light_field, camera, pool));

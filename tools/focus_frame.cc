@@ -9,8 +9,6 @@
 #include <iterator>
 #include <system_error>
 
-#include "lf/import/paths/open_path.h"
-
 namespace lf {
 
 void FrameArgument::AddTo(OptionGroup& input) {
@@ -19,9 +17,11 @@ void FrameArgument::AddTo(OptionGroup& input) {
       ->check(CLI::Range(1, kMostFrames));
 }
 
-Result<CameraPath> FrameArgument::Open(const LightField& light_field,
-                                       const std::string& source) const {
-  LF_ASSIGN_OR_RETURN(CameraPath opened, OpenPath(path, PathOptionsFor(light_field, source)));
+Result<CameraPath> FrameArgument::Open(const LightField& light_field, const std::string& source,
+                                       PathOptions::Surface surface) const {
+  PathOptions options = PathOptionsFor(light_field, source);
+  options.surface = surface;
+  LF_ASSIGN_OR_RETURN(CameraPath opened, OpenPath(path, options));
   if (frame > opened.frame_count())
     return UsageError(fmt::format("--frame {}: {} has {} frame{}: give a number from 1 to {}",
                                   frame, path, opened.frame_count(),

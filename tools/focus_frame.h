@@ -10,6 +10,7 @@
 #include "lf/camera/path/camera_path.h"
 #include "lf/core/ids.h"
 #include "lf/core/result.h"
+#include "lf/import/paths/open_path.h"
 #include "lf/light_field/model/light_field.h"
 
 namespace lf {
@@ -23,7 +24,9 @@ struct FrameArgument {
   void AddTo(OptionGroup& input);
   // Opens the path for a light field that was opened from `source`. kUsage: the path has no such
   // frame. Other errors are those of OpenPath().
-  Result<CameraPath> Open(const LightField& light_field, const std::string& source) const;
+  //   surface  use of a focal surface that the path may have
+  Result<CameraPath> Open(const LightField& light_field, const std::string& source,
+                          PathOptions::Surface surface = PathOptions::Surface::kRefuse) const;
 };
 
 // Refuses a name for a folder that ends as a file of pictures, videos, arrays or texts, such as

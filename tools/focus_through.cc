@@ -8,27 +8,32 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include "tools/common/allow_missing.h"
 #include "tools/common/byte_size.h"
+#include "tools/common/frame_options.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
 #include "tools/common/validators.h"
 #include "tools/focus_frame.h"
+#include "tools/render_end.h"
+#include "tools/render_summary.h"
 
 #include "lf/analysis/lens_statistics/lens_statistics.h"
+#include "lf/analysis/lens_statistics/statistic_film.h"
 #include "lf/core/geometry.h"
 #include "lf/core/log.h"
 #include "lf/core/value_named.h"
 #include "lf/film/develop/frame_file.h"
 #include "lf/import/paths/open_path.h"
 #include "lf/render/pipeline/check_outputs.h"
-#include "lf/render/pipeline/frame_metadata.h"
+#include "lf/render/pipeline/frame_output.h"
 
 namespace lf {
 namespace {
@@ -37,9 +42,11 @@ namespace fs = std::filesystem;
 
 constexpr HelpTexts kHelp = {
     .summary = "Sees through leaves and rain: a statistic over the lens instead of the mean.",
-    .usage = R"(  lffocus through LIGHTFIELD PATH -o FILE [-o FILE...] [OPTIONS])",
+    .usage = R"(  lffocus through LIGHTFIELD PATH -o FILE [-o FILE...] [OPTIONS]
+  lffocus through LIGHTFIELD PATH -o FOLDER [OPTIONS])",
     .examples = R"(  lffocus through capture/ path.yaml -o seen.exr
   lffocus through capture/ path.yaml --frame 12 -o seen.png --statistic min
+  lffocus through capture/ path.yaml --frames 1-100 -o seen --video seen.mp4
   lffocus through capture/ path.yaml -o seen.exr -o seen.png --statistic trimmed --trim 0.3)",
     .details =
         R"(A frame is the mean of the rays that pass the lens. Things in front of the focus plane become a blur
@@ -52,39 +59,81 @@ as long as one ray is free. median needs more than half of the rays free. trimme
 than median, and needs the hidden rays within the share --trim at either end. Open the lens as wide
 as the LF cameras reach: --json and the channel count tell the number of rays.
 
-Each LF camera has one ray, and all count the same. Virtual LF images are left out.)",
+Each LF camera has one ray, and all count the same. Virtual LF images are left out. A focal surface in
+PATH is rendered: the ground of a height map, for example, is seen through trees.
+
+Without a name that ends in .exr or .png, OUT is a folder. It receives the frames of PATH as of
+lfrenderer: frame_0001.exr ..., contact_sheet.png and report.json. On Ctrl-C (SIGINT), SIGTERM and
+SIGHUP the program ends with exit code 5. Finished frames are kept, and --resume continues with the
+frame that was being made.)",
 };
 
 struct Arguments {
   LightFieldArgument light_field;
   FrameArgument frame;
+  FrameRangeArguments frames;
   AllowMissing allow_missing;
   std::vector<std::string> outputs;
+  PictureArguments picture;
   std::string statistic = "median", order = "channels", filter = "auto", lf_pixels = "auto";
-  std::string format = "auto", memory = "8G";
+  std::string format = "auto", memory = "8G", video;
   double trim = 0.25, max_angle_deg = 0;
-  bool overwrite = false;
+  bool overwrite = false, resume = false, no_contact_sheet = false;
 };
+
+// Options of which it matters whether they are given.
+struct Given {
+  bool frame = false, trim = false;
+};
+
+void AddOutput(CLI::App& app, Arguments& a) {
+  OptionGroup output(app, kOutputGroup);
+  output
+      .Add("-o,--output OUT", a.outputs,
+           "File to write, .exr or .png in sRGB, or folder of frames\n"
+           "Files may be given several times. Channels and attributes are those of a frame. The "
+           "channels count.R, count.G and count.B tell the number of rays of which the statistic "
+           "is taken.")
+      ->required()
+      ->check(NotEmpty())
+      ->check(TakesFiles(".exr .png folder"));
+  a.frames.AddTo(output, "render", "nothing is rendered");
+  output.AddChoice("--format", a.format, {"auto", "exr", "exr-float", "png", "png16"},
+                   "Values in the files\n"
+                   "auto: exr or png, by the extension of the name; exr in a folder\n"
+                   "exr, exr-float: linear light as floating-point numbers of 16 or 32 bits\n"
+                   "png, png16: sRGB of 8 or 16 bits");
+  a.picture.AddTo(output);
+  AddFilmFiles(output, a.video, a.no_contact_sheet);
+}
+
+void AddRunning(CLI::App& app, Arguments& a) {
+  OptionGroup running(app, kRunningGroup);
+  running
+      .Add("--memory SIZE", a.memory,
+           "Upper limit of the memory that is used\n"
+           "SIZE: such as 8G or 512M. If the values of all rays need more, a frame is made in "
+           "parts, and LF images are read once for each.")
+      ->check(NotEmpty());
+  CLI::Option* const resume = running.AddFlag(
+      "--resume", a.resume,
+      "Continue the unfinished frames of a folder\n"
+      "The inputs and the options that change frames must be the same. Finished frames are kept; "
+      "the frame that was being made is begun again.");
+  running
+      .AddFlag("--overwrite", a.overwrite,
+               "Replace files that exist, and remove an unfinished render\n"
+               "Needed, unless --resume is given, if a file exists, or if the folder has an "
+               "unfinished render. Finished frames in the folder are replaced one by one.")
+      ->excludes(resume);
+}
 
 void AddOptions(CLI::App& app, Arguments& a) {
   a.light_field.AddTo(app);
   OptionGroup input(app, kInputGroup);
   a.frame.AddTo(input);
   a.allow_missing.AddTo(app, "the LF images that the lens sees");
-  OptionGroup output(app, kOutputGroup);
-  output
-      .Add("-o,--output FILE", a.outputs,
-           "File to write: .exr, or .png in sRGB\n"
-           "May be given several times. Channels and attributes are those of a frame. The channels "
-           "count.R, count.G and count.B tell the number of rays of which the statistic is taken.")
-      ->required()
-      ->check(NotEmpty());
-  output.AddChoice("--format", a.format, {"auto", "exr", "exr-float", "png", "png16"},
-                   "Values in the files\n"
-                   "auto: exr or png, by the extension of the name\n"
-                   "exr, exr-float: linear light as floating-point numbers of 16 or 32 bits\n"
-                   "png, png16: sRGB of 8 or 16 bits");
-  output.AddFlag("--overwrite", a.overwrite, "Replace files that exist");
+  AddOutput(app, a);
   OptionGroup picture(app, kPictureGroup);
   picture.AddChoice("--statistic", a.statistic, {"median", "trimmed", "min", "max", "mean"},
                     "Statistic of the rays of each element\n"
@@ -120,13 +169,7 @@ void AddOptions(CLI::App& app, Arguments& a) {
            "Largest angle between LF camera and frame axes (no limit)\n"
            "LF cameras whose optical axis is farther from that of the frame are left out.")
       ->check(CLI::Range(0.0, 180.0));
-  OptionGroup running(app, kRunningGroup);
-  running
-      .Add("--memory SIZE", a.memory,
-           "Upper limit of the memory that is used\n"
-           "SIZE: such as 8G or 512M. If the values of all rays need more, the frame is made in "
-           "parts, and LF images are read once for each.")
-      ->check(NotEmpty());
+  AddRunning(app, a);
 }
 
 LensStatistic StatisticOf(const Arguments& a) {
@@ -134,11 +177,14 @@ LensStatistic StatisticOf(const Arguments& a) {
                                    LensStatistic::kMin, LensStatistic::kMax, LensStatistic::kMean});
 }
 
+bool IsFile(const std::string& output) {
+  const std::string extension = fs::path(output).extension().string();
+  return extension == ".exr" || extension == ".png";
+}
+
 // Returns the format of a file. kUsage: its name does not fit.
 Result<FrameFormat> FormatOf(const Arguments& a, const std::string& output) {
   const std::string extension = fs::path(output).extension().string();
-  if (extension != ".exr" && extension != ".png")
-    return UsageError(fmt::format("-o {}: expected a name that ends in .exr or .png", output));
   if (a.format == "auto") return extension == ".exr" ? FrameFormat::kExrHalf : FrameFormat::kPng8;
   const FrameFormat format = *ParseFrameFormat(a.format);
   if (IsExr(format) == (extension == ".exr")) return format;
@@ -146,11 +192,38 @@ Result<FrameFormat> FormatOf(const Arguments& a, const std::string& output) {
                                 IsExr(format) ? ".exr" : ".png"));
 }
 
+// Returns true if the output is a folder, and false if all outputs are files. kUsage: an option
+// does not go with it.
+Result<bool> HasFolder(const Arguments& a, const Given& given) {
+  const auto refuse = [](std::string_view option, const std::string& output, std::string_view why) {
+    return UsageError(fmt::format("{} cannot be used with -o {}, {}", option, output, why));
+  };
+  for (const std::string& output : a.outputs) {
+    if (IsFile(output)) continue;
+    LF_RETURN_IF_ERROR(CheckFolderName(output, "seen.exr or seen.png"));
+    if (a.outputs.size() > 1)
+      return UsageError(fmt::format(
+          "-o {} is a folder, beside which no other output is written: give one folder, or files "
+          "that end in .exr or .png",
+          output));
+    if (given.frame)
+      return refuse("--frame", output, "which is a folder: give --frames, or a file");
+    return true;
+  }
+  constexpr const char* kFile = "which is a file of one frame: give a folder, or leave it out";
+  if (!a.frames.range.empty()) return refuse("--frames", a.outputs.front(), kFile);
+  if (a.frames.clamp) return refuse("--clamp-frames", a.outputs.front(), kFile);
+  if (!a.video.empty()) return refuse("--video", a.outputs.front(), kFile);
+  if (a.no_contact_sheet) return refuse("--no-contact-sheet", a.outputs.front(), kFile);
+  if (a.resume) return refuse("--resume", a.outputs.front(), kFile);
+  return false;
+}
+
 Result<LensStatisticOptions> OptionsOf(const Arguments& a, const CommonOptions& common,
-                                       const std::atomic<bool>& interrupted, bool has_trim) {
+                                       const std::atomic<bool>& interrupted, const Given& given) {
   LensStatisticOptions options;
   options.statistic = StatisticOf(a);
-  if (has_trim && options.statistic != LensStatistic::kTrimmed)
+  if (given.trim && options.statistic != LensStatistic::kTrimmed)
     return UsageError(fmt::format(
         "--trim cannot be used with --statistic {}: add --statistic trimmed, or leave it out",
         a.statistic));
@@ -167,6 +240,7 @@ Result<LensStatisticOptions> OptionsOf(const Arguments& a, const CommonOptions& 
   if (a.max_angle_deg > 0) options.max_angle_rad = RadiansFromDegrees(a.max_angle_deg);
   LF_ASSIGN_OR_RETURN(options.memory_bytes, ParseByteSize(a.memory, "--memory"));
   options.strict = common.strict;
+  options.adds_opacity = a.picture.alpha;
   options.stop = &interrupted;
   return options;
 }
@@ -184,23 +258,46 @@ Result<void> CheckOutputs(const Arguments& a, const LightField& light_field) {
   return CheckReplacesNone({a.outputs.begin(), a.outputs.end()}, inputs);
 }
 
-Result<StatisticFrame> Make(const Arguments& a, const LensStatisticOptions& options,
-                            const CommonOptions& common, ThreadPool& pool) {
-  LF_ASSIGN_OR_RETURN(LightField light_field, a.light_field.Open());
-  LF_RETURN_IF_ERROR(CheckOutputs(a, light_field));
-  LF_ASSIGN_OR_RETURN(const CameraPath path, a.frame.Open(light_field, a.light_field.path));
-  if (path.shutter.exists())
+// The light field, and the path with the focal surfaces of the frames that are made.
+struct Opened {
+  LightField light_field;
+  CameraPath path;
+  std::vector<FrameId> frames;  // frames of a folder; empty: all
+};
+
+Result<Opened> Open(const Arguments& a, bool has_folder, const std::atomic<bool>& interrupted,
+                    ThreadPool& pool) {
+  Opened opened;
+  LF_ASSIGN_OR_RETURN(opened.light_field, a.light_field.Open());
+  if (!has_folder) LF_RETURN_IF_ERROR(CheckOutputs(a, opened.light_field));
+  LF_ASSIGN_OR_RETURN(opened.path, a.frame.Open(opened.light_field, a.light_field.path,
+                                                PathOptions::Surface::kName));
+  if (opened.path.shutter.exists())
     return UsageError(fmt::format(
         "{}: the path has a shutter, whose blur has no share in an order of rays: leave the "
         "shutter out",
         a.frame.path));
+  LF_ASSIGN_OR_RETURN(opened.frames, a.frames.Of(opened.path.frame_count()));
+  if (a.frames.IsNone(opened.frames)) return opened;
+  SurfaceWork work = {opened.frames, &pool, &interrupted};
+  if (!has_folder) work.frames = {a.frame.id()};
+  // A resumed film compares the surfaces of all frames that it finds, even of others.
+  if (a.resume) work.frames.clear();
+  LF_RETURN_IF_ERROR(AddFocalSurfaces(a.frame.path, opened.light_field, work, &opened.path));
+  return opened;
+}
+
+Result<StatisticFrame> MakeOne(const Arguments& a, Opened opened,
+                               const LensStatisticOptions& options, const CommonOptions& common,
+                               ThreadPool& pool) {
   ProgressMeter meter(ParseProgressStyle(common.progress), "LF images");
-  LF_ASSIGN_OR_RETURN(
-      StatisticFrame frame,
-      MakeStatisticFrame(
-          std::move(light_field), a.frame.id(), path.Camera(a.frame.id()), options, pool,
-          [&](size_t done, size_t total) { meter.Update(done, total, std::string(a.statistic)); }));
-  frame.notes.fps = path.fps;
+  LF_ASSIGN_OR_RETURN(StatisticFrame frame,
+                      MakeStatisticFrame(std::move(opened.light_field), a.frame.id(),
+                                         opened.path.Camera(a.frame.id()), options, pool,
+                                         [&](size_t done, size_t total) {
+                                           meter.Update(done, total, std::string(a.statistic));
+                                         }));
+  frame.notes.fps = opened.path.fps;
   frame.notes.version = Version();
   return frame;
 }
@@ -225,12 +322,16 @@ RayCounts CountsOf(const DevelopedFrame& picture) {
   return result;
 }
 
+// Returns the entries of the report that state the statistic.
+nlohmann::ordered_json StatisticJson(const Arguments& a) {
+  nlohmann::ordered_json json = {{"statistic", a.statistic}, {"order", a.order}};
+  if (StatisticOf(a) == LensStatistic::kTrimmed) json["trim"] = a.trim;
+  return json;
+}
+
 std::string ReportJson(const Arguments& a, const StatisticFrame& frame, const RayCounts& counts) {
-  nlohmann::ordered_json report = {{"frame", a.frame.frame},
-                                   {"files", a.outputs},
-                                   {"statistic", a.statistic},
-                                   {"order", a.order}};
-  if (StatisticOf(a) == LensStatistic::kTrimmed) report["trim"] = a.trim;
+  nlohmann::ordered_json report = {{"frame", a.frame.frame}, {"files", a.outputs}};
+  report.update(StatisticJson(a));
   report["lf_images"] = frame.image_count;
   report["lf_images_skipped"] = frame.skipped.size();
   report["parts"] = frame.part_count;
@@ -240,24 +341,32 @@ std::string ReportJson(const Arguments& a, const StatisticFrame& frame, const Ra
   return report.dump(2) + "\n";
 }
 
-Result<void> Run(const Arguments& a, const Program& program, bool has_trim) {
+// Returns the report of a film, with the entry "through".
+std::string FilmJson(const Arguments& a, const RenderReport& film) {
+  nlohmann::ordered_json report = nlohmann::ordered_json::parse(ToJson(film));
+  report["through"] = StatisticJson(a);
+  return report.dump(2) + "\n";
+}
+
+// Makes the frame of --frame, and writes its files.
+Result<void> RunFiles(const Arguments& a, const Program& program,
+                      const LensStatisticOptions& options, const MissingLimit& limit) {
   std::vector<FrameFormat> formats;
+  std::vector<PictureOptions> pictures;
   for (const std::string& output : a.outputs) {
     LF_ASSIGN_OR_RETURN(const FrameFormat format, FormatOf(a, output));
     formats.push_back(format);
+    LF_ASSIGN_OR_RETURN(const PictureOptions picture, a.picture.Make(format));
+    pictures.push_back(picture);
   }
-  LF_ASSIGN_OR_RETURN(const MissingLimit limit, a.allow_missing.Limit());
-  const std::atomic<bool>& interrupted = CatchInterrupts();
-  LF_ASSIGN_OR_RETURN(const LensStatisticOptions options,
-                      OptionsOf(a, program.common(), interrupted, has_trim));
   ThreadPool pool(program.common().threads);
-  LF_ASSIGN_OR_RETURN(const StatisticFrame frame, Make(a, options, program.common(), pool));
-  for (size_t i = 0; i < formats.size(); ++i) {
-    ImageMetadata metadata = FileMetadata(frame.notes, formats[i], ColourSpace::kRec709);
-    for (auto& entry : StatisticMetadata(options)) metadata.push_back(std::move(entry));
-    LF_RETURN_IF_ERROR(WriteFrame(a.outputs[i], frame.picture, formats[i], metadata,
-                                  [&] { return interrupted.load(); }));
-  }
+  LF_ASSIGN_OR_RETURN(Opened opened, Open(a, false, *options.stop, pool));
+  LF_ASSIGN_OR_RETURN(const StatisticFrame frame,
+                      MakeOne(a, std::move(opened), options, program.common(), pool));
+  for (size_t i = 0; i < formats.size(); ++i)
+    LF_RETURN_IF_ERROR(WritePicture(
+        frame.notes, frame.picture, a.outputs[i], formats[i], pictures[i],
+        [&] { return options.stop->load(); }, StatisticMetadata(options)));
   const RayCounts counts = CountsOf(frame.picture);
   LogInfo("{} of {} LF images, {} to {} rays in most elements{}", a.statistic, frame.image_count,
           counts.median, counts.most,
@@ -269,6 +378,67 @@ Result<void> Run(const Arguments& a, const Program& program, bool has_trim) {
                                      frame.image_count, frame.skipped.front().reason),
                          ""},
                         limit);
+}
+
+Result<FolderOptions> FolderOf(const Arguments& a) {
+  FolderOptions folder;
+  folder.output_folder = a.outputs.front();
+  folder.inputs = FilesOfPath(a.frame.path);
+  folder.inputs.emplace_back(a.light_field.path);
+  folder.format = a.format == "auto" ? FrameFormat::kExrHalf : *ParseFrameFormat(a.format);
+  LF_ASSIGN_OR_RETURN(folder.picture, a.picture.Make(folder.format));
+  if (!a.video.empty()) folder.video = a.video;
+  folder.contact_sheet = !a.no_contact_sheet;
+  folder.resume = a.resume;
+  folder.overwrite = a.overwrite;
+  folder.version = Version();
+  return folder;
+}
+
+// Makes the frames of --frames in a folder.
+Result<void> RunFilm(const Arguments& a, const Program& program,
+                     const LensStatisticOptions& statistic, const MissingLimit& limit, int argc,
+                     char** argv) {
+  const CommonOptions& common = program.common();
+  StatisticFilmOptions options;
+  options.statistic = statistic;
+  LF_ASSIGN_OR_RETURN(options.folder, FolderOf(a));
+  ThreadPool pool(common.threads);
+  Result<Opened> opened = Open(a, true, *statistic.stop, pool);
+  if (!opened) return WithResumeCommand(opened.error(), argc, argv);
+  if (a.frames.IsNone(opened->frames)) {
+    a.frames.TellNone();
+    return common.json ? PrintReport(FilmJson(a, RenderReport())) : Result<void>();
+  }
+  options.frames = opened->frames;
+  ProgressMeter meter(ParseProgressStyle(common.progress), "frames");
+  const auto tell = [&](const StatisticFilmProgress& now) {
+    // Progress is counted in thousandths of a frame.
+    const size_t of_frame = 1000 * now.image_count / std::max<size_t>(1, now.image_total);
+    meter.Update(1000 * now.frame_count + of_frame, 1000 * now.frame_total,
+                 {{"LF image", now.image_count, now.image_total},
+                  {"frame", now.frame_count, now.frame_total}});
+  };
+  const Result<RenderReport> report =
+      RenderStatisticFilm(std::move(opened->light_field), opened->path, options, pool, tell);
+  if (!report) return WithResumeCommand(report.error(), argc, argv);
+  SummariseRender(*report,
+                  a.no_contact_sheet ? a.outputs.front()
+                                     : (fs::path(a.outputs.front()) / kContactSheet).string(),
+                  false);
+  if (common.json) LF_RETURN_IF_ERROR(PrintReport(FilmJson(a, *report)));
+  return EndOfRender(*report, limit, {});
+}
+
+Result<void> Run(const Arguments& a, const Program& program, const Given& given, int argc,
+                 char** argv) {
+  LF_ASSIGN_OR_RETURN(const bool has_folder, HasFolder(a, given));
+  LF_ASSIGN_OR_RETURN(const MissingLimit limit, a.allow_missing.Limit());
+  const std::atomic<bool>& interrupted = CatchInterrupts();
+  LF_ASSIGN_OR_RETURN(const LensStatisticOptions options,
+                      OptionsOf(a, program.common(), interrupted, given));
+  return has_folder ? RunFilm(a, program, options, limit, argc, argv)
+                    : RunFiles(a, program, options, limit);
 }
 
 }  // namespace
@@ -283,8 +453,10 @@ int RunFocusThrough(int argc, char** argv) {
                             .progress = true,
                             .verbose = true,
                             .quiet = true});
-  return program.Run(argc - 1, argv + 1,
-                     [&] { return Run(arguments, program, program.app().count("--trim") > 0); });
+  return program.Run(argc - 1, argv + 1, [&] {
+    const Given given = {program.app().count("--frame") > 0, program.app().count("--trim") > 0};
+    return Run(arguments, program, given, argc, argv);
+  });
 }
 
 }  // namespace lf

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// lffocus through: a frame by a statistic over its lens, which sees through leaves and rain.
+// lffocus through: frames by a statistic over their lens, which see through leaves and rain.
 #pragma once
 
 namespace lf {

@@ -22,7 +22,7 @@ constexpr lf::HelpTexts kHelp = {
     .usage = R"(  lffocus stack LIGHTFIELD PATH -o OUT [OPTIONS]
   lffocus depth LIGHTFIELD PATH -o FILE [-o FILE...] [OPTIONS]
   lffocus sharp LIGHTFIELD PATH -o FILE [OPTIONS]
-  lffocus through LIGHTFIELD PATH -o FILE [-o FILE...] [OPTIONS]
+  lffocus through LIGHTFIELD PATH -o FILE|FOLDER [OPTIONS]
   lffocus epi LIGHTFIELD --row Y [-o FILE] [OPTIONS]
   lffocus views LIGHTFIELD --grid COLUMNSxROWS -o OUT [OPTIONS])",
     .examples = R"(  lffocus stack --help

@@ -211,13 +211,15 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   const double read_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   LF_ASSIGN_OR_RETURN(
-      const lf::CameraPath path,
+      lf::CameraPath path,
       lf::OpenPath(a.path, lf::PathOptionsToRender(light_field, a.light_field.path)));
   LF_ASSIGN_OR_RETURN(lf::PreprocessOptions options,
                       MakeOptions(a, common, path, light_field.encoding));
   if (a.frames.IsNone(options.frames)) return ReportNoFrames(a, common, light_field, path);
   options.interrupted = &interrupted;
   lf::ThreadPool pool(common.threads);
+  // Packages hold the cameras of the whole path.
+  LF_RETURN_IF_ERROR(lf::AddFocalSurfaces(a.path, light_field, {{}, &pool, &interrupted}, &path));
   const std::string depths_from = lf::KnowDepths(light_field, path, pool, &options);
   lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "frames");
   LF_ASSIGN_OR_RETURN(

@@ -85,6 +85,11 @@ lf::Result<Rendered> RenderLightField(const lf::RenderArguments& arguments,
   LF_ASSIGN_OR_RETURN(lf::RenderOptions options, arguments.MakeOptions(common, path.frame_count()));
   if (arguments.HasNoFrame(options)) return NoFrames(arguments, std::move(options));
   options.signals = signals;
+  // A resumed render compares the surfaces of all frames that it finds, even of others.
+  LF_RETURN_IF_ERROR(lf::AddFocalSurfaces(
+      arguments.inputs[1], light_field,
+      {options.folder.resume ? std::vector<lf::FrameId>() : options.frames, &pool, &signals->stop},
+      &path));
   options.folder.inputs = lf::FilesOfPath(arguments.inputs[1]);
   options.folder.inputs.emplace_back(arguments.inputs[0]);
   lf::MissingImages missing;

@@ -151,8 +151,9 @@ lf::NeedsOptions Needs(const Arguments& a) {
 
 lf::Result<void> PrintText(const Arguments& a, const lf::CommonOptions& common) {
   LF_ASSIGN_OR_RETURN(const lf::LightField light_field, a.light_field.Open());
-  LF_ASSIGN_OR_RETURN(const lf::CameraPath path,
-                      lf::OpenPath(a.path, lf::PathOptionsFor(light_field, a.light_field.path)));
+  LF_ASSIGN_OR_RETURN(
+      lf::CameraPath path,
+      lf::OpenPath(a.path, lf::PathOptionsToRender(light_field, a.light_field.path)));
   LF_ASSIGN_OR_RETURN(std::vector<lf::FrameId> frames, a.frames.Of(path.frame_count()));
   if (a.frames.IsNone(frames))
     a.frames.TellNone();
@@ -160,6 +161,7 @@ lf::Result<void> PrintText(const Arguments& a, const lf::CommonOptions& common) 
     for (uint32_t number = 1; a.frames.range.empty() && number <= path.frame_count(); ++number)
       frames.push_back(lf::FrameId{number});
   lf::ThreadPool pool(common.threads);
+  LF_RETURN_IF_ERROR(lf::AddFocalSurfaces(a.path, light_field, {frames, &pool, nullptr}, &path));
   return lf::WriteSceneText(light_field, path, frames, common.seed, Needs(a), pool,
                             lf::PrintReport);
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <memory>
 #include <queue>
 #include <utility>
 #include <vector>
@@ -202,6 +203,19 @@ size_t FillUnknown(Image<float>* inverse_depths) {
 FittedSurface FitSurface(const Image<float>& inverse_depths, const SurfaceFitOptions& options) {
   LF_CHECK(!inverse_depths.pixels().empty() && options.least_side_px >= 1);
   return Fitter(inverse_depths, options).Run();
+}
+
+SurfaceFit SetSurface(const Image<float>& inverse_depths, double most_blur_px,
+                      double camera_distance_w, RenderCamera* camera) {
+  const Intrinsics& k = camera->pinhole.intrinsics;
+  LF_CHECK(inverse_depths.width() == k.width_px && inverse_depths.height() == k.height_px);
+  SurfaceFitOptions options;
+  options.most_blur_px = most_blur_px;
+  options.blur_px_w =
+      std::max(2 * camera->aperture.radius_w, 2 * camera_distance_w) * std::abs(k.fx_px);
+  FittedSurface fitted = FitSurface(inverse_depths, options);
+  camera->surface = std::make_shared<const FocalSurface>(std::move(fitted.surface));
+  return {fitted.most_blur_px, fitted.mean_blur_px, fitted.beyond_count};
 }
 
 }  // namespace lf

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "lf/camera/focal_surface.h"
+#include "lf/camera/render_camera.h"
 #include "lf/core/image.h"
 #include "lf/core/result.h"
 
@@ -47,5 +48,20 @@ struct FittedSurface {
 // plane, or the median depth, whichever is nearer to more of them (in the mean).
 //   inverse_depths  [height][width], all above 0 and finite
 FittedSurface FitSurface(const Image<float>& inverse_depths, const SurfaceFitOptions& options);
+
+// How well the surface of a camera was fitted (FittedSurface).
+struct SurfaceFit {
+  double most_blur_px = 0;
+  double mean_blur_px = 0;
+  size_t beyond_count = 0;
+};
+
+// Gives the camera a surface near the inverse depths of its elements: FitSurface(), for the lens of
+// the camera. A lens narrower than two distances between LF cameras counts as one of this width,
+// because frames through it take light from so many.
+//   inverse_depths     [height][width] of the camera's plate, all above 0 and finite
+//   camera_distance_w  distance between neighbouring LF cameras
+SurfaceFit SetSurface(const Image<float>& inverse_depths, double most_blur_px,
+                      double camera_distance_w, RenderCamera* camera);
 
 }  // namespace lf

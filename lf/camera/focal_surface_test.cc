@@ -33,6 +33,15 @@ TEST(FocalSurface, PiecesOfElementsAreFoundAndPositionsBeyondThePlateHaveTheNear
   EXPECT_EQ(surface->row_count(), 60u);
 }
 
+// The plate ends with a square of elements in which pieces are looked up.
+TEST(FocalSurface, APositionRightOfThePlateHasThePieceOfItsRow) {
+  const auto surface =
+      FocalSurface::Of(32, 32, {{{0, 0, 32, 16}, {0, 0, 0.2}}, {{0, 16, 32, 32}, {0, 0, 0.3}}});
+  ASSERT_TRUE(surface) << surface.error().message;
+  EXPECT_EQ(surface->PieceAt(1e6, 3).At(0, 0), 0.2);
+  EXPECT_EQ(surface->PieceAt(32, 1e6).At(0, 0), 0.3);
+}
+
 TEST(FocalSurface, BlocksBoundTheirPieces) {
   const auto surface = FocalSurface::Of(30, 40, FourPieces());
   ASSERT_TRUE(surface);
@@ -88,6 +97,8 @@ TEST(FocalSurface, PiecesMustCoverThePlateOnceAndStayInFrontOfTheLens) {
 
 TEST(FocalSurface, FocusPointsOfACameraAreOnThePlanesOfItsPieces) {
   RenderCamera camera = testing::ParallelPair(0, 0, 0.1, 0.2).render_camera;
+  camera.pinhole.cam_from_world =
+      *LookAlong({0.3, -0.2, 0.4}, Vec3(0.1, 0.2, 1).normalized(), Vec3(0, -1, 0));
   Intrinsics& k = camera.pinhole.intrinsics;
   const auto surface = FocalSurface::Of(k.width_px, k.height_px,
                                         {{{0, 0, k.width_px, k.height_px}, {1e-4, -2e-4, 0.4}}});

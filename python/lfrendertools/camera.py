@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 import re
-from typing import Any, Dict, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Any, Dict, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -14,8 +14,13 @@ from . import _core, arguments
 from .errors import InputError, UsageError
 from .path_text import text_of_camera
 
+if TYPE_CHECKING:
+    from .light_field import LightField
+
 Floats = npt.NDArray[np.float64]
 Vector = Union[Sequence[float], Floats]
+# The numbers of a camera that decide what its elements see: calibration, resolution and pose come first.
+_VIEW_NUMBERS = 19
 
 
 class Camera:
@@ -234,6 +239,63 @@ class Camera:
         """Metres per world unit."""
         return self._core.unit_m
 
+    @property
+    def surface(self) -> Optional[npt.NDArray[np.float32]]:
+        """Depths of the focal surface at the elements, (height, width); None: the camera is in focus on a plane."""
+        return self._core.surface_depths()
+
+    def with_surface(self, depths: Optional[npt.ArrayLike], field: Optional[LightField] = None, *,
+                     blur: float = 0.5) -> Camera:
+        """Return a copy that is in focus on a surface in place of the focus plane.
+
+        Each element is in focus at its own depth: with the depths of a subject, all of it is sharp, and everything
+        before and behind it is blurred. The focus distance of the camera then focuses nothing.
+
+        Parameters
+        ----------
+        depths : array_like of shape (height, width) or None
+            Depth of each element along the optical axis, in world units, seen from this camera, such as
+            :attr:`DepthMap.depth`. Elements without a depth (0, negative, infinite or NaN) take that of the nearest
+            element that has one. None: the copy is in focus on its plane.
+        field : LightField, optional
+            The light field that is rendered. It matters for lenses that are narrower than two distances between LF
+            cameras, which take light from so many: without it, the surface of a narrow lens is coarse.
+        blur : float, optional
+            Largest blur of an element by the pieces of the surface, in elements, from 0.01 to 100: smaller values take
+            more pieces and more time.
+
+        Returns
+        -------
+        Camera
+
+        Raises
+        ------
+        UsageError
+            The depths have another shape than the frame, no element has a depth, or `blur` is out of range.
+
+        Examples
+        --------
+        >>> import lfrendertools as lf
+        >>> import numpy as np
+        >>> camera = lf.Camera((0, 0, -1), look_at=(0, 0, 0), resolution=(64, 36), focal_length_mm=50, f_number=2,
+        ...                    focus_distance=1)
+        >>> camera.with_surface(np.full((36, 64), 0.75)).surface[0, 0]
+        0.75
+        """
+        if depths is None:
+            core = self._core
+            return Camera._of(_core.RenderCamera.of_numbers(core.numbers(), core.transmission, b""))
+        values = arguments.reals("depths", depths)
+        width, height = self.resolution
+        if values.shape != (height, width):
+            raise UsageError(f"depths: the shape is {values.shape}, expected ({height}, {width}), one depth for each "
+                             "element of the frame")
+        size = arguments.real("blur", blur)
+        if not 0.01 <= size <= 100:
+            raise UsageError(f"blur={blur!r}: expected a number of elements from 0.01 to 100")
+        distance = 0.0 if field is None else field._core.nearest_distance()
+        return Camera._of(self._core.with_surface(np.ascontiguousarray(values), size, distance))
+
     def _settings(self) -> Dict[str, Any]:
         core = self._core
         width = core.resolution[0]
@@ -250,7 +312,7 @@ class Camera:
         """Return a copy with some arguments of the constructor changed.
 
         If only the resolution changes, the horizontal field of view stays. The copy of a camera with `breathing` has
-        its present field of view and does not breathe, unless `breathing` is given.
+        its present field of view and does not breathe, unless `breathing` is given. A focal surface is kept.
 
         Parameters
         ----------
@@ -265,7 +327,8 @@ class Camera:
         Raises
         ------
         UsageError
-            As for :class:`Camera`.
+            As for :class:`Camera`; or the camera has a focal surface, and the copy would see it from elsewhere or with
+            other elements.
         """
         if not changes:
             return self
@@ -282,7 +345,11 @@ class Camera:
         changed = Camera(**values)
         numbers = [old if was == is_now and math.isclose(old, was, rel_tol=1e-9, abs_tol=1e-9) else is_now
                    for old, was, is_now in zip(*(camera._core.numbers() for camera in (self, unchanged, changed)))]
-        return Camera._of(_core.RenderCamera.of_numbers(tuple(numbers), changed._core.transmission))
+        surface = self._core.surface
+        if surface and tuple(numbers[:_VIEW_NUMBERS]) != self._core.numbers()[:_VIEW_NUMBERS]:
+            raise UsageError("the camera has a focal surface, whose depths are seen from this camera alone: change "
+                             "camera.with_surface(None), and give the copy a surface of its own")
+        return Camera._of(_core.RenderCamera.of_numbers(tuple(numbers), changed._core.transmission, surface))
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Camera) and bool(self._core == other._core)

@@ -16,9 +16,11 @@
 #include <utility>
 #include <vector>
 
+#include "python/src/arrays.h"
 #include "python/src/errors.h"
 #include "python/src/work.h"
 
+#include "lf/camera/fit_surface.h"
 #include "lf/camera/path/path_yaml.h"
 #include "lf/camera/path/path_yaml_write.h"
 #include "lf/camera/render_camera.h"
@@ -75,7 +77,13 @@ std::string TransmissionText(const RenderCamera& camera) {
   return camera.transmission ? camera.transmission->Text() : "";
 }
 
-RenderCamera CameraOf(const py::tuple& numbers, const std::string& transmission) {
+// Returns FocalSurface::Bytes(), or nothing if the camera is in focus on a plane.
+py::bytes SurfaceBytes(const RenderCamera& camera) {
+  return camera.surface ? py::bytes(camera.surface->Bytes()) : py::bytes();
+}
+
+RenderCamera CameraOf(const py::tuple& numbers, const std::string& transmission,
+                      const py::bytes& surface) {
   RenderCamera camera;
   if (!transmission.empty())
     camera.transmission =
@@ -85,13 +93,49 @@ RenderCamera CameraOf(const py::tuple& numbers, const std::string& transmission)
     if (next >= numbers.size()) throw py::value_error("a pickled camera lacks numbers");
     number = numbers[next++].cast<double>();
   });
+  const auto bytes = surface.cast<std::string>();
+  const Intrinsics& plate = camera.pinhole.intrinsics;
+  if (!bytes.empty())
+    camera.surface = std::make_shared<const FocalSurface>(
+        Take(FocalSurface::FromBytes(bytes, plate.width_px, plate.height_px)));
   return camera;
+}
+
+// Returns the camera in focus on a surface. An element without a depth takes that of the nearest
+// element that has one.
+//   depths  [height][width] along the optical axis, in world units; unknown: 0, NaN or infinite
+RenderCamera WithSurface(RenderCamera camera, const py::array_t<double, py::array::c_style>& depths,
+                         double blur_px, double camera_distance_w) {
+  const Intrinsics& plate = camera.pinhole.intrinsics;
+  LF_CHECK(depths.shape(0) == plate.height_px && depths.shape(1) == plate.width_px);
+  Image<float> inverse(plate.width_px, plate.height_px);
+  std::transform(depths.data(), depths.data() + depths.size(), inverse.pixels().begin(),
+                 [](double depth_w) { return static_cast<float>(1 / depth_w); });
+  return CallWithoutGil([&] {
+    if (FillUnknown(&inverse) == inverse.pixels().size())
+      Take(Result<void>(UsageError(
+          "depths: expected finite numbers above 0, in world units: no element has a depth")));
+    SetSurface(inverse, blur_px, camera_distance_w, &camera);
+    return camera;
+  });
+}
+
+// Returns the depths [height][width] of the camera's surface; none if it is in focus on a plane.
+std::optional<py::array_t<float>> SurfaceDepths(const RenderCamera& camera) {
+  if (!camera.surface) return std::nullopt;
+  const Intrinsics& plate = camera.pinhole.intrinsics;
+  Image<float> depths(plate.width_px, plate.height_px);
+  for (const FocalPiece& piece : camera.surface->pieces())
+    for (int y = piece.elements.y_begin; y < piece.elements.y_end; ++y)
+      for (int x = piece.elements.x_begin; x < piece.elements.x_end; ++x)
+        depths.at(x, y) = static_cast<float>(1 / piece.At(x + 0.5, y + 0.5));
+  return ArrayOf(std::move(depths), true);
 }
 
 // Returns what two equal cameras share: all but the time, which belongs to the path.
 py::tuple ValuesToCompare(RenderCamera camera) {
   camera.time_s = 0;
-  return py::make_tuple(NumbersOf(camera), TransmissionText(camera));
+  return py::make_tuple(NumbersOf(camera), TransmissionText(camera), SurfaceBytes(camera));
 }
 
 // Returns the text of a picture [height][width], 0 (dark) to 255.
@@ -111,6 +155,11 @@ py::tuple TupleOf(const CameraPath& path) {
 // Returns the instants of a shutter, which are interpolated between the cameras of the frames.
 std::vector<RenderCamera> InstantsOf(std::vector<RenderCamera> cameras, double fps,
                                      double angle_deg, int samples) {
+  for (const RenderCamera& camera : cameras)
+    if (camera.surface)
+      Take(Result<void>(UsageError(
+          "shutter: a camera has a focal surface, whose depths are seen from one moment only: use "
+          "cameras without surfaces, or no shutter")));
   CameraPath path = PathOf(std::move(cameras), fps, 1, {});
   Take(AddShutter({angle_deg, samples}, &path));
   return path.instants;
@@ -122,8 +171,16 @@ py::tuple ParsePath(const std::string& text, const std::string& name,
 }
 
 py::tuple ReadPath(const std::string& file, std::optional<double> unit_m) {
-  return TupleOf(
-      CallWithoutGil([&] { return Take(OpenPath(file, {.light_field_unit_m = unit_m})); }));
+  CameraPath path = CallWithoutGil([&] {
+    return Take(
+        OpenPath(file, {.light_field_unit_m = unit_m, .surface = PathOptions::Surface::kName}));
+  });
+  if (path.focal_surface)
+    Take(Result<void>(InputError(fmt::format(
+        "{}: focus.surface: a path that is loaded here is in focus on planes: remove 'focus' from "
+        "it, and give the depths to camera.with_surface()",
+        file))));
+  return TupleOf(path);
 }
 
 // Writes a path file in a format, or in the one of the file's extension. Returns what other
@@ -132,6 +189,13 @@ std::vector<std::string> SavePath(const std::string& file, const std::vector<Ren
                                   double fps, const ShutterWords& shutter,
                                   const std::optional<std::string>& name) {
   return CallWithoutGil([&]() -> std::vector<std::string> {
+    for (const RenderCamera& camera : cameras)
+      if (camera.surface)
+        Take(Result<void>(UsageError(fmt::format(
+            "{}: a path file names a picture of depths (focus.surface), and cannot hold the focal "
+            "surface of a camera: write the depths into a file and name it in the path, or save "
+            "camera.with_surface(None)",
+            file))));
     const std::optional<PathFormat> format = name ? PathFormatOf(*name) : PathFormatOfFile(file);
     if (!format)
       Take(Result<void>(UsageError(fmt::format(
@@ -227,11 +291,17 @@ void AddCameras(py::module_& module) {
            })
       .def("__hash__", [](const RenderCamera& c) { return py::hash(ValuesToCompare(c)); })
       .def("numbers", &NumbersOf)
+      .def_property_readonly("surface", &SurfaceBytes)
+      .def("surface_depths", &SurfaceDepths)
+      .def("with_surface", &WithSurface)
       .def_static("of_numbers", &CameraOf)
       .def(py::pickle(
-          [](const RenderCamera& c) { return py::make_tuple(NumbersOf(c), TransmissionText(c)); },
+          [](const RenderCamera& c) {
+            return py::make_tuple(NumbersOf(c), TransmissionText(c), SurfaceBytes(c));
+          },
           [](const py::tuple& state) {
-            return CameraOf(state[0].cast<py::tuple>(), state[1].cast<std::string>());
+            return CameraOf(state[0].cast<py::tuple>(), state[1].cast<std::string>(),
+                            state[2].cast<py::bytes>());
           }));
   module.def("transmission_of_array", &TextOfTransmission);
   module.def("transmission_of_file", [](const std::string& file) {

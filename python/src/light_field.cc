@@ -25,6 +25,7 @@
 #include "lf/camera/distortion_name.h"
 #include "lf/camera/ray_through.h"
 #include "lf/focus/example_path.h"
+#include "lf/import/paths/focal_surface_file.h"
 #include "lf/light_field/model/capture_geometry.h"
 #include "lf/light_field/model/keep_images.h"
 #include "lf/light_field/model/lf_light.h"
@@ -313,6 +314,8 @@ void AddLightField(py::module_& module) {
       .def("middle", [](const OpenedField& f) { return MiddleCamera(f.light_field).value; })
       .def("mean_up", [](const OpenedField& f) { return MeanUpWorld(f.light_field); })
       .def("spacing", [](const OpenedField& f) { return MedianSpacing(f.light_field); })
+      .def("nearest_distance",
+           [](const OpenedField& f) { return NearestCameraDistance(f.light_field); })
       .def("project", &ProjectPoints)
       .def("ray_directions", &RayDirections)
       .def("image", &LoadImage)

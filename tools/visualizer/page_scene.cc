@@ -49,6 +49,12 @@ Result<void> PageScene::OpenFirstDraft() {
   if (is_yaml) {
     LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path));
     LF_ASSIGN_OR_RETURN(first_draft_, AddDraft(text));
+    if (first_draft_->path->focal_surface)
+      LogWarning(
+          "{}: focus.surface: the page, its live picture and exports show frames that are in focus "
+          "on the plane at lens.focus_distance; a preview (P), and lfrenderer, focus on the "
+          "surface",
+          path.string());
     return {};
   }
   LF_ASSIGN_OR_RETURN(CameraPath opened,

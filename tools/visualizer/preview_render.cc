@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "lf/import/paths/open_path.h"
 #include "lf/light_field/model/keep_images.h"
 #include "lf/render/package/package.h"
 #include "lf/view/scene_bytes.h"
@@ -105,8 +106,13 @@ Result<std::string> PreviewRender::RenderFrame(const Wish& wish) {
   const PageArguments& arguments = scene_.arguments();
   LightField light_field = scene_.light_field();
   if (wish.recorded_only) light_field = RecordedPart(std::move(light_field));
-  const FilmOptions options = OptionsOf(arguments, light_field.encoding);
-  Package film = PackageOfAll(std::move(light_field), *wish.path, arguments.seed);
+  FilmOptions options = OptionsOf(arguments, light_field.encoding);
+  CameraPath path = *wish.path;
+  // Frames with a focal surface cannot be guarded.
+  if (path.focal_surface) options.guard = false;
+  LF_RETURN_IF_ERROR(
+      AddFocalSurfaces(arguments.path, light_field, {{wish.frame}, &pool_, &interrupted_}, &path));
+  Package film = PackageOfAll(std::move(light_field), std::move(path), arguments.seed);
   film.choices.max_angle_rad = arguments.needs.select.max_angle_rad;
   WorkOptions work;
   work.memory_bytes = kMemory_bytes;

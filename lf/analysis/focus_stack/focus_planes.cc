@@ -135,6 +135,10 @@ Result<std::vector<double>> ParseFocusDistances(std::string_view text, std::stri
 }
 
 Result<RenderCamera> FocusedAt(const RenderCamera& camera, double focus_distance_w) {
+  if (camera.surface)
+    return UsageError(
+        "the camera is in focus on a focal surface, which has no focus distance to change: give a "
+        "camera that is in focus on a plane");
   RenderCamera focused = camera;
   const bool breathes = Breathes(camera);
   focused.focus_distance_w = focus_distance_w;
@@ -151,7 +155,7 @@ Result<CameraPath> FocusStackPath(const CameraPath& path, FrameId frame,
   stack.cameras.reserve(distances_w.size());
   const auto focused = [&](const RenderCamera& camera, double distance_w) -> Result<RenderCamera> {
     Result<RenderCamera> at_distance = FocusedAt(camera, distance_w);
-    if (at_distance) return at_distance;
+    if (at_distance || at_distance.error().kind == ErrorKind::kUsage) return at_distance;
     return Error{at_distance.error().kind,
                  fmt::format("focus distance {:.6g}: {} (the lens of frame {} breathes)",
                              distance_w, at_distance.error().message, frame.value)};

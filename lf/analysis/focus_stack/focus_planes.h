@@ -46,7 +46,8 @@ Result<std::vector<double>> ParseFocusDistances(std::string_view text, std::stri
 // the plane is kept. The field of view is kept, unless the lens breathes: if the field of view of
 // `camera` follows from 1/f = 1/g + 1/b (thesis Eq. 2.8) and not from b = f, so does that of the
 // returned camera. The result has the same bits as a path that states this distance.
-// kInput: the lens breathes and the distance does not exceed its focal length.
+// kInput: the lens breathes and the distance does not exceed its focal length. kUsage: the camera
+// has a focal surface, which has no focus distance.
 Result<RenderCamera> FocusedAt(const RenderCamera& camera, double focus_distance_w);
 
 // Returns a path of one frame for each distance: the camera of frame `frame` of `path`, focused

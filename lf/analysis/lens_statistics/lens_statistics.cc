@@ -30,7 +30,7 @@ namespace {
 constexpr size_t kMostPlates = 16;  // plates, each of one LF image, that are in memory
 constexpr size_t kMiB = size_t{1} << 20;
 
-Result<void> CheckOptions(const RenderCamera& camera, const LensStatisticOptions& options) {
+Result<void> CheckOptions(const LensStatisticOptions& options) {
   if (options.statistic == LensStatistic::kTrimmed && !(options.trim >= 0 && options.trim < 0.5))
     return UsageError(fmt::format(
         "the share {:g} is to be cut at each end: expected a number from 0 to below 0.5",
@@ -39,10 +39,6 @@ Result<void> CheckOptions(const RenderCamera& camera, const LensStatisticOptions
     return UsageError(
         "the filter mosaic cannot be used for statistics over the lens, because its rays count "
         "differently in each colour: use auto or another filter");
-  if (camera.transmission)
-    return UsageError(
-        "the lens has a transmission (lens.transmission in the path), which has no share in an "
-        "order of rays: leave it out");
   return {};
 }
 
@@ -125,13 +121,15 @@ class StatisticMaker {
     if (IsStopped()) return Interrupted();
     StatisticFrame frame;
     frame.image_count = order_.size();
-    if (order_.empty()) return NoCamera();
-    LF_ASSIGN_OR_RETURN(const int rows, PlanRows());
-    frame.part_count = static_cast<size_t>((height_ + rows - 1) / rows);
-    total_ = frame.part_count * order_.size();
-    for (int y = 0; y < height_; y += rows)
-      LF_RETURN_IF_ERROR(MakePart({0, y, width_, std::min(height_, y + rows)}));
-    if (rays_.image_count == 0 && skipped_.empty()) return NoCamera();
+    if (order_.empty() && !options_.may_be_black) return NoCamera();
+    if (!order_.empty()) {
+      LF_ASSIGN_OR_RETURN(const int rows, PlanRows());
+      frame.part_count = static_cast<size_t>((height_ + rows - 1) / rows);
+      total_ = frame.part_count * order_.size();
+      for (int y = 0; y < height_; y += rows)
+        LF_RETURN_IF_ERROR(MakePart({0, y, width_, std::min(height_, y + rows)}));
+    }
+    if (rays_.image_count == 0 && skipped_.empty() && !options_.may_be_black) return NoCamera();
     frame.notes.frame = id;
     frame.notes.camera = camera_;
     frame.notes.rays = rays_;
@@ -148,6 +146,8 @@ class StatisticMaker {
       for (int x = 0; x < width_; ++x)
         for (int c = 0; c < SensorPlate::kChannels; ++c)
           frame.picture.ray_count.at(x, y, c) = counts_.at(x, y);
+    frame.report = MakeFrameReport(id, rays_, frame.picture);
+    frame.report.camera = InputsOfCamera(id, camera_);
     frame.skipped = std::move(skipped_);
     return frame;
   }
@@ -179,7 +179,7 @@ class StatisticMaker {
         ElementValues::BytesOfRow(width_, static_cast<int>(kind_), order_.size());
     const auto plan_for = [&](size_t memory_bytes, size_t count) {
       return PlanMemory(memory_bytes, light_field_, reading_, width_, height_, count,
-                        pool_.thread_count(), 0, false, 1);
+                        pool_.thread_count(), 0, false, 1, camera_.surface.get());
     };
     // A quarter of the memory is for LF images and their plates, more only if they need it.
     Result<MemoryPlan> plan = plan_for(options_.memory_bytes / 4, plates);
@@ -348,29 +348,62 @@ ImageMetadata StatisticMetadata(const LensStatisticOptions& options) {
   return metadata;
 }
 
-Result<StatisticFrame> MakeStatisticFrame(LightField light_field, FrameId id,
-                                          const RenderCamera& camera,
-                                          const LensStatisticOptions& options, ThreadPool& pool,
-                                          const std::function<void(size_t, size_t)>& progress) {
-  LF_RETURN_IF_ERROR(CheckOptions(camera, options));
-  RayReading reading(Estimator::kBilinear);
+RunInputs InputsOfStatistic(const LensStatisticOptions& options) {
+  RunInputs inputs = {{"statistic", NameOf(options.statistic)},
+                      {"statistic.order", NameOf(options.order)}};
+  if (options.statistic == LensStatistic::kTrimmed)
+    inputs.emplace_back("statistic.trim", fmt::format("{}", options.trim));
+  return inputs;
+}
+
+Result<void> CheckStatisticLens(const RenderCamera& camera) {
+  if (camera.transmission)
+    return UsageError(
+        "the lens has a transmission (lens.transmission in the path), which has no share in an "
+        "order of rays: leave it out");
+  return {};
+}
+
+Result<StatisticRenderer> StatisticRenderer::Open(LightField light_field,
+                                                  const LensStatisticOptions& options) {
+  LF_RETURN_IF_ERROR(CheckOptions(options));
+  StatisticRenderer opened(std::move(light_field), options);
+  LightField& field = *opened.light_field_;
+  RayReading& reading = opened.reading_;
   // Prefilters and cubics undershoot and overshoot beside edges, and extremes would show just this.
   const bool is_extreme =
       options.statistic == LensStatistic::kMin || options.statistic == LensStatistic::kMax;
   reading.filter = is_extreme && options.filter == PixelFilter::kAuto
                        ? PixelFilter::kBilinear
-                       : FilterOf(options.filter, light_field.encoding, true);
+                       : FilterOf(options.filter, field.encoding, true);
   reading.footprint = options.footprint;
   if (reading.Prefilters())
-    MakeRoomBesideEdges(light_field.image_names, &light_field.encoding);
+    MakeRoomBesideEdges(field.image_names, &field.encoding);
   else
-    MakeRoomForUndershoot(&light_field.encoding);
-  LF_ASSIGN_OR_RETURN(const std::unique_ptr<LfImageStore> store,
-                      OpenStore(light_field, Mosaics::kToRgb));
+    MakeRoomForUndershoot(&field.encoding);
+  LF_ASSIGN_OR_RETURN(opened.store_, OpenStore(field, Mosaics::kToRgb));
   if (reading.Prefilters() && !reading.footprint) {
-    LF_ASSIGN_OR_RETURN(reading.footprint, FootprintOf(light_field, *store));
+    LF_ASSIGN_OR_RETURN(reading.footprint, FootprintOf(field, *opened.store_));
   }
-  return StatisticMaker(light_field, *store, camera, reading, options, pool, progress).Make(id);
+  return opened;
+}
+
+Result<StatisticFrame> StatisticRenderer::Make(
+    FrameId id, const RenderCamera& camera, ThreadPool& pool,
+    const std::function<void(size_t, size_t)>& progress) const {
+  LF_RETURN_IF_ERROR(CheckStatisticLens(camera));
+  return StatisticMaker(*light_field_, *store_, camera, reading_, options_, pool, progress)
+      .Make(id);
+}
+
+Result<StatisticFrame> MakeStatisticFrame(LightField light_field, FrameId id,
+                                          const RenderCamera& camera,
+                                          const LensStatisticOptions& options, ThreadPool& pool,
+                                          const std::function<void(size_t, size_t)>& progress) {
+  LF_RETURN_IF_ERROR(CheckStatisticLens(camera));
+  LF_ASSIGN_OR_RETURN(const StatisticRenderer renderer,
+                      StatisticRenderer::Open(std::move(light_field), options));
+  return renderer.Make(id, camera, pool, progress);
 }
 
 }  // namespace lf

@@ -34,6 +34,16 @@ struct FocalSurfaceSource {
   Vec3 down_w = -Vec3::UnitY();  // from one row to the next
   Vec3 up = Vec3::UnitZ();       // of length 1
 
+  // True: the value is not given, and still has to be read from the GeoTIFF tags of the file
+  // (import/paths/map_place.h). right_w and down_w have length 1 until then.
+  bool needs_origin = false;
+  bool needs_cell = false;
+  bool has_scale = false;   // true: scale is given, false: it may follow from the unit of the map
+  bool has_offset = false;  // likewise offset_w
+  // Map coordinates of the origin of the world, east, north and height in metres, which are
+  // subtracted from those of the tags.
+  Vec3 map_origin_m = Vec3::Zero();
+
   friend bool operator==(const FocalSurfaceSource&, const FocalSurfaceSource&) = default;
 };
 

@@ -198,10 +198,13 @@ std::string FocusText(const FocalSurfaceSource& source) {
   if (source.nodata) text += fmt::format("  nodata: {}\n", *source.nodata);
   if (source.most_blur_px != 0.5) text += fmt::format("  blur: {}\n", source.most_blur_px);
   if (is_depth) return text;
-  text += fmt::format("  origin: {}\n  cell: {}\n  right: {}\n  down: {}\n  up: {}\n",
-                      PointText(source.origin_w), source.right_w.norm(),
-                      PointText(source.right_w.normalized()), PointText(source.down_w.normalized()),
-                      PointText(source.up));
+  if (!source.needs_origin)
+    text += fmt::format("  origin: {}\n", PointText(source.origin_w));
+  else if (source.map_origin_m != Vec3::Zero())
+    text += fmt::format("  map_origin: {}\n", PointText(source.map_origin_m));
+  if (!source.needs_cell) text += fmt::format("  cell: {}\n", source.right_w.norm());
+  text += fmt::format("  right: {}\n  down: {}\n  up: {}\n", PointText(source.right_w.normalized()),
+                      PointText(source.down_w.normalized()), PointText(source.up));
   if (source.offset_w != 0) text += fmt::format("  offset: {}\n", source.offset_w);
   return text;
 }

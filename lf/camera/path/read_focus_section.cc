@@ -28,11 +28,25 @@ void ReadDirection(YamlMap* focus, std::string_view key, Vec3* direction) {
 // Reads the keys that place a height map in the world.
 void ReadPlacement(YamlMap* focus, FocalSurfaceSource* source) {
   YamlErrors* errors = focus->errors();
-  if (const YamlEntry* origin = focus->Require("origin", "origin: [0, 0, 0]"))
-    if (const auto xyz = ReadNumbers(*origin->value, "focus.origin", 3, NumberRange::Any(), errors))
-      source->origin_w = {(*xyz)[0], (*xyz)[1], (*xyz)[2]};
+  const auto read_point = [&](const YamlEntry& entry, std::string_view label, Vec3* point) {
+    if (const auto xyz = ReadNumbers(*entry.value, label, 3, NumberRange::Any(), errors))
+      *point = {(*xyz)[0], (*xyz)[1], (*xyz)[2]};
+  };
+  const YamlEntry* const origin = focus->Find("origin");
+  source->needs_origin = origin == nullptr;
+  if (origin) read_point(*origin, "focus.origin", &source->origin_w);
+  if (const YamlEntry* map_origin = focus->Find("map_origin")) {
+    read_point(*map_origin, "focus.map_origin", &source->map_origin_m);
+    if (origin)
+      errors->Add(
+          map_origin->value->place,
+          "focus.map_origin is used only if the origin is read from the GeoTIFF tags of the "
+          "file: give either map_origin or origin");
+  }
   double cell_w = 1;
-  if (const YamlEntry* cell = focus->Require("cell", "cell: 0.5"))
+  const YamlEntry* const cell = focus->Find("cell");
+  source->needs_cell = cell == nullptr;
+  if (cell)
     cell_w = ReadNumber(*cell->value, "focus.cell", NumberRange::Above(0), errors).value_or(1);
   Vec3 right = Vec3::UnitX(), down = -Vec3::UnitY();
   ReadDirection(focus, "right", &right);
@@ -46,9 +60,11 @@ void ReadPlacement(YamlMap* focus, FocalSurfaceSource* source) {
                 "of the world, such as right: [1, 0, 0], down: [0, -1, 0], up: [0, 0, 1]");
   source->right_w = cell_w * right;
   source->down_w = cell_w * down;
-  if (const YamlEntry* offset = focus->Find("offset"))
+  if (const YamlEntry* offset = focus->Find("offset")) {
+    source->has_offset = true;
     source->offset_w =
         ReadNumber(*offset->value, "focus.offset", NumberRange::Any(), errors).value_or(0);
+  }
 }
 
 }  // namespace
@@ -73,7 +89,9 @@ void ReadFocusSection(const YamlNode& node, PathDescription* path, YamlErrors* e
       *word == "depth" ? FocalSurfaceSource::Kind::kDepths : FocalSurfaceSource::Kind::kHeights;
   if (source.kind == FocalSurfaceSource::Kind::kHeights) ReadPlacement(&focus, &source);
   const bool is_depth = source.kind == FocalSurfaceSource::Kind::kDepths;
-  if (const YamlEntry* scale = focus.Find("scale"))
+  const YamlEntry* const scale = focus.Find("scale");
+  source.has_scale = scale != nullptr;
+  if (scale)
     source.scale = ReadNumber(*scale->value, "focus.scale",
                               is_depth ? NumberRange::Above(0) : NumberRange::Any(), errors)
                        .value_or(1);

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -194,80 +195,142 @@ Image<float> InverseDepthsOfPicture(const Image<float>& depths, double scale, in
   return inverse;
 }
 
-// Makes the surfaces of the cameras of a path, and reads each file once.
+// A surface picture in memory.
+struct SurfacePicture {
+  fs::path file;
+  Image<float> values;           // of depths
+  std::optional<HeightMap> map;  // of heights
+};
+
+Result<SurfacePicture> LoadPicture(const fs::path& file, const FocalSurfaceSource& source) {
+  SurfacePicture picture;
+  picture.file = file;
+  LF_ASSIGN_OR_RETURN(picture.values, ReadSurfaceFile(file));
+  if (source.nodata)
+    for (float& value : picture.values.pixels())
+      if (value == static_cast<float>(*source.nodata)) value = kUnknown;
+  if (source.kind == FocalSurfaceSource::Kind::kHeights) {
+    picture.map.emplace(picture.values, source);
+    picture.values = {};
+  }
+  return picture;
+}
+
+Result<void> CheckShape(const SurfacePicture& picture, const Intrinsics& k) {
+  constexpr double kMostDifference = 0.01;
+  const double across = static_cast<double>(picture.values.width()) / k.width_px;
+  const double down = static_cast<double>(picture.values.height()) / k.height_px;
+  if (std::abs(across / down - 1) <= kMostDifference) return {};
+  return InputError(
+      fmt::format("{}: {} x {} depths, but the frame has {} x {} elements: expected a picture of "
+                  "the same shape, seen from the camera of the frame",
+                  picture.file.string(), picture.values.width(), picture.values.height(),
+                  k.width_px, k.height_px));
+}
+
+Image<float> InverseDepthsOfMap(const PinholeCamera& camera, const HeightMap& map) {
+  const Intrinsics& k = camera.intrinsics;
+  Image<float> inverse(k.width_px, k.height_px);
+  if (!map.is_known()) return inverse;
+  for (int y = 0; y < k.height_px; ++y)
+    for (int x = 0; x < k.width_px; ++x) {
+      const std::optional<double> depth = map.DepthOf(RayOfPixel(camera, x + 0.5, y + 0.5));
+      inverse.at(x, y) = depth && *depth > 0 ? static_cast<float>(1 / *depth) : 0;
+    }
+  return inverse;
+}
+
+// Makes the surfaces of the cameras of a path.
 class SurfaceMaker {
  public:
-  SurfaceMaker(const fs::path& folder, double camera_distance_w, const FocalSurfaceSource& source)
-      : folder_(folder), camera_distance_w_(camera_distance_w), source_(source) {}
+  SurfaceMaker(const fs::path& folder, double camera_distance_w, const SurfaceWork& work,
+               CameraPath* path)
+      : folder_(folder),
+        camera_distance_w_(camera_distance_w),
+        work_(work),
+        source_(*path->focal_surface),
+        path_(path) {}
 
-  Result<void> Make(uint32_t frame, RenderCamera* camera) {
-    LF_RETURN_IF_ERROR(Load(frame));
-    const Intrinsics& k = camera->pinhole.intrinsics;
-    Image<float> inverse;
-    if (source_.kind == FocalSurfaceSource::Kind::kDepths) {
-      LF_RETURN_IF_ERROR(CheckShape(k));
-      inverse = InverseDepthsOfPicture(values_, source_.scale, k.width_px, k.height_px);
-    } else {
-      inverse = InverseDepthsOfHeights(camera->pinhole, values_, source_);
+  Result<void> Run() {
+    std::vector<FrameId> frames = work_.frames;
+    if (frames.empty())
+      for (uint32_t frame = 1; frame <= path_->frame_count(); ++frame)
+        frames.push_back(FrameId{frame});
+    if (!HasFilePerFrame(source_)) {
+      LF_ASSIGN_OR_RETURN(of_all_, LoadPicture(folder_ / source_.file, source_));
     }
+    std::vector<std::optional<Error>> errors(frames.size());
+    std::atomic<bool> has_failed = false;
+    const auto make = [&](size_t i) {
+      if (has_failed || IsStopped()) return;
+      if (const Result<void> made = MakeFrame(frames[i].value); !made) {
+        errors[i] = made.error();
+        has_failed = true;
+      }
+    };
+    if (work_.pool != nullptr) {
+      work_.pool->ForEach(frames.size(), make);
+    } else {
+      for (size_t i = 0; i < frames.size(); ++i) make(i);
+    }
+    if (IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
+    for (const std::optional<Error>& error : errors)
+      if (error) return *error;
+    return {};
+  }
+
+ private:
+  bool IsStopped() const { return work_.stop != nullptr && *work_.stop; }
+
+  Result<void> MakeFrame(uint32_t frame) {
+    std::optional<SurfacePicture> of_frame;
+    if (!of_all_) {
+      LF_ASSIGN_OR_RETURN(of_frame, LoadPicture(folder_ / FileOfFrame(source_, frame), source_));
+    }
+    const SurfacePicture& picture = of_all_ ? *of_all_ : *of_frame;
+    LF_RETURN_IF_ERROR(Make(picture, frame, &path_->cameras[frame - 1]));
+    if (!path_->shutter.exists()) return {};
+    const auto samples = static_cast<size_t>(path_->shutter.samples);
+    for (size_t i = 0; i < samples; ++i)
+      LF_RETURN_IF_ERROR(Make(picture, frame, &path_->instants[(frame - 1) * samples + i]));
+    return {};
+  }
+
+  Result<void> Make(const SurfacePicture& picture, uint32_t frame, RenderCamera* camera) const {
+    if (!picture.map) LF_RETURN_IF_ERROR(CheckShape(picture, camera->pinhole.intrinsics));
+    const Intrinsics& k = camera->pinhole.intrinsics;
+    Image<float> inverse = picture.map ? InverseDepthsOfMap(camera->pinhole, *picture.map)
+                                       : InverseDepthsOfPicture(picture.values, source_.scale,
+                                                                k.width_px, k.height_px);
     const size_t unknown_count = FillUnknown(&inverse);
     if (unknown_count == inverse.pixels().size())
       return InputError(
           source_.kind == FocalSurfaceSource::Kind::kDepths
               ? fmt::format("{}: frame {}: the picture holds no depth: expected finite numbers "
                             "above 0, in world units after focus.scale",
-                            file_.string(), frame)
+                            picture.file.string(), frame)
               : fmt::format("{}: no element of frame {} sees the height map from above: check "
                             "focus.origin, cell, right, down, up, scale and offset, and that the "
                             "light field and the map have one origin",
-                            file_.string(), frame));
-    SurfaceFitOptions options;
-    options.most_blur_px = source_.most_blur_px;
-    options.blur_px_w =
-        std::max(2 * camera->aperture.radius_w, 2 * camera_distance_w_) * std::abs(k.fx_px);
-    FittedSurface fitted = FitSurface(inverse, options);
+                            picture.file.string(), frame));
+    const SurfaceFit fitted = SetSurface(inverse, source_.most_blur_px, camera_distance_w_, camera);
     LogDebug(
         "focal surface of frame {}: {} pieces; blur by their planes: {:.3g} elements in the mean, "
         "{:.3g} at most, more than {:g} for {:.2g} % of the elements; {} of {} elements unknown",
-        frame, fitted.surface.pieces().size(), fitted.mean_blur_px, fitted.most_blur_px,
+        frame, camera->surface->pieces().size(), fitted.mean_blur_px, fitted.most_blur_px,
         source_.most_blur_px,
         100.0 * static_cast<double>(fitted.beyond_count) /
             static_cast<double>(inverse.pixels().size()),
         unknown_count, inverse.pixels().size());
-    camera->surface = std::make_shared<const FocalSurface>(std::move(fitted.surface));
     return {};
   }
 
- private:
-  // Reads the file of a frame, unless it is in memory.
-  Result<void> Load(uint32_t frame) {
-    const fs::path file = folder_ / FileOfFrame(source_, frame);
-    if (file == file_) return {};
-    file_.clear();
-    LF_ASSIGN_OR_RETURN(values_, ReadSurfaceFile(file));
-    file_ = file;
-    if (source_.nodata)
-      for (float& value : values_.pixels())
-        if (value == static_cast<float>(*source_.nodata)) value = kUnknown;
-    return {};
-  }
-
-  Result<void> CheckShape(const Intrinsics& k) const {
-    constexpr double kMostDifference = 0.01;
-    const double across = static_cast<double>(values_.width()) / k.width_px;
-    const double down = static_cast<double>(values_.height()) / k.height_px;
-    if (std::abs(across / down - 1) <= kMostDifference) return {};
-    return InputError(
-        fmt::format("{}: {} x {} depths, but the frame has {} x {} elements: expected a picture of "
-                    "the same shape, seen from the camera of the frame",
-                    file_.string(), values_.width(), values_.height(), k.width_px, k.height_px));
-  }
-
-  fs::path folder_;
-  double camera_distance_w_;
+  const fs::path& folder_;
+  const double camera_distance_w_;
+  const SurfaceWork& work_;
   const FocalSurfaceSource& source_;
-  fs::path file_;  // the file that values_ were read from; empty: none
-  Image<float> values_;
+  CameraPath* const path_;
+  std::optional<SurfacePicture> of_all_;  // unset if each frame has a file of its own
 };
 
 }  // namespace
@@ -322,16 +385,7 @@ Result<Image<float>> ReadSurfaceFile(const fs::path& file) {
 
 Image<float> InverseDepthsOfHeights(const PinholeCamera& camera, const Image<float>& heights,
                                     const FocalSurfaceSource& source) {
-  const Intrinsics& k = camera.intrinsics;
-  Image<float> inverse(k.width_px, k.height_px);
-  const HeightMap map(heights, source);
-  if (!map.is_known()) return inverse;
-  for (int y = 0; y < k.height_px; ++y)
-    for (int x = 0; x < k.width_px; ++x) {
-      const std::optional<double> depth = map.DepthOf(RayOfPixel(camera, x + 0.5, y + 0.5));
-      inverse.at(x, y) = depth && *depth > 0 ? static_cast<float>(1 / *depth) : 0;
-    }
-  return inverse;
+  return InverseDepthsOfMap(camera, HeightMap(heights, source));
 }
 
 double NearestCameraDistance(const LightField& light_field) {
@@ -356,21 +410,14 @@ double NearestCameraDistance(const LightField& light_field) {
   return *middle;
 }
 
-Result<void> MakeFocalSurfaces(const fs::path& folder, double camera_distance_w, CameraPath* path) {
+Result<void> MakeFocalSurfaces(const fs::path& folder, double camera_distance_w,
+                               const SurfaceWork& work, CameraPath* path) {
   if (!path->focal_surface) return {};
   if (path->shutter.exists() && path->focal_surface->kind == FocalSurfaceSource::Kind::kDepths)
     return InputError(
         "the path has a shutter and a depth picture as its focal surface, which is seen from the "
         "camera of one moment only: use a height map (focus.kind: height), or remove 'shutter'");
-  SurfaceMaker maker(folder, camera_distance_w, *path->focal_surface);
-  for (uint32_t frame = 1; frame <= path->frame_count(); ++frame) {
-    LF_RETURN_IF_ERROR(maker.Make(frame, &path->cameras[frame - 1]));
-    if (!path->shutter.exists()) continue;
-    const auto samples = static_cast<size_t>(path->shutter.samples);
-    for (size_t i = 0; i < samples; ++i)
-      LF_RETURN_IF_ERROR(maker.Make(frame, &path->instants[(frame - 1) * samples + i]));
-  }
-  return {};
+  return SurfaceMaker(folder, camera_distance_w, work, path).Run();
 }
 
 }  // namespace lf

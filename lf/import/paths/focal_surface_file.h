@@ -2,15 +2,19 @@
 // Reads depth pictures and height maps, and makes the focal surfaces of a path of them.
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "lf/camera/path/camera_path.h"
 #include "lf/camera/path/focal_surface_source.h"
 #include "lf/camera/render_camera.h"
+#include "lf/core/ids.h"
 #include "lf/core/image.h"
+#include "lf/core/parallel.h"
 #include "lf/core/result.h"
 #include "lf/light_field/model/light_field.h"
 
@@ -37,14 +41,23 @@ Image<float> InverseDepthsOfHeights(const PinholeCamera& camera, const Image<flo
 // there are less than two. Takes some LF cameras as a sample.
 double NearestCameraDistance(const LightField& light_field);
 
-// Gives each camera of the path, and each instant of its shutter, the surface that
-// path->focal_surface describes.
+// How MakeFocalSurfaces() works.
+struct SurfaceWork {
+  std::vector<FrameId> frames = {};  // frames that get surfaces, ascending; empty: all
+  ThreadPool* pool = nullptr;        // makes several frames at the same time; null: one thread
+  const std::atomic<bool>* stop = nullptr;  // once true, the function ends; may be null
+};
+
+// Gives the cameras of the path, and each instant of its shutter, the surfaces that
+// path->focal_surface describes. The surfaces do not depend on the number of threads. Each thread
+// holds one depth picture; a file for all frames is read once.
 //   folder             of the path, to which names of files are relative
 //   camera_distance_w  between neighbouring LF cameras: the blur is that of a lens that is at least
 //                      two of them wide, because narrower lenses take light from so many
 // kInput: ReadSurfaceFile(); a depth picture that has not the shape of the frame, or holds no
-// depth; a height map that no element sees; a shutter and a depth picture.
+// depth; a height map that no element sees; a shutter and a depth picture. If several frames have
+// errors, that of the first is returned. kInterrupted: *work.stop is true.
 Result<void> MakeFocalSurfaces(const std::filesystem::path& folder, double camera_distance_w,
-                               CameraPath* path);
+                               const SurfaceWork& work, CameraPath* path);
 
 }  // namespace lf

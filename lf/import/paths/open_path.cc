@@ -10,9 +10,9 @@
 
 #include "lf/camera/path/path_yaml.h"
 #include "lf/import/paths/chan_path.h"
-#include "lf/import/paths/focal_surface_file.h"
 #include "lf/import/paths/foreign_path.h"
 #include "lf/import/paths/frames_path.h"
+#include "lf/import/paths/map_place.h"
 #include "lf/import/paths/nerfstudio_path.h"
 #include "lf/import/paths/ngp_path.h"
 #include "lf/import/paths/path_kind.h"
@@ -68,9 +68,14 @@ PathOptions PathOptionsFor(const LightField& light_field, const fs::path& path) 
 
 PathOptions PathOptionsToRender(const LightField& light_field, const fs::path& path) {
   PathOptions options = PathOptionsFor(light_field, path);
-  options.surface = PathOptions::Surface::kMake;
-  options.camera_distance_w = NearestCameraDistance(light_field);
+  options.surface = PathOptions::Surface::kName;
   return options;
+}
+
+Result<void> AddFocalSurfaces(const fs::path& path, const LightField& light_field,
+                              const SurfaceWork& work, CameraPath* opened) {
+  if (!opened->focal_surface) return {};
+  return MakeFocalSurfaces(path.parent_path(), NearestCameraDistance(light_field), work, opened);
 }
 
 Result<bool> IsPathYaml(const fs::path& path) {
@@ -114,8 +119,11 @@ Result<CameraPath> OpenPath(const fs::path& path, const PathOptions& options) {
         "{}: focus.surface: this program knows focus planes only, no focal surfaces: render the "
         "path with lfrenderer, or remove 'focus' from the path to focus on lens.focus_distance",
         path.string()));
+  if (opened.focal_surface)
+    LF_RETURN_IF_ERROR(PlaceMap(path.parent_path(), opened.unit_m, &*opened.focal_surface));
   if (options.surface == PathOptions::Surface::kMake)
-    LF_RETURN_IF_ERROR(MakeFocalSurfaces(path.parent_path(), options.camera_distance_w, &opened));
+    LF_RETURN_IF_ERROR(
+        MakeFocalSurfaces(path.parent_path(), options.camera_distance_w, {}, &opened));
   return opened;
 }
 

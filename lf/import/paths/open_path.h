@@ -12,6 +12,7 @@
 #include "lf/camera/path/camera_path.h"
 #include "lf/core/geometry.h"
 #include "lf/core/result.h"
+#include "lf/import/paths/focal_surface_file.h"
 #include "lf/light_field/model/light_field.h"
 
 namespace lf {
@@ -34,8 +35,9 @@ struct PathOptions {
 
   // Use of the focal surface that the path may have (CameraPath::focal_surface).
   //   kRefuse  it is an error, because the program knows focus planes only
-  //   kName    the path names it, but the cameras have none: to show or convert a path
-  //   kMake    the cameras get it (MakeFocalSurfaces()): to render the path
+  //   kName    the path names it, but the cameras have none: to show or convert a path, or to
+  //            choose frames before AddFocalSurfaces()
+  //   kMake    all cameras get it (MakeFocalSurfaces()), by one thread
   enum class Surface { kRefuse, kName, kMake };
   Surface surface = Surface::kRefuse;
   double camera_distance_w = 0;  // for kMake: NearestCameraDistance() of the light field
@@ -65,8 +67,15 @@ struct PathOptions {
 // Returns the options of a path for a light field that was opened from the file or folder `path`.
 PathOptions PathOptionsFor(const LightField& light_field, const std::filesystem::path& path);
 
-// Returns PathOptionsFor() a light field whose frames are rendered with their focal surfaces.
+// Returns PathOptionsFor() with Surface::kName, for a path that is rendered or shown. To be focused
+// on its surface, it must be given to AddFocalSurfaces().
 PathOptions PathOptionsToRender(const LightField& light_field, const std::filesystem::path& path);
+
+// Gives the cameras of a path, which was opened from `path` with Surface::kName, the focal surfaces
+// that its file describes, for frames of the light field. Does nothing if it describes none.
+// Errors of MakeFocalSurfaces().
+Result<void> AddFocalSurfaces(const std::filesystem::path& path, const LightField& light_field,
+                              const SurfaceWork& work, CameraPath* opened);
 
 // Returns true if a file is a path in our own YAML, or cannot be read. Errors as for OpenPath().
 Result<bool> IsPathYaml(const std::filesystem::path& path);

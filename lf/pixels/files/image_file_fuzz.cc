@@ -4,6 +4,7 @@
 
 #include "lf/pixels/files/exposure_facts.h"
 #include "lf/pixels/files/file_bytes.h"
+#include "lf/pixels/files/geo_tags.h"
 #include "lf/pixels/files/image_file.h"
 #include "lf/pixels/files/picture_header.h"
 #include "lf/pixels/files/whole_file.h"
@@ -16,6 +17,10 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
     for (const auto& fact : {facts->time_s, facts->f_number, facts->iso})
       LF_CHECK(!fact || (*fact > 0 && *fact < 1e300));
   }
+  if (const auto tags = lf::ReadGeoTagsBytes(file, "fuzz"); tags)
+    LF_CHECK(!tags->pixel_size || ((*tags->pixel_size)[0] > 0 && (*tags->pixel_size)[1] > 0));
+  else
+    LF_CHECK(tags.error().message.starts_with("fuzz: "));
   const lf::FileBytes bytes_of = lf::FileInMemory(file, "fuzz");
   if (const auto whole = lf::CheckIsWhole(bytes_of.read, bytes_of.size_bytes, "fuzz"); !whole)
     LF_CHECK(whole.error().message.starts_with("fuzz: "));

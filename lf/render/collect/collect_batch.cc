@@ -81,9 +81,14 @@ BatchCollector::BatchCollector(const LightField& light_field,
       whole_images_(whole_images),
       pool_(pool),
       filtered_(std::make_unique<FilteredImages>()) {
-  for (const CollectedFrame& frame : frames_)
+  for (const CollectedFrame& frame : frames_) {
+    const FocalSurface* const surface = frame.camera.surface.get();
+    if (surface != nullptr &&
+        (largest_surface_ == nullptr || surface->row_count() > largest_surface_->row_count()))
+      largest_surface_ = surface;
     tiles_.push_back(
         CutIntoTiles(frame.plate, TileSums::GridOf(frame.plate->width(), frame.plate->height())));
+  }
 }
 
 BatchCollector::~BatchCollector() = default;
@@ -106,13 +111,14 @@ void BatchCollector::Add(std::vector<BatchImage>& batch, std::vector<BatchFrame>
     return;
   }
   size_t frame_bytes = 1;
+  // The plate of a frame that a stop rule has finished is empty.
+  const Intrinsics& plate = frames_[0].camera.pinhole.intrinsics;
   for (const BatchImage& image : batch) {
     frame_bytes +=
         exposure_count() * PlanBytes(reading_.estimator,
                                      light_field_.Camera(image.id).intrinsics.has_distortion(),
                                      image.Pixels().rect.width(), image.Pixels().rect.height(),
-                                     frames_[0].plate->width(), frames_[0].plate->height(),
-                                     frames_[0].camera.surface.get());
+                                     plate.width_px, plate.height_px, largest_surface_);
     if (is_guarded() && !light_field_.cameras[image.id.value].is_virtual)
       frame_bytes += DefocusBytes(image.Pixels().rect);
   }

@@ -223,6 +223,8 @@ class BatchCollector {
   bool whole_images_;
   ThreadPool& pool_;
   std::vector<std::vector<PlateTile>> tiles_;  // [frame]: the tiles of its plate
+  // The focal surface of a frame that has most rows of pieces; null: there is none.
+  const FocalSurface* largest_surface_ = nullptr;
   // [frame][exposure][LF image] of a batch; the next batch reuses their memory.
   std::deque<Contribution> contributions_;
   std::mutex defocus_mutex_;

@@ -43,7 +43,7 @@ Image<float> FocusDepths(const RenderCamera& camera) {
 Result<void> WritePicture(const PlateNotes& notes, DevelopedFrame picture,
                           const std::filesystem::path& to, FrameFormat format,
                           const PictureOptions& options,
-                          const std::function<bool()>& is_interrupted) {
+                          const std::function<bool()>& is_interrupted, const ImageMetadata& more) {
   if (is_interrupted && is_interrupted())
     return Error{ErrorKind::kInterrupted, fmt::format("{}: interrupted", to.string())};
   if (options.has_focus_depth && !notes.camera.surface && !notes.FocalSurface().empty())
@@ -53,8 +53,9 @@ Result<void> WritePicture(const PlateNotes& notes, DevelopedFrame picture,
         to.string()));
   ConvertFromRec709(options.colours, &picture.rgb);
   if (options.has_focus_depth) picture.focus_depth_w = FocusDepths(notes.camera);
-  return WriteFrame(to, picture, format, FileMetadata(notes, format, options.colours),
-                    is_interrupted, options.view.get());
+  ImageMetadata metadata = FileMetadata(notes, format, options.colours);
+  metadata.insert(metadata.end(), more.begin(), more.end());
+  return WriteFrame(to, picture, format, metadata, is_interrupted, options.view.get());
 }
 
 FilmFiles FilesOfFilm(const CameraPath& path, const RenderOptions& options) {

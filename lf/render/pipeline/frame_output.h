@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes the picture of a frame, and makes the contact sheet and the video from the files of
-// frames. Internal to this folder.
+// frames.
 #pragma once
 
 #include <atomic>
@@ -14,6 +14,7 @@
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
 #include "lf/film/develop/frame_file.h"
+#include "lf/pixels/files/image_file.h"
 #include "lf/render/pipeline/render.h"
 #include "lf/render/state/plate_notes.h"
 
@@ -23,11 +24,13 @@ namespace lf {
 //   is_interrupted  called often, by any thread; empty: nothing interrupts. If it returns true at
 //                   once, nothing is written, so that `picture` may be the unusable result of an
 //                   interrupted DevelopFrame().
+//   more            further metadata of the file
 // kOutput: the file cannot be written. kInterrupted: nothing is written.
 Result<void> WritePicture(const PlateNotes& notes, DevelopedFrame picture,
                           const std::filesystem::path& to, FrameFormat format,
                           const PictureOptions& options,
-                          const std::function<bool()>& is_interrupted);
+                          const std::function<bool()>& is_interrupted,
+                          const ImageMetadata& more = {});
 
 inline constexpr const char* kContactSheet = "contact_sheet.png";
 

@@ -46,15 +46,6 @@ RunInputs InputsOfRebinning(const FilmOptions& options, size_t max_cells, const 
       {"rebin.coverage", fmt::format("{} cells across", rebin.coverage.cells_across)}};
 }
 
-// Returns the settings of the lossy codec that changed the pixels of the LF images; if the pixels
-// are as recorded, the default value of RunChoices::pixels.
-Result<std::string> PixelsOf(const LightField& light_field) {
-  const std::string as_recorded = RunChoices().pixels;
-  if (!HoldsPackedStore(light_field)) return as_recorded;
-  LF_ASSIGN_OR_RETURN(std::string codec, ReadCodecSettings(light_field.folder));
-  return codec.starts_with(kLosslessCodec) ? as_recorded : codec;
-}
-
 }  // namespace
 
 Result<RunInputs> InputsOfRays(const FilmSetup& setup) {
@@ -76,6 +67,13 @@ Result<RunInputs> InputsOfRays(const FilmSetup& setup) {
   for (auto& input : InputsOfRebinning(film, setup.max_cells(), HashOfCameras(package.path)))
     rays.push_back(std::move(input));
   return rays;
+}
+
+Result<std::string> PixelsOf(const LightField& light_field) {
+  const std::string as_recorded = RunChoices().pixels;
+  if (!HoldsPackedStore(light_field)) return as_recorded;
+  LF_ASSIGN_OR_RETURN(std::string codec, ReadCodecSettings(light_field.folder));
+  return codec.starts_with(kLosslessCodec) ? as_recorded : codec;
 }
 
 }  // namespace lf
