@@ -4,6 +4,7 @@
 
 usage: lfvisualizer_test.py LFVISUALIZER LFRENDERER [pageless]
 """
+import base64
 import http.client
 import json
 import os
@@ -175,6 +176,60 @@ class VisualizerTest(ProgramTestCase):
                       "--allow-missing", 1)
         self.fails(2, ["--allow-missing", "--export"], VISUALIZER, self.field, self.path, "--text",
                    "--allow-missing", 1)
+
+    def write_points(self, name, places, unit="1"):
+        """Writes a point cloud as lffocus depth does; point i has the colour (i, 2, 3) and the confidence 0.5."""
+        record = numpy.dtype([("xyz", "<f4", 3), ("rgb", "u1", 3), ("confidence", "<f4")])
+        points = numpy.zeros(len(places), record)
+        points["xyz"] = places
+        points["rgb"] = numpy.stack([numpy.arange(len(places)) % 256, *numpy.full((2, len(places)), [[2], [3]])], -1)
+        points["confidence"] = 0.5
+        kinds = [("float", "x y z"), ("uchar", "red green blue"), ("float", "confidence")]
+        head = "".join(f"property {kind} {word}\n" for kind, words in kinds for word in words.split())
+        file = self.folder / name
+        file.write_bytes(f"ply\nformat binary_little_endian 1.0\ncomment world units; {unit} m each\n"
+                         f"element vertex {len(places)}\n{head}end_header\n".encode() + points.tobytes())
+        return file
+
+    @unittest.skipIf("pageless" in sys.argv, "it has no page")
+    def test_an_export_has_the_points_of_depth_files(self):
+        places = numpy.random.default_rng(1).uniform(-2, 2, (700001, 3)).astype("<f4")
+        small, large = self.write_points("a.ply", places[:100]), self.write_points("b.ply", places)
+        run = subprocess.run([VISUALIZER, self.field, self.path, "--depth", small, "--depth", large, "--export",
+                              self.folder / "site"], capture_output=True, text=True)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("shows 350001 of its 700001 points: one of each 2, chosen at random", run.stderr)
+        self.assertNotIn("a.ply: the page shows", run.stderr)
+
+        def data(name):
+            text = (self.folder / "site" / f"{name}.js").read_text()
+            return base64.b64decode(text.split('"')[3])
+        scene = json.loads(data("scene.json"))
+        self.assertEqual([(one["name"], one["points"], one["points_in_file"]) for one in scene["depths"]],
+                         [(str(small), 100, 100), (str(large), 350001, 700001)])
+        points = data("depth/0.bin")
+        self.assertEqual(len(points), 4 + 16 * 100)
+        shown = numpy.frombuffer(points, "<f4", 300, 4).reshape(100, 3) + scene["light_field"]["origin"]
+        numpy.testing.assert_allclose(shown, places[:100], atol=1e-6)
+        tints = numpy.frombuffer(points, "u1", 400, 4 + 1200).reshape(100, 4)
+        self.assertEqual(tints.tolist(), [[i, 2, 3, 128] for i in range(100)])
+
+    def test_a_depth_file_that_cannot_be_shown_is_told(self):
+        good, unit = self.write_points("a.ply", numpy.ones((3, 3))), 3
+        view = [VISUALIZER, self.field, self.path]
+        self.fails(2, ["--text", "--depth"], *view, "--depth", good, "--text")
+        self.fails(2, ["--depth is given 9 times", "at most 8"], *view, *["--depth", good] * 9)
+        self.fails(2, ["a.pfm", ".exr", ".ply"], *view, "--depth", self.folder / "a.pfm")
+        self.fails(3, ["none.exr"], *view, "--depth", self.folder / "none.exr")
+        picture = self.folder / "p.exr"
+        cv2.imwrite(str(picture), numpy.ones((4, 5, 3), "f4"))
+        self.fails(3, ["p.exr", "no channel Z", "lffocus depth"], *view, "--depth", picture)
+        self.fails(3, ["b.ply", "world units of 3 m"], *view, "--depth",
+                   self.write_points("b.ply", numpy.ones((3, 3)), unit))
+        self.fails(3, ["c.ply", "point 1 is at nan"], *view, "--depth",
+                   self.write_points("c.ply", numpy.array([[1, 1, 1], [numpy.nan, 1, 1]])))
+        good.write_bytes(good.read_bytes()[:-1])
+        self.fails(3, ["a.ply", "is truncated"], *view, "--depth", good)
 
     @unittest.skipIf("pageless" in sys.argv, "it has no page")
     def test_a_path_of_another_program_becomes_yaml(self):

@@ -35,6 +35,7 @@ class TinyCalls:
         self.set_threads(threads)
         self.field, self.path, self.other_path = base / "field", base / "path.yaml", base / "other.yaml"
         self.packages, self.other_packages, self.shards = base / "packages", base / "others", base / "shards"
+        self.depths = base / "depths.ply"
 
     def set_threads(self, threads):
         self.end = ["--threads", str(threads), "-q"]
@@ -65,6 +66,8 @@ class TinyCalls:
         commands = [self.synth(self.field), self.example(self.path), self.example(self.other_path, "4"),
                     self.preprocess(self.path, self.packages), self.preprocess(self.other_path, self.other_packages)]
         commands += [self.render("-o", self.shards, "--shard", shard) for shard in ("1/2", "2/2")]
+        commands.append(self.words("lffocus", "depth", self.field, self.path, "--planes", "3", "--near", "2", "--far", "4",
+                                   "--fill", "-o", self.depths))
         for command in commands:
             subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
 
@@ -164,7 +167,7 @@ class TinyCalls:
     def printers(self):
         """Returns the calls of programs that print, and of one that writes a page."""
         view = [self.programs / "lfvisualizer", str(self.field), str(self.path)]
-        export = [*view, "--export", str(self.out)]
+        export = [*view, "--depth", str(self.depths), "--export", str(self.out)]
         anew = ["sh", "-c", 'rm -rf "$1"; shift; exec "$@"', "sh", str(self.out), *map(str, export)]
         return [Call("lfcammvminfo", [self.programs / "lfcammvminfo", str(self.path)], prints=True),
                 Call("lfvisualizer --text", [*view, "--text"], prints=True),

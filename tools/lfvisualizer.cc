@@ -29,6 +29,7 @@ constexpr lf::HelpTexts kHelp = {
     .examples =
         R"(  lfvisualizer capture/ path.yaml                   # open the address that it prints
   lfvisualizer capture/ path.yaml --watch frames    # with the frames that lfrenderer writes there
+  lfvisualizer capture/ path.yaml --depth depth.exr # with the points of lffocus depth
   lfvisualizer capture/ path.yaml packages/*.lfp --serve 8080
   lfvisualizer capture/ path.yaml --export site     # as files for any web server or disk
   lfvisualizer capture/ path.yaml --text > scene.txt)",
@@ -64,6 +65,15 @@ void AddInput(CLI::App& app, Arguments& a) {
                " The page converts all but our own to YAML, which it saves beside PATH.")
       ->required();
   input.Add("PACKAGE", a.page.packages, "Packages that lfpreprocessor made for this path");
+  input
+      .Add(
+          "--depth FILE", a.page.depths,
+          "Show the depths of a scene; may be repeated\n"
+          "A depth map (.exr) or a point cloud (.ply) of this light field, as lffocus depth writes "
+          "it. The page draws its points in space. If a file has more than 500000 points, one of "
+          "each k in a row is drawn, chosen at random.")
+      ->check(lf::NotEmpty())
+      ->check(lf::TakesFiles(".exr .ply"));
 }
 
 void AddOutput(CLI::App& app, Arguments& a) {
@@ -179,6 +189,10 @@ lf::Result<void> Run(Arguments& a, const lf::CommonOptions& common) {
     return lf::UsageError(
         "--text cannot be used with packages: leave the packages out, or leave --text out to show "
         "them on the page");
+  if (a.text && !a.page.depths.empty())
+    return lf::UsageError(
+        "--text cannot be used with --depth: leave --depth out, or leave --text out to show the "
+        "depths on the page");
   if (a.text) return PrintText(a, common);
   LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, a.allow_missing.Limit());
   const std::atomic<bool>& interrupted = lf::CatchInterrupts();

@@ -142,6 +142,8 @@ Result<ExportFacts> ExportPage(PageScene& scene, const fs::path& folder, size_t 
   for (const char* name : {"cameras.bin"}) LF_RETURN_IF_ERROR(exporter.WriteAnswer(name));
   for (const char* name : {"path.json", "path.yaml", "frames.bin", "film.json", "film.bin"})
     LF_RETURN_IF_ERROR(exporter.WriteAnswer(base + name));
+  for (size_t i = 0; i < scene.depths().size(); ++i)
+    LF_RETURN_IF_ERROR(exporter.WriteAnswer(fmt::format("depth/{}.bin", i)));
   for (size_t i = 1; i <= frame_count; ++i) {
     LF_RETURN_IF_ERROR(exporter.WriteAnswer(fmt::format("{}use/{}.bin", base, i)));
     LF_RETURN_IF_ERROR(exporter.WriteAnswer(fmt::format("{}density/{}.json", base, i)));

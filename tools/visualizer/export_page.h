@@ -25,9 +25,9 @@ struct ExportFacts {
 };
 
 // Exports the page, and the data that it can show without a server: the LF cameras, the frames of
-// the path, what each frame uses, and the large pictures of LF images that the film uses: at most
-// `most_images`, spread evenly. For live pictures, shrunken LF images of about `most_live_bytes`
-// are exported as well. An exported path cannot be edited.
+// the path, what each frame uses, the points of depth files, and the large pictures of LF images
+// that the film uses: at most `most_images`, spread evenly. For live pictures, shrunken LF images
+// of about `most_live_bytes` are exported as well. An exported path cannot be edited.
 //
 // Data are written as scripts, NAME.js, because a page that is opened from the disk may load
 // scripts and pictures, but no other files.

@@ -117,6 +117,9 @@ PageAnswer Answer(PageScene& scene, std::string_view name) {
   if (split.parts[0] == "camera" && split.parts.size() == 2 && split.ending == ".json")
     if (const auto id = NumberOf(split.parts[1], 0, scene.light_field().size()))
       return JsonAnswer(CameraJson(scene, LfImageId{*id}));
+  if (split.parts[0] == "depth" && split.parts.size() == 2 && split.ending == ".bin")
+    if (const auto file = NumberOf(split.parts[1], 0, scene.depths().size()))
+      return BytesAnswer(DepthBytes(scene.depths()[*file].points));
   if (split.parts[0] == "watch" && !scene.arguments().watch.empty())
     return AnswerOfRender(scene.arguments().watch, name.substr(std::min(name.size(), size_t{6})));
   return NotFound();

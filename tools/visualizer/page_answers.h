@@ -29,7 +29,7 @@ struct PageAbilities {
 };
 
 // Returns scene.json: the light field, the head of a path, the options, the packages and their
-// frames, the watched folder, and `abilities`.
+// frames, the watched folder, the depth files, and `abilities`.
 //   draft  the path, which the page shows first
 std::string SceneJson(const PageScene& scene, const PathDraft& draft,
                       const PageAbilities& abilities);

@@ -52,6 +52,23 @@ Json VirtualRanges(const LightField& field) {
   return ranges;
 }
 
+Json OfDepths(const PageScene& scene) {
+  Json depths = Json::array();
+  for (const DepthFile& file : scene.depths()) {
+    const DepthPoints& points = file.points;
+    Json facts = {{"name", file.name},
+                  {"points", points.places.size()},
+                  {"points_in_file", points.count_in_file},
+                  {"unknown", points.unknown_count},
+                  {"has_confidence", points.has_confidence},
+                  {"has_colours", points.has_colours},
+                  {"spread", points.spread}};
+    if (points.centre) facts["centre"] = OfVector(*points.centre);
+    depths.push_back(std::move(facts));
+  }
+  return depths;
+}
+
 }  // namespace
 
 PageAnswer Refusal(int status, const std::string& message) {
@@ -103,6 +120,7 @@ std::string SceneJson(const PageScene& scene, const PathDraft& draft,
   if (HasVirtual(field)) json["light_field"]["virtual_ranges"] = VirtualRanges(field);
   if (field.depth_range)
     json["light_field"]["depths"] = {field.depth_range->near_w, field.depth_range->far_w};
+  if (!scene.depths().empty()) json["depths"] = OfDepths(scene);
   return RecordLine(json);
 }
 

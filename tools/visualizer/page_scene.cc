@@ -16,6 +16,7 @@
 #include "lf/render/package/package_file.h"
 #include "lf/render/state/run_inputs.h"
 #include "lf/storage/load/open_store.h"
+#include "lf/view/scene_bytes.h"
 
 namespace lf {
 namespace {
@@ -39,6 +40,7 @@ Result<std::unique_ptr<PageScene>> PageScene::Open(LightField light_field,
   LF_ASSIGN_OR_RETURN(scene->store_, OpenStore(scene->light_field_, Mosaics::kToRgb));
   LF_RETURN_IF_ERROR(scene->OpenFirstDraft());
   LF_RETURN_IF_ERROR(scene->OpenPackages());
+  LF_RETURN_IF_ERROR(scene->OpenDepths());
   return scene;
 }
 
@@ -97,6 +99,22 @@ Result<void> PageScene::OpenPackages() {
     auto package = std::make_unique<Package>(std::move(read));
     package_indices_.push_back(std::make_unique<ImageIndex>(package->light_field, package->places));
     packages_.push_back(std::move(package));
+  }
+  return {};
+}
+
+Result<void> PageScene::OpenDepths() {
+  if (arguments_.depths.size() > kMostDepthFiles)
+    return UsageError(fmt::format("--depth is given {} times: expected at most {} files",
+                                  arguments_.depths.size(), kMostDepthFiles));
+  for (const std::string& name : arguments_.depths) {
+    LF_ASSIGN_OR_RETURN(DepthPoints points,
+                        ReadDepthPoints(name, SceneOrigin(light_field_), light_field_.unit_m));
+    if (points.places.size() < points.count_in_file)
+      LogInfo("{}: the page shows {} of its {} points: one of each {}, chosen at random", name,
+              points.places.size(), points.count_in_file,
+              (points.count_in_file + kMostDepthPoints - 1) / kMostDepthPoints);
+    depths_.push_back({name, std::move(points)});
   }
   return {};
 }

@@ -21,6 +21,7 @@
 #include "lf/render/package/package.h"
 #include "lf/selection/image_index.h"
 #include "lf/storage/load/lf_image_store.h"
+#include "lf/view/depth_points.h"
 #include "lf/view/film_use.h"
 #include "lf/view/frame_use.h"
 
@@ -32,7 +33,8 @@ struct PageArguments {
   std::vector<std::string> light_field_options;  // words, such as --fov-deg 60
   std::filesystem::path path;  // PATH; if it is not YAML, the scene replaces it by PATH.yaml
   std::vector<std::string> packages;
-  std::filesystem::path watch;  // folder of the watched render; empty if none is watched
+  std::vector<std::string> depths;  // depth maps and point clouds (lf/view/depth_points.h)
+  std::filesystem::path watch;      // folder of the watched render; empty if none is watched
   NeedsOptions needs;
   std::string estimator = "bilinear", lens_weights = "auto";
   double max_angle_deg = 0;
@@ -51,11 +53,20 @@ struct PathDraft {
   uint64_t film_number = 0;       // number of the film in the order in which films were started
 };
 
+// A depth map or a point cloud that the page shows.
+struct DepthFile {
+  std::string name;  // as it was given
+  DepthPoints points;
+};
+// The largest number of depth files of a page.
+inline constexpr size_t kMostDepthFiles = 8;
+
 class PageScene {
  public:
   // kInput: the path, a package or a packed store cannot be read; a package was made from a light
-  // field with another number of LF images. If a package was made for another path, all packages
-  // are ignored, with a warning (packages_note()).
+  // field with another number of LF images; a depth file is refused. kUsage: a depth file has
+  // another extension, or there are more than kMostDepthFiles. If a package was made for another
+  // path, all packages are ignored, with a warning (packages_note()).
   static Result<std::unique_ptr<PageScene>> Open(LightField light_field, PageArguments arguments);
 
   const PageArguments& arguments() const { return arguments_; }
@@ -67,6 +78,7 @@ class PageScene {
   const std::vector<std::unique_ptr<Package>>& packages() const { return packages_; }
   // Returns why the packages are ignored; "" if they are not.
   const std::string& packages_note() const { return packages_note_; }
+  const std::vector<DepthFile>& depths() const { return depths_; }
 
   // Returns the path in the file as it was when lfvisualizer started.
   std::shared_ptr<PathDraft> first_draft() const { return first_draft_; }
@@ -92,6 +104,7 @@ class PageScene {
   PageScene(LightField light_field, PageArguments arguments);
   Result<void> OpenFirstDraft();
   Result<void> OpenPackages();
+  Result<void> OpenDepths();
   std::shared_ptr<PathDraft> KeepDraft(const std::string& text, CameraPath path);
 
   PageArguments arguments_;
@@ -102,6 +115,7 @@ class PageScene {
   std::vector<std::unique_ptr<Package>> packages_;
   std::vector<std::unique_ptr<ImageIndex>> package_indices_;
   std::string packages_note_;
+  std::vector<DepthFile> depths_;
   EventBoard events_;
   std::mutex mutex_;  // guards drafts and their films
   uint64_t films_begun_ = 0;

@@ -83,6 +83,8 @@ const KEYS: [string, string][] = [
   ["L", "the live picture, or back to the view in space"],
   ["K", "add a key of the focus distance at this frame"],
   ["P", "render a small preview of this frame"],
+  ["D", "show or hide the points of depth files (--depth)"],
+  ["X", "focus on the point in the middle of the view in space"],
   ["Ctrl+Z, Ctrl+Shift+Z", "undo, redo"],
   ["Ctrl+S", "save the path"],
   ["?", "these keys"],
@@ -114,7 +116,7 @@ export function showKeys(): void {
       "p",
       { class: "muted" },
       "In space: drag to turn, wheel to come nearer, right button to shift, click an LF camera " +
-        "to see its image. In pictures: click to focus there, Shift-click three " +
+        "to see its image, or a point of the depths to focus on it. In pictures: click to focus there, Shift-click three " +
         "places to tilt the focus plane through them. In the timeline: drag diamonds.",
     ),
     closeButton(),

@@ -5,6 +5,7 @@ import type { PathNews, RenderFacts, SceneFacts, Vec3 } from "./data/scene";
 import { getBytes, getJson, listen, receivedBytes } from "./data/source";
 import { ask, showCommands, showKeys } from "./dialogs";
 import { byId, element } from "./element";
+import { DepthLayer } from "./depth_layer";
 import { Legend } from "./legend";
 import type { ExportedLive } from "./live/gl/exported_images";
 import { startLive, type Live } from "./live/live";
@@ -39,17 +40,21 @@ async function start(): Promise<void> {
     `${scene.light_field.name} · ${plural(scene.light_field.images, "LF image")} · ${scene.path_file}`;
 
   const { origin, virtual_ranges: virtualRanges = [] } = scene.light_field;
-  const view = new SpaceView(byId<HTMLCanvasElement>("scene"), positions, virtualRanges, origin, (id) => {
+  let depths: DepthLayer | null = null;
+  const select = (id: number | null) => {
     void state.select(id);
     if (id !== null) show("image");
-  });
+  };
+  const canvas = byId<HTMLCanvasElement>("scene");
+  const view = new SpaceView(canvas, positions, virtualRanges, origin, select, (place) => depths?.focusOn(place));
   new Legend(byId("legend"), state, view);
   const timeline = new Timeline(state);
   const { show, panels } = makeTabs(state, timeline, exported);
   const look = wireViews(state, view, panels.live, show);
   wireSpace(state, view);
   wireButtons(state);
-  wireKeys(state, timeline, panels, show, look);
+  if (scene.depths) depths = new DepthLayer(byId("depths"), state, view, panels.live, scene.depths);
+  wireKeys(state, timeline, panels, show, look, depths);
   wireMessages(state);
   wireTheme(state, view);
   await state.open();
@@ -57,8 +62,9 @@ async function start(): Promise<void> {
   if (scene.packages_note) state.say(scene.packages_note);
   view.look("overview");
   state.emit("theme");
+  await depths?.load();
   // Measurements (bench/) and tests read this object.
-  Object.assign(window, { lfvisualizer: { state, view, live: panels.live, receivedBytes } });
+  Object.assign(window, { lfvisualizer: { state, view, live: panels.live, depths, receivedBytes } });
   document.body.dataset.ready = "yes";
 }
 
@@ -196,6 +202,7 @@ function wireKeys(
   { render, live }: Panels,
   show: (name: string) => void,
   look: (view: View) => void,
+  depths: DepthLayer | null,
 ): void {
   const plain: Record<string, (event: KeyboardEvent) => void> = {
     " ": () => timeline.toggle(),
@@ -213,6 +220,10 @@ function wireKeys(
     p: () => (show("render"), void render.start()),
     l: () => look(state.isLive ? "space" : "live"),
   };
+  if (depths) {
+    plain.d = () => depths.toggle();
+    plain.x = () => state.isLive || depths.focusOnMiddle();
+  }
   PRESETS.forEach(([preset], i) => (plain[String(i + 1)] = () => look(preset)));
   window.addEventListener("keydown", (event) => {
     const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;

@@ -7,10 +7,11 @@
 #include <cstdint>
 #include <limits>
 
+#include "lf/analysis/depth/sweep_sums.h"
+
 namespace lf {
 namespace {
 
-constexpr int kQuarters = 4;
 constexpr int kSets = 5;
 // The quarters (LensView::Quarter()) of each set, as bits: the whole lens, left, right, lower and
 // upper half.
@@ -28,65 +29,49 @@ constexpr float kOwnFloor = kFloor / 4;
 // Minima within this number of distances from the best one belong to it.
 constexpr int kSameMinimum = 2;
 
-// The sums of the views of a quarter of the lens at one element.
-struct QuarterSums {
-  uint32_t count = 0;
-  std::array<uint32_t, 3> roots = {};
-  uint64_t squares = 0;
-};
-using CellSums = std::array<QuarterSums, kQuarters>;
-
-// Adds a view's light at the elements of `area` to their sums.
-void AddView(const LensView& view, const RenderCamera& frame, double distance_w,
-             const PixelRect& area, std::vector<CellSums>* cells) {
-  const PlanePositions positions(view, frame, distance_w);
-  // From the centre of the first loaded pixel.
-  const double first_x = view.rect.x_begin + 0.5, first_y = view.rect.y_begin + 0.5;
-  const double most_x = view.light.width() - 1, most_y = view.light.height() - 1;
-  const auto quarter = static_cast<size_t>(view.Quarter());
-  CellSums* cell = cells->data();
-  for (int y = area.y_begin; y < area.y_end; ++y) {
-    for (int x = area.x_begin; x < area.x_end; ++x, ++cell) {
-      const Vec3 at = positions.At(x + 0.5, y + 0.5);
-      const double inverse = 1 / at.z();
-      const double across = at.x() * inverse - first_x, down = at.y() * inverse - first_y;
-      if (!(across >= 0 && across < most_x && down >= 0 && down < most_y)) continue;
-      const int column = static_cast<int>(across), row = static_cast<int>(down);
-      const auto right = static_cast<uint32_t>((across - column) * 256);
-      const auto below = static_cast<uint32_t>((down - row) * 256);
-      const uint16_t* const p = &view.light.at(column, row);
-      const uint16_t* const q = &view.light.at(column, row + 1);
-      if (view.any_masked && (p[3] & p[7] & q[3] & q[7]) == 0) continue;
-      const uint32_t weights[4] = {(256 - right) * (256 - below), right * (256 - below),
-                                   (256 - right) * below, right * below};
-      QuarterSums& sums = (*cell)[quarter];
-      ++sums.count;
-      for (size_t c = 0; c < 3; ++c) {
-        const uint64_t root =
-            (uint64_t{p[c]} * weights[0] + uint64_t{p[4 + c]} * weights[1] +
-             uint64_t{q[c]} * weights[2] + uint64_t{q[4 + c]} * weights[3] + 32768) >>
-            16;
-        sums.roots[c] += static_cast<uint32_t>(root);
-        sums.squares += root * root;
-      }
-    }
+// Makes the sums of all rows of an area. A few rows at once take a view after the other, those of a
+// quarter of the lens in a row, so that the sums, and the pixels that two rows share, stay in the
+// cache.
+void AddViews(const std::vector<ViewOfPlane>& planes, const PixelRect& area,
+              std::vector<RowSums>* rows) {
+  constexpr size_t kRowsAtOnce = 8;
+  for (size_t begin = 0; begin < rows->size(); begin += kRowsAtOnce) {
+    const size_t end = std::min(begin + kRowsAtOnce, rows->size());
+    for (size_t row = begin; row < end; ++row) (*rows)[row].Clear();
+    for (const ViewOfPlane& plane : planes)
+      for (size_t row = begin; row < end; ++row)
+        AddView(plane, area.x_begin, area.y_begin + static_cast<int>(row), &(*rows)[row]);
   }
 }
 
-float CostOf(const CellSums& cell, unsigned quarters) {
-  uint64_t count = 0, squares = 0;
-  std::array<uint64_t, 3> roots = {};
-  for (size_t q = 0; q < kQuarters; ++q) {
-    if ((quarters >> q & 1) == 0) continue;
-    count += cell[q].count;
-    squares += cell[q].squares;
-    for (size_t c = 0; c < 3; ++c) roots[c] += cell[q].roots[c];
+// Writes the costs of a row: costs[set][element].
+void CostsOfRow(const RowSums& sums, const std::array<float*, kSets>& costs) {
+  for (size_t i = 0; i < static_cast<size_t>(sums.element_count()); ++i) {
+    std::array<uint64_t, kLensQuarters> counts, squares;
+    std::array<std::array<uint64_t, 3>, kLensQuarters> roots;
+    for (size_t q = 0; q < kLensQuarters; ++q) {
+      counts[q] = sums.Count(q, i);
+      squares[q] = sums.Squares(q, i);
+      for (size_t c = 0; c < 3; ++c) roots[q][c] = sums.Root(q, i, c);
+    }
+    for (size_t set = 0; set < kSets; ++set) {
+      uint64_t count = 0, square = 0;
+      std::array<uint64_t, 3> root = {};
+      for (size_t q = 0; q < kLensQuarters; ++q) {
+        if ((kQuartersOf[set] >> q & 1) == 0) continue;
+        count += counts[q];
+        square += squares[q];
+        for (size_t c = 0; c < 3; ++c) root[c] += roots[q][c];
+      }
+      uint64_t spread = count * square;
+      for (const uint64_t of_colour : root) spread -= of_colour * of_colour;
+      costs[set][i] =
+          count < kLeastViews
+              ? kNoCost
+              : static_cast<float>(static_cast<double>(spread) /
+                                   (static_cast<double>(count) * static_cast<double>(count - 1)));
+    }
   }
-  if (count < kLeastViews) return kNoCost;
-  uint64_t spread = count * squares;
-  for (const uint64_t root : roots) spread -= root * root;
-  return static_cast<float>(static_cast<double>(spread) /
-                            (static_cast<double>(count) * static_cast<double>(count - 1)));
 }
 
 // The mean roots of each set of views at its least cost so far.
@@ -99,16 +84,15 @@ class LeastColours {
 
   // Adds the sums of a distance.
   //   costs  means over windows of the set, of each element of the tile
-  //   cells  of the tile and `radius` elements around it
-  void Add(size_t set, const float* costs, const std::vector<CellSums>& cells,
-           const PixelRect& tile, int radius) {
-    const int stride = tile.width() + 2 * radius;
+  //   rows   sums of the rows of the tile and `radius` elements around it
+  void Add(size_t set, const float* costs, const std::vector<RowSums>& rows, const PixelRect& tile,
+           int radius) {
     for (size_t i = 0; i < area_; ++i) {
       if (!(costs[i] < least_[set * area_ + i])) continue;
       least_[set * area_ + i] = costs[i];
       const int x = static_cast<int>(i) % tile.width(), y = static_cast<int>(i) / tile.width();
-      roots_[set * area_ + i] =
-          MeanOf(cells[static_cast<size_t>((y + radius) * stride + x + radius)], kQuartersOf[set]);
+      roots_[set * area_ + i] = MeanOf(rows[static_cast<size_t>(y + radius)],
+                                       static_cast<size_t>(x + radius), kQuartersOf[set]);
     }
   }
   const std::array<uint16_t, 3>& At(size_t set, size_t element) const {
@@ -116,13 +100,13 @@ class LeastColours {
   }
 
  private:
-  static std::array<uint16_t, 3> MeanOf(const CellSums& cell, unsigned quarters) {
+  static std::array<uint16_t, 3> MeanOf(const RowSums& row, size_t element, unsigned quarters) {
     uint32_t count = 0;
     std::array<uint64_t, 3> sums = {};
-    for (size_t q = 0; q < kQuarters; ++q) {
+    for (size_t q = 0; q < kLensQuarters; ++q) {
       if ((quarters >> q & 1) == 0) continue;
-      count += cell[q].count;
-      for (size_t c = 0; c < 3; ++c) sums[c] += cell[q].roots[c];
+      count += row.Count(q, element);
+      for (size_t c = 0; c < 3; ++c) sums[c] += row.Root(q, element, c);
     }
     std::array<uint16_t, 3> mean = {};
     for (size_t c = 0; c < 3; ++c) mean[c] = static_cast<uint16_t>(sums[c] / count);
@@ -139,20 +123,24 @@ class CostVolume {
  public:
   CostVolume(size_t distance_count, const PixelRect& tile)
       : distance_count_(distance_count),
-        area_(static_cast<size_t>(tile.pixel_count())),
-        costs_(kSets * distance_count * area_) {}
+        stride_(static_cast<size_t>(tile.pixel_count()) + kGap),
+        costs_(kSets * distance_count * stride_) {}
 
   float* Layer(size_t set, size_t distance) {
-    return &costs_[(set * distance_count_ + distance) * area_];
+    return &costs_[(set * distance_count_ + distance) * stride_];
   }
   float At(size_t set, size_t distance, size_t element) const {
-    return costs_[(set * distance_count_ + distance) * area_ + element];
+    return costs_[(set * distance_count_ + distance) * stride_ + element];
   }
   size_t distance_count() const { return distance_count_; }
 
  private:
+  // Unused numbers between two distances: the costs of an element at all distances would share few
+  // lines of the cache if they were a power of two apart.
+  static constexpr size_t kGap = 16;
+
   size_t distance_count_;
-  size_t area_;
+  size_t stride_;
   std::vector<float> costs_;
 };
 
@@ -162,37 +150,43 @@ class CostVolume {
 void MeanOverWindows(const std::vector<float>& costs, const PixelRect& tile, int radius,
                      float* means) {
   const int stride = tile.width() + 2 * radius, rows = tile.height() + 2 * radius;
-  const int side = 2 * radius + 1;
+  const int side = 2 * radius + 1, width = tile.width();
   thread_local std::vector<float> sums;  // over `side` elements of a row, [rows][tile.width()]
-  thread_local std::vector<int> counts;
-  sums.clear();
-  counts.clear();
-  for (int y = 0; y < rows; ++y)
-    for (int x = 0; x < tile.width(); ++x) {
-      const float* const row = &costs[static_cast<size_t>(y * stride + x)];
-      float sum = 0;
-      int count = 0;
-      for (int i = 0; i < side; ++i) {
-        const bool has_cost = row[i] != kNoCost;
-        sum += has_cost ? row[i] : 0;
-        count += has_cost ? 1 : 0;
+  thread_local std::vector<int32_t> counts;
+  // The loops run over elements inside, so that the compiler can add several at once.
+  sums.assign(static_cast<size_t>(rows * width), 0);
+  counts.assign(static_cast<size_t>(rows * width), 0);
+  for (int y = 0; y < rows; ++y) {
+    float* const sum = &sums[static_cast<size_t>(y * width)];
+    int32_t* const count = &counts[static_cast<size_t>(y * width)];
+    for (int i = 0; i < side; ++i) {
+      const float* const row = &costs[static_cast<size_t>(y * stride + i)];
+      for (int x = 0; x < width; ++x) {
+        const bool has_cost = row[x] != kNoCost;
+        sum[x] += has_cost ? row[x] : 0;
+        count[x] += has_cost ? 1 : 0;
       }
-      sums.push_back(sum);
-      counts.push_back(count);
     }
-  for (int y = 0; y < tile.height(); ++y)
-    for (int x = 0; x < tile.width(); ++x) {
-      float sum = 0;
-      int count = 0;
-      for (int j = 0; j < side; ++j) {
-        const auto at = static_cast<size_t>((y + j) * tile.width() + x);
-        sum += sums[at];
-        count += counts[at];
+  }
+  thread_local std::vector<float> window_sums;  // of a row
+  thread_local std::vector<int32_t> window_counts;
+  for (int y = 0; y < tile.height(); ++y, means += width) {
+    window_sums.assign(static_cast<size_t>(width), 0);
+    window_counts.assign(static_cast<size_t>(width), 0);
+    float* const window_sum = window_sums.data();
+    int32_t* const window_count = window_counts.data();
+    for (int j = 0; j < side; ++j) {
+      const float* const sum = &sums[static_cast<size_t>((y + j) * width)];
+      const int32_t* const count = &counts[static_cast<size_t>((y + j) * width)];
+      for (int x = 0; x < width; ++x) {
+        window_sum[x] += sum[x];
+        window_count[x] += count[x];
       }
-      const bool has_cost =
-          costs[static_cast<size_t>((y + radius) * stride + x + radius)] != kNoCost;
-      *means++ = has_cost ? sum / static_cast<float>(count) : kNoCost;
     }
+    const float* const own = &costs[static_cast<size_t>((y + radius) * stride + radius)];
+    for (int x = 0; x < width; ++x)
+      means[x] = own[x] != kNoCost ? window_sum[x] / static_cast<float>(window_count[x]) : kNoCost;
+  }
 }
 
 // Writes the costs of the tile's elements alone.
@@ -295,17 +289,28 @@ void SweepTile(std::span<const LensView> views, const RenderCamera& frame,
   CostVolume costs(options.distances_w.size(), tile);  // means over windows
   CostVolume own(options.distances_w.size(), tile);    // of single elements
   LeastColours colours(tile);
-  std::vector<CellSums> cells(static_cast<size_t>(area.pixel_count()));
-  std::vector<float> of_distance(cells.size());
+  std::vector<RowSums> rows(static_cast<size_t>(area.height()), RowSums(area.width()));
+  std::array<std::vector<float>, kSets> of_distance;
+  for (auto& of_set : of_distance) of_set.resize(static_cast<size_t>(area.pixel_count()));
+  std::vector<ViewOfPlane> planes;
   for (size_t d = 0; d < options.distances_w.size(); ++d) {
-    std::fill(cells.begin(), cells.end(), CellSums());
+    planes.clear();
     for (const LensView& view : views)
-      if (view.of.is_swept) AddView(view, frame, options.distances_w[d], area, &cells);
+      if (view.of.is_swept) planes.emplace_back(view, frame, options.distances_w[d]);
+    std::stable_sort(planes.begin(), planes.end(), [](const ViewOfPlane& a, const ViewOfPlane& b) {
+      return a.view->Quarter() < b.view->Quarter();
+    });
+    AddViews(planes, area, &rows);
+    for (size_t row = 0; row < rows.size(); ++row) {
+      std::array<float*, kSets> of_row = {};
+      for (size_t set = 0; set < kSets; ++set)
+        of_row[set] = &of_distance[set][row * static_cast<size_t>(area.width())];
+      CostsOfRow(rows[row], of_row);
+    }
     for (size_t set = 0; set < kSets; ++set) {
-      for (size_t i = 0; i < cells.size(); ++i) of_distance[i] = CostOf(cells[i], kQuartersOf[set]);
-      MeanOverWindows(of_distance, tile, radius, costs.Layer(set, d));
-      colours.Add(set, costs.Layer(set, d), cells, tile, radius);
-      CopyInner(of_distance, tile, radius, own.Layer(set, d));
+      MeanOverWindows(of_distance[set], tile, radius, costs.Layer(set, d));
+      colours.Add(set, costs.Layer(set, d), rows, tile, radius);
+      CopyInner(of_distance[set], tile, radius, own.Layer(set, d));
     }
   }
   depths->clear();

@@ -3,7 +3,7 @@
 // element. Where they agree, there is a surface. Internal to this folder.
 //
 // For an element, a distance and a set of n views, with the roots r of the light that the views
-// have there (lens_views.h), the cost is the variance
+// have there (sweep_sums.h), the cost is the variance
 //
 //   (n sum r^2 - (sum r)^2) / (n (n - 1)),   summed over R, G and B,
 //

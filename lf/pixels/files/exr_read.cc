@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfDoubleAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
@@ -154,6 +155,26 @@ class ExrDecoder : public PictureDecoder {
       const double rate = Imf::framesPerSecond(header);
       if (rate > 0 && std::isfinite(rate)) facts.frames_per_second = rate;
     }
+    return facts;
+  }
+
+  CameraFacts camera() const override {
+    const Imf::Header& header = file_->header(0);
+    CameraFacts facts;
+    if (Imf::hasWorldToNDC(header)) {
+      const Imath::M44f& matrix = Imf::worldToNDC(header);
+      facts.world_to_ndc.emplace();
+      for (size_t i = 0; i < 16; ++i)
+        (*facts.world_to_ndc)[i] = matrix[static_cast<int>(i / 4)][static_cast<int>(i % 4)];
+    }
+    if (const auto* unit = header.findTypedAttribute<Imf::DoubleAttribute>("lf:unit_m"))
+      facts.unit_m = unit->value();
+    // In double precision, because a damaged header may state any windows.
+    const Imath::Box2i &display = header.displayWindow(), &data = header.dataWindow();
+    facts.display_width = static_cast<double>(display.max.x) - display.min.x + 1;
+    facts.display_height = static_cast<double>(display.max.y) - display.min.y + 1;
+    facts.left = static_cast<double>(data.min.x) - display.min.x;
+    facts.top = static_cast<double>(data.min.y) - display.min.y;
     return facts;
   }
 

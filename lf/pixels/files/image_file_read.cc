@@ -59,10 +59,10 @@ Result<PictureHeader> HeaderFrom(const FileBytes& file) {
   LF_ASSIGN_OR_RETURN(const ImageFormat format, ProbeImage(file.read, file.name));
   if (format == ImageFormat::kJpeg || format == ImageFormat::kRaw) {
     LF_ASSIGN_OR_RETURN(const ImageFileInfo info, InfoFrom(file));
-    return PictureHeader{info, {TypeOfValues(info)}};
+    return PictureHeader{info, {TypeOfValues(info)}, {}};
   }
   LF_ASSIGN_OR_RETURN(const std::unique_ptr<PictureDecoder> picture, Open(file, format));
-  return PictureHeader{picture->info(), picture->colours()};
+  return PictureHeader{picture->info(), picture->colours(), picture->camera()};
 }
 
 Result<ExposureFacts> ExposureFrom(const FileBytes& file) {

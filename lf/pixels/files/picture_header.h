@@ -31,9 +31,21 @@ struct ColourFacts {
   friend bool operator==(const ColourFacts&, const ColourFacts&) = default;
 };
 
+// Statements of an EXR file about the camera of its picture. Other files state none.
+struct CameraFacts {
+  // The attribute worldToNDC (doc/formats/frame.md), row by row, which row vectors are multiplied
+  // by.
+  std::optional<std::array<float, 16>> world_to_ndc = {};
+  std::optional<double> unit_m = {};  // the attribute lf:unit_m: length of a world unit
+  // Size of the display window, which the camera shows, and the first pixel of the picture in it.
+  double display_width = 0, display_height = 0;
+  double left = 0, top = 0;
+};
+
 struct PictureHeader {
   ImageFileInfo info;
   ColourFacts colours;
+  CameraFacts camera = {};
 };
 
 // Reads the header alone. Errors as for ReadImageInfo().

@@ -83,5 +83,23 @@ TEST_F(PictureHeaderTest, NothingIsWrittenAfterAnInterruption) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "a.png"));
 }
 
+TEST_F(PictureHeaderTest, ExrFilesStateTheirCamera) {
+  const Image<float> image = NoiseImage<float>(5, 3, 1);
+  std::array<float, 16> matrix = {};
+  for (size_t i = 0; i < 16; ++i) matrix[i] = static_cast<float>(i) + 0.5f;
+  const std::vector<ExrChannel> channels = {{"Z", image.view(), 0, false}};
+  ASSERT_TRUE(WriteExr(folder_ / "a.exr", channels, {{"worldToNDC", matrix}, {"lf:unit_m", 0.25}}));
+  const CameraFacts facts = ReadPictureHeader(folder_ / "a.exr").value().camera;
+  EXPECT_EQ(facts.world_to_ndc, matrix);
+  EXPECT_EQ(facts.unit_m, 0.25);
+  EXPECT_EQ(facts.display_width, 5);
+  EXPECT_EQ(facts.display_height, 3);
+  EXPECT_EQ(facts.left, 0);
+  EXPECT_EQ(facts.top, 0);
+  ASSERT_TRUE(WriteExr(folder_ / "b.exr", channels));
+  const CameraFacts none = ReadPictureHeader(folder_ / "b.exr").value().camera;
+  EXPECT_FALSE(none.world_to_ndc || none.unit_m);
+}
+
 }  // namespace
 }  // namespace lf

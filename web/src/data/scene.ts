@@ -19,6 +19,18 @@ export interface PathNews {
   fault: string; // why the file is no valid path; "" if it is one
 }
 
+// A depth map or a point cloud; its points are in depth/N.bin.
+export interface DepthFacts {
+  name: string;
+  points: number;
+  points_in_file: number;
+  unknown: number; // elements of a depth map without a depth
+  has_confidence: boolean;
+  has_colours: boolean;
+  spread: number; // distance of neighbouring points, divided by their distance from the camera
+  centre?: Vec3; // of the camera that sees the points, relative to the origin; missing: not known
+}
+
 export interface SceneFacts {
   version: string;
   light_field: {
@@ -43,6 +55,7 @@ export interface SceneFacts {
   packages_note: string;
   watch: string;
   server: boolean;
+  depths?: DepthFacts[]; // missing: there are none
 }
 
 export interface FilmFacts {

@@ -7,6 +7,7 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { add, focusPoint, type FrameCamera } from "../data/frame_camera";
 import type { CameraFacts, Vec3 } from "../data/scene";
 import { cssColour } from "../element";
+import type { DepthCloud, PickedPoint } from "./depth_cloud";
 import { LfPoints } from "./lf_points";
 import { closed, Faces, Lines } from "./lines";
 import { RenderCameraModel } from "./render_camera_model";
@@ -25,6 +26,8 @@ export class SpaceView {
   private readonly chosen = new Lines(1);
   private readonly chosenFace = new Faces(0.12);
   private readonly ring: THREE.Points;
+  private readonly mark: THREE.Points; // the point of the depths that was picked last
+  private clouds: DepthCloud[] = [];
   private readonly size: number; // diagonal of the box around all LF cameras, world units
   private readonly spacing: number; // approximate distance between neighbouring LF cameras, world units
   private pending = false;
@@ -39,6 +42,7 @@ export class SpaceView {
     virtualRanges: [number, number][],
     private readonly origin: Vec3,
     onPick: (id: number | null) => void,
+    onPickPlace: (place: Vec3) => void,
   ) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
     this.points = new LfPoints(positions, virtualRanges);
@@ -50,6 +54,8 @@ export class SpaceView {
     this.spacing = (0.7 * this.size) / Math.max(1, Math.sqrt(positions.length / 3) - 1);
     this.ring = dots(11, 0xffffff);
     this.ring.visible = false;
+    this.mark = dots(9, 0xffffff);
+    this.mark.visible = false;
     this.keyPoints = dots(7, 0xffffff);
     this.scene.add(
       this.points.object,
@@ -59,17 +65,18 @@ export class SpaceView {
       this.chosen.object,
       this.chosenFace.object,
       this.ring,
+      this.mark,
     );
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = false;
     this.controls.addEventListener("change", () => this.draw());
     this.controls.addEventListener("start", () => (this.through = false));
     new ResizeObserver(() => this.resize()).observe(canvas);
-    this.listenForPicks(onPick);
+    this.listenForPicks(onPick, onPickPlace);
     this.resize();
   }
 
-  private listenForPicks(onPick: (id: number | null) => void): void {
+  private listenForPicks(onPick: (id: number | null) => void, onPickPlace: (place: Vec3) => void): void {
     let down: [number, number] | null = null;
     this.canvas.addEventListener("pointerdown", (event) => {
       down = [event.offsetX, event.offsetY];
@@ -77,10 +84,46 @@ export class SpaceView {
     this.canvas.addEventListener("pointerup", (event) => {
       // A drag turns the view, and its end must not choose an LF camera.
       if (!down || Math.hypot(event.offsetX - down[0], event.offsetY - down[1]) > 3) return;
-      onPick(
-        this.points.pick(this.camera, this.canvas.clientWidth, this.canvas.clientHeight, event.offsetX, event.offsetY),
-      );
+      const { clientWidth, clientHeight } = this.canvas;
+      const point = this.pickPoint(event.offsetX, event.offsetY);
+      // In front of a surface, an LF camera must be hit more exactly.
+      const reach = point ? 6 : 12;
+      const id = this.points.pick(this.camera, clientWidth, clientHeight, event.offsetX, event.offsetY, reach);
+      if (point && (id === null || this.aheadOf(id) > point.ahead)) onPickPlace(point.place);
+      else onPick(id);
     });
+  }
+
+  // Returns the foremost point of the depths at a position in the view.
+  private pickPoint(x: number, y: number): PickedPoint | null {
+    const { clientWidth, clientHeight } = this.canvas;
+    const picked = this.clouds.map((cloud) => cloud.pick(this.camera, clientWidth, clientHeight, x, y));
+    return picked.reduce((best, one) => (one && (!best || one.ahead < best.ahead) ? one : best), null);
+  }
+
+  private aheadOf(id: number): number {
+    const place = new THREE.Vector3().fromArray(this.points.positions, 3 * id);
+    return -place.applyMatrix4(this.camera.matrixWorldInverse).z;
+  }
+
+  // Shows the points of depth files.
+  setClouds(clouds: DepthCloud[]): void {
+    this.scene.remove(...this.clouds.map((cloud) => cloud.object));
+    this.clouds = clouds;
+    this.scene.add(...clouds.map((cloud) => cloud.object));
+    this.draw();
+  }
+
+  // Returns the point of the depths in the middle of the view, relative to the origin; null if there is none.
+  pointInMiddle(): Vec3 | null {
+    return this.pickPoint(this.canvas.clientWidth / 2, this.canvas.clientHeight / 2)?.place ?? null;
+  }
+
+  // Marks a place, relative to the origin.
+  markPoint(place: Vec3): void {
+    placeDots(this.mark, [place], [0, 0, 0]);
+    this.mark.visible = true;
+    this.draw();
   }
 
   setTheme(isDark: boolean): void {
@@ -92,6 +135,7 @@ export class SpaceView {
     this.chosen.material.color.setHex(isDark ? 0xffffff : 0x000000);
     this.chosenFace.material.color.setHex(isDark ? 0xffffff : 0x000000);
     (this.ring.material as THREE.PointsMaterial).color.setHex(isDark ? 0xffffff : 0x000000);
+    (this.mark.material as THREE.PointsMaterial).color.setHex(isDark ? 0x63d68a : 0x0a7f3a);
     this.draw();
   }
 
@@ -262,6 +306,9 @@ export class SpaceView {
     const pixelsPerUnit =
       this.canvas.clientHeight / (2 * Math.tan((this.camera.fov * Math.PI) / 360) * this.distanceToField());
     this.points.setSpacing(this.spacing * pixelsPerUnit);
+    const ratio = this.renderer.getPixelRatio();
+    const pixels = (ratio * this.canvas.clientHeight) / (2 * Math.tan((this.camera.fov * Math.PI) / 360));
+    for (const cloud of this.clouds) cloud.setScale(pixels, ratio);
     this.renderer.render(this.scene, this.camera);
   }
 }
