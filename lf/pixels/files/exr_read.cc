@@ -7,6 +7,7 @@
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfVersion.h>
 #include <OpenEXR/openexr.h>
 #include <fmt/format.h>
@@ -21,6 +22,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "lf/pixels/files/camera_facts.h"
 #include "lf/pixels/files/layers.h"
 #include "lf/pixels/files/picture_decoder.h"
 
@@ -154,6 +156,10 @@ class ExrDecoder : public PictureDecoder {
       const double rate = Imf::framesPerSecond(header);
       if (rate > 0 && std::isfinite(rate)) facts.frames_per_second = rate;
     }
+    facts.camera = StatedCameraOf([&header](const char* key) {
+      const auto* const text = header.findTypedAttribute<Imf::StringAttribute>(key);
+      return text == nullptr ? std::string() : text->value();
+    });
     return facts;
   }
 
