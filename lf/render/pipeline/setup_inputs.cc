@@ -12,8 +12,17 @@
 namespace lf {
 namespace {
 
-// Returns the inputs that only rebinned rays depend on; no inputs if the mode is kCollect.
-//   film  hash of all render cameras of the film, because the slabs depend on all of them
+// Returns the settings of the lossy codec that changed the pixels of the LF images; if the pixels
+// are as recorded, the default value of RunChoices::pixels.
+Result<std::string> PixelsOf(const LightField& light_field) {
+  const std::string as_recorded = RunChoices().pixels;
+  if (!HoldsPackedStore(light_field)) return as_recorded;
+  LF_ASSIGN_OR_RETURN(std::string codec, ReadCodecSettings(light_field.folder));
+  return codec.starts_with(kLosslessCodec) ? as_recorded : codec;
+}
+
+}  // namespace
+
 RunInputs InputsOfRebinning(const FilmOptions& options, size_t max_cells, const std::string& film) {
   if (!options.Rebins()) return {};
   const RebinPassOptions& rebin = options.rebin;
@@ -45,17 +54,6 @@ RunInputs InputsOfRebinning(const FilmOptions& options, size_t max_cells, const 
                                  width(rebin.slab.r_uv_w))},
       {"rebin.coverage", fmt::format("{} cells across", rebin.coverage.cells_across)}};
 }
-
-// Returns the settings of the lossy codec that changed the pixels of the LF images; if the pixels
-// are as recorded, the default value of RunChoices::pixels.
-Result<std::string> PixelsOf(const LightField& light_field) {
-  const std::string as_recorded = RunChoices().pixels;
-  if (!HoldsPackedStore(light_field)) return as_recorded;
-  LF_ASSIGN_OR_RETURN(std::string codec, ReadCodecSettings(light_field.folder));
-  return codec.starts_with(kLosslessCodec) ? as_recorded : codec;
-}
-
-}  // namespace
 
 Result<RunInputs> InputsOfRays(const FilmSetup& setup) {
   const Package& package = setup.package();
