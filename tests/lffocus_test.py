@@ -262,7 +262,7 @@ class FocusStackTest(ProgramTestCase):
                                  ("its plane 1 is at", ",".join(str(2 * one) for one in DISTANCES))):
             self.refused(["stack.exr", words, "--overwrite"], "stack.exr", "--distances", distances, "--resume")
         planes = ["--distances", ",".join(map(str, DISTANCES)), "--resume"]
-        for words, options in (("made with reading bilinear, and this call has", ["--estimator", "nearest"]),
+        for words, options in (("made with estimator ", ["--estimator", "nearest"]),
                                ("lens_weights", ["--lens-weights", "none"]),
                                ("picture.format exr, and this call has exr-float", ["--format", "exr-float"]),
                                ("seed", ["--seed", "7"]), ("max_images", ["--max-images", "9"]),
