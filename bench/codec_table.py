@@ -4,7 +4,7 @@
 
 usage: bench/codec_table.py BUILD_DIR [--data ../shared] [--only shop,synth,noisy] [--no-peers] [--views 7]
                             [--size 480x320] [--frames 1-50x12] [--name NAME] [--write doc/codec.md]
-                            [--pictures doc/images]
+       bench/codec_table.py BUILD_DIR --pictures doc/images
        bench/codec_table.py --again JSON [--write doc/codec.md]
 
 The light fields are RGGB mosaics: `shop`, the 7 x 7 views (--views) in the middle of blender-shop, reduced to one
@@ -15,6 +15,7 @@ also by the defaults. The thesis's bytes are also compressed by xz, bzip2 and zs
 of the thesis's scheme, in NumPy, on three LF images); "best" is the shortest result. Peers encode the four planes of
 each mosaic side by side as one grey picture: JPEG and JPEG 2000 by OpenCV, PNG, and JPEG XL if `cjxl` is installed
 (libjxl-tools). The PSNR of images is computed from stored values, the PSNR of frames from 16-bit sRGB pictures.
+--pictures measures nothing: it draws artefacts in a frame of `still`, 8-bit sRGB mosaics of lfsynth's still life.
 """
 import argparse
 import bz2
@@ -70,6 +71,14 @@ class Content:
                     cv2.imwrite(str(folder / "mosaics" / (file.stem + ".png")), mosaic_of(cv2.imread(str(file))))
             run(build / "bin/lfimport", folder / "mosaics", "-o", self.field, "--bayer", "RGGB", "-q")
             calibration = self.field / "transforms.json"  # mosaics are linear unless their calibration says otherwise
+            calibration.write_text(json.dumps(json.loads(calibration.read_text()) | {"lf_transfer": "sRGB"}))
+        elif name == "still":
+            run(build / "bin/lfsynth", "still-life", "-o", folder / "colours", "--count", arguments.views ** 2,
+                "--size", arguments.size, "--format", "png", "-q")
+            for file in (folder / "colours" / "images").glob("*.png"):
+                cv2.imwrite(str(file), mosaic_of(cv2.imread(str(file))))
+            run(build / "bin/lfimport", folder / "colours", "-o", self.field, "--bayer", "RGGB", "-q")
+            calibration = self.field / "transforms.json"
             calibration.write_text(json.dumps(json.loads(calibration.read_text()) | {"lf_transfer": "sRGB"}))
         else:
             run(build / "bin/lfsynth", "still-life", "-o", self.field, "--count", arguments.views ** 2, "--size",
@@ -244,28 +253,22 @@ def number(value, digits=1):
     return "exact" if value == math.inf else "-" if value is None else f"{value:.{digits}f}"
 
 
-def measure(content, with_peers, pictures):
-    rows, drawn = [], [content.frames["none"][1]]
+def measure(content, with_peers):
+    rows = []
     # With 16 bits, highlights alone take most of the 256 values of the 8-bit quantizer.
     quantizers = ("8bit",) if content.bits == 8 else ("8bit", 4096)
     for quantizer, (levels, threshold) in itertools.product(quantizers, THESIS):
-        row, frames = content.code("--profile", "thesis", "--levels", levels, "--threshold", threshold,
-                                   "--quantizer", quantizer)
-        if content.name == "shop" and (levels, threshold) in ((1, 8), (2, 4)):
-            drawn.append(frames[1])
+        row, _ = content.code("--profile", "thesis", "--levels", levels, "--threshold", threshold,
+                              "--quantizer", quantizer)
         row |= {"profile": "thesis", "levels": levels, "threshold": threshold, "quantizer": quantizer,
                 "best": row["ratio"] * best_lossless(content, levels, threshold,
                                                      256 if quantizer == "8bit" else quantizer)}
         rows.append(row)
         print(content.name, row, flush=True)
     for threshold in DEFAULT:
-        row, frames = content.code("--threshold", threshold, and_by_defaults=True)
-        if content.name == "shop" and threshold == 8:
-            drawn.append(frames[1])
+        row, _ = content.code("--threshold", threshold, and_by_defaults=True)
         rows.append(row | {"profile": "default", "levels": 4, "threshold": threshold, "best": row["ratio"]})
         print(content.name, rows[-1], flush=True)
-    if pictures and content.name == "shop":
-        draw(drawn, pictures / "codec_artefacts.jpg")
     row, _ = content.code("--profile", "lossless", and_by_defaults=True)
     rows.append(row | {"profile": "lossless", "levels": 4, "threshold": None, "best": row["ratio"]})
     if with_peers:
@@ -280,6 +283,20 @@ def measure(content, with_peers, pictures):
             rows.append(row | {"profile": f"{name}, lossless", "levels": 0, "threshold": None, "best": row["ratio"]})
             print(content.name, rows[-1], flush=True)
     return rows
+
+
+def draw_artefacts(content, path):
+    """Draws a frame from the originals, by the thesis's scheme with two settings, and by the default."""
+    frames = [content.frames["none"][1]]
+    for levels, threshold in ((1, 8), (2, 4)):
+        row, coded = content.code("--profile", "thesis", "--levels", levels, "--threshold", threshold, "--quantizer",
+                                  "8bit")
+        frames.append(coded[1])
+        print(f"thesis, {levels} levels, threshold {threshold}: {row['bytes']} bytes, {row['frame_psnr']:.1f} dB")
+    row, coded = content.code("--threshold", 8)
+    frames.append(coded[1])
+    print(f"default, threshold 8: {row['bytes']} bytes, {row['frame_psnr']:.1f} dB")
+    draw(frames, path)
 
 
 def draw(frames, path):
@@ -329,9 +346,14 @@ def main():
     parser.add_argument("--views", type=int, default=7, help="along an edge of the grid; an odd number")
     parser.add_argument("--size", default="480x320", help="of LF images of lfsynth")
     parser.add_argument("--frames", default="1-50x12")
-    parser.add_argument("--pictures", type=pathlib.Path, help="folder of pictures of artefacts")
+    parser.add_argument("--pictures", type=pathlib.Path, help="folder of the picture of artefacts, which alone is made")
     results.add_options(parser)
     arguments = parser.parse_args()
+    if arguments.build and arguments.pictures:
+        with tempfile.TemporaryDirectory() as temporary:
+            draw_artefacts(Content(arguments, "still", pathlib.Path(temporary)),
+                           arguments.pictures / "codec_artefacts.jpg")
+        return
     if arguments.again:
         record = json.loads(arguments.again.read_text())
     elif arguments.build:
@@ -339,7 +361,7 @@ def main():
         with tempfile.TemporaryDirectory() as temporary:
             for name in arguments.only.split(","):
                 content = Content(arguments, name, pathlib.Path(temporary) / name)
-                record["rows"][name] = measure(content, not arguments.no_peers, arguments.pictures)
+                record["rows"][name] = measure(content, not arguments.no_peers)
     else:
         parser.error("BUILD_DIR or --again is needed")
     text = results.sentence(record) + "\n\n" + "\n".join(

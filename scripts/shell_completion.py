@@ -13,7 +13,8 @@ _lfrendertools_spec() {
 @SPECS@  esac
 }
 
-# Sets `list` to the words of kind $2 of program $1: options, arguments (positional), or commands.
+# Sets `list` to the words of kind $2 of program $1: options, arguments (positional), commands, rest (the program whose
+# options may follow "--"), or without (those of its options that may not).
 _lfrendertools_list() {
   list=
   case "$1 $2" in
@@ -45,7 +46,7 @@ _lfrendertools_value() {
 
 # Completes the call of program $1, whose arguments begin at the word with number $2.
 _lfrendertools_call() {
-  local program=$1 cur=${COMP_WORDS[COMP_CWORD]} i word spec list option= arguments=()
+  local program=$1 cur=${COMP_WORDS[COMP_CWORD]} i word spec list option= without= ended= arguments=()
   if [[ $cur == "=" ]]; then cur=; fi
   cur=${cur#[\"\']}
   cur=${cur//\\/}
@@ -57,7 +58,18 @@ _lfrendertools_call() {
       continue
     elif [[ -n $option ]]; then
       option=
-    elif [[ $word == -* ]]; then
+    elif [[ $word == -- && -z $ended ]]; then
+      ended=yes
+      _lfrendertools_list "$program" rest
+      if [[ -n $list ]]; then
+        word=$list
+        _lfrendertools_list "$program" without
+        without=" $list "
+        program=$word
+        ended=
+        arguments=()
+      fi
+    elif [[ $word == -* && -z $ended ]]; then
       _lfrendertools_spec "$program" "$word"
       if [[ $spec != flag ]]; then option=$word; fi
     elif ((${#arguments[@]} > 0)) && [[ ${arguments[0]} != *... ]]; then
@@ -67,9 +79,11 @@ _lfrendertools_call() {
   if [[ -n $option ]]; then
     _lfrendertools_spec "$program" "$option"
     _lfrendertools_value
-  elif [[ $cur == -* ]]; then
+  elif [[ $cur == -* && -z $ended ]]; then
     _lfrendertools_list "$program" options
-    COMPREPLY=($(compgen -W "$list" -- "$cur"))
+    for word in $(compgen -W "$list" -- "$cur"); do
+      if [[ $without != *" $word "* ]]; then COMPREPLY+=("$word"); fi
+    done
   elif ((${#arguments[@]} > 0)); then
     _lfrendertools_spec "$program" "${arguments[0]}"
     _lfrendertools_value
@@ -157,6 +171,10 @@ def bash(descriptions):
             lists += f"    {shlex.quote(call + ' commands')}) list={shlex.quote(commands)} ;;\n"
         elif arguments:
             lists += f"    {shlex.quote(call + ' arguments')}) list={shlex.quote(' '.join(arguments))} ;;\n"
+        if description["rest"]:
+            lists += f"    {shlex.quote(call + ' rest')}) list={description['rest']['program']} ;;\n"
+            without = " ".join(description["rest"]["without"])
+            lists += f"    {shlex.quote(call + ' without')}) list={shlex.quote(without)} ;;\n"
         if " " not in call:
             ends += f"_{call}() {{ COMPREPLY=(); _lfrendertools_any {call} 1; }}\ncomplete -F _{call} {call}\n"
     return BASH.replace("@SPECS@", specs).replace("@LISTS@", lists) + ends
@@ -180,10 +198,12 @@ def zsh_action(option):
     return "_files -/" if files["folders"] else "_files"
 
 
-def zsh_specs(description):
-    """Yields the words of _arguments for the options and positional arguments."""
+def zsh_specs(description, without=()):
+    """Yields the words of _arguments for the options, except some, and for the positional arguments."""
     for option in named(description):
-        names = option["names"]
+        names = [name for name in option["names"] if name not in without]
+        if not names:
+            continue
         value = ""
         for placeholder in (option["placeholder"].split() * option["value_count"])[:option["value_count"]]:
             message = "value" if option["choices"] else zsh_text(placeholder)
@@ -194,19 +214,38 @@ def zsh_specs(description):
             begin = shlex.quote(f"({' '.join(names)})")
         else:
             begin = ""
-        alternatives = "{" + ",".join(names) + "}" if len(names) > 1 else names[0]
+        # "=" after a long name: the value is the next word, or follows after "=".
+        ends = [name + "=" * (option["value_count"] == 1 and name.startswith("--")) for name in names]
+        alternatives = "{" + ",".join(ends) + "}" if len(names) > 1 else ends[0]
         yield f"{begin}{alternatives}" + shlex.quote(f"[{zsh_text(option['summary'])}]{value}")
     for option in positional(description) if not description["commands"] else []:
         begin = "*" if option["repeats"] else "" if option["required"] else ":"
         yield shlex.quote(f"{begin}:{zsh_text(option['names'][0])}:{zsh_action(option)}")
 
 
-def zsh_function(call, description):
+def zsh_rest(name, rest, descriptions):
+    """Returns the words of a function that complete the options of another program after "--", and their function."""
+    other = dict(descriptions[rest["program"]])
+    other["groups"] = [{"options": named(other)}]
+    words = " \\\n    ".join(zsh_specs(other, rest["without"]))
+    call = (f"  local -i dashes=${{words[(ie)--]}}\n"
+            f"  if (( dashes < CURRENT )); then\n"
+            f"    words=({rest['program']} \"${{(@)words[dashes + 1, -1]}}\")\n"
+            f"    (( CURRENT -= dashes - 1 ))\n"
+            f"    {name}_rest\n"
+            f"    return\n"
+            f"  fi\n")
+    return call, f"{name}_rest() {{\n  _arguments -s -S \\\n    {words}\n}}\n"
+
+
+def zsh_function(call, descriptions):
     """Returns the function that completes a program or command."""
+    description = descriptions[call]
     name = "_" + call.replace(" ", "_")
     words = " \\\n    ".join(zsh_specs(description))
     if not description["commands"]:
-        return f"{name}() {{\n  _arguments -s -S \\\n    {words}\n}}\n"
+        rest, function = zsh_rest(name, description["rest"], descriptions) if description["rest"] else ("", "")
+        return f"{name}() {{\n{rest}  _arguments -s -S \\\n    {words}\n}}\n{function}"
     commands = " ".join(f"{command['name']}\\:{shlex.quote(zsh_text(command['summary']))}"
                         for command in description["commands"])
     cases = "".join(f"      {command['name']}) _{command['call'].replace(' ', '_')} ;;\n"
@@ -222,7 +261,7 @@ def zsh_function(call, description):
 def zsh(descriptions):
     """Returns the completion of all programs for zsh: one function, which the shell loads at the first TAB."""
     programs = [call for call in descriptions if " " not in call]
-    functions = "".join(zsh_function(call, description) for call, description in descriptions.items())
+    functions = "".join(zsh_function(call, descriptions) for call in descriptions)
     cases = "".join(f"  {name}) _{name} ;;\n" for name in programs)
     return (f"#compdef {' '.join(programs)}\n"
             "# Completion of the programs of lfrendertools for zsh, made by scripts/program_pages.py.\n"
@@ -235,6 +274,18 @@ function __lfrendertools_files
     set -l ends (string join '|' (string escape --style=regex -- $argv))
     __fish_complete_path $token | string match -ri -- "^[^\\t]*(?:/|$ends)(?:\\t.*)?\\$"
 end
+"""
+
+
+FISH_REST = """# Completes the options of another program after "--".
+function __@NAME@_rest
+    set -l words (commandline -opc)
+    set -l dashes (contains -i -- -- $words); or return
+    set -e words[1..$dashes]
+    complete -C (string join ' ' -- @PROGRAM@ (string escape -- $words) (commandline -ct)) |
+        string match -rv '^(@WITHOUT@)(\\t|$)'
+end
+complete -c @NAME@ -n 'contains -- -- (commandline -opc)' -f -a '(__@NAME@_rest)'
 """
 
 
@@ -279,7 +330,13 @@ def fish(name, descriptions):
     lines = ["# Completion for fish, made by scripts/program_pages.py."]
     calls = {command["name"]: command["call"] for command in description["commands"]}
     if not description["commands"]:
-        return "\n".join([*lines, FISH_FILES, *fish_lines(name, description)]) + "\n"
+        rest = description["rest"]
+        condition = "not contains -- -- (commandline -opc)" if rest else ""
+        lines += [FISH_FILES, *fish_lines(name, description, condition)]
+        if rest:
+            lines.append(FISH_REST.replace("@NAME@", name).replace("@PROGRAM@", rest["program"])
+                         .replace("@WITHOUT@", "|".join(rest["without"])))
+        return "\n".join(lines) + "\n"
     own = has_own_commands(description)
     first = "__fish_use_subcommand"
     if own:

@@ -161,6 +161,28 @@ class ViewsTest(ProgramTestCase):
         self.views("views", "2x2", "--overwrite")
         self.assertEqual(len(list(folder.glob("out_*_*_*.*_*.*.png"))), 9 + 3)  # one has the name of an old one
 
+    def test_overwriting_removes_views_of_an_interrupted_call(self):
+        self.write_grid()
+        folder = self.folder / "views"
+        begun = subprocess.Popen([FOCUS, "views", self.field, "--grid", "60x60", "-o", folder, "--threads", "1"],
+                                 stderr=subprocess.PIPE, text=True)
+        wait_until(lambda: len(list(folder.glob("out_*.png"))) > 20, begun)
+        begun.kill()  # nothing can be tidied up
+        begun.communicate()
+        self.assertFalse((folder / "transforms.json").exists())
+        self.fails(2, ["exists already", "--overwrite"], FOCUS, "views", self.field, "--grid", "60x60", "-o", folder)
+        self.views("views", "3x3", "--overwrite")
+        left = sorted(path.name for path in folder.iterdir() if not path.name.startswith("."))
+        self.assertEqual(len(left), 9 + 1, left)
+        # While the views are replaced, the list of the old ones does not name the new ones.
+        begun = subprocess.Popen([FOCUS, "views", self.field, "--grid", "50x50", "-o", folder, "--overwrite",
+                                  "--threads", "1"], stderr=subprocess.PIPE, text=True)
+        wait_until(lambda: len(list(folder.glob("out_*.png"))) > 30, begun)
+        begun.send_signal(signal.SIGTERM)
+        self.assertIn("--overwrite", begun.communicate()[1].splitlines()[-1])
+        self.assertEqual(begun.returncode, 5)
+        self.assertFalse((folder / "transforms.json").exists())
+
     # Errors
 
     def test_missing_lf_images_are_told(self):

@@ -14,6 +14,7 @@ import unittest
 
 import numpy as np
 
+import small_field
 from small_field import HEIGHT, PITCH, SIDE, WALL_DEPTH, WIDTH, wall, write_field
 
 EXAMPLE = RENDERER = None
@@ -46,12 +47,69 @@ class ExampleTest(unittest.TestCase):
             self.assertTrue((self.folder / move / f"frame_{last:04d}.exr").exists())
             self.assertIn(f"\nframes: {last}\n", path.read_text())
 
+    def film(self, path, name, frames):
+        """Films without filling, and returns what the renderer says."""
+        result = self.run_tool(RENDERER, self.field, path, "-o", self.folder / name, "--frames", frames,
+                               "--fill", "off")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return result.stderr
+
+    def test_an_orbit_shows_only_what_was_recorded(self):
+        # The camera turns to the subject while it moves, beyond the views of the parallel LF cameras.
+        self.addCleanup(setattr, small_field, "SIDE", SIDE)
+        small_field.SIDE = 15
+        self.field = write_field(self.folder / "large", wall)
+        path, words = self.example("--move", "orbit", "--focus", 0.04)
+        self.assertRegex(words, r"the orbit is 0\.0\d+ wide and 0\.0\d+ high in world units, \d+ % of what")
+        self.assertRegex(words, r"its frames are \d+ % as wide as a standing camera's, because LF cameras have not "
+                                r"recorded \d+ % of a frame of the larger orbit")
+        self.assertNotIn("warning", words)
+        self.assertNotIn("without rays", self.film(path, "orbit", "1-50x7"))
+
+    def test_an_orbit_around_which_no_camera_stands_is_warned_of(self):
+        # LF cameras on a circle around the subject, which look at it: beside the circle there is none.
+        calibration = json.loads(self.field.read_text())
+        for index, frame in enumerate(calibration["frames"]):
+            angle = 2 * np.pi * index / len(calibration["frames"])
+            back = np.array([np.sin(angle), 0, np.cos(angle)])
+            matrix = np.eye(4)
+            matrix[:3, :3] = np.column_stack([np.cross([0, 1, 0], back), [0, 1, 0], back])
+            matrix[:3, 3] = back * 0.5
+            frame["transform_matrix"] = matrix.tolist()
+        self.field.write_text(json.dumps(calibration))
+        path, words = self.example("--move", "orbit", "--focus", 0.5)
+        self.assertRegex(words, r"(warning: )?the orbit is \S+ wide and \S+ high in world units, \d+ %")
+        position = [list(map(float, match.split(","))) for match in
+                    re.findall(r"time: [^}]*value: \[(.*)\]", path.read_text())]
+        # All of the orbit is near its first camera; the positions alone would allow an orbit through the subject.
+        self.assertLess(np.linalg.norm(np.ptp(position, axis=0)), 0.3)
+
+    def test_moves_that_a_sparse_capture_cannot_show_are_warned_of(self):
+        random = np.random.default_rng(2)
+        self.colmap(np.concatenate([random.uniform(0.079, 0.081, 200), random.uniform(0.012, 0.03, 120)]))
+        for move, expected in (("focus-pull", "the focus pull will hardly be visible"),
+                               ("dolly", "the LF cameras are far apart"), ("static", None)):
+            _, words = self.example("--move", move)
+            self.assertIn("which holds one LF camera, because", words)
+            self.assertEqual("warning" in words, expected is not None, words)
+            self.assertIn(expected or "", words)
+
     def test_focuses_on_the_wall(self):
         path, words = self.example("--move", "static")
         focus = float(re.search(r"focus_distance: (\S+)", path.read_text()).group(1))
         self.assertAlmostEqual(focus, DEPTH, delta=0.04 * DEPTH)
         self.assertIn("places of the image", words)
         self.assertNotIn("not sure", words)
+
+    def test_the_focus_pull_stays_near_what_is_there(self):
+        for options, expected in (((), (0.9 * DEPTH, DEPTH, 1.1 * DEPTH)),
+                                  (("--focus", DEPTH), (0.7 * DEPTH, DEPTH, 1.6 * DEPTH))):
+            path, _ = self.example("--move", "focus-pull", *options)
+            keys = path.read_text().partition("keyframes:")[2]
+            distances = [float(value) for value in re.findall(r"value: ([0-9.]+)\}", keys)]
+            self.assertEqual(len(distances), 3, keys)
+            for distance, wanted in zip(distances, expected):
+                self.assertAlmostEqual(distance, wanted, delta=0.04 * DEPTH)
 
     def test_takes_the_focus_and_the_camera_it_is_given(self):
         path, _ = self.example("--move", "static", "--focus", "0.9", "--camera", "0")

@@ -261,6 +261,17 @@ class FocusStackTest(ProgramTestCase):
         for words, distances in ((f"has {len(DISTANCES)} planes", "1"),
                                  ("its plane 1 is at", ",".join(str(2 * one) for one in DISTANCES))):
             self.refused(["stack.exr", words, "--overwrite"], "stack.exr", "--distances", distances, "--resume")
+        planes = ["--distances", ",".join(map(str, DISTANCES)), "--resume"]
+        for words, options in (("made with estimator ", ["--estimator", "nearest"]),
+                               ("lens_weights", ["--lens-weights", "none"]),
+                               ("picture.format exr, and this call has exr-float", ["--format", "exr-float"]),
+                               ("seed", ["--seed", "7"]), ("max_images", ["--max-images", "9"]),
+                               ("max_angle", ["--max-angle", "20"]), ("fill", ["--fill", "off"]),
+                               ("mode", ["--mode", "hybrid"])):
+            with self.subTest(options=options):
+                self.refused(["stack.exr: exists already", words, "--overwrite"], "stack.exr", *planes, *options)
+        self.path.write_text(self.path.read_text().replace("field_of_view_deg: 50", "field_of_view_deg: 40"))
+        self.refused(["stack.exr", "was made with cameras"], "stack.exr", *planes)
 
     # Errors
 

@@ -5,11 +5,16 @@
 usage: program_pages_test.py FOLDER_OF_THE_PROGRAMS FOLDER_OF_THE_PAGES
 """
 import json
+import os
 import pathlib
+import pty
 import re
+import select
 import shutil
+import signal
 import subprocess
 import sys
+import time
 import unittest
 
 from common_options import OFFERED
@@ -125,7 +130,7 @@ class ProgramPagesTest(ProgramTestCase):
                     in_fish = f" -s {name[1:]} " if len(name) == 2 else f" -l {name[2:]} "
                     self.assertTrue(re.search(rf"^- \*\*`(-\w, )?{name}[ `,]", section, re.M), "the reference page")
                     self.assertTrue(re.search(rf"^\.TP\n.*\\fB{name}\\fR", man, re.M), "the man page")
-                    self.assertTrue(re.search(rf"^ +.*[ {{,*']{name}[,}}'\[]", function, re.M), "zsh")
+                    self.assertTrue(re.search(rf"^ +.*[ {{,*']{name}=?[,}}'\[]", function, re.M), "zsh")
                     self.assertTrue(in_fish in fish, "fish")
             for option in self.options_of(description):
                 for choice in option["choices"]:
@@ -150,7 +155,6 @@ class ProgramPagesTest(ProgramTestCase):
             result = subprocess.run(["mandoc", "-T", "lint", "-W", "warning", page], capture_output=True, text=True)
             self.assertEqual((result.returncode, result.stdout), (0, ""), page)
 
-    @unittest.skipUnless(shutil.which("zsh"), "zsh is not installed")
     def test_zsh_reads_its_completion(self):
         self.check_files(["zsh", "-n"], "zsh/site-functions", "_*")
 
@@ -217,6 +221,128 @@ class ProgramPagesTest(ProgramTestCase):
         self.assertEqual(self.completed("lfr focus s"), {"stack", "sharp"})
         self.assertEqual(self.completed("lfr focus epi e.lfs --lines n"), {"nearest"})
 
+    def rest_of_lfsubmit(self):
+        """Returns the options of lfrenderer that lfsubmit passes on."""
+        rest = self.descriptions["lfsubmit"]["rest"]
+        self.assertEqual(rest["program"], "lfrenderer")
+        self.assertLess(set(rest["without"]), set(self.names("lfrenderer")) | {"--describe"})
+        return set(self.names("lfrenderer")) - set(rest["without"])
+
+    def test_options_that_are_not_offered_after_dashes_are_those_that_lfsubmit_refuses(self):
+        package = self.folder / "p.lfp"
+        package.write_text("")
+        without = self.descriptions["lfsubmit"]["rest"]["without"]
+        for name in [*without, *self.rest_of_lfsubmit()]:
+            result = subprocess.run([BIN / "lfsubmit", package, "-o", self.folder / "film", "--", name],
+                                    capture_output=True, text=True)
+            self.assertNotEqual(result.returncode, 0)
+            self.assertEqual("cannot be given after --" in result.stderr, name in without, result.stderr)
+
+    def test_bash_completes_the_options_of_another_program_after_dashes(self):
+        (self.folder / "a.lfp").write_text("")
+        (self.folder / "e.lfs").write_text("")
+        self.assertEqual(self.completed("lfsubmit a.lfp -o film -- -"), self.rest_of_lfsubmit())
+        self.assertEqual(self.completed("lfsubmit a.lfp -- --estimator "), {"auto", "nearest", "bilinear"})
+        self.assertEqual(self.completed("lfsubmit a.lfp -- --lightfield "), {"e.lfs"})
+        self.assertEqual(self.completed("lfsubmit a.lfp -- --over"), set())
+        self.assertEqual(self.completed("lfsubmit a.lfp -- --format png "), set())
+        self.assertEqual(self.completed("lfr submit a.lfp -- --format png --lens-w"), {"--lens-weights"})
+        self.assertEqual(self.completed("lfsubmit a.lfp --eng"), {"--engine"})
+        # Other programs have no options after it, but files.
+        self.assertEqual(self.completed("lfrenderer -- --est"), set())
+        self.assertEqual(self.completed("lfrenderer -- e"), {"e.lfs"})
+
+    # zsh writes all that its completion functions offer into the file OFFERS, and after each TAB a line "=done".
+    ZSH = r"""
+bindkey -e
+PROMPT=''
+fpath=({functions} $fpath)
+autoload -Uz compinit
+compinit -u -D
+compadd() {
+  local -a found
+  if [[ " ${(j: :)@[1,(i)(-|--)]}" == *' -'[a-zA-Z]#[AOD]' '* ]]; then
+    builtin compadd "$@"
+    return
+  fi
+  builtin compadd -A found "$@"
+  if (( $#found )) print -rl -- $found >> {offers}
+  builtin compadd "$@"
+}
+at_end() { print -r -- '=done' >> {offers} }
+offer() { comppostfuncs=(at_end); _main_complete }
+zle -C offer list-choices offer
+bindkey '^I' offer
+print -r -- '=done' >> {offers}
+"""
+
+    def offers_of_zsh(self, lines):
+        """Returns {line: what zsh offers for its last word}, from an interactive zsh in a terminal."""
+        offers = self.folder / "OFFERS"
+        (self.folder / "setup.zsh").write_text(
+            self.ZSH.replace("{functions}", str(PAGES / "share/zsh/site-functions")).replace("{offers}", str(offers)))
+        os.mkdir(self.folder / "work")
+        for name in ("e.lfs", "f.yaml", "a.lfp"):
+            (self.folder / "work" / name).write_text("")
+        (self.folder / "work" / "deep").mkdir()
+        process, terminal = pty.fork()
+        if process == 0:
+            os.chdir(self.folder / "work")
+            environment = {"HOME": str(self.folder), "PATH": f"{BIN}:/usr/bin:/bin", "TERM": "dumb"}
+            os.execvpe("zsh", ["zsh", "-f", "-i"], environment)
+        try:
+            found, end = {}, time.monotonic() + 60
+            for line in (None, *lines):
+                offers.write_text("")
+                os.write(terminal, b"source ../setup.zsh\n" if line is None else line.encode() + b"\t")
+                shown = b""
+                while not offers.read_text().endswith("=done\n"):
+                    self.assertLess(time.monotonic(), end, (line, shown))
+                    if select.select([terminal], [], [], 0.05)[0]:
+                        shown += os.read(terminal, 65536)
+                found[line] = set(offers.read_text().splitlines()) - {"=done"}
+                os.write(terminal, b"\x15")  # removes the line
+            return found
+        finally:
+            os.kill(process, signal.SIGKILL)
+            os.waitpid(process, 0)
+            os.close(terminal)
+
+    def test_zsh_completes(self):
+        estimators = {"auto", "nearest", "bilinear"}
+        expected = {
+            "lfrenderer a b --estimator ": estimators,
+            "lfrenderer a b --estimator=b": {"bilinear"},
+            "lfrenderer --lens-w": {"--lens-weights"},
+            "lfrenderer --lightfield ": {"e.lfs", "deep"},
+            "lfrenderer ": {"e.lfs", "f.yaml", "a.lfp", "deep"},
+            "lfsynth ": {"still-life", "lights", "chart", "foliage"},
+            "lffocus s": {"stack", "sharp"},
+            "lffocus epi e.lfs --lines ": {"auto", "recorded", "nearest", "linear"},
+            "lfr ren": {"render"},
+            "lfr render --estimator n": {"nearest"},
+            "lfr focus epi --lines n": {"nearest"},
+            "lfsubmit ": {"a.lfp", "deep"},
+            "lfsubmit a.lfp --eng": {"--engine"},
+            "lfsubmit a.lfp -- --estimator ": estimators,
+            "lfsubmit a.lfp -- --lightfield e": {"e.lfs"},
+            "lfsubmit a.lfp -- --over": set(),
+            "lfsubmit a.lfp -- --format png --lens-w": {"--lens-weights"},
+            "lfr submit a.lfp -- --lens-w": {"--lens-weights"}}
+        found = self.offers_of_zsh(expected)
+        for line, words in expected.items():
+            with self.subTest(line=line):
+                self.assertEqual(found[line], words)
+
+    def test_zsh_offers_every_option(self):
+        lines = {call: f"{call} --" for call in OFFERED}
+        found = self.offers_of_zsh([*lines.values(), "lfsubmit a.lfp -- --"])
+        for call, line in lines.items():
+            with self.subTest(call=call):
+                self.assertEqual(found[line], {name for name in self.names(call) if name.startswith("--")})
+        self.assertEqual(found["lfsubmit a.lfp -- --"],
+                         {name for name in self.rest_of_lfsubmit() if name.startswith("--")})
+
     @unittest.skipUnless(shutil.which("fish"), "fish is not installed")
     def test_fish_completes(self):
         (self.folder / "e.lfs").write_text("")
@@ -233,7 +359,13 @@ class ProgramPagesTest(ProgramTestCase):
                 ("lfr ren", {"render"}),
                 ("lfr render --lightfield ", {"e.lfs", "deep/"}),
                 ("lfr render --estimator n", {"nearest"}),
-                ("lfr focus epi --lines n", {"nearest"})):
+                ("lfr focus epi --lines n", {"nearest"}),
+                ("lfsubmit a.lfp --eng", {"--engine"}),
+                ("lfsubmit a.lfp -- --estimator ", {"auto", "nearest", "bilinear"}),
+                ("lfsubmit a.lfp -- --format png --lens-w", {"--lens-weights"}),
+                ("lfsubmit a.lfp -- --over", set()),
+                ("lfsubmit a.lfp -- --lightfield e", {"e.lfs"}),
+                ("lfr submit a.lfp -- --lens-w", {"--lens-weights"})):
             with self.subTest(line=line):
                 script = f"set fish_complete_path {folder}; complete -C '{line}'"
                 environment = {"HOME": str(self.folder), "PATH": f"{BIN}:/usr/bin:/bin"}
@@ -245,4 +377,4 @@ class ProgramPagesTest(ProgramTestCase):
 
 if __name__ == "__main__":
     BIN, PAGES = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
-    unittest.main(argv=sys.argv[:1], verbosity=2)
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]], verbosity=2)

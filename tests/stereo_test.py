@@ -290,7 +290,18 @@ class StereoTest(ProgramTestCase):
         cv2.imwrite(str(small), np.zeros((HEIGHT, 2, 3), np.uint8))
         self.fails(3, ["small.png", "2 x 160"], QUILT, self.stereo / "frame_0001.png", small, "-o", out, "--layout",
                    "side-by-side")
+        # Numbers of views that divide the number of frames, but are not those of the path.
+        out = self.folder / "film.exr"
+        self.fails(3, ["frame_0004.exr", "4 views of moment 1", "that of the next frame is its right neighbour"], QUILT,
+                   self.quilt, "-o", out, "--views", "2x2")
+        self.fails(3, ["frame_0007.exr", "not the right neighbour", "frame_0006.exr", "6 and 7 of the 12"], QUILT,
+                   self.quilt, "-o", out, "--views", "4x3")
+        self.fails(3, ["frame_0002.exr", "2 views of moment 1"], QUILT, self.quilt, "-o", out, "--layout",
+                   "side-by-side")
         self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["small.png"])
+        # The eyes may change places, for crossed eyes.
+        frames = [self.stereo / f"frame_{i:04d}.png" for i in (2, 1, 4, 3)]
+        self.join(*frames, "-o", self.folder / "crossed.png", "--layout", "side-by-side")
 
     def test_files_are_kept_or_replaced_on_demand_only(self):
         call = [self.stereo, "-o", self.folder / "film.png", "--layout", "over-under"]

@@ -237,6 +237,10 @@ Result<Rendered> RenderStack(const Arguments& a, const CommonOptions& common, Th
   options.render.folder.inputs = FilesOfPath(a.frame.path);
   options.render.folder.inputs.emplace_back(a.render.light_field.path);
   options.render.folder.output_folder = StackFolder(options.output);
+  std::optional<double> max_angle_rad;
+  if (a.render.max_angle_deg > 0) max_angle_rad = RadiansFromDegrees(a.render.max_angle_deg);
+  options.inputs = StackInputs(light_field, stack, options, *ImageOrderOf(a.render.order),
+                               common.seed, max_angle_rad, a.render.densify);
   LF_ASSIGN_OR_RETURN(const bool is_finished, IsFinishedStack(stack, options));
   if (is_finished) return Rendered{std::nullopt, options, std::move(stack)};
   LF_RETURN_IF_ERROR(CheckFocusStack(light_field, options));
@@ -249,8 +253,7 @@ Result<Rendered> RenderStack(const Arguments& a, const CommonOptions& common, Th
     missing = std::move(densified->missing);
   }
   Package package = PackageOfAll(std::move(light_field), stack, common.seed);
-  if (a.render.max_angle_deg > 0)
-    package.choices.max_angle_rad = RadiansFromDegrees(a.render.max_angle_deg);
+  if (max_angle_rad) package.choices.max_angle_rad = max_angle_rad;
   LF_RETURN_IF_ERROR(PutInOrder(*ImageOrderOf(a.render.order), options.render, pool, &package));
   return Rendered{RenderFocusStack(std::move(package), options, pool, progress), options,
                   std::move(stack), std::move(missing)};

@@ -170,7 +170,9 @@ std::string ReportText(const ImportReport& report) {
             fmt::format("{} to {}", Brief(capture.depth_range->near_w),
                         Brief(capture.depth_range->far_w)),
             &lines);
-  AddLine("unit", fmt::format("1 world unit is {} m", capture.unit_m), &lines);
+  AddLine("unit",
+          fmt::format("1 world unit counts as {} m; if it is not, see --scale", capture.unit_m),
+          &lines);
   if (capture.alpha)
     AddLine("alpha", TextOfAlpha(*capture.alpha, capture.background, capture.keeps_opacity),
             &lines);

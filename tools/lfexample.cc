@@ -145,6 +145,8 @@ int main(int argc, char** argv) {
     LF_RETURN_IF_ERROR(lf::WriteFileAtomically(output, example.yaml));
     if (!example.doubt.empty())
       WarnOfDoubt(example, input.path, input.Words(), output, move, camera);
+    if (!example.move_warning.empty()) lf::LogWarning("{}", example.move_warning);
+    if (!example.move_note.empty()) lf::LogInfo("{}", example.move_note);
     lf::LogInfo("{}: starts at LF camera {} ({}), focus at {:.4g} ({}), aperture {:.4g} ({})",
                 output, options.camera.value, light_field.image_names[options.camera.value],
                 example.focus_distance_w, example.focus_reason, example.aperture_diameter_w,

@@ -53,6 +53,8 @@ is that of the first package that failed, and the last line names the missing fr
 every frame was written, but LF images were left out because they are missing or broken. The last
 line then says how many in which packages; to accept them, add "-- --allow-missing N". See
 doc/cluster.md.)",
+    .rest_program = "lfrenderer",
+    .refused_in_rest = lf::kRefusedAfterDashes,
 };
 
 using lf::ClusterJob;

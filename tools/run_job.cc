@@ -10,6 +10,7 @@
 #include "tools/common/progress.h"
 #include "tools/job_table.h"
 
+#include "lf/core/byte_text.h"
 #include "lf/core/log.h"
 #include "lf/core/shell_word.h"
 #include "lf/distribute/cluster/farm_files.h"
@@ -63,9 +64,9 @@ Result<void> RunJob(ClusterJob job, FileLock lock, const std::vector<size_t>& nu
   if (job.engine == ClusterEngine::kLocal) {
     if (!numbers.empty())
       LogInfo(
-          "{} packages, {} at a time, {} threads and {} MiB each; lfsubmit --status {} shows the "
+          "{} packages, {} at a time, {} threads and {} each; lfsubmit --status {} shows the "
           "progress",
-          numbers.size(), job.at_once, job.thread_count, job.memory_bytes >> 20, folder);
+          numbers.size(), job.at_once, job.thread_count, ByteText(job.memory_bytes), folder);
     outcome = RunLocally(job, *held, numbers, stop, [&] { Show(job, meter); });
   } else {
     LF_RETURN_IF_ERROR(SubmitToSlurm(&job, numbers));

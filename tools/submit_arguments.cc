@@ -27,14 +27,6 @@ namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
-// Options of lfrenderer that are refused after --: those that the job decides on, and those with
-// which lfrenderer would print a text and render nothing.
-constexpr std::array kOfTheJob = {"-o",         "--output", "--resume",           "--overwrite",
-                                  "--progress", "--json",   "--frames",           "--video",
-                                  "--shard",    "--finish", "--threads",          "--memory",
-                                  "-q",         "--quiet",  "--no-contact-sheet", "--clamp-frames"};
-constexpr std::array kRenderNothing = {"--help", "-h", "--help-all", "--version", "--describe"};
-
 uint64_t MachineMemoryBytes() {
   const long pages = ::sysconf(_SC_PHYS_PAGES), page_bytes = ::sysconf(_SC_PAGESIZE);
   return pages > 0 && page_bytes > 0
@@ -85,12 +77,14 @@ Result<Words> SplitWords(const std::vector<std::string>& words) {
     const auto is = [&](const std::string& word) {
       return argument == word || argument.starts_with(word + "=");
     };
-    if (std::any_of(kOfTheJob.begin(), kOfTheJob.end(), is))
+    if (std::any_of(kRefusedAfterDashes.begin() + kRenderNothingCount, kRefusedAfterDashes.end(),
+                    is))
       return UsageError(fmt::format(
           "{}: cannot be given after --, because lfsubmit itself decides on this option of "
           "lfrenderer: leave it out, or give it to lfsubmit (before --), if lfsubmit has it",
           argument));
-    if (std::any_of(kRenderNothing.begin(), kRenderNothing.end(), is))
+    if (std::any_of(kRefusedAfterDashes.begin(), kRefusedAfterDashes.begin() + kRenderNothingCount,
+                    is))
       return UsageError(fmt::format(
           "{}: cannot be given after --, because lfrenderer would only print a text and render "
           "nothing: leave it out, or call lfrenderer {}",

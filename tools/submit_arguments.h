@@ -3,6 +3,8 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <array>
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -15,6 +17,17 @@
 #include "lf/distribute/cluster/job.h"
 
 namespace lf {
+
+// Options of lfrenderer that are refused after --. The first kRenderNothingCount make it print a
+// text and render nothing; on the others, the job decides.
+inline constexpr size_t kRenderNothingCount = 5;
+inline constexpr std::array kRefusedAfterDashes = {
+    "--help",        "-h",         "--help-all", "--version",
+    "--describe",    "-o",         "--output",   "--resume",
+    "--overwrite",   "--progress", "--json",     "--frames",
+    "--video",       "--shard",    "--finish",   "--threads",
+    "--memory",      "-q",         "--quiet",    "--no-contact-sheet",
+    "--clamp-frames"};
 
 struct SubmitArguments {
   std::vector<std::string> words;  // PACKAGES, and after "--" the arguments of lfrenderer

@@ -15,7 +15,7 @@
 namespace lf {
 namespace {
 
-constexpr double kMostSpacings = 8, kLeastSpacings = 2.5;  // limits, except for kSharpSpacings
+constexpr double kMostSpacings = 8;  // limit, as kLeastSpacings
 // An aperture of this diameter contains only the LF camera at its middle. A wider one could contain
 // others, because in captures shaped like rings the hat weights of other LF cameras reach far into
 // the lens.
@@ -149,9 +149,13 @@ ExampleAperture ChooseAperture(const ExampleFocus& focus, double fx_px, double s
                            1 / focus.distance_w - 1 / std::max(focus.far_w, focus.distance_w));
   const double copies_px = fx_px * spacing_w * range_per_w;
   if (copies_px > kMostCopies_px)
-    return {kSharpSpacings, fmt::format("which holds one LF camera, because out-of-focus objects "
-                                        "would otherwise appear as copies up to {:.0f} px apart",
-                                        copies_px)};
+    return {kSharpSpacings,
+            fmt::format("which holds one LF camera, because out-of-focus objects would otherwise "
+                        "appear as copies up to {:.0f} px apart",
+                        copies_px),
+            fmt::format("objects out of focus are displaced by up to {:.0f} px from one to the "
+                        "next",
+                        copies_px)};
   const double spacings = std::clamp(kMostSpacings * kGoodCopies_px / std::max(copies_px, 1e-9),
                                      kLeastSpacings, kMostSpacings);
   return {spacings, fmt::format("{:.2g} spacings of LF cameras, for which copies of out-of-focus "

@@ -32,9 +32,13 @@ struct ExampleFocus {
 Result<ExampleFocus> ChooseFocus(const LightField& light_field, const LfImageStore& store,
                                  const ExampleOptions& options, double spacing_w, ThreadPool& pool);
 
+// Diameter, as a multiple of the spacing of the LF cameras, of the smallest aperture that blurs.
+inline constexpr double kLeastSpacings = 2.5;
+
 struct ExampleAperture {
   double spacings = 0;  // diameter of the aperture, as a multiple of the spacing of the LF cameras
   std::string reason;
+  std::string copies = {};  // if the aperture holds one LF camera: what a wider one would show
 };
 
 ExampleAperture ChooseAperture(const ExampleFocus& focus, double fx_px, double spacing_w);

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "lf/camera/ray_through.h"
 #include "lf/core/log.h"
 #include "lf/focus/example_focus.h"
+#include "lf/focus/orbit_coverage.h"
 #include "lf/light_field/model/capture_geometry.h"
 
 namespace lf {
@@ -81,6 +83,16 @@ Intrinsics InscribedFrame(const PinholeCamera& camera, const Vec3& up_world) {
   return frame_of(seen);
 }
 
+// Returns the first and the last focus distance of a focus pull. It ends at the depths of the scene
+// if they are known, so that each of its pictures is sharp somewhere, but passes the focus by a
+// tenth on either side, so that a flat scene comes into focus and leaves it.
+std::pair<double, double> PullOf(const ExampleFocus& focus) {
+  const double near_w = 0.7 * focus.distance_w, far_w = 1.6 * focus.distance_w;
+  if (!(focus.near_w > 0)) return {near_w, far_w};
+  return {std::clamp(focus.near_w, near_w, 0.9 * focus.distance_w),
+          std::clamp(focus.far_w, 1.1 * focus.distance_w, far_w)};
+}
+
 // The keyframes of the path. At time 0, they have the values that the sections above them in the
 // file state.
 struct Movement {
@@ -89,20 +101,22 @@ struct Movement {
 };
 
 Movement MakeMovement(ExampleMove move, const PinholeCamera& camera, const Reach& reach,
-                      double focus_distance_w, double aperture_diameter_w) {
+                      const ExampleFocus& focus, double aperture_diameter_w, const OrbitWish& wish,
+                      const Orbit& orbit) {
+  const double focus_distance_w = focus.distance_w;
   const Vec3 centre = camera.CentreWorld();
   Movement movement{"keyframes:\n", focus_distance_w};
   if (move == ExampleMove::kStatic)
     return {"# Nothing moves. Add accelerations: or keyframes: to change that.\n",
             focus_distance_w};
   if (move == ExampleMove::kFocusPull) {
-    movement.first_focus_distance_w = 0.7 * focus_distance_w;
+    const auto [from_w, to_w] = PullOf(focus);
+    movement.first_focus_distance_w = from_w;
     movement.keyframes += fmt::format(
         "  # From near to far; lens quantities never overshoot between keys.\n"
         "  focus_distance: [{{time: 0, value: {:.6g}}}, {{time: {:.6g}, value: {:.6g}}}, "
         "{{time: {:.6g}, value: {:.6g}}}]\n",
-        movement.first_focus_distance_w, kDuration_s / 2, focus_distance_w, kDuration_s,
-        1.6 * focus_distance_w);
+        from_w, kDuration_s / 2, focus_distance_w, kDuration_s, to_w);
     return movement;
   }
   if (move == ExampleMove::kDolly) {
@@ -120,20 +134,61 @@ Movement MakeMovement(ExampleMove move, const PinholeCamera& camera, const Reach
         Text(centre), kDuration_s, Text(centre + step_w * camera.ForwardWorld()));
     return movement;
   }
-  // The lens moves along an ellipse, from the start to the left and back. The ellipse is half as
-  // wide as the captured positions would allow.
-  const double right_w = std::max(0.0, reach.right_w - aperture_diameter_w / 2) / 2;
-  const double up_w = std::max(0.0, reach.up_w - aperture_diameter_w / 2) / 2;
-  constexpr int kKeys = 8;
-  movement.keyframes += "  # Once around an ellipse within the captured positions.\n  position:\n";
-  for (int i = 0; i <= kKeys; ++i) {
-    const double angle = 2 * kPi * i / kKeys;
-    const Vec3 point = centre + right_w * (std::cos(angle) - 1) * camera.RightWorld() +
-                       up_w * std::sin(angle) * camera.UpWorld();
-    movement.keyframes +=
-        fmt::format("    - {{time: {:.6g}, value: {}}}\n", kDuration_s * i / kKeys, Text(point));
+  movement.keyframes +=
+      "  # Once around an ellipse, as far as LF cameras have recorded the frames.\n  position:\n";
+  for (int i = 0; i <= kOrbitKeys; ++i) {
+    const double turn = i / double{kOrbitKeys};
+    movement.keyframes += fmt::format("    - {{time: {:.6g}, value: {}}}\n", kDuration_s * turn,
+                                      Text(OrbitPosition(wish, orbit.scale, turn)));
   }
   return movement;
+}
+
+// Returns the frame around the middle of `frame` that has this share of its width and height.
+Intrinsics Cropped(const Intrinsics& frame, double share) {
+  if (share == 1) return frame;
+  const int width = Even(static_cast<int>(std::lround(share * frame.width_px)));
+  const int height = Even(static_cast<int>(std::lround(share * frame.height_px)));
+  return {frame.fx_px, frame.fy_px, width / 2.0, height / 2.0, 0, width, height};
+}
+
+// Tells how far the orbit is from the one that the positions of the LF cameras would allow.
+void TellOrbit(const OrbitWish& wish, const Orbit& orbit, ExamplePath* example) {
+  constexpr double kFewUnseen = 0.01;
+  if (orbit.scale == 1 && orbit.crop == 1 && orbit.unseen <= kFewUnseen) return;
+  const std::string size = fmt::format(
+      "the orbit is {:.3g} wide and {:.3g} high in world units, {:.0f} % of what the positions of "
+      "the LF cameras would allow, and its frames are {:.0f} % as wide as a standing camera's, "
+      "because LF cameras have not recorded {:.0f} % of a frame of the larger orbit",
+      2 * orbit.scale * wish.right_w, 2 * orbit.scale * wish.up_w, 100 * orbit.scale,
+      100 * orbit.crop, 100 * orbit.unseen_of_largest);
+  if (orbit.unseen <= kFewUnseen)
+    example->move_note = size;
+  else
+    example->move_warning = fmt::format(
+        "{}. Even in this orbit they have not recorded {:.0f} % of a frame, which will be black: "
+        "begin at an LF camera that has neighbours on all sides (--camera), or let the camera "
+        "stand (--move focus-pull)",
+        size, 100 * orbit.unseen);
+}
+
+// Warns of moves that a sparse capture cannot show. `copies` is the reason of its small aperture.
+void TellSparse(ExampleMove move, double spacing_w, const std::string& copies,
+                ExamplePath* example) {
+  if (!example->move_warning.empty()) return;
+  if (move == ExampleMove::kFocusPull)
+    example->move_warning = fmt::format(
+        "the focus pull will hardly be visible, because the aperture holds one LF camera, and such "
+        "a picture is sharp everywhere. For blur, put virtual LF images between the recorded ones "
+        "(lfdensify), or set aperture_diameter to {:.3g}, which shows copies; --move dolly moves "
+        "the camera instead",
+        kLeastSpacings * spacing_w);
+  else if (move != ExampleMove::kStatic)
+    example->move_warning = fmt::format(
+        "the LF cameras are far apart ({}): where the camera passes between them, the film shows "
+        "the pictures of several. Put virtual LF images between the recorded ones (lfdensify, "
+        "or lfrenderer --densify), or record more",
+        copies);
 }
 
 }  // namespace
@@ -201,10 +256,28 @@ Result<ExamplePath> MakeExamplePath(const LightField& light_field, const LfImage
   example.aperture_diameter_w =
       std::min(aperture.spacings * spacing_w, std::max(kLeastOfBand * spacing_w, largest_w));
 
-  const Movement movement =
-      MakeMovement(options.move, camera, reach, focus.distance_w, example.aperture_diameter_w);
   const Vec3 up = LevelUp(light_field, camera);
-  const Intrinsics frame = InscribedFrame(camera, up);
+  Intrinsics frame = InscribedFrame(camera, up);
+  // The ellipse is at most half as wide as the captured positions would allow.
+  const double radius_w = example.aperture_diameter_w / 2;
+  const OrbitWish wish = {camera,
+                          frame,
+                          up,
+                          focus.distance_w,
+                          radius_w,
+                          spacing_w,
+                          std::max(0.0, reach.right_w - radius_w) / 2,
+                          std::max(0.0, reach.up_w - radius_w) / 2};
+  Orbit orbit;
+  if (options.move == ExampleMove::kOrbit) {
+    orbit = ChooseOrbit(light_field, wish);
+    frame = Cropped(frame, orbit.crop);
+    TellOrbit(wish, orbit, &example);
+  }
+  if (aperture.spacings < kLeastSpacings && focus.doubt.empty())
+    TellSparse(options.move, spacing_w, aperture.copies, &example);
+  const Movement movement =
+      MakeMovement(options.move, camera, reach, focus, example.aperture_diameter_w, wish, orbit);
   const double field_of_view_deg =
       DegreesFromRadians(2 * std::atan(frame.width_px / (2 * frame.fx_px)));
   const double focal_length_mm = kNominalSensorWidth_mm * frame.fx_px / frame.width_px;

@@ -37,6 +37,10 @@ struct ExamplePath {
   std::string focus_reason;  // how the focus distance was found, for people
   double aperture_diameter_w = 0;
   std::string aperture_reason;  // reason of the diameter, to be printed after "DIAMETER, "
+  // How the move differs from the one that was asked for, and why the film may disappoint; empty if
+  // there is nothing to say.
+  std::string move_note;
+  std::string move_warning;
   // The reason why the focus may be wrong; empty if the focus is sure. If there is a doubt,
   // candidates_w holds at most three focus distances to try, the most likely first.
   std::string doubt;
@@ -60,6 +64,11 @@ Result<LfImageId> FirstCamera(const LightField& light_field, const LfImageStore&
 //   ghosts would otherwise be visible. It is never wider than the capture or 2.2 spacings,
 //   whichever is larger. If the ghosts are more than 16 pixels apart, or the focus is not sure, the
 //   lens is almost a pinhole, and the first frame is the view of one LF camera.
+// - Focus pull: through the depths found in the scene, from at least 0.7 to at most 1.6 times the
+//   focus distance.
+// - Orbit: at most half as wide and high as the positions of the nearest 400 LF cameras. If LF
+//   cameras have not recorded 1 % of a frame, the orbit is smaller, and the frames are cropped to
+//   as little as 70 % of their width; move_note tells so, or move_warning if that is not enough.
 // - Picture: the largest rectangle within the view of the LF camera, in the proportions of the LF
 //   image. Its horizon is level if the LF camera is rolled by at most 30 degrees against the mean
 //   up direction of all LF cameras.

@@ -61,7 +61,8 @@ struct DepthCamera {
   }
 };
 
-Result<DepthCamera> CameraOf(const CameraFacts& facts, double unit_m, const std::string& name) {
+Result<DepthCamera> CameraOf(const StatedProjection& facts, double unit_m,
+                             const std::string& name) {
   if (!facts.world_to_ndc)
     return InputError(
         fmt::format("{}: has no attribute worldToNDC, so that its camera is not known: give a "
@@ -119,7 +120,7 @@ Result<DepthPoints> ReadDepthMap(const fs::path& file, const Vec3& origin, doubl
   const std::string name = file.string();
   LF_ASSIGN_OR_RETURN(const PictureHeader header, ReadPictureHeader(file));
   LF_ASSIGN_OR_RETURN(const DepthChannels channels, ChannelsOf(header.info, name));
-  LF_ASSIGN_OR_RETURN(const DepthCamera camera, CameraOf(header.camera, unit_m, name));
+  LF_ASSIGN_OR_RETURN(const DepthCamera camera, CameraOf(header.projection, unit_m, name));
   LF_ASSIGN_OR_RETURN(const StoredImage stored, ReadImage(file));
   const auto* const picture = std::get_if<Image<float>>(&stored);
   if (picture == nullptr)

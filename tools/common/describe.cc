@@ -117,7 +117,12 @@ std::string DescriptionOf(const CLI::App& app, const HelpTexts& texts,
                {"details", WithJoinedLines(texts.details)},
                {"exit_codes", kExitCodes},
                {"commands", Json::array()},
+               {"rest", nullptr},
                {"groups", Json::array()}};
+  if (*texts.rest_program != '\0')
+    json["rest"] = {{"program", texts.rest_program},
+                    {"without", std::vector<std::string>(texts.refused_in_rest.begin(),
+                                                         texts.refused_in_rest.end())}};
   for (const CommandText& command : commands)
     json["commands"].push_back(
         {{"name", command.name}, {"call", command.call}, {"summary", command.summary}});

@@ -15,6 +15,8 @@
 //   "commands": [{"name": "stack",         first words that have an own description; may be empty
 //                 "call": "lffocus stack",     the program or command that runs, with --describe
 //                 "summary": "..."}],          empty if only its own description states it
+//   "rest": {"program": "lfrenderer",      program whose options may follow "--"; null: none
+//            "without": ["-o", ...]},      names of those of its options that are refused there
 //   "groups": [{"name": "Input",           in the order of --help-all
 //               "shown": true,             true if --help shows the group, too
 //               "options": [...]}]         positional arguments first

@@ -15,6 +15,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -49,6 +50,10 @@ struct HelpTexts {
   const char* usage = "";     // one line for each way to call the program
   const char* examples = "";  // one line for each command
   const char* details = "";   // paragraphs of --help-all: what is written, signals, ...
+  // The program whose options may follow "--", such as "lfrenderer", and the names of those of its
+  // options that are refused there.
+  const char* rest_program = "";
+  std::span<const char* const> refused_in_rest = {};
 };
 
 // A command, which is the first word of a call and has a help of its own.

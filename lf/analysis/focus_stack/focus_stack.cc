@@ -16,6 +16,7 @@
 #include "lf/film/develop/video.h"
 #include "lf/pixels/files/exr_parts.h"
 #include "lf/render/pipeline/check_outputs.h"
+#include "lf/render/pipeline/setup_inputs.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -70,6 +71,26 @@ Result<void> CheckFile(const FocusStackOptions& options) {
   return CheckVideoTarget(options.output);
 }
 
+constexpr const char* kInputsAttribute = "lf:stack_inputs";
+
+// Returns the inputs as lines of key and value, and back.
+std::string TextOfInputs(const RunInputs& inputs) {
+  std::string text;
+  for (const auto& [key, value] : inputs) text += fmt::format("{} {}\n", key, OneLine(value));
+  return text;
+}
+RunInputs InputsOfText(const std::string& text) {
+  RunInputs inputs;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string line = text.substr(begin, end - begin);
+    const size_t blank = std::min(line.find(' '), line.size());
+    inputs.emplace_back(line.substr(0, blank), line.substr(std::min(blank + 1, line.size())));
+    begin = end + 1;
+  }
+  return inputs;
+}
+
 // Returns the planes in the order in which a video shows them.
 std::vector<FrameId> ShownPlanes(size_t count, bool back_and_forth) {
   std::vector<FrameId> planes;
@@ -109,7 +130,8 @@ class StackOutputs {
     std::vector<ExrPart> parts;
     for (const FrameId plane : ShownPlanes(stack_.frame_count(), false))
       parts.push_back({PathOf(plane), PartName(plane)});
-    return JoinExr(options_.output, parts, [this] { return IsStopped(); });
+    return JoinExr(options_.output, parts, [this] { return IsStopped(); },
+                   {{kInputsAttribute, TextOfInputs(options_.inputs)}});
   }
 
   Result<void> WriteVideo() const {
@@ -177,7 +199,42 @@ Result<bool> IsFinishedStack(const CameraPath& stack, const FocusStackOptions& o
       return refuse(fmt::format("its plane {} is at {} world units, and this call asks for {}",
                                 i + 1, (*distances_w)[i], asked_w));
   }
+  const std::optional<std::string> text = TextOfFirstPart(options.output, kInputsAttribute);
+  if (!text) return refuse("does not tell how it was made");
+  const auto difference =
+      FirstDifference(InputsOfText(*text), InputsOfText(TextOfInputs(options.inputs)));
+  if (difference) return refuse(difference->Text("was made with", "and this call has"));
   return true;
+}
+
+RunInputs StackInputs(const LightField& light_field, const CameraPath& stack,
+                      const FocusStackOptions& options, ImageOrder order, uint64_t seed,
+                      std::optional<double> max_angle_rad, bool densifies) {
+  const FilmOptions& film = options.render.film;
+  RunChoices choices;
+  choices.reading = film.reading;
+  choices.back_end = film.back_end;
+  choices.order = order;
+  choices.seed = seed;
+  choices.lens_weights = film.lens_weights;
+  choices.max_image_count = film.max_image_count;
+  choices.max_angle_rad = max_angle_rad;
+  choices.stop_at_samples = film.stop_at_samples;
+  choices.stop_at_noise = film.stop_at_noise;
+  choices.format = NameOf(options.render.folder.format);
+  choices.smooth_below = film.smooth_below;
+  choices.fill_radius_px = film.fill_radius_px;
+  choices.adds_opacity = film.adds_opacity;
+  choices.look = options.render.folder.picture;
+  const std::string cameras = HashOfCameras(stack);
+  RunInputs inputs = InputsOfRays(IdentityOf(light_field), light_field.encoding, choices);
+  for (const RunInputs& more :
+       {InputsOfRebinning(film, film.rebin.max_cells, cameras), InputsOfPicture(choices)})
+    inputs.insert(inputs.end(), more.begin(), more.end());
+  inputs.emplace_back("cameras", cameras);
+  inputs.emplace_back("densify", densifies ? "on" : "off");
+  inputs.emplace_back("guard", film.guard ? "on" : "off");
+  return inputs;
 }
 
 Result<RenderReport> RenderFocusStack(Package package, const FocusStackOptions& options,

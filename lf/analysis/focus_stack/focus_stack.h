@@ -4,8 +4,10 @@
 // that fit in the memory together, and each picture has the bits of a single render.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "lf/camera/path/camera_path.h"
@@ -16,6 +18,8 @@
 #include "lf/render/package/package.h"
 #include "lf/render/pipeline/render.h"
 #include "lf/render/state/report.h"
+#include "lf/render/state/run_inputs.h"
+#include "lf/selection/image_order.h"
 
 namespace lf {
 
@@ -42,6 +46,9 @@ struct FocusStackOptions {
   // True: the video goes back from the last plane to the first, so that it can be repeated. Used by
   // kVideo.
   bool back_and_forth = false;
+  // Inputs that decide the pictures, besides the focus distances (StackInputs()): recorded in an
+  // EXR file, so that IsFinishedStack() finds that a call asks for another stack.
+  RunInputs inputs = {};
   // Options of the render. RenderFocusStack() sets folder.output_folder, folder.complete and, for
   // a file, folder.contact_sheet. `frames` must be empty. For a file, folder.video must be unset,
   // folder.keep_plates false, and folder.format an EXR format (kExr) or kPng8 (kVideo).
@@ -54,9 +61,19 @@ struct FocusStackOptions {
 // something else. kOutput: ffmpeg is missing.
 Result<void> CheckFocusStack(const LightField& light_field, const FocusStackOptions& options);
 
+// Returns the inputs that decide the pictures of a stack: the light field, the cameras, and the
+// options as they are given. "auto" is not resolved, because this takes a look at the LF images.
+//   light_field  as opened, before it is densified
+//   stack        path of FocusStackPath()
+//   options      options.render.film and options.render.folder are used
+//   order, seed, max_angle_rad, densifies  choices of the package
+RunInputs StackInputs(const LightField& light_field, const CameraPath& stack,
+                      const FocusStackOptions& options, ImageOrder order, uint64_t seed,
+                      std::optional<double> max_angle_rad, bool densifies);
+
 // Returns true if `resume` is set, the output is a file that exists, and no render of it is
 // unfinished: there is nothing left to do. kUsage: it is an EXR file with other planes than the
-// stack, or of something else. Videos do not tell their planes.
+// stack, made with other `inputs`, or of something else. Videos tell neither planes nor inputs.
 //   stack  path of FocusStackPath()
 Result<bool> IsFinishedStack(const CameraPath& stack, const FocusStackOptions& options);
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "lf/analysis/lens_statistics/lens_ranks.h"
+#include "lf/core/byte_text.h"
 #include "lf/core/image.h"
 #include "lf/core/large_vector.h"
 #include "lf/film/plate/sensor_plate.h"
@@ -189,9 +190,9 @@ class StatisticMaker {
     const size_t others = plan_.total_bytes + result_bytes;
     if (options_.memory_bytes < others + row_bytes)
       return OutputError(fmt::format(
-          "--memory {} MiB is too small: the values of a row of {} elements in {} LF images, the "
+          "--memory {} is too small: the values of a row of {} elements in {} LF images, the "
           "sums of a frame and two LF images need at least {} MiB",
-          options_.memory_bytes / kMiB, width_, order_.size(), (others + row_bytes) / kMiB + 1));
+          ByteText(options_.memory_bytes), width_, order_.size(), (others + row_bytes) / kMiB + 1));
     const size_t rows = (options_.memory_bytes - others) / row_bytes;
     return static_cast<int>(std::min(rows, static_cast<size_t>(height_)));
   }

@@ -23,6 +23,9 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kViewsProgram = "lffocus";  // lf_written_by
+constexpr const char* kList = "transforms.json";
+// Lists the views while they are written, so that those of an interrupted call are known.
+constexpr const char* kUnfinishedList = "transforms.json.unfinished";
 constexpr uint32_t kMost8 = 255, kMost16 = 65535;
 
 template <class T>
@@ -86,6 +89,23 @@ LightField FieldOfViews(const LightField& light_field, const ViewGrid& grid, Vie
 bool IsViewName(const std::string& name) {
   static const std::regex pattern(R"(out_\d{2,}_\d{2,}_-?\d+\.\d{6}_-?\d+\.\d{6}\.(png|exr))");
   return std::regex_match(name, pattern);
+}
+
+// Returns the views in the folder that one of its lists names, if WriteViewFolder() wrote the list
+// and nobody changed it since.
+std::vector<fs::path> ListedViews(const fs::path& folder, const char* list) {
+  std::error_code error;
+  if (!fs::exists(folder / list, error)) return {};
+  const Result<bool> is_ours = IsAsWritten(folder / list, kViewsProgram);
+  if (!is_ours || !*is_ours) return {};
+  const Result<LightField> views = ReadTransformsJson(folder / list);
+  if (!views) return {};
+  std::vector<fs::path> files;
+  for (const std::string& name : views->image_names) {
+    const fs::path file = folder / fs::path(name).filename();
+    if (IsViewName(file.filename().string()) && fs::exists(file, error)) files.push_back(file);
+  }
+  return files;
 }
 
 std::string NumpyHeader(const ViewGrid& grid, ViewValues values) {
@@ -152,7 +172,7 @@ std::string ViewName(const ViewGrid& grid, size_t view, double unit_m, ViewValue
 
 std::vector<fs::path> FilesOfViews(const ViewGrid& grid, const fs::path& folder, double unit_m,
                                    ViewValues values) {
-  std::vector<fs::path> files = {folder / "transforms.json"};
+  std::vector<fs::path> files = {folder / kList, folder / kUnfinishedList};
   for (size_t view = 0; view < grid.size(); ++view)
     files.push_back(folder / ViewName(grid, view, unit_m, values));
   return files;
@@ -160,22 +180,14 @@ std::vector<fs::path> FilesOfViews(const ViewGrid& grid, const fs::path& folder,
 
 std::vector<fs::path> OtherViews(const ViewGrid& grid, const fs::path& folder, double unit_m,
                                  ViewValues values) {
-  const fs::path list = folder / "transforms.json";
-  std::error_code error;
-  if (!fs::exists(list, error)) return {};
-  const Result<bool> is_ours = IsAsWritten(list, kViewsProgram);
-  if (!is_ours || !*is_ours) return {};
-  const Result<LightField> old = ReadTransformsJson(list);
-  if (!old) return {};
   std::vector<fs::path> kept = FilesOfViews(grid, folder, unit_m, values);
   std::sort(kept.begin(), kept.end());
   std::vector<fs::path> others;
-  for (const std::string& name : old->image_names) {
-    const fs::path file = folder / fs::path(name).filename();
-    if (IsViewName(file.filename().string()) &&
-        !std::binary_search(kept.begin(), kept.end(), file) && fs::exists(file, error))
-      others.push_back(file);
-  }
+  for (const char* const list : {kList, kUnfinishedList})
+    for (const fs::path& file : ListedViews(folder, list))
+      if (!std::binary_search(kept.begin(), kept.end(), file) &&
+          std::find(others.begin(), others.end(), file) == others.end())
+        others.push_back(file);
   return others;
 }
 
@@ -183,19 +195,26 @@ Result<ViewsReport> WriteViewFolder(const LightField& light_field, const ViewGri
                                     const fs::path& folder, ViewValues values,
                                     const MakeAllViews& make) {
   LF_RETURN_IF_ERROR(CreateFolder(folder));
-  for (const fs::path& file : OtherViews(grid, folder, light_field.unit_m, values)) {
+  const auto remove = [](const fs::path& file) -> Result<void> {
     std::error_code error;
     fs::remove(file, error);
-    if (error)
-      return OutputError(fmt::format("{}: cannot be removed: {}", file.string(), error.message()));
-  }
+    if (!error) return {};
+    return OutputError(fmt::format("{}: cannot be removed: {}", file.string(), error.message()));
+  };
+  for (const fs::path& file : OtherViews(grid, folder, light_field.unit_m, values))
+    LF_RETURN_IF_ERROR(remove(file));
+  const LightField views = FieldOfViews(light_field, grid, values);
+  LF_RETURN_IF_ERROR(WriteTransformsJson(views, folder / kUnfinishedList, kViewsProgram));
+  // Until the views are complete, the folder is no light field: an older list would mix old and new
+  // views.
+  LF_RETURN_IF_ERROR(remove(folder / kList));
   LF_ASSIGN_OR_RETURN(ViewsReport report, make([&](size_t view, const Image<float>& light) {
                         return WriteViewImage(
                             folder / ViewName(grid, view, light_field.unit_m, values), light,
                             values);
                       }));
-  LF_RETURN_IF_ERROR(WriteTransformsJson(FieldOfViews(light_field, grid, values),
-                                         folder / "transforms.json", kViewsProgram));
+  LF_RETURN_IF_ERROR(WriteTransformsJson(views, folder / kList, kViewsProgram));
+  LF_RETURN_IF_ERROR(remove(folder / kUnfinishedList));
   return report;
 }
 

@@ -30,22 +30,23 @@ uint32_t DisplayNumber(float linear, uint32_t most);
 // column, and Y and X its position in millimetres, down and to the right (doc/formats/stanford.md).
 std::string ViewName(const ViewGrid& grid, size_t view, double unit_m, ViewValues values);
 
-// Returns the files that WriteViewFolder() writes.
+// Returns the files that WriteViewFolder() writes: the views, transforms.json, and
+// transforms.json.unfinished, which lists the views until all of them are written.
 std::vector<std::filesystem::path> FilesOfViews(const ViewGrid& grid,
                                                 const std::filesystem::path& folder, double unit_m,
                                                 ViewValues values);
 
-// Returns the views of another grid that WriteViewFolder() removes: those that transforms.json
-// lists, as WriteViewFolder() wrote it and nobody changed it since, and that FilesOfViews() does
-// not.
+// Returns the views of another grid that WriteViewFolder() removes: those that transforms.json or
+// transforms.json.unfinished lists, as WriteViewFolder() wrote it and nobody changed it since, and
+// that FilesOfViews() does not.
 std::vector<std::filesystem::path> OtherViews(const ViewGrid& grid,
                                               const std::filesystem::path& folder, double unit_m,
                                               ViewValues values);
 
 // Makes all views by `make`, which gets the sink that writes them, and writes
 // - WriteViewFolder(): an image file for each view and, in the end, transforms.json, so that the
-//   folder is a light field. Its cameras are in the world of `light_field`. OtherViews() are
-//   removed first.
+//   folder is a light field. Its cameras are in the world of `light_field`. OtherViews() and an
+//   older transforms.json are removed first.
 // - WriteViewArray(): one file of NumPy, [row][column][height][width][channel], which appears when
 //   it is complete.
 // Errors are those of `make`, and kOutput if a file cannot be written.

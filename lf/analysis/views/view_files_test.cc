@@ -39,7 +39,7 @@ TEST(ViewFile, IsNamedByRowColumnAndPosition) {
   ASSERT_TRUE(grid);
   EXPECT_EQ(ViewName(*grid, 2, 0.1, ViewValues::kSrgb8), "out_00_02_-50.000000_25.000000.png");
   EXPECT_EQ(ViewName(*grid, 4, 1, ViewValues::kLinear), "out_01_01_0.000000_0.000000.exr");
-  EXPECT_EQ(FilesOfViews(*grid, "views", 1, ViewValues::kSrgb16).size(), 10u);
+  EXPECT_EQ(FilesOfViews(*grid, "views", 1, ViewValues::kSrgb16).size(), 11u);
 }
 
 }  // namespace

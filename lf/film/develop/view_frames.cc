@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
@@ -107,6 +109,71 @@ Result<std::vector<ViewMoment>> MomentsOfFiles(std::span<const fs::path> files, 
   return moments;
 }
 
+// The distance of two cameras, and its part on the right axis of the first.
+struct Step {
+  double length_w = 0, right_w = 0;
+};
+
+Step StepBetween(const StatedCamera& from, const StatedCamera& to) {
+  const auto& f = from.forward;
+  const auto& u = from.up;
+  const std::array<double, 3> right = {f[1] * u[2] - f[2] * u[1], f[2] * u[0] - f[0] * u[2],
+                                       f[0] * u[1] - f[1] * u[0]};
+  Step step;
+  for (size_t i = 0; i < 3; ++i) {
+    const double moved_w = to.position[i] - from.position[i];
+    step.length_w += moved_w * moved_w;
+    step.right_w += moved_w * right[i];
+  }
+  step.length_w = std::sqrt(step.length_w);
+  return step;
+}
+
+bool AreParallel(const StatedCamera& a, const StatedCamera& b) {
+  constexpr double kTolerance = 1e-6;
+  for (size_t i = 0; i < 3; ++i)
+    if (std::abs(a.forward[i] - b.forward[i]) > kTolerance ||
+        std::abs(a.up[i] - b.up[i]) > kTolerance)
+      return false;
+  return true;
+}
+
+// Checks that the cameras of a moment are those of views, as CommonHeader() says. Positions are
+// stated with nine digits, hence the tolerance.
+//   cameras  of the views of the moment
+//   next     camera of the first view of the next moment; null if there is none
+Result<void> CheckViews(const ViewMoment& moment, std::span<const StatedCamera> cameras,
+                        const StatedCamera* next) {
+  if (cameras.size() < 2) return {};
+  const Step first = StepBetween(cameras[0], cameras[1]);
+  double size_w = 0;
+  for (const double x : cameras[0].position) size_w = std::max(size_w, std::abs(x));
+  const double tolerance_w = 1e-3 * first.length_w + 1e-7 * size_w;
+  if (tolerance_w > first.length_w / 4) return {};
+  // The files of the two eyes may be given the other way round, for crossed eyes.
+  const double sign = cameras.size() == 2 && first.right_w < 0 ? -1 : 1;
+  const auto is_beside = [&](const StatedCamera& a, const StatedCamera& b) {
+    const Step step = StepBetween(a, b);
+    return AreParallel(a, b) && std::abs(step.length_w - sign * step.right_w) <= tolerance_w &&
+           std::abs(step.length_w - first.length_w) <= tolerance_w;
+  };
+  for (size_t i = 1; i < cameras.size(); ++i)
+    if (!is_beside(cameras[i - 1], cameras[i]))
+      return InputError(fmt::format(
+          "{}: its camera is not the right neighbour of the camera of {}, but they would be views "
+          "{} and {} of the {} of moment {}: give the frames of a path that lfpath --quilt or "
+          "--stereo made, and the number of views that it was given",
+          moment.files[i].string(), moment.files[i - 1].string(), i, i + 1, cameras.size(),
+          moment.number));
+  if (next != nullptr && is_beside(cameras.back(), *next))
+    return InputError(fmt::format(
+        "{}: its camera would be the last of the {} views of moment {}, but that of the next frame "
+        "is its right neighbour, as of a further view: give the number of views that lfpath was "
+        "given",
+        moment.files.back().string(), cameras.size(), moment.number));
+  return {};
+}
+
 }  // namespace
 
 Result<std::vector<ViewMoment>> FindViewMoments(std::span<const fs::path> paths, int view_count) {
@@ -129,6 +196,7 @@ Result<PictureHeader> CommonHeader(std::span<const ViewMoment> moments, ThreadPo
   LF_ASSIGN_OR_RETURN(const PictureHeader header, ReadPictureHeader(first));
   const std::string kind = KindOf(header);
   std::vector<std::optional<Error>> errors(moments.size());
+  std::vector<std::vector<StatedCamera>> cameras(moments.size());
   pool.ForEach(moments.size(), [&](size_t i) {
     for (const fs::path& file : moments[i].files) {
       const Result<PictureHeader> other = ReadPictureHeader(file);
@@ -139,10 +207,17 @@ Result<PictureHeader> CommonHeader(std::span<const ViewMoment> moments, ThreadPo
             InputError(fmt::format("{}: has {}, but {} has {}: all views must have the same",
                                    file.string(), KindOf(*other), first.string(), kind));
       if (errors[i]) return;
+      if (other->colours.camera) cameras[i].push_back(*other->colours.camera);
     }
   });
   for (const std::optional<Error>& error : errors)
     if (error) return *error;
+  for (size_t i = 0; i < moments.size(); ++i) {
+    if (cameras[i].size() != moments[i].files.size()) continue;  // frames of another program
+    const bool is_followed = i + 1 < moments.size() && !cameras[i + 1].empty();
+    LF_RETURN_IF_ERROR(
+        CheckViews(moments[i], cameras[i], is_followed ? &cameras[i + 1].front() : nullptr));
+  }
   return header;
 }
 

@@ -31,7 +31,10 @@ Result<std::vector<ViewMoment>> FindViewMoments(std::span<const std::filesystem:
                                                 int view_count);
 
 // Reads the headers of all frames, and returns the header of the first. kInput: a file cannot be
-// read, or differs from the first in size, type, channels or colours.
+// read, or differs from the first in size, type, channels or colours; or the frames state their
+// cameras, and these are not those of the views of a moment: parallel, side by side on the right
+// axis, at equal distances, and not continued by the next moment. A wrong number of views is so
+// found even if it divides the number of frames.
 Result<PictureHeader> CommonHeader(std::span<const ViewMoment> moments, ThreadPool& pool);
 
 }  // namespace lf

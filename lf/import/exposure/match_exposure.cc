@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "lf/core/byte_text.h"
 #include "lf/focus/place_depth.h"
 #include "lf/import/exposure/compare_patches.h"
 #include "lf/import/exposure/exposure_views.h"
@@ -258,9 +259,9 @@ Result<MatchedExposure> MatchExposure(const LightField& light_field, const LfIma
     load.progress = [&](size_t done, size_t total) { options.progress(done, 2 * total); };
   if (load.width_px == 0)
     return InputError(fmt::format(
-        "--match-exposure: even small copies of all {} LF images would exceed the limit of {} MiB "
+        "--match-exposure: even small copies of all {} LF images would exceed the limit of {} "
         "of memory: match one part of the light field at a time (--exclude)",
-        plain.size(), options.memory_bytes >> 20));
+        plain.size(), ByteText(options.memory_bytes)));
   LF_ASSIGN_OR_RETURN(const std::vector<ExposureView> views,
                       LoadExposureViews(plain, store, load, pool));
   LF_ASSIGN_OR_RETURN(const std::vector<ExposureSample> samples,

@@ -9,6 +9,7 @@
 #include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStringAttribute.h>
 #include <fmt/format.h>
 
 #include <cerrno>
@@ -145,12 +146,28 @@ Result<void> WriteParts(const std::filesystem::path& path, std::span<const ExrPa
 }  // namespace
 
 Result<void> JoinExr(const std::filesystem::path& path, std::span<const ExrPart> parts,
-                     const std::function<bool()>& is_interrupted) {
+                     const std::function<bool()>& is_interrupted,
+                     const std::vector<std::pair<std::string, std::string>>& texts) {
   LF_CHECK(!parts.empty());
-  LF_ASSIGN_OR_RETURN(const std::vector<Imf::Header> headers, HeadersOf(parts));
+  LF_ASSIGN_OR_RETURN(std::vector<Imf::Header> headers, HeadersOf(parts));
+  for (const auto& [name, text] : texts) headers.front().insert(name, Imf::StringAttribute(text));
   return WriteAtomically(path, [&](const std::filesystem::path& temporary) -> Result<void> {
     return WriteParts(temporary, parts, headers, is_interrupted);
   });
+}
+
+std::optional<std::string> TextOfFirstPart(const std::filesystem::path& path,
+                                           const std::string& attribute) {
+  try {
+    const Imf::MultiPartInputFile file(path.c_str(), kThreadsOfParts);
+    const auto* const text = file.header(0).findTypedAttribute<Imf::StringAttribute>(attribute);
+    if (text != nullptr) return text->value();
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+  return std::nullopt;
 }
 
 Result<std::vector<double>> NumbersOfParts(const std::filesystem::path& path,

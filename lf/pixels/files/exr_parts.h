@@ -4,8 +4,10 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lf/core/result.h"
@@ -22,10 +24,17 @@ struct ExrPart {
 // compressed pixels and attributes are those of the files. The parts must have the same size,
 // pixel aspect ratio and chromaticities, because OpenEXR keeps these once for all parts.
 //   is_interrupted  called before each part, if given
+//   texts           further attributes of the first part: names and texts
 // kInput: a file cannot be read, or has another size than the first. kOutput: the folder or the
 // disk fails. kInterrupted: is_interrupted returned true; nothing is written.
 Result<void> JoinExr(const std::filesystem::path& path, std::span<const ExrPart> parts,
-                     const std::function<bool()>& is_interrupted = {});
+                     const std::function<bool()>& is_interrupted = {},
+                     const std::vector<std::pair<std::string, std::string>>& texts = {});
+
+// Returns the value of an attribute of type string in the first part of an EXR file; nullopt if the
+// file cannot be read or has no such attribute.
+std::optional<std::string> TextOfFirstPart(const std::filesystem::path& path,
+                                           const std::string& attribute);
 
 // Returns the value of an attribute of type double in each part of an EXR file. kInput: the file
 // cannot be read, or a part has no such attribute.

@@ -8,6 +8,7 @@
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStandardAttributes.h>
+#include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfVersion.h>
 #include <OpenEXR/openexr.h>
 #include <fmt/format.h>
@@ -24,6 +25,7 @@
 
 #include "lf/pixels/files/layers.h"
 #include "lf/pixels/files/picture_decoder.h"
+#include "lf/pixels/files/stated_camera.h"
 
 namespace lf {
 namespace {
@@ -155,12 +157,16 @@ class ExrDecoder : public PictureDecoder {
       const double rate = Imf::framesPerSecond(header);
       if (rate > 0 && std::isfinite(rate)) facts.frames_per_second = rate;
     }
+    facts.camera = StatedCameraOf([&header](const char* key) {
+      const auto* const text = header.findTypedAttribute<Imf::StringAttribute>(key);
+      return text == nullptr ? std::string() : text->value();
+    });
     return facts;
   }
 
-  CameraFacts camera() const override {
+  StatedProjection projection() const override {
     const Imf::Header& header = file_->header(0);
-    CameraFacts facts;
+    StatedProjection facts;
     if (Imf::hasWorldToNDC(header)) {
       const Imath::M44f& matrix = Imf::worldToNDC(header);
       facts.world_to_ndc.emplace();

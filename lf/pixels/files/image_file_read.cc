@@ -62,7 +62,7 @@ Result<PictureHeader> HeaderFrom(const FileBytes& file) {
     return PictureHeader{info, {TypeOfValues(info)}, {}};
   }
   LF_ASSIGN_OR_RETURN(const std::unique_ptr<PictureDecoder> picture, Open(file, format));
-  return PictureHeader{picture->info(), picture->colours(), picture->camera()};
+  return PictureHeader{picture->info(), picture->colours(), picture->projection()};
 }
 
 Result<ExposureFacts> ExposureFrom(const FileBytes& file) {

@@ -29,7 +29,7 @@ class PictureDecoder {
   virtual ~PictureDecoder() = default;
   virtual const ImageFileInfo& info() const = 0;
   virtual ColourFacts colours() const { return {TypeOfValues(info())}; }
-  virtual CameraFacts camera() const { return {}; }
+  virtual StatedProjection projection() const { return {}; }
   // Decodes all pixels. `image` becomes an Image of the type that info() states, in the same memory
   // if possible. kInput: the file is truncated or damaged anywhere, even if the library could guess
   // what is missing.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the statements of a picture's file about its colours and its film, and writes a picture
-// with the same statements: for programs that join pictures.
+// Reads the statements of a picture's file about its colours, its film and its camera, and writes a
+// picture with the same statements: for programs that join pictures.
 #pragma once
 
 #include <array>
@@ -18,6 +18,12 @@ namespace lf {
 
 inline constexpr const char* kFrameRateText = "lf:fps";
 
+// The camera of a frame, in world coordinates: its position, and unit vectors ahead and up.
+struct StatedCamera {
+  std::array<double, 3> position = {}, forward = {}, up = {};
+  friend bool operator==(const StatedCamera&, const StatedCamera&) = default;
+};
+
 struct ColourFacts {
   // Type of the values. kHalf if R, G, B and A of an EXR file are half; kFloat if some of them are
   // not, and for other files of floats.
@@ -28,11 +34,14 @@ struct ColourFacts {
   // 0.
   std::optional<double> frames_per_second = {};
   bool is_srgb = false;  // PNG: the file states that its values are sRGB
+  // EXR and PNG: the camera of a frame that a renderer of ours has written. WriteStoredImage() does
+  // not write it, because a joined picture has several cameras.
+  std::optional<StatedCamera> camera = {};
   friend bool operator==(const ColourFacts&, const ColourFacts&) = default;
 };
 
 // Statements of an EXR file about the camera of its picture. Other files state none.
-struct CameraFacts {
+struct StatedProjection {
   // The attribute worldToNDC (doc/formats/frame.md), row by row, which row vectors are multiplied
   // by.
   std::optional<std::array<float, 16>> world_to_ndc = {};
@@ -45,7 +54,7 @@ struct CameraFacts {
 struct PictureHeader {
   ImageFileInfo info;
   ColourFacts colours;
-  CameraFacts camera = {};
+  StatedProjection projection = {};
 };
 
 // Reads the header alone. Errors as for ReadImageInfo().

@@ -50,6 +50,27 @@ TEST_F(PictureHeaderTest, FactsAndPixelsOfPngFilesAreKept) {
   }
 }
 
+TEST_F(PictureHeaderTest, TheCameraIsReadIfAllOfItIsStated) {
+  const auto camera_of = [&](const std::string& name, const std::string& position) {
+    const ImageMetadata metadata = {{"lf:position", position},
+                                    {"lf:forward", std::string("0 0 1")},
+                                    {"lf:up", std::string("0 -1 0")}};
+    const bool is_exr = name.ends_with("exr");
+    const StoredImage pixels = is_exr ? StoredImage(NoiseImage<float>(4, 3, 3))
+                                      : StoredImage(NoiseImage<uint8_t>(4, 3, 3));
+    const ColourFacts facts = {is_exr ? PixelType::kHalf : PixelType::kUint8};
+    EXPECT_TRUE(WriteStoredImage(folder_ / name, pixels, {"R", "G", "B"}, facts, metadata));
+    return ReadPictureHeader(folder_ / name).value().colours.camera;
+  };
+  for (const std::string name : {"a.png", "a.exr"}) {
+    const auto camera = camera_of(name, "1.5 -2e-3 7");
+    ASSERT_TRUE(camera) << name;
+    EXPECT_EQ(*camera, (StatedCamera{{1.5, -2e-3, 7}, {0, 0, 1}, {0, -1, 0}}));
+    for (const std::string wrong : {"", "1 2", "1 2 3 4", "1 2 x", "1 2 nan", "1,2,3"})
+      EXPECT_FALSE(camera_of(name, wrong)) << name << ": " << wrong;
+  }
+}
+
 TEST_F(PictureHeaderTest, ColoursAreHalfOnlyIfAllOfThemAre) {
   const Image<float> image = NoiseImage<float>(4, 4, 1);
   const Image<uint32_t> counts = NoiseImage<uint32_t>(4, 4, 1);
@@ -89,7 +110,7 @@ TEST_F(PictureHeaderTest, ExrFilesStateTheirCamera) {
   for (size_t i = 0; i < 16; ++i) matrix[i] = static_cast<float>(i) + 0.5f;
   const std::vector<ExrChannel> channels = {{"Z", image.view(), 0, false}};
   ASSERT_TRUE(WriteExr(folder_ / "a.exr", channels, {{"worldToNDC", matrix}, {"lf:unit_m", 0.25}}));
-  const CameraFacts facts = ReadPictureHeader(folder_ / "a.exr").value().camera;
+  const StatedProjection facts = ReadPictureHeader(folder_ / "a.exr").value().projection;
   EXPECT_EQ(facts.world_to_ndc, matrix);
   EXPECT_EQ(facts.unit_m, 0.25);
   EXPECT_EQ(facts.display_width, 5);
@@ -97,7 +118,7 @@ TEST_F(PictureHeaderTest, ExrFilesStateTheirCamera) {
   EXPECT_EQ(facts.left, 0);
   EXPECT_EQ(facts.top, 0);
   ASSERT_TRUE(WriteExr(folder_ / "b.exr", channels));
-  const CameraFacts none = ReadPictureHeader(folder_ / "b.exr").value().camera;
+  const StatedProjection none = ReadPictureHeader(folder_ / "b.exr").value().projection;
   EXPECT_FALSE(none.world_to_ndc || none.unit_m);
 }
 

@@ -18,6 +18,7 @@
 #include "lf/pixels/files/exif_orientation.h"
 #include "lf/pixels/files/picture_decoder.h"
 #include "lf/pixels/files/png_calls.h"
+#include "lf/pixels/files/stated_camera.h"
 
 namespace lf {
 namespace {
@@ -105,6 +106,16 @@ std::optional<double> FrameRateOf(png_structp png, png_infop info) {
     if (read.ec == std::errc() && read.ptr == end && rate > 0 && std::isfinite(rate)) return rate;
   }
   return std::nullopt;
+}
+
+// Returns the text before the pixels that has this key; "" if there is none.
+std::string TextBeforePixels(png_structp png, png_infop info, const char* key) {
+  png_textp texts = nullptr;
+  int count = 0;
+  png_get_text(png, info, &texts, &count);
+  for (const png_text& text : std::span(texts, static_cast<size_t>(count)))
+    if (std::string_view(text.key) == key) return {text.text, text.text_length};
+  return "";
 }
 
 // Replaces the indices in the last `width` bytes of a row by colours of `channels` bytes. Returns
@@ -213,6 +224,8 @@ void PngDecoder::ReadHeader() {
   colours_.type = TypeOfValues(info_);
   colours_.is_srgb = png_get_valid(png_, png_info_, PNG_INFO_sRGB) != 0;
   colours_.frames_per_second = FrameRateOf(png_, png_info_);
+  colours_.camera =
+      StatedCameraOf([this](const char* key) { return TextBeforePixels(png_, png_info_, key); });
 }
 
 void PngDecoder::ReadPalette() {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "lf/core/byte_text.h"
 #include "lf/film/plate/sensor_plate.h"
 #include "lf/render/collect/collected_frame.h"
 #include "lf/render/collect/defocus.h"
@@ -120,9 +121,9 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
   const size_t least = set_aside + frame_bytes + pair_bytes;
   if (memory_bytes < least)
     return OutputError(
-        fmt::format("--memory {} MiB is too small: the sums of a frame of {} x {} elements and two "
+        fmt::format("--memory {} is too small: the sums of a frame of {} x {} elements and two "
                     "LF images need at least {} MiB",
-                    memory_bytes / kMiB, plate_width, plate_height, least / kMiB + 1));
+                    ByteText(memory_bytes), plate_width, plate_height, least / kMiB + 1));
 
   const size_t free_bytes = memory_bytes - set_aside;
   const size_t enough =

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "lf/core/byte_text.h"
 #include "lf/render/hybrid/rebinned_rays.h"
 
 namespace lf {
@@ -20,10 +21,10 @@ Result<void> SetAsideForRays(size_t memory_bytes, RenderMode mode, size_t max_ce
   if (max_cells >= RebinnedRays::kLeastCells && memory->rebin_bytes <= memory_bytes) return {};
   const size_t wanted = std::max(max_cells, RebinnedRays::kLeastCells);
   return OutputError(
-      fmt::format("--memory {} MiB is too small for {} rebinned rays, which take {} MiB: increase "
+      fmt::format("--memory {} is too small for {} rebinned rays, which take {} MiB: increase "
                   "--memory, or reduce --max-rays (without --max-rays, half of --memory is for "
                   "rays, or a quarter with --mode hybrid)",
-                  memory_bytes >> 20, wanted, RebinnedRays::BytesOf(wanted) >> 20));
+                  ByteText(memory_bytes), wanted, RebinnedRays::BytesOf(wanted) >> 20));
 }
 
 }  // namespace
@@ -51,10 +52,10 @@ Result<RenderMemory> PlanRenderMemory(size_t memory_bytes, RenderMode mode, size
   // measured, all frames must therefore fit in one pass.
   if (!Collects(mode) && has_plates && plan->frames_per_pass < frame_count)
     return OutputError(fmt::format(
-        "--mode rebin: \"noise<=X\" needs a plate of {} MiB for each frame, but --memory {} MiB "
+        "--mode rebin: \"noise<=X\" needs a plate of {} MiB for each frame, but --memory {} "
         "has room for only {} of {} plates (in addition to {} MiB for {} rebinned rays): increase "
         "--memory, reduce --max-rays, or render fewer --frames at a time",
-        plan->plate_bytes >> 20, memory_bytes >> 20, plan->frames_per_pass, frame_count,
+        plan->plate_bytes >> 20, ByteText(memory_bytes), plan->frames_per_pass, frame_count,
         memory.rebin_bytes >> 20, memory.max_cells));
   if (!Collects(mode)) memory.plan.frames_per_pass = frame_count;
   return memory;

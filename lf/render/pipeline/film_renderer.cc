@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "lf/core/byte_text.h"
 #include "lf/core/log.h"
 #include "lf/render/collect/around_lens.h"
 #include "lf/render/hybrid/frame_sampling.h"
@@ -22,9 +23,9 @@ Result<std::unique_ptr<FilmRenderer>> FilmRenderer::Open(Package package, const 
   const size_t fit = setup->plan().frames_per_pass;
   if (fit < setup->frames().size())
     return OutputError(fmt::format(
-        "{} frames cannot be rendered at the same time, because {} MiB of memory are enough "
+        "{} frames cannot be rendered at the same time, because {} of memory are enough "
         "for only {} frames: allow more memory, or render fewer frames",
-        setup->frames().size(), work.memory_bytes >> 20, fit));
+        setup->frames().size(), ByteText(work.memory_bytes), fit));
   LF_RETURN_IF_ERROR(setup->PlanSlabs());
   auto renderer = std::make_unique<FilmRenderer>(*setup, setup->frames());
   renderer->own_setup_ = std::move(setup);

@@ -342,7 +342,7 @@ Result<RenderReport> Renderer::End() {
   }
   for (const auto& [frame, report] : state_->finished()) totals_.frames.push_back(report);
   totals_.total_s += NowSeconds() - begin_s_;
-  totals_.peak_memory_bytes = PeakMemoryBytes();
+  totals_.peak_memory_bytes = std::max(totals_.peak_memory_bytes, PeakMemoryBytes());
   LF_RETURN_IF_ERROR(state_->Close(totals_));
   if (totals_.IsBlack() && IsWhole())
     return InputError(fmt::format(

@@ -10,10 +10,7 @@
 #include "lf/storage/packed/packed_store_file.h"
 
 namespace lf {
-namespace {
 
-// Returns the inputs that only rebinned rays depend on; no inputs if the mode is kCollect.
-//   film  hash of all render cameras of the film, because the slabs depend on all of them
 RunInputs InputsOfRebinning(const FilmOptions& options, size_t max_cells, const std::string& film) {
   if (!options.Rebins()) return {};
   const RebinPassOptions& rebin = options.rebin;
@@ -45,8 +42,6 @@ RunInputs InputsOfRebinning(const FilmOptions& options, size_t max_cells, const 
                                  width(rebin.slab.r_uv_w))},
       {"rebin.coverage", fmt::format("{} cells across", rebin.coverage.cells_across)}};
 }
-
-}  // namespace
 
 Result<RunInputs> InputsOfRays(const FilmSetup& setup) {
   const Package& package = setup.package();

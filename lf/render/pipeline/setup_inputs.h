@@ -2,6 +2,7 @@
 // The inputs that decide the rays of a film (render/state/run_inputs.h), from its setup.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "lf/core/result.h"
@@ -10,6 +11,10 @@
 #include "lf/render/state/run_inputs.h"
 
 namespace lf {
+
+// Returns the inputs that only rebinned rays depend on; no inputs if the mode is kCollect.
+//   film  hash of all render cameras of the film, because the slabs depend on all of them
+RunInputs InputsOfRebinning(const FilmOptions& options, size_t max_cells, const std::string& film);
 
 // Returns the inputs of the rays of all frames, those of rebinned rays included. kInput: the packed
 // store of the light field cannot be read.

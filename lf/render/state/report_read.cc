@@ -71,6 +71,7 @@ Result<RenderReport> ParseReport(std::string_view text, const std::string& name)
     fields.Get("load_cpu_s", &report.load_cpu_s);
     fields.Get("load_wall_s", &report.load_wall_s);
     fields.Get("collect_cpu_s", &report.collect_cpu_s);
+    fields.Get("peak_memory_bytes", &report.peak_memory_bytes);
     if (const Json* item = fields.Find("rebinning")) {
       RecordFields rebinning_fields(*item, &fault);
       RebinReport& rebinning = report.rebinning.emplace();

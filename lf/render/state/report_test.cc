@@ -63,6 +63,7 @@ TEST(Report, ReadsBackWhatItWrote) {
   report.selected_image_count = 17;
   report.total_s = 1.25;
   report.collect_cpu_s = 0.1;
+  report.peak_memory_bytes = 123456789;
   report.skipped = {{"a.png", "is broken", 0}};
   FrameReport frame;
   frame.frame = FrameId{7};
@@ -90,6 +91,7 @@ TEST(Report, ReadsBackWhatItWrote) {
   EXPECT_EQ(read->selected_image_count, 17u);
   EXPECT_EQ(read->total_s, 1.25);
   EXPECT_EQ(read->collect_cpu_s, 0.1);
+  EXPECT_EQ(read->peak_memory_bytes, 123456789u);
   EXPECT_EQ(read->skipped[0].reason, "is broken");
   ASSERT_EQ(read->frames.size(), 2u);
   EXPECT_EQ(read->frames[0].rays.tested_count, uint64_t{1} << 60);
