@@ -88,8 +88,10 @@ class Run:
         """True if the loader, or a library that is prepared before main(), has ended the process."""
         if self.code == 127 and LOADER in self.errors:
             return True
+
         def is_of_library(errors):
             return not errors or errors.startswith(OF_LIBRARY)
+
         if self.code != 1 or not is_of_library(self.errors):
             return False
         # Some libraries end the process, most without a word. They do so in any call of the program.
