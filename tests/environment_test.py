@@ -35,7 +35,8 @@ HANGS_S = 120
 CODES = (2, 3, 4, 6)
 PARTS = ("memory", "files", "processes", "size", "disk", "streams", "locale", "names", "inputs")
 LOADER = "error while loading shared libraries"  # a message of the system's loader, before the program starts
-OF_LIBRARY = "libgomp: "  # begins a message of a library of LibRaw, before the program starts
+# Beginnings of messages of libraries, of LibRaw and of FFmpeg, that end the process before the program starts.
+OF_LIBRARY = ("libgomp: ", "Error in GnuTLS initialization: ")
 # Limits of the quick form, of which each call tries every third, and of the long form (ALL_...).
 MEMORY_MIB = (16, 28, 40, 56, 72, 88, 104, 120, 144, 176, 240, 400)
 FILES = (3, 4, 5, 6, 7, 8, 10, 12, 16)
