@@ -35,6 +35,8 @@ HANGS_S = 120
 CODES = (2, 3, 4, 6)
 PARTS = ("memory", "files", "processes", "size", "disk", "streams", "locale", "names", "inputs")
 LOADER = "error while loading shared libraries"  # a message of the system's loader, before the program starts
+# Beginnings of messages of libraries, of LibRaw and of FFmpeg, that end the process before the program starts.
+OF_LIBRARY = ("libgomp: ", "Error in GnuTLS initialization: ")
 # Limits of the quick form, of which each call tries every third, and of the long form (ALL_...).
 MEMORY_MIB = (16, 28, 40, 56, 72, 88, 104, 120, 144, 176, 240, 400)
 FILES = (3, 4, 5, 6, 7, 8, 10, 12, 16)
@@ -87,12 +89,16 @@ class Run:
         """True if the loader, or a library that is prepared before main(), has ended the process."""
         if self.code == 127 and LOADER in self.errors:
             return True
-        if self.code != 1 or self.errors:
+
+        def is_of_library(errors):
+            return not errors or errors.startswith(OF_LIBRARY)
+
+        if self.code != 1 or not is_of_library(self.errors):
             return False
-        # Some libraries end the process without a word. They do so in any call of the program.
+        # Some libraries end the process, most without a word. They do so in any call of the program.
         program = next(word for word in self.command if re.fullmatch(r"lf\w+", pathlib.Path(word).name))
         least = Run([program, "--version"], self.lack)
-        return least.code == 1 and not least.errors and not least.out
+        return least.code == 1 and is_of_library(least.errors) and not least.out
 
 
 def free_user():

@@ -66,8 +66,8 @@ class TinyCalls:
         commands = [self.synth(self.field), self.example(self.path), self.example(self.other_path, "4"),
                     self.preprocess(self.path, self.packages), self.preprocess(self.other_path, self.other_packages)]
         commands += [self.render("-o", self.shards, "--shard", shard) for shard in ("1/2", "2/2")]
-        commands.append(self.words("lffocus", "depth", self.field, self.path, "--planes", "3", "--near", "2", "--far", "4",
-                                   "--fill", "-o", self.depths))
+        commands.append(self.words("lffocus", "depth", self.field, self.path, "--planes", "3", "--near", "2",
+                                   "--far", "4", "--fill", "-o", self.depths))
         for command in commands:
             subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
 

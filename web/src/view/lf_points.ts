@@ -127,7 +127,7 @@ export class LfPoints {
 
   // Returns the LF camera whose point is nearest to a position in the view, among those that are shown; null if none is
   // within `reach` pixels. A used LF camera is preferred to others that are slightly nearer.
-  pick(camera: THREE.Camera, width: number, height: number, x: number, y: number, reach: number): number | null {
+  pick(camera: THREE.Camera, width: number, height: number, x: number, y: number, reach = 12): number | null {
     const m = new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).elements;
     const kinds = this.use.array as Uint8Array;
     let best: number | null = null;
