@@ -42,21 +42,24 @@ void FilterRows(const Prefilter& filter, const LfPixels& pixels, const PixelRect
   const int before = filter.count - 1, after = filter.is_even ? filter.count : before;
   const auto row_values = static_cast<size_t>(width) * kLanes;
   // A ring of the filtered rows that are still needed, and a row of zeros for missing rows.
-  const auto ring = static_cast<size_t>(before + 1 + after);
+  const auto ring = static_cast<size_t>(before + kKnotRowsAtOnce + after);
   thread_local std::vector<int32_t> filtered;
-  filtered.assign((ring + 1) * row_values, 0);
+  filtered.resize((ring + 1) * row_values);
+  std::fill(filtered.end() - static_cast<ptrdiff_t>(row_values), filtered.end(), 0);
   const auto at = [&](int y) {
     const size_t row = y < 0 || y >= height ? ring : static_cast<size_t>(y) % ring;
     return filtered.data() + row * row_values;
   };
   std::vector<const int32_t*> rows(ring);
-  int next = 0;
-  for (int y = 0; y < to.height(); ++y) {
-    for (; next < std::min(height, y + after + 1); ++next)
+  int next = 0, row_count = 0;
+  for (int y = 0; y < to.height(); y += row_count) {
+    row_count = std::min(kKnotRowsAtOnce, to.height() - y);
+    const int end = y + row_count + after;
+    for (; next < std::min(height, end); ++next)
       FilterAlong(filter, pixels, next, to.width(), at(next));
-    for (int k = -before; k <= after; ++k) rows[static_cast<size_t>(k + before)] = at(y + k);
-    const bool any_missing = pixels.any_masked || y < before || y + after >= height;
-    FilterAlongColumns(filter, rows.data() + before, any_missing, to.width(),
+    for (int k = y - before; k < end; ++k) rows[static_cast<size_t>(k - y + before)] = at(k);
+    const bool any_missing = pixels.any_masked || y < before || end > height;
+    FilterAlongColumns(filter, rows.data() + before, any_missing, row_count, to.width(),
                        knots + static_cast<size_t>(y) * to.width() * kLanes);
   }
 }

@@ -67,24 +67,27 @@ void WeighRow(const Factors& factors, const uint16_t* row, int width, int32_t* w
 }
 
 void FilterAlongColumns(const Prefilter& filter, const int32_t* const* rows, bool /*any_missing*/,
-                        int count, uint16_t* out) {
-  for (ptrdiff_t i = 0; i < count * kLanes; ++i) {
-    const ptrdiff_t first = i / kLanes * kLanes;
-    const auto at = [&](int k, int of_lane) -> int64_t { return rows[k][first + of_lane]; };
-    const int64_t sum = Filtered(filter, at, 1 << kPrefilterFraction, static_cast<int>(i - first));
-    const int64_t value = (sum + (1 << (kColumnShift - 1))) >> kColumnShift;
-    out[i] = static_cast<uint16_t>(value < 0 ? 0 : value > 65535 ? 65535 : value);
-  }
+                        int row_count, int count, uint16_t* out) {
+  for (int y = 0; y < row_count; ++y, ++rows, out += count * kLanes)
+    for (ptrdiff_t i = 0; i < count * kLanes; ++i) {
+      const ptrdiff_t first = i / kLanes * kLanes;
+      const auto at = [&](int k, int of_lane) -> int64_t { return rows[k][first + of_lane]; };
+      const int64_t sum =
+          Filtered(filter, at, 1 << kPrefilterFraction, static_cast<int>(i - first));
+      const int64_t value = (sum + (1 << (kColumnShift - 1))) >> kColumnShift;
+      out[i] = static_cast<uint16_t>(value < 0 ? 0 : value > 65535 ? 65535 : value);
+    }
 }
 
 #else
 
 // The form of a filter as a type, so that compilers unroll the loops.
-//   kCount  Prefilter::count, or 0 for any count
-template <bool kEven, int kCount>
+//   kWeights  Prefilter::count, or 0 for any count
+template <bool kEven, int kWeights>
 struct FormOf {
   static constexpr bool kIsEven = kEven;
-  static int CountOf(const Prefilter& filter) { return kCount > 0 ? kCount : filter.count; }
+  static constexpr int kCount = kWeights;
+  static int CountOf(const Prefilter& filter) { return kWeights > 0 ? kWeights : filter.count; }
 };
 
 // Calls body(form) with the form of the filter. Elements of one to four LF pixels have filters of
@@ -94,21 +97,35 @@ HWY_ATTR HWY_INLINE void WithForm(const Prefilter& filter, const Body& body) {
   if (filter.is_even) {
     if (filter.count == 3) return body(FormOf<true, 3>());
     if (filter.count == 4) return body(FormOf<true, 4>());
+    if (filter.count == 5) return body(FormOf<true, 5>());
+    if (filter.count == 6) return body(FormOf<true, 6>());
     return body(FormOf<true, 0>());
   }
   if (filter.count == 3) return body(FormOf<false, 3>());
   if (filter.count == 4) return body(FormOf<false, 4>());
+  if (filter.count == 5) return body(FormOf<false, 5>());
+  if (filter.count == 6) return body(FormOf<false, 6>());
   return body(FormOf<false, 0>());
+}
+
+// Returns the different weights of the filter, each in all lanes of a vector.
+template <class Form, class D>
+HWY_ATTR HWY_INLINE auto WeightsOf(D d, const Prefilter& filter) {
+  constexpr int kCount = Form::kCount > 0 ? Form::kCount : Prefilter::kMostWeights;
+  std::array<hn::Vec<D>, kCount> weights;
+  for (size_t k = 0; k < weights.size(); ++k) weights[k] = hn::Set(d, filter.weights[k]);
+  return weights;
 }
 
 // Returns the values of knots, times Prefilter::kOne; 0 if they are masked. at(k) are the pixels at
 // k.
+//   weights      WeightsOf() the filter
 //   kFraction    lane kRayLane of a pixel that exists is 2^kFraction; the other pixels are 0
 //   kAnyMissing  false: all pixels exist
-template <class Form, int kFraction, bool kAnyMissing, class D, class At>
-HWY_ATTR HWY_INLINE hn::Vec<D> Filtered(D d, const Prefilter& filter, const At& at) {
-  const auto weight = [&](int k)
-                          HWY_ATTR { return hn::Set(d, filter.weights[static_cast<size_t>(k)]); };
+template <class Form, int kFraction, bool kAnyMissing, class D, class Weights, class At>
+HWY_ATTR HWY_INLINE hn::Vec<D> Filtered(D d, const Prefilter& filter, const Weights& weights,
+                                        const At& at) {
+  const auto weight = [&](int k) HWY_ATTR { return weights[static_cast<size_t>(k)]; };
   const auto first = at(0);
   auto middle = first, sum = hn::Mul(first, weight(0));
   if constexpr (Form::kIsEven) {
@@ -126,17 +143,20 @@ HWY_ATTR HWY_INLINE hn::Vec<D> Filtered(D d, const Prefilter& filter, const At& 
   return hn::IfThenElseZero(hn::Gt(exists, hn::Zero(d)), hn::Add(sum, hn::Mul(missing, middle)));
 }
 
-// Calls body(d, i) for values [i, i + Lanes(d)) of the pixels [begin, end) of a row, until all are
-// done.
-template <class Body>
-HWY_ATTR HWY_INLINE void ForEachVector(int begin, int end, const Body& body) {
+// Calls body(d, weights, i) for values [i, i + Lanes(d)) of the pixels [begin, end) of a row, until
+// all are done. `weights` are WeightsOf() the filter.
+template <class Form, class Body>
+HWY_ATTR HWY_INLINE void ForEachVector(const Prefilter& filter, int begin, int end,
+                                       const Body& body) {
   const hn::CappedTag<int32_t, 16> d;
   const hn::Full128<int32_t> d_pixel;
   const auto lanes = static_cast<ptrdiff_t>(hn::Lanes(d));
   const ptrdiff_t last = end * kLanes;
   ptrdiff_t i = begin * kLanes;
-  for (; i + lanes <= last; i += lanes) body(d, i);
-  for (; i < last; i += kLanes) body(d_pixel, i);
+  const auto weights = WeightsOf<Form>(d, filter);
+  for (; i + lanes <= last; i += lanes) body(d, weights, i);
+  const auto pixel_weights = WeightsOf<Form>(d_pixel, filter);
+  for (; i < last; i += kLanes) body(d_pixel, pixel_weights, i);
 }
 
 template <class D>
@@ -169,9 +189,9 @@ HWY_ATTR void WeighRow(const Factors& factors, const uint16_t* HWY_RESTRICT row,
 template <class Form, bool kAnyMissing, class Value>
 HWY_ATTR HWY_INLINE void FilterInRow(const Prefilter& filter, const Value* HWY_RESTRICT row,
                                      int begin, int end, int32_t* HWY_RESTRICT out) {
-  ForEachVector(begin, end, [&](auto d, ptrdiff_t i) HWY_ATTR {
+  ForEachVector<Form>(filter, begin, end, [&](auto d, const auto& weights, ptrdiff_t i) HWY_ATTR {
     const auto at = [&](int k) HWY_ATTR { return LoadValues(d, row + i + k * kLanes); };
-    const auto sum = Filtered<Form, 0, kAnyMissing>(d, filter, at);
+    const auto sum = Filtered<Form, 0, kAnyMissing>(d, filter, weights, at);
     const auto half = hn::Set(d, 1 << (kRowShift - 1));
     hn::StoreU(hn::ShiftRight<kRowShift>(hn::Add(sum, half)), d, out + i);
   });
@@ -191,15 +211,38 @@ HWY_ATTR HWY_INLINE void FilterBorder(const Prefilter& filter, const Value* row,
                           out + begin * kLanes);
 }
 
+// Computes a row of knots.
 template <class Form, bool kAnyMissing>
 HWY_ATTR HWY_INLINE void FilterInColumns(const Prefilter& filter, const int32_t* const* rows,
                                          int count, uint16_t* HWY_RESTRICT out) {
-  ForEachVector(0, count, [&](auto d, ptrdiff_t i) HWY_ATTR {
+  ForEachVector<Form>(filter, 0, count, [&](auto d, const auto& weights, ptrdiff_t i) HWY_ATTR {
     const hn::Rebind<uint16_t, decltype(d)> d16;
     const auto at = [&](int k) HWY_ATTR { return hn::LoadU(d, rows[k] + i); };
-    const auto sum = Filtered<Form, kPrefilterFraction, kAnyMissing>(d, filter, at);
+    const auto sum = Filtered<Form, kPrefilterFraction, kAnyMissing>(d, filter, weights, at);
     const auto half = hn::Set(d, 1 << (kColumnShift - 1));
     hn::StoreU(hn::DemoteTo(d16, hn::ShiftRight<kColumnShift>(hn::Add(sum, half))), d16, out + i);
+  });
+}
+
+// Computes kKnotRowsAtOnce rows of knots of a filter with few weights, none of whose pixels is
+// missing. A vector of filtered rows is read once for all of them.
+template <class Form>
+HWY_ATTR HWY_INLINE void FilterRowsInColumns(const Prefilter& filter, const int32_t* const* rows,
+                                             int count, uint16_t* HWY_RESTRICT out) {
+  constexpr int kBefore = Form::kCount - 1;
+  constexpr int kRead = kBefore + kKnotRowsAtOnce + kBefore + (Form::kIsEven ? 1 : 0);
+  const auto values = static_cast<size_t>(count) * kLanes;
+  ForEachVector<Form>(filter, 0, count, [&](auto d, const auto& weights, ptrdiff_t i) HWY_ATTR {
+    const hn::Rebind<uint16_t, decltype(d)> d16;
+    hn::Vec<decltype(d)> read[kRead];
+    for (int k = 0; k < kRead; ++k) read[k] = hn::LoadU(d, rows[k - kBefore] + i);
+    for (int y = 0; y < kKnotRowsAtOnce; ++y) {
+      const auto at = [&](int k) HWY_ATTR { return read[kBefore + y + k]; };
+      const auto sum = Filtered<Form, kPrefilterFraction, false>(d, filter, weights, at);
+      const auto half = hn::Set(d, 1 << (kColumnShift - 1));
+      hn::StoreU(hn::DemoteTo(d16, hn::ShiftRight<kColumnShift>(hn::Add(sum, half))), d16,
+                 out + static_cast<size_t>(y) * values + i);
+    }
   });
 }
 
@@ -219,12 +262,19 @@ HWY_ATTR void FilterRow(const Prefilter& original, const Value* row, int width, 
 }
 
 HWY_ATTR void FilterAlongColumns(const Prefilter& original, const int32_t* const* rows,
-                                 bool any_missing, int count, uint16_t* out) {
+                                 bool any_missing, int row_count, int count, uint16_t* out) {
   const Prefilter filter = original;
   WithForm(filter, [&](auto form) HWY_ATTR {
     using Form = decltype(form);
-    if (any_missing) return FilterInColumns<Form, true>(filter, rows, count, out);
-    FilterInColumns<Form, false>(filter, rows, count, out);
+    if constexpr (Form::kCount > 0)
+      if (row_count == kKnotRowsAtOnce && !any_missing)
+        return FilterRowsInColumns<Form>(filter, rows, count, out);
+    for (int y = 0; y < row_count; ++y, ++rows, out += static_cast<size_t>(count) * kLanes) {
+      if (any_missing)
+        FilterInColumns<Form, true>(filter, rows, count, out);
+      else
+        FilterInColumns<Form, false>(filter, rows, count, out);
+    }
   });
 }
 
@@ -264,8 +314,8 @@ void FilterAlongWeighedRow(const Prefilter& filter, const int32_t* weighed, int 
   HWY_DYNAMIC_DISPATCH(FilterAlongWeighedRow)(filter, weighed, width, any_masked, count, out);
 }
 void FilterAlongColumns(const Prefilter& filter, const int32_t* const* rows, bool any_missing,
-                        int count, uint16_t* out) {
-  HWY_DYNAMIC_DISPATCH(FilterAlongColumns)(filter, rows, any_missing, count, out);
+                        int row_count, int count, uint16_t* out) {
+  HWY_DYNAMIC_DISPATCH(FilterAlongColumns)(filter, rows, any_missing, row_count, count, out);
 }
 
 }  // namespace lf

@@ -29,13 +29,18 @@ void WeighRow(const std::array<int32_t, 2 * LfPixels::kRgbLanes>& factors, const
 void FilterAlongWeighedRow(const Prefilter& filter, const int32_t* weighed, int width,
                            bool any_masked, int count, int32_t* out);
 
-// Filters a row of knots along the columns.
+// Number of rows of knots that are best made by one call of FilterAlongColumns().
+inline constexpr int kKnotRowsAtOnce = 4;
+
+// Filters rows of knots along the columns.
 //   rows         rows[k] is the result of FilterAlongRow() for row y + k of pixels, where y is the
-//                row of the knots; zeros stand for rows that do not exist
+//                first row of the knots; zeros stand for rows that do not exist
 //   any_missing  true if a row does not exist or a pixel is masked
-//   count        number of knots
+//   row_count    number of rows of knots
+//   count        number of knots in a row
+//   out          [row_count][count][LfPixels::kRgbLanes]
 void FilterAlongColumns(const Prefilter& filter, const int32_t* const* rows, bool any_missing,
-                        int count, uint16_t* out);
+                        int row_count, int count, uint16_t* out);
 
 // Returns the rectangle of the knots that FilterPixels() makes of the pixels in `rect`.
 inline PixelRect KnotsOf(const Prefilter& filter, const PixelRect& rect) {

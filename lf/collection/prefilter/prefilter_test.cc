@@ -2,8 +2,11 @@
 #include "lf/collection/prefilter/prefilter.h"
 
 #include <gtest/gtest.h>
+#include <hwy/highway.h>
 
 #include <cmath>
+#include <cstdint>
+#include <string>
 #include <vector>
 
 #include "lf/core/random.h"
@@ -82,9 +85,9 @@ LfPixels NoisePixels(const PixelRect& rect, uint64_t seed, double masked_share) 
   return pixels;
 }
 
-TEST(FilterPixels, HasTheBitsOfTheReference) {
+void ExpectBitsOfReference(const std::string& target) {
   uint64_t seed = 0;
-  for (const double width : {1., 1.5, 2., 2.9, 3.5, 5., 16.})
+  for (const double width : {1., 1.5, 2., 2.9, 3.5, 5., 6., 7., 8., 16.})
     for (const double masked : {0., 0.1, 0.7})
       for (const PixelRect rect : {PixelRect{3, 4, 40, 25}, PixelRect{0, 0, 1, 1},
                                    PixelRect{0, 0, 2, 30}, PixelRect{5, 5, 70, 7}}) {
@@ -97,19 +100,30 @@ TEST(FilterPixels, HasTheBitsOfTheReference) {
           LfPixels fast, literal;
           FilterPixels(filter, pixels, &fast);
           FilterPixelsReference(filter, pixels, &literal);
-          EXPECT_EQ(fast.radiance.pixels(), literal.radiance.pixels()) << width << " " << masked;
+          EXPECT_EQ(fast.radiance.pixels(), literal.radiance.pixels())
+              << target << " " << width << " " << masked;
           EXPECT_EQ(fast.any_masked, pixels.any_masked);
           EXPECT_EQ(fast.rect, literal.rect);
           LfPixels in_place = pixels;
           FilterInPlace(filter, &in_place);
           EXPECT_EQ(in_place.radiance.pixels(), literal.radiance.pixels())
-              << width << " " << masked;
+              << target << " " << width << " " << masked;
           EXPECT_EQ(in_place.rect, literal.rect);
         }
       }
 }
 
 // One of 2 x 2 pixels recorded red, and two recorded green.
+TEST(FilterPixels, HasTheBitsOfTheReferenceWithAllInstructions) {
+  for (const int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().DeInit();
+    ExpectBitsOfReference(hwy::TargetName(target));
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().DeInit();
+}
+
 TEST(FilterPixels, RecordedColoursCountEightTimes) {
   for (const BayerPattern pattern : {BayerPattern::kRggb, BayerPattern::kGbrg}) {
     LfPixels pixels({3, 5, 33, 35}, BayerPattern::kNone);
