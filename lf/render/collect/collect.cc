@@ -59,6 +59,7 @@ class FrameCollector::State {
     for (CollectedFrame& frame : frames_) frame.progress.places_done = frame.places.begin;
     LF_CHECK(options.batch_image_count >= 1);
     images_done_ = announced_ = FirstWanted(0);
+    most_values_ = MostValues();
   }
 
   Result<bool> Step();
@@ -91,6 +92,7 @@ class FrameCollector::State {
   PixelRect RectOf(const Batch& batch, const SelectedImage& image) const;
   void Load(const Batch& batch, Loading* loading);
   Result<void> FinishLoading(Batch* batch);
+  size_t MostValues() const;
   LfPixels TakeSpare();
   void Skip(const SelectedImage& image, const Error& error);
 
@@ -107,6 +109,7 @@ class FrameCollector::State {
   std::atomic<int64_t> load_wall_ns_ = 0;
   size_t images_done_ = 0;
   size_t announced_ = 0;  // number of LF images of order_ that were announced to the store
+  size_t most_values_ = 0;
   std::mutex spare_mutex_;
   std::vector<LfPixels> spare_;     // pixels of collected LF images; their memory is used again
   std::optional<LfImageId> whole_;  // the last LF image that was loaded without an error
@@ -249,10 +252,25 @@ void FrameCollector::State::Load(const Batch& batch, Loading* loading) {
   load_wall_ns_ += std::chrono::nanoseconds(Clock::now() - start).count();
 }
 
+// Returns the number of radiances of the largest part of an LF image that selection has found.
+size_t FrameCollector::State::MostValues() const {
+  long long most = 0;
+  for (const SelectedImage& image : order_) most = std::max(most, image.rect.pixel_count());
+  const bool is_mosaic = options_.reading.estimator == Estimator::kNearest &&
+                         light_field_.encoding.bayer != BayerPattern::kNone;
+  return static_cast<size_t>(most) * (is_mosaic ? 1 : LfPixels::kRgbLanes);
+}
+
+// Returns pixels with memory for every LF image. Memory that grew with the LF images would be
+// replaced several times, and its first use is slow.
 LfPixels FrameCollector::State::TakeSpare() {
   const std::lock_guard lock(spare_mutex_);
-  if (spare_.empty()) return {};
-  LfPixels pixels = std::move(spare_.back());
+  LfPixels pixels;
+  if (spare_.empty()) {
+    pixels.radiance.pixels().reserve(most_values_);
+    return pixels;
+  }
+  pixels = std::move(spare_.back());
   spare_.pop_back();
   return pixels;
 }

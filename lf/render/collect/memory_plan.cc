@@ -43,11 +43,10 @@ constexpr size_t kTileBytes = kMiB;  // sums of the tile that one thread works o
 // the tiles to the plates and waiting for the last task take little time compared with collecting
 // the rays. Larger batches would cost time, because the first use of memory can take as long as
 // decoding an LF image into it. Where few frames share a batch, decoding its LF images takes most
-// of the time, so that kBatchBytesPerFrame suffice.
+// of the time, so that kBatchBytesPerFrame suffice, or an LF image for each thread.
 constexpr size_t kRaysPerElement = 8;
 constexpr size_t kEnoughBatchImages = 16;
 constexpr size_t kBatchBytesPerFrame = 256 * kMiB;
-constexpr size_t kEnoughBatchImagesPerThread = 2;
 constexpr size_t kMostBatchImages = 64;
 constexpr size_t kMostPlanBytes = 64 * kMiB;
 
@@ -128,7 +127,7 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
   const size_t free_bytes = memory_bytes - set_aside;
   const size_t enough =
       std::max({std::min(kEnoughBatchImages, frame_count * kBatchBytesPerFrame / need.kept_bytes),
-                kEnoughBatchImagesPerThread * static_cast<size_t>(thread_count),
+                static_cast<size_t>(thread_count),
                 std::min(kMostBatchImages, kRaysPerElement * element_count / need.pixels)});
   plan.batch_image_count = std::clamp<size_t>(free_bytes / 4 / pair_bytes, 1, enough);
   // Memory for more plans than one frame needs lets several frames be planned together: threads

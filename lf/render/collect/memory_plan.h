@@ -29,7 +29,7 @@ struct MemoryPlan {
 // most, is for two batches of LF images and the plans of their rays; more only if one LF image in
 // each batch needs more. The plates get what remains. If not all plates fit, the frames are divided
 // into passes. A batch has at most the largest of these numbers of LF images, because larger
-// batches gain nothing: 16, or as many as take 256 MiB for each frame if these are fewer; two for
+// batches gain nothing: 16, or as many as take 256 MiB for each frame if these are fewer; one for
 // each thread; as many as have the pixels of eight plates together (at most 64). kOutput if the
 // memory does not suffice for one plate and two LF images; the message names the least memory that
 // suffices. If LF images are prefiltered, the memory of one batch also holds a filtered copy of
