@@ -24,9 +24,12 @@ double SecondsSince(Clock::time_point start) {
 
 // An LF image of a batch while it is decoded.
 struct Loading {
-  size_t index = 0;  // index of the LF image in State::order_
-  std::optional<Result<LfPixels>> pixels;
-  NearbyDepths depths;
+  size_t index = 0;                                       // index of the LF image in State::order_
+  std::optional<Result<LfPixels>> pixels = std::nullopt;  // without opacity
+  LfPixels opacity = {};
+  NearbyDepths depths = {};
+  PixelRect rect = {};  // of the pixels, before they were filtered
+  std::optional<Prefilter> filtered_by = std::nullopt;
 };
 
 // A batch: the LF images with indices [begin, end) in State::order_.
@@ -89,6 +92,7 @@ class FrameCollector::State {
   Batch BatchFrom(size_t from) const;
   std::vector<BatchFrame> FramesOf(const Batch& batch) const;
   void AnnounceUpTo(size_t end);
+  std::vector<size_t> TakersOf(const Batch& batch, const SelectedImage& image) const;
   PixelRect RectOf(const Batch& batch, const SelectedImage& image) const;
   void Load(const Batch& batch, Loading* loading);
   Result<void> FinishLoading(Batch* batch);
@@ -199,7 +203,7 @@ Batch FrameCollector::State::BatchFrom(size_t from) const {
     const bool is_long =
         rays > options_.batch_ray_count || frame_rays > options_.batch_frame_ray_count;
     if (image.place >= decision || (is_long && batch.end > batch.begin)) break;
-    batch.loading.push_back({batch.end, std::nullopt, {}});
+    batch.loading.push_back({.index = batch.end});
   }
   batch.place_end =
       batch.end < order_.size() ? std::min(decision, order_[batch.end].place) : PlaceEnd();
@@ -224,14 +228,24 @@ void FrameCollector::State::AnnounceUpTo(size_t end) {
   for (; announced_ < end && !IsInterrupted(); ++announced_) store_.Announce(order_[announced_].id);
 }
 
+// Returns the frames of the batch that take an LF image.
+std::vector<size_t> FrameCollector::State::TakersOf(const Batch& batch,
+                                                    const SelectedImage& image) const {
+  std::vector<size_t> frames;
+  const auto add = [&](size_t frame) {
+    if (frames_[frame].places.Holds(image.place)) frames.push_back(frame);
+  };
+  if (batch.frames.empty())
+    for (size_t frame = 0; frame < frames_.size(); ++frame) add(frame);
+  else
+    std::for_each(batch.frames.begin(), batch.frames.end(), add);
+  return frames;
+}
+
 // Returns the bounds of the pixels of an LF image that the frames of the batch need. If
 // batch.frames is empty, these are the bounds that selection has found.
 PixelRect FrameCollector::State::RectOf(const Batch& batch, const SelectedImage& image) const {
-  if (batch.frames.empty()) return image.rect;
-  std::vector<size_t> frames;
-  for (const size_t frame : batch.frames)
-    if (frames_[frame].places.Holds(image.place)) frames.push_back(frame);
-  return collector_.RectOf(image.id, frames);
+  return batch.frames.empty() ? image.rect : collector_.RectOf(image.id, TakersOf(batch, image));
 }
 
 void FrameCollector::State::Load(const Batch& batch, Loading* loading) {
@@ -240,14 +254,26 @@ void FrameCollector::State::Load(const Batch& batch, Loading* loading) {
   const ThreadCpuTimer timer;
   const SelectedImage& selected = order_[loading->index];
   PixelRect rect = RectOf(batch, selected);
-  if (ConsumerWants(selected.place + 1))
-    rect = Bounds(rect, options_.consumer->RectOf(selected.id, selected.place));
+  const bool is_consumed = ConsumerWants(selected.place + 1);
+  if (is_consumed) rect = Bounds(rect, options_.consumer->RectOf(selected.id, selected.place));
   loading->pixels =
       rect.empty() ? LfPixels()
                    : LoadWithoutThrowing(store_, selected.id, rect,
                                          light_field_.image_names[selected.id.value], TakeSpare());
-  if (*loading->pixels)
-    loading->depths = NearbyDepthsOf(std::exchange((*loading->pixels)->depths, {}));
+  if (*loading->pixels) {
+    LfPixels& pixels = **loading->pixels;
+    loading->depths = NearbyDepthsOf(std::exchange(pixels.depths, {}));
+    loading->opacity = pixels.TakeOpacity();
+    loading->rect = pixels.rect;
+    // An LF image that was just loaded is still in the caches, which makes filtering faster.
+    if (!is_consumed)
+      loading->filtered_by = collector_.OnlyPrefilterOf(selected.id, TakersOf(batch, selected));
+    if (loading->filtered_by) {
+      FilterInPlace(*loading->filtered_by, &pixels);
+      if (!loading->opacity.radiance.empty())
+        FilterInPlace(*loading->filtered_by, &loading->opacity);
+    }
+  }
   load_cpu_ns_ += timer.Nanoseconds();
   load_wall_ns_ += std::chrono::nanoseconds(Clock::now() - start).count();
 }
@@ -285,10 +311,13 @@ Result<void> FrameCollector::State::FinishLoading(Batch* batch) {
     const SelectedImage& image = order_[loading.index];
     if (*loading.pixels) {
       whole_ = image.id;
-      LfPixels pixels = **std::move(loading.pixels);
-      LfPixels opacity = pixels.TakeOpacity();
-      batch->images.push_back({image.id, image.place, std::move(pixels), std::move(opacity),
-                               std::move(loading.depths)});
+      batch->images.push_back({.id = image.id,
+                               .place = image.place,
+                               .pixels = **std::move(loading.pixels),
+                               .opacity = std::move(loading.opacity),
+                               .depths = std::move(loading.depths),
+                               .filtered_by = loading.filtered_by,
+                               .loaded = loading.rect});
       continue;
     }
     // An LF image is skipped only if it is broken itself (kInput). If the machine lacks something,

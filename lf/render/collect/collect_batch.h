@@ -75,14 +75,16 @@ struct BatchImage {
   // `opacity`. BatchCollector::Add() must then keep the pixels. Null: not used.
   const LfPixels* shared_pixels = nullptr;
   const LfPixels* shared_opacity = nullptr;
+  // The prefilter whose result has replaced `pixels` and `opacity`; unset if they are as loaded. If
+  // the caller has filtered them, it sets `loaded`, and filtered_by is OnlyPrefilterOf() all frames
+  // that take the LF image.
+  std::optional<Prefilter> filtered_by = std::nullopt;
+  PixelRect loaded = {};  // rectangle of the pixels before they were filtered
   // BatchCollector sets the members below. If the LF camera has no lens distortion, *cells is
   // empty. `ideal_pixels` is then null, as it always is with kBilinear or kReference.
   std::shared_ptr<const std::vector<IdealCell>> cells = nullptr;
   std::shared_ptr<const IdealPixels> ideal_pixels = nullptr;
   std::optional<ImageOverlap> overlap = std::nullopt;
-  PixelRect loaded = {};  // rectangle of the pixels before they were filtered
-  // The prefilter whose result has replaced `pixels` and `opacity`; unset if they are as loaded.
-  std::optional<Prefilter> filtered_by = std::nullopt;
 
   const LfPixels& Pixels() const { return shared_pixels ? *shared_pixels : pixels; }
   const LfPixels& Opacity() const { return shared_pixels ? *shared_opacity : opacity; }
@@ -141,6 +143,11 @@ class BatchCollector {
   // Returns the bounds of the pixels of an LF image that at least one of `frames` (indices) needs.
   // A frame in which the LF image has no weight needs no pixels.
   PixelRect RectOf(LfImageId id, std::span<const size_t> frames) const;
+
+  // Returns the only prefilter that `frames` (indices) need of an LF image, which then may be
+  // filtered as soon as it is loaded (BatchImage::filtered_by); nothing if none of them needs the
+  // LF image, if they need several prefilters, or if one of them needs the pixels as loaded.
+  std::optional<Prefilter> OnlyPrefilterOf(LfImageId id, std::span<const size_t> frames) const;
 
   // Returns the CPU seconds that all threads together have spent on collecting rays so far, without
   // the time of OtherItems.
