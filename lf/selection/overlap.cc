@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "lf/camera/magnification.h"
 #include "lf/camera/ray_forms.h"
 #include "lf/core/check.h"
 
@@ -20,10 +19,12 @@ constexpr double kBesideElement_px = 3.1;  // pixels beside an element that a pr
 constexpr double kZeroMargin = 1e-12;      // rounding error of a linear form, relative to its terms
 
 // Returns how many pixels on each side of a ray are read for the ray.
-int NeighboursOf(PixelReach reach, const PinholeCamera& lf_camera, const RenderCamera& camera) {
+int NeighboursOf(PixelReach reach, const PinholeCamera& lf_camera, const FrameOutline& frame) {
   if (reach == PixelReach::kOwn) return 0;
   if (reach == PixelReach::kNeighbours) return kNeighboursPx;
-  const double width_px = std::clamp(ElementWidth_px(lf_camera, camera), 1., kWidestElement_px);
+  LF_CHECK(frame.magnification);
+  const double width_px =
+      std::clamp(ElementWidth_px(lf_camera, *frame.magnification), 1., kWidestElement_px);
   return static_cast<int>(std::ceil(width_px / 2 + kBesideElement_px));
 }
 
@@ -291,7 +292,9 @@ bool ImageOverlap::PlainlyMisses(const RenderCamera& render_camera) const {
          kRounding * length * (offset.lpNorm<1>() + radius_w);
 }
 
-FrameOutline::FrameOutline(const RenderCamera& render_camera) : camera(render_camera) {
+FrameOutline::FrameOutline(const RenderCamera& render_camera, PixelReach reach)
+    : camera(render_camera) {
+  if (reach == PixelReach::kElement) magnification.emplace(render_camera);
   // A lens with very many blades is treated as a disk, whose 16-gon contains it.
   constexpr int kMostBlades = 64;
   if (camera.aperture.blades > kMostBlades) camera.aperture = {camera.aperture.radius_w, 0, 0};
@@ -306,7 +309,7 @@ PixelRect ImageOverlap::Rect(const FrameOutline& frame) const {
   const Intrinsics& image = lf_camera_.intrinsics;
   const bool distorted = image.has_distortion();
   const RayForms forms = MakeRayForms(direction_world_, centre_world_, frame.camera);
-  const int beyond = NeighboursOf(reach_, lf_camera_, frame.camera);
+  const int beyond = NeighboursOf(reach_, lf_camera_, frame);
   std::vector<PixelForm> lens;
   if (distorted) lens = LensHalfPlanes(forms, frame.camera, kLensMargin);
   PixelRect rect;

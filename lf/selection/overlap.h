@@ -3,10 +3,12 @@
 // Relevant Area in Image Space", Fig. 4.5).
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "lf/camera/aperture.h"
+#include "lf/camera/magnification.h"
 #include "lf/camera/pinhole.h"
 #include "lf/camera/render_camera.h"
 #include "lf/core/geometry.h"
@@ -48,11 +50,14 @@ PixelRect ContributingRect(const PinholeCamera& lf_camera, const RenderCamera& r
 
 // Properties of a frame that are computed once and used for all LF images.
 struct FrameOutline {
-  explicit FrameOutline(const RenderCamera& render_camera);
+  //   reach  that of the LF images (ImageOverlap)
+  FrameOutline(const RenderCamera& render_camera, PixelReach reach);
 
   RenderCamera camera;
   std::vector<ApertureEdge> lens_edges;  // edges of a polygon that contains the lens
   double lens_inner_w = 0;  // radius of the largest circle about the lens centre within the lens
+  // Set if the reach is kElement, because it depends on the magnification.
+  std::optional<MagnificationPoints> magnification;
 };
 
 // Computes ContributingRect() of one LF image for many frames. Values that depend only on the LF
@@ -71,8 +76,9 @@ class ImageOverlap {
   bool PlainlyMisses(const RenderCamera& render_camera) const;
 
   PixelRect Rect(const RenderCamera& render_camera) const {
-    return PlainlyMisses(render_camera) ? PixelRect() : Rect(FrameOutline(render_camera));
+    return PlainlyMisses(render_camera) ? PixelRect() : Rect(FrameOutline(render_camera, reach_));
   }
+  // The outline must have been made for the reach of this object.
   PixelRect Rect(const FrameOutline& frame) const;
 
  private:

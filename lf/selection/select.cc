@@ -79,7 +79,7 @@ class Selector {
       : index_(index), frames_(frames), options_(options) {
     for (const TakingFrame& frame : frames) {
       regions_.emplace_back(frame.camera);
-      outlines_.emplace_back(frame.camera);
+      outlines_.emplace_back(frame.camera, options.reach);
     }
   }
 

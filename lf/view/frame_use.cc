@@ -16,7 +16,10 @@ constexpr size_t kCamerasPerTask = 1024;
 class Reasons {
  public:
   Reasons(const ImageIndex& index, const RenderCamera& frame, const NeedsOptions& options)
-      : light_field_(index.light_field()), region_(frame), outline_(frame), options_(options) {}
+      : light_field_(index.light_field()),
+        region_(frame),
+        outline_(frame, options.select.reach),
+        options_(options) {}
 
   CameraUse Of(LfImageId id) const {
     const PinholeCamera camera = light_field_.Camera(id);
