@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "lf/collection/prefilter/prefilter_rows.h"
@@ -32,39 +33,75 @@ void FilterAlong(const Prefilter& filter, const LfPixels& pixels, int y, int cou
   FilterAlongWeighedRow(filter, weighed.data(), width, pixels.any_masked, count, out);
 }
 
+}  // namespace
+
 // Writes the knots of pixels to `knots`, row by row. `knots` may be the first value of `pixels`: a
 // row of knots is written after all rows of pixels up to it were read.
-//   to  rectangle of the knots
-void FilterRows(const Prefilter& filter, const LfPixels& pixels, const PixelRect& to,
-                uint16_t* knots) {
-  const int width = pixels.radiance.width(), height = pixels.radiance.height();
-  // The pixels from -before to +after of a row or a column make the value of knot 0.
-  const int before = filter.count - 1, after = filter.is_even ? filter.count : before;
-  const auto row_values = static_cast<size_t>(width) * kLanes;
-  // A ring of the filtered rows that are still needed, and a row of zeros for missing rows.
-  const auto ring = static_cast<size_t>(before + kKnotRowsAtOnce + after);
-  thread_local std::vector<int32_t> filtered;
-  filtered.resize((ring + 1) * row_values);
-  std::fill(filtered.end() - static_cast<ptrdiff_t>(row_values), filtered.end(), 0);
-  const auto at = [&](int y) {
-    const size_t row = y < 0 || y >= height ? ring : static_cast<size_t>(y) % ring;
-    return filtered.data() + row * row_values;
-  };
-  std::vector<const int32_t*> rows(ring);
-  int next = 0, row_count = 0;
-  for (int y = 0; y < to.height(); y += row_count) {
-    row_count = std::min(kKnotRowsAtOnce, to.height() - y);
-    const int end = y + row_count + after;
-    for (; next < std::min(height, end); ++next)
-      FilterAlong(filter, pixels, next, to.width(), at(next));
-    for (int k = y - before; k < end; ++k) rows[static_cast<size_t>(k - y + before)] = at(k);
-    const bool any_missing = pixels.any_masked || y < before || end > height;
-    FilterAlongColumns(filter, rows.data() + before, any_missing, row_count, to.width(),
-                       knots + static_cast<size_t>(y) * to.width() * kLanes);
+class RowFilter {
+ public:
+  //   to  rectangle of the knots
+  RowFilter(const Prefilter& filter, const LfPixels& pixels, const PixelRect& to, uint16_t* knots)
+      : filter_(filter),
+        pixels_(pixels),
+        to_(to),
+        knots_(knots),
+        before_(filter.count - 1),
+        after_(filter.is_even ? filter.count : before_),
+        ring_(static_cast<size_t>(before_ + kKnotRowsAtOnce + after_)),
+        row_values_(static_cast<size_t>(pixels.radiance.width()) * kLanes),
+        filtered_(std::move(Spare())),
+        rows_(ring_) {
+    filtered_.resize((ring_ + 1) * row_values_);
+    std::fill(filtered_.end() - static_cast<ptrdiff_t>(row_values_), filtered_.end(), 0);
   }
-}
+  ~RowFilter() { Spare() = std::move(filtered_); }
+  RowFilter(const RowFilter&) = delete;
+  RowFilter& operator=(const RowFilter&) = delete;
 
-}  // namespace
+  // Writes the knots that need only the first `there` rows of pixels.
+  void Advance(int there) {
+    const int height = pixels_.radiance.height();
+    while (y_ < to_.height()) {
+      const int row_count = std::min(kKnotRowsAtOnce, to_.height() - y_);
+      const int end = y_ + row_count + after_;
+      for (; next_ < std::min(there, end); ++next_)
+        FilterAlong(filter_, pixels_, next_, to_.width(), Row(next_));
+      if (there < std::min(height, end)) return;
+      for (int k = y_ - before_; k < end; ++k)
+        rows_[static_cast<size_t>(k - y_ + before_)] = Row(k);
+      const bool any_missing = pixels_.any_masked || y_ < before_ || end > height;
+      FilterAlongColumns(filter_, rows_.data() + before_, any_missing, row_count, to_.width(),
+                         knots_ + static_cast<size_t>(y_) * to_.width() * kLanes);
+      y_ += row_count;
+    }
+  }
+
+ private:
+  // Memory of this thread that no RowFilter uses now.
+  static std::vector<int32_t>& Spare() {
+    thread_local std::vector<int32_t> spare;
+    return spare;
+  }
+  // Returns row y of pixels, filtered along the row; zeros if there is no such row.
+  int32_t* Row(int y) {
+    const bool exists = y >= 0 && y < pixels_.radiance.height();
+    return filtered_.data() + (exists ? static_cast<size_t>(y) % ring_ : ring_) * row_values_;
+  }
+
+  const Prefilter filter_;
+  const LfPixels& pixels_;
+  const PixelRect to_;
+  uint16_t* const knots_;
+  // The pixels from -before_ to +after_ of a row or a column make the value of knot 0.
+  const int before_, after_;
+  const size_t ring_;  // number of filtered rows that are kept
+  const size_t row_values_;
+  // A ring of the filtered rows that are still needed, and a row of zeros.
+  std::vector<int32_t> filtered_;
+  std::vector<const int32_t*> rows_;
+  int next_ = 0;  // the next row of pixels to be filtered along the row
+  int y_ = 0;     // the next row of knots
+};
 
 void FilterPixels(const Prefilter& filter, const LfPixels& pixels, LfPixels* out) {
   LF_CHECK(pixels.bayer == BayerPattern::kNone && out != &pixels);
@@ -72,16 +109,22 @@ void FilterPixels(const Prefilter& filter, const LfPixels& pixels, LfPixels* out
   out->recorded = pixels.recorded;
   out->any_masked = pixels.any_masked;
   if (out->rect.empty()) return;
-  FilterRows(filter, pixels, out->rect, out->radiance.row(0));
+  RowFilter(filter, pixels, out->rect, out->radiance.row(0)).Advance(pixels.radiance.height());
 }
 
-void FilterInPlace(const Prefilter& filter, LfPixels* pixels) {
+InPlaceFilter::InPlaceFilter(const Prefilter& filter, LfPixels* pixels)
+    : pixels_(*pixels), knots_(KnotsOf(filter, pixels->rect)) {
   LF_CHECK(pixels->bayer == BayerPattern::kNone);
-  const PixelRect knots = KnotsOf(filter, pixels->rect);
-  Image<uint16_t>& radiance = pixels->radiance;
-  if (!knots.empty()) FilterRows(filter, *pixels, knots, radiance.row(0));
-  radiance.Resize(knots.width(), knots.height(), LfPixels::kRgbLanes);
-  pixels->rect = knots;
+  if (!knots_.empty())
+    rows_ = std::make_unique<RowFilter>(filter, *pixels, knots_, pixels->radiance.row(0));
+}
+InPlaceFilter::~InPlaceFilter() = default;
+
+void InPlaceFilter::Advance(int row_count) {
+  if (rows_) rows_->Advance(row_count);
+  if (row_count < pixels_.radiance.height()) return;
+  pixels_.radiance.Resize(knots_.width(), knots_.height(), LfPixels::kRgbLanes);
+  pixels_.rect = knots_;
 }
 
 }  // namespace lf

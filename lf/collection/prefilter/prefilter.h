@@ -20,6 +20,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 
 #include "lf/camera/magnification.h"
 #include "lf/core/image.h"
@@ -92,9 +93,31 @@ inline int32_t ShareFactor(BayerPattern recorded, int x, int y, int channel) {
 //   pixels  RGB; must not be *out. Opacities are left out
 void FilterPixels(const Prefilter& filter, const LfPixels& pixels, LfPixels* out);
 
-// Replaces the pixels by what FilterPixels() makes of them. pixels->opacity must be empty
-// (LfPixels::TakeOpacity()).
-void FilterInPlace(const Prefilter& filter, LfPixels* pixels);
+class RowFilter;
+
+// Replaces pixels by what FilterPixels() makes of them, while their rows are still being written:
+// each row is then read while it is in the caches.
+class InPlaceFilter {
+ public:
+  // The pixels must outlive the object. Only their radiance may not be complete yet; their opacity
+  // must be empty (LfPixels::TakeOpacity()).
+  InPlaceFilter(const Prefilter& filter, LfPixels* pixels);
+  ~InPlaceFilter();
+
+  // Must be called when the first `row_count` rows of the radiance are complete, as often as is
+  // convenient. The call with all rows is the last one: it finishes the result.
+  void Advance(int row_count);
+
+ private:
+  LfPixels& pixels_;
+  const PixelRect knots_;
+  std::unique_ptr<RowFilter> rows_;  // null: there are no knots
+};
+
+// Does the same with complete pixels.
+inline void FilterInPlace(const Prefilter& filter, LfPixels* pixels) {
+  InPlaceFilter(filter, pixels).Advance(pixels->radiance.height());
+}
 
 // Computes the values of FilterPixels() literally, one at a time.
 void FilterPixelsReference(const Prefilter& filter, const LfPixels& pixels, LfPixels* out);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -104,8 +105,21 @@ void ExpectBitsOfReference(const std::string& target) {
               << target << " " << width << " " << masked;
           EXPECT_EQ(fast.any_masked, pixels.any_masked);
           EXPECT_EQ(fast.rect, literal.rect);
-          LfPixels in_place = pixels;
+          // The rows of the second copy become complete in groups of one to six.
+          LfPixels in_place = pixels, in_parts = pixels;
           FilterInPlace(filter, &in_place);
+          std::fill(in_parts.radiance.pixels().begin(), in_parts.radiance.pixels().end(), 7);
+          InPlaceFilter in_parts_filter(filter, &in_parts);
+          for (int y = 0; y < pixels.radiance.height();) {
+            const int end = std::min(pixels.radiance.height(), y + 1 + (y + int(seed)) % 6);
+            std::copy(pixels.radiance.row(0) + y * pixels.radiance.width() * LfPixels::kRgbLanes,
+                      pixels.radiance.row(0) + end * pixels.radiance.width() * LfPixels::kRgbLanes,
+                      in_parts.radiance.row(y));
+            in_parts_filter.Advance(y = end);
+          }
+          EXPECT_EQ(in_parts.radiance.pixels(), literal.radiance.pixels())
+              << target << " " << width << " " << masked;
+          EXPECT_EQ(in_parts.rect, literal.rect);
           EXPECT_EQ(in_place.radiance.pixels(), literal.radiance.pixels())
               << target << " " << width << " " << masked;
           EXPECT_EQ(in_place.rect, literal.rect);

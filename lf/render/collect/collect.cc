@@ -256,22 +256,31 @@ void FrameCollector::State::Load(const Batch& batch, Loading* loading) {
   PixelRect rect = RectOf(batch, selected);
   const bool is_consumed = ConsumerWants(selected.place + 1);
   if (is_consumed) rect = Bounds(rect, options_.consumer->RectOf(selected.id, selected.place));
+  if (!is_consumed && !rect.empty())
+    loading->filtered_by = collector_.OnlyPrefilterOf(selected.id, TakersOf(batch, selected));
+  // Rows that were just loaded are still in the caches, which makes filtering faster.
+  std::optional<InPlaceFilter> filter;
+  const auto filter_rows = [&](LfPixels* pixels, int row_count) {
+    if (!filter) {
+      loading->opacity = pixels->TakeOpacity();
+      loading->rect = pixels->rect;
+      filter.emplace(*loading->filtered_by, pixels);
+    }
+    filter->Advance(row_count);
+  };
   loading->pixels =
       rect.empty() ? LfPixels()
                    : LoadWithoutThrowing(store_, selected.id, rect,
-                                         light_field_.image_names[selected.id.value], TakeSpare());
+                                         light_field_.image_names[selected.id.value], TakeSpare(),
+                                         loading->filtered_by ? RowsLoaded(filter_rows) : nullptr);
   if (*loading->pixels) {
     LfPixels& pixels = **loading->pixels;
     loading->depths = NearbyDepthsOf(std::exchange(pixels.depths, {}));
-    loading->opacity = pixels.TakeOpacity();
-    loading->rect = pixels.rect;
-    // An LF image that was just loaded is still in the caches, which makes filtering faster.
-    if (!is_consumed)
-      loading->filtered_by = collector_.OnlyPrefilterOf(selected.id, TakersOf(batch, selected));
-    if (loading->filtered_by) {
-      FilterInPlace(*loading->filtered_by, &pixels);
-      if (!loading->opacity.radiance.empty())
-        FilterInPlace(*loading->filtered_by, &loading->opacity);
+    if (!filter) {
+      loading->opacity = pixels.TakeOpacity();
+      loading->rect = pixels.rect;
+    } else if (!loading->opacity.radiance.empty()) {
+      FilterInPlace(*loading->filtered_by, &loading->opacity);
     }
   }
   load_cpu_ns_ += timer.Nanoseconds();

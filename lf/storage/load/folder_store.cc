@@ -27,8 +27,13 @@ bool FolderStore::IsThere(LfImageId id) const {
 void FolderStore::Announce(LfImageId id) const { AnnounceRead(light_field_.ImagePath(id)); }
 
 Result<void> FolderStore::Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const {
+  return LoadByRows(id, rect, pixels, nullptr);
+}
+
+Result<void> FolderStore::LoadByRows(LfImageId id, const PixelRect& rect, LfPixels* pixels,
+                                     const RowsLoaded& rows_loaded) const {
   std::unique_ptr<Loading> loading = TakeLoading();
-  const Result<void> loaded = LoadBy(loading.get(), id, rect, pixels);
+  const Result<void> loaded = LoadBy(loading.get(), id, rect, rows_loaded, pixels);
   GiveBack(std::move(loading));
   return loaded;
 }
@@ -71,35 +76,56 @@ Result<int> FolderStore::LoadReducedBy(Loading* loading, LfImageId id, int divis
 }
 
 Result<void> FolderStore::LoadBy(Loading* loading, LfImageId id, const PixelRect& rect,
-                                 LfPixels* pixels) const {
+                                 const RowsLoaded& rows_loaded, LfPixels* pixels) const {
   LF_CHECK(id.value < light_field_.size());
-  return LoadMosaicsAs(
+  // A mosaic that is converted to RGB is complete only when all of it is.
+  const bool converts =
+      mosaics_ == Mosaics::kToRgb && light_field_.encoding.bayer != BayerPattern::kNone;
+  LF_RETURN_IF_ERROR(LoadMosaicsAs(
       mosaics_, light_field_, id, rect,
       [&](const PixelRect& recorded, LfPixels* into) {
-        return LoadRecorded(&loading->part, id, recorded, into);
+        return LoadRecorded(&loading->part, id, recorded, converts ? RowsLoaded() : rows_loaded,
+                            into);
       },
-      &loading->mosaic, pixels);
+      &loading->mosaic, pixels));
+  if (converts && rows_loaded) rows_loaded(pixels, pixels->radiance.height());
+  return {};
+}
+
+// Returns true if pixels of the LF image may be masked other than by its own alpha.
+bool FolderStore::MayMask(LfImageId id) const {
+  const LfCamera& camera = light_field_.cameras[id.value];
+  return camera.masks_clipped || camera.brighter != LfCamera::kNone ||
+         (!light_field_.mask_names.empty() && !light_field_.mask_names[id.value].empty());
 }
 
 Result<void> FolderStore::LoadRecorded(ImagePart* part, LfImageId id, const PixelRect& rect,
-                                       LfPixels* pixels) const {
+                                       const RowsLoaded& rows_loaded, LfPixels* pixels) const {
+  const RadianceEncoding& encoding = light_field_.encoding;
   const LfCamera& camera = light_field_.cameras[id.value];
   const Intrinsics& intrinsics = light_field_.intrinsics[camera.intrinsics_index];
   const PixelRect inside = Intersection(rect, {0, 0, intrinsics.width_px, intrinsics.height_px});
   const PixelRect wanted = inside.empty() ? PixelRect{0, 0, 1, 1} : inside;
   LF_ASSIGN_OR_RETURN(const ChannelUse use, ReadStoredPixels(light_field_, id, wanted, part));
-  pixels->Reset(inside, light_field_.encoding.bayer);
-  ConvertRadiance(*part, use.colours, tables_, light_field_.encoding, camera, intrinsics, pixels);
-  if (use.alpha && light_field_.encoding.AlphaIsLight()) {
+  pixels->Reset(inside, encoding.bayer);
+  // Rows are complete once they are converted, unless masks or opacities follow.
+  const bool is_by_rows =
+      rows_loaded && !use.alpha && !MayMask(id) && !encoding.HasOpacity() && !inside.empty();
+  RowsDone rows_done;
+  if (is_by_rows) rows_done = [&](int row_count) { rows_loaded(pixels, row_count); };
+  ConvertRadiance(*part, use.colours, tables_, encoding, camera, intrinsics, pixels, rows_done);
+  if (is_by_rows) return {};
+  if (use.alpha && encoding.AlphaIsLight()) {
     LF_ASSIGN_OR_RETURN(const Image<uint16_t> opacities,
                         ReadOpacities(light_field_, id, *part, use, inside));
-    ComposeWithBackground(opacities, inside, light_field_.encoding, pixels);
-    return {};
+    ComposeWithBackground(opacities, inside, encoding, pixels);
+  } else {
+    LF_RETURN_IF_ERROR(ForEachMasked(light_field_, id, *part, use, inside, [&](int x, int y) {
+      pixels->Mask(x - inside.x_begin, y - inside.y_begin);
+    }));
+    if (encoding.HasOpacity()) SetOpaque(pixels);
   }
-  LF_RETURN_IF_ERROR(ForEachMasked(light_field_, id, *part, use, inside, [&](int x, int y) {
-    pixels->Mask(x - inside.x_begin, y - inside.y_begin);
-  }));
-  if (light_field_.encoding.HasOpacity()) SetOpaque(pixels);
+  if (rows_loaded) rows_loaded(pixels, pixels->radiance.height());
   return {};
 }
 

@@ -37,6 +37,8 @@ class FolderStore : public LfImageStore {
   // levels (lf_black_level, lf_white_level) exceed the file's bits, a mask file has another size
   // than the image, or the file's channels or its kind (camera raw) contradict lf_bayer.
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override;
+  Result<void> LoadByRows(LfImageId id, const PixelRect& rect, LfPixels* pixels,
+                          const RowsLoaded& rows_loaded) const override;
   // Reduces JPEG files without a mask and without a quarter turn, by 2, 4 or 8.
   Result<int> LoadReduced(LfImageId id, int divisor, const Intrinsics& k,
                           LfPixels* pixels) const override;
@@ -53,10 +55,12 @@ class FolderStore : public LfImageStore {
   };
 
   Result<void> LoadBy(Loading* loading, LfImageId id, const PixelRect& rect,
-                      LfPixels* pixels) const;
+                      const RowsLoaded& rows_loaded, LfPixels* pixels) const;
   // Loads the pixels as recorded, without demosaicing.
+  //   rows_loaded  may be null
   Result<void> LoadRecorded(ImagePart* part, LfImageId id, const PixelRect& rect,
-                            LfPixels* pixels) const;
+                            const RowsLoaded& rows_loaded, LfPixels* pixels) const;
+  bool MayMask(LfImageId id) const;
   Result<int> LoadReducedBy(Loading* loading, LfImageId id, int divisor, LfPixels* pixels) const;
   std::unique_ptr<Loading> TakeLoading() const;
   void GiveBack(std::unique_ptr<Loading> loading) const;

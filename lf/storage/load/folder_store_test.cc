@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -257,6 +258,27 @@ TEST_F(FolderStoreTest, AMosaicBecomesRgbWhereItIsAskedTo) {
   const LfPixels grey = Loaded(light_field);
   ASSERT_TRUE(FolderStore(light_field, Mosaics::kToRgb).Load({0}, kWhole, &pixels));
   EXPECT_EQ(pixels.radiance.pixels(), grey.radiance.pixels());
+}
+
+TEST_F(FolderStoreTest, RowsAreToldAsSoonAsTheyAreComplete) {
+  LightField light_field = OneImage();
+  light_field.intrinsics = {{10, 10, 3.5, 2.5, 0, 700, 60}};
+  for (const int channels : {3, 4}) {
+    Write<uint8_t>("a.png", channels, 700, 60);
+    const LfPixels whole = Loaded(light_field, {0, 0, 700, 60});
+    LfPixels pixels;
+    std::vector<int> counts;
+    ASSERT_TRUE(FolderStore(light_field)
+                    .LoadByRows({0}, {0, 0, 700, 60}, &pixels, [&](LfPixels* rows, int row_count) {
+                      counts.push_back(row_count);
+                      EXPECT_EQ(rows->any_masked, whole.any_masked);
+                      EXPECT_TRUE(std::equal(rows->radiance.row(0),
+                                             rows->radiance.row(row_count - 1) + 4 * 700,
+                                             whole.radiance.row(0)));
+                    }));
+    // Alpha masks pixels after all rows were converted.
+    EXPECT_EQ(counts, channels == 3 ? std::vector({23, 46, 60}) : std::vector({60}));
+  }
 }
 
 TEST_F(FolderStoreTest, AMosaicOfOneRowIsAnError) {

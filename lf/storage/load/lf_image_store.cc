@@ -29,9 +29,11 @@ auto WithoutThrowing(const std::string& name, const Load& load) -> decltype(load
 }  // namespace
 
 Result<LfPixels> LoadWithoutThrowing(const LfImageStore& store, LfImageId id, const PixelRect& rect,
-                                     const std::string& name, LfPixels pixels) {
+                                     const std::string& name, LfPixels pixels,
+                                     const RowsLoaded& rows_loaded) {
   return WithoutThrowing(name, [&]() -> Result<LfPixels> {
-    LF_RETURN_IF_ERROR(store.Load(id, rect, &pixels));
+    LF_RETURN_IF_ERROR(rows_loaded ? store.LoadByRows(id, rect, &pixels, rows_loaded)
+                                   : store.Load(id, rect, &pixels));
     return std::move(pixels);
   });
 }

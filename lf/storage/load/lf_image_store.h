@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -23,6 +24,12 @@ enum class Mosaics { kAsRecorded, kToRgb };
 // (LfPixels::depths) if the store has some.
 enum class StoreContent { kPixels, kPixelsAndDepths };
 
+// Is called while an LF image is loaded, by the same thread: the first `row_count` rows of
+// pixels->radiance are complete. All other members are complete from the first call on. The
+// function may change rows that are complete and, in the last call, which has all rows, all of
+// *pixels.
+using RowsLoaded = std::function<void(LfPixels* pixels, int row_count)>;
+
 class LfImageStore {
  public:
   virtual ~LfImageStore() = default;
@@ -32,6 +39,15 @@ class LfImageStore {
   // is missing, broken or of another size than the calibration says. kOutput: the machine lacks
   // something, such as memory. The caller decides whether to continue without the image.
   virtual Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const = 0;
+
+  // Loads as Load() does, and calls rows_loaded() at least once. It is called for rows before the
+  // last ones if they are complete early.
+  virtual Result<void> LoadByRows(LfImageId id, const PixelRect& rect, LfPixels* pixels,
+                                  const RowsLoaded& rows_loaded) const {
+    LF_RETURN_IF_ERROR(Load(id, rect, pixels));
+    rows_loaded(pixels, pixels->radiance.height());
+    return {};
+  }
 
   // Loads a whole LF image as Load() does, or, if that is faster, reduced: each pixel is about the
   // mean of a square of LF pixels, and pixels that fill no square are cut off, as
@@ -72,9 +88,11 @@ class LfImageStore {
 // Calls store.Load() with the memory of `pixels`, and returns the loaded pixels. Exceptions of the
 // store become errors, because an exception that leaves a thread ends the program: kOutput if there
 // is not enough memory, otherwise KindOfReadFailure() of core/file.h.
-//   name  name of the LF image, for messages
+//   name         name of the LF image, for messages
+//   rows_loaded  null, or passed to store.LoadByRows(), which is called instead
 Result<LfPixels> LoadWithoutThrowing(const LfImageStore& store, LfImageId id, const PixelRect& rect,
-                                     const std::string& name, LfPixels pixels);
+                                     const std::string& name, LfPixels pixels,
+                                     const RowsLoaded& rows_loaded = nullptr);
 // Calls store.LoadReduced() likewise.
 Result<int> LoadReducedWithoutThrowing(const LfImageStore& store, LfImageId id, int divisor,
                                        const Intrinsics& k, const std::string& name,

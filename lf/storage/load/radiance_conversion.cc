@@ -18,16 +18,31 @@ constexpr uint64_t kOneRay = uint64_t{1} << (16 * LfPixels::kRayLane);
 
 void StorePixel(uint64_t lanes, uint16_t* out) { std::memcpy(out, &lanes, sizeof(lanes)); }
 
-// Calls convert_row(y, in, out, width) for each row y of pixels->rect.
+// The pixels to which values are converted. rows_done is the argument of ConvertRadiance().
+struct Converted {
+  LfPixels* pixels;
+  const RowsDone& rows_done;
+};
+
+// Size of the rows after which rows_done() is called. They are still in the caches then, and so
+// many that the call takes little of the time.
+constexpr int kBytesAtOnce = 128 << 10;
+
+// Calls convert_row(y, in, out, width) for each row y of to.pixels->rect.
 template <class T, class Row>
-void ForEachRow(const Image<T>& stored, const PixelRect& stored_rect, LfPixels* pixels,
+void ForEachRow(const Image<T>& stored, const PixelRect& stored_rect, const Converted& to,
                 const Row& convert_row) {
-  const PixelRect& rect = pixels->rect;
+  const PixelRect rect = to.pixels->rect;
   LF_CHECK(Intersection(rect, stored_rect) == rect);
   const size_t first = static_cast<size_t>(rect.x_begin - stored_rect.x_begin) * stored.channels();
-  for (int y = rect.y_begin; y < rect.y_end; ++y)
+  const int rows_at_once = std::max(1, kBytesAtOnce / std::max(1, 8 * rect.width()));
+  for (int y = rect.y_begin; y < rect.y_end; ++y) {
     convert_row(y, stored.row(y - stored_rect.y_begin) + first,
-                pixels->radiance.row(y - rect.y_begin), rect.width());
+                to.pixels->radiance.row(y - rect.y_begin), rect.width());
+    const int row_count = y + 1 - rect.y_begin;
+    if (to.rows_done && (row_count % rows_at_once == 0 || y + 1 == rect.y_end))
+      to.rows_done(row_count);
+  }
 }
 
 uint64_t Lanes(uint16_t r, uint16_t g, uint16_t b) {
@@ -37,10 +52,11 @@ uint64_t Lanes(uint16_t r, uint16_t g, uint16_t b) {
 // Converts each stored value to its radiance, which v_of(channel, value) returns.
 template <class T, class ValueOf>
 void ConvertByValue(const Image<T>& stored, const PixelRect& stored_rect, int colours,
-                    const ValueOf& v_of, LfPixels* pixels) {
+                    const ValueOf& v_of, const Converted& to) {
   const int channels = stored.channels();
+  const LfPixels* const pixels = to.pixels;
   if (pixels->bayer != BayerPattern::kNone) {
-    ForEachRow(stored, stored_rect, pixels, [&](int y, const T* in, uint16_t* out, int width) {
+    ForEachRow(stored, stored_rect, to, [&](int y, const T* in, uint16_t* out, int width) {
       const int begin = pixels->rect.x_begin;
       const int of_columns[2] = {BayerChannel(pixels->bayer, begin, y),
                                  BayerChannel(pixels->bayer, begin + 1, y)};
@@ -49,7 +65,7 @@ void ConvertByValue(const Image<T>& stored, const PixelRect& stored_rect, int co
     return;
   }
   const int second = colours == 1 ? 0 : 1, third = colours == 1 ? 0 : 2;
-  ForEachRow(stored, stored_rect, pixels, [&](int, const T* in, uint16_t* out, int width) {
+  ForEachRow(stored, stored_rect, to, [&](int, const T* in, uint16_t* out, int width) {
     for (int x = 0; x < width; ++x, in += channels, out += LfPixels::kRgbLanes)
       StorePixel(Lanes(v_of(0, in[0]), v_of(1, in[second]), v_of(2, in[third])), out);
   });
@@ -58,9 +74,9 @@ void ConvertByValue(const Image<T>& stored, const PixelRect& stored_rect, int co
 // Converts 8-bit RGB by a table look-up and an | for each colour, and a single store for each
 // pixel.
 void ConvertByLanes(const Image<uint8_t>& stored, const PixelRect& stored_rect,
-                    const LaneTable& lanes, LfPixels* pixels) {
+                    const LaneTable& lanes, const Converted& to) {
   const int channels = stored.channels();
-  ForEachRow(stored, stored_rect, pixels, [&](int, const uint8_t* in, uint16_t* out, int width) {
+  ForEachRow(stored, stored_rect, to, [&](int, const uint8_t* in, uint16_t* out, int width) {
     for (int x = 0; x < width; ++x, in += channels, out += LfPixels::kRgbLanes)
       StorePixel(lanes[0][in[0]] | lanes[1][in[1]] | lanes[2][in[2]], out);
   });
@@ -115,14 +131,15 @@ class RowFalloff {
 template <class T, class LightOf>
 void ConvertWithFalloff(const Image<T>& stored, const PixelRect& stored_rect, int colours,
                         const LightOf& light_of, const RadianceEncoding& encoding,
-                        const ChannelGains& gains, const Intrinsics& k, LfPixels* pixels) {
+                        const ChannelGains& gains, const Intrinsics& k, const Converted& to) {
+  const LfPixels* const pixels = to.pixels;
   const int channels = stored.channels(), begin = pixels->rect.x_begin;
   const bool is_mosaic = pixels->bayer != BayerPattern::kNone;
   const Quantizer quantize(encoding);
   RowFalloff falloffs(k, begin, pixels->rect.width());
   std::vector<double> light(static_cast<size_t>(pixels->rect.width()));
   std::vector<uint16_t> values(light.size());
-  ForEachRow(stored, stored_rect, pixels, [&](int y, const T* in, uint16_t* out, int width) {
+  ForEachRow(stored, stored_rect, to, [&](int y, const T* in, uint16_t* out, int width) {
     const std::vector<double>& falloff = falloffs.Of(y);
     const auto end = static_cast<size_t>(width);
     if (is_mosaic) {
@@ -145,19 +162,19 @@ void ConvertWithFalloff(const Image<T>& stored, const PixelRect& stored_rect, in
 }
 
 void ConvertFalloff(const ImagePart& part, int colours, const RadianceEncoding& encoding,
-                    const ChannelGains& gains, const Intrinsics& k, LfPixels* pixels) {
+                    const ChannelGains& gains, const Intrinsics& k, const Converted& to) {
   std::visit(
       [&]<class T>(const Image<T>& stored) {
         if constexpr (std::is_floating_point_v<T>) {
           ConvertWithFalloff(
               stored, part.rect, colours,
               [](T value) -> double { return std::isnan(value) ? 0 : value; }, encoding, gains, k,
-              pixels);
+              to);
         } else {
           const std::vector<double> light = LightTable(encoding, int{8 * sizeof(T)});
           ConvertWithFalloff(
               stored, part.rect, colours, [&light](T value) { return light[value]; }, encoding,
-              gains, k, pixels);
+              gains, k, to);
         }
       },
       part.image);
@@ -165,29 +182,29 @@ void ConvertFalloff(const ImagePart& part, int colours, const RadianceEncoding& 
 
 void ConvertByTables(const ImagePart& part, int colours, const RadianceTables& tables,
                      const RadianceEncoding& encoding, const ChannelGains& gains,
-                     LfPixels* pixels) {
+                     const Converted& to) {
   if (const auto* floats = std::get_if<Image<float>>(&part.image)) {
     ConvertByValue(
         *floats, part.rect, colours,
         [&](int c, float radiance) {
           return QuantizeRadiance(encoding, radiance, gains[static_cast<size_t>(c)]);
         },
-        pixels);
+        to);
     return;
   }
   const auto convert = [&](const auto& image, const std::array<const uint16_t*, 3>& of_channels) {
     ConvertByValue(
         image, part.rect, colours,
         [of_channels](int c, auto value) { return of_channels[static_cast<size_t>(c)][value]; },
-        pixels);
+        to);
   };
   if (const auto* words = std::get_if<Image<uint16_t>>(&part.image)) {
     convert(*words, {tables.of_16bit(0), tables.of_16bit(1), tables.of_16bit(2)});
     return;
   }
   const auto& bytes = std::get<Image<uint8_t>>(part.image);
-  if (colours == 3 && pixels->bayer == BayerPattern::kNone)
-    ConvertByLanes(bytes, part.rect, tables.lanes(), pixels);
+  if (colours == 3 && to.pixels->bayer == BayerPattern::kNone)
+    ConvertByLanes(bytes, part.rect, tables.lanes(), to);
   else
     convert(bytes, {tables.of_8bit(0), tables.of_8bit(1), tables.of_8bit(2)});
 }
@@ -222,19 +239,20 @@ RadianceTables::RadianceTables(const RadianceEncoding& encoding, const ChannelGa
 
 void ConvertRadiance(const ImagePart& part, int colours, const RadianceTables& plain,
                      const RadianceEncoding& encoding, const LfCamera& camera, const Intrinsics& k,
-                     LfPixels* pixels) {
+                     LfPixels* pixels, const RowsDone& rows_done) {
   const ChannelGains& gains = camera.gain;
+  const Converted to = {pixels, rows_done};
   if (!k.vignetting.is_none()) {
-    ConvertFalloff(part, colours, encoding, gains, k, pixels);
+    ConvertFalloff(part, colours, encoding, gains, k, to);
     return;
   }
   if (gains == ChannelGains()) {
-    ConvertByTables(part, colours, plain, encoding, gains, pixels);
+    ConvertByTables(part, colours, plain, encoding, gains, to);
     return;
   }
   const int bits =
       std::visit([]<class T>(const Image<T>&) { return int{8 * sizeof(T)}; }, part.image);
-  ConvertByTables(part, colours, RadianceTables(encoding, gains, bits), encoding, gains, pixels);
+  ConvertByTables(part, colours, RadianceTables(encoding, gains, bits), encoding, gains, to);
 }
 
 }  // namespace lf

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "lf/light_field/model/lf_pixels.h"
@@ -45,16 +46,20 @@ class RadianceTables {
   LaneTable lanes_{};
 };
 
+using RowsDone = std::function<void(int row_count)>;
+
 // Computes the radiance of pixels->rect, which lies in part.rect. Integers are converted by tables,
 // floats are quantised; if the camera has a falloff, every pixel is converted as QuantizeRadiance()
 // does. Writes all lanes, and masks nothing. Integers of the part must be able to hold the black
 // and white level.
-//   colours  number of channels that are used: 1 (grey or mosaic) or 3 (R, G, B)
-//   plain    the tables for gain 1; tables for other gains are made when needed
-//   camera   LF camera whose gains are used
-//   k        intrinsics of the camera, for the falloff
+//   colours    number of channels that are used: 1 (grey or mosaic) or 3 (R, G, B)
+//   plain      the tables for gain 1; tables for other gains are made when needed
+//   camera     LF camera whose gains are used
+//   k          intrinsics of the camera, for the falloff
+//   rows_done  null, or called after the last row, and after some before it, with the number of
+//              rows that are complete
 void ConvertRadiance(const ImagePart& part, int colours, const RadianceTables& plain,
                      const RadianceEncoding& encoding, const LfCamera& camera, const Intrinsics& k,
-                     LfPixels* pixels);
+                     LfPixels* pixels, const RowsDone& rows_done = nullptr);
 
 }  // namespace lf
