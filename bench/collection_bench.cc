@@ -69,6 +69,13 @@ bool HasPeers(const CaseSpec& spec) {
   return spec.estimator == Estimator::kNearest || spec.distortion.model == DistortionModel::kNone;
 }
 
+// True if the case is also measured by OpenCV's bicubic interpolation: that is what sharpened
+// pixels are to be compared with.
+bool HasCubicPeer(const CaseSpec& spec) {
+  return HasPeers(spec) && spec.estimator == Estimator::kBilinear && spec.magnification == 1 &&
+         (spec.filter == PixelFilter::kBicubic || spec.filter == PixelFilter::kPrefiltered);
+}
+
 // The case that is measured, with the plates of all contenders. Only one arena exists at a time,
 // because arenas are large.
 class Arena {
@@ -97,8 +104,8 @@ class Arena {
       entrant.contender = MakeThesisLoop(case_);
     } else if (name == "thesis_native") {
       entrant.contender = MakeThesisLoopNative(case_);
-    } else if (name == "opencv") {
-      entrant.contender = MakeOpenCv(case_);
+    } else if (name == "opencv" || name == "opencv_cubic") {
+      entrant.contender = MakeOpenCv(case_, name == "opencv_cubic");
     } else if (name == "reference") {
       entrant.contender = MakeReference(case_);
       entrant.image_count = kReferenceImages;
@@ -124,6 +131,8 @@ class Arena {
     // OpenCV interpolates and demosaics although nearest does not, so the counts of OpenCV differ.
     const bool same_rays = case_.spec.estimator == Estimator::kBilinear && !is_mosaic;
     CheckSame("opencv", MakeOpenCv(case_), count, ours, same_rays ? 0.002 : 1e9, 300);
+    if (HasCubicPeer(case_.spec))
+      CheckSame("opencv_cubic", MakeOpenCv(case_, true), count, ours, 0.002, 300);
   }
 
   Difference CheckSame(const char* name, std::unique_ptr<Contender> peer, int image_count,
@@ -170,6 +179,7 @@ void Register(int rounds) {
   for (const CaseSpec& spec : AllCases()) {
     std::vector<std::string> names = {"reference", "ours", "ours_weighed"};
     if (HasPeers(spec)) names.insert(names.begin(), {"thesis", "thesis_native", "opencv"});
+    if (HasCubicPeer(spec)) names.push_back("opencv_cubic");
     if (spec.every_target)
       for (const std::string& target : SimdTargets()) names.push_back("ours@" + target);
     for (int round = 0; round < rounds; ++round)

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Does the work of lfrenderer with OpenCV, for light fields whose cameras lie in the lens plane:
-// imread, sRGB to linear float by table, warpPerspective (bilinear, with the border's weights as a
-// fourth channel), accumulate, divide. Threads share the LF images; each adds to its own frames.
-// bench/compare_opencv.py runs it.
+// imread, sRGB to linear float by table, warpPerspective (bilinear or bicubic, with the border's
+// weights as a fourth channel), accumulate, divide. Threads share the LF images; each adds to its
+// own frames. bench/compare_opencv.py runs it.
 //
-// usage: lf_compare_opencv LIGHTFIELD PATH.yaml FRAMES THREADS OUT.f32
+// usage: lf_compare_opencv LIGHTFIELD PATH.yaml FRAMES THREADS bilinear|bicubic OUT.f32
 //   FRAMES   number of frames, from the first of the path
 //   OUT.f32  the first frame: R, G, B, linear light  [height][width][3]
 #include <atomic>
@@ -15,6 +15,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -79,8 +80,8 @@ struct Scratch {
 };
 
 void AddImage(const lf::LightField& field, lf::LfImageId id,
-              const std::vector<lf::RenderCamera>& frames, const cv::Mat& table, Scratch* scratch,
-              Sums* sums) {
+              const std::vector<lf::RenderCamera>& frames, int interpolation, const cv::Mat& table,
+              Scratch* scratch, Sums* sums) {
   const cv::Mat stored = cv::imread(field.ImagePath(id).string(), cv::IMREAD_COLOR);
   if (stored.empty()) Fail(field.ImagePath(id).string() + ": cannot be read");
   auto& [linear, weighted, warped] = *scratch;
@@ -93,7 +94,7 @@ void AddImage(const lf::LightField& field, lf::LfImageId id,
   for (size_t f = 0; f < frames.size(); ++f) {
     if (!PassesLens(camera, frames[f])) continue;
     cv::warpPerspective(weighted, warped, PixelFromElement(camera, frames[f]), (*sums)[f].size(),
-                        cv::INTER_LINEAR | cv::WARP_INVERSE_MAP, cv::BORDER_CONSTANT,
+                        interpolation | cv::WARP_INVERSE_MAP, cv::BORDER_CONSTANT,
                         cv::Scalar::all(0));
     cv::accumulate(warped, (*sums)[f]);
   }
@@ -114,7 +115,10 @@ void Write(const cv::Mat& sum, const char* name) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 6) Fail("usage: lf_compare_opencv LIGHTFIELD PATH.yaml FRAMES THREADS OUT.f32");
+  const std::string filter = argc == 7 ? argv[5] : "";
+  if (filter != "bilinear" && filter != "bicubic")
+    Fail("usage: lf_compare_opencv LIGHTFIELD PATH.yaml FRAMES THREADS bilinear|bicubic OUT.f32");
+  const int interpolation = filter == "bicubic" ? cv::INTER_CUBIC : cv::INTER_LINEAR;
   const lf::LightField field = OrFail(lf::OpenLightField(argv[1]));
   std::vector<lf::RenderCamera> frames = OrFail(lf::ReadPathYaml(argv[2], field.unit_m)).cameras;
   const int thread_count = std::atoi(argv[4]);
@@ -130,13 +134,13 @@ int main(int argc, char** argv) {
     *own = MakeSums(frames);
     Scratch scratch;
     for (uint32_t i = next++; i < field.size(); i = next++)
-      AddImage(field, {i}, frames, table, &scratch, own);
+      AddImage(field, {i}, frames, interpolation, table, &scratch, own);
   };
   std::vector<std::thread> threads;
   for (Sums& own : sums) threads.emplace_back(work, &own);
   for (std::thread& thread : threads) thread.join();
   for (size_t t = 1; t < sums.size(); ++t)
     for (size_t f = 0; f < frames.size(); ++f) sums[0][f] += sums[t][f];
-  Write(sums[0][0], argv[5]);
+  Write(sums[0][0], argv[6]);
   return 0;
 }

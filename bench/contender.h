@@ -51,6 +51,7 @@ std::unique_ptr<Contender> MakeThesisLoop(const KernelCase& kernel_case);
 std::unique_ptr<Contender> MakeThesisLoopNative(const KernelCase& kernel_case);
 
 // Makes the contender that demosaics, and calls warpPerspective and accumulate of OpenCV.
-std::unique_ptr<Contender> MakeOpenCv(const KernelCase& kernel_case);
+//   is_cubic  true: warpPerspective interpolates between sixteen pixels instead of four
+std::unique_ptr<Contender> MakeOpenCv(const KernelCase& kernel_case, bool is_cubic = false);
 
 }  // namespace lf::bench

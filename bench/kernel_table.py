@@ -19,7 +19,7 @@ import tempfile
 import record as results
 
 PEERS = {"thesis": "thesis's loop", "thesis_native": "the same, -march=native", "opencv": "OpenCV",
-         "reference": "reference"}
+         "opencv_cubic": "OpenCV, bicubic", "reference": "reference"}
 
 
 ALL = ".*"
@@ -90,10 +90,15 @@ def goals(record):
         lines.append(f"- {'reached' if holds else 'MISSED'}: {text}: {value}")
 
     def at_least(case, peer, limit, ours="ours", what=""):
-        if ours not in cases.get(case, {}):
+        if ours not in cases.get(case, {}) or peer not in cases[case]:
             return
         value = statistics.median(ratios(cases[case], peer, ours))
         goal(f"{case}{what} >= {limit} x {PEERS[peer]}", f"{value:.1f}", value >= limit)
+
+    def at_most_ns(case, limit, ours="ours", what=""):
+        if ours in cases.get(case, {}):
+            value = statistics.median(cases[case][ours])
+            goal(f"{case}{what} <= {limit} ns", f"{value:.2f}", value <= limit)
 
     def close(names, limit, base):
         names = [name for name in names if name in cases]
@@ -117,6 +122,10 @@ def goals(record):
     at_least("bilinear", "thesis", 15)
     at_least("bilinear", "opencv", 5)
     at_least("prefiltered", "opencv", 5)
+    at_least("prefiltered", "opencv_cubic", 12)
+    at_most_ns("prefiltered", 1.6, "ours_weighed", ", weighed")
+    at_most_ns("prefiltered_0.5", 2.5)
+    at_most_ns("mosaic", 5)
     if "bilinear" in record.get("agreement", {}):
         same = record["agreement"]["bilinear"]
         goal("bilinear >= 75 dB from the reference", f"{same['psnr_db']:.1f}", same["psnr_db"] >= 75)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The usual implementation with OpenCV: it demosaics the LF image (Bayer), warps it onto the focus
-// plane as the frame sees it (bilinear), and accumulates it where its rays pass the lens. All
-// values are linear light.
+// plane as the frame sees it (bilinear or bicubic), and accumulates it where its rays pass the
+// lens. All values are linear light.
 //
 // In OpenCV's favour, everything is cut to the pixels and elements that can contribute, the mask of
 // image border and lens is filled as a polygon instead of being warped, and with lens distortion
@@ -70,8 +70,9 @@ int DemosaicCode(BayerPattern pattern) {
 
 class OpenCv final : public Contender {
  public:
-  explicit OpenCv(const KernelCase& kernel_case)
+  OpenCv(const KernelCase& kernel_case, bool is_cubic)
       : case_(kernel_case),
+        interpolation_(is_cubic ? cv::INTER_CUBIC : cv::INTER_LINEAR),
         plate_(0, 0, kernel_case.spec.plate_width, kernel_case.spec.plate_height),
         sums_(plate_.size(), CV_32FC3, cv::Scalar(0)),
         counts_(plate_.size(), CV_32FC1, cv::Scalar(0)),
@@ -192,7 +193,7 @@ class OpenCv final : public Contender {
     cv::Mat to = rgb_(recorded);
     cv::cvtColor(images_[index](recorded), to, DemosaicCode(pixels.bayer));
     const cv::Rect in_maps = part - ideal_.tl();
-    cv::remap(rgb_, undistorted_, map_1_(in_maps), map_2_(in_maps), cv::INTER_LINEAR,
+    cv::remap(rgb_, undistorted_, map_1_(in_maps), map_2_(in_maps), interpolation_,
               cv::BORDER_CONSTANT);
     return undistorted_;
   }
@@ -231,8 +232,8 @@ class OpenCv final : public Contender {
     const Mat3 pixel_from_element =
         (from_centre * element_from_pixel * to_centre).inverse().transpose();
     const cv::Matx33d warp(pixel_from_element.data());
-    cv::warpPerspective(rgb, warped_, warp, elements.size(),
-                        cv::INTER_LINEAR | cv::WARP_INVERSE_MAP, cv::BORDER_CONSTANT);
+    cv::warpPerspective(rgb, warped_, warp, elements.size(), interpolation_ | cv::WARP_INVERSE_MAP,
+                        cv::BORDER_CONSTANT);
 
     cv::Mat mask = mask_(elements), sums = sums_(elements), counts = counts_(elements);
     FillMask(on_plate, elements.tl(), &mask);
@@ -243,6 +244,7 @@ class OpenCv final : public Contender {
   static cv::Rect Grown(const cv::Rect& r) { return {r.x - 2, r.y - 2, r.width + 4, r.height + 4}; }
 
   const KernelCase& case_;
+  const int interpolation_;
   cv::Rect plate_;
   cv::Mat sums_, counts_, mask_;
   std::vector<cv::Mat> images_;
@@ -256,8 +258,8 @@ class OpenCv final : public Contender {
 
 }  // namespace
 
-std::unique_ptr<Contender> MakeOpenCv(const KernelCase& kernel_case) {
-  return std::make_unique<OpenCv>(kernel_case);
+std::unique_ptr<Contender> MakeOpenCv(const KernelCase& kernel_case, bool is_cubic) {
+  return std::make_unique<OpenCv>(kernel_case, is_cubic);
 }
 
 }  // namespace lf::bench
