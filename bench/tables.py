@@ -32,6 +32,8 @@ TABLES = {
                   "--density 0.005 --size 48x32 --runs 1 --threads 2 --only stack"),
     "opencv-blender-shop": ("performance", "bench/compare_opencv.py {build} {data}/data/blender-shop",
                             "--frames 1 --rounds 1"),
+    "large_photographs": ("performance", "bench/large_photographs.py {build} {data}/data/blender-shop",
+                          "--count 2 --size 600x400 --frames 1 --runs 1"),
     "million_cameras": ("performance", "bench/million_cameras.py {build}", "--counts 1000 --frames 3 --runs 1"),
     "packages": ("performance", "bench/packages.py {build}", "--density 0.005 --size 48x32 --runs 1"),
     "hybrid_cost": ("rebinning", "bench/hybrid_cost.py {build} --runs 1",
