@@ -69,8 +69,8 @@ bool HasPeers(const CaseSpec& spec) {
   return spec.estimator == Estimator::kNearest || spec.distortion.model == DistortionModel::kNone;
 }
 
-// True if the case is also measured by OpenCV's bicubic interpolation: that is what sharpened
-// pixels are to be compared with.
+// True if the case is also measured with OpenCV's bicubic interpolation, which is the peer of
+// filters that sharpen.
 bool HasCubicPeer(const CaseSpec& spec) {
   return HasPeers(spec) && spec.estimator == Estimator::kBilinear && spec.magnification == 1 &&
          (spec.filter == PixelFilter::kBicubic || spec.filter == PixelFilter::kPrefiltered);

@@ -50,13 +50,13 @@ PixelRect ContributingRect(const PinholeCamera& lf_camera, const RenderCamera& r
 
 // Properties of a frame that are computed once and used for all LF images.
 struct FrameOutline {
-  //   reach  that of the LF images (ImageOverlap)
+  //   reach  PixelReach of the ImageOverlap that uses the outline
   FrameOutline(const RenderCamera& render_camera, PixelReach reach);
 
   RenderCamera camera;
   std::vector<ApertureEdge> lens_edges;  // edges of a polygon that contains the lens
   double lens_inner_w = 0;  // radius of the largest circle about the lens centre within the lens
-  // Set if the reach is kElement, because it depends on the magnification.
+  // Set only for PixelReach::kElement, whose reach depends on the magnification.
   std::optional<MagnificationPoints> magnification;
 };
 

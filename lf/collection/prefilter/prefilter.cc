@@ -58,15 +58,15 @@ class RowFilter {
   RowFilter(const RowFilter&) = delete;
   RowFilter& operator=(const RowFilter&) = delete;
 
-  // Writes the knots that need only the first `there` rows of pixels.
-  void Advance(int there) {
+  // Writes the knots that need only the first `complete_rows` rows of pixels.
+  void Advance(int complete_rows) {
     const int height = pixels_.radiance.height();
     while (y_ < to_.height()) {
       const int row_count = std::min(kKnotRowsAtOnce, to_.height() - y_);
       const int end = y_ + row_count + after_;
-      for (; next_ < std::min(there, end); ++next_)
+      for (; next_ < std::min(complete_rows, end); ++next_)
         FilterAlong(filter_, pixels_, next_, to_.width(), Row(next_));
-      if (there < std::min(height, end)) return;
+      if (complete_rows < std::min(height, end)) return;
       for (int k = y_ - before_; k < end; ++k)
         rows_[static_cast<size_t>(k - y_ + before_)] = Row(k);
       const bool any_missing = pixels_.any_masked || y_ < before_ || end > height;

@@ -99,8 +99,8 @@ class RowFilter;
 // each row is then read while it is in the caches.
 class InPlaceFilter {
  public:
-  // The pixels must outlive the object. Only their radiance may not be complete yet; their opacity
-  // must be empty (LfPixels::TakeOpacity()).
+  // The pixels must outlive the object. Only their radiance may be incomplete; their opacity must
+  // be empty (LfPixels::TakeOpacity()).
   InPlaceFilter(const Prefilter& filter, LfPixels* pixels);
   ~InPlaceFilter();
 
@@ -114,7 +114,7 @@ class InPlaceFilter {
   std::unique_ptr<RowFilter> rows_;  // null: there are no knots
 };
 
-// Does the same with complete pixels.
+// Filters complete pixels in place. Their opacity must be empty.
 inline void FilterInPlace(const Prefilter& filter, LfPixels* pixels) {
   InPlaceFilter(filter, pixels).Advance(pixels->radiance.height());
 }

@@ -224,8 +224,8 @@ HWY_ATTR HWY_INLINE void FilterInColumns(const Prefilter& filter, const int32_t*
   });
 }
 
-// Computes kKnotRowsAtOnce rows of knots of a filter with few weights, none of whose pixels is
-// missing. A vector of filtered rows is read once for all of them.
+// Computes kKnotRowsAtOnce rows of knots; no pixel may be missing, and the filter must have few
+// weights. Each vector of filtered rows is loaded once for all of them.
 template <class Form>
 HWY_ATTR HWY_INLINE void FilterRowsInColumns(const Prefilter& filter, const int32_t* const* rows,
                                              int count, uint16_t* HWY_RESTRICT out) {

@@ -127,7 +127,6 @@ void ExpectBitsOfReference(const std::string& target) {
       }
 }
 
-// One of 2 x 2 pixels recorded red, and two recorded green.
 TEST(FilterPixels, HasTheBitsOfTheReferenceWithAllInstructions) {
   for (const int64_t target : hwy::SupportedAndGeneratedTargets()) {
     hwy::SetSupportedTargetsForTest(target);
@@ -138,6 +137,7 @@ TEST(FilterPixels, HasTheBitsOfTheReferenceWithAllInstructions) {
   hwy::GetChosenTarget().DeInit();
 }
 
+// One of 2 x 2 pixels recorded red, and two recorded green.
 TEST(FilterPixels, RecordedColoursCountEightTimes) {
   for (const BayerPattern pattern : {BayerPattern::kRggb, BayerPattern::kGbrg}) {
     LfPixels pixels({3, 5, 33, 35}, BayerPattern::kNone);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <mutex>
+#include <new>
 #include <optional>
 #include <utility>
 
@@ -261,12 +262,16 @@ void FrameCollector::State::Load(const Batch& batch, Loading* loading) {
   // Rows that were just loaded are still in the caches, which makes filtering faster.
   std::optional<InPlaceFilter> filter;
   const auto filter_rows = [&](LfPixels* pixels, int row_count) {
+    const bool is_last = row_count == pixels->radiance.height();
     if (!filter) {
       loading->opacity = pixels->TakeOpacity();
       loading->rect = pixels->rect;
       filter.emplace(*loading->filtered_by, pixels);
     }
     filter->Advance(row_count);
+    if (!is_last) return;
+    filter.reset();
+    if (!loading->opacity.radiance.empty()) FilterInPlace(*loading->filtered_by, &loading->opacity);
   };
   loading->pixels =
       rect.empty() ? LfPixels()
@@ -276,11 +281,9 @@ void FrameCollector::State::Load(const Batch& batch, Loading* loading) {
   if (*loading->pixels) {
     LfPixels& pixels = **loading->pixels;
     loading->depths = NearbyDepthsOf(std::exchange(pixels.depths, {}));
-    if (!filter) {
+    if (!loading->filtered_by) {
       loading->opacity = pixels.TakeOpacity();
       loading->rect = pixels.rect;
-    } else if (!loading->opacity.radiance.empty()) {
-      FilterInPlace(*loading->filtered_by, &loading->opacity);
     }
   }
   load_cpu_ns_ += timer.Nanoseconds();
@@ -296,13 +299,17 @@ size_t FrameCollector::State::MostValues() const {
   return static_cast<size_t>(most) * (is_mosaic ? 1 : LfPixels::kRgbLanes);
 }
 
-// Returns pixels with memory for every LF image. Memory that grew with the LF images would be
-// replaced several times, and its first use is slow.
+// Returns pixels whose memory suffices for any LF image. Memory that grows from image to image is
+// allocated several times, and its first use is slow.
 LfPixels FrameCollector::State::TakeSpare() {
   const std::lock_guard lock(spare_mutex_);
   LfPixels pixels;
   if (spare_.empty()) {
-    pixels.radiance.pixels().reserve(most_values_);
+    try {
+      pixels.radiance.pixels().reserve(most_values_);
+    } catch (const std::bad_alloc&) {
+      // The store asks for less, or its error becomes that of the LF image.
+    }
     return pixels;
   }
   pixels = std::move(spare_.back());

@@ -75,9 +75,9 @@ struct BatchImage {
   // `opacity`. BatchCollector::Add() must then keep the pixels. Null: not used.
   const LfPixels* shared_pixels = nullptr;
   const LfPixels* shared_opacity = nullptr;
-  // The prefilter whose result has replaced `pixels` and `opacity`; unset if they are as loaded. If
-  // the caller has filtered them, it sets `loaded`, and filtered_by is OnlyPrefilterOf() all frames
-  // that take the LF image.
+  // The prefilter whose result has replaced `pixels` and `opacity`; unset if they are as loaded.
+  // The caller may filter them. It must then set `loaded`, and set `filtered_by` to the result of
+  // OnlyPrefilterOf() for all frames that take the LF image.
   std::optional<Prefilter> filtered_by = std::nullopt;
   PixelRect loaded = {};  // rectangle of the pixels before they were filtered
   // BatchCollector sets the members below. If the LF camera has no lens distortion, *cells is
@@ -144,9 +144,10 @@ class BatchCollector {
   // A frame in which the LF image has no weight needs no pixels.
   PixelRect RectOf(LfImageId id, std::span<const size_t> frames) const;
 
-  // Returns the only prefilter that `frames` (indices) need of an LF image, which then may be
-  // filtered as soon as it is loaded (BatchImage::filtered_by); nothing if none of them needs the
-  // LF image, if they need several prefilters, or if one of them needs the pixels as loaded.
+  // Returns the prefilter of an LF image if all `frames` (indices) that need the image need this
+  // one. The caller may then filter the image when it is loaded (BatchImage::filtered_by). Returns
+  // nothing if no frame needs the image, if frames need different prefilters, or if a frame needs
+  // the pixels as loaded.
   std::optional<Prefilter> OnlyPrefilterOf(LfImageId id, std::span<const size_t> frames) const;
 
   // Returns the CPU seconds that all threads together have spent on collecting rays so far, without

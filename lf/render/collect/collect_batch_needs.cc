@@ -65,8 +65,8 @@ std::optional<Prefilter> BatchCollector::OnlyPrefilterOf(LfImageId id,
   for (const size_t frame : frames)
     for (size_t e = 0; e < exposure_count(); ++e) {
       const Exposure exposure = ExposureOf(frame, e);
-      if (WeightsOf(exposure, id).are_none()) continue;
       if (!whole_images_ && overlap.PlainlyMisses(exposure.camera)) continue;
+      if (WeightsOf(exposure, id).are_none()) continue;
       const Prefilter needed = SamplingOf(camera, exposure.camera, reading_).prefilter;
       if (needed.changes_nothing() || (only && needed != *only)) return std::nullopt;
       only = needed;

@@ -43,7 +43,7 @@ constexpr size_t kTileBytes = kMiB;  // sums of the tile that one thread works o
 // the tiles to the plates and waiting for the last task take little time compared with collecting
 // the rays. Larger batches would cost time, because the first use of memory can take as long as
 // decoding an LF image into it. Where few frames share a batch, decoding its LF images takes most
-// of the time, so that kBatchBytesPerFrame suffice, or an LF image for each thread.
+// of the time, so that kBatchBytesPerFrame, or one LF image for each thread, suffices.
 constexpr size_t kRaysPerElement = 8;
 constexpr size_t kEnoughBatchImages = 16;
 constexpr size_t kBatchBytesPerFrame = 256 * kMiB;

@@ -78,7 +78,7 @@ Result<int> FolderStore::LoadReducedBy(Loading* loading, LfImageId id, int divis
 Result<void> FolderStore::LoadBy(Loading* loading, LfImageId id, const PixelRect& rect,
                                  const RowsLoaded& rows_loaded, LfPixels* pixels) const {
   LF_CHECK(id.value < light_field_.size());
-  // A mosaic that is converted to RGB is complete only when all of it is.
+  // No row of RGB is complete before the whole mosaic is demosaicked.
   const bool converts =
       mosaics_ == Mosaics::kToRgb && light_field_.encoding.bayer != BayerPattern::kNone;
   LF_RETURN_IF_ERROR(LoadMosaicsAs(

@@ -24,10 +24,9 @@ enum class Mosaics { kAsRecorded, kToRgb };
 // (LfPixels::depths) if the store has some.
 enum class StoreContent { kPixels, kPixelsAndDepths };
 
-// Is called while an LF image is loaded, by the same thread: the first `row_count` rows of
-// pixels->radiance are complete. All other members are complete from the first call on. The
-// function may change rows that are complete and, in the last call, which has all rows, all of
-// *pixels.
+// A function that a store calls, in the loading thread, when the first `row_count` rows of
+// pixels->radiance are complete. All other members are complete at the first call. The function may
+// change complete rows; in the last call, which has all rows, it may change all of *pixels.
 using RowsLoaded = std::function<void(LfPixels* pixels, int row_count)>;
 
 class LfImageStore {
@@ -40,8 +39,8 @@ class LfImageStore {
   // something, such as memory. The caller decides whether to continue without the image.
   virtual Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const = 0;
 
-  // Loads as Load() does, and calls rows_loaded() at least once. It is called for rows before the
-  // last ones if they are complete early.
+  // Loads as Load() does, and calls rows_loaded() at least once. A store that completes rows early
+  // also calls it for them.
   virtual Result<void> LoadByRows(LfImageId id, const PixelRect& rect, LfPixels* pixels,
                                   const RowsLoaded& rows_loaded) const {
     LF_RETURN_IF_ERROR(Load(id, rect, pixels));

@@ -24,8 +24,8 @@ struct Converted {
   const RowsDone& rows_done;
 };
 
-// Size of the rows after which rows_done() is called. They are still in the caches then, and so
-// many that the call takes little of the time.
+// Bytes of converted rows between two calls of rows_done(): few enough to be in the caches still,
+// and enough that the calls take little time.
 constexpr int kBytesAtOnce = 128 << 10;
 
 // Calls convert_row(y, in, out, width) for each row y of to.pixels->rect.

@@ -56,8 +56,8 @@ using RowsDone = std::function<void(int row_count)>;
 //   plain      the tables for gain 1; tables for other gains are made when needed
 //   camera     LF camera whose gains are used
 //   k          intrinsics of the camera, for the falloff
-//   rows_done  null, or called after the last row, and after some before it, with the number of
-//              rows that are complete
+//   rows_done  called with the number of complete rows, after the last row and sometimes earlier;
+//              may be null
 void ConvertRadiance(const ImagePart& part, int colours, const RadianceTables& plain,
                      const RadianceEncoding& encoding, const LfCamera& camera, const Intrinsics& k,
                      LfPixels* pixels, const RowsDone& rows_done = nullptr);
