@@ -69,8 +69,8 @@ RayWeights FrameLens::WeightsOf(LfImageId id) const {
   auto feather = std::make_shared<const ImageFeather>(light_field_.Camera(id), camera_);
   return RayWeights(
       weights_->BlocksOf(camera), std::move(of_row),
-      [feather](int x, int y, int count, uint16_t* of_corners) {
-        feather->OfRow(x, y, count, of_corners);
+      [feather](int x, int y, int columns, int rows, uint16_t* of_corners) {
+        feather->OfCorners(x, y, columns, rows, of_corners);
       },
       [feather](const PixelRect& rect) { return feather->IsWhole(rect); });
 }
