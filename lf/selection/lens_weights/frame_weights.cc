@@ -43,8 +43,9 @@ struct LensPoints {
 LensPoints PointsAt(const RenderCamera& frame, std::span<const Vec3> centres_world,
                     const Vec3& focus_point) {
   LensPoints seen;
+  const LensPlane plane(frame);
   for (size_t i = 0; i < centres_world.size(); ++i) {
-    const Vec2 point = LensPointOfLine(frame, centres_world[i], focus_point);
+    const Vec2 point = plane.PointOfLine(centres_world[i], focus_point);
     if (!point.allFinite()) continue;
     seen.points.push_back(point);
     seen.cameras.push_back(i);
@@ -79,11 +80,11 @@ Movement MovementOf(const RenderCamera& frame, std::span<const Vec3> centres_wor
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i)
       focus[j][i] = FocusPointOfElement(frame, 0.5 * i * plate.width_px, 0.5 * j * plate.height_px);
+  const LensPlane plane(frame);
   const auto moved = [&](const Vec3& centre, const std::optional<Vec3>& a,
                          const std::optional<Vec3>& b) {
     if (!a || !b) return 0.0;
-    const double d =
-        (LensPointOfLine(frame, centre, *a) - LensPointOfLine(frame, centre, *b)).norm();
+    const double d = (plane.PointOfLine(centre, *a) - plane.PointOfLine(centre, *b)).norm();
     return std::isfinite(d) ? d : 0.0;
   };
   Movement most;
@@ -200,15 +201,6 @@ std::vector<Vec3> DistinctPlaces(std::span<const Vec3> centres_world) {
   });
   places.erase(std::unique(places.begin(), places.end()), places.end());
   return places;
-}
-
-Vec2 LensPointOfLine(const RenderCamera& frame, const Vec3& centre_world, const Vec3& point_world) {
-  const Vec3 lens_centre = frame.pinhole.CentreWorld();
-  const Vec3 forward = frame.pinhole.ForwardWorld();
-  const Vec3 along = centre_world - point_world;
-  const double t = forward.dot(lens_centre - point_world) / forward.dot(along);
-  const Vec3 offset = point_world + t * along - lens_centre;
-  return {frame.pinhole.RightWorld().dot(offset), frame.pinhole.UpWorld().dot(offset)};
 }
 
 FrameWeights::FrameWeights(const RenderCamera& frame, std::span<const Vec3> centres_world,

@@ -197,9 +197,32 @@ double CameraDistance(const RenderCamera& frame, std::span<const Vec3> centres_w
 // of exposures.
 std::vector<Vec3> DistinctPlaces(std::span<const Vec3> centres_world);
 
-// Returns the intersection of the lens plane with the line through an LF camera's centre and a
-// point, in lens coordinates (doc/ray.md, Geometry 5). Not finite if the line is parallel to the
-// lens plane.
-Vec2 LensPointOfLine(const RenderCamera& frame, const Vec3& centre_world, const Vec3& point_world);
+// The lens plane of a frame.
+class LensPlane {
+ public:
+  explicit LensPlane(const RenderCamera& frame)
+      : centre_(frame.pinhole.CentreWorld()),
+        forward_(frame.pinhole.ForwardWorld()),
+        right_(frame.pinhole.RightWorld()),
+        up_(frame.pinhole.UpWorld()) {}
+
+  // Returns the intersection of the plane with the line through an LF camera's centre and a point,
+  // in lens coordinates (doc/ray.md, Geometry 5). Not finite if the line is parallel to the plane.
+  Vec2 PointOfLine(const Vec3& centre_world, const Vec3& point_world) const {
+    const Vec3 along = centre_world - point_world;
+    const double t = forward_.dot(centre_ - point_world) / forward_.dot(along);
+    const Vec3 offset = point_world + t * along - centre_;
+    return {right_.dot(offset), up_.dot(offset)};
+  }
+
+ private:
+  Vec3 centre_, forward_, right_, up_;
+};
+
+// Returns the point of one line. LensPlane is faster for many.
+inline Vec2 LensPointOfLine(const RenderCamera& frame, const Vec3& centre_world,
+                            const Vec3& point_world) {
+  return LensPlane(frame).PointOfLine(centre_world, point_world);
+}
 
 }  // namespace lf
