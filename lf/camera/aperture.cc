@@ -132,8 +132,7 @@ ApertureTest::ApertureTest(const Aperture& aperture)
   if (!aperture.IsDisk()) edges_ = Edges(aperture);
 }
 
-bool ApertureTest::Contains(const Vec2& point_lens) const {
-  if (edges_.empty()) return point_lens.squaredNorm() <= radius2_w2_;
+bool ApertureTest::IsWithinEdges(const Vec2& point_lens) const {
   for (const ApertureEdge& edge : edges_)
     if (edge.normal.dot(point_lens) > edge.distance_w * (1 + kRimTolerance / 2)) return false;
   return true;

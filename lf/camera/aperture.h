@@ -70,9 +70,14 @@ bool Contains(const Aperture& aperture, const Vec2& point_lens);
 class ApertureTest {
  public:
   explicit ApertureTest(const Aperture& aperture);
-  bool Contains(const Vec2& point_lens) const;
+  bool Contains(const Vec2& point_lens) const {
+    if (edges_.empty()) return point_lens.squaredNorm() <= radius2_w2_;
+    return IsWithinEdges(point_lens);
+  }
 
  private:
+  bool IsWithinEdges(const Vec2& point_lens) const;
+
   double radius2_w2_;                // for a disk: squared radius, times 1 + kRimTolerance
   std::vector<ApertureEdge> edges_;  // for a polygon; empty for a disk
 };

@@ -62,21 +62,23 @@ class RayWeights {
   // Writes the weights, at most kMaxWeight, of `count` blocks of a row, from left to right. (end_x,
   // end_y) is the exclusive end of the first block. Any thread may call it.
   using RowFunction = std::function<void(int end_x, int end_y, int count, uint8_t* weights)>;
-  // Writes the feather, at most kWholeFeather, at the positions (x + kWeightBlock i, y) of the
-  // plate, i in [0, count), which are corners of blocks. Any thread may call it.
-  using FeatherFunction = std::function<void(int x, int y, int count, uint16_t* feather)>;
+  // Writes the feather, at most kWholeFeather, at the positions (x + kWeightBlock i, y +
+  // kWeightBlock j) of the plate, which are corners of blocks, to feather[j * columns + i]; i is in
+  // [0, columns), j in [0, rows). Any thread may call it.
+  using FeatherFunction =
+      std::function<void(int x, int y, int columns, int rows, uint16_t* feather)>;
   // Returns true only if the feather is kWholeFeather at all positions (x, y) of the plate with
   // x_begin <= x <= x_end and y_begin <= y <= y_end. May return false although the feather is
   // whole. Any thread may call it.
   using WholeFunction = std::function<bool(const PixelRect& rect)>;
   // Gives each block its own weight.
-  //   feather_of_row    empty if the LF image has no feather
+  //   feather           empty if the LF image has no feather
   //   feather_is_whole  empty: the feather is not known to be whole anywhere
-  RayWeights(const WeightBlocks& blocks, RowFunction of_row, FeatherFunction feather_of_row = {},
+  RayWeights(const WeightBlocks& blocks, RowFunction of_row, FeatherFunction feather = {},
              WholeFunction feather_is_whole = {})
       : blocks_(blocks),
         of_row_(std::move(of_row)),
-        feather_of_row_(std::move(feather_of_row)),
+        feather_(std::move(feather)),
         feather_is_whole_(std::move(feather_is_whole)) {}
 
   bool are_same() const { return of_row_ == nullptr; }
@@ -84,7 +86,7 @@ class RayWeights {
   // True if all elements have the same weight, 0, so that the LF image adds nothing to the plate.
   // False if blocks have their own weights, even if all of these are 0.
   bool are_none() const { return are_same() && same_ == 0; }
-  bool has_feather() const { return feather_of_row_ != nullptr; }
+  bool has_feather() const { return feather_ != nullptr; }
   const WeightBlocks& blocks() const { return blocks_; }
 
   // Returns the weight of element (x, y).
@@ -94,10 +96,9 @@ class RayWeights {
     OfRow(x, y, 1, &weight);
     if (!has_feather() || weight == 0) return weight;
     const int begin_x = blocks_.EndX(x) - kWeightBlock, begin_y = blocks_.EndY(y) - kWeightBlock;
-    uint16_t above[2], below[2];
-    feather_of_row_(begin_x, begin_y, 2, above);
-    feather_of_row_(begin_x, begin_y + kWeightBlock, 2, below);
-    return FeatheredWeight(weight, above, below, x - begin_x, y - begin_y);
+    uint16_t corners[4];
+    feather_(begin_x, begin_y, 2, 2, corners);
+    return FeatheredWeight(weight, corners, corners + 2, x - begin_x, y - begin_y);
   }
   // Writes the weights of `count` blocks of a row, from left to right, without feather. The first
   // block contains element (x, y). Must not be called if are_same() is true.
@@ -113,16 +114,16 @@ class RayWeights {
                               blocks_.EndY(elements.y_begin) - kWeightBlock,
                               blocks_.EndX(elements.x_end - 1), blocks_.EndY(elements.y_end - 1)});
   }
-  // Writes the feather of `count` corners, as FeatherFunction does. has_feather() must be true.
-  void FeatherOfRow(int x, int y, int count, uint16_t* feather) const {
-    feather_of_row_(x, y, count, feather);
+  // Writes the feather at corners of blocks, as FeatherFunction does. has_feather() must be true.
+  void FeatherOfCorners(int x, int y, int columns, int rows, uint16_t* feather) const {
+    feather_(x, y, columns, rows, feather);
   }
 
  private:
   uint32_t same_ = 1;
   WeightBlocks blocks_;
   RowFunction of_row_;
-  FeatherFunction feather_of_row_;
+  FeatherFunction feather_;
   WholeFunction feather_is_whole_;
 };
 

@@ -325,14 +325,47 @@ HWY_AFTER_NAMESPACE();
 namespace lf {
 HWY_EXPORT(GatherTile);
 
+namespace {
+
+// Returns a rectangle that contains all elements of `tile` with a ray; empty if there are none. It
+// is the smallest one unless there are gaps between the segments of a row.
+PixelRect RectOfRays(const GatherPlan& plan, const PixelRect& tile) {
+  const int samples = plan.sampling.samples;
+  // Positions on the finer plate.
+  const int tile_begin = tile.x_begin * samples, tile_end = tile.x_end * samples;
+  int x_begin = tile_end, x_end = tile_begin;
+  int y_begin = tile.y_end, y_end = tile.y_begin;
+  for (int y = tile.y_begin; y < tile.y_end; ++y) {
+    const size_t first_row = static_cast<size_t>(y) * samples;
+    for (size_t row = first_row; row < first_row + samples; ++row) {
+      if (plan.row_begin[row] == plan.row_begin[row + 1]) continue;
+      const Segment& last = plan.segments[plan.row_begin[row + 1] - 1];
+      const int begin = std::max(plan.segments[plan.row_begin[row]].x_begin, tile_begin);
+      const int end = std::min(last.x_begin + last.count, tile_end);
+      if (begin >= end) continue;
+      x_begin = std::min(x_begin, begin);
+      x_end = std::max(x_end, end);
+      y_begin = std::min(y_begin, y);
+      y_end = y + 1;
+    }
+  }
+  return {x_begin / samples, y_begin, (x_end + samples - 1) / samples, y_end};
+}
+
+}  // namespace
+
 uint64_t GatherTile(const GatherPlan& plan, const LfPixels& pixels, TileSums* sums,
                     const RayWeights& weights) {
   LF_CHECK(pixels.bayer == BayerPattern::kNone);
   LF_CHECK(sums->rect().x_end <= plan.plate_width && sums->rect().y_end <= plan.plate_height);
   if (plan.segments.empty()) return 0;
   LF_CHECK(pixels.rect.width() >= 2 && pixels.rect.height() >= 2);
+  const PixelRect& tile = sums->rect();
+  // Most LF images have rays in a part of the plate only.
+  const PixelRect rays = weights.are_same() ? tile : RectOfRays(plan, tile);
+  if (rays.empty()) return 0;
   thread_local TileWeights tile_weights;
-  tile_weights.Fill(weights, sums->rect(), sums->stride());
+  tile_weights.Fill(weights, rays, tile, sums->stride());
   if (tile_weights.most() == 0) return 0;
   return HWY_DYNAMIC_DISPATCH(GatherTile)(plan, pixels, tile_weights, sums);
 }

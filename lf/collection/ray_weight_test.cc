@@ -36,14 +36,18 @@ RayWeights AnyFeatheredWeights(uint64_t seed) {
   const auto of_row = [any](int end_x, int end_y, int count, uint8_t* weights) {
     any.OfRow(end_x - 1, end_y - 1, count, weights);
   };
-  return RayWeights(any.blocks(), of_row, [seed](int x, int y, int count, uint16_t* feather) {
-    for (int i = 0; i < count; ++i) {
-      const auto column = static_cast<uint64_t>(x + i * kWeightBlock + 8) / kWeightBlock;
-      const auto row = static_cast<uint64_t>(y + 8) / kWeightBlock;
-      const uint64_t random = RandomBits(seed, column / 3, row / 3);
-      feather[i] = random % 3 == 0 ? kWholeFeather : random % 3 == 1 ? 0 : random % kWholeFeather;
-    }
-  });
+  return RayWeights(
+      any.blocks(), of_row, [seed](int x, int y, int columns, int rows, uint16_t* feather) {
+        for (int j = 0; j < rows; ++j)
+          for (int i = 0; i < columns; ++i) {
+            const auto column = static_cast<uint64_t>(x + i * kWeightBlock + 8) / kWeightBlock;
+            const auto row = static_cast<uint64_t>(y + j * kWeightBlock + 8) / kWeightBlock;
+            const uint64_t random = RandomBits(seed, column / 3, row / 3);
+            feather[j * columns + i] = random % 3 == 0   ? kWholeFeather
+                                       : random % 3 == 1 ? 0
+                                                         : random % kWholeFeather;
+          }
+      });
 }
 
 // Returns `plate` with each element multiplied by its weight.
@@ -77,10 +81,12 @@ TEST(RayWeights, FeatherIsInterpolatedBetweenCorners) {
   const auto weight = [](int, int, int count, uint8_t* weights) {
     std::fill_n(weights, count, 64);
   };
-  const RayWeights weights({3, 1}, weight, [](int x, int, int count, uint16_t* feather) {
-    for (int i = 0; i < count; ++i)
-      feather[i] = static_cast<uint16_t>(std::clamp(8 * (x + i * kWeightBlock - 5), 0, 256));
-  });
+  const RayWeights weights(
+      {3, 1}, weight, [](int x, int, int columns, int rows, uint16_t* feather) {
+        for (int i = 0; i < columns * rows; ++i)
+          feather[i] =
+              static_cast<uint16_t>(std::clamp(8 * (x + i % columns * kWeightBlock - 5), 0, 256));
+      });
   EXPECT_TRUE(weights.has_feather());
   EXPECT_EQ(weights.At(0, 5), 1u);  // at least 1: a recorded ray counts
   EXPECT_EQ(weights.At(5, 5), 1u);

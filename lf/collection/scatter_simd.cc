@@ -397,9 +397,10 @@ uint64_t ScatterTile(const ScatterPlan& plan, size_t tile, const LfPixels& pixel
   // in single precision.
   const int64_t row_stride = int64_t{TileSums::kMosaicRows} * sums->stride();
   LF_CHECK(row_stride * (rect.height() + int64_t{Segment::kMaxCount}) < (int64_t{1} << 22));
+  if (plan.pieces.begin(tile) == plan.pieces.end(tile)) return 0;
   thread_local TileWeights tile_weights;
   const bool is_rgb = pixels.bayer == BayerPattern::kNone;
-  tile_weights.Fill(weights, rect, is_rgb ? sums->stride() : static_cast<int>(row_stride));
+  tile_weights.Fill(weights, rect, rect, is_rgb ? sums->stride() : static_cast<int>(row_stride));
   if (tile_weights.most() == 0) return 0;
   return HWY_DYNAMIC_DISPATCH(ScatterTile)(plan, tile, pixels, tile_weights, sums);
 }

@@ -3,7 +3,9 @@
 // as the sums of its element (TileSums). Internal to collection.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "lf/camera/ray_weight.h"
@@ -17,11 +19,14 @@ class TileWeights {
   // belong to no element.
   static constexpr size_t kMargin = 64;
 
-  // Sets least() and most() for a tile. If they differ, also writes the weights to data().
-  //   pitch  bytes from one row of elements to the next
-  void Fill(const RayWeights& weights, const PixelRect& tile, int pitch);
+  // Sets least() and most() for the elements of `rays`. If they differ, also writes the weights of
+  // these elements to data().
+  //   rays   part of the tile that contains all rays; must not be empty
+  //   pitch  bytes from one row of elements to the next; at least the width of the tile plus
+  //          kWeightBlock
+  void Fill(const RayWeights& weights, const PixelRect& rays, const PixelRect& tile, int pitch);
 
-  // Bounds of the weights of the tile. If both are equal, all weights are the same.
+  // Bounds of the weights of the rays. If both are equal, all weights are the same.
   uint32_t least() const { return least_; }
   uint32_t most() const { return most_; }
 
@@ -30,22 +35,31 @@ class TileWeights {
   const uint8_t* data() const { return bytes_.data() + kMargin; }
 
  private:
-  bool HasOneWeight(const RayWeights& weights, const PixelRect& tile);
-  bool FillBlocks(const RayWeights& weights, const PixelRect& tile, int y);
-  void FillRow(const WeightBlocks& blocks, const PixelRect& tile, uint8_t* row) const;
-  void Feather(const WeightBlocks& blocks, const PixelRect& tile, int y, uint8_t* row) const;
-
   uint32_t least_ = 0;
   uint32_t most_ = 0;
   std::vector<uint8_t> bytes_;
-  // One row of blocks, which are 8 x 8 elements of equal weight (kWeightBlock): the weight of each
-  // block, and the feather at the upper (above_) and the lower (below_) corners of the blocks.
-  std::vector<uint8_t> of_blocks_;
-  std::vector<uint16_t> above_;
-  std::vector<uint16_t> below_;
-  std::vector<int> feathered_;  // indices of blocks whose feather is neither whole nor 0
-  int below_y_ = 0;             // y of the corners that below_ holds
-  bool is_feathered_ = false;   // false: feather is whole, and above_ and below_ are not used
+  std::vector<uint8_t> of_blocks_;  // [row][column]: weight of each block without feather
+  std::vector<uint16_t> corners_;   // [row][column]: feather at the corners of the blocks
 };
+
+// A row of blocks, from left to right.
+struct RowOfBlocks {
+  std::span<uint8_t> weights;  // without feather, one for each block
+  // Feather at the upper and at the lower corners of the blocks, [weights.size() + 1]; null if the
+  // feather is whole.
+  const uint16_t* above = nullptr;
+  const uint16_t* below = nullptr;
+};
+
+// Writes the weights of rows [j_begin, j_end) of elements of a row of blocks. The weight of column
+// x in row j is written to to[(j - j_begin) * pitch + x], where column 0 is the first column of the
+// first block. There are two functions, which a test compares: FillBlocksReference() calls
+// FeatheredWeight() for every element, and FillBlocks() works on vectors.
+//   blocks  FillBlocks() may change the weights of its blocks
+//   pitch   if it is less than the width of all blocks, the bytes that belong to two rows get any
+//           values
+void FillBlocksReference(const RowOfBlocks& blocks, int j_begin, int j_end, ptrdiff_t pitch,
+                         uint8_t* to);
+void FillBlocks(const RowOfBlocks& blocks, int j_begin, int j_end, ptrdiff_t pitch, uint8_t* to);
 
 }  // namespace lf

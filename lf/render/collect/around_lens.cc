@@ -18,6 +18,7 @@ std::vector<LfImageId> CamerasAroundLens(const ImageIndex& index, const RenderCa
   middle.pinhole.intrinsics.cy_px -= 0.5 * k.height_px;
   middle.pinhole.intrinsics.width_px = middle.pinhole.intrinsics.height_px = 0;
   const CameraTree& tree = index.tree();
+  const LensPlane plane(frame);
   // The radius of the lens that is searched begins with the larger of the lens radius and a
   // thousandth of the distance to the focus point. It doubles up to 29 times.
   constexpr int kDoublings = 30;
@@ -33,7 +34,7 @@ std::vector<LfImageId> CamerasAroundLens(const ImageIndex& index, const RenderCa
         if (recorded_only && index.light_field().cameras[id.value].is_virtual) continue;
         const Vec3 centre_world = index.light_field().Camera(id).CentreWorld();
         ids.push_back(id);
-        count += LensPointOfLine(frame, centre_world, *focus).norm() <= radius_w;
+        count += plane.PointOfLine(centre_world, *focus).norm() <= radius_w;
       }
     });
     if (count >= kCamerasAround) break;

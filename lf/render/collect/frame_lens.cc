@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -36,15 +35,14 @@ FrameLens::FrameLens(const ImageIndex& index, const RenderCamera& frame, LensWei
   RenderCamera grown = frame;
   OpenUpTo(frame.aperture.radius_w + kReach_distances * camera_distance_w_, &grown);
   for (const SelectedImage& image : SelectImages(index, std::span(&grown, 1), select, pool))
-    cameras_[image.id.value] = 0;
+    near_.push_back(image.id);
   // LF cameras are passed to FrameWeights in the order of their ids, because weights must not
   // depend on the order of the LF images.
-  std::vector<Vec3> near;
-  for (auto& [id, camera] : cameras_) {
-    camera = near.size();
-    near.push_back(light_field_.Camera(LfImageId{id}).CentreWorld());
-  }
-  weights_.emplace(frame, near, kind, pool, light_field_.encoding.masks_clipped);
+  std::sort(near_.begin(), near_.end());
+  std::vector<Vec3> centres_world;
+  centres_world.reserve(near_.size());
+  for (const LfImageId id : near_) centres_world.push_back(light_field_.Camera(id).CentreWorld());
+  weights_.emplace(frame, centres_world, kind, pool, light_field_.encoding.masks_clipped);
   if (weights_->keeps_opening()) return;
   // The disk that replaces the aperture is made slightly larger, so that rays on its border count
   // as inside.
@@ -53,9 +51,9 @@ FrameLens::FrameLens(const ImageIndex& index, const RenderCamera& frame, LensWei
 
 RayWeights FrameLens::WeightsOf(LfImageId id) const {
   if (!weights_) return Takes(id) ? 1 : 0;
-  const auto found = cameras_.find(id.value);
-  if (found == cameras_.end() || !weights_->TakesPart(found->second)) return 0;
-  const size_t camera = found->second;
+  const std::optional<size_t> index = IndexOf(id);
+  if (!index || !weights_->TakesPart(*index)) return 0;
+  const size_t camera = *index;
   RayWeights::RowFunction of_row = [this, camera](int end_x, int end_y, int count,
                                                   uint8_t* weights) {
     weights_->OfRow(camera, end_x, end_y, count, weights);
@@ -69,8 +67,8 @@ RayWeights FrameLens::WeightsOf(LfImageId id) const {
   auto feather = std::make_shared<const ImageFeather>(light_field_.Camera(id), camera_);
   return RayWeights(
       weights_->BlocksOf(camera), std::move(of_row),
-      [feather](int x, int y, int count, uint16_t* of_corners) {
-        feather->OfRow(x, y, count, of_corners);
+      [feather](int x, int y, int columns, int rows, uint16_t* of_corners) {
+        feather->OfCorners(x, y, columns, rows, of_corners);
       },
       [feather](const PixelRect& rect) { return feather->IsWhole(rect); });
 }
@@ -79,16 +77,16 @@ bool FrameLens::Takes(LfImageId id) const {
   const LfCamera& of_image = light_field_.cameras[id.value];
   if (!weights_)
     return !(is_of_recorded_ && of_image.is_virtual) && IsWithinAngle(of_image, camera_, select_);
-  const auto found = cameras_.find(id.value);
-  if (found == cameras_.end() || !weights_->TakesPart(found->second)) return false;
+  const std::optional<size_t> index = IndexOf(id);
+  if (!index || !weights_->TakesPart(*index)) return false;
   // The share of an LF camera may be so small that its weight is rounded to 0.
-  return weights_->ConstantOf(found->second) != 0;
+  return weights_->ConstantOf(*index) != 0;
 }
 
-std::vector<LfImageId> FrameLens::near() const {
-  std::vector<LfImageId> ids;
-  for (const auto& [id, camera] : cameras_) ids.push_back(LfImageId{id});
-  return ids;
+std::optional<size_t> FrameLens::IndexOf(LfImageId id) const {
+  const auto found = std::lower_bound(near_.begin(), near_.end(), id);
+  if (found == near_.end() || *found != id) return std::nullopt;
+  return static_cast<size_t>(found - near_.begin());
 }
 
 std::optional<FrameLens::Facts> FrameLens::facts() const {
@@ -151,35 +149,44 @@ Image<float> EffectiveCountsOf(std::span<const FrameLens> lenses) {
     return std::min(node * step + step / 2, size - 1);
   };
   std::vector<std::vector<std::optional<Vec3>>> focus(lenses.size());  // [lens][row][column]
-  std::set<uint32_t> ids;
+  std::vector<LfImageId> ids;
   for (size_t l = 0; l < lenses.size(); ++l) {
-    for (const auto& [id, camera] : lenses[l].cameras_)
-      if (lenses[l].weights_->TakesPart(camera) && !light_field.cameras[id].is_virtual)
-        ids.insert(id);
+    const std::vector<LfImageId>& near = lenses[l].near_;
+    for (size_t camera = 0; camera < near.size(); ++camera)
+      if (lenses[l].weights_->TakesPart(camera) &&
+          !light_field.cameras[near[camera].value].is_virtual)
+        ids.push_back(near[camera]);
     for (int row = 0; row < rows; ++row)
       for (int column = 0; column < columns; ++column)
         focus[l].push_back(FocusPointOfElement(lenses[l].camera_,
                                                element(column, plate.width_px) + 0.5,
                                                element(row, plate.height_px) + 0.5));
   }
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   std::vector<ApertureTest> openings;
-  for (const FrameLens& lens : lenses) openings.emplace_back(lens.camera_.aperture);
+  std::vector<LensPlane> planes;
+  for (const FrameLens& lens : lenses) {
+    openings.emplace_back(lens.camera_.aperture);
+    planes.emplace_back(lens.camera_);
+  }
   Image<double> of_image(columns, rows);
-  for (const uint32_t id : ids) {
+  for (const LfImageId id : ids) {
     std::fill(of_image.pixels().begin(), of_image.pixels().end(), 0.0);
     for (size_t l = 0; l < lenses.size(); ++l) {
       const FrameLens& lens = lenses[l];
-      const std::optional<size_t> camera = lens.IndexOf(LfImageId{id});
+      const std::optional<size_t> camera = lens.IndexOf(id);
       if (!camera || !lens.weights_->TakesPart(*camera)) continue;
-      const RayThrough ray(light_field.Camera(LfImageId{id}), lens.camera_.pinhole.ForwardWorld());
-      const RayWeights weights = lens.WeightsOf(LfImageId{id});
+      const RayThrough ray(light_field.Camera(id), lens.camera_.pinhole.ForwardWorld());
+      const RayWeights weights = lens.WeightsOf(id);
       for (int row = 0; row < rows; ++row)
         for (int column = 0; column < columns; ++column) {
           const std::optional<Vec3>& point = focus[l][static_cast<size_t>(row) * columns + column];
-          if (!point || !IsSeenBy(ray, *point)) continue;
+          if (!point) continue;
           if (lens.tests_opening() &&
-              !openings[l].Contains(LensPointOfLine(lens.camera_, ray.centre_world(), *point)))
+              !openings[l].Contains(planes[l].PointOfLine(ray.centre_world(), *point)))
             continue;
+          if (!IsSeenBy(ray, *point)) continue;
           of_image.at(column, row) +=
               weights.At(element(column, plate.width_px), element(row, plate.height_px));
         }

@@ -2,7 +2,6 @@
 // The lens of one frame as collection uses it: which rays pass through it, and with which weights.
 #pragma once
 
-#include <map>
 #include <optional>
 #include <span>
 #include <utility>
@@ -64,15 +63,12 @@ class FrameLens {
   // weights() returns the weights of the LF cameras of near(), in this order; null if there are no
   // lens weights. IndexOf() returns the index of an LF camera in them; nullopt if it has none.
   const FrameWeights* weights() const { return weights_ ? &*weights_ : nullptr; }
-  std::optional<size_t> IndexOf(LfImageId id) const {
-    const auto found = cameras_.find(id.value);
-    return found != cameras_.end() ? std::optional(found->second) : std::nullopt;
-  }
+  std::optional<size_t> IndexOf(LfImageId id) const;
 
   // near() returns the LF images that may get a share of the lens, by ascending ids.
   // camera_distance_w() returns the distance between neighbouring LF cameras around the lens, in
   // world units. Without lens weights, near() is empty and the distance is 0.
-  std::vector<LfImageId> near() const;
+  const std::vector<LfImageId>& near() const { return near_; }
   double camera_distance_w() const { return camera_distance_w_; }
 
   // Properties of the lens weights; facts() returns nullopt if there are none.
@@ -97,7 +93,7 @@ class FrameLens {
   RenderCamera camera_;
   double camera_distance_w_ = 0;
   std::optional<FrameWeights> weights_;
-  std::map<uint32_t, size_t> cameras_;  // from LfImageId::value to the index in weights_
+  std::vector<LfImageId> near_;  // sorted; the LF cameras of weights_
 };
 
 // Returns the lenses of all instants of a frame (CameraPath::Instants()). The light of each instant

@@ -23,6 +23,7 @@ namespace {
 // coarser.
 constexpr double kStepOfDistance = 1.0 / 3;
 constexpr int kMostNodes = 48;         // largest number of columns or rows of nodes
+static_assert(kMostNodes <= 256);      // FrameWeights::nodes_across_ has bytes
 constexpr int kLeastNodeStep_px = 32;  // elements from node to node; finer costs more than the rays
 // If lens points move by less than this share of the distance between LF cameras, the LF cameras
 // are in the lens plane except for rounding errors.
@@ -42,8 +43,9 @@ struct LensPoints {
 LensPoints PointsAt(const RenderCamera& frame, std::span<const Vec3> centres_world,
                     const Vec3& focus_point) {
   LensPoints seen;
+  const LensPlane plane(frame);
   for (size_t i = 0; i < centres_world.size(); ++i) {
-    const Vec2 point = LensPointOfLine(frame, centres_world[i], focus_point);
+    const Vec2 point = plane.PointOfLine(centres_world[i], focus_point);
     if (!point.allFinite()) continue;
     seen.points.push_back(point);
     seen.cameras.push_back(i);
@@ -78,11 +80,11 @@ Movement MovementOf(const RenderCamera& frame, std::span<const Vec3> centres_wor
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i)
       focus[j][i] = FocusPointOfElement(frame, 0.5 * i * plate.width_px, 0.5 * j * plate.height_px);
+  const LensPlane plane(frame);
   const auto moved = [&](const Vec3& centre, const std::optional<Vec3>& a,
                          const std::optional<Vec3>& b) {
     if (!a || !b) return 0.0;
-    const double d =
-        (LensPointOfLine(frame, centre, *a) - LensPointOfLine(frame, centre, *b)).norm();
+    const double d = (plane.PointOfLine(centre, *a) - plane.PointOfLine(centre, *b)).norm();
     return std::isfinite(d) ? d : 0.0;
   };
   Movement most;
@@ -199,15 +201,6 @@ std::vector<Vec3> DistinctPlaces(std::span<const Vec3> centres_world) {
   });
   places.erase(std::unique(places.begin(), places.end()), places.end());
   return places;
-}
-
-Vec2 LensPointOfLine(const RenderCamera& frame, const Vec3& centre_world, const Vec3& point_world) {
-  const Vec3 lens_centre = frame.pinhole.CentreWorld();
-  const Vec3 forward = frame.pinhole.ForwardWorld();
-  const Vec3 along = centre_world - point_world;
-  const double t = forward.dot(lens_centre - point_world) / forward.dot(along);
-  const Vec3 offset = point_world + t * along - lens_centre;
-  return {frame.pinhole.RightWorld().dot(offset), frame.pinhole.UpWorld().dot(offset)};
 }
 
 FrameWeights::FrameWeights(const RenderCamera& frame, std::span<const Vec3> centres_world,
@@ -358,19 +351,29 @@ std::optional<uint8_t> FrameWeights::ConstantOf(size_t camera) const {
   return static_cast<uint8_t>(At(camera, 0, 0));
 }
 
+// A block may extend beyond any edge of the plate.
+FrameWeights::Place FrameWeights::PlaceOfBlock(int end, int count, int size_px) {
+  if (count == 1) return {};
+  const int middle = std::clamp(end - kWeightBlock / 2, 0, size_px - 1);
+  const int64_t place = int64_t{256} * middle * (count - 1) / size_px;
+  return {static_cast<int>(place >> 8), static_cast<int>(place & 255)};
+}
+
 void FrameWeights::SetPlaces() {
-  const auto set = [](int count, int size_px, std::vector<Place>* places) {
-    // A block may extend beyond any edge of the plate.
-    places->resize(static_cast<size_t>(size_px) + kWeightBlock + 1);
-    if (count == 1) return;
-    for (size_t end = 0; end < places->size(); ++end) {
-      const int middle = std::clamp(static_cast<int>(end) - kWeightBlock / 2, 0, size_px - 1);
-      const int64_t place = int64_t{256} * middle * (count - 1) / size_px;
-      (*places)[end] = {static_cast<int>(place >> 8), static_cast<int>(place & 255)};
+  for (int end = 0; end <= height_px_ + kWeightBlock; ++end)
+    places_down_.push_back(PlaceOfBlock(end, rows_, height_px_));
+  ends_across_ = width_px_ / kWeightBlock + 2;
+  for (int shift = 0; shift < kWeightBlock; ++shift) {
+    const size_t begin = nodes_across_.size();
+    for (int i = 0; i < ends_across_; ++i) {
+      const Place place = PlaceOfBlock(i * kWeightBlock + shift, columns_, width_px_);
+      nodes_across_.push_back(static_cast<uint8_t>(place.node));
+      fractions_across_.push_back(static_cast<uint8_t>(place.fraction));
     }
-  };
-  set(columns_, width_px_, &places_across_);
-  set(rows_, height_px_, &places_down_);
+    run_lengths_.resize(nodes_across_.size(), 1);
+    for (size_t i = nodes_across_.size() - 1; i > begin; --i)
+      if (nodes_across_[i - 1] == nodes_across_[i]) run_lengths_[i - 1] = run_lengths_[i] + 1;
+  }
 }
 
 WeightBlocks FrameWeights::BlocksOf(size_t camera) const {
@@ -378,11 +381,23 @@ WeightBlocks FrameWeights::BlocksOf(size_t camera) const {
   return {static_cast<int>(any % kWeightBlock), static_cast<int>((any >> 32) % kWeightBlock)};
 }
 
+// The definition. OfRow() computes the same in fewer steps.
 uint32_t FrameWeights::At(size_t camera, int x, int y) const {
+  if (nodes_begin_[camera] == kNone) return 0;
   const WeightBlocks blocks = BlocksOf(camera);
-  uint8_t weight = 0;
-  OfRow(camera, blocks.EndX(x), blocks.EndY(y), 1, &weight);
-  return weight;
+  const Place h = PlaceOfBlock(blocks.EndX(x), columns_, width_px_);
+  const Place v = PlaceOfBlock(blocks.EndY(y), rows_, height_px_);
+  uint64_t sum = 0;
+  for (const int below : {0, 1})
+    for (const int right : {0, 1}) {
+      const auto across = static_cast<uint64_t>(right == 1 ? h.fraction : 256 - h.fraction);
+      const auto down = static_cast<uint64_t>(below == 1 ? v.fraction : 256 - v.fraction);
+      // With a single row or column, the second one has the fraction 0.
+      const int column = std::min(h.node + right, columns_ - 1);
+      const int row = std::min(v.node + below, rows_ - 1);
+      sum += across * down * NodesOf(camera)[static_cast<size_t>(row) * columns_ + column];
+    }
+  return static_cast<uint32_t>((sum + (1 << 23)) >> 24);
 }
 
 void FrameWeights::OfRow(size_t camera, int end_x, int end_y, int count, uint8_t* weights) const {
@@ -390,20 +405,24 @@ void FrameWeights::OfRow(size_t camera, int end_x, int end_y, int count, uint8_t
     std::fill_n(weights, count, uint8_t{0});
     return;
   }
-  const int right = columns_ > 1 ? 1 : 0, below = rows_ > 1 ? columns_ : 0;
   const Place v = places_down_[end_y];
   const uint16_t* const upper = &weights_[nodes_begin_[camera]] + v.node * columns_;
-  const uint16_t* const lower = upper + below;
-  const auto between = [](uint32_t a, uint32_t b, int fraction) {
-    return a * static_cast<uint32_t>(256 - fraction) + b * static_cast<uint32_t>(fraction);
+  const uint16_t* const lower = upper + (rows_ > 1 ? columns_ : 0);
+  // Returns the weight at a column of nodes, in 2^-16. All numbers fit in 32 bits, because weights
+  // are at most kUnit * kMaxWeight.
+  const auto between_rows = [&](int node) {
+    return static_cast<uint32_t>(upper[node] * (256 - v.fraction) + lower[node] * v.fraction);
   };
-  const auto down = static_cast<uint64_t>(v.fraction);
-  for (int i = 0; i < count; ++i) {
-    const Place h = places_across_[end_x + i * kWeightBlock];
-    const uint64_t above = between(upper[h.node], upper[h.node + right], h.fraction);
-    const uint64_t under = between(lower[h.node], lower[h.node + right], h.fraction);
-    const uint64_t weight = above * (256 - down) + under * down;
-    weights[i] = static_cast<uint8_t>((weight + (1 << 23)) >> 24);
+  const int to_right = columns_ > 1 ? 1 : 0;
+  const int first = end_x % kWeightBlock * ends_across_ + end_x / kWeightBlock;
+  for (int i = 0; i < count;) {
+    const int node = nodes_across_[first + i], run = std::min(count - i, run_lengths_[first + i]);
+    const uint32_t left = between_rows(node), change = between_rows(node + to_right) - left;
+    const uint32_t rounded = 256 * left + (1 << 23);
+    const uint8_t* const fractions = &fractions_across_[first + i];
+    for (int k = 0; k < run; ++k)
+      weights[i + k] = static_cast<uint8_t>((rounded + change * fractions[k]) >> 24);
+    i += run;
   }
 }
 

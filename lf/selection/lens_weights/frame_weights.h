@@ -140,8 +140,8 @@ class FrameWeights {
     double distance_w;  // distance from the lens centre to the LF camera's lens point
   };
   using Node = std::vector<CameraShare>;  // the LF cameras with a share above 0 at a node
-  // Position of the middle of a block, across or down: the index of the node to its left (or above
-  // it), and the distance from this node in 1/256 of the distance between nodes.
+  // Position between nodes, across or down: the index of the node to the left (or above), and the
+  // distance from this node in 1/256 of the distance between nodes.
   struct Place {
     int node = 0;
     int fraction = 0;
@@ -156,6 +156,11 @@ class FrameWeights {
                 int row) const;
   void SetWeights(const std::vector<Node>& nodes);
   void SetPlaces();
+  // Returns the position of the middle of a block, across or down.
+  //   end      exclusive end of the block
+  //   count    number of columns or rows of nodes
+  //   size_px  width or height of the plate
+  static Place PlaceOfBlock(int end, int count, int size_px);
 
   double hat_share_ = 0;
   bool keeps_opening_ = false;
@@ -166,12 +171,17 @@ class FrameWeights {
   int columns_ = 1;
   int rows_ = 1;
   double sum_of_weights_ = 0;
-  double farthest_w_ = 0;             // largest CameraShare::distance_w at any node
-  double step_w_ = 0;                 // largest movement of lens points from one node to the next
-  std::vector<Place> places_across_;  // [end_x] of a block: position of its middle, across
-  std::vector<Place> places_down_;    // [end_y] of a block: position of its middle, down
-  std::vector<size_t> nodes_begin_;   // [camera]: index of its first weight in weights_, or kNone
-  std::vector<uint16_t> weights_;     // for each camera that takes part: [row][column], in 1/256
+  double farthest_w_ = 0;            // largest CameraShare::distance_w at any node
+  double step_w_ = 0;                // largest movement of lens points from one node to the next
+  std::vector<size_t> nodes_begin_;  // [camera]: index of its first weight in weights_, or kNone
+  std::vector<uint16_t> weights_;    // for each camera that takes part: [row][column], in 1/256
+  std::vector<Place> places_down_;   // [end_y] of a block: PlaceOfBlock()
+  // PlaceOfBlock() across, [end_x % kWeightBlock][end_x / kWeightBlock], so that the blocks of a
+  // row are adjacent; and the number of blocks, from this one to the right, with the same node.
+  int ends_across_ = 0;  // number of columns of these tables
+  std::vector<uint8_t> nodes_across_;
+  std::vector<uint8_t> fractions_across_;
+  std::vector<int> run_lengths_;
 };
 
 // CameraDistance() returns the approximate distance between neighbouring LF cameras around the
@@ -187,9 +197,32 @@ double CameraDistance(const RenderCamera& frame, std::span<const Vec3> centres_w
 // of exposures.
 std::vector<Vec3> DistinctPlaces(std::span<const Vec3> centres_world);
 
-// Returns the intersection of the lens plane with the line through an LF camera's centre and a
-// point, in lens coordinates (doc/ray.md, Geometry 5). Not finite if the line is parallel to the
-// lens plane.
-Vec2 LensPointOfLine(const RenderCamera& frame, const Vec3& centre_world, const Vec3& point_world);
+// The lens plane of a frame.
+class LensPlane {
+ public:
+  explicit LensPlane(const RenderCamera& frame)
+      : centre_(frame.pinhole.CentreWorld()),
+        forward_(frame.pinhole.ForwardWorld()),
+        right_(frame.pinhole.RightWorld()),
+        up_(frame.pinhole.UpWorld()) {}
+
+  // Returns the intersection of the plane with the line through an LF camera's centre and a point,
+  // in lens coordinates (doc/ray.md, Geometry 5). Not finite if the line is parallel to the plane.
+  Vec2 PointOfLine(const Vec3& centre_world, const Vec3& point_world) const {
+    const Vec3 along = centre_world - point_world;
+    const double t = forward_.dot(centre_ - point_world) / forward_.dot(along);
+    const Vec3 offset = point_world + t * along - centre_;
+    return {right_.dot(offset), up_.dot(offset)};
+  }
+
+ private:
+  Vec3 centre_, forward_, right_, up_;
+};
+
+// Returns the point of one line. LensPlane is faster for many.
+inline Vec2 LensPointOfLine(const RenderCamera& frame, const Vec3& centre_world,
+                            const Vec3& point_world) {
+  return LensPlane(frame).PointOfLine(centre_world, point_world);
+}
 
 }  // namespace lf

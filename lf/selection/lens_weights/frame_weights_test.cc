@@ -257,6 +257,37 @@ TEST(FrameWeights, AreTheSameInBlocksOfEachCamerasOwn) {
   EXPECT_GT(shifted, 20u);
 }
 
+// Compares OfRow(), which goes from node to node, with At(), for grids of different numbers of
+// columns and rows of nodes.
+TEST(FrameWeights, RowsOfBlocksHaveTheWeightsOfTheirElements) {
+  size_t different = 0;
+  for (const auto& [z, tilt] : {std::pair(0.0, 0.0), {0.004, 0.0}, {0.02, 0.1}, {0.1, 0.3}}) {
+    RenderCamera frame = Frame(0.06, z);
+    // A plate whose sides are no multiples of a block.
+    frame.pinhole.intrinsics.width_px = 1283;
+    frame.pinhole.intrinsics.height_px = 797;
+    frame.focus_plane.normal = Vec3(tilt, 0, 1).normalized();
+    const auto centres = JitteredGrid(9, 0.015, 0.3, 6);
+    const FrameWeights weights(frame, centres, LensWeights::kArea, Pool());
+    for (size_t camera = 0; camera < centres.size(); camera += 3) {
+      const WeightBlocks blocks = weights.BlocksOf(camera);
+      for (int y = static_cast<int>(camera % 7); y < 797; y += 53)
+        for (const int x : {0, 5, 641, 1280}) {
+          const int count = (1283 - 1 - (blocks.EndX(x) - kWeightBlock)) / kWeightBlock + 1;
+          std::vector<uint8_t> row(static_cast<size_t>(count));
+          weights.OfRow(camera, blocks.EndX(x), blocks.EndY(y), count, row.data());
+          for (int i = 0; i < count; ++i) {
+            const int at = std::min(1282, x + i * kWeightBlock);
+            ASSERT_EQ(row[static_cast<size_t>(i)], weights.At(camera, at, y))
+                << z << ", " << camera << ", " << at << ", " << y;
+            different += row[static_cast<size_t>(i)] != row[0];
+          }
+        }
+    }
+  }
+  EXPECT_GT(different, 10000u);
+}
+
 TEST(FrameWeights, OneCameraWithAHugeShareLeavesTheOthersTheirs) {
   // Cameras around the lens centre, which are then moved into a corner of the lens.
   std::vector<Vec3> centres = JitteredGrid(10, 0.002, 0.3, 6);

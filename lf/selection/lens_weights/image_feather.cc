@@ -2,7 +2,10 @@
 #include "lf/selection/lens_weights/image_feather.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
 #include "lf/camera/ray_weight.h"
 
@@ -14,23 +17,8 @@ double Smooth(double t) {
   return t * t * (3 - 2 * t);
 }
 
-// The positions from begin to end, both included, of a row of corners of blocks: position i is
-// kWeightBlock * i elements to the right of the first one. Empty if begin > end.
-struct PositionRange {
-  double begin, end;
-
-  // Keeps only positions where a linear form of the place on the plate is not negative.
-  //   first  homogeneous place of position 0
-  void Keep(const Vec3& form, const Vec3& first) {
-    const double value = form.dot(first), slope = kWeightBlock * form.x();
-    if (slope > 0)
-      begin = std::max(begin, -value / slope);
-    else if (slope < 0)
-      end = std::min(end, -value / slope);
-    else if (!(value >= 0))
-      begin = INFINITY;
-  }
-};
+// Returns a feather in units of 1/kWholeFeather.
+uint16_t Rounded(double feather) { return static_cast<uint16_t>(kWholeFeather * feather + 0.5); }
 
 }  // namespace
 
@@ -49,6 +37,7 @@ ImageFeather::ImageFeather(const PinholeCamera& lf_camera, const RenderCamera& f
   constexpr double kRounding_px = 1e-6;
   border_px_ =
       0.5 + kRounding_px + kFeatherShare * std::min(intrinsics_.width_px, intrinsics_.height_px);
+  forms_ = FormsOf(maps_);
 }
 
 ImageFeather::Maps ImageFeather::MapsOf(const PinholeCamera& lf_camera, const RenderCamera& frame) {
@@ -70,54 +59,152 @@ ImageFeather::Maps ImageFeather::MapsOf(const PinholeCamera& lf_camera, const Re
   return maps;
 }
 
-void ImageFeather::OfRow(int x, int y, int count, uint16_t* feather) const {
-  if (intrinsics_.has_distortion() || frame_.surface) return ComputeRow(x, y, count, feather);
-  const auto [seen_begin, seen_end, whole_begin, whole_end] = PartsOfRow(x, y, count);
-  const auto compute = [&](int begin, int end) {
-    ComputeRow(x + begin * kWeightBlock, y, end - begin, feather + begin);
+ImageFeather::Forms ImageFeather::FormsOf(const Maps& maps) const {
+  Forms forms;
+  const auto set = [&forms](int number, const Vec3& form) {
+    forms.x[number] = form.x();
+    forms.y[number] = form.y();
+    forms.constant[number] = form.z();
   };
-  std::fill_n(feather, seen_begin, uint16_t{0});
-  compute(seen_begin, whole_begin);
-  std::fill(feather + whole_begin, feather + whole_end, uint16_t{kWholeFeather});
-  compute(whole_end, seen_end);
-  std::fill(feather + seen_end, feather + count, uint16_t{0});
+  const Vec3 across = maps.to_pixel.row(0).transpose(), down = maps.to_pixel.row(1).transpose(),
+             depth = maps.to_pixel.row(2).transpose();
+  set(0, maps.before_lens);
+  set(1, depth);
+  for (const auto& [first, border_px] :
+       {std::pair(Forms::kSeen, 0.5), {Forms::kWhole, border_px_}}) {
+    set(first, across - border_px * depth);
+    set(first + 1, (intrinsics_.width_px - border_px) * depth - across);
+    set(first + 2, down - border_px * depth);
+    set(first + 3, (intrinsics_.height_px - border_px) * depth - down);
+  }
+  return forms;
 }
 
-// Each edge of a part is where a linear form of the position is 0. Rounding does not matter: seen
-// positions are one more on either side, and whole ones lie within border_px_, where ComputeRow()
-// rounds to kWholeFeather.
-ImageFeather::RowParts ImageFeather::PartsOfRow(int x, int y, int count) const {
-  const Vec3 first(x, y, 1);
-  const double forward = maps_.runs_forward.dot(first);
-  const double forward_at_end =
-      forward + maps_.runs_forward.x() * static_cast<double>((count - 1) * kWeightBlock);
-  if (!(forward * forward_at_end > 0)) return {0, count, count, count};
-  const double side = forward < 0 ? -1 : 1;
-  PositionRange seen{0, count - 1.0};
-  seen.Keep(maps_.before_lens, first);
-  const Mat3 to_pixel = side * maps_.to_pixel;
-  const Vec3 across = to_pixel.row(0).transpose(), down = to_pixel.row(1).transpose(),
-             depth = to_pixel.row(2).transpose();
-  seen.Keep(depth, first);
-  const auto keep_within = [&](double border_px, PositionRange* range) {
-    range->Keep(across - border_px * depth, first);
-    range->Keep((intrinsics_.width_px - border_px) * depth - across, first);
-    range->Keep(down - border_px * depth, first);
-    range->Keep((intrinsics_.height_px - border_px) * depth - down, first);
+// The forms in a rectangle of corners of blocks.
+class ImageFeather::RectForms {
+ public:
+  // (x, y) is the first position.
+  RectForms(const Maps& maps, const Forms& forms, int x, int y, int columns, int rows)
+      : columns_(columns) {
+    const double width = kWeightBlock * (columns - 1.0), height = kWeightBlock * (rows - 1.0);
+    struct Bounds {
+      double value;        // at the first position
+      double least, most;  // in the rectangle: values at corners
+      double doubt;        // more than the rounding of the values
+    };
+    const auto bounds = [&](double form_x, double form_y, double constant) -> Bounds {
+      const double value = form_x * x + form_y * y + constant;
+      const double right = form_x * width, below = form_y * height;
+      constexpr double kRounding = 1e-12;
+      return {value, value + std::min(right, 0.0) + std::min(below, 0.0),
+              value + std::max(right, 0.0) + std::max(below, 0.0),
+              kRounding * (std::abs(form_x * x) + std::abs(form_y * y) + std::abs(constant) +
+                           std::abs(right) + std::abs(below))};
+    };
+    const Vec3& runs_forward = maps.runs_forward;
+    const Bounds forward = bounds(runs_forward.x(), runs_forward.y(), runs_forward.z());
+    if (forward.least > forward.doubt) side_ = 1;
+    if (forward.most < -forward.doubt) side_ = -1;
+    for (int i = 0; i < Forms::kCount; ++i) {
+      const double sign = i == 0 ? 1 : side_;
+      const Bounds of_form = bounds(sign * forms.x[i], sign * forms.y[i], sign * forms.constant[i]);
+      const double doubt = i < Forms::kSeen ? of_form.doubt : 0;
+      is_unseen_ |= i < Forms::kWhole && of_form.most < -doubt;
+      if (of_form.least >= doubt) continue;
+      decisive_[decisive_count_++] = {i, kWeightBlock * sign * forms.x[i],
+                                      kWeightBlock * sign * forms.y[i], of_form.value};
+    }
+  }
+
+  // 1 if runs_forward is positive in the rectangle, -1 if it is negative; 0 if it may be both. The
+  // other functions must not be called then.
+  double side() const { return side_; }
+  // True if the feather is 0 in the rectangle.
+  bool is_unseen() const { return is_unseen_; }
+
+  // Along a row, the feather is 0, rises, is whole, falls, and is 0 again. Each change is where a
+  // form is 0. Rounding does not matter at borders of the LF image, because the feather is smooth
+  // there: it is rounded to 0 near 0.5 px, and to kWholeFeather near border_px_. Where one of the
+  // first two forms changes its sign, the next position on either side is computed.
+  RowParts PartsOf(int row) const {
+    Range seen{0, columns_ - 1.0}, whole = seen;
+    int doubtful = 0;
+    for (int k = 0; k < decisive_count_; ++k) {
+      const DecisiveForm& form = decisive_[k];
+      const double value = form.first + form.down * row;
+      if (form.number < Forms::kWhole) seen.Keep(value, form.right);
+      if (form.number < Forms::kSeen || form.number >= Forms::kWhole) whole.Keep(value, form.right);
+      if (form.number < Forms::kSeen) doubtful = 1;
+    }
+    const auto index = [](double position, int low, int high) {
+      return static_cast<int>(
+          std::clamp(position, static_cast<double>(low), static_cast<double>(high)));
+    };
+    RowParts parts;
+    parts.seen_begin = index(std::ceil(seen.first) - doubtful, 0, columns_);
+    parts.seen_end = index(std::floor(seen.last) + 1 + doubtful, parts.seen_begin, columns_);
+    parts.whole_begin = index(std::ceil(whole.first) + doubtful, parts.seen_begin, parts.seen_end);
+    parts.whole_end =
+        index(std::floor(whole.last) + 1 - doubtful, parts.whole_begin, parts.seen_end);
+    return parts;
+  }
+
+ private:
+  // The first and the last position of a row at which forms are not negative.
+  struct Range {
+    double first, last;
+    //   value  of the form at position 0;  right  its change from one position to the next
+    void Keep(double value, double right) {
+      if (right > 0)
+        first = std::max(first, -value / right);
+      else if (right < 0)
+        last = std::min(last, -value / right);
+      else if (value < 0)
+        first = INFINITY;
+    }
   };
-  PositionRange whole = seen;
-  keep_within(0.5, &seen);
-  keep_within(border_px_, &whole);
-  const auto index = [](double position, int least, int most) {
-    return static_cast<int>(
-        std::clamp(position, static_cast<double>(least), static_cast<double>(most)));
+  // A form that is negative, or nearly so, somewhere in the rectangle. Nearly all are not.
+  struct DecisiveForm {
+    int number;
+    double right, down;  // its change from one position to the next
+    double first;        // its value at the first position
   };
-  RowParts parts;
-  parts.seen_begin = index(std::floor(seen.begin) - 1, 0, count);
-  parts.seen_end = index(std::ceil(seen.end) + 2, parts.seen_begin, count);
-  parts.whole_begin = index(std::ceil(whole.begin), parts.seen_begin, parts.seen_end);
-  parts.whole_end = index(std::floor(whole.end) + 1, parts.whole_begin, parts.seen_end);
-  return parts;
+
+  int columns_;
+  double side_ = 0;
+  bool is_unseen_ = false;
+  std::array<DecisiveForm, Forms::kCount> decisive_;
+  int decisive_count_ = 0;
+};
+
+void ImageFeather::OfCorners(int x, int y, int columns, int rows, uint16_t* feather) const {
+  const RectForms forms(maps_, forms_, x, y, columns, rows);
+  if (intrinsics_.has_distortion() || frame_.surface || forms.side() == 0) {
+    for (int row = 0; row < rows; ++row)
+      ComputeRow(x, y + row * kWeightBlock, columns,
+                 feather + static_cast<ptrdiff_t>(row) * columns);
+    return;
+  }
+  if (forms.is_unseen()) {
+    std::fill_n(feather, static_cast<ptrdiff_t>(rows) * columns, uint16_t{0});
+    return;
+  }
+  const Mat3 to_focus = forms.side() * maps_.to_focus;
+  for (int row = 0; row < rows; ++row) {
+    uint16_t* const of_row = feather + static_cast<ptrdiff_t>(row) * columns;
+    const auto compute = [&](int begin, int end) {
+      for (int i = begin; i < end; ++i) {
+        const Vec3 e(x + i * kWeightBlock, y + row * kWeightBlock, 1);
+        of_row[i] = maps_.before_lens.dot(e) > 0 ? Rounded(At(to_focus * e)) : 0;
+      }
+    };
+    const RowParts parts = forms.PartsOf(row);
+    std::fill_n(of_row, parts.seen_begin, uint16_t{0});
+    compute(parts.seen_begin, parts.whole_begin);
+    std::fill(of_row + parts.whole_begin, of_row + parts.whole_end, uint16_t{kWholeFeather});
+    compute(parts.whole_end, parts.seen_end);
+    std::fill(of_row + parts.seen_end, of_row + columns, uint16_t{0});
+  }
 }
 
 void ImageFeather::ComputeRow(int x, int y, int count, uint16_t* feather) const {
@@ -140,8 +227,7 @@ void ImageFeather::ComputeRow(int x, int y, int count, uint16_t* feather) const 
     if (!is_distorted && IsInside(side * (maps.to_pixel * e)))
       feather[i] = kWholeFeather;
     else
-      feather[i] =
-          static_cast<uint16_t>(std::lround(kWholeFeather * At(side * (maps.to_focus * e))));
+      feather[i] = Rounded(At(side * (maps.to_focus * e)));
   }
 }
 
