@@ -18,6 +18,13 @@ constexpr double kFarthest = 1 << 24;
 // rounding of single precision.
 constexpr float kBoundMargin = 0.01F;
 
+// Returns the largest integer that is not above `value`, which must fit into 32 bits. Faster than
+// std::floor(), which is a function call on processors without SSE 4.1.
+int32_t Floor(double value) {
+  const auto whole = static_cast<int32_t>(value);
+  return whole - (whole > value ? 1 : 0);
+}
+
 // Fits polynomials to the function `position(x)`, which returns an optional Vec2, on pieces [begin,
 // end) of a row. A piece is halved if the polynomials are not accurate enough on it.
 template <class Position>
@@ -29,7 +36,7 @@ class PieceFitter {
   void Add(int x_begin, int x_end, int begin, int end) {
     Polynomials polynomials;
     if (Fit(begin, end, &polynomials)) {
-      segments_->push_back(MakeSegment(y_, x_begin, x_end, 0.5 * (begin + end), polynomials));
+      AppendSegment(y_, x_begin, x_end, 0.5 * (begin + end), polynomials, segments_);
       return;
     }
     if (end - begin == 1) return;  // the pixel has no position
@@ -87,21 +94,22 @@ bool IsNearMiddle(const Polynomials& polynomials, double half) {
   return std::max(reach(polynomials.x), reach(polynomials.y)) <= SegmentMaker::kFarthestFromMiddle;
 }
 
-Segment MakeSegment(int y, int x_begin, int x_end, double middle, const Polynomials& polynomials) {
-  Segment segment;
+// Writes into the vector: a copy would have to wait until the many short stores are done.
+void AppendSegment(int y, int x_begin, int x_end, double middle, const Polynomials& polynomials,
+                   std::vector<Segment>* segments) {
+  Segment& segment = segments->emplace_back();
   segment.y = y;
   segment.x_begin = x_begin;
   segment.count = x_end - x_begin;
   segment.t_begin = static_cast<float>(x_begin + 0.5 - middle);
-  const double base_x = std::floor(std::clamp(polynomials.x[0], -kFarthest, kFarthest));
-  const double base_y = std::floor(std::clamp(polynomials.y[0], -kFarthest, kFarthest));
-  segment.base_x = static_cast<int32_t>(base_x);
-  segment.base_y = static_cast<int32_t>(base_y);
-  for (int power = 0; power < Segment::kTerms; ++power) {
-    segment.x_poly[power] = static_cast<float>(polynomials.x[power] - (power == 0 ? base_x : 0));
-    segment.y_poly[power] = static_cast<float>(polynomials.y[power] - (power == 0 ? base_y : 0));
+  segment.base_x = Floor(std::clamp(polynomials.x[0], -kFarthest, kFarthest));
+  segment.base_y = Floor(std::clamp(polynomials.y[0], -kFarthest, kFarthest));
+  segment.x_poly[0] = static_cast<float>(polynomials.x[0] - segment.base_x);
+  segment.y_poly[0] = static_cast<float>(polynomials.y[0] - segment.base_y);
+  for (int power = 1; power < Segment::kTerms; ++power) {
+    segment.x_poly[power] = static_cast<float>(polynomials.x[power]);
+    segment.y_poly[power] = static_cast<float>(polynomials.y[power]);
   }
-  return segment;
 }
 
 void SegmentMaker::Add(int y, int x_begin, int x_end, std::vector<Segment>* segments) const {
@@ -151,7 +159,7 @@ void SegmentMaker::AddInBlock(int y, int x_begin, int x_end, int block_begin, in
     c[2] = -s[axis] * q + c4 * half * half;
     c[3] = s[axis] * q * q;
   }
-  segments->push_back(MakeSegment(y, x_begin, x_end, middle, cubics));
+  AppendSegment(y, x_begin, x_end, middle, cubics, segments);
 }
 
 void SegmentMaker::AddOnArc(int y, int x_begin, int x_end, const IdealArc& arc,

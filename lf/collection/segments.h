@@ -47,9 +47,10 @@ struct Polynomials {
   double y[Segment::kTerms] = {};
 };
 
-// Makes the segment of pixels (or elements) [x_begin, x_end) of row y, from the polynomials of a
-// piece that contains them and whose middle is at the continuous coordinate x = `middle`.
-Segment MakeSegment(int y, int x_begin, int x_end, double middle, const Polynomials& polynomials);
+// Appends the segment of pixels (or elements) [x_begin, x_end) of row y, made from the polynomials
+// of a piece that contains them and whose middle is at the continuous coordinate x = `middle`.
+void AppendSegment(int y, int x_begin, int x_end, double middle, const Polynomials& polynomials,
+                   std::vector<Segment>* segments);
 
 // True if no coordinate of a position on the piece differs by more than
 // SegmentMaker::kFarthestFromMiddle from the same coordinate of the position at the middle of the
