@@ -39,8 +39,7 @@ struct Places {
   HWY_ALIGN uint32_t left_right[kRoom];  // weights of the left (low 16 bits) and the right pixels
   HWY_ALIGN uint32_t lower[kRoom];       // weights of the two lower pixels
   // Phase of the Bayer pattern: x % 2 + 2 (y % 2), where (x, y) is the upper left one of the four
-  // pixels, counted in the whole LF image. Only set for PixelFilter::kMosaic without
-  // Prefilter::by_shares.
+  // pixels, counted in the whole LF image. Only set if NeedsPhases() is true.
   HWY_ALIGN int32_t phase[kRoom];
 };
 
@@ -91,9 +90,16 @@ class CoordinateFinder {
   int32_t last_;
 };
 
-template <int kDegree>
-HWY_ATTR void FindPlaces(const Segment& s, int begin, int count, const PixelRect& rect,
-                         const GatherSampling& sampling, Places* places) {
+// True if Places::phase is needed.
+inline bool NeedsPhases(const GatherSampling& sampling) {
+  return sampling.filter == PixelFilter::kMosaic && !sampling.prefilter.by_shares;
+}
+
+// FindPlaces(), for a polynomial of degree kDegree.
+//   kIsPlain  true if the filter is neither kNearest nor one that needs phases
+template <int kDegree, bool kIsPlain>
+HWY_ATTR void FindPlacesBy(const Segment& s, int begin, int count, const PixelRect& rect,
+                           const GatherSampling& sampling, Places* places) {
   const LaneF df;
   const LaneI di;
   const hn::RebindToUnsigned<LaneI> du;
@@ -105,25 +111,38 @@ HWY_ATTR void FindPlaces(const Segment& s, int begin, int count, const PixelRect
   const bool is_nearest = sampling.filter == PixelFilter::kNearest;
   const auto half = hn::Set(di, is_nearest ? kOne / 2 : 0);
   const auto kept_bits = hn::Set(di, is_nearest ? kOne : -1);
-  const auto weight_of = [&](hn::Vec<LaneI> weight)
-                             HWY_ATTR { return hn::And(hn::Add(weight, half), kept_bits); };
-  auto t = hn::Iota(df, s.t_begin + static_cast<float>(begin));
-  for (int i = 0; i < count; i += kLanes, t = hn::Add(t, hn::Set(df, kLanes))) {
-    const Coordinate x = x_finder.Find(t), y = y_finder.Find(t);
+  const auto weight_of = [&](hn::Vec<LaneI> weight) HWY_ATTR {
+    return kIsPlain ? weight : hn::And(hn::Add(weight, half), kept_bits);
+  };
+  const auto store = [&](const Coordinate& x, const Coordinate& y, int i) HWY_ATTR {
     hn::Store(hn::Add(hn::Mul(y.pixel, width), x.pixel), di, places->pixel + i);
     const auto right_weight = weight_of(x.weight);
     const auto left_weight = hn::Sub(hn::Set(di, kOne), right_weight);
     hn::Store(hn::BitCast(du, hn::Or(left_weight, hn::ShiftLeft<16>(right_weight))), du,
               places->left_right + i);
     hn::Store(hn::BitCast(du, weight_of(y.weight)), du, places->lower + i);
-    if (sampling.filter == PixelFilter::kMosaic && !sampling.prefilter.by_shares) {
+    if (!kIsPlain && NeedsPhases(sampling)) {
       const auto odd = [](hn::Vec<LaneI> pixel, int first) HWY_ATTR {
         return hn::And(hn::Xor(pixel, hn::Set(LaneI(), first)), hn::Set(LaneI(), 1));
       };
       hn::Store(hn::Or(odd(x.pixel, rect.x_begin), hn::ShiftLeft<1>(odd(y.pixel, rect.y_begin))),
                 di, places->phase + i);
     }
-  }
+  };
+  auto t = hn::Iota(df, s.t_begin + static_cast<float>(begin));
+  const auto step = hn::Set(df, kLanes);
+  for (int i = 0; i < count; i += kLanes, t = hn::Add(t, step))
+    store(x_finder.Find(t), y_finder.Find(t), i);
+}
+
+// Finds the places of elements [begin, begin + count) of the segment.
+//   rect  the pixels that are loaded
+inline void FindPlaces(const Segment& s, int begin, int count, const PixelRect& rect,
+                       const GatherSampling& sampling, Places* places) {
+  const bool is_plain = sampling.filter != PixelFilter::kNearest && !NeedsPhases(sampling);
+  const auto find = s.is_cubic() ? (is_plain ? FindPlacesBy<3, true> : FindPlacesBy<3, false>)
+                                 : (is_plain ? FindPlacesBy<5, true> : FindPlacesBy<5, false>);
+  find(s, begin, count, rect, sampling, places);
 }
 
 }  // namespace HWY_NAMESPACE
