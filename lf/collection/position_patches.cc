@@ -65,7 +65,9 @@ void PositionPatches::AddOnPatch(int y, int x_begin, int x_end, const Patch& pat
     const double v = (y + 0.5 - rect.y_begin - half_height) / half_height;
     const Polynomials row = RowOf(patch.surface, v);
     if (patch.is_near_middle || IsNearMiddle(row, 0.5 * rect.width())) {
-      AppendSegment(y, x_begin, x_end, 0.5 * (rect.x_begin + rect.x_end), row, segments);
+      const bool has_parabolas = patch.allows_parabolas || AllowParabolas(row, 0.5 * rect.width());
+      AppendSegment(y, x_begin, x_end, 0.5 * (rect.x_begin + rect.x_end), row, has_parabolas,
+                    segments);
       bounds->push_back(&patch.bounds);
       return;
     }
@@ -116,7 +118,9 @@ std::optional<PositionPatches::Direction> PositionPatches::Fit(Patch* patch) con
     }
   }
   patch->surface = QuinticThrough(rows);
-  patch->is_near_middle = IsNearMiddle(MostOf(patch->surface), half_x);
+  const Polynomials most = MostOf(patch->surface);
+  patch->is_near_middle = IsNearMiddle(most, half_x);
+  patch->allows_parabolas = AllowParabolas(most, half_x);
   for (const double v : kQuinticWorstPlaces) {
     const Polynomials row = RowOf(patch->surface, v);
     if (!patch->is_near_middle && !IsNearMiddle(row, half_x)) return Direction::kAcross;

@@ -67,7 +67,8 @@ class PositionPatches {
   struct Patch {
     PixelRect rect;
     State state = State::kUnknown;
-    bool is_near_middle = false;  // IsNearMiddle() is true for all rows
+    bool is_near_middle = false;    // IsNearMiddle() is true for all rows
+    bool allows_parabolas = false;  // AllowParabolas() is true for all rows
     Surface surface;
     PositionBounds bounds;  // of all elements of elements_ on the patch
     Patch* halves[2] = {nullptr, nullptr};

@@ -24,7 +24,8 @@ Segment RandomSegment(uint64_t seed) {
       {random.Uniform(-5, 105), random.Uniform(-speed, speed), random.Uniform(-bend, bend), 0},
       {std::floor(random.Uniform(0, 70)), seed % 7 == 0 ? 0 : random.Uniform(-speed, speed), 0, 0}};
   std::vector<Segment> segments;
-  AppendSegment(static_cast<int>(seed), begin, end, 0.5 * (begin + end), polynomials, &segments);
+  AppendSegment(static_cast<int>(seed), begin, end, 0.5 * (begin + end), polynomials, false,
+                &segments);
   return segments[0];
 }
 
