@@ -254,6 +254,67 @@ std::optional<Vec2> Equidistant(const Vec3& direction, double limit) {
   return Vec2(direction.head<2>() * (theta / across));
 }
 
+// The limits of a distortion, as members of DistortionMap.
+struct Limits {
+  double limit = kNoLimit;
+  double distorted_limit = kNoLimit;
+};
+
+template <class Curve, class Position>
+Limits LimitsOf(const Curve& curve, const Position& position) {
+  const double limit = GrowthLimit(curve, position);
+  return {limit, curve(limit).value};
+}
+
+Limits FindLimits(const Distortion& distortion) {
+  const DistortionParameters& p = distortion.parameters;
+  const auto angle = [](double t) { return t * kPi; };
+  switch (distortion.model) {
+    case DistortionModel::kNone:
+      return {};
+    case DistortionModel::kRadialTangential: {
+      constexpr double kWidest = RadiansFromDegrees(89.5);
+      return LimitsOf(RadialCurve(p), [](double t) { return std::tan(t * kWidest); });
+    }
+    case DistortionModel::kFisheye:
+      return LimitsOf(FisheyeCurve(FirstFour(p)), angle);
+    case DistortionModel::kFov:
+      return {kNoLimit, 0.5 * kPi / p[0]};
+    case DistortionModel::kDivision:
+      // At this rd, r = rd / (1 + k rd^2) has its maximum (k > 0) or a pole (k < 0).
+      return {kNoLimit, p[0] == 0 ? kNoLimit : 1 / std::sqrt(std::abs(p[0]))};
+    case DistortionModel::kUnified: {
+      // rd approaches 1 / far as r goes to infinity.
+      const double far = p[0] * std::sqrt(p[1]);
+      return {kNoLimit, far > 0 ? 1 / far : kNoLimit};
+    }
+    case DistortionModel::kThinPrism:
+      return LimitsOf(ThinPrismCurve(p), angle);
+    case DistortionModel::kRadialTangentialThinPrism:
+      return LimitsOf(LongFisheyeCurve(p), angle);
+  }
+  return {};
+}
+
+// Returns FindLimits(distortion). Remembers the results for the distortions that the thread asked
+// for last, because finding the limits takes tens of microseconds, and a light field has few lenses
+// but maps are made for each LF image and frame.
+Limits RememberedLimits(const Distortion& distortion) {
+  struct Known {
+    Distortion distortion;  // without distortion there are no limits
+    Limits limits;
+  };
+  constexpr size_t kMostKnown = 8;
+  thread_local std::array<Known, kMostKnown> known;
+  thread_local size_t oldest = 0;
+  for (const Known& k : known)
+    if (k.distortion == distortion) return k.limits;
+  known[oldest] = {distortion, FindLimits(distortion)};
+  const Limits& limits = known[oldest].limits;
+  oldest = (oldest + 1) % kMostKnown;
+  return limits;
+}
+
 }  // namespace
 
 bool IsDistortion(const Distortion& distortion) {
@@ -268,52 +329,11 @@ bool IsDistortion(const Distortion& distortion) {
   }
 }
 
-DistortionMap::DistortionMap(const Distortion& distortion)
-    : distortion_(distortion), limit_(kNoLimit), distorted_limit_(kNoLimit) {
+DistortionMap::DistortionMap(const Distortion& distortion) : distortion_(distortion) {
   LF_CHECK(IsDistortion(distortion));
-  const DistortionParameters& p = distortion.parameters;
-  switch (distortion.model) {
-    case DistortionModel::kNone:
-      return;
-    case DistortionModel::kRadialTangential: {
-      const RadialCurve curve(p);
-      constexpr double kWidest = RadiansFromDegrees(89.5);
-      limit_ = GrowthLimit(curve, [](double t) { return std::tan(t * kWidest); });
-      distorted_limit_ = curve(limit_).value;
-      return;
-    }
-    case DistortionModel::kFisheye: {
-      const FisheyeCurve curve(FirstFour(p));
-      limit_ = GrowthLimit(curve, [](double t) { return t * kPi; });
-      distorted_limit_ = curve(limit_).value;
-      return;
-    }
-    case DistortionModel::kFov:
-      distorted_limit_ = 0.5 * kPi / p[0];
-      return;
-    case DistortionModel::kDivision:
-      // At this rd, r = rd / (1 + k rd^2) has its maximum (k > 0) or a pole (k < 0).
-      distorted_limit_ = p[0] == 0 ? kNoLimit : 1 / std::sqrt(std::abs(p[0]));
-      return;
-    case DistortionModel::kUnified: {
-      // rd approaches 1 / far as r goes to infinity.
-      const double far = p[0] * std::sqrt(p[1]);
-      distorted_limit_ = far > 0 ? 1 / far : kNoLimit;
-      return;
-    }
-    case DistortionModel::kThinPrism: {
-      const FisheyeCurve curve = ThinPrismCurve(p);
-      limit_ = GrowthLimit(curve, [](double t) { return t * kPi; });
-      distorted_limit_ = curve(limit_).value;
-      return;
-    }
-    case DistortionModel::kRadialTangentialThinPrism: {
-      const LongFisheyeCurve curve(p);
-      limit_ = GrowthLimit(curve, [](double t) { return t * kPi; });
-      distorted_limit_ = curve(limit_).value;
-      return;
-    }
-  }
+  const Limits limits = RememberedLimits(distortion);
+  limit_ = limits.limit;
+  distorted_limit_ = limits.distorted_limit;
 }
 
 std::optional<Vec2> DistortionMap::Distort(const Vec3& direction) const {

@@ -170,6 +170,21 @@ TEST(Distortion, WithTangentialTermsTooNoRayArrivesBeyondTheFold) {
   EXPECT_FALSE(map.Distort({3, 0, 1}));
 }
 
+// Limits are remembered, of fewer lenses than there are here.
+TEST(Distortion, EachOfManyLensesFoldsAtItsOwnRadius) {
+  for (int round = 0; round < 3; ++round)
+    for (int lens = 1; lens <= 20; ++lens)
+      for (int made = 0; made < 2; ++made) {
+        const double k1 = -0.05 * lens;
+        const DistortionMap map({DistortionModel::kRadialTangential, {k1}});
+        const double fold = std::sqrt(-1 / (3 * k1));  // r + k1 r^3 stops growing
+        EXPECT_TRUE(map.Distort({0.999 * fold, 0, 1})) << k1;
+        EXPECT_FALSE(map.Distort({1.001 * fold, 0, 1})) << k1;
+        EXPECT_TRUE(map.Undistort({0.999 * fold * 2 / 3, 0})) << k1;
+        EXPECT_FALSE(map.Undistort({1.001 * fold * 2 / 3, 0})) << k1;
+      }
+}
+
 TEST(Distortion, OnlyLensesAreDistortions) {
   using enum DistortionModel;
   EXPECT_TRUE(IsDistortion({kUnified, {0.5, 1}}));

@@ -71,7 +71,9 @@ Polynomials ElementPatch::AlongRow(double s) const {
 }
 
 void ElementPatch::Append(int y, int x_begin, int x_end, std::vector<Segment>* segments) const {
-  segments->push_back(MakeSegment(y, x_begin, x_end, middle_x_, AlongRow(y + 0.5 - middle_y_)));
+  constexpr bool kHasParabolas = false;  // the estimator *nearest* does not use them
+  AppendSegment(y, x_begin, x_end, middle_x_, AlongRow(y + 0.5 - middle_y_), kHasParabolas,
+                segments);
 }
 
 }  // namespace lf

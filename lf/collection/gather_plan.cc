@@ -121,9 +121,10 @@ class GatherPlanner {
         forms_(MakeForms(lf_camera, finer)),
         map_(lf_camera.intrinsics.distortion),
         maker_(forms_.across_x, forms_.across_y, forms_.depth),
-        patches_{
-            PositionPatches([this](double x, double y) { return DistortedPosition(1, x, y); }),
-            PositionPatches([this](double x, double y) { return DistortedPosition(-1, x, y); })},
+        patches_{PositionPatches([this](double x, double y) { return DistortedPosition(1, x, y); },
+                                 ElementsOf(finer)),
+                 PositionPatches([this](double x, double y) { return DistortedPosition(-1, x, y); },
+                                 ElementsOf(finer))},
         segments_(*segments) {
     for (const int side : {0, 1})
       rows_.half_planes[side] = HalfPlanes(forms_, k_, finer, side == 0 ? -1 : 1);
@@ -166,12 +167,23 @@ class GatherPlanner {
   // has checked that these rays pass through the lens.
   void AddDistorted(int y, int x_begin, int x_end) {
     const bool is_reversed = Value(forms_.forward, x_begin + 0.5, y + 0.5) < 0;
-    found_.clear();
-    patches_[is_reversed ? 1 : 0].Add(y, x_begin, x_end, &found_);
+    const size_t first = segments_.size();
+    patches_[is_reversed ? 1 : 0].Add(y, x_begin, x_end, &segments_, &bounds_);
+    const auto is_inside = [this](const PositionPatches::PositionBounds* bounds) {
+      return bounds != nullptr && AreInside(bounds->low, bounds->high);
+    };
+    if (!model_.may_lack_rays() && std::all_of(bounds_.begin(), bounds_.end(), is_inside)) return;
+    found_.assign(segments_.begin() + static_cast<std::ptrdiff_t>(first), segments_.end());
+    segments_.resize(first);
     for (const Segment& segment : found_) {
       part_end_ = -1;
       AddParts(segment);
     }
+  }
+
+  // True if the four pixels around each position between `low` and `high` are in the image.
+  bool AreInside(const Vec2& low, const Vec2& high) const {
+    return HasFourPixels(k_, low.x(), low.y()) && HasFourPixels(k_, high.x(), high.y());
   }
 
   // Appends the elements of a segment whose rays the LF image recorded. A segment that may cross
@@ -183,8 +195,7 @@ class GatherPlanner {
     const Vec2 base(segment.base_x, segment.base_y);
     const Vec2 low = base + Vec2(x.low, y.low), high = base + Vec2(x.high, y.high);
     if (high.x() < 0 || high.y() < 0 || low.x() > k_.width_px || low.y() > k_.height_px) return;
-    if (!model_.may_lack_rays() && HasFourPixels(k_, low.x(), low.y()) &&
-        HasFourPixels(k_, high.x(), high.y())) {
+    if (!model_.may_lack_rays() && AreInside(low, high)) {
       AppendPart(segment);
       return;
     }
@@ -238,7 +249,8 @@ class GatherPlanner {
   PixelRect elements_;          // elements of the finer plate that take rays
   std::vector<RowSpan> spans_;  // spans of the current row
   std::vector<Segment> found_;  // segments of the current span
-  int part_end_ = -1;           // x_end of the part appended last; -1 at a new segment
+  std::vector<const PositionPatches::PositionBounds*> bounds_;  // of these
+  int part_end_ = -1;  // x_end of the part appended last; -1 at a new segment
 };
 
 }  // namespace

@@ -184,8 +184,7 @@ HWY_ATTR uint32_t GatherPart(const Segment& s, int begin, int count, const Gathe
   constexpr int kLinePixels = 8;  // pixels of an LF image in a cache line
   const int line_elements = std::max(1, kLinePixels / sampling.step_px);
   Places places;
-  const auto find_places = s.is_cubic() ? FindPlaces<3> : FindPlaces<5>;
-  find_places(s, begin, count, pixels.rect, sampling, &places);
+  FindPlaces(s, begin, count, pixels.rect, sampling, &places);
   const RayAdder<kReading, Weights> adder(places, pixels, sampling.step_px, weights, sums);
   if (kMayBeMasked ||
       (kIsCubic && !IsInner(s, begin, count, pixels.rect, sampling.prefilter.is_even))) {

@@ -4,9 +4,13 @@
 // needs. They are therefore computed for patches of many rows. Internal to collection.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
+#include <cstdint>
+#include <deque>
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "lf/collection/segments.h"
@@ -15,45 +19,87 @@
 namespace lf {
 
 // Makes segments like SegmentMaker, for a smooth function of two coordinates. On a patch of up to
-// 1024 x kRows elements, each coordinate of a position is a polynomial of degree 5 across times one
-// of degree 5 down, through 6 x 6 positions. A patch on which it is not accurate enough is halved
-// across; if it becomes narrower than it is high, its rows are fitted one by one. Patches lie at
+// kBlock x kBlock elements, each coordinate of a position is a polynomial of degree 5 across times
+// one of degree 5 down, through 6 x 6 positions. A patch on which it is not accurate enough is
+// halved, across or down; if it becomes too small, its rows are fitted one by one. Patches lie at
 // multiples of their size, so that positions do not depend on the elements that are asked for.
 class PositionPatches {
  public:
   // Returns the position of a point (x, y) of the plate, or nothing if it has none.
   using Function = std::function<std::optional<Vec2>(double x, double y)>;
 
-  explicit PositionPatches(Function position) : position_(std::move(position)) {}
+  // Bounds of the positions of a segment, which are a little wider than necessary.
+  struct PositionBounds {
+    Vec2 low, high;
+  };
+
+  //   elements  all elements that will be asked for; only bounds depend on it
+  PositionPatches(Function position, const PixelRect& elements)
+      : position_(std::move(position)), elements_(elements) {}
 
   // Appends the segments of elements [x_begin, x_end) of row y, whose centres are at y + 0.5. Their
   // positions are within 2 SegmentMaker::kTolerance of the function, before polynomials are rounded
   // to single precision. Elements without a position are left out. Rows are best asked for from top
-  // to bottom, because only the patches of one row of patches are kept.
-  void Add(int y, int x_begin, int x_end, std::vector<Segment>* segments);
+  // to bottom, because only the patches of one row of blocks are kept.
+  //   bounds  replaced by the bounds of the segments, which are valid until the next call; nullptr
+  //           where none are known
+  void Add(int y, int x_begin, int x_end, std::vector<Segment>* segments,
+           std::vector<const PositionBounds*>* bounds);
 
  private:
-  static constexpr int kRows = 64;
-  // [k].col(l): coefficient of t^k v^l. t is the distance from the middle column of the patch in
-  // elements, v that from the middle row in halves of its height.
-  using Surface = std::array<Eigen::Matrix<double, 2, Segment::kTerms>, Segment::kTerms>;
-  struct Patch {
-    int begin, end;                  // columns
-    std::optional<Surface> surface;  // nullopt: its rows are fitted one by one
-  };
+  static constexpr int kBlock = Segment::kMaxCount;
+  static constexpr int kLeastSize = 64;  // of a patch, across and down
+  static constexpr int kTerms = Segment::kTerms;
 
-  const std::vector<Patch>& PatchesOf(size_t block);
-  void AddPatches(int begin, int end, std::vector<Patch>* patches) const;
-  std::optional<Surface> Fit(int begin, int end) const;
+  // (k, axis): coefficient of t^k in the x-coordinate (axis 0) or the y-coordinate (axis 1) of
+  // positions along a row. t is the distance from the middle column of the patch, in elements.
+  using RowPowers = Eigen::Array<double, kTerms, 2>;
+  // [l]: the part of a row's powers that is multiplied by v^l. v is the distance of the row from
+  // the middle row of the patch, in halves of its height.
+  using Surface = std::array<RowPowers, kTerms>;
+
+  enum class State : uint8_t {
+    kUnknown,  // nobody has asked for the patch
+    kSurface,
+    kHalved,
+    kRowByRow  // its rows are fitted one by one
+  };
+  struct Patch {
+    PixelRect rect;
+    State state = State::kUnknown;
+    bool is_near_middle = false;    // IsNearMiddle() is true for all rows
+    bool allows_parabolas = false;  // AllowParabolas() is true for all rows
+    Surface surface;
+    PositionBounds bounds;  // of all elements of elements_ on the patch
+    Patch* halves[2] = {nullptr, nullptr};
+  };
+  enum class Direction : uint8_t { kAcross, kDown };
+
+  // Finds the patches of which row y crosses elements [x_begin, x_end).
+  void FindRow(int y, int x_begin, int x_end);
+  void FindRowOn(Patch* patch, int y, int x_begin, int x_end);
+  void AddOnPatch(int y, int x_begin, int x_end, const Patch& patch, std::vector<Segment>* segments,
+                  std::vector<const PositionBounds*>* bounds) const;
+  void Decide(Patch* patch);
+  // Makes the surface and its bounds. Returns nothing if the surface is accurate, otherwise the
+  // direction in which the patch should be halved.
+  std::optional<Direction> Fit(Patch* patch) const;
+  PositionBounds BoundsOf(const Patch& patch) const;
   static Polynomials RowOf(const Surface& surface, double v);
-  void AddPart(int y, int x_begin, int x_end, const Patch& patch,
-               std::vector<Segment>* segments) const;
+  // Returns, for each coefficient of a row, a number that its absolute value does not exceed.
+  static Polynomials MostOf(const Surface& surface);
+  static Polynomials FromPowers(const RowPowers& powers);
+  static Direction RoughDirection(const Surface& surface, double half_x);
 
   Function position_;
-  int band_ = -1;  // rows [kRows band_, kRows (band_ + 1)) are those of patches_
-  // For each block of Segment::kMaxCount columns, the patches from left to right; empty if not yet
-  // asked for.
-  std::vector<std::vector<Patch>> patches_;
+  PixelRect elements_;
+  int band_ = -1;  // rows [kBlock band_, kBlock (band_ + 1)) are those of patches_
+  std::deque<Patch> patches_;
+  std::vector<Patch*> blocks_;  // the patches of kBlock x kBlock elements, from left to right
+  // The patches of the row that was asked for last, from left to right. They are those of all rows
+  // [row_y_begin_, row_y_end_).
+  std::vector<const Patch*> row_;
+  int row_y_begin_ = 0, row_y_end_ = 0;
 };
 
 }  // namespace lf

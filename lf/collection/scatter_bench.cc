@@ -4,6 +4,7 @@
 // pixels per second IdealPixels prepares.
 #include <benchmark/benchmark.h>
 
+#include "lf/collection/bench_lenses.h"
 #include "lf/collection/scatter.h"
 #include "lf/collection/test_plates.h"
 
@@ -53,12 +54,8 @@ void BM_Fast(benchmark::State& state, BayerPattern bayer) {
 BENCHMARK_CAPTURE(BM_Fast, rgb, BayerPattern::kNone);
 BENCHMARK_CAPTURE(BM_Fast, bayer, BayerPattern::kRggb);
 
-// Lens distortions for the benchmarks below. BM_Distorted computes ideal pixels once, before the
-// measurement, because a render computes them once for many frames.
-constexpr Distortion kPhone{DistortionModel::kRadialTangential, {0.035}};
-constexpr Distortion kBarrel{DistortionModel::kRadialTangential, {-0.25, 0.07, 0.002, -0.003}};
-constexpr Distortion kFisheyeLens{DistortionModel::kFisheye, {-0.02, 0.004, -0.002, 3e-4}};
-
+// Computes ideal pixels once, before the measurement, because a render computes them once for many
+// frames.
 void BM_Distorted(benchmark::State& state, const Distortion& distortion) {
   Scene scene = MakeScene(BayerPattern::kNone, 0.02);
   scene.lf_camera.intrinsics.distortion = distortion;
@@ -68,8 +65,8 @@ void BM_Distorted(benchmark::State& state, const Distortion& distortion) {
   for (auto _ : state) accepted += Scatter(scene, &ideal, &plate);
   ReportRays(state, accepted);
 }
-BENCHMARK_CAPTURE(BM_Distorted, phone, kPhone);
-BENCHMARK_CAPTURE(BM_Distorted, barrel, kBarrel);
+BENCHMARK_CAPTURE(BM_Distorted, phone, kPhoneLens);
+BENCHMARK_CAPTURE(BM_Distorted, barrel, kBarrelLens);
 BENCHMARK_CAPTURE(BM_Distorted, fisheye, kFisheyeLens);
 
 void BM_IdealPixels(benchmark::State& state, const Distortion& distortion) {
@@ -78,8 +75,8 @@ void BM_IdealPixels(benchmark::State& state, const Distortion& distortion) {
   for (auto _ : state) benchmark::DoNotOptimize(IdealPixels(k));
   ReportRays(state, state.iterations() * 960 * 640);
 }
-BENCHMARK_CAPTURE(BM_IdealPixels, phone, kPhone);
-BENCHMARK_CAPTURE(BM_IdealPixels, barrel, kBarrel);
+BENCHMARK_CAPTURE(BM_IdealPixels, phone, kPhoneLens);
+BENCHMARK_CAPTURE(BM_IdealPixels, barrel, kBarrelLens);
 BENCHMARK_CAPTURE(BM_IdealPixels, fisheye, kFisheyeLens);
 
 void BM_Plan(benchmark::State& state) {

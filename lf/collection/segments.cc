@@ -18,18 +18,30 @@ constexpr double kFarthest = 1 << 24;
 // rounding of single precision.
 constexpr float kBoundMargin = 0.01F;
 
+// Largest distance of one of Segment::kParabola positions from their middle.
+constexpr double kReach = 0.5 * (Segment::kParabola - 1);
+
+// Returns the largest integer that is not above `value`, which must fit into 32 bits. Faster than
+// std::floor(), which is a function call on processors without SSE 4.1.
+int32_t Floor(double value) {
+  const auto whole = static_cast<int32_t>(value);
+  return whole - (whole > value ? 1 : 0);
+}
+
 // Fits polynomials to the function `position(x)`, which returns an optional Vec2, on pieces [begin,
 // end) of a row. A piece is halved if the polynomials are not accurate enough on it.
+//   parabolas  false: Segment::has_parabolas is always false, because it will not be read
 template <class Position>
 class PieceFitter {
  public:
-  PieceFitter(int y, const Position& position, std::vector<Segment>* segments)
-      : y_(y), position_(position), segments_(segments) {}
+  PieceFitter(int y, const Position& position, bool parabolas, std::vector<Segment>* segments)
+      : y_(y), position_(position), parabolas_(parabolas), segments_(segments) {}
 
   void Add(int x_begin, int x_end, int begin, int end) {
     Polynomials polynomials;
     if (Fit(begin, end, &polynomials)) {
-      segments_->push_back(MakeSegment(y_, x_begin, x_end, 0.5 * (begin + end), polynomials));
+      AppendSegment(y_, x_begin, x_end, 0.5 * (begin + end), polynomials,
+                    parabolas_ && AllowParabolas(polynomials, 0.5 * (end - begin)), segments_);
       return;
     }
     if (end - begin == 1) return;  // the pixel has no position
@@ -72,6 +84,7 @@ class PieceFitter {
 
   int y_;
   const Position& position_;
+  bool parabolas_;
   std::vector<Segment>* segments_;
 };
 
@@ -87,21 +100,38 @@ bool IsNearMiddle(const Polynomials& polynomials, double half) {
   return std::max(reach(polynomials.x), reach(polynomials.y)) <= SegmentMaker::kFarthestFromMiddle;
 }
 
-Segment MakeSegment(int y, int x_begin, int x_end, double middle, const Polynomials& polynomials) {
-  Segment segment;
+// With the distance j from the middle of Segment::kParabola positions, at most J, a polynomial is
+//   a + b j + c j^2 + d j^3 + e j^4 + f j^5.
+// The parabola a + (b + 3/4 J^2 d) j + c j^2 differs by d (j^3 - 3/4 J^2 j) + e j^4 + f j^5, the
+// first term of which is at most |d| J^3 / 4.
+bool AllowParabolas(const Polynomials& polynomials, double half) {
+  const double m = half + kReach;  // bounds t in the middle of the positions
+  const auto error = [m](const double(&p)[Segment::kTerms]) {
+    const double f = std::abs(p[5]), e = std::abs(p[4]) + 5 * f * m;
+    const double d = std::abs(p[3]) + (4 * std::abs(p[4]) + 10 * f * m) * m;
+    return ((f * kReach + e) * kReach + 0.25 * d) * (kReach * kReach * kReach);
+  };
+  return half >= Segment::kParabola / 2 &&
+         std::max(error(polynomials.x), error(polynomials.y)) <= Segment::kParabolaTolerance;
+}
+
+// Writes into the vector: a copy would have to wait until the many short stores are done.
+void AppendSegment(int y, int x_begin, int x_end, double middle, const Polynomials& polynomials,
+                   bool has_parabolas, std::vector<Segment>* segments) {
+  Segment& segment = segments->emplace_back();
   segment.y = y;
   segment.x_begin = x_begin;
   segment.count = x_end - x_begin;
   segment.t_begin = static_cast<float>(x_begin + 0.5 - middle);
-  const double base_x = std::floor(std::clamp(polynomials.x[0], -kFarthest, kFarthest));
-  const double base_y = std::floor(std::clamp(polynomials.y[0], -kFarthest, kFarthest));
-  segment.base_x = static_cast<int32_t>(base_x);
-  segment.base_y = static_cast<int32_t>(base_y);
-  for (int power = 0; power < Segment::kTerms; ++power) {
-    segment.x_poly[power] = static_cast<float>(polynomials.x[power] - (power == 0 ? base_x : 0));
-    segment.y_poly[power] = static_cast<float>(polynomials.y[power] - (power == 0 ? base_y : 0));
+  segment.base_x = Floor(std::clamp(polynomials.x[0], -kFarthest, kFarthest));
+  segment.base_y = Floor(std::clamp(polynomials.y[0], -kFarthest, kFarthest));
+  segment.has_parabolas = has_parabolas;
+  segment.x_poly[0] = static_cast<float>(polynomials.x[0] - segment.base_x);
+  segment.y_poly[0] = static_cast<float>(polynomials.y[0] - segment.base_y);
+  for (int power = 1; power < Segment::kTerms; ++power) {
+    segment.x_poly[power] = static_cast<float>(polynomials.x[power]);
+    segment.y_poly[power] = static_cast<float>(polynomials.y[power]);
   }
-  return segment;
 }
 
 void SegmentMaker::Add(int y, int x_begin, int x_end, std::vector<Segment>* segments) const {
@@ -151,7 +181,11 @@ void SegmentMaker::AddInBlock(int y, int x_begin, int x_end, int block_begin, in
     c[2] = -s[axis] * q + c4 * half * half;
     c[3] = s[axis] * q * q;
   }
-  segments->push_back(MakeSegment(y, x_begin, x_end, middle, cubics));
+  // AllowParabolas(), for cubics.
+  constexpr double kMostBend = 4 * Segment::kParabolaTolerance / (kReach * kReach * kReach);
+  const bool has_parabolas = block_size >= Segment::kParabola &&
+                             std::max(std::abs(cubics.x[3]), std::abs(cubics.y[3])) <= kMostBend;
+  AppendSegment(y, x_begin, x_end, middle, cubics, has_parabolas, segments);
 }
 
 void SegmentMaker::AddOnArc(int y, int x_begin, int x_end, const IdealArc& arc,
@@ -162,12 +196,12 @@ void SegmentMaker::AddOnArc(int y, int x_begin, int x_end, const IdealArc& arc,
     const double inverse = 1 / Value(denominator_, p);
     return Vec2(Value(x_, p) * inverse, Value(y_, p) * inverse);
   };
-  PieceFitter(y, position, segments).Add(x_begin, x_end, arc.x_begin, arc.x_end);
+  PieceFitter(y, position, false, segments).Add(x_begin, x_end, arc.x_begin, arc.x_end);
 }
 
 void SegmentMaker::AddOfFunction(int y, int x_begin, int x_end, int block_begin, int block_end,
                                  const Function& position, std::vector<Segment>* segments) {
-  PieceFitter(y, position, segments).Add(x_begin, x_end, block_begin, block_end);
+  PieceFitter(y, position, true, segments).Add(x_begin, x_end, block_begin, block_end);
 }
 
 // The bounds are computed from the chord between the first and the last position, whose t differ by

@@ -25,6 +25,10 @@ struct Segment {
   // Largest `count`. The buffers of the kernels have this size.
   static constexpr int kMaxCount = 1024;
   static constexpr int kTerms = 6;
+  // Number of positions that a parabola may replace. The x of the first of them is a multiple of
+  // it.
+  static constexpr int kParabola = 16;
+  static constexpr double kParabolaTolerance = 1e-5;
 
   int32_t y = 0;
   int32_t x_begin = 0;
@@ -32,6 +36,10 @@ struct Segment {
   float t_begin = 0;
   int32_t base_x = 0;
   int32_t base_y = 0;
+  // True if parabolas may replace the polynomials, with an error of at most kParabolaTolerance
+  // elements (or LF pixels) along each axis, anywhere on the piece that the segment is from. Only
+  // the estimator *bilinear* reads it.
+  bool has_parabolas = false;
   float x_poly[kTerms] = {};
   float y_poly[kTerms] = {};
 
@@ -47,9 +55,15 @@ struct Polynomials {
   double y[Segment::kTerms] = {};
 };
 
-// Makes the segment of pixels (or elements) [x_begin, x_end) of row y, from the polynomials of a
-// piece that contains them and whose middle is at the continuous coordinate x = `middle`.
-Segment MakeSegment(int y, int x_begin, int x_end, double middle, const Polynomials& polynomials);
+// Appends the segment of pixels (or elements) [x_begin, x_end) of row y, made from the polynomials
+// of a piece that contains them and whose middle is at the continuous coordinate x = `middle`.
+void AppendSegment(int y, int x_begin, int x_end, double middle, const Polynomials& polynomials,
+                   bool has_parabolas, std::vector<Segment>* segments);
+
+// True if Segment::has_parabolas may be true for the segments of a piece. The piece extends by
+// `half` pixels (or elements) to both sides of its middle. The polynomials may also be upper bounds
+// of the absolute values of the coefficients of several pieces.
+bool AllowParabolas(const Polynomials& polynomials, double half);
 
 // True if no coordinate of a position on the piece differs by more than
 // SegmentMaker::kFarthestFromMiddle from the same coordinate of the position at the middle of the
@@ -79,7 +93,8 @@ class SegmentMaker {
   void Add(int y, int x_begin, int x_end, std::vector<Segment>* segments) const;
 
   // Like Add(), but maps the ideal positions of `arc`, the arc of scanline y, which must contain
-  // [x_begin, x_end). The polynomials are fitted to the arc, or to halves, quarters ... of it.
+  // [x_begin, x_end), and never sets Segment::has_parabolas. The polynomials are fitted to the arc,
+  // or to halves, quarters ... of it.
   void AddOnArc(int y, int x_begin, int x_end, const IdealArc& arc,
                 std::vector<Segment>* segments) const;
 

@@ -23,7 +23,10 @@ Segment RandomSegment(uint64_t seed) {
   const Polynomials polynomials = {
       {random.Uniform(-5, 105), random.Uniform(-speed, speed), random.Uniform(-bend, bend), 0},
       {std::floor(random.Uniform(0, 70)), seed % 7 == 0 ? 0 : random.Uniform(-speed, speed), 0, 0}};
-  return MakeSegment(static_cast<int>(seed), begin, end, 0.5 * (begin + end), polynomials);
+  std::vector<Segment> segments;
+  AppendSegment(static_cast<int>(seed), begin, end, 0.5 * (begin + end), polynomials, false,
+                &segments);
+  return segments[0];
 }
 
 int ElementAt(const float (&c)[Segment::kTerms], int base, float t, int last) {

@@ -48,11 +48,11 @@ struct RunChoices {
 
 // The version of the ray model (doc/ray.md). A change of the code that gives other rays for the
 // same inputs raises it.
-inline constexpr int kRayModelVersion = 4;
+inline constexpr int kRayModelVersion = 5;
 // The version of the polynomials that give positions in LF images with lens distortion. A change of
 // the code that changes them within their tolerance (SegmentMaker::kTolerance) raises it: frames of
 // such light fields then have other bits, and others do not.
-inline constexpr int kDistortedPositionsVersion = 2;
+inline constexpr int kDistortedPositionsVersion = 3;
 // The version of the reading of mosaics by elements that are wider than LF pixels. Frames of RGB
 // light fields and those that the filter "mosaic" does not read do not depend on it.
 inline constexpr int kMosaicReadingVersion = 2;
