@@ -195,14 +195,7 @@ class FilmMaker {
     return film;
   }
 
-  Error Interrupted() const {
-    const auto finished = std::count_if(frames_.begin(), frames_.end(), [this](FrameId frame) {
-      return state_->finished().contains(frame);
-    });
-    return {ErrorKind::kInterrupted,
-            fmt::format("interrupted after {} of {} frames; finished frames are kept in {}",
-                        finished, frames_.size(), folder_.output_folder.string())};
-  }
+  Error Interrupted() const { return state_->Interruption(frames_); }
 
   const CameraPath& path_;
   const StatisticFilmOptions& options_;

@@ -154,9 +154,12 @@ class Merger {
   bool IsStopped() const { return options_.signals != nullptr && options_.signals->stop; }
   Error Interrupted() const {
     return {ErrorKind::kInterrupted,
-            fmt::format(
-                "interrupted after {} of {} frames; these are kept in {}, and --resume continues",
-                now_.frame_count, now_.frame_total, options_.output_folder.string())};
+            now_.frame_count == 0
+                ? fmt::format("interrupted after 0 of {} frames; nothing was made yet",
+                              now_.frame_total)
+                : fmt::format("interrupted after {} of {} frames; these are kept in {}, and "
+                              "--resume continues",
+                              now_.frame_count, now_.frame_total, options_.output_folder.string())};
   }
   fs::path PathOf(FrameId frame) const {
     return FramePath(options_.output_folder, frame, options_.format);

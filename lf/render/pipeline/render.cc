@@ -72,7 +72,7 @@ class Renderer {
                        size_t frames_left, std::span<const FrameId> early);
   Result<RenderReport> End();
   Result<void> CheckAnyContributes(std::span<const FrameId> frames) const;
-  Error Interrupted() const;
+  Error Interrupted() const { return state_->Interruption(setup_->frames()); }
   void Report(const CollectProgress& pass, size_t finished_count) const;
 
   const RenderOptions& options_;
@@ -355,16 +355,6 @@ Result<RenderReport> Renderer::End() {
             : "whether masks exclude all pixels"));
   if (video_error) return *video_error;
   return std::move(totals_);
-}
-
-Error Renderer::Interrupted() const {
-  size_t finished_count = 0;
-  for (const FrameId frame : setup_->frames())
-    finished_count += state_->finished().contains(frame) ? 1 : 0;
-  return {
-      ErrorKind::kInterrupted,
-      fmt::format("interrupted after {} of {} frames; finished frames and the state are kept in {}",
-                  finished_count, setup_->frames().size(), folder_.output_folder.string())};
 }
 
 void Renderer::Report(const CollectProgress& pass, size_t finished_count) const {
