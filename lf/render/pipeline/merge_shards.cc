@@ -20,6 +20,7 @@
 #include "lf/render/pipeline/develop_frame.h"
 #include "lf/render/pipeline/frame_output.h"
 #include "lf/render/pipeline/render_pass.h"
+#include "lf/render/state/other_format.h"
 #include "lf/render/state/plate_notes.h"
 
 namespace lf {
@@ -177,6 +178,9 @@ class Merger {
   fs::path PartialFolder() const { return options_.output_folder / "partial"; }
   Result<void> Lock() {
     LF_RETURN_IF_ERROR(CreateFolder(options_.output_folder));
+    std::vector<FrameId> ids;
+    for (const auto& [id, frame] : frames_) ids.push_back(id);
+    WarnOfOtherFormat(options_.output_folder, ids, options_.format);
     LF_ASSIGN_OR_RETURN(FileLock lock, FileLock::TakeInFolder(PartialFolder()));
     lock_ = std::move(lock);
     return {};

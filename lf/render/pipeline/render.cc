@@ -20,6 +20,7 @@
 #include "lf/render/pipeline/frame_output.h"
 #include "lf/render/pipeline/render_pass.h"
 #include "lf/render/pipeline/setup_inputs.h"
+#include "lf/render/state/other_format.h"
 #include "lf/render/state/run_inputs.h"
 #include "lf/render/state/run_state.h"
 
@@ -132,6 +133,8 @@ Result<void> Renderer::OpenState() {
   LF_ASSIGN_OR_RETURN(RunInputs rays, InputsOfRays(*setup_));
   const RunStateOptions state_options = StateOptions(*setup_, folder_, std::move(rays));
   LF_ASSIGN_OR_RETURN(state_, RunState::Open(state_options, setup_->path()));
+  if (!setup_->film().shard)
+    WarnOfOtherFormat(folder_.output_folder, setup_->frames(), folder_.format);
   had_plates_ = state_->HasPlates();
   totals_ = state_->earlier();
   // If nothing of the earlier run is kept, the LF images that it skipped are tried again.
