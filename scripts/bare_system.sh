@@ -1,8 +1,29 @@
 # SPDX-License-Identifier: Apache-2.0
-# Functions that make bare Debian 12 systems in folders (to be sourced by bash, as root, in a mount namespace of its own).
+# Functions that make bare Debian 12 systems in folders (to be sourced by bash, as root; own_namespace before anything is
+# mounted).
 # Mirror and proxy are those of this machine's apt, certificates those of its Node.js.
 
 say() { printf '%5d s  %s\n' "$SECONDS" "$*"; }
+
+# own_namespace ARGUMENT...: starts the script again with its arguments, in a mount namespace of its own, unless it is in
+# one. What it mounts vanishes with it.
+own_namespace() {
+  if [[ ${LF_UNSHARED:-} != yes ]]; then
+    LF_UNSHARED=yes exec unshare --mount --propagation private "$0" "$@"
+  fi
+}
+
+# take_folder FOLDER: sets `repository` and `folder`, the absolute paths of this repository and of FOLDER, which it makes.
+# Ends the script if another run is using FOLDER.
+take_folder() {
+  repository=$(cd "$(dirname "$0")/.." && pwd)
+  folder=$(mkdir -p "$1" && cd "$1" && pwd)
+  exec 9>"$folder/lock"
+  if ! flock --nonblock 9; then
+    echo "error: another run is using $folder" >&2
+    exit 1
+  fi
+}
 
 # base_system BASE LOG: makes a bare system in the folder BASE, unless it is there.
 base_system() {

@@ -16,20 +16,11 @@ if ((EUID != 0)) || ! command -v debootstrap >/dev/null || (($# == 0)); then
   echo "error: needs a FOLDER, root, and the package debootstrap" >&2
   exit 2
 fi
-# The mounts below are made in a mount namespace of this process, and vanish with it.
-if [[ ${LF_UNSHARED:-} != yes ]]; then
-  LF_UNSHARED=yes exec unshare --mount --propagation private "$0" "$@"
-fi
 
 source "$(dirname "$0")/bare_system.sh"
-repository=$(cd "$(dirname "$0")/.." && pwd)
-folder=$(mkdir -p "$1" && cd "$1" && pwd)
+own_namespace "$@"
+take_folder "$1"
 shift
-exec 9>"$folder/lock"
-if ! flock --nonblock 9; then
-  echo "error: another run is using $folder" >&2
-  exit 1
-fi
 commands=("$@")
 if ((${#commands[@]} == 0)); then commands=(./demo ./test); fi
 base=$folder/base

@@ -20,19 +20,10 @@ if ((EUID != 0 || $# != 1)) || ! command -v debootstrap >/dev/null || ! command 
   echo "error: needs a FOLDER, root, and the packages debootstrap and piuparts" >&2
   exit 2
 fi
-# The mounts below are made in a mount namespace of this process, and vanish with it.
-if [[ ${LF_UNSHARED:-} != yes ]]; then
-  LF_UNSHARED=yes exec unshare --mount --propagation private "$0" "$@"
-fi
 
 source "$(dirname "$0")/bare_system.sh"
-repository=$(cd "$(dirname "$0")/.." && pwd)
-folder=$(mkdir -p "$1" && cd "$1" && pwd)
-exec 9>"$folder/lock"
-if ! flock --nonblock 9; then
-  echo "error: another run is using $folder" >&2
-  exit 1
-fi
+own_namespace "$@"
+take_folder "$1"
 version=$(head -n 1 "$repository/VERSION")
 tarball=lfrendertools-$version.tar.xz
 source=lfrendertools-$version

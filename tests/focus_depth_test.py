@@ -225,12 +225,42 @@ class FocusDepthTest(ProgramTestCase):
                            "--overwrite")
             self.assertEqual(output.read_bytes(), before)
 
-    def test_a_map_without_any_depth_is_warned_of(self):
-        result = self.call(FOCUS, "depth", self.field, self.path, "-o", self.folder / "a.pfm", "--near", 100, "--far",
-                           200)
-        self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertIn("no element has a depth", result.stderr)
+    def test_a_map_without_any_depth_is_an_error(self):
+        beyond = ["--near", 100, "--far", 200]
+        self.fails(6, ["no element has a depth", f"0 of {240 * 160}", "--confidence"], FOCUS, "depth", self.field,
+                   self.path, "-o", self.folder / "a.pfm", *beyond)
         self.assertFalse(np.isfinite(read_pfm(self.folder / "a.pfm")[1]).any())
+        self.fails(6, ["no element has a depth"], FOCUS, "sharp", self.field, self.path, "-o", self.folder / "a.png",
+                   *beyond)
+        self.assertTrue((self.folder / "a.png").exists())
+
+    def test_a_pinhole_has_the_depths_of_a_wider_lens(self):
+        path = self.folder / "path.yaml"
+        path.write_text(PATH.format(diameter=0))
+        result = self.call(FOCUS, "depth", self.field, path, "-o", self.folder / "a.pfm", "--near", NEAR, "--far", FAR)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("the lens has a diameter of 0 world units and 0 LF cameras: for the depths it is widened",
+                      result.stderr)
+        self.assertNotIn("warning", result.stderr)
+        self.assertTrue(np.isfinite(read_pfm(self.folder / "a.pfm")[1]).any())
+
+    def test_lf_cameras_that_are_far_apart_are_warned_of_before_the_work(self):
+        # Each sixth LF camera, across and down: nine of them.
+        field = self.folder / "field"
+        field.mkdir()
+        (field / "images").symlink_to(self.field / "images")
+        calibration = json.loads((self.field / "transforms.json").read_text())
+        frames = calibration["frames"]
+        calibration["frames"] = [frames[13 * y + x] for y in (0, 6, 12) for x in (0, 6, 12)]
+        (field / "transforms.json").write_text(json.dumps(calibration))
+        path = self.folder / "path.yaml"
+        path.write_text(PATH.format(diameter=0).replace("240, 160", "960, 640"))
+        result = self.call(FOCUS, "depth", field, path, "-o", self.folder / "a.pfm", "--near", 0.1, "--far", FAR,
+                           "--planes", 60, "--threads", 1, "--progress", "plain")
+        self.assertIn(result.returncode, (0, 6), result.stderr)
+        apart, coarse = result.stderr.find("far apart"), result.stderr.find("60 distances are tested")
+        self.assertTrue(0 < apart < coarse < result.stderr.find("LF images compared"), result.stderr)
+        self.assertIn("are needed, 1024 are possible", result.stderr)
 
     def test_a_broken_lf_image_is_left_out_and_told(self):
         field = self.folder / "field"

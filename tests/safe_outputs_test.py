@@ -88,6 +88,28 @@ class SafeOutputsTest(ProgramTestCase):
         self.succeeds(PROGRAMS / "lfrenderer", self.field, self.path, "-o", self.field, "--frames", "1", "-q")
         self.succeeds(PROGRAMS / "lfrenderer", *render, self.folder / "film", "-q")
 
+    def test_frames_in_another_format_stay_and_are_warned_of(self):
+        out, cut = self.folder / "film", self.folder / "cut"
+        render = [PROGRAMS / "lfrenderer", self.field, self.path]
+        self.succeeds(*render, "-o", out, "-q")
+        self.succeeds(*render, "-o", cut, "--shard", "1/1", "-q")
+        before = (out / "frame_0001.exr").read_bytes()
+        png = ["-o", out, "--format", "png", "--overwrite", "-q"]
+        for call in ([*render, *png],
+                     [PROGRAMS / "lfmerge", cut / "partial" / "shards", *png],
+                     [PROGRAMS / "lffocus", "through", self.field, self.path, *png]):
+            with self.subTest(call[0].name):
+                (out / "frame_0001.png").unlink(missing_ok=True)
+                result = self.call(*call)
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertRegex(result.stderr, "warning: .*film: .*frame_0001.exr.* another format")
+                self.assertEqual((out / "frame_0001.exr").read_bytes(), before)
+                self.assertTrue((out / "frame_0001.png").exists())
+        result = self.call(*render, "-o", out, "--overwrite")
+        self.assertRegex(result.stderr, "warning: .*film: .*frame_0001.png.* another format")
+        (out / "frame_0001.png").unlink()
+        self.assertNotIn("another format", self.call(*render, "-o", out, "--overwrite").stderr)
+
     def test_merged_frames_do_not_replace_lf_images(self):
         picture = self.field_named_as_frames()
         self.succeeds(PROGRAMS / "lfrenderer", self.field, self.path, "-o", self.folder / "cut", "--shard", "1/1", "-q")

@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -230,6 +233,24 @@ std::string ReportJson(const DepthArguments& a, const Made& made) {
   return report.dump(2) + "\n";
 }
 
+// Returns the error of a map in which no element has a depth.
+Error NothingKnown(const DepthMap& map) {
+  constexpr size_t kShare = 10;  // every kShare-th element is surer
+  std::vector<float> sure(map.confidence.pixels().begin(), map.confidence.pixels().end());
+  const auto tenth = sure.begin() + static_cast<std::ptrdiff_t>(sure.size() / kShare);
+  std::nth_element(sure.begin(), tenth, sure.end(), std::greater<>());
+  return Error{
+      ErrorKind::kBelowRequired,
+      fmt::format("no element has a depth (the files are written): 0 of {} are sure enough, and a "
+                  "tenth of them reaches a confidence of {:.2f}. Give the distances of the scene "
+                  "by --near and --far, or accept less sure depths by --confidence{}",
+                  sure.size(), *tenth,
+                  map.skipped.empty()
+                      ? ""
+                      : fmt::format("; {} of {} LF images were broken: {}", map.skipped.size(),
+                                    map.view_count, map.skipped.front().reason))};
+}
+
 // Tells what was made, and decides about LF images that were left out.
 Result<void> Finish(const DepthArguments& a, const CommonOptions& common, const Made& made) {
   const DepthMap& map = made.map;
@@ -238,12 +259,8 @@ Result<void> Finish(const DepthArguments& a, const CommonOptions& common, const 
       "elements have a depth",
       map.view_count, map.planes_w.size() - 2, made.range.near_w, made.range.far_w,
       100 * KnownShare(map));
-  if (map.known_count == 0)
-    LogWarning(
-        "no element has a depth: give the distances of the scene by --near and --far, open the "
-        "lens "
-        "wider, or accept less sure depths by --confidence");
   if (common.json) LF_RETURN_IF_ERROR(PrintReport(ReportJson(a, made)));
+  if (map.known_count == 0) return NothingKnown(map);
   if (map.skipped.empty()) return {};
   LF_ASSIGN_OR_RETURN(const MissingLimit limit, a.allow_missing.Limit());
   return EndWithMissing({map.skipped.size(), map.view_count,

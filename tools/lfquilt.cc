@@ -34,9 +34,10 @@ constexpr lf::HelpTexts kHelp = {
 moment, then those of the second, and so on. doc/stereo.md tells the layouts and the names of files.
 
 Pictures have the format of the frames: 8 or 16 bit in PNG files, half or float in EXR files, with the
-same primaries. EXR files have the channels R, G, B and, if the frames have it, A; channels that
-describe a single view, such as counts, are left out. left-right copies whole frames. Videos are
-8-bit sRGB (H.264), as those of lfrenderer.
+same primaries. PNG files of EXR frames are 8-bit sRGB, composited over black, as videos are. EXR
+files have the channels R, G, B and, if the frames have it, A; channels that describe a single view,
+such as counts, are left out. left-right copies whole frames. Videos are 8-bit sRGB (H.264), as those
+of lfrenderer.
 
 Everything is checked before the first file is written: a missing view, and views of other sizes or
 colours, are errors. A file appears under its name when it is complete. After an interruption,

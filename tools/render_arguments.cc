@@ -195,10 +195,12 @@ void AddRunning(CLI::App& app, RenderArguments& a) {
       "Continue the unfinished render in DIR\n"
       "The inputs and the options that change frames must be the same. Finished frames are kept.");
   running
-      .AddFlag("--overwrite", a.overwrite,
-               "Remove an unfinished render in DIR and start anew\n"
-               "Needed, unless --resume is given, if DIR has an unfinished render. Finished frames "
-               "in DIR are replaced one by one; only --resume keeps them.")
+      .AddFlag(
+          "--overwrite", a.overwrite,
+          "Remove an unfinished render in DIR and start anew\n"
+          "Needed, unless --resume is given, if DIR has an unfinished render. Finished frames "
+          "in DIR are replaced one by one; only --resume keeps them. Frames in another --format "
+          "stay, and a warning names them.")
       ->excludes(resume);
   running
       .Add(

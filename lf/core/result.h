@@ -26,8 +26,8 @@ enum class ErrorKind {
   // Interrupted; the work done is kept, and --resume continues it.
   kInterrupted = 5,
   // Finished, but below what was asked for: LF images were left out because they are missing or
-  // broken, more than --allow-missing accepts, or frames have less than --require asks for.
-  // Everything is written; the last line has the count.
+  // broken, more than --allow-missing accepts, frames have less than --require asks for, or no
+  // element of a depth map has a depth. Everything is written; the last line has the count.
   kBelowRequired = 6,
 };
 

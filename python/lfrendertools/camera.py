@@ -69,9 +69,10 @@ class Camera:
         Distance from the lens, and diameter, of a round opening in front of the lens, which cuts off oblique rays:
         lights in the corners have the shape of a cat's eye. (0, 0): there is none.
     transmission : str, path-like or array_like of shape (height, width) or (height, width, 1), optional
-        How much light each place of the opening lets through: the file of a picture, shares from 0 to 1, or whole
-        numbers of the type uint8 up to 255. The picture is a square around the opening, upright for the photographer
-        behind the camera; it is reduced to at most 64 x 64 places. Out-of-focus lights have its shape.
+        How much light each place of the opening lets through: the file of a picture, the text of a path file such as
+        "00ff/ff00", shares from 0 to 1, or whole numbers of the type uint8 up to 255. The picture is a square around
+        the opening, upright for the photographer behind the camera; it is reduced to at most 64 x 64 places.
+        Out-of-focus lights have its shape.
     breathing : bool, optional
         True: the field of view narrows when the focus comes nearer. False: focusing does not change it.
     unit_m : float, optional
@@ -377,6 +378,13 @@ def _hood_of(hood: Tuple[float, float]) -> Dict[str, float]:
 
 def _transmission_text(transmission: Union[str, "os.PathLike[str]", npt.ArrayLike]) -> str:
     """Return the value of `transmission` in a path file."""
+    # The text of a transmission has no dot, and the name of a picture has one, as in path files.
+    if isinstance(transmission, str) and "." not in transmission and not os.path.exists(transmission):
+        try:
+            return _core.transmission_of_text(transmission)
+        except InputError as error:
+            raise UsageError(f"transmission={transmission!r} is no file, and as the text of a transmission: {error}"
+                             ) from None
     if isinstance(transmission, (str, os.PathLike)):
         return _core.transmission_of_file(arguments.file_name("transmission", transmission))
     shares = np.asarray(transmission)

@@ -304,6 +304,9 @@ void AddCameras(py::module_& module) {
                             state[2].cast<py::bytes>());
           }));
   module.def("transmission_of_array", &TextOfTransmission);
+  module.def("transmission_of_text", [](const std::string& text) {
+    return CallWithoutGil([&] { return Take(Transmission::FromText(text)).Text(); });
+  });
   module.def("transmission_of_file", [](const std::string& file) {
     return CallWithoutGil([&] { return Take(ReadTransmissionFile(file)).Text(); });
   });

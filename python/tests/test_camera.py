@@ -228,6 +228,14 @@ def test_transmission(tmp_path):
         camera.replace(transmission=tmp_path / "nowhere.png")
 
 
+def test_transmission_as_text():
+    camera = lf.Camera((0, 0, -1), look_at=(0, 0, 0), resolution=(120, 80), focal_length_mm=50, f_number=4,
+                       focus_distance=1, transmission="00ff/ff80")
+    np.testing.assert_array_equal(np.rint(camera.transmission * 255), [[0, 255], [255, 128]])
+    with pytest.raises(lf.UsageError, match="transmission='heart' is no file, and as the text of a transmission: "):
+        camera.replace(transmission="heart")
+
+
 def test_transmission_of_a_picture(tmp_path):
     picture = np.zeros((40, 30, 4), np.uint8)
     picture[:20] = 255

@@ -15,6 +15,7 @@
 #include "lf/analysis/depth/plane_sweep.h"
 #include "lf/analysis/depth/sharp_plate.h"
 #include "lf/analysis/focus_stack/focus_planes.h"
+#include "lf/core/log.h"
 #include "lf/live/lens_order.h"
 #include "lf/render/collect/frame_lens.h"
 #include "lf/render/pipeline/develop_frame.h"
@@ -26,6 +27,10 @@ namespace {
 constexpr int kTileSide = 64;
 constexpr size_t kLeastInLens = 12;
 constexpr size_t kLeastPlanes = 8, kMostPlanes = 256;
+constexpr double kStep = 0.5;  // elements that a point moves from one plane to the next
+// A sweep is warned of if a point moves by more elements from one plane to the next, or by a larger
+// share of the frame's width between the nearest and the farthest distance.
+constexpr double kMostMovedByStep = 1, kMostMovedShare = 0.25;
 // Radius of the windows in which elements of one colour are compared, in radii of the windows of
 // costs: elements beside a border get its depth up to one such radius away.
 constexpr int kGuideRadius = 3;
@@ -58,6 +63,7 @@ Result<void> CheckOptions(const DepthMapOptions& options) {
 struct LensCameras {
   std::vector<LensCamera> cameras;
   double radius_w = 0;
+  size_t before_count = 0;  // LF cameras in the lens as it is, not widened
 };
 
 LensCameras CamerasIn(const LightField& light_field, const RenderCamera& frame,
@@ -79,6 +85,9 @@ LensCameras CamerasIn(const LightField& light_field, const RenderCamera& frame,
   std::vector<double> sorted = distances;
   std::sort(sorted.begin(), sorted.end());
   lens.radius_w = frame.aperture.radius_w;
+  lens.before_count = static_cast<size_t>(
+      std::upper_bound(sorted.begin(), sorted.end(), lens.radius_w * (1 + kRimTolerance)) -
+      sorted.begin());
   if (!sorted.empty())
     lens.radius_w = std::max(lens.radius_w, sorted[std::min(sorted.size(), kLeastInLens) - 1]);
   std::erase_if(lens.cameras, [&](const LensCamera& camera) {
@@ -138,6 +147,7 @@ class DepthMaker {
       : light_field_(index.light_field()),
         id_(id),
         options_(options),
+        aperture_radius_w_(frame.aperture.radius_w),
         pool_(pool),
         progress_(progress),
         frame_(Pinhole(frame, options.range)),
@@ -163,6 +173,7 @@ class DepthMaker {
       return InputError(fmt::format(
           "{} LF camera{} the scene through the lens: expected at least {} to compare",
           in_lens_.cameras.size(), in_lens_.cameras.size() == 1 ? " sees" : "s see", kLeastViews));
+    TellOfLens();
     const Intrinsics& plate = frame_.pinhole.intrinsics;
     map_.view_count = in_lens_.cameras.size();
     LF_ASSIGN_OR_RETURN(const std::vector<PixelRect> parts,
@@ -203,10 +214,42 @@ class DepthMaker {
   }
   bool IsStopped() const { return options_.stop != nullptr && *options_.stop; }
 
+  // Returns by how many elements a point moves from one distance to the next in the outermost LF
+  // images.
+  double MovedByStep() const {
+    return MovedBetween(frame_, options_.range, in_lens_.radius_w) /
+           static_cast<double>(map_.planes_w.size() - 3);
+  }
+
   size_t ElementStep() const {
-    const double moved = MovedBetween(frame_, options_.range, in_lens_.radius_w) /
-                         static_cast<double>(map_.planes_w.size() - 3);
-    return static_cast<size_t>(std::clamp(std::ceil(1 / moved), 1.0, 1e3));
+    return static_cast<size_t>(std::clamp(std::ceil(1 / MovedByStep()), 1.0, 1e3));
+  }
+
+  // Says before the work what makes depths rare.
+  void TellOfLens() const {
+    if (in_lens_.cameras.size() > in_lens_.before_count)
+      LogInfo(
+          "the lens has a diameter of {:.4g} world units and {} LF camera{}: for the depths it is "
+          "widened to {:.4g} world units, with {}",
+          2 * aperture_radius_w_, in_lens_.before_count, in_lens_.before_count == 1 ? "" : "s",
+          2 * in_lens_.radius_w, in_lens_.cameras.size());
+    const double moved = MovedBetween(frame_, options_.range, in_lens_.radius_w);
+    const int width = frame_.pinhole.intrinsics.width_px;
+    if (moved > kMostMovedShare * width)
+      LogWarning(
+          "the LF cameras are far apart: between the nearest and the farthest distance a point "
+          "moves by {:.0f} elements in the outermost LF images, and the frame is {} wide. LF "
+          "images that differ so much seldom agree, so that few elements may have a depth: narrow "
+          "the "
+          "range of distances, or record the scene more densely",
+          moved, width);
+    if (MovedByStep() > kMostMovedByStep)
+      LogWarning(
+          "{} distances are tested: from one to the next a point moves by {:.1f} elements in the "
+          "outermost LF images, so that depths between them are missed. Narrow the range of "
+          "distances, make the frame smaller, or test more distances ({} are needed, {} are "
+          "possible)",
+          map_.planes_w.size() - 2, MovedByStep(), std::ceil(moved / kStep) + 1, kMostDepthPlanes);
   }
 
   void Tell(double share) const {
@@ -289,6 +332,7 @@ class DepthMaker {
   const LightField& light_field_;
   const FrameId id_;
   const DepthMapOptions& options_;
+  const double aperture_radius_w_;
   ThreadPool& pool_;
   const std::function<void(double)>& progress_;
   const RenderCamera frame_;
@@ -321,7 +365,6 @@ Result<DepthRange> RangeToSweep(const LightField& light_field, const RenderCamer
 }
 
 size_t PlanesFor(const RenderCamera& frame, const DepthRange& range, double lens_radius_w) {
-  constexpr double kStep = 0.5;  // elements from one plane to the next
   const double moved = MovedBetween(frame, range, lens_radius_w);
   return static_cast<size_t>(std::clamp(std::ceil(moved / kStep) + 1,
                                         static_cast<double>(kLeastPlanes),

@@ -17,6 +17,7 @@
 #include "lf/render/pipeline/check_outputs.h"
 #include "lf/render/pipeline/frame_output.h"
 #include "lf/render/pipeline/setup_inputs.h"
+#include "lf/render/state/other_format.h"
 #include "lf/render/state/run_inputs.h"
 #include "lf/render/state/run_state.h"
 
@@ -106,6 +107,7 @@ class FilmMaker {
                                    std::move(rays),
                                    InputsOfPicture(choices)};
     LF_ASSIGN_OR_RETURN(state_, RunState::Open(state, path_));
+    WarnOfOtherFormat(folder_.output_folder, frames_, folder_.format);
     totals_ = state_->earlier();
     // If nothing of the earlier run is kept, the LF images that it skipped are tried again.
     if (state_->finished().empty()) totals_.skipped.clear();
@@ -195,14 +197,7 @@ class FilmMaker {
     return film;
   }
 
-  Error Interrupted() const {
-    const auto finished = std::count_if(frames_.begin(), frames_.end(), [this](FrameId frame) {
-      return state_->finished().contains(frame);
-    });
-    return {ErrorKind::kInterrupted,
-            fmt::format("interrupted after {} of {} frames; finished frames are kept in {}",
-                        finished, frames_.size(), folder_.output_folder.string())};
-  }
+  Error Interrupted() const { return state_->Interruption(frames_); }
 
   const CameraPath& path_;
   const StatisticFilmOptions& options_;

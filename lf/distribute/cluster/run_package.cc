@@ -285,7 +285,8 @@ Result<TaskState> RunPackage(const ClusterJob& job, size_t number, const std::st
           run.End(TaskPhase::kDone, end.exit_code, end.exit_code == 0 ? "" : run.LastMessage()));
       return state;
     } else if (end.exit_code == 5) {
-      LF_RETURN_IF_ERROR(run.End(TaskPhase::kInterrupted, 5, "interrupted; the state is kept"));
+      LF_RETURN_IF_ERROR(
+          run.End(TaskPhase::kInterrupted, 5, "interrupted; it continues when it runs again"));
     } else {
       LF_RETURN_IF_ERROR(run.End(TaskPhase::kFailed, end.exit_code, run.LastMessage()));
       return state;

@@ -19,8 +19,8 @@ namespace lf {
 struct JoinOptions {
   ViewLayout layout = ViewLayout::kQuilt;  // not kLeftRight, unless the pictures are for display
   TileCounts grid = {};                    // of a quilt
-  // True: the joined picture is 8-bit sRGB, composited over black, for a video. False: it has the
-  // type and the colours of the views.
+  // True: the joined picture is 8-bit sRGB, composited over black, for a video or for the PNG file
+  // of EXR frames. False: it has the type and the colours of the views.
   bool is_for_display = false;
 };
 

@@ -42,7 +42,13 @@ class FilmWriter {
  private:
   bool is_video() const { return options_.output.extension() == ".mp4"; }
   bool is_left_right() const { return options_.layout == ViewLayout::kLeftRight; }
-  JoinOptions join() const { return {options_.layout, options_.grid, is_video()}; }
+  // True if EXR frames become PNG files, which show what a video of them shows.
+  bool is_developed() const {
+    return options_.output.extension() == ".png" && moments_[0].files[0].extension() == ".exr";
+  }
+  JoinOptions join() const {
+    return {options_.layout, options_.grid, is_video() || is_developed()};
+  }
 
   Result<void> CheckOutput() const;
   Result<void> CheckShape() const;
@@ -76,11 +82,12 @@ Error Interrupted() {
 Result<void> FilmWriter::CheckOutput() const {
   const fs::path& out = options_.output;
   const fs::path of_frames = moments_[0].files[0].extension();
-  if (!is_video() && out.extension() != of_frames)
+  if (!is_video() && !is_developed() && out.extension() != of_frames)
     return UsageError(
-        fmt::format("-o {}: its extension is \"{}\": expected \"{}\" as the frames have, or "
-                    "\".mp4\" for a video",
-                    out.string(), out.extension().string(), of_frames.string()));
+        fmt::format("-o {}: its extension is \"{}\": expected \"{}\" as the frames have, "
+                    "{}\".mp4\" for a video",
+                    out.string(), out.extension().string(), of_frames.string(),
+                    of_frames == ".exr" ? "\".png\" for pictures in sRGB, or " : "or "));
   if (options_.fps && !is_video())
     return UsageError(fmt::format(
         "--fps is for videos, but {} is a picture: leave it out, or give a name that ends in .mp4",
@@ -205,9 +212,9 @@ Result<void> FilmWriter::CopyFrame(const Target& target) {
 
 Result<void> FilmWriter::WriteTarget(const Target& target) {
   if (is_video()) return WriteVideo(target);
-  if (target.eye) return CopyFrame(target);
+  if (target.eye && !is_developed()) return CopyFrame(target);
   const ViewMoment& moment = target.moments[0];
-  LF_ASSIGN_OR_RETURN(const StoredImage joined, Join(moment, std::nullopt));
+  LF_ASSIGN_OR_RETURN(const StoredImage joined, Join(moment, target.eye));
   LF_ASSIGN_OR_RETURN(const std::vector<std::string> names,
                       JoinedChannels(header_, join(), moment.files[0].string()));
   const ImageMetadata metadata = {
@@ -215,8 +222,11 @@ Result<void> FilmWriter::WriteTarget(const Target& target) {
                         ? fmt::format("quilt {}x{}", options_.grid.columns, options_.grid.rows)
                         : std::string(NameOf(options_.layout))},
       {"imageCounter", moment.number}};
-  return WriteStoredImage(target.file, joined, names, header_.colours, metadata,
-                          options_.is_interrupted);
+  const ColourFacts colours =
+      is_developed()
+          ? ColourFacts{PixelType::kUint8, {}, header_.colours.frames_per_second, true, {}}
+          : header_.colours;
+  return WriteStoredImage(target.file, joined, names, colours, metadata, options_.is_interrupted);
 }
 
 Result<ViewFilmReport> FilmWriter::Write(std::span<const fs::path> frames) {
@@ -225,7 +235,7 @@ Result<ViewFilmReport> FilmWriter::Write(std::span<const fs::path> frames) {
   report_.moment_count = moments_.size();
   LF_RETURN_IF_ERROR(CheckOutput());
   LF_ASSIGN_OR_RETURN(header_, CommonHeader(moments_, pool_));
-  if (is_video() || !is_left_right())
+  if (is_video() || is_developed() || !is_left_right())
     LF_RETURN_IF_ERROR(JoinedChannels(header_, join(), moments_[0].files[0].string()));
   const TileCounts grid = GridOf(options_.layout, options_.grid);
   report_.width = grid.columns * header_.info.width;

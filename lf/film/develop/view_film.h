@@ -18,8 +18,8 @@ namespace lf {
 struct ViewFilmOptions {
   ViewLayout layout = ViewLayout::kQuilt;
   TileCounts grid = {};  // of a quilt
-  // FOLDER/NAME.png or .exr, as the frames, or .mp4. PathOfViews() gives the names of the files; a
-  // film of one moment has pictures without a number.
+  // FOLDER/NAME.png or .exr, as the frames, .png of EXR frames, or .mp4. PathOfViews() gives the
+  // names of the files; a film of one moment has pictures without a number.
   std::filesystem::path output;
   // Frame rate of the video. By default that which the frames state, or 30, with a warning.
   std::optional<double> fps = {};
@@ -39,8 +39,8 @@ struct ViewFilmReport {
 
 // Writes the pictures or the video of a film. Everything is checked before the first file is
 // written. A picture has the type, the primaries and the frame rate of the frames; with kLeftRight,
-// pictures are copies of the frames. A video is 8-bit sRGB (develop/video.h). Each file appears
-// under its name when it is complete.
+// pictures are copies of the frames. A video (develop/video.h), and a PNG file of EXR frames, is
+// 8-bit sRGB, composited over black. Each file appears under its name when it is complete.
 //   frames       as for FindViewMoments()
 //   on_progress  called when a view has been joined, by one thread at a time; may be empty
 // kUsage: the extension of the output fits neither the frames nor a video; a file exists, and

@@ -223,6 +223,35 @@ TEST_F(ViewFilmTest, ViewsMustBeOfOneKind) {
   ExpectWords(ErrorOf(options, ErrorKind::kInput), {"frame_0002", "of one format"});
 }
 
+TEST_F(ViewFilmTest, PngFilesOfExrFramesAreWhatPngFramesShow) {
+  const ColourFacts colours = {PixelType::kFloat, {}, 25};
+  const std::vector<std::string> names = {"R", "G", "B"};
+  Image<float> linear(6, 4, 3);
+  for (size_t i = 0; i < linear.pixels().size(); ++i)
+    linear.pixels()[i] = -0.1f + 0.02f * static_cast<float>(i);
+  for (uint32_t frame = 1; frame <= 2; ++frame) {
+    ASSERT_TRUE(WriteStoredImage(FramePath(views_, FrameId{frame}, FrameFormat::kExrFloat), linear,
+                                 names, colours));
+    linear.pixels()[0] = 0.5f;  // the frames differ
+  }
+  const auto first = ReadDisplayImage(views_ / "frame_0001.exr");
+  const auto second = ReadDisplayImage(views_ / "frame_0002.exr");
+  ASSERT_TRUE(first && second);
+  ASSERT_NE(first->at(0, 0, 0), second->at(0, 0, 0));
+  ASSERT_TRUE(Write({ViewLayout::kSideBySide, {}, folder_ / "s.png"}));
+  const auto joined = Read<uint8_t>("s.png");
+  ASSERT_EQ(joined.channels(), 3);
+  ExpectTile(joined, 0, 0, *first);
+  ExpectTile(joined, 1, 0, *second);
+  const auto header = ReadPictureHeader(folder_ / "s.png");
+  ASSERT_TRUE(header);
+  EXPECT_TRUE(header->colours.is_srgb);
+  EXPECT_EQ(header->colours.frames_per_second, 25);
+  ASSERT_TRUE(Write({ViewLayout::kLeftRight, {}, folder_ / "e.png"}));
+  ExpectTile(Read<uint8_t>("e_left.png"), 0, 0, *first);
+  ExpectTile(Read<uint8_t>("e_right.png"), 0, 0, *second);
+}
+
 TEST_F(ViewFilmTest, OutputsThatFitNothingAreRefused) {
   WriteFrames<uint8_t>(1, 2, 5, 4, 4);
   ExpectWords(ErrorOf({ViewLayout::kSideBySide, {}, folder_ / "s.exr"}, ErrorKind::kUsage),

@@ -152,8 +152,7 @@ Result<void> CheckSizesAgree(TIFF* tiff, const TiffLayout& layout, const std::st
   const uint64_t block_bytes =
       layout.is_tiled ? TIFFTileSize64(tiff) : TIFFVStripSize64(tiff, layout.block_height);
   const uint32_t blocks = layout.is_tiled ? TIFFNumberOfTiles(tiff) : TIFFNumberOfStrips(tiff);
-  const uint64_t own_blocks = uint64_t{layout.blocks_across()} * layout.blocks_down() *
-                              static_cast<uint64_t>(layout.planes());
+  const uint64_t own_blocks = layout.block_count();
   if (block_bytes == layout.block_bytes() && blocks == own_blocks) return {};
   return InputError(
       fmt::format("{}: truncated or damaged: it states {} tiles or strips of {} bytes, but the "

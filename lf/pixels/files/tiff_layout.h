@@ -36,6 +36,10 @@ struct TiffLayout {
   int planes() const { return is_separate ? samples : 1; }
   uint32_t blocks_across() const { return Ceil(width, block_width); }
   uint32_t blocks_down() const { return Ceil(height, block_height); }
+  // Returns the number of blocks of all planes.
+  uint64_t block_count() const {
+    return uint64_t{blocks_across()} * blocks_down() * static_cast<uint64_t>(planes());
+  }
   // Returns the number of bytes of one row of a block.
   uint64_t row_bytes() const {
     return (uint64_t{block_width} * static_cast<uint64_t>(samples_of_block() * type.bits) + 7) / 8;

@@ -109,8 +109,7 @@ Block TiffDecoder::BlockAt(uint32_t index) const {
 
 template <class Use>
 Result<void> TiffDecoder::ForEachBlock(const Use& use) {
-  const uint32_t count =
-      layout_.blocks_across() * layout_.blocks_down() * static_cast<uint32_t>(layout_.planes());
+  const auto count = static_cast<uint32_t>(layout_.block_count());  // as libtiff counts them
   for (uint32_t index = 0; index < count; ++index) LF_RETURN_IF_ERROR(use(BlockAt(index)));
   return {};
 }
@@ -119,8 +118,7 @@ Result<void> TiffDecoder::ForEachBlock(const Use& use) {
 // hold, before pixels are allocated.
 Result<void> TiffDecoder::CheckBlocksLieInFile() const {
   const uint64_t ratio = LargestRatio(layout_);
-  const uint32_t count =
-      layout_.blocks_across() * layout_.blocks_down() * static_cast<uint32_t>(layout_.planes());
+  const auto count = static_cast<uint32_t>(layout_.block_count());  // as libtiff counts them
   for (uint32_t index = 0; index < count; ++index) {
     const Block block = BlockAt(index);
     const uint64_t offset = TIFFGetStrileOffset(handle_->tiff(), index);

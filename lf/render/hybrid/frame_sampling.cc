@@ -20,9 +20,9 @@ constexpr int kLeastPoints = 8, kMostPoints = 256;
 // Sigma of the kernel of a lens point far from LF cameras, as a share of the distance to the
 // nearest LF camera.
 constexpr double kSigmaPerDistance = 0.5;
-// Largest sigma of a kernel on the plate, in elements; must be below the largest that splats
-// support (rebinning/splat_tile.h).
-constexpr double kMostSigma_px = 8;
+// Largest sigma of a kernel on the plate that frames use, in elements; must be below
+// kMostSigmaUv_px, for which splats have memory (rebinning/splat_tile.h).
+constexpr double kMostUsedSigmaUv_px = 8;
 
 double NearestOf(std::span<const Vec2> seen_through, const Vec2& point) {
   double nearest_w = std::numeric_limits<double>::infinity();
@@ -122,8 +122,8 @@ FrameQueries QueriesOf(const RenderCamera& frame, const FrameSampling& sampling,
     count = static_cast<int>(std::clamp(std::ceil(area_w2 / (kPi * apart_w * apart_w)),
                                         0.0 + kLeastPoints, 0.0 + kMostPoints));
   queries.points = MakeLensPoints(frame.aperture, count, options.lens_sets, options.seed);
-  queries.kernel = {
-      sigma_w, std::min(options.sigma_uv * LfPixelsPerElement(frame, sampling.lf), kMostSigma_px)};
+  queries.kernel = {sigma_w, std::min(options.sigma_uv * LfPixelsPerElement(frame, sampling.lf),
+                                      kMostUsedSigmaUv_px)};
   // The kernel of a lens point is widened if there are so few points that each represents a large
   // part of the lens, or if the nearest LF camera is far from the point.
   const double few = 0.5 * std::sqrt(area_w2 / count) / sigma_w;

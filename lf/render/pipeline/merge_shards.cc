@@ -20,6 +20,7 @@
 #include "lf/render/pipeline/develop_frame.h"
 #include "lf/render/pipeline/frame_output.h"
 #include "lf/render/pipeline/render_pass.h"
+#include "lf/render/state/other_format.h"
 #include "lf/render/state/plate_notes.h"
 
 namespace lf {
@@ -154,9 +155,12 @@ class Merger {
   bool IsStopped() const { return options_.signals != nullptr && options_.signals->stop; }
   Error Interrupted() const {
     return {ErrorKind::kInterrupted,
-            fmt::format(
-                "interrupted after {} of {} frames; these are kept in {}, and --resume continues",
-                now_.frame_count, now_.frame_total, options_.output_folder.string())};
+            now_.frame_count == 0
+                ? fmt::format("interrupted after 0 of {} frames; nothing was made yet",
+                              now_.frame_total)
+                : fmt::format("interrupted after {} of {} frames; these are kept in {}, and "
+                              "--resume continues",
+                              now_.frame_count, now_.frame_total, options_.output_folder.string())};
   }
   fs::path PathOf(FrameId frame) const {
     return FramePath(options_.output_folder, frame, options_.format);
@@ -174,6 +178,9 @@ class Merger {
   fs::path PartialFolder() const { return options_.output_folder / "partial"; }
   Result<void> Lock() {
     LF_RETURN_IF_ERROR(CreateFolder(options_.output_folder));
+    std::vector<FrameId> ids;
+    for (const auto& [id, frame] : frames_) ids.push_back(id);
+    WarnOfOtherFormat(options_.output_folder, ids, options_.format);
     LF_ASSIGN_OR_RETURN(FileLock lock, FileLock::TakeInFolder(PartialFolder()));
     lock_ = std::move(lock);
     return {};

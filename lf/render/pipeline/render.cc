@@ -20,6 +20,7 @@
 #include "lf/render/pipeline/frame_output.h"
 #include "lf/render/pipeline/render_pass.h"
 #include "lf/render/pipeline/setup_inputs.h"
+#include "lf/render/state/other_format.h"
 #include "lf/render/state/run_inputs.h"
 #include "lf/render/state/run_state.h"
 
@@ -72,7 +73,7 @@ class Renderer {
                        size_t frames_left, std::span<const FrameId> early);
   Result<RenderReport> End();
   Result<void> CheckAnyContributes(std::span<const FrameId> frames) const;
-  Error Interrupted() const;
+  Error Interrupted() const { return state_->Interruption(setup_->frames()); }
   void Report(const CollectProgress& pass, size_t finished_count) const;
 
   const RenderOptions& options_;
@@ -132,6 +133,8 @@ Result<void> Renderer::OpenState() {
   LF_ASSIGN_OR_RETURN(RunInputs rays, InputsOfRays(*setup_));
   const RunStateOptions state_options = StateOptions(*setup_, folder_, std::move(rays));
   LF_ASSIGN_OR_RETURN(state_, RunState::Open(state_options, setup_->path()));
+  if (!setup_->film().shard)
+    WarnOfOtherFormat(folder_.output_folder, setup_->frames(), folder_.format);
   had_plates_ = state_->HasPlates();
   totals_ = state_->earlier();
   // If nothing of the earlier run is kept, the LF images that it skipped are tried again.
@@ -355,16 +358,6 @@ Result<RenderReport> Renderer::End() {
             : "whether masks exclude all pixels"));
   if (video_error) return *video_error;
   return std::move(totals_);
-}
-
-Error Renderer::Interrupted() const {
-  size_t finished_count = 0;
-  for (const FrameId frame : setup_->frames())
-    finished_count += state_->finished().contains(frame) ? 1 : 0;
-  return {
-      ErrorKind::kInterrupted,
-      fmt::format("interrupted after {} of {} frames; finished frames and the state are kept in {}",
-                  finished_count, setup_->frames().size(), folder_.output_folder.string())};
 }
 
 void Renderer::Report(const CollectProgress& pass, size_t finished_count) const {

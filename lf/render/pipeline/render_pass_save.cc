@@ -88,7 +88,7 @@ Result<void> RenderPass::SaveWhenDue() {
 Error RenderPass::Interrupt() {
   LogInfo("interrupted: writing the state");
   if (const Result<void> saved = Save(kLastPictures_s); !saved) return saved.error();
-  return {ErrorKind::kInterrupted, "interrupted; the state is kept"};
+  return {ErrorKind::kInterrupted, "interrupted"};
 }
 
 }  // namespace lf

@@ -419,6 +419,21 @@ Result<void> RunState::SaveFinished(const FrameReport& frame) {
   return {};
 }
 
+Error RunState::Interruption(std::span<const FrameId> frames) const {
+  const auto finished_count = std::count_if(
+      frames.begin(), frames.end(), [this](FrameId frame) { return finished_.contains(frame); });
+  const bool has_finished = finished_count > 0;
+  const std::string kept = !has_finished && !HasPlates()
+                               ? "nothing was made yet"
+                               : fmt::format("{} kept in {}",
+                                             !HasPlates()    ? "finished frames are"
+                                             : !has_finished ? "the state is"
+                                                             : "finished frames and the state are",
+                                             options_.folder.string());
+  return {ErrorKind::kInterrupted, fmt::format("interrupted after {} of {} frames; {}",
+                                               finished_count, frames.size(), kept)};
+}
+
 Result<void> RunState::Close(const RenderReport& report) {
   LF_RETURN_IF_ERROR(WriteReport(report, ReportPath()));
   std::error_code ignored;

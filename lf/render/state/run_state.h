@@ -121,6 +121,10 @@ class RunState {
                          const NoiseMoments* moments = nullptr) const;
   std::filesystem::path PicturePath(FrameId frame) const;
 
+  // Returns the error of an interrupted run of these frames, kInterrupted: how many are finished,
+  // and which of finished frames and state there are to be resumed.
+  Error Interruption(std::span<const FrameId> frames) const;
+
   // Removes the files of the state, except for `lock`.
   void RemoveAll();
   // Ends a finished render: writes report.json (report-NAME.json if the state is in

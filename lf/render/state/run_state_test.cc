@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lf/render/state/run_state.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -111,6 +112,32 @@ TEST_F(RunStateTest, IsNotTouchedUnlessAskedFor) {
   EXPECT_TRUE(Open(false, true));
   EXPECT_FALSE(fs::exists(folder_ / "partial"));
   EXPECT_TRUE(Open(false));
+}
+
+TEST_F(RunStateTest, AnInterruptionSaysWhatIsKept) {
+  const std::string folder = folder_.string();
+  const std::vector<FrameId> frames = {FrameId{1}, FrameId{2}};
+  {
+    const std::unique_ptr<RunState> state = *Open(false);
+    EXPECT_EQ(state->Interruption(frames).kind, ErrorKind::kInterrupted);
+    EXPECT_EQ(state->Interruption(frames).message,
+              fmt::format("interrupted after 0 of {} frames; nothing was made yet", frames.size()));
+    ASSERT_TRUE(state->SavePlate(FrameId{2}, progress_, plate_, pool_));
+    EXPECT_EQ(state->Interruption(frames).message,
+              fmt::format("interrupted after 0 of {} frames; the state is kept in {}",
+                          frames.size(), folder));
+    FrameReport frame;
+    frame.frame = FrameId{2};
+    ASSERT_TRUE(state->SaveFinished(frame));
+    EXPECT_EQ(state->Interruption(frames).message,
+              fmt::format("interrupted after 1 of {} frames; finished frames are kept in {}",
+                          frames.size(), folder));
+    ASSERT_TRUE(state->SavePlate(FrameId{1}, progress_, plate_, pool_));
+    EXPECT_EQ(state->Interruption(frames).message,
+              fmt::format("interrupted after 1 of {} frames; finished frames and the state are "
+                          "kept in {}",
+                          frames.size(), folder));
+  }
 }
 
 TEST_F(RunStateTest, OtherInputsAreNamed) {

@@ -76,15 +76,26 @@ struct Database::State {
 
   ~State() { sqlite3_close(handle); }
 
+  // Returns what the system said of a fault that SQLite only calls "disk I/O error" (all but a full
+  // disk), and SQLite's number of the operation that failed; empty for other errors.
+  std::string DiskFault() const {
+    const int code = sqlite3_extended_errcode(handle);
+    if ((code & 0xff) != SQLITE_IOERR) return "";
+    int cause = sqlite3_system_errno(handle);
+    if (cause == 0) sqlite3_file_control(handle, "main", SQLITE_FCNTL_LAST_ERRNO, &cause);
+    return fmt::format(" ({}SQLite's code {})",
+                       cause == 0 ? "" : fmt::format("{}; ", strerror(cause)), code);
+  }
   Error Fault(std::string_view message) const {
     return {kind, fmt::format("{}: {}", name, message)};
   }
   // Returns the last error of SQLite for this database.
   Error Failed() const {
+    const std::string message = sqlite3_errmsg(handle);
     if (kind == ErrorKind::kOutput)
-      return Fault(fmt::format("cannot be written: {}", sqlite3_errmsg(handle)));
-    return Fault(fmt::format("is no {}, or a damaged one: {}; copy or make it again", what,
-                             sqlite3_errmsg(handle)));
+      return Fault(fmt::format("cannot be written: {}{}", message, DiskFault()));
+    return Fault(
+        fmt::format("is no {}, or a damaged one: {}; copy or make it again", what, message));
   }
 };
 

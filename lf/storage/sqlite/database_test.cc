@@ -2,6 +2,7 @@
 #include "lf/storage/sqlite/database.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -282,6 +283,24 @@ TEST_F(DatabaseTest, BatchesAreAppended) {
   // No journal is left beside the file, and Open() reads it like a database written at once.
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
   EXPECT_TRUE(Database::Open(path, kFormat, {kBatches}));
+}
+
+TEST_F(DatabaseTest, AFaultOfTheDiskNamesItsCause) {
+  // Files beyond a limit are a fault that SQLite does not take for a full disk.
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit unlimited;
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &unlimited), 0);
+  rlimit small = unlimited;
+  small.rlim_cur = 200'000;
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  const Result<void> appended = AppendBatches(folder_ / "limited", 40, [](int64_t) {});
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &unlimited), 0);
+  std::signal(SIGXFSZ, old_handler);
+  ASSERT_FALSE(appended);
+  EXPECT_EQ(appended.error().kind, ErrorKind::kOutput);
+  EXPECT_NE(appended.error().message.find("disk I/O error (File too large; SQLite's code 778)"),
+            std::string::npos)
+      << appended.error().message;
 }
 
 TEST_F(DatabaseTest, AWrongValueInAFileToAppendToIsAnInputError) {
