@@ -301,7 +301,7 @@ Limits FindLimits(const Distortion& distortion) {
 // but maps are made for each LF image and frame.
 Limits RememberedLimits(const Distortion& distortion) {
   struct Known {
-    Distortion distortion;  // without distortion there are no limits
+    Distortion distortion;  // none at first, which has no limits
     Limits limits;
   };
   constexpr size_t kMostKnown = 8;

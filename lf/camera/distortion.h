@@ -80,8 +80,8 @@ constexpr size_t StoredParameterCount(DistortionModel model) {
 bool IsDistortion(const Distortion& distortion);
 
 // Distorts and undistorts positions. The constructor computes the limits of the model once for many
-// positions. This takes tens of microseconds, except for the distortions that the thread made maps
-// of last, whose limits it remembers.
+// positions. This takes tens of microseconds. Each thread remembers the limits of the distortions
+// that it used last, for which it takes less.
 //
 // A polynomial describes a lens only up to the first angle at which the polynomial stops increasing
 // or its denominator becomes 0. Directions beyond this angle have no pixel, and pixels farther from

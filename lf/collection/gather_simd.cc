@@ -360,7 +360,8 @@ uint64_t GatherTile(const GatherPlan& plan, const LfPixels& pixels, TileSums* su
   if (plan.segments.empty()) return 0;
   LF_CHECK(pixels.rect.width() >= 2 && pixels.rect.height() >= 2);
   const PixelRect& tile = sums->rect();
-  // Most LF images have rays in a part of the plate only.
+  // Weights are found only for the part of the tile with rays, because most LF images have rays in
+  // a part of the plate.
   const PixelRect rays = weights.are_same() ? tile : RectOfRays(plan, tile);
   if (rays.empty()) return 0;
   thread_local TileWeights tile_weights;

@@ -155,7 +155,8 @@ Polynomials PositionPatches::FromPowers(const RowPowers& powers) {
   return polynomials;
 }
 
-// The terms of the two highest powers tell how large the next ones are, which the surface lacks.
+// Returns the direction in which the surface is less accurate. The error comes from powers that the
+// surface lacks; the terms of its two highest powers show how large they are.
 PositionPatches::Direction PositionPatches::RoughDirection(const Surface& surface, double half_x) {
   double across = 0, down = 0, scale = 1;
   for (int k = 0; k < kTerms; ++k) {

@@ -59,7 +59,7 @@ class PositionPatches {
   using Surface = std::array<RowPowers, kTerms>;
 
   enum class State : uint8_t {
-    kUnknown,  // nobody has asked for the patch
+    kUnknown,  // not fitted yet
     kSurface,
     kHalved,
     kRowByRow  // its rows are fitted one by one
@@ -75,7 +75,7 @@ class PositionPatches {
   };
   enum class Direction : uint8_t { kAcross, kDown };
 
-  // Finds the patches of which row y crosses elements [x_begin, x_end).
+  // Sets row_ to the patches that contain elements [x_begin, x_end) of row y.
   void FindRow(int y, int x_begin, int x_end);
   void FindRowOn(Patch* patch, int y, int x_begin, int x_end);
   void AddOnPatch(int y, int x_begin, int x_end, const Patch& patch, std::vector<Segment>* segments,
@@ -86,7 +86,7 @@ class PositionPatches {
   std::optional<Direction> Fit(Patch* patch) const;
   PositionBounds BoundsOf(const Patch& patch) const;
   static Polynomials RowOf(const Surface& surface, double v);
-  // Returns, for each coefficient of a row, a number that its absolute value does not exceed.
+  // Returns, for each coefficient, an upper bound of its absolute value in all rows.
   static Polynomials MostOf(const Surface& surface);
   static Polynomials FromPowers(const RowPowers& powers);
   static Direction RoughDirection(const Surface& surface, double half_x);
@@ -96,7 +96,7 @@ class PositionPatches {
   int band_ = -1;  // rows [kBlock band_, kBlock (band_ + 1)) are those of patches_
   std::deque<Patch> patches_;
   std::vector<Patch*> blocks_;  // the patches of kBlock x kBlock elements, from left to right
-  // The patches of the row that was asked for last, from left to right. They are those of all rows
+  // The patches of the row that was asked for last, from left to right. They serve all rows
   // [row_y_begin_, row_y_end_).
   std::vector<const Patch*> row_;
   int row_y_begin_ = 0, row_y_end_ = 0;

@@ -115,7 +115,8 @@ bool AllowParabolas(const Polynomials& polynomials, double half) {
          std::max(error(polynomials.x), error(polynomials.y)) <= Segment::kParabolaTolerance;
 }
 
-// Writes into the vector: a copy would have to wait until the many short stores are done.
+// Builds the segment in the vector: a copy made right after many short stores would stall the
+// processor.
 void AppendSegment(int y, int x_begin, int x_end, double middle, const Polynomials& polynomials,
                    bool has_parabolas, std::vector<Segment>* segments) {
   Segment& segment = segments->emplace_back();

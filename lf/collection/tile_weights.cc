@@ -26,7 +26,7 @@ void TileWeights::Fill(const RayWeights& weights, const PixelRect& rays, const P
   for (int row = 0; row < rows; ++row)
     weights.OfRow(rays.x_begin, y_begin + row * kWeightBlock, columns,
                   of_blocks_.data() + row_of_blocks(row));
-  // The compiler makes vectors of such loops, but not of std::minmax_element() and std::all_of().
+  // Compilers vectorize this loop, but not std::minmax_element() or std::all_of().
   uint8_t least = kMaxWeight, most = 0;
   for (const uint8_t weight : of_blocks_) {
     least = std::min(least, weight);

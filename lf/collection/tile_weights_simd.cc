@@ -71,9 +71,9 @@ HWY_ATTR void SortOut(const RowOfBlocks& blocks, std::vector<int>* feathered) {
   }
 }
 
-// Writes the weights of a block with a partial feather and a weight above 0. Numbers have 16 bits:
-// the feather is interpolated in units of 2^-16, and is less than 1. From row to row, it changes by
-// the same amount.
+// Writes the weights of a block with a partial feather and a weight above 0. All numbers fit
+// in 16 bits: the feather, in units of 2^-16, is less than 1. It changes by the same amount from
+// row to row.
 HWY_ATTR void FillFeathered(uint8_t weight, const uint16_t* above, const uint16_t* below,
                             int j_begin, int j_end, ptrdiff_t pitch, uint8_t* to) {
   static_assert(kWeightBlock == 8 && kWholeFeather == 256);

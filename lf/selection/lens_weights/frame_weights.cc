@@ -23,7 +23,7 @@ namespace {
 // coarser.
 constexpr double kStepOfDistance = 1.0 / 3;
 constexpr int kMostNodes = 48;         // largest number of columns or rows of nodes
-static_assert(kMostNodes <= 256);      // FrameWeights::nodes_across_ has bytes
+static_assert(kMostNodes <= 256);      // nodes_across_ stores them as bytes
 constexpr int kLeastNodeStep_px = 32;  // elements from node to node; finer costs more than the rays
 // If lens points move by less than this share of the distance between LF cameras, the LF cameras
 // are in the lens plane except for rounding errors.
@@ -381,7 +381,7 @@ WeightBlocks FrameWeights::BlocksOf(size_t camera) const {
   return {static_cast<int>(any % kWeightBlock), static_cast<int>((any >> 32) % kWeightBlock)};
 }
 
-// The definition. OfRow() computes the same in fewer steps.
+// Defines the weights. OfRow() computes the same weights in fewer steps.
 uint32_t FrameWeights::At(size_t camera, int x, int y) const {
   if (nodes_begin_[camera] == kNone) return 0;
   const WeightBlocks blocks = BlocksOf(camera);
@@ -408,8 +408,8 @@ void FrameWeights::OfRow(size_t camera, int end_x, int end_y, int count, uint8_t
   const Place v = places_down_[end_y];
   const uint16_t* const upper = &weights_[nodes_begin_[camera]] + v.node * columns_;
   const uint16_t* const lower = upper + (rows_ > 1 ? columns_ : 0);
-  // Returns the weight at a column of nodes, in 2^-16. All numbers fit in 32 bits, because weights
-  // are at most kUnit * kMaxWeight.
+  // Returns the weight at a column of nodes, in units of 2^-16. All numbers fit in 32 bits, because
+  // weights are at most kUnit * kMaxWeight.
   const auto between_rows = [&](int node) {
     return static_cast<uint32_t>(upper[node] * (256 - v.fraction) + lower[node] * v.fraction);
   };

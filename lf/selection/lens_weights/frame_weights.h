@@ -176,12 +176,12 @@ class FrameWeights {
   std::vector<size_t> nodes_begin_;  // [camera]: index of its first weight in weights_, or kNone
   std::vector<uint16_t> weights_;    // for each camera that takes part: [row][column], in 1/256
   std::vector<Place> places_down_;   // [end_y] of a block: PlaceOfBlock()
-  // PlaceOfBlock() across, [end_x % kWeightBlock][end_x / kWeightBlock], so that the blocks of a
-  // row are adjacent; and the number of blocks, from this one to the right, with the same node.
+  // PlaceOfBlock() across, [end_x % kWeightBlock][end_x / kWeightBlock]: the blocks of a row are
+  // adjacent.
   int ends_across_ = 0;  // number of columns of these tables
   std::vector<uint8_t> nodes_across_;
   std::vector<uint8_t> fractions_across_;
-  std::vector<int> run_lengths_;
+  std::vector<int> run_lengths_;  // number of successive blocks, from this one on, at one node
 };
 
 // CameraDistance() returns the approximate distance between neighbouring LF cameras around the

@@ -163,7 +163,7 @@ class ImageFeather::RectForms {
         first = INFINITY;
     }
   };
-  // A form that is negative, or nearly so, somewhere in the rectangle. Nearly all are not.
+  // A form that may be negative in the rectangle. Most forms are positive everywhere in it.
   struct DecisiveForm {
     int number;
     double right, down;  // its change from one position to the next

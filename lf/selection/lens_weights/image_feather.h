@@ -63,11 +63,10 @@ class ImageFeather {
     Vec3 before_lens;   // times e: > 0 if X is in front of the lens
     Vec3 runs_forward;  // times e: >= 0 if X - c points forward; otherwise c - X does
   };
-  // Linear forms of the position e = (x, y, 1) for one focus plane. Number 0 is negative if X is
-  // not in front of the lens, and number 1 if it is behind the LF camera. There are two forms for
-  // each border of the LF image, [2, 6) and [6, 10): they are negative within 0.5 px and within
-  // border_px_ of the border, and beyond it. All but number 0 must be multiplied by -1 if
-  // runs_forward e is negative.
+  // Linear forms of e, for one focus plane; X and c are those of Maps. Form 0 is positive if X is
+  // in front of the lens, form 1 if X is in front of the LF camera. Forms [2, 6) are positive if X
+  // is more than 0.5 px inside the four borders of the LF image, forms [6, 10) if it is more than
+  // border_px_ inside. All but form 0 have the opposite sign where runs_forward e is negative.
   struct Forms {
     static constexpr int kSeen = 2, kWhole = 6, kCount = 10;
     std::array<double, kCount> x, y, constant;
