@@ -158,7 +158,7 @@ class ProgramOptionsTest(ProgramTestCase):
                                 1], "transforms.json: opened"
         for command in ("depth", "sharp"):
             yield f"lffocus {command}", [field, path, "-o", out / "a.exr", "--near", 0.3, "--far", 1,
-                                         "--overwrite"], "transforms.json: opened"
+                                         "--overwrite", "--confidence", 0], "transforms.json: opened"
         yield "lffocus through", [field, path, "-o", out / "b.exr", "--overwrite"], "transforms.json: opened"
         yield "lfmerge", [out / "shards", "-o", out / "merged", "--overwrite"], "plates"
         yield "lfcompressor", [field, "-o", out / "a.lfs", "--overwrite"], "codec default"

@@ -67,7 +67,7 @@ class TinyCalls:
                     self.preprocess(self.path, self.packages), self.preprocess(self.other_path, self.other_packages)]
         commands += [self.render("-o", self.shards, "--shard", shard) for shard in ("1/2", "2/2")]
         commands.append(self.words("lffocus", "depth", self.field, self.path, "--planes", "3", "--near", "2",
-                                   "--far", "4", "--fill", "-o", self.depths))
+                                   "--far", "4", "--confidence", "0", "--fill", "-o", self.depths))
         for command in commands:
             subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
 
@@ -95,7 +95,7 @@ class TinyCalls:
                            "-o", out.with_suffix(".exr"))
         epi = self.words("lffocus", "epi", self.field, "--row", "9", "-o", out.with_suffix(".png"))
         depth = self.words("lffocus", "depth", self.field, self.path, "--planes", "3", "--near", "2", "--far", "4",
-                           "-o", out.with_suffix(".exr"), "-o", out.with_suffix(".ply"))
+                           "--confidence", "0", "-o", out.with_suffix(".exr"), "-o", out.with_suffix(".ply"))
         through = self.words("lffocus", "through", self.field, self.path, "-o", out.with_suffix(".exr"))
         through_film = self.words("lffocus", "through", self.field, self.path, "--frames", "1-2", "-o", out)
         views = self.words("lffocus", "views", self.field, "--grid", "3x3", "-o", out)
