@@ -114,6 +114,8 @@ RunInputs InputsOfRays(const LightFieldIdentity& light_field, const RadianceEnco
       {"light_field.pixels", choices.pixels},
       {"light_field.encoding", EncodingText(encoding)},
       {"light_field.colours", ColoursText(encoding)}};
+  if (choices.reading.estimator == Estimator::kBilinear)
+    inputs.push_back({"law.bilinear", fmt::format("{}", kBilinearPositionsVersion)});
   if (choices.reading.estimator == Estimator::kBilinear &&
       choices.reading.filter == PixelFilter::kMosaic)
     inputs.push_back({"law.mosaic", fmt::format("{}", kMosaicReadingVersion)});

@@ -48,11 +48,15 @@ struct RunChoices {
 
 // The version of the ray model (doc/ray.md). A change of the code that gives other rays for the
 // same inputs raises it.
-inline constexpr int kRayModelVersion = 5;
+inline constexpr int kRayModelVersion = 4;
 // The version of the polynomials that give positions in LF images with lens distortion. A change of
 // the code that changes them within their tolerance (SegmentMaker::kTolerance) raises it: frames of
 // such light fields then have other bits, and others do not.
-inline constexpr int kDistortedPositionsVersion = 3;
+inline constexpr int kDistortedPositionsVersion = 2;
+// The version of the polynomials that give the positions at which bilinear rays read LF images. A
+// change of the code that changes them within their tolerance raises it. Frames of the estimator
+// nearest do not depend on it.
+inline constexpr int kBilinearPositionsVersion = 2;
 // The version of the reading of mosaics by elements that are wider than LF pixels. Frames of RGB
 // light fields and those that the filter "mosaic" does not read do not depend on it.
 inline constexpr int kMosaicReadingVersion = 2;

@@ -112,20 +112,23 @@ TEST(RunInputs, EveryInputMakesADifferenceAndItsKeyNamesIt) {
   }
 }
 
-// States of mosaics that an older reading made are refused, and states of RGB captures are kept.
-TEST(RunInputs, OnlyMosaicsHaveTheVersionOfTheirReading) {
+// States that an older reading made are refused, and states of other readings are kept.
+TEST(RunInputs, OnlyStatesThatDependOnAReadingHaveItsVersion) {
   const LightField field = testing::NoiseField();
-  const auto has_version = [&](Estimator estimator, PixelFilter filter) {
+  const auto has = [&](const std::string& key, Estimator estimator, PixelFilter filter) {
     RunChoices choices;
     choices.reading.estimator = estimator;
     choices.reading.filter = filter;
     const RunInputs inputs = InputsOfRays(IdentityOf(field), field.encoding, choices);
     return std::count_if(inputs.begin(), inputs.end(),
-                         [](const auto& input) { return input.first == "law.mosaic"; }) == 1;
+                         [&](const auto& input) { return input.first == key; }) == 1;
   };
-  EXPECT_TRUE(has_version(Estimator::kBilinear, PixelFilter::kMosaic));
-  EXPECT_FALSE(has_version(Estimator::kBilinear, PixelFilter::kPrefiltered));
-  EXPECT_FALSE(has_version(Estimator::kNearest, PixelFilter::kMosaic));
+  EXPECT_TRUE(has("law.mosaic", Estimator::kBilinear, PixelFilter::kMosaic));
+  EXPECT_FALSE(has("law.mosaic", Estimator::kBilinear, PixelFilter::kPrefiltered));
+  EXPECT_FALSE(has("law.mosaic", Estimator::kNearest, PixelFilter::kMosaic));
+  EXPECT_TRUE(has("law.bilinear", Estimator::kBilinear, PixelFilter::kMosaic));
+  EXPECT_TRUE(has("law.bilinear", Estimator::kBilinear, PixelFilter::kPrefiltered));
+  EXPECT_FALSE(has("law.bilinear", Estimator::kNearest, PixelFilter::kMosaic));
 }
 
 TEST(RunInputs, WhatOneSideLacksIsADifference) {
