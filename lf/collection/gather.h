@@ -85,8 +85,8 @@ GatherPlan PlanGather(const PinholeCamera& lf_camera, const RenderCamera& render
                       GatherPlan memory = {}, const PixelReading& reading = {});
 
 // Adds the rays of the elements in the tile of `sums` to `sums`. The caller flushes `sums` to the
-// plate. Returns the number of rays, including rays of weight 0; 0 if no element of a rectangle
-// around the rays has a weight above 0.
+// plate. Returns the number of rays, including rays of weight 0. Returns 0 if all weights are
+// 0 in the smallest rectangle of elements that is known to contain the rays.
 //   pixels   RGB, already filtered by plan.sampling.prefilter (FilterPixels()); must hold every
 //            pixel that a ray is interpolated between
 //   weights  as for GatherReference(): of the whole plate, not of the tile

@@ -249,7 +249,8 @@ class GatherPlanner {
   PixelRect elements_;          // elements of the finer plate that take rays
   std::vector<RowSpan> spans_;  // spans of the current row
   std::vector<Segment> found_;  // segments of the current span
-  std::vector<const PositionPatches::PositionBounds*> bounds_;  // of the segments in found_
+  std::vector<const PositionPatches::PositionBounds*>
+      bounds_;         // of the segments that patches_ added last
   int part_end_ = -1;  // x_end of the part appended last; -1 at a new segment
 };
 

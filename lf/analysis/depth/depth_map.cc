@@ -240,8 +240,7 @@ class DepthMaker {
           "the LF cameras are far apart: between the nearest and the farthest distance a point "
           "moves by {:.0f} elements in the outermost LF images, and the frame is {} wide. LF "
           "images that differ so much seldom agree, so that few elements may have a depth: narrow "
-          "the "
-          "range of distances, or record the scene more densely",
+          "the range of distances, or record the scene more densely",
           moved, width);
     if (MovedByStep() > kMostMovedByStep)
       LogWarning(
