@@ -228,6 +228,17 @@ class FocusThroughTest(ProgramTestCase):
         self.succeeds(FOCUS, "through", without, self.path, "-o", self.folder / "d.exr")
         for channel, values in channels_of(self.folder / "d.exr").items():
             np.testing.assert_array_equal(channels_of(self.folder / "b.exr")[channel], values)
+        # A frame that is made in parts leaves the LF image out of each of them, and counts it once.
+        large = self.folder / "large.yaml"
+        large.write_text(PATH.format(size="600, 400", more=""))
+        said = []
+        for name, memory in (("parts", "80M"), ("whole", "1G")):
+            command = [FOCUS, "through", field, large, "-o", self.folder / f"{name}.exr", "--memory", memory,
+                       "--threads", 1]
+            said.append(json.loads(self.succeeds(*command, "--allow-missing", 1, "--json")))
+            self.fails(6, ["1 of", "left out", "broken.png"], *command, "--overwrite")
+        self.assertGreater(said[0]["parts"], said[1]["parts"])
+        self.assertEqual((self.folder / "parts.exr").read_bytes(), (self.folder / "whole.exr").read_bytes())
         self.fails(3, ["broken.png"], *arguments, self.folder / "c.exr", "--strict")
         self.assertFalse((self.folder / "c.exr").exists())
 

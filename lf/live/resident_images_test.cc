@@ -90,6 +90,16 @@ TEST(ResidentImages, MemoryIsBoundedAndFollowsTheCamera) {
   EXPECT_EQ(tiny.Ids().size(), 1U);
 }
 
+TEST(ResidentImages, AWiderLensLoadsMore) {
+  Loader loader(size_t{1} << 30);
+  loader.images.Aim(Frame(-0.03, 0.004));
+  loader.images.WaitUntilLoaded();
+  const size_t of_narrow_lens = loader.Ids().size();
+  loader.images.Aim(Frame(-0.03, 0.04));
+  loader.images.WaitUntilLoaded();
+  EXPECT_GT(loader.Ids().size(), of_narrow_lens);
+}
+
 TEST(ResidentImages, AnotherSizeOfElementsBeginsAnew) {
   Loader loader(size_t{1} << 30);
   loader.images.Aim(Frame());

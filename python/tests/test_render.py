@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Frames: their bits, plates and errors, and how renders treat the process of the caller."""
+import json
 import logging
 import os
 import pickle
@@ -20,6 +21,9 @@ WAYS = {
     "rebin": {"mode": "rebin"},
     "few": {"max_images": 20, "seed": 7, "order": "area", "filter": "bicubic", "fill": 0},
     "noise": {"stop_when": "noise<=0.02"},
+    "smooth": {"estimator": "nearest", "lens_weights": "none", "smooth_below": 12},
+    "areas": {"lf_pixels": "areas"},
+    "points": {"lf_pixels": "points"},
 }
 
 
@@ -41,6 +45,27 @@ def test_frames_have_the_bytes_of_lfrenderer(way, field, path, capture, path_fil
         one = lf.render(field, path, frames=[2], **WAYS[way])
         one.save(tmp_path / "one.exr")
         assert (tmp_path / "one.exr").read_bytes() == (tmp_path / "frames" / "frame_0002.exr").read_bytes()
+
+
+@pytest.mark.parametrize("way, other", [("smooth", "nearest"), ("areas", "points")])
+def test_options_that_are_compared_with_the_program_change_the_frame(way, other, field, path):
+    changed, plain = (lf.render(field, path, **WAYS[name]).rgb for name in (way, other))
+    assert not np.array_equal(changed, plain)
+
+
+def test_lf_cameras_that_look_elsewhere_are_left_out_by_max_angle_deg(path, capture, tmp_path):
+    calibration = json.loads((capture / "transforms.json").read_text())
+    cos, sin = np.cos(np.radians(5)), np.sin(np.radians(5))
+    for frame in calibration["frames"][::3]:
+        frame.pop("lf_translation", None)
+        pose = np.array(frame["transform_matrix"])
+        frame["transform_matrix"] = (pose @ [[cos, 0, sin, 0], [0, 1, 0, 0], [-sin, 0, cos, 0], [0, 0, 0, 1]]).tolist()
+        frame["file_path"] = str(capture / frame["file_path"])
+    (tmp_path / "images").symlink_to(capture / "images")
+    (tmp_path / "transforms.json").write_text(json.dumps(calibration))
+    turned = lf.open(tmp_path)
+    counts = [lf.render(turned, path, max_angle_deg=angle).image_count for angle in (4, 10)]
+    assert 0 < counts[0] < counts[1] == lf.render(turned, path).image_count
 
 
 @pytest.mark.parametrize("way", ["nearest", "hybrid", "few"])

@@ -164,37 +164,6 @@ class HeightMap {
   double high_ = -std::numeric_limits<double>::infinity();
 };
 
-// Returns the inverse depths of the elements of a plate, from a depth picture of the same view.
-Image<float> InverseDepthsOfPicture(const Image<float>& depths, double scale, int width,
-                                    int height) {
-  Image<float> inverse(width, height);
-  const auto inverse_at = [&](int column, int row) {
-    const double depth_w = scale * depths.at(column, row);
-    return depth_w > 0 && std::isfinite(depth_w) ? 1 / depth_w : 0;
-  };
-  constexpr double kOneSurface = 1.05;
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      const double u = (x + 0.5) * depths.width() / width - 0.5;
-      const double v = (y + 0.5) * depths.height() / height - 0.5;
-      const auto clamped = [](double at, int size) {
-        return std::clamp(static_cast<int>(std::floor(at)), 0, size - 1);
-      };
-      const int left = clamped(u, depths.width()), right = clamped(u + 1, depths.width());
-      const int top = clamped(v, depths.height()), bottom = clamped(v + 1, depths.height());
-      const double s = std::clamp(u - left, 0.0, 1.0), t = std::clamp(v - top, 0.0, 1.0);
-      const double q[4] = {inverse_at(left, top), inverse_at(right, top), inverse_at(left, bottom),
-                           inverse_at(right, bottom)};
-      const auto [least, most] = std::minmax_element(q, q + 4);
-      // Depths of two surfaces, on both sides of an edge, have no mean.
-      inverse.at(x, y) = static_cast<float>(*least > 0 && *most <= kOneSurface * *least
-                                                ? (1 - t) * ((1 - s) * q[0] + s * q[1]) +
-                                                      t * ((1 - s) * q[2] + s * q[3])
-                                                : q[(t < 0.5 ? 0 : 2) + (s < 0.5 ? 0 : 1)]);
-    }
-  return inverse;
-}
-
 // A surface picture in memory.
 struct SurfacePicture {
   fs::path file;
@@ -381,6 +350,35 @@ Result<Image<float>> ReadSurfaceFile(const fs::path& file) {
                     fmt::join(info.channel_names, ", ")));
   LF_ASSIGN_OR_RETURN(const StoredImage stored, ReadImageBytes(bytes, name));
   return std::visit([&](const auto& picture) { return ChannelAsFloats(picture, channel); }, stored);
+}
+
+Image<float> InverseDepthsOfPicture(const Image<float>& depths, double scale, int width,
+                                    int height) {
+  Image<float> inverse(width, height);
+  const auto inverse_at = [&](int column, int row) {
+    const double depth_w = scale * depths.at(column, row);
+    return depth_w > 0 && std::isfinite(depth_w) ? 1 / depth_w : 0;
+  };
+  constexpr double kOneSurface = 1.05;  // of inverse depths
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const double u = (x + 0.5) * depths.width() / width - 0.5;
+      const double v = (y + 0.5) * depths.height() / height - 0.5;
+      const auto clamped = [](double at, int size) {
+        return std::clamp(static_cast<int>(std::floor(at)), 0, size - 1);
+      };
+      const int left = clamped(u, depths.width()), right = clamped(u + 1, depths.width());
+      const int top = clamped(v, depths.height()), bottom = clamped(v + 1, depths.height());
+      const double s = std::clamp(u - left, 0.0, 1.0), t = std::clamp(v - top, 0.0, 1.0);
+      const double q[4] = {inverse_at(left, top), inverse_at(right, top), inverse_at(left, bottom),
+                           inverse_at(right, bottom)};
+      const auto [least, most] = std::minmax_element(q, q + 4);
+      inverse.at(x, y) = static_cast<float>(*least > 0 && *most <= kOneSurface * *least
+                                                ? (1 - t) * ((1 - s) * q[0] + s * q[1]) +
+                                                      t * ((1 - s) * q[2] + s * q[3])
+                                                : q[(t < 0.5 ? 0 : 2) + (s < 0.5 ? 0 : 1)]);
+    }
+  return inverse;
 }
 
 Image<float> InverseDepthsOfHeights(const PinholeCamera& camera, const Image<float>& heights,

@@ -30,6 +30,16 @@ Result<Image<float>> ReadSurfaceFile(const std::filesystem::path& file);
 // another kind.
 Result<Image<float>> ParsePfm(std::string_view bytes, const std::string& name);
 
+// Returns the inverse depths of width x height elements, from a depth picture of the same view,
+// whose places may be larger or smaller than elements. The centre of an element lies between four
+// places. Its inverse depth is interpolated between theirs if they are those of one surface: all
+// are known, and the largest is at most 5 % above the least. Otherwise it is that of the nearest
+// place, because depths on both sides of an edge have no mean. 0: unknown.
+//   depths  [row][column]; not finite or not above 0: unknown
+//   scale   world units of one unit of `depths`
+Image<float> InverseDepthsOfPicture(const Image<float>& depths, double scale, int width,
+                                    int height);
+
 // Returns the inverse depth, along the optical axis of the camera, at which the line through the
 // centre of each element first meets the surface of a height map from above. 0: it meets the
 // surface nowhere.

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -119,6 +120,55 @@ TEST_F(FocalSurfaceFolder, ADepthPictureOfEachFrameGivesItsSurface) {
   EXPECT_EQ(FilesOfPath(path)[2], folder_ / "z_0002.pfm");
 }
 
+// Four places of a depth picture become 8 x 4 elements: the centre of a place is that of a square
+// of 2 x 2 elements, so that inverse depths between two centres have the shares 1/4 and 3/4.
+TEST(FocalSurfaceFile, ElementsBetweenPlacesOfOneSurfaceHaveDepthsBetweenTheirs) {
+  Image<float> depths(4, 2);
+  for (int y = 0; y < 2; ++y)
+    for (int x = 0; x < 4; ++x) depths.at(x, y) = static_cast<float>(1 / (0.5 + 0.01 * x));
+  const Image<float> inverse = InverseDepthsOfPicture(depths, 0.5, 8, 4);
+  const double expected[] = {1, 1.005, 1.015, 1.025, 1.035, 1.045, 1.055, 1.06};
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 8; ++x) EXPECT_NEAR(inverse.at(x, y), expected[x], 1e-6) << x << " " << y;
+  // Elements that are larger than places take the depth at their centre.
+  const Image<float> coarse = InverseDepthsOfPicture(depths, 0.5, 2, 1);
+  EXPECT_NEAR(coarse.at(0, 0), 1.01, 1e-6);
+  EXPECT_NEAR(coarse.at(1, 0), 1.05, 1e-6);
+}
+
+TEST(FocalSurfaceFile, ElementsAtAnEdgeHaveTheDepthOfTheNearestPlace) {
+  Image<float> depths(4, 1);
+  for (int x = 0; x < 4; ++x)
+    depths.at(x, 0) = std::vector<float>{2, 2, 4, 0}[static_cast<size_t>(x)];
+  const Image<float> inverse = InverseDepthsOfPicture(depths, 1, 8, 2);
+  const float expected[] = {0.5, 0.5, 0.5, 0.5, 0.25, 0.25, 0, 0};
+  for (int x = 0; x < 8; ++x) EXPECT_EQ(inverse.at(x, 0), expected[x]) << x;
+  // 4 % apart is one surface, 6 % is an edge.
+  depths.at(2, 0) = 2 * 1.04F;
+  EXPECT_NEAR(InverseDepthsOfPicture(depths, 1, 8, 2).at(3, 0), 0.5 - 0.25 * (0.5 - 0.5 / 1.04),
+              1e-6);
+  depths.at(2, 0) = 2 * 1.06F;
+  EXPECT_EQ(InverseDepthsOfPicture(depths, 1, 8, 2).at(3, 0), 0.5F);
+}
+
+TEST_F(FocalSurfaceFolder, AValueThatStandsForNoDataIsUnknown) {
+  // Without a stated value, 7 would be a depth, and the surface would have two of them.
+  std::vector<float> depths(16 * 12, 7);
+  for (size_t i = 0; i < depths.size(); i += 16) std::fill_n(&depths[i], 6, 4.0F);
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "z.pfm", PfmText(16, 12, depths)));
+  PathOptions options;
+  options.surface = PathOptions::Surface::kMake;
+  for (const bool is_stated : {true, false}) {
+    const std::string more = is_stated ? ", nodata: 7" : "";
+    ASSERT_TRUE(WriteFileAtomically(
+        folder_ / "p.yaml", PathText("focus: {surface: z.pfm, kind: depth" + more + "}\n")));
+    const auto opened = OpenPath(folder_ / "p.yaml", options);
+    ASSERT_TRUE(opened) << opened.error().message;
+    const FocalSurface& surface = *opened->cameras[0].surface;
+    EXPECT_NEAR(surface.PieceAt(14, 6).At(14.5, 6.5), is_stated ? 1.0 / 4 : 1.0 / 7, 1e-6);
+  }
+}
+
 // A roof z = 2 - |x| / 2 of the world, seen by a camera 10 above z = 0 that looks down.
 TEST(FocalSurfaceFile, HeightsAreMetFromAbove) {
   PinholeCamera camera;
@@ -143,6 +193,31 @@ TEST(FocalSurfaceFile, HeightsAreMetFromAbove) {
       const Vec3 point = RayOfPixel(camera, x + 0.5, y + 0.5).At(1 / double{inverse.at(x, y)});
       EXPECT_NEAR(point.z(), 2 - std::abs(point.x()) / 2, 1e-4) << x << " " << y;
     }
+}
+
+// A wall that is less than a cell wide where lines meet it hides what is behind it. The camera is
+// over the middle of a cell, so that steps of a whole cell would pass over the wall.
+TEST(FocalSurfaceFile, ANarrowWallIsMetFirst) {
+  PinholeCamera camera;
+  camera.intrinsics = {200, 200, 16, 1, 0, 32, 2};
+  camera.cam_from_world = *LookAlong({-10, 0, 2}, Vec3(1, 0, -0.01).normalized(), Vec3(0, 0, 1));
+  FocalSurfaceSource source;
+  source.kind = FocalSurfaceSource::Kind::kHeights;
+  source.origin_w = {-20.5, 30, 0};
+  source.right_w = {1, 0, 0};
+  source.down_w = {0, -1, 0};
+  for (int wall = 20; wall < 60; wall += 3) {
+    Image<float> heights(120, 61);
+    for (int y = 0; y < 61; ++y)
+      for (int x = 0; x < 120; ++x) heights.at(x, y) = x == wall ? 2.6F : 0.0F;
+    const Image<float> inverse = InverseDepthsOfHeights(camera, heights, source);
+    for (int x = 0; x < 32; ++x) {
+      ASSERT_GT(inverse.at(x, 0), 0) << wall << " " << x;
+      const Vec3 point = RayOfPixel(camera, x + 0.5, 0.5).At(1 / double{inverse.at(x, 0)});
+      EXPECT_GT(point.x(), wall - 21.5) << wall << " " << x;
+      EXPECT_LT(point.x(), wall - 20.5) << wall << " " << x;
+    }
+  }
 }
 
 TEST(FocalSurfaceFile, AMovedPathKeepsTheMapOnItsPlaceAndYamlKeepsItsKeys) {
