@@ -26,7 +26,7 @@ namespace {
 
 // Is changed whenever the same light field and options give other virtual LF images, so that an
 // unfinished store of an older program is not resumed.
-constexpr int kDensifyVersion = 3;
+constexpr int kDensifyVersion = 4;
 
 std::string SettingsInWords(const DensifyPlan& plan, const DensifyChoices& choices) {
   return fmt::format(
@@ -67,6 +67,7 @@ LightField WithVirtual(const LightField& light_field, std::span<const VirtualCam
     LfCamera camera;
     camera.cam_from_world = cameras[i].camera.cam_from_world;
     camera.intrinsics_index = static_cast<uint32_t>(known - all.intrinsics.begin());
+    camera.gain = GainsToHold(light_field, cameras[i].sources);
     camera.is_virtual = true;
     if (known == all.intrinsics.end()) all.intrinsics.push_back(k);
     all.cameras.push_back(camera);
@@ -101,6 +102,8 @@ class Densifier {
   Result<DepthPlane> Refined(uint32_t id, double* agreeing_count);
   Result<void> AddRecorded(LfImageId id);
   Result<void> AddVirtual(const RecordedValues& values, size_t i);
+  // Makes kind_ hold the values of a recorded LF image.
+  void Hold(const RecordedImage& image);
   Result<Loaded> Load(std::span<const uint32_t> ids);
   // Calls body(i) for each i on all threads, until a call fails or the user interrupts, and shows
   // progress.
@@ -124,8 +127,9 @@ class Densifier {
   std::optional<PackedStoreWriter> writer_;
   std::vector<DepthPlane> depths_;  // [LF image]; empty for those that are not swept
 
-  std::mutex mutex_;  // guards the report
+  std::mutex mutex_;  // guards all members below
   DensifyReport report_;
+  StoredKind kind_;  // kind that holds the values of all recorded LF images
 };
 
 Result<void> Densifier::ForEach(const char* step, size_t count,
@@ -362,11 +366,19 @@ Result<void> Densifier::RefineAll() {
   });
 }
 
+void Densifier::Hold(const RecordedImage& image) {
+  const std::lock_guard lock(mutex_);
+  kind_ = KindToHold(kind_, {image.values, image.layout});
+}
+
 Result<void> Densifier::AddRecorded(LfImageId id) {
-  if (writer_->Has(id)) return {};
+  const bool is_added = writer_->Has(id);
   const Intrinsics& k = light_field_.Camera(id).intrinsics;
+  const PixelRect whole = {0, 0, k.width_px, k.height_px}, a_few = {0, 0, 2, 2};
   LF_ASSIGN_OR_RETURN(const RecordedImage image,
-                      ReadRecordedImage(light_field_, id, {0, 0, k.width_px, k.height_px}));
+                      ReadRecordedImage(light_field_, id, is_added ? a_few : whole));
+  Hold(image);
+  if (is_added) return {};
   CodecSettings settings;
   settings.profile = CodecProfile::kLossless;
   return writer_->Add(id, CodeOf(image, settings));
@@ -394,7 +406,7 @@ Result<void> Densifier::AddVirtual(const RecordedValues& values, size_t i) {
   }
   CodecSettings settings;
   settings.profile = CodecProfile::kLossless;
-  return writer_->Add(id, CodeOf(values.Of(image.light), settings));
+  return writer_->Add(id, CodeOf(values.Of(image.light, all_.cameras[id.value].gain), settings));
 }
 
 Result<DensifyReport> Densifier::Run() {
@@ -425,9 +437,7 @@ Result<DensifyReport> Densifier::Run() {
   }));
   LF_RETURN_IF_ERROR(SweepAll());
   LF_RETURN_IF_ERROR(RefineAll());
-  LF_ASSIGN_OR_RETURN(const RecordedImage first,
-                      ReadRecordedImage(light_field_, LfImageId{0}, {0, 0, 2, 2}));
-  const RecordedValues values(light_field_.encoding, first.values, first.layout);
+  const RecordedValues values(light_field_.encoding, kind_);
   LF_RETURN_IF_ERROR(ForEach("virtual LF images", plan_.virtual_cameras.size(),
                              [&](size_t i) { return AddVirtual(values, i); }));
   if (report_.made_pixels > 0) report_.weak_share /= report_.made_pixels;

@@ -3,30 +3,49 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "lf/core/image.h"
+#include "lf/densify/natural_neighbours.h"
+#include "lf/light_field/model/light_field.h"
 #include "lf/light_field/model/radiance.h"
 #include "lf/storage/load/recorded_image.h"
 
 namespace lf {
 
+// Returns the gains of an LF image without falloff whose stored values reach as far as the light of
+// these LF images does, above white and below black. They are the largest gains of the LF images,
+// divided by the least falloff of each, but no larger than the light that is kept (max_radiance,
+// pedestal) requires. They are 1 if the LF images have the gain 1 and no falloff.
+ChannelGains GainsToHold(const LightField& light_field, std::span<const WeightedPoint> lf_images);
+
+// The type and the layout of stored values.
+struct StoredKind {
+  StoredValues values = StoredValues::kUint8;
+  PixelLayout layout = PixelLayout::kGrey;
+};
+// Returns the kind that holds all values of both: floats rather than integers, 16 bits rather than
+// 8, and colours rather than grey.
+StoredKind KindToHold(const StoredKind& a, const StoredKind& b);
+
 class RecordedValues {
  public:
-  // `values` and `layout` are those of the recorded images (RecordedImage).
-  RecordedValues(const RadianceEncoding& encoding, StoredValues values, PixelLayout layout);
+  RecordedValues(const RadianceEncoding& encoding, const StoredKind& kind);
 
-  // Returns an LF image of gain 1 that is loaded as `light`, up to the steps of the stored values.
-  // Pixels without light are masked. For a mosaic, each pixel keeps the colour that its pattern
-  // has there; for grey images, it is G.
+  // Returns an LF image that is loaded as `light`, up to the steps of the stored values, if its LF
+  // camera has these gains and no falloff. Pixels without light are masked. For a mosaic, each
+  // pixel keeps the colour that its pattern has there; for grey images, it is G.
   //   light  [height][width][4]: 16-bit radiance R, G, B and 1, or 0
-  RecordedImage Of(const Image<uint16_t>& light) const;
+  RecordedImage Of(const Image<uint16_t>& light, const ChannelGains& gains = {}) const;
 
  private:
+  // Returns, for each 16-bit radiance, the stored value that is nearest to it.
+  std::vector<uint16_t> StoredOf(double gain) const;
+
   const RadianceEncoding encoding_;
-  const StoredValues values_;
-  const PixelLayout layout_;
-  std::vector<uint16_t> stored_;  // [16-bit radiance]: the stored value that is nearest to it
+  const StoredKind kind_;
+  std::vector<double> light_;  // [stored value]: its light before the gain; empty for floats
 };
 
 }  // namespace lf
