@@ -337,6 +337,26 @@ TEST_F(PackedStoreTest, FloatsAreRoundedToHalf) {
   EXPECT_NEAR(packed.radiance.at(0, 0, 0), exact.radiance.at(0, 0, 0), 6554.0 / 2048);
 }
 
+TEST_F(PackedStoreTest, LightThatHalfFloatsCannotHoldIsRefused) {
+  Image<float> image(kPackedWidth, kPackedHeight, 3, 0.1f);
+  image.at(7, 5, 1) = 1e5f;
+  image.at(8, 5, 1) = std::numeric_limits<float>::infinity();
+  ASSERT_TRUE(WriteImage(folder_ / "a.exr", image.view(), {"R", "G", "B"}, PixelType::kFloat));
+  AddImage("a.exr");
+  field_.encoding.max_radiance = 16;
+  const auto error = [&](float gain) {
+    field_.cameras[0].gain = gain;
+    const Result<RecordedImage> recorded = ReadRecordedImage(field_, {0}, kPackedWhole);
+    return recorded ? std::string() : recorded.error().message;
+  };
+  EXPECT_EQ(error(1), "");  // such light is clipped in any case
+  EXPECT_NE(error(1e-4f).find("a.exr: has the value 100000, but packed stores hold floats up to "),
+            std::string::npos);
+  EXPECT_EQ(error(4000), "");
+  EXPECT_NE(error(5000).find("a.exr: lf_gain multiplies its values by up to 5000"),
+            std::string::npos);
+}
+
 TEST_F(PackedStoreTest, LightFieldsOfOtherOrderFindTheirImages) {
   AddImages<uint8_t>(3);
   Pack();

@@ -4,12 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <span>
 #include <system_error>
 #include <utility>
 #include <variant>
 
+#include "lf/camera/vignetting.h"
 #include "lf/storage/load/demosaic.h"
 #include "lf/storage/load/image_reading.h"
 #include "lf/storage/load/opacities.h"
@@ -40,7 +42,9 @@ Image<To> Cut(const Image<From>& stored, const PixelRect& stored_rect, const Pix
   return cut;
 }
 
-void CutStored(const ImagePart& part, int channels, RecordedImage* image) {
+// Returns the largest value of floats that is finite, but at least 0.
+float CutStored(const ImagePart& part, int channels, RecordedImage* image) {
+  float largest = 0;
   if (const auto* bytes = std::get_if<Image<uint8_t>>(&part.image)) {
     image->values = StoredValues::kUint8;
     image->pixels =
@@ -51,15 +55,19 @@ void CutStored(const ImagePart& part, int channels, RecordedImage* image) {
                                   [](uint16_t value) { return value; });
   } else {
     image->values = StoredValues::kHalf;
-    image->pixels = Cut<uint16_t>(
-        std::get<Image<float>>(part.image), part.rect, image->rect, channels, [image](float value) {
-          const uint16_t ordered = OrderedOfFloat(value);
-          // The condition is false for NaN, because turning NaN into 0 does not count as rounding.
-          if (FloatOfOrdered(ordered) < value || FloatOfOrdered(ordered) > value)
-            image->is_rounded = true;
-          return ordered;
-        });
+    image->pixels =
+        Cut<uint16_t>(std::get<Image<float>>(part.image), part.rect, image->rect, channels,
+                      [image, &largest](float value) {
+                        const uint16_t ordered = OrderedOfFloat(value);
+                        if (value > largest && std::isfinite(value)) largest = value;
+                        // The condition is false for NaN, because turning NaN into 0 does not count
+                        // as rounding.
+                        if (FloatOfOrdered(ordered) < value || FloatOfOrdered(ordered) > value)
+                          image->is_rounded = true;
+                        return ordered;
+                      });
   }
+  return largest;
 }
 
 constexpr uint16_t kOpaqueOpacity = kMostOpacity + 1;
@@ -74,6 +82,32 @@ Result<RecordedImage> ReadMaskAsOpacities(const LightField& light_field, LfImage
     image.opacities.at(x - rect.x_begin, y - rect.y_begin) = kMaskedOpacity;
   }));
   return image;
+}
+
+// Returns kInput if half floats would change the light of a float file by more than their rounding:
+// if light would become infinite that is not too bright to be kept, or if gains make the steps of
+// the smallest half floats larger than those of 16-bit radiance.
+//   largest  the largest value that is finite
+Result<void> CheckHalfHolds(const LightField& light_field, LfImageId id, float largest) {
+  constexpr double kMost = 65520, kLeastStep = 0x1p-24;
+  const LfCamera& camera = light_field.cameras[id.value];
+  const RadianceEncoding& encoding = light_field.encoding;
+  const FalloffRange falloff = FalloffRangeOf(light_field.intrinsics[camera.intrinsics_index]);
+  const auto [least, most] =
+      std::minmax_element(camera.gain.of_channels.begin(), camera.gain.of_channels.end());
+  const double dimmest = *least / falloff.max, brightest = *most / falloff.min;
+  if (largest >= kMost && kMost * dimmest < encoding.max_radiance)
+    return InputError(fmt::format(
+        "{}: has the value {:.6g}, but packed stores hold floats up to {}: divide the values of "
+        "all images by a number, and multiply lf_gain by it; or use the folder without a store",
+        light_field.ImagePath(id).string(), largest, kMost));
+  if (kLeastStep * brightest > 1 / encoding.Scale())
+    return InputError(fmt::format(
+        "{}: lf_gain multiplies its values by up to {:.6g}, which makes the smallest steps of the "
+        "half floats of packed stores visible: multiply the values of all images by a number, and "
+        "divide lf_gain by it; or use the folder without a store",
+        light_field.ImagePath(id).string(), brightest));
+  return {};
 }
 
 uint64_t SizeOf(const fs::path& path) {
@@ -96,7 +130,9 @@ Result<RecordedImage> ReadRecordedImage(const LightField& light_field, LfImageId
         path.string(), rect.x_begin, rect.x_end, rect.y_begin, rect.y_end));
   ImagePart part;
   LF_ASSIGN_OR_RETURN(const ChannelUse use, ReadStoredPixels(light_field, id, image.rect, &part));
-  CutStored(part, use.colours, &image);
+  const float largest = CutStored(part, use.colours, &image);
+  if (image.values == StoredValues::kHalf)
+    LF_RETURN_IF_ERROR(CheckHalfHolds(light_field, id, largest));
   image.layout = light_field.encoding.bayer != BayerPattern::kNone ? PixelLayout::kMosaic
                  : use.colours == 3                                ? PixelLayout::kRgb
                                                                    : PixelLayout::kGrey;

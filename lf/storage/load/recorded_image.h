@@ -36,7 +36,9 @@ struct RecordedImage {
 // are masked by alpha, the mask file (folder_store.h) or brackets (light_field/model/brackets.h)
 // are 0 in the mask or the opacities. Floats become the nearest half floats, NaN becomes 0. When
 // half floats are loaded, they are quantised as floats of image files are. kInput as
-// FolderStore::Load(), and if `rect` lies outside the image.
+// FolderStore::Load(), if `rect` lies outside the image, and if half floats cannot hold the light:
+// values from 65520 on that a small gain would make visible, or values that a large gain needs to
+// be finer than half floats are near 0.
 Result<RecordedImage> ReadRecordedImage(const LightField& light_field, LfImageId id,
                                         const PixelRect& rect);
 
