@@ -52,7 +52,8 @@ rectified to a plane, so are the views.
 
 OUT is a folder, or a file of NumPy if its name ends in .npy. A folder receives out_VV_UU_Y_X.png: row,
 column, and position in millimetres, down and to the right, as the Stanford Light Field Archive names
-images; and a transforms.json, with which the folder is a light field for all programs. The array has
+images; and a transforms.json, with which the folder is a light field for all programs: one with the
+same light, where light is brighter than display white, and where nothing was recorded. The array has
 the shape [rows][columns][height][width][3]. lf.views() of the Python package also writes HDF5.
 
 Views are made one at a time. If the program is interrupted, call it again with --overwrite.)",
@@ -63,7 +64,7 @@ struct Arguments {
   AllowMissing allow_missing;
   std::pair<int, int> grid = {0, 0};
   std::string output, values = "srgb8", focus_distance, memory = "8G";
-  bool overwrite = false;
+  bool overwrite = false, clip = false;
 };
 
 void AddOptions(CLI::App& app, Arguments& a) {
@@ -76,9 +77,16 @@ void AddOptions(CLI::App& app, Arguments& a) {
       ->check(TakesFiles(".npy folder"));
   output.AddChoice("--values", a.values, {"srgb8", "srgb16", "linear"},
                    "Values of the views\n"
-                   "srgb8, srgb16: sRGB for display, clipped, with 8 or 16 bits (PNG, or uint8 or "
-                   "uint16); black where no LF image shows anything\n"
-                   "linear: linear light as floats (EXR, or float32); not-a-number there");
+                   "srgb8, srgb16: sRGB for display, with 8 or 16 bits (PNG, or uint8 or uint16)\n"
+                   "linear: linear light as floats (EXR, or float32)\n"
+                   "Where no LF image shows anything, pictures are transparent, and arrays are "
+                   "not-a-number (linear) or black. Light darker than black is clipped in sRGB; "
+                   "brighter light than display white: see --clip.");
+  output.AddFlag("--clip", a.clip,
+                 "Clip light that is brighter than display white, in sRGB pictures\n"
+                 "Without this option, pictures are darkened if there is such light, so that none "
+                 "is lost: their values are light divided by the brightest one, which "
+                 "transforms.json states as lf_gain. Arrays of sRGB values are always clipped.");
   output.AddFlag("--overwrite", a.overwrite,
                  "Replace the views of OUT\n"
                  "Files of the same names are replaced, and those of a larger grid that "
@@ -142,7 +150,8 @@ Result<void> CheckOutputs(const Arguments& a, const LightField& light_field, con
       "{}: exists already: give another -o, or replace it with --overwrite", old->string()));
 }
 
-std::string ReportJson(const ViewGrid& grid, const ViewsReport& report, double unit_m) {
+std::string ReportJson(const ViewGrid& grid, const WrittenViews& written, double unit_m) {
+  const ViewsReport& report = written.views;
   nlohmann::ordered_json json;
   json["columns"] = grid.columns();
   json["rows"] = grid.rows();
@@ -155,11 +164,15 @@ std::string ReportJson(const ViewGrid& grid, const ViewsReport& report, double u
   json["views_rendered"] = report.rendered_count;
   json["focus_distance_w"] = nullptr;
   if (report.focus_distance_w) json["focus_distance_w"] = *report.focus_distance_w;
+  json["gain"] = written.gain;
+  json["unrecorded_share"] = written.unrecorded_share;
+  json["clipped_share"] = written.clipped_share;
   json["skipped_lf_images"] = report.missing;
   return json.dump(2) + "\n";
 }
 
-void Tell(const Arguments& a, const ViewGrid& grid, const ViewsReport& report) {
+void Tell(const Arguments& a, const ViewGrid& grid, const WrittenViews& written) {
+  const ViewsReport& report = written.views;
   LogInfo("{}: {} x {} views of {} x {} pixels: {} are LF images, {} of these resampled{}",
           a.output, grid.columns(), grid.rows(), grid.width_px(), grid.height_px(),
           report.recorded_count, report.recorded_count - report.copied_count,
@@ -167,6 +180,23 @@ void Tell(const Arguments& a, const ViewGrid& grid, const ViewsReport& report) {
               ? ""
               : fmt::format("; {} are rendered, and sharp at {:.6g} world units",
                             report.rendered_count, *report.focus_distance_w));
+  const auto percent = [](double share) { return fmt::format("{:.2g} %", 100 * share); };
+  if (written.gain != 1)
+    LogInfo(
+        "{}: the brightest light is {:.4g}: values are light divided by it (lf_gain), so that none "
+        "is lost; --values linear keeps light as it is, --clip keeps only what a display shows",
+        a.output, written.gain);
+  if (a.values == "linear") return;
+  if (written.clipped_share > 0)
+    LogWarning(
+        "{}: {} of the pixels are brighter than display white, and are clipped: --values linear "
+        "keeps their light",
+        a.output, percent(written.clipped_share));
+  if (IsArray(a) && written.unrecorded_share > 0)
+    LogWarning(
+        "{}: {} of the pixels are black because no LF image shows anything there: --values linear "
+        "has not-a-number there, and in a folder they are transparent",
+        a.output, percent(written.unrecorded_share));
 }
 
 Result<void> Run(const Arguments& a, const CommonOptions& common) {
@@ -176,9 +206,8 @@ Result<void> Run(const Arguments& a, const CommonOptions& common) {
   LF_ASSIGN_OR_RETURN(const LightField light_field, a.light_field.Open());
   LF_ASSIGN_OR_RETURN(const ViewGrid grid,
                       ViewGrid::Make(light_field, a.grid.first, a.grid.second));
+  LF_RETURN_IF_ERROR(CheckForViews(light_field));
   LF_RETURN_IF_ERROR(CheckOutputs(a, light_field, grid));
-  if (light_field.encoding.HasOpacity())
-    LogWarning("the views lose the opacity of the LF images: they are composited over black");
   ViewOptions options;
   LF_ASSIGN_OR_RETURN(options.memory_bytes, ParseByteSize(a.memory, "--memory"));
   if (!a.focus_distance.empty()) {
@@ -197,12 +226,14 @@ Result<void> Run(const Arguments& a, const CommonOptions& common) {
       return Error{made.error().kind, made.error().message + "; start again with --overwrite"};
     return made;
   };
-  LF_ASSIGN_OR_RETURN(const ViewsReport report,
+  const ViewValues values = ValuesOf(a.values);
+  LF_ASSIGN_OR_RETURN(const WrittenViews written,
                       IsArray(a)
-                          ? WriteViewArray(grid, a.output, ValuesOf(a.values), make)
-                          : WriteViewFolder(light_field, grid, a.output, ValuesOf(a.values), make));
-  Tell(a, grid, report);
-  if (common.json) LF_RETURN_IF_ERROR(PrintReport(ReportJson(grid, report, light_field.unit_m)));
+                          ? WriteViewArray(grid, a.output, values, make)
+                          : WriteViewFolder(light_field, grid, a.output, values, a.clip, make));
+  const ViewsReport& report = written.views;
+  Tell(a, grid, written);
+  if (common.json) LF_RETURN_IF_ERROR(PrintReport(ReportJson(grid, written, light_field.unit_m)));
   MissingImages missing{report.missing.size(), report.asked_count, "",
                         "once they are mended, make the views again"};
   if (missing.count > 0)

@@ -36,15 +36,13 @@ RenderCamera FilmCamera(const PinholeCamera& view, double focus_distance_w, doub
   return camera;
 }
 
-// Returns the picture with NaN where no ray was collected and nothing was filled.
-Image<float> WithoutBlackHoles(DevelopedFrame picture) {
+// Returns the picture with NaN where no ray was collected. There, the picture is black, or filled
+// with light from beside, which nothing recorded in this direction.
+Image<float> WithoutFilled(DevelopedFrame picture) {
   Image<float> light = std::move(picture.rgb);
   for (int y = 0; y < light.height(); ++y)
-    for (int x = 0; x < light.width(); ++x) {
-      float* const rgb = &light.at(x, y, 0);
-      if (picture.coverage.at(x, y) == 0 && rgb[0] == 0 && rgb[1] == 0 && rgb[2] == 0)
-        std::fill_n(rgb, 3, kNoLight);
-    }
+    for (int x = 0; x < light.width(); ++x)
+      if (picture.coverage.at(x, y) == 0) std::fill_n(&light.at(x, y, 0), 3, kNoLight);
   return light;
 }
 
@@ -178,7 +176,7 @@ class ViewMaker {
     for (size_t f = 0; f < renderer.frame_count(); ++f) {
       if (IsStopped()) return Interrupted();
       const size_t view = views[renderer.id(f).value - 1];
-      LF_RETURN_IF_ERROR(Give(view, WithoutBlackHoles(renderer.Develop(f).picture)));
+      LF_RETURN_IF_ERROR(Give(view, WithoutFilled(renderer.Develop(f).picture)));
       renderer.Release(f);
     }
     return {};
@@ -196,9 +194,21 @@ class ViewMaker {
 
 }  // namespace
 
+Result<void> CheckForViews(const LightField& light_field) {
+  if (!light_field.encoding.HasOpacity()) return {};
+  return UsageError(
+      "the LF images are transparent in front of nothing (background \"none\"), and views have no "
+      "opacity: state another background, such as black");
+}
+
 Result<ViewsReport> MakeViews(const LightField& light_field, const ViewGrid& grid,
                               const ViewOptions& options, ThreadPool& pool, const ViewSink& sink,
                               const std::function<void(size_t done, size_t total)>& progress) {
+  if (light_field.encoding.HasOpacity())
+    return UsageError(
+        "the LF images are transparent in front of nothing (background \"none\"), and views have "
+        "no "
+        "opacity: state another background, such as black");
   return ViewMaker(light_field, grid, options, pool, sink, progress).Make();
 }
 

@@ -44,15 +44,19 @@ struct ViewsReport {
   size_t asked_count = 0;  // number of LF images to be loaded, including these
 };
 
+// kUsage: the LF images have opacities that must be kept (RadianceEncoding::HasOpacity()), which
+// views do not have.
+Result<void> CheckForViews(const LightField& light_field);
+
 // Gives each view of the grid to `sink`, one at a time, in any order.
 // - A view at the place of a recorded LF camera is its LF image, resampled to the orientation and
 //   intrinsics of the view (analysis/rectified/), or unchanged if these agree.
 // - Other views are frames of a pinhole: interpolated between the LF images around them, sharp at
 //   the focus distance. They are rendered as one film, so that each LF image is read once for all
 //   of them that fit into the memory together.
-// kInput: no focus distance is known, but needed; LF images cannot be loaded (all of them, or with
-// `strict` one). kOutput: the machine lacks memory. kInterrupted: `stop` is set. Other errors are
-// those of `sink` and of FilmSetup::Make().
+// kUsage as CheckForViews(). kInput: no focus distance is known, but needed; LF images cannot be
+// loaded (all of them, or with `strict` one). kOutput: the machine lacks memory. kInterrupted:
+// `stop` is set. Other errors are those of `sink` and of FilmSetup::Make().
 //   progress  called with the number of views that are done
 Result<ViewsReport> MakeViews(const LightField& light_field, const ViewGrid& grid,
                               const ViewOptions& options, ThreadPool& pool, const ViewSink& sink,

@@ -14,6 +14,7 @@
 #include <system_error>
 #include <utility>
 
+#include "lf/analysis/views/view_encoding.h"
 #include "lf/core/file.h"
 #include "lf/light_field/transforms_json/transforms_json.h"
 #include "lf/pixels/files/image_file.h"
@@ -50,27 +51,64 @@ std::vector<std::byte> BytesOfView(const Image<float>& light, ViewValues values)
   return BytesOf(numbers);
 }
 
-Result<void> WriteViewImage(const fs::path& path, const Image<float>& light, ViewValues values) {
-  if (values == ViewValues::kLinear)
-    return WriteImage(path, light.view(), {"R", "G", "B"}, PixelType::kFloat);
-  Image<float> shown(light.width(), light.height(), 3);
-  std::transform(light.pixels().begin(), light.pixels().end(), shown.pixels().begin(),
-                 [](float value) {
-                   return std::isnan(value) ? 0 : static_cast<float>(SrgbFromLinear(value));
-                 });
-  return WriteImage(path, shown.view(), {"R", "G", "B"},
-                    values == ViewValues::kSrgb8 ? PixelType::kUint8 : PixelType::kUint16);
+// Writes light / gain, with an alpha channel if a pixel is NaN: 0 there, 1 elsewhere.
+Result<void> WriteViewImage(const fs::path& path, const Image<float>& light, ViewValues values,
+                            double gain) {
+  const auto& from = light.pixels();
+  const bool has_alpha =
+      std::any_of(from.begin(), from.end(), [](float value) { return std::isnan(value); });
+  std::vector<std::string> channels = {"R", "G", "B"};
+  if (has_alpha) channels.emplace_back("A");
+  const bool is_linear = values == ViewValues::kLinear;
+  Image<float> shown(light.width(), light.height(), static_cast<int>(channels.size()), 1);
+  for (int y = 0; y < light.height(); ++y)
+    for (int x = 0; x < light.width(); ++x) {
+      const float* const rgb = &light.at(x, y, 0);
+      float* const to = &shown.at(x, y, 0);
+      for (int c = 0; c < 3; ++c)
+        to[c] = is_linear            ? rgb[c]
+                : std::isnan(rgb[c]) ? 0
+                                     : static_cast<float>(SrgbFromLinear(rgb[c] / gain));
+      if (has_alpha && std::isnan(rgb[0])) to[3] = 0;
+    }
+  return WriteImage(path, shown.view(), channels,
+                    is_linear                      ? PixelType::kFloat
+                    : values == ViewValues::kSrgb8 ? PixelType::kUint8
+                                                   : PixelType::kUint16);
 }
 
+// Counts the pixels of views.
+class PixelCounts {
+ public:
+  //   most  light above it is clipped
+  void Add(const Image<float>& light, double most) {
+    for (size_t i = 0; i < light.pixels().size(); i += 3) {
+      const auto* const rgb = &light.pixels()[i];
+      if (std::isnan(rgb[0])) ++unrecorded_;
+      if (std::max({rgb[0], rgb[1], rgb[2]}) > most) ++clipped_;
+      ++all_;
+    }
+  }
+  double unrecorded_share() const { return unrecorded_ / all_; }
+  double clipped_share() const { return clipped_ / all_; }
+
+ private:
+  double unrecorded_ = 0, clipped_ = 0, all_ = 0;
+};
+
 // Returns the views as a light field.
-LightField FieldOfViews(const LightField& light_field, const ViewGrid& grid, ViewValues values) {
+//   light  EncodingOfLight() of the LF images
+LightField FieldOfViews(const LightField& light_field, const RadianceEncoding& light,
+                        const ViewGrid& grid, ViewValues values, double gain) {
   LightField views;
   views.unit_m = light_field.unit_m;
   views.depth_range = light_field.depth_range;
-  if (values == ViewValues::kLinear) {
-    views.encoding.transfer = Transfer::kLinear;
-    views.encoding.max_radiance = light_field.encoding.max_radiance;
-  }
+  if (values == ViewValues::kLinear)
+    views.encoding = light;
+  else
+    views.encoding.max_radiance = gain;
+  views.encoding.alpha = AlphaMeaning::kMask;
+  views.encoding.footprint = light_field.encoding.footprint;
   for (size_t view = 0; view < grid.size(); ++view) {
     const PinholeCamera camera = grid.Camera(view);
     const auto known =
@@ -78,6 +116,7 @@ LightField FieldOfViews(const LightField& light_field, const ViewGrid& grid, Vie
     LfCamera made;
     made.cam_from_world = camera.cam_from_world;
     made.intrinsics_index = static_cast<uint32_t>(known - views.intrinsics.begin());
+    made.gain = static_cast<float>(gain);
     if (known == views.intrinsics.end()) views.intrinsics.push_back(camera.intrinsics);
     views.cameras.push_back(made);
     views.image_names.push_back(ViewName(grid, view, light_field.unit_m, values));
@@ -191,9 +230,22 @@ std::vector<fs::path> OtherViews(const ViewGrid& grid, const fs::path& folder, d
   return others;
 }
 
-Result<ViewsReport> WriteViewFolder(const LightField& light_field, const ViewGrid& grid,
-                                    const fs::path& folder, ViewValues values,
-                                    const MakeAllViews& make) {
+Result<WrittenViews> WriteViewFolder(const LightField& light_field, const ViewGrid& grid,
+                                     const fs::path& folder, ViewValues values, bool clips,
+                                     const MakeAllViews& make) {
+  WrittenViews written;
+  const RadianceEncoding encoding = EncodingOfLight(light_field.encoding);
+  constexpr double kWhite = 1;
+  if (values != ViewValues::kLinear && !clips && encoding.max_radiance > kWhite) {
+    double brightest = kWhite;
+    LF_RETURN_IF_ERROR(make([&](size_t, const Image<float>& light) -> Result<void> {
+      for (const float value : light.pixels())
+        if (value > brightest) brightest = value;
+      return {};
+    }));
+    // Beyond the largest light that LF images can have, interpolation overshoots.
+    written.gain = static_cast<float>(std::min(brightest, encoding.max_radiance));
+  }
   LF_RETURN_IF_ERROR(CreateFolder(folder));
   const auto remove = [](const fs::path& file) -> Result<void> {
     std::error_code error;
@@ -203,37 +255,46 @@ Result<ViewsReport> WriteViewFolder(const LightField& light_field, const ViewGri
   };
   for (const fs::path& file : OtherViews(grid, folder, light_field.unit_m, values))
     LF_RETURN_IF_ERROR(remove(file));
-  const LightField views = FieldOfViews(light_field, grid, values);
+  const LightField views = FieldOfViews(light_field, encoding, grid, values, written.gain);
   LF_RETURN_IF_ERROR(WriteTransformsJson(views, folder / kUnfinishedList, kViewsProgram));
   // Until the views are complete, the folder is no light field: an older list would mix old and new
   // views.
   LF_RETURN_IF_ERROR(remove(folder / kList));
-  LF_ASSIGN_OR_RETURN(ViewsReport report, make([&](size_t view, const Image<float>& light) {
-                        return WriteViewImage(
-                            folder / ViewName(grid, view, light_field.unit_m, values), light,
-                            values);
-                      }));
+  PixelCounts counts;
+  LF_ASSIGN_OR_RETURN(
+      written.views, make([&](size_t view, const Image<float>& light) {
+        counts.Add(light, values == ViewValues::kLinear ? encoding.max_radiance : written.gain);
+        return WriteViewImage(folder / ViewName(grid, view, light_field.unit_m, values), light,
+                              values, written.gain);
+      }));
   LF_RETURN_IF_ERROR(WriteTransformsJson(views, folder / kList, kViewsProgram));
   LF_RETURN_IF_ERROR(remove(folder / kUnfinishedList));
-  return report;
+  written.unrecorded_share = counts.unrecorded_share();
+  written.clipped_share = counts.clipped_share();
+  return written;
 }
 
-Result<ViewsReport> WriteViewArray(const ViewGrid& grid, const fs::path& file, ViewValues values,
-                                   const MakeAllViews& make) {
-  ViewsReport report;
+Result<WrittenViews> WriteViewArray(const ViewGrid& grid, const fs::path& file, ViewValues values,
+                                    const MakeAllViews& make) {
+  WrittenViews views;
+  PixelCounts counts;
+  const double most = values == ViewValues::kLinear ? INFINITY : 1;
   const Result<void> written =
       WriteAtomically(file, [&](const fs::path& temporary) -> Result<void> {
         const PartsFile parts(temporary);
         const std::string header = NumpyHeader(grid, values);
         LF_RETURN_IF_ERROR(parts.Write(std::as_bytes(std::span(header)), 0));
-        LF_ASSIGN_OR_RETURN(report, make([&](size_t view, const Image<float>& light) {
+        LF_ASSIGN_OR_RETURN(views.views, make([&](size_t view, const Image<float>& light) {
+                              counts.Add(light, most);
                               const std::vector<std::byte> bytes = BytesOfView(light, values);
                               return parts.Write(bytes, header.size() + view * bytes.size());
                             }));
         return {};
       });
   if (!written) return written.error();
-  return report;
+  views.unrecorded_share = counts.unrecorded_share();
+  views.clipped_share = counts.clipped_share();
+  return views;
 }
 
 }  // namespace lf

@@ -19,8 +19,8 @@
 namespace lf {
 
 // The values of views in files.
-//   kSrgb8, kSrgb16  sRGB for display, with 8 or 16 bits: clipped; black where there is no light
-//   kLinear          linear light as 32-bit floats; NaN where there is none
+//   kSrgb8, kSrgb16  sRGB for display, with 8 or 16 bits
+//   kLinear          linear light as 32-bit floats; NaN where no LF image shows anything
 enum class ViewValues { kSrgb8, kSrgb16, kLinear };
 
 // Returns the value of a linear light in kSrgb8 (most = 255) or kSrgb16 (most = 65535).
@@ -43,18 +43,31 @@ std::vector<std::filesystem::path> OtherViews(const ViewGrid& grid,
                                               const std::filesystem::path& folder, double unit_m,
                                               ViewValues values);
 
+// Views that were written.
+struct WrittenViews {
+  ViewsReport views;
+  double gain = 1;  // light / gain was written
+  // Shares of the pixels where no LF image shows anything, and of those whose light was clipped at
+  // display white.
+  double unrecorded_share = 0, clipped_share = 0;
+};
+
 // Makes all views by `make`, which gets the sink that writes them, and writes
 // - WriteViewFolder(): an image file for each view and, in the end, transforms.json, so that the
-//   folder is a light field. Its cameras are in the world of `light_field`. OtherViews() and an
-//   older transforms.json are removed first.
+//   folder is a light field. Its cameras are in the world of `light_field`. Pixels where no LF
+//   image shows anything are transparent, and are masked by this (lf_alpha). If light is brighter
+//   than display white, sRGB values are those of light / gain, where gain (lf_gain) is the
+//   brightest light; `make` is called twice then, because the brightest light must be known first.
+//   OtherViews() and an older transforms.json are removed before a view is written.
 // - WriteViewArray(): one file of NumPy, [row][column][height][width][channel], which appears when
-//   it is complete.
+//   it is complete. sRGB values are clipped, and black where no LF image shows anything.
 // Errors are those of `make`, and kOutput if a file cannot be written.
+//   clips  true: sRGB values are clipped, and the gain is 1
 using MakeAllViews = std::function<Result<ViewsReport>(const ViewSink& sink)>;
-Result<ViewsReport> WriteViewFolder(const LightField& light_field, const ViewGrid& grid,
-                                    const std::filesystem::path& folder, ViewValues values,
-                                    const MakeAllViews& make);
-Result<ViewsReport> WriteViewArray(const ViewGrid& grid, const std::filesystem::path& file,
-                                   ViewValues values, const MakeAllViews& make);
+Result<WrittenViews> WriteViewFolder(const LightField& light_field, const ViewGrid& grid,
+                                     const std::filesystem::path& folder, ViewValues values,
+                                     bool clips, const MakeAllViews& make);
+Result<WrittenViews> WriteViewArray(const ViewGrid& grid, const std::filesystem::path& file,
+                                    ViewValues values, const MakeAllViews& make);
 
 }  // namespace lf
