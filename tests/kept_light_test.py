@@ -6,6 +6,7 @@ above 1, lenses with dark corners, masks, alpha and missing LF images give the f
 usage: kept_light_test.py LFDENSIFY LFFOCUS LFSYNTH LFRENDERER LFCOMPRESSOR
 """
 import json
+import os
 import pathlib
 import shutil
 import subprocess
@@ -13,6 +14,7 @@ import sys
 import tempfile
 import unittest
 
+os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # must be set before cv2 is imported
 import cv2
 import numpy as np
 
@@ -150,6 +152,21 @@ class KeptLightTest(ProgramTestCase):
         exposures = np.random.default_rng(1).uniform(0.3, 0.8, (SIDE * SIDE, 3))
         self.expect_densified_as_even(lambda index, bgr: stored_of(light_of(bgr) * exposures[index][::-1]),
                                       lambda index: {"lf_gain": list(1.5 / exposures[index])})
+
+    def test_densified_light_of_float_files_behind_one_of_integers_is_not_clipped(self):
+        room = {"lf_max_radiance": 8}
+        even = self.field("even", lambda index, bgr: stored_of(light_of(bgr) / 2), top=room,
+                          frame=lambda index: {"lf_gain": 2})
+        mixed = self.field("mixed", top=room, frame=lambda index: {"lf_gain": 4})
+        text = json.loads((mixed / "transforms.json").read_text())
+        for frame in text["frames"][1:]:
+            light = 4 * light_of(cv2.imread(str(mixed / frame["file_path"]), cv2.IMREAD_UNCHANGED))
+            frame["file_path"] = frame["file_path"].replace(".png", ".exr")
+            cv2.imwrite(str(mixed / frame["file_path"]), light.astype(np.float32))
+            del frame["lf_gain"]
+        (mixed / "transforms.json").write_text(json.dumps(text))
+        expected, found = (self.film(self.dense(field), "--no-guard") for field in (even, mixed))
+        self.expect_same(found, expected, 4, 40, 0.1)
 
     def test_masked_light_stays_unrecorded_in_virtual_lf_images(self):
         masked = self.masked_field()
