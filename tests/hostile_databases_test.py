@@ -127,7 +127,14 @@ class HostileDatabasesTest(unittest.TestCase):
                       [compressor, field, "-o", cls.folder / "lossless.lfs", "--profile", "lossless"]):
             subprocess.run(list(map(str, words)), check=True, capture_output=True)
         cls.package = next((cls.folder / "packages").glob("*.lfp"))
+        # A path of a narrow lens at the rim leaves most LF images out of a store of its packages.
+        (cls.folder / "rim").mkdir()
+        rim = write_path(cls.folder / "rim", frames=1, aperture=0.012, x=-0.02)
+        for words in ([preprocessor, field, rim, "-o", cls.folder / "rim", "--packages", 1],
+                      [compressor, cls.folder / "rim" / "package-0000.lfp", "-o", cls.folder / "part.lfs"]):
+            subprocess.run(list(map(str, words)), check=True, capture_output=True)
         cls.stores = [cls.folder / "film.lfs", cls.folder / "lossless.lfs"]
+        cls.part = cls.folder / "part.lfs"
         cls.runs = BoundedRuns(cls.folder, MEMORY_MIB)
         cls.number = 0
 
@@ -157,7 +164,8 @@ class HostileDatabasesTest(unittest.TestCase):
             # Packages must lie beside the light field that they name.
             moved = self.package.parent / file.name
             file.rename(moved)
-            return [(name, [renderer, moved, "-o", out, "--no-contact-sheet"])]
+            return [(name, [renderer, moved, "-o", out, "--no-contact-sheet"]),
+                    (f"{name}, compressed", [PROGRAMS[2], moved, "-o", f"{out}.lfs"])]
         return [(name, [renderer, file, self.path, "-o", out, "--no-contact-sheet"])]
 
     def all(self, kind, original, changes, accepts):
@@ -203,6 +211,14 @@ class HostileDatabasesTest(unittest.TestCase):
         """A store whose encoded images lie in other files has no table of them."""
         file = self.changed(self.stores[0], self.script("drop table blobs;"))
         self.runs.all("lfs: without codes", [("lfimport", [PROGRAMS[3], file])], accepts=(0,))
+
+    def test_marks_of_lf_images_that_are_left_out_may_be_anything(self):
+        """The path needs LF images that the store leaves out."""
+        texts = ["delete from left_out", "insert into left_out select id from codes",
+                 "insert or ignore into left_out select id from lf_images", "insert into left_out values (-1)",
+                 "insert into left_out values (1000000000000)", "drop table left_out",
+                 "update left_out set id = id + 1000"]
+        self.all("marks", self.part, [(text, self.script(text)) for text in ["", *texts]], accepts=(3, 6))
 
     def test_any_value_may_stand_anywhere(self):
         """Some values, such as another seed or another name of a lens, are as valid as the original ones and are

@@ -116,16 +116,12 @@ class Matrix(World):
         source, cut = cell.input, "whole"
         run_name = {"killed": "once", "interrupted": "once", "small": "once", "finish": "once",
                     "noise killed": "noise"}.get(cell.run, cell.run)
-        has_own_order = is_of_packages(source) and not self.is_moved(cell)
-        if has_own_order and cell.mode in ("nearest none", "bilinear none") and run_name == "once":
-            has_own_order = source == "lossy needed pixels"
-        if not has_own_order:
-            if "lossy" not in source:
-                source = packaged_input(source)
-            elif source != "lossy needed pixels":
-                source = "lossy store"
-            else:
-                cut = "moved packages"
+        if "lossy" not in source:
+            source = packaged_input(source)
+        elif source != "lossy needed pixels":
+            source = "lossy store"
+        else:
+            cut = "moved packages"
         return cell._replace(input=source, cut=cut, run=run_name)
 
     @once
@@ -384,10 +380,9 @@ class Matrix(World):
 
     def check_early(self, cell, plain_cell, rendered):
         """Compares frames that were finished early with renders of the LF images that they name. Rebinned rays depend
-        on the course of a render, and stores of packages have an order that is not written anywhere, so they are
-        skipped, as are densified stores, whose virtual LF images are made of many files each."""
-        has_own_order = is_of_packages(cell.input) and not self.is_moved(cell)
-        if render_mode(cell.mode) != "collect" or has_own_order or is_of_packages(plain_cell.input):
+        on the course of a render, so they are skipped, as are rectangles that are encoded with loss, and densified
+        stores, whose virtual LF images are made of many files each."""
+        if render_mode(cell.mode) != "collect" or is_of_packages(plain_cell.input):
             return
         if cell.input == "densified store":
             return

@@ -42,6 +42,11 @@ std::string CompressText(const CompressReport& report, const CompressOptions& op
       report.image_count - report.skipped.size(),
       report.skipped.empty() ? std::string() : fmt::format(" of {}", report.image_count),
       ShortNumber(static_cast<double>(report.store_bytes)), NameOf(settings));
+  if (report.left_out_count > 0)
+    text += fmt::format(
+        "{} LF images are left out, because the packages do not need them: a film that needs them "
+        "cannot be rendered from this store\n",
+        report.left_out_count);
   if (report.was_there) text += "existed already: nothing was written\n";
   if (report.resumed_count > 0)
     text += fmt::format(
@@ -68,7 +73,7 @@ std::string CompressText(const CompressReport& report, const CompressOptions& op
                         *report.verified_count);
   if (report.code_bytes > report.source_bytes && report.source_bytes > 0)
     text +=
-        "note: the image files are smaller than their encoded images, because they are lossily "
+        "note: the image files are smaller than their encoded images, because they are "
         "compressed already: use the files instead of the store\n";
   if (report.rounded_count > 0)
     text += fmt::format("note: {} LF images hold floats that were rounded to half floats\n",
@@ -101,6 +106,7 @@ std::string CompressJson(const CompressReport& report, const CompressOptions& op
   json["codec"] = NameOf(settings);
   json["threshold"] = report.threshold;
   json["lf_images"] = report.image_count;
+  json["lf_images_left_out"] = report.left_out_count;
   json["was_there"] = report.was_there;
   json["resumed"] = report.resumed_count;
   json["coded"] = report.coded_count;

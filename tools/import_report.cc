@@ -86,6 +86,8 @@ std::string ImagesText(const ImportReport& report) {
   if (report.capture.mask_count > 0) text += fmt::format(", {} masks", report.capture.mask_count);
   if (report.excluded_count > 0) text += fmt::format(", {} left out", report.excluded_count);
   if (!report.faults) return text + ", not checked";
+  if (report.faults->left_out_count > 0)
+    text += fmt::format(", {} not in the store", report.faults->left_out_count);
   return text + fmt::format(", {} missing, {} broken", report.faults->missing.size(),
                             report.faults->broken.size());
 }
@@ -210,6 +212,7 @@ std::string ReportJson(const ImportReport& report) {
   if (report.faults) {
     json["missing"] = report.faults->missing.size();
     json["broken"] = report.faults->broken.size();
+    if (report.faults->left_out_count > 0) json["not_stored"] = report.faults->left_out_count;
   }
   json["pixels"] = OrNull(report.pixels);
   json["cameras"] = Json::array();

@@ -167,6 +167,23 @@ lf::Result<lf::CompressOptions> MakeOptions(const Arguments& a, const lf::Common
   return options;
 }
 
+// Opens the light field that a package was made from, as its maker did. A store has all LF cameras,
+// of which a package has only some.
+lf::Result<lf::LightField> OpenSourceOf(const lf::Package& package, const std::string& path) {
+  const auto open = [&]() -> lf::Result<lf::LightField> {
+    LF_ASSIGN_OR_RETURN(
+        const lf::LightFieldArgument argument,
+        lf::LightFieldArgument::Of(package.source.light_field.string(), package.source.options));
+    return argument.Open();
+  };
+  lf::Result<lf::LightField> opened = open();
+  if (opened) return opened;
+  return lf::InputError(fmt::format(
+      "{}: the light field that it was made from, with the calibration of all LF cameras, cannot "
+      "be opened ({}): give it with --lightfield",
+      path, opened.error().message));
+}
+
 lf::Result<lf::CompressSource> OpenSource(const Arguments& a) {
   if (!HasPackages(a)) {
     if (a.inputs.size() > 1)
@@ -183,17 +200,21 @@ lf::Result<lf::CompressSource> OpenSource(const Arguments& a) {
     return lf::SourceOfAll(std::move(light_field));
   }
   LF_RETURN_IF_ERROR(a.light_field.CheckWithPackages());
+  std::optional<lf::LightField> light_field;
   std::optional<lf::LightFieldPlace> place;
   if (!a.light_field.path.empty()) {
-    LF_ASSIGN_OR_RETURN(const lf::LightField light_field, a.light_field.Open());
-    LF_ASSIGN_OR_RETURN(place, lf::PlaceOf(a.light_field.path, light_field));
+    LF_ASSIGN_OR_RETURN(light_field, a.light_field.Open());
+    LF_ASSIGN_OR_RETURN(place, lf::PlaceOf(a.light_field.path, *light_field));
   }
   std::vector<lf::Package> packages;
   for (const std::string& path : a.inputs) {
     LF_ASSIGN_OR_RETURN(lf::Package package, lf::OpenPackage(path, place));
     packages.push_back(std::move(package));
   }
-  return lf::SourceOfPackages(packages, a.needed_pixels);
+  if (!light_field) {
+    LF_ASSIGN_OR_RETURN(light_field, OpenSourceOf(packages.front(), a.inputs.front()));
+  }
+  return lf::SourceOfPackages(*std::move(light_field), packages, a.needed_pixels);
 }
 
 lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {

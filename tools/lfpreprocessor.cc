@@ -187,6 +187,7 @@ lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::Comm
   options.strict = common.strict;
   options.version = lf::Version();
   options.light_field_name = a.light_field.path;
+  options.light_field_options = a.light_field.WordsToKeep();
   return options;
 }
 

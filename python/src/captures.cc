@@ -121,6 +121,7 @@ std::string Preprocess(const OpenedField& field, const std::string& name,
   PreprocessOptions options = PreprocessOptionsOf(words, film, light_field.encoding);
   for (const uint32_t frame : frames) options.frames.push_back(FrameId{frame});
   options.light_field_name = name;
+  options.light_field_options = field.options;
   options.interrupted = &work.signals.interrupted;
   return CallWithoutGil(
       [&] {

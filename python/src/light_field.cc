@@ -64,6 +64,7 @@ std::shared_ptr<OpenedField> Open(const std::string& path, double focal_px, doub
     options.flip_y = flips[1];
     field->light_field = Take(OpenLightField(path, options));
     field->store = Take(OpenStore(field->light_field, Mosaics::kToRgb));
+    field->options = argument.WordsToKeep();
     return field;
   });
 }

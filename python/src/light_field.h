@@ -5,6 +5,8 @@
 #include <pybind11/pybind11.h>
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "lf/light_field/model/light_field.h"
 #include "lf/storage/load/lf_image_store.h"
@@ -15,6 +17,7 @@ namespace lf::python {
 struct OpenedField {
   LightField light_field;
   std::unique_ptr<LfImageStore> store;  // loads mosaics as RGB
+  std::vector<std::string> options;     // options of LIGHTFIELD, as words of a command line
 };
 
 void AddLightField(pybind11::module_& module);

@@ -5,6 +5,8 @@
 
 #include <array>
 #include <charconv>
+#include <filesystem>
+#include <utility>
 
 #include "tools/common/help.h"
 #include "tools/common/validators.h"
@@ -137,6 +139,27 @@ std::vector<std::string> LightFieldArgument::Words() const {
   if (image_alpha != "auto") words.insert(words.end(), {"--image-alpha", image_alpha});
   if (!background.empty()) words.insert(words.end(), {"--background", background});
   return words;
+}
+
+std::vector<std::string> LightFieldArgument::WordsToKeep() const {
+  LightFieldArgument kept = *this;
+  if (!images.empty()) kept.images = std::filesystem::absolute(images).lexically_normal().string();
+  return kept.Words();
+}
+
+Result<LightFieldArgument> LightFieldArgument::Of(std::string path,
+                                                  const std::vector<std::string>& words) {
+  LightFieldArgument argument;
+  CLI::App app;
+  argument.AddOptionsTo(app);
+  try {
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // the last word comes first
+  } catch (const CLI::Error& error) {
+    return InputError(
+        fmt::format("the options of {} cannot be read again: {}", path, error.what()));
+  }
+  argument.path = std::move(path);
+  return argument;
 }
 
 }  // namespace lf

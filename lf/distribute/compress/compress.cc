@@ -29,7 +29,6 @@ PackedStorePlan PlanOf(const CompressSource& source, const CompressOptions& opti
                        const CodecSettings& settings) {
   PackedStorePlan plan;
   plan.whole = source.whole;
-  plan.whole_ids = source.whole_ids;
   plan.rects = source.rects;
   plan.codec = NameOf(settings);
   plan.display_levels = ImageCoder(source.light_field.encoding, settings).display_levels();
@@ -64,7 +63,11 @@ class Compressor {
  public:
   Compressor(const CompressSource& source, const CompressOptions& options, ThreadPool& pool,
              const std::function<void(const CompressProgress&)>& progress)
-      : source_(source), options_(options), pool_(pool), progress_(progress) {}
+      : source_(source),
+        options_(options),
+        pool_(pool),
+        progress_(progress),
+        ids_(source.CompressedIds()) {}
 
   Result<CompressReport> Run();
 
@@ -86,6 +89,7 @@ class Compressor {
   const CompressOptions& options_;
   ThreadPool& pool_;
   const std::function<void(const CompressProgress&)>& progress_;
+  const std::vector<LfImageId> ids_;  // LF images that are compressed
   CodecSettings settings_;
   std::optional<ImageCoder> coder_;
 
@@ -165,8 +169,8 @@ void Compressor::Count(const RecordedImage& image, const CodedImage& coded, cons
 // it was encoded, because it may have been replaced. Files that no longer exist are not checked.
 Result<void> Compressor::CheckFiles(const PackedStoreWriter& writer) {
   const LightField& light_field = source_.light_field;
-  pool_.ForEach(light_field.size(), [&](size_t i) {
-    const LfImageId id{static_cast<uint32_t>(i)};
+  pool_.ForEach(ids_.size(), [&](size_t i) {
+    const LfImageId id = ids_[i];
     if (!writer.Has(id)) return;
     const uint64_t now = SourceBytesOf(light_field, id), then = writer.SourceBytes(id);
     if (now == 0 || now == then) return;
@@ -188,10 +192,10 @@ Result<void> Compressor::Write(FileLock lock) {
       OpenWriter(source_, options_, PlanOf(source_, options_, settings_), std::move(lock)));
   LF_RETURN_IF_ERROR(CheckFiles(writer));
   std::vector<LfImageId> ids;
-  for (uint32_t i = 0; i < source_.light_field.size(); ++i)
-    if (!writer.Has(LfImageId{i})) ids.push_back(LfImageId{i});
-  report_.resumed_count = source_.light_field.size() - ids.size();
-  now_.total = source_.light_field.size();
+  for (const LfImageId id : ids_)
+    if (!writer.Has(id)) ids.push_back(id);
+  report_.resumed_count = ids_.size() - ids.size();
+  now_.total = ids_.size();
   now_.done = report_.resumed_count;
   LogDebug("{}: {} LF images to be encoded, {} are encoded; codec {}; {} threads",
            options_.store.string(), ids.size(), report_.resumed_count, NameOf(settings_),
@@ -208,7 +212,7 @@ Result<void> Compressor::Write(FileLock lock) {
     LF_RETURN_IF_ERROR(writer.Commit());
     return Interrupted();
   }
-  if (report_.skipped.size() == source_.light_field.size()) {
+  if (report_.skipped.size() == ids_.size()) {
     writer.Abandon();
     return InputError(fmt::format(
         "none of the {} LF images can be read, so that no store was written; the first: {}",
@@ -223,7 +227,7 @@ VerifyOptions Compressor::Verification() const {
 }
 
 Result<void> Compressor::Verify() {
-  now_ = {0, source_.light_field.size(), 0, 0, true};
+  now_ = {0, ids_.size(), 0, 0, true};
   LF_ASSIGN_OR_RETURN(const size_t verified,
                       VerifyStore(source_, Verification(), pool_, [&](size_t done) {
                         now_.done = done;
@@ -238,9 +242,9 @@ Result<void> Compressor::FindSkipped() {
   const std::vector<std::string>& names = source_.light_field.image_names;
   LF_ASSIGN_OR_RETURN(const std::vector<PackedCode> codes,
                       FindCodes(options_.store, source_.light_field));
-  for (size_t i = 0; i < names.size(); ++i)
-    if (codes[i].bytes == 0)
-      report_.skipped.push_back({names[i], "it could not be read when the store was made"});
+  for (const LfImageId id : ids_)
+    if (codes[id.value].bytes == 0)
+      report_.skipped.push_back({names[id.value], "it could not be read when the store was made"});
   return {};
 }
 
@@ -284,7 +288,8 @@ Result<CompressReport> Compressor::Run() {
   const double begin_s = Now();
   settings_ = options_.codec;
   LF_RETURN_IF_ERROR(CheckSettings(settings_));
-  report_.image_count = source_.light_field.size();
+  report_.image_count = ids_.size();
+  report_.left_out_count = source_.light_field.size() - ids_.size();
   LF_RETURN_IF_ERROR(CheckTarget());
   HeldLock held;
   if (!report_.was_there) {

@@ -53,11 +53,12 @@ struct CompressProgress {
 };
 
 struct CompressReport {
-  size_t image_count = 0;
-  size_t resumed_count = 0;  // LF images that the unfinished store already had
-  bool was_there = false;    // true if the store was complete, so that nothing was written
-  double threshold = 0;      // threshold of the encoder, in grey steps
-  size_t rounded_count = 0;  // LF images with floats that half floats cannot represent exactly
+  size_t image_count = 0;     // LF images that are compressed
+  size_t left_out_count = 0;  // other LF images: the store has their LF cameras alone
+  size_t resumed_count = 0;   // LF images that the unfinished store already had
+  bool was_there = false;     // true if the store was complete, so that nothing was written
+  double threshold = 0;       // threshold of the encoder, in grey steps
+  size_t rounded_count = 0;   // LF images with floats that half floats cannot represent exactly
   struct Skipped {
     std::string name;
     std::string reason;

@@ -3,28 +3,21 @@
 
 #include <fmt/format.h>
 
-#include <map>
+#include <algorithm>
+#include <memory>
 #include <utility>
 
-#include "lf/light_field/model/brackets.h"
-#include "lf/light_field/model/distinct_intrinsics.h"
+#include "lf/storage/load/measure_footprint.h"
+#include "lf/storage/load/open_store.h"
 #include "lf/storage/packed/packed_store_file.h"
 
 namespace lf {
 namespace {
 
-PixelRect WholeImage(const LightField& light_field, const LfCamera& camera) {
-  const Intrinsics& intrinsics = light_field.intrinsics[camera.intrinsics_index];
-  return {0, 0, intrinsics.width_px, intrinsics.height_px};
+PixelRect WholeImage(const LightField& light_field, size_t i) {
+  const Intrinsics& k = light_field.intrinsics[light_field.cameras[i].intrinsics_index];
+  return {0, 0, k.width_px, k.height_px};
 }
-
-// First occurrence of an LF image in the packages, and bounds of the pixels that all packages need
-// of it.
-struct Needed {
-  size_t package = 0;
-  size_t index = 0;
-  PixelRect rect;
-};
 
 // Refuses packed stores, because lossy compression would be applied twice, and virtual LF images,
 // which only the densified store has that was made with them.
@@ -36,63 +29,68 @@ Result<void> CheckNotPacked(const LightField& light_field) {
       light_field.folder.string()));
 }
 
-}  // namespace
-
-Result<CompressSource> SourceOfAll(LightField light_field) {
-  LF_RETURN_IF_ERROR(CheckNotPacked(light_field));
+Result<CompressSource> SourceOf(LightField light_field, std::vector<PixelRect> rects) {
   CompressSource source;
-  for (const LfCamera& camera : light_field.cameras)
-    source.rects.push_back(WholeImage(light_field, camera));
   source.whole = IdentityOf(light_field);
+  source.rects = std::move(rects);
   source.light_field = std::move(light_field);
+  RadianceEncoding& encoding = source.light_field.encoding;
+  if (encoding.footprint) return source;
+  LF_ASSIGN_OR_RETURN(const std::unique_ptr<LfImageStore> store,
+                      OpenStore(source.light_field, Mosaics::kToRgb));
+  LF_ASSIGN_OR_RETURN(encoding.footprint, MeasureFootprint(source.light_field, *store));
   return source;
 }
 
-Result<CompressSource> SourceOfPackages(std::span<const Package> packages, bool needed_pixels) {
-  std::map<uint32_t, Needed> needed;
-  for (size_t p = 0; p < packages.size(); ++p) {
-    const Package& package = packages[p];
-    if (package.whole != packages.front().whole)
+}  // namespace
+
+std::vector<LfImageId> CompressSource::CompressedIds() const {
+  std::vector<LfImageId> ids;
+  for (uint32_t i = 0; i < rects.size(); ++i)
+    if (!rects[i].empty()) ids.push_back(LfImageId{i});
+  return ids;
+}
+
+Result<CompressSource> SourceOfAll(LightField light_field) {
+  LF_RETURN_IF_ERROR(CheckNotPacked(light_field));
+  std::vector<PixelRect> rects;
+  for (size_t i = 0; i < light_field.size(); ++i) rects.push_back(WholeImage(light_field, i));
+  return SourceOf(std::move(light_field), std::move(rects));
+}
+
+Result<CompressSource> SourceOfPackages(LightField light_field, std::span<const Package> packages,
+                                        bool needed_pixels) {
+  const Package& first = packages.front();
+  LF_RETURN_IF_ERROR(CheckNotPacked(first.light_field));
+  for (const Package& package : packages)
+    if (package.whole != first.whole)
       return UsageError(fmt::format(
           "packages {} and {} were made from different light fields: compress them into two "
           "stores",
-          packages.front().name, package.name));
-    for (size_t i = 0; i < package.images.size(); ++i) {
-      const PackageImage& image = package.images[i];
+          first.name, package.name));
+  if (IdentityOf(light_field) != first.whole)
+    return InputError(
+        fmt::format("package {} was made from another light field than the one of {} LF images in "
+                    "{}: give the light field that it was made from with --lightfield",
+                    first.name, light_field.size(), light_field.folder.string()));
+  std::vector<PixelRect> rects(light_field.size());
+  for (const Package& package : packages)
+    for (const PackageImage& image : package.images) {
       if (image.ray_count == 0) continue;  // a neighbour, of which no pixel is read
-      const auto [at, is_new] = needed.try_emplace(image.id, Needed{p, i, image.rect});
-      if (!is_new) at->second.rect = Bounds(at->second.rect, image.rect);
+      if (image.id >= rects.size())
+        return InputError(fmt::format(
+            "package {}: needs LF image {}, but its light field has {}: the package is damaged; "
+            "make it again",
+            package.name, image.id, rects.size()));
+      PixelRect& rect = rects[image.id];
+      rect = needed_pixels ? Bounds(rect, image.rect) : WholeImage(light_field, image.id);
     }
-  }
-  if (needed.empty())
+  if (std::all_of(rects.begin(), rects.end(), [](const PixelRect& rect) { return rect.empty(); }))
     return UsageError(
         "the packages need no LF image, so that there is nothing to compress: give packages whose "
         "frames see LF images");
-
-  LF_RETURN_IF_ERROR(CheckNotPacked(packages.front().light_field));
-  CompressSource source;
-  const LightField& first = packages.front().light_field;
-  LightField& light_field = source.light_field;
-  light_field.folder = first.folder;
-  light_field.encoding = first.encoding;
-  light_field.unit_m = first.unit_m;
-  light_field.depth_range = first.depth_range;
-  source.whole = packages.front().whole;
-  DistinctIntrinsics intrinsics;
-  for (const auto& [id, image] : needed) {
-    const LightField& from = packages[image.package].light_field;
-    LfCamera camera = from.cameras[image.index];
-    source.rects.push_back(needed_pixels ? image.rect : WholeImage(from, camera));
-    camera.intrinsics_index = intrinsics.IndexOf(from.intrinsics[camera.intrinsics_index]);
-    light_field.cameras.push_back(camera);
-    light_field.image_names.push_back(from.image_names[image.index]);
-    light_field.mask_names.push_back(from.mask_names.empty() ? std::string()
-                                                             : from.mask_names[image.index]);
-    source.whole_ids.push_back(id);
-  }
-  light_field.intrinsics = intrinsics.Take();
-  if (light_field.encoding.masks_clipped) ApplyBrackets(&light_field);
-  return source;
+  light_field.encoding = first.light_field.encoding;
+  return SourceOf(std::move(light_field), std::move(rects));
 }
 
 }  // namespace lf

@@ -31,52 +31,79 @@ TEST(CodeQuality, PsnrIsOfAllValuesTogether) {
   EXPECT_TRUE(std::isinf(CodeError{}.PsnrDb()));
 }
 
-// Returns a package of these LF images, all of which have the second intrinsics of the light field.
-Package PackageOf(const std::string& name, std::vector<PackageImage> images) {
-  Package package;
-  package.name = name;
-  package.whole = {9, "names", "calibration"};
+// Returns a light field of 9 LF images that have no files.
+LightField Field() {
+  LightField field;
+  field.folder = "/nowhere";
   Intrinsics intrinsics;
   intrinsics.width_px = 100;
   intrinsics.height_px = 80;
-  package.light_field.intrinsics = {Intrinsics{}, intrinsics};
-  for (const PackageImage& image : images) {
+  field.intrinsics = {intrinsics};
+  for (uint32_t i = 0; i < 9; ++i) {
     LfCamera camera;
-    camera.intrinsics_index = 1;
-    camera.cam_from_world.translation = Vec3(image.id, 0, 0);
-    package.light_field.cameras.push_back(camera);
-    package.light_field.image_names.push_back("image " + std::to_string(image.id));
+    camera.cam_from_world.translation = Vec3(i, 0, 0);
+    field.cameras.push_back(camera);
+    field.image_names.push_back("image " + std::to_string(i));
+  }
+  return field;
+}
+
+// Returns a package of these LF images of the light field.
+Package PackageOf(const std::string& name, std::vector<PackageImage> images) {
+  Package package;
+  package.name = name;
+  const LightField field = Field();
+  package.whole = IdentityOf(field);
+  package.light_field.intrinsics = field.intrinsics;
+  package.light_field.encoding.pedestal = 7;
+  for (const PackageImage& image : images) {
+    package.light_field.cameras.push_back(field.cameras[image.id]);
+    package.light_field.image_names.push_back(field.image_names[image.id]);
   }
   package.images = std::move(images);
   return package;
 }
 
-TEST(CompressSource, PackagesAreJoined) {
+TEST(CompressSource, PackagesAreJoinedAndAllLfCamerasStay) {
   const Package packages[] = {
       PackageOf("a", {{7, 1, {10, 10, 20, 20}, 1, 100}, {2, 1, {0, 0, 5, 5}, 1, 25}}),
       PackageOf("b", {{7, 1, {15, 5, 30, 12}, 1, 100}, {4, 1, {}, 0, 0}})};
-  const Result<CompressSource> part = SourceOfPackages(packages, true);
+  const Result<CompressSource> part = SourceOfPackages(Field(), packages, true);
   ASSERT_TRUE(part);
-  EXPECT_EQ(part->whole_ids, (std::vector<uint32_t>{2, 7}));
-  EXPECT_EQ(part->rects, (std::vector<PixelRect>{{0, 0, 5, 5}, {10, 5, 30, 20}}));
-  EXPECT_EQ(part->light_field.image_names, (std::vector<std::string>{"image 2", "image 7"}));
-  EXPECT_EQ(part->light_field.intrinsics.size(), 1u);
-  EXPECT_EQ(part->light_field.cameras[1].cam_from_world.translation.x(), 7);
+  EXPECT_EQ(part->CompressedIds(), (std::vector<LfImageId>{{2}, {7}}));
+  EXPECT_EQ(part->rects[2], (PixelRect{0, 0, 5, 5}));
+  EXPECT_EQ(part->rects[7], (PixelRect{10, 5, 30, 20}));
+  EXPECT_TRUE(part->rects[4].empty());
+  EXPECT_EQ(IdentityOf(part->light_field), IdentityOf(Field()));
   EXPECT_EQ(part->whole, packages[0].whole);
-  const Result<CompressSource> whole = SourceOfPackages(packages, false);
+  EXPECT_EQ(part->light_field.encoding.pedestal, 7);
+  // The footprint is stated, because it could not be measured where LF images are left out.
+  EXPECT_TRUE(part->light_field.encoding.footprint);
+  const Result<CompressSource> whole = SourceOfPackages(Field(), packages, false);
   ASSERT_TRUE(whole);
-  EXPECT_EQ(whole->rects[0], (PixelRect{0, 0, 100, 80}));
+  EXPECT_EQ(whole->rects[2], (PixelRect{0, 0, 100, 80}));
+  EXPECT_TRUE(whole->rects[4].empty());
 }
 
-TEST(CompressSource, PackagesOfDifferentLightFieldsAreAUsageError) {
+TEST(CompressSource, OtherLightFieldsAndPackagesWithoutRaysAreErrors) {
   Package packages[] = {PackageOf("a", {{7, 1, {10, 10, 20, 20}, 1, 100}}),
                         PackageOf("b", {{7, 1, {10, 10, 20, 20}, 1, 100}})};
+  LightField moved = Field();
+  moved.cameras[1].cam_from_world.translation.y() += 1;
+  const Result<CompressSource> of_another = SourceOfPackages(moved, packages, false);
+  ASSERT_FALSE(of_another);
+  EXPECT_EQ(of_another.error().kind, ErrorKind::kInput);
+  EXPECT_NE(of_another.error().message.find("--lightfield"), std::string::npos);
   packages[1].whole.calibration = "another";
-  const Result<CompressSource> source = SourceOfPackages(packages, false);
+  const Result<CompressSource> source = SourceOfPackages(Field(), packages, false);
   ASSERT_FALSE(source);
   EXPECT_EQ(source.error().kind, ErrorKind::kUsage);
+  packages[0].images[0].id = 9;
+  const Result<CompressSource> beyond = SourceOfPackages(Field(), std::span(packages, 1), false);
+  ASSERT_FALSE(beyond);
+  EXPECT_EQ(beyond.error().kind, ErrorKind::kInput);
   packages[0].images[0].ray_count = 0;
-  EXPECT_FALSE(SourceOfPackages(std::span(packages, 1), false));
+  EXPECT_FALSE(SourceOfPackages(Field(), std::span(packages, 1), false));
 }
 
 TEST(CompressOptions, SettingsAreNamed) {

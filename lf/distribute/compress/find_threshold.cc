@@ -32,13 +32,14 @@ Result<double> FindThreshold(const CompressSource& source, const CodecSettings& 
         "--target-psnr cannot be used with --profile lossless, which has no loss: leave one of "
         "them out");
   const LightField& light_field = source.light_field;
-  std::vector<Result<RecordedImage>> images(std::min(kLookedAt, light_field.size()),
+  const std::vector<LfImageId> ids = source.CompressedIds();
+  std::vector<Result<RecordedImage>> images(std::min(kLookedAt, ids.size()),
                                             Error{ErrorKind::kInput, ""});
   pool.ForEach(images.size(), [&](size_t i) {
     if (is_interrupted()) return;
-    const auto index = static_cast<uint32_t>(i * light_field.size() / images.size());
-    const PixelRect rect = RectToRecord(light_field, LfImageId{index}, source.rects[index]);
-    images[i] = ReadRecordedImage(light_field, LfImageId{index}, rect);
+    const LfImageId id = ids[i * ids.size() / images.size()];
+    const PixelRect rect = RectToRecord(light_field, id, source.rects[id.value]);
+    images[i] = ReadRecordedImage(light_field, id, rect);
   });
   const auto psnr_at = [&](double threshold) {
     CodecSettings of_threshold = settings;

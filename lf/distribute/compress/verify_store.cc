@@ -41,7 +41,8 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
   std::mutex mutex;
   std::vector<std::unique_ptr<PackedCodeReader>> readers;
   size_t done = 0, verified = 0;
-  std::vector<std::optional<std::string>> faults(light_field.size());
+  const std::vector<LfImageId> ids = source.CompressedIds();
+  std::vector<std::optional<std::string>> faults(ids.size());
   const auto reader_of_thread = [&]() -> Result<std::unique_ptr<PackedCodeReader>> {
     {
       const std::lock_guard lock(mutex);
@@ -54,12 +55,12 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
     LF_ASSIGN_OR_RETURN(PackedCodeReader reader, PackedCodeReader::Open(options.store));
     return std::make_unique<PackedCodeReader>(std::move(reader));
   };
-  // Checks LF image i and its encoded image. The error says what is wrong with them.
-  const auto check = [&](uint32_t i) -> Result<void> {
-    const LfImageId id{i};
-    const PixelRect rect = RectToRecord(light_field, id, source.rects[i]);
+  // Checks an LF image and its encoded image. The error says what is wrong with them.
+  const auto check = [&](LfImageId id) -> Result<void> {
+    const PackedCode& code = codes[id.value];
+    const PixelRect rect = RectToRecord(light_field, id, source.rects[id.value]);
     const Result<RecordedImage> image = ReadRecordedImage(light_field, id, rect);
-    if (codes[i].bytes == 0) {
+    if (code.bytes == 0) {
       if (image)
         return InputError(
             "the image can be read, but is not in the store; make the store again with "
@@ -68,13 +69,13 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
     }
     LF_RETURN_IF_ERROR(image);
     LF_ASSIGN_OR_RETURN(std::unique_ptr<PackedCodeReader> reader, reader_of_thread());
-    const Result<PackedCodeReader::Bytes> bytes = reader->Read(codes[i]);
+    const Result<PackedCodeReader::Bytes> bytes = reader->Read(code);
     LF_RETURN_IF_ERROR(bytes);
     const CodedImage again = coder.Code(*image);
     DecodedPart decoded;
     LF_RETURN_IF_ERROR(DecodeImage(bytes->code, &decoded));
-    if (codes[i].rect != again.rect || codes[i].values != again.values ||
-        bytes->code != again.code || bytes->mask != again.mask)
+    if (code.rect != again.rect || code.values != again.values || bytes->code != again.code ||
+        bytes->mask != again.mask)
       return InputError(
           "the encoded image in the store differs from the image file; make the store again with "
           "--overwrite");
@@ -84,14 +85,13 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
     return {};
   };
   bool interrupted = false;
-  pool.ForEach(light_field.size(), [&](size_t i) {
+  pool.ForEach(ids.size(), [&](size_t i) {
     if (options.is_interrupted()) {
       const std::lock_guard lock(mutex);
       interrupted = true;
       return;
     }
-    if (const Result<void> result = check(static_cast<uint32_t>(i)); !result)
-      faults[i] = result.error().message;
+    if (const Result<void> result = check(ids[i]); !result) faults[i] = result.error().message;
     const std::lock_guard lock(mutex);
     progress(++done);
   });
@@ -101,7 +101,7 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
         fmt::format(
             "interrupted after {} of {} LF images were verified: the store is complete; call "
             "lfcompressor with --verify and without --overwrite to check all of it",
-            done, light_field.size())};
+            done, ids.size())};
   const auto count = std::count_if(faults.begin(), faults.end(),
                                    [](const auto& fault) { return fault.has_value(); });
   if (count == 0) return verified;
@@ -110,7 +110,7 @@ Result<size_t> VerifyStore(const CompressSource& source, const VerifyOptions& op
       faults.begin());
   return InputError(fmt::format(
       "{}: {} of {} LF images are wrong in the store; the first is {}: {}", options.store.string(),
-      count, light_field.size(), light_field.image_names[first], *faults[first]));
+      count, ids.size(), light_field.image_names[ids[first].value], *faults[first]));
 }
 
 uint64_t StoreBytes(const fs::path& store) {

@@ -364,7 +364,8 @@ Result<void> Preprocessor::MakePackage(size_t number, const Section& section, si
 
   const auto write_start = std::chrono::steady_clock::now();
   const std::string& name = report_.packages.back().name;
-  LF_RETURN_IF_ERROR(folder_->Add(name, package, {options_.version, options_.light_field_name}));
+  LF_RETURN_IF_ERROR(folder_->Add(
+      name, package, {options_.version, options_.light_field_name, options_.light_field_options}));
   report_.write_s += SecondsSince(write_start);
   LogDebug("{}: {} frames, {} LF images, {} neighbours: written in {:.2f} s",
            folder_->PathOf(name).string(), package.frames.size(),

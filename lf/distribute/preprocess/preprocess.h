@@ -64,6 +64,7 @@ struct PreprocessOptions {
   bool strict = false;               // true: a missing LF image is an error
   std::string version;               // version of the program
   std::string light_field_name;      // the argument LIGHTFIELD, as the user wrote it
+  std::vector<std::string> light_field_options;  // PackageSource::options
   const std::atomic<bool>* interrupted = nullptr;
 };
 

@@ -30,6 +30,7 @@ Result<std::unique_ptr<CodeChecker>> CodeChecker::Open(const LightField& light_f
 CodeChecker::Fault CodeChecker::Check(LfImageId id, bool decode) const {
   const PackedCode& code = codes_[id.value];
   const std::string name = light_field_.ImagePath(id).string();
+  if (code.is_left_out) return {.is_left_out = true};
   if (code.bytes == 0)
     return {true, fmt::format("{}: is not in the packed store, because it was missing or broken "
                               "when the store was made",

@@ -23,7 +23,8 @@ class CodeChecker {
   // The result of a check. `reason` is a message that names the LF image; "" if there is no fault.
   struct Fault {
     bool is_missing = false;  // true: the store lacks the LF image
-    std::string reason;
+    std::string reason = {};
+    bool is_left_out = false;  // true: it was left out of the store on purpose, which is no fault
   };
   // Checks one LF image. May be called by many threads at the same time.
   //   decode  false: checks only the entry in the store's table; true: also decodes image and mask

@@ -72,11 +72,13 @@ Result<ImageFaults> CheckImages(const LightField& light_field, const CheckOption
       findings[i] = CheckImage(light_field, codes.get(),
                                LfImageId{static_cast<uint32_t>(begin + i)}, options.check);
     });
-    for (size_t i = 0; i < count; ++i)
+    for (size_t i = 0; i < count; ++i) {
+      faults.left_out_count += findings[i].is_left_out ? 1 : 0;
       if (!findings[i].reason.empty())
         (findings[i].is_missing ? faults.missing : faults.broken)
             .push_back(
                 {LfImageId{static_cast<uint32_t>(begin + i)}, std::move(findings[i].reason)});
+    }
     if (options.progress) options.progress(begin + count, light_field.size());
   }
   return faults;

@@ -34,6 +34,9 @@ struct ImageFaults {
   // LF images whose header (with kPixels: whose pixels) cannot be read, or whose size differs from
   // the calibration.
   std::vector<ImageFault> broken;
+  // Number of LF images that a packed store left out on purpose, because packages did not need
+  // them. Their LF cameras are known.
+  size_t left_out_count = 0;
 };
 
 struct CheckOptions {

@@ -108,6 +108,12 @@ Result<LightField> OpenPackedStore(const fs::path& path, const OpenOptions& opti
                     path.string()));
   LogDebug("{}: opened as a packed store", path.string());
   LF_ASSIGN_OR_RETURN(PackedStoreFacts facts, ReadPackedStore(path));
+  if (facts.LacksCameras())
+    LogWarning(
+        "{}: an older program made this store from packages, and kept {} of {} LF cameras: a film "
+        "that is rendered without these packages has another order of LF images and other lens "
+        "weights than that of the whole light field; make the store again with lfcompressor",
+        path.string(), facts.light_field.size(), facts.whole.image_count);
   return std::move(facts.light_field);
 }
 

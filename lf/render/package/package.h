@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -71,11 +72,19 @@ struct PackageImage {
   uint64_t ray_count = 0;
 };
 
+// How the light field of a package was opened when the package was made.
+struct PackageSource {
+  std::filesystem::path light_field;  // the argument LIGHTFIELD: a calibration, folder or store
+  // Options of LIGHTFIELD and their values, as words of a command line; empty: none was given.
+  std::vector<std::string> options;
+};
+
 struct Package {
   std::string name;   // name of the package file without extension; empty if it has no file
   size_t number = 1;  // number of this package, from 1 to `count`
   size_t count = 1;   // number of packages of the film
   LightField light_field;
+  PackageSource source;
   // Ranks of the LF images of `light_field` in the order of the whole light field.
   ImagePlaces places;
   CameraPath path;                   // camera path of the whole film

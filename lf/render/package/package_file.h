@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "lf/core/result.h"
 #include "lf/render/package/package.h"
@@ -15,8 +16,9 @@ namespace lf {
 bool IsPackageName(const std::filesystem::path& path);
 
 struct PackageNotes {
-  std::string version;      // version of the program
-  std::string light_field;  // LIGHTFIELD, as the user gave it
+  std::string version;                           // version of the program
+  std::string light_field;                       // LIGHTFIELD, as the user gave it
+  std::vector<std::string> light_field_options = {};  // PackageSource::options
 };
 
 // Writes the package atomically. kOutput if it cannot be written; no file is left then.
@@ -37,8 +39,9 @@ struct ReadPackageOptions {
 // Reads a package. Its name is the file's name without extension. Package::light_field.folder is
 // the path that the folder of the LF images (or the packed store) had when the package was made. If
 // that path no longer exists, the path with the same position relative to the package is used
-// instead, so that a light field and its packages may be moved together. kInput: the file cannot be
-// read, is damaged, or has another version.
+// instead, so that a light field and its packages may be moved together. The same holds for
+// Package::source; packages of older programs do not state it, and get the folder. kInput: the file
+// cannot be read, is damaged, or has another version.
 Result<Package> ReadPackage(const std::filesystem::path& path,
                             const ReadPackageOptions& options = {});
 

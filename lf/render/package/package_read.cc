@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -58,7 +59,8 @@ class Reader {
   Result<void> ReadSurfaces();
   Result<RenderCamera> CameraIn(const Statement& row, int column, const std::string& of) const;
   Result<void> ReadSurroundings(const std::vector<double>& numbers, int64_t frame);
-  fs::path Folder() const;
+  fs::path PathOf(const std::string& key) const;
+  PackageSource Source() const;
 
   Database database_;
   const fs::path& path_;
@@ -69,7 +71,8 @@ class Reader {
 
 Result<void> Reader::ReadSettings() {
   LF_ASSIGN_OR_RETURN(settings_, Settings::Read(database_, kPackageFormat.name));
-  package_.light_field.folder = Folder();
+  package_.light_field.folder = PathOf("folder");
+  package_.source = Source();
   LF_RETURN_IF_ERROR(ReadPixelSettings(settings_, &package_.light_field));
   LF_ASSIGN_OR_RETURN(const uint64_t whole_count, settings_.Whole("light_field.images"));
   package_.whole = {whole_count, settings_.Text("light_field.names"),
@@ -121,17 +124,24 @@ Result<void> Reader::ReadChoices() {
   return {};
 }
 
-// Returns the path that the folder of the LF images, or the packed store, had when the package was
-// made. If it no longer exists, returns the path with the same position relative to the package, if
-// that exists.
-fs::path Reader::Folder() const {
-  const fs::path folder = settings_.Text("folder");
+// Returns the path that a file or folder had when the package was made. If it no longer exists,
+// returns the path with the same position relative to the package, if that exists.
+fs::path Reader::PathOf(const std::string& key) const {
+  const fs::path path = settings_.Text(key);
   std::error_code error;
-  if (fs::exists(folder, error)) return folder;
+  if (fs::exists(path, error)) return path;
   const fs::path from_here =
-      (fs::absolute(path_).parent_path() / settings_.Text("folder_from_package"))
+      (fs::absolute(path_).parent_path() / settings_.Text(key + "_from_package"))
           .lexically_normal();
-  return fs::exists(from_here, error) ? from_here : folder;
+  return fs::exists(from_here, error) ? from_here : path;
+}
+
+PackageSource Reader::Source() const {
+  if (settings_.Text("light_field.path").empty()) return {PathOf("folder"), {}};
+  PackageSource source{PathOf("light_field.path"), {}};
+  std::istringstream options(settings_.Text("light_field.options"));
+  for (std::string word; std::getline(options, word);) source.options.push_back(word);
+  return source;
 }
 
 // Reads LF images by ascending ids. This is their order in the package that was written.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <numeric>
@@ -44,8 +45,10 @@ class Writer {
     const auto absolute = [](const fs::path& path) {
       return fs::absolute(path.empty() ? "." : path).lexically_normal();
     };
+    const auto from_package = [&](const fs::path& path) {
+      return path.lexically_relative(absolute(final_path).parent_path()).string();
+    };
     const fs::path folder = absolute(light_field_.folder);
-    const fs::path from_package = folder.lexically_relative(absolute(final_path).parent_path());
     const PackageChoices& choices = package_.choices;
     SettingList settings = {{"written_by", "lfrendertools " + notes.version},
                             {"package", fmt::format("{} of {}", package_.number, package_.count)},
@@ -54,7 +57,14 @@ class Writer {
                             {"light_field.names", package_.whole.names},
                             {"light_field.calibration", package_.whole.calibration},
                             {"folder", folder.string()},
-                            {"folder_from_package", from_package.string()}};
+                            {"folder_from_package", from_package(folder)}};
+    if (!notes.light_field.empty()) {
+      const fs::path source = absolute(notes.light_field);
+      settings.emplace_back("light_field.path", source.string());
+      settings.emplace_back("light_field.path_from_package", from_package(source));
+      settings.emplace_back("light_field.options",
+                            fmt::format("{}", fmt::join(notes.light_field_options, "\n")));
+    }
     const SettingList pixels = SettingsOfPixels(light_field_);
     const SettingList of_choices = {
         {"order", NameOf(choices.order)},

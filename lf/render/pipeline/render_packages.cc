@@ -56,9 +56,7 @@ Result<void> CheckCodes(const fs::path& path, const Package& package) {
   for (size_t i = 0; i < package.images.size(); ++i) {
     if (package.images[i].frame_count == 0) continue;
     ++needed;
-    const PixelRect& rect = package.images[i].rect;
-    const PackedCode& code = (*codes)[i];
-    if (code.is_listed() && (code.bytes == 0 || Intersection(code.rect, rect) == rect)) continue;
+    if ((*codes)[i].Keeps(package.images[i].rect)) continue;
     if (missing++ == 0) first = light_field.image_names[i];
   }
   if (missing == 0) return {};

@@ -33,11 +33,12 @@ std::string TextOf(const PixelRect& rect) {
 
 // Returns kInput if the store does not list the LF image, or lists it without encoded pixels.
 Result<void> CheckListed(const PackedCode& code, const LightField& light_field, LfImageId id) {
-  if (!code.is_listed())
-    return InputError(
-        fmt::format("{}: is not in the packed store: make the store again with lfcompressor, from "
-                    "the whole light field or from all packages that are rendered",
-                    light_field.ImagePath(id).string()));
+  if (!code.is_listed() || code.is_left_out)
+    return InputError(fmt::format(
+        "{}: is not in the packed store{}: make the store again with lfcompressor, from the whole "
+        "light field or from all packages that are rendered",
+        light_field.ImagePath(id).string(),
+        code.is_left_out ? ", because no package needed it when the store was made" : ""));
   if (code.bytes == 0)
     return InputError(fmt::format(
         "{}: is not in the packed store, because it was missing or broken when the store was made: "
@@ -131,12 +132,9 @@ bool PackedStore::IsPartial() const {
 }
 
 bool PackedStore::Keeps(LfImageId id, const PixelRect& rect) const {
-  const PackedCode& code = codes_[id.value];
-  if (!code.is_listed()) return false;
   const Intrinsics& k = light_field_.intrinsics[light_field_.cameras[id.value].intrinsics_index];
   const PixelRect read = mosaics_ == Mosaics::kToRgb ? RectToRecord(light_field_, id, rect) : rect;
-  const PixelRect inside = Intersection(read, {0, 0, k.width_px, k.height_px});
-  return code.bytes == 0 || inside.empty() || Intersection(inside, code.rect) == inside;
+  return codes_[id.value].Keeps(Intersection(read, {0, 0, k.width_px, k.height_px}));
 }
 
 Result<void> PackedStore::Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const {

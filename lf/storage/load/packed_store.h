@@ -37,10 +37,10 @@ class PackedStore : public LfImageStore {
   // image: the image is not in the store, the pixels lie beyond those that were encoded, or the
   // store is damaged.
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override;
-  // An LF image that is listed without encoded pixels was missing or broken when the store was
-  // made. It does not count as left out on purpose.
   bool LoadsDepths() const override { return densified_.has_value(); }
   bool IsPartial() const override;
+  // As PackedCode::Keeps(). The pixels of a mosaic that is loaded as RGB include those beside
+  // `rect`, of which colours are made.
   bool Keeps(LfImageId id, const PixelRect& rect) const override;
   // Returns true if the store's table lists encoded pixels.
   bool IsThere(LfImageId id) const override { return codes_[id.value].bytes > 0; }

@@ -437,6 +437,25 @@ TEST_F(PackedStoreTest, ImagesWithoutACodeAreTold) {
   EXPECT_NE(ErrorOf(*store, {2}).find("image2.png: is not in the packed store"), std::string::npos);
 }
 
+TEST_F(PackedStoreTest, ImagesThatWereLeftOutAreNotKept) {
+  AddImages<uint8_t>(3);
+  {
+    PackedStorePlan plan;
+    plan.rects.assign(field_.size(), kPackedWhole);
+    plan.rects[2] = {};
+    PackedStoreWriter writer = PackedStoreWriter::Create(path_, field_, plan).value();
+    ASSERT_TRUE(writer.Finish());
+  }
+  packed_ = ReadPackedStore(path_).value().light_field;
+  const auto store = Opened();
+  EXPECT_TRUE(store->IsPartial());
+  EXPECT_FALSE(store->IsThere({2}));
+  EXPECT_FALSE(store->Keeps({2}, {0, 0, 1, 1}));
+  EXPECT_TRUE(store->Keeps({2}, {50, 50, 60, 60}));  // beyond the image
+  EXPECT_TRUE(store->Keeps({1}, kPackedWhole));      // could not be read, and is skipped
+  EXPECT_NE(ErrorOf(*store, {2}).find("no package needed it"), std::string::npos);
+}
+
 TEST_F(PackedStoreTest, LevelsBeyondTheBitsAreAnError) {
   AddImages<uint8_t>(3);
   Pack();

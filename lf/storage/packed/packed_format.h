@@ -42,6 +42,10 @@ inline constexpr const char* kDensifiedTables = R"(
 create table virtual_images (id integer primary key);
 create table planes (id integer, kind text, plane blob not null, primary key (id, kind));)";
 inline constexpr const char* kVirtualTable = "virtual_images";
+
+// Further table of a store that leaves out LF images on purpose. A densified store leaves out none.
+inline constexpr const char* kLeftOutName = "left_out";
+inline constexpr const char* kLeftOutTable = "create table left_out (id integer primary key);";
 // Setting that only a densified store has.
 inline constexpr const char* kDensifiedKey = "densified";
 
@@ -49,9 +53,10 @@ inline constexpr const char* kDensifiedKey = "densified";
 // has shards.
 inline Result<Database> OpenStoreDatabase(const std::filesystem::path& path) {
   const std::string tables = fmt::format("{}{}{}", kSettingsTable, kIntrinsicsTable, kStoreTables);
-  return Database::Open(path, kStoreFormat,
-                        {tables + kBlobsTable, tables, tables + kBlobsTable + kDensifiedTables,
-                         tables + kDensifiedTables});
+  return Database::Open(
+      path, kStoreFormat,
+      {tables + kBlobsTable, tables, tables + kBlobsTable + kDensifiedTables,
+       tables + kDensifiedTables, tables + kBlobsTable + kLeftOutTable, tables + kLeftOutTable});
 }
 inline Result<Database> OpenShardDatabase(const std::filesystem::path& path) {
   return Database::Open(path, kShardFormat, {fmt::format("{}{}", kSettingsTable, kBlobsTable)});

@@ -28,27 +28,30 @@ Result<LightFieldIdentity> WholeIdentity(const Settings& settings) {
                             settings.Text("light_field.calibration")};
 }
 
-// Returns for each LF image below `image_count` if the store marks it as virtual; empty if the
-// store is not densified.
-Result<std::vector<bool>> ReadVirtual(OpenedStore* store, size_t image_count) {
-  LF_ASSIGN_OR_RETURN(const bool is_densified, HasTable(&store->database, kVirtualTable));
-  std::vector<bool> is_virtual(is_densified ? image_count : 0);
-  if (!is_densified) return is_virtual;
-  LF_RETURN_IF_ERROR(ForEachRow(
-      store->database, "select id from virtual_images", [&](const Statement& row) -> Result<void> {
-        LF_ASSIGN_OR_RETURN(const int64_t id,
-                            row.Integer(0, 0, static_cast<int64_t>(image_count) - 1));
-        is_virtual[static_cast<size_t>(id)] = true;
-        return {};
-      }));
-  return is_virtual;
+// Returns for each LF image below `image_count` if the table, which has one column of ids, lists
+// it; empty if the store has no such table.
+Result<std::vector<bool>> ReadMarks(OpenedStore* store, const std::string& table,
+                                    size_t image_count) {
+  LF_ASSIGN_OR_RETURN(const bool is_there, HasTable(&store->database, table));
+  std::vector<bool> marks(is_there ? image_count : 0);
+  if (!is_there) return marks;
+  LF_RETURN_IF_ERROR(ForEachRow(store->database, fmt::format("select id from {}", table),
+                                [&](const Statement& row) -> Result<void> {
+                                  LF_ASSIGN_OR_RETURN(
+                                      const int64_t id,
+                                      row.Integer(0, 0, static_cast<int64_t>(image_count) - 1));
+                                  marks[static_cast<size_t>(id)] = true;
+                                  return {};
+                                }));
+  return marks;
 }
 
 // Sets LfCamera::is_virtual, and checks that exactly the recorded LF images have a number in the
 // whole light field.
 Result<void> MarkVirtual(OpenedStore* store, PackedStoreFacts* facts) {
   LightField& light_field = facts->light_field;
-  LF_ASSIGN_OR_RETURN(const std::vector<bool> is_virtual, ReadVirtual(store, light_field.size()));
+  LF_ASSIGN_OR_RETURN(const std::vector<bool> is_virtual,
+                      ReadMarks(store, kVirtualTable, light_field.size()));
   for (size_t i = 0; i < light_field.size(); ++i) {
     light_field.cameras[i].is_virtual = !is_virtual.empty() && is_virtual[i];
     if (light_field.cameras[i].is_virtual != (facts->whole_ids[i] == kNoWholeId))
@@ -134,8 +137,16 @@ Result<std::vector<PackedCode>> ReadCodes(OpenedStore* store) {
         codes[code.id] = code;
         return {};
       }));
-  LF_ASSIGN_OR_RETURN(const std::vector<bool> is_virtual, ReadVirtual(store, codes.size()));
+  LF_ASSIGN_OR_RETURN(const std::vector<bool> is_virtual,
+                      ReadMarks(store, kVirtualTable, codes.size()));
   for (size_t i = 0; i < is_virtual.size(); ++i) codes[i].is_virtual = is_virtual[i];
+  LF_ASSIGN_OR_RETURN(const std::vector<bool> is_left_out,
+                      ReadMarks(store, kLeftOutName, codes.size()));
+  for (size_t i = 0; i < is_left_out.size(); ++i) {
+    codes[i].is_left_out = is_left_out[i];
+    if (codes[i].is_left_out && codes[i].bytes > 0)
+      return store->settings.Damaged(fmt::format("LF image {} is both encoded and left out", i));
+  }
   return codes;
 }
 
@@ -224,6 +235,9 @@ Result<PackedStoreFacts> ReadPackedStore(const fs::path& path) {
   LF_ASSIGN_OR_RETURN(light_field.intrinsics, ReadIntrinsics(settings, &store.database));
   LF_RETURN_IF_ERROR(ReadImages(&store, &facts));
   LF_ASSIGN_OR_RETURN(facts.densified, ReadDensified(&store));
+  LF_ASSIGN_OR_RETURN(const std::vector<bool> left_out,
+                      ReadMarks(&store, kLeftOutName, light_field.size()));
+  facts.left_out_count = static_cast<size_t>(std::count(left_out.begin(), left_out.end(), true));
   // Checks all shards now, so that a missing one is found before the first LF image is loaded.
   for (int number = 1; number <= static_cast<int>(facts.shard_count); ++number)
     LF_RETURN_IF_ERROR(OpenShardOf(path, settings.Text("store"), number));

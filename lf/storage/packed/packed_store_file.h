@@ -64,6 +64,11 @@ struct PackedStoreFacts {
   std::string written_by;
   std::optional<DensifiedPlan> densified;  // set if the store is densified
   size_t shard_count = 0;  // number of shards; 0: the encoded images are in the store's file itself
+  size_t left_out_count = 0;  // number of LF images that were left out on purpose
+
+  // Returns true if the store was made by a program that kept only the LF cameras of the LF images
+  // that packages need.
+  bool LacksCameras() const { return !densified && light_field.size() < whole.image_count; }
 };
 
 // Reads everything in a packed store but the encoded images. kInput: the file cannot be read, is no
@@ -100,12 +105,20 @@ struct PackedCode {
   uint32_t id = kNotListed;  // id of the LF image in the store
   uint16_t shard = 0;        // number of the shard that has the image; 0: the store's file
   StoredValues values = StoredValues::kUint8;
-  bool is_virtual = false;  // true if the store marks the LF image as virtual
-  PixelRect rect;           // pixels of the LF image that are encoded
+  bool is_virtual : 1 = false;   // true if the store marks the LF image as virtual
+  bool is_left_out : 1 = false;  // true if the LF image was left out of the store on purpose
+  PixelRect rect;                // pixels of the LF image that are encoded
   uint64_t bytes = 0;  // size of the encoded pixels and mask; 0: the store lacks them, because the
-                       // LF image could not be read
+                       // LF image could not be read, or was left out
 
   bool is_listed() const { return id != kNotListed; }
+  // Returns false if the store was made without some of the pixels `wanted`. An LF image that could
+  // not be read then counts as kept, because it is skipped like a broken file.
+  bool Keeps(const PixelRect& wanted) const {
+    if (!is_listed()) return false;
+    if (wanted.empty()) return true;
+    return !is_left_out && (bytes == 0 || Intersection(rect, wanted) == wanted);
+  }
 };
 static_assert(sizeof(PackedCode) == 32);
 

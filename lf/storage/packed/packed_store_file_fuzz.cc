@@ -25,6 +25,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size_bytes) {
     const lf::LightField& field = facts->light_field;
     LF_CHECK(field.size() > 0 && facts->whole_ids.size() == field.size());
     LF_CHECK(facts->densified || !lf::HasVirtual(field));
+    LF_CHECK(facts->left_out_count <= field.size());
     for (const lf::LfCamera& camera : field.cameras) {
       LF_CHECK(camera.intrinsics_index < field.intrinsics.size());
       LF_CHECK(camera.cam_from_world.translation.allFinite());
@@ -39,6 +40,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size_bytes) {
   auto reader = lf::PackedCodeReader::Open(path);
   if (codes && reader)
     for (const lf::PackedCode& code : *codes) {
+      LF_CHECK(!code.is_left_out || (code.bytes == 0 && !code.Keeps({0, 0, 1, 1})));
       if (code.bytes == 0) continue;
       const auto bytes = reader->Read(code);
       LF_CHECK(bytes || !bytes.error().message.empty());

@@ -3,13 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <mutex>
 #include <optional>
-#include <random>
 #include <string_view>
 #include <system_error>
-#include <unordered_map>
 #include <utility>
 
 #include "lf/core/check.h"
@@ -18,8 +17,8 @@
 #include "lf/storage/packed/packed_format.h"
 #include "lf/storage/packed/plan_settings.h"
 #include "lf/storage/packed/plane_table.h"
+#include "lf/storage/packed/store_tables.h"
 #include "lf/storage/packed/unfinished_files.h"
-#include "lf/storage/tables/calibration_tables.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -28,83 +27,14 @@ namespace {
 constexpr size_t kImagesPerBatch = 64;
 constexpr std::chrono::seconds kBatchAge{2};
 
-// Returns a random id, by which a store and its shards are recognized as parts of one store.
-std::string NewStoreId() {
-  std::random_device random;
-  return fmt::format("{:08x}{:08x}", random(), random());
-}
-
-Result<void> WriteImages(const LightField& light_field, const PackedStorePlan& plan,
-                         Database* database) {
-  LF_ASSIGN_OR_RETURN(
-      Statement insert,
-      database->Prepare("insert into lf_images values (?, ?, ?, ?, ?, ?, ?, ?, ?)"));
-  for (uint32_t i = 0; i < light_field.size(); ++i) {
-    insert.Bind(0, int64_t{i});
-    if (light_field.cameras[i].is_virtual)
-      insert.BindNull(1);
-    else
-      insert.Bind(1, int64_t{plan.whole_ids.empty() ? i : plan.whole_ids[i]});
-    insert.Bind(2, std::string_view(light_field.image_names[i]));
-    BindCamera(light_field, LfImageId{i}, 3, &insert);
-    LF_RETURN_IF_ERROR(insert.Run());
-  }
-  return {};
-}
-
-// Writes the list of virtual LF images.
-Result<void> WriteVirtual(const LightField& light_field, Database* database) {
-  LF_ASSIGN_OR_RETURN(Statement insert, database->Prepare("insert into virtual_images values (?)"));
-  for (uint32_t i = 0; i < light_field.size(); ++i)
-    if (light_field.cameras[i].is_virtual) LF_RETURN_IF_ERROR(insert.Bind(0, int64_t{i}).Run());
-  return {};
-}
-
-// Checks that only a densified store has virtual LF images. kUsage: one has the name of another LF
-// image, by which packages would confuse the two.
-Result<void> CheckVirtual(const LightField& light_field, const PackedStorePlan& plan) {
-  LF_CHECK(plan.densified || !HasVirtual(light_field));
-  LF_CHECK(!plan.densified || !plan.densified->settings.empty());
-  LF_CHECK(plan.whole_ids.empty() || plan.whole_ids.size() == light_field.size());
-  std::unordered_map<std::string_view, int> uses;
-  for (uint32_t i = 0; i < light_field.size(); ++i) {
-    const bool is_virtual = light_field.cameras[i].is_virtual;
-    if (is_virtual) ++uses[light_field.image_names[i]];
-    LF_CHECK(plan.whole_ids.empty() || is_virtual == (plan.whole_ids[i] == kNoWholeId));
-  }
-  for (uint32_t i = 0; i < light_field.size(); ++i)
-    if (const auto use = uses.find(light_field.image_names[i]);
-        use != uses.end() && use->second > (light_field.cameras[i].is_virtual ? 1 : 0))
-      return UsageError(
-          fmt::format("two LF images, of which one is virtual, have the name '{}': rename the one "
-                      "that is recorded",
-                      use->first));
-  return {};
-}
-
 Result<bool> HasTables(Database* database) { return HasTable(database, "settings"); }
 
-// Makes all tables of a store in one transaction, so that a program that is killed here leaves all
-// tables or none.
-Result<void> MakeTables(const LightField& light_field, const PackedStorePlan& plan,
-                        Database* database) {
-  LF_RETURN_IF_ERROR(database->Execute(fmt::format(
-      "begin; {}{}{}{}{}", kSettingsTable, kIntrinsicsTable, kStoreTables,
-      plan.shard_bytes > 0 ? "" : kBlobsTable, plan.densified ? kDensifiedTables : "")));
-  LF_RETURN_IF_ERROR(WriteSettings({{"written_by", "lfrendertools " + plan.version},
-                                    {"light_field", plan.source},
-                                    {"state", kUnfinished},
-                                    {"store", NewStoreId()},
-                                    {"shards", "0"}},
-                                   database));
-  LF_RETURN_IF_ERROR(WriteSettings(SettingsOfPlan(light_field, plan), database));
-  LF_RETURN_IF_ERROR(WriteIntrinsics(light_field.intrinsics, database));
-  LF_RETURN_IF_ERROR(WriteImages(light_field, plan, database));
-  if (plan.densified) LF_RETURN_IF_ERROR(WriteVirtual(light_field, database));
-  return database->Execute("commit");
-}
-
 }  // namespace
+
+bool PackedStorePlan::LeavesOut() const {
+  return std::any_of(rects.begin(), rects.end(),
+                     [](const PixelRect& rect) { return rect.empty(); });
+}
 
 struct PackedStoreWriter::State {
   fs::path path;
@@ -338,7 +268,7 @@ Result<PackedStoreWriter> PackedStoreWriter::Open(const fs::path& path,
                                                   const PackedStorePlan& plan,
                                                   std::optional<FileLock> lock) {
   LF_CHECK(light_field.size() > 0);
-  LF_RETURN_IF_ERROR(CheckVirtual(light_field, plan));
+  LF_RETURN_IF_ERROR(CheckPlan(light_field, plan));
   auto state = std::make_unique<State>();
   state->path = path;
   if (lock) {
@@ -358,7 +288,7 @@ Result<PackedStoreWriter> PackedStoreWriter::Open(const fs::path& path,
   LF_ASSIGN_OR_RETURN(Database database,
                       Database::OpenToAppend(UnfinishedPath(path), kStoreFormat));
   LF_ASSIGN_OR_RETURN(const bool has_tables, HasTables(&database));
-  if (!has_tables) LF_RETURN_IF_ERROR(MakeTables(light_field, plan, &database));
+  if (!has_tables) LF_RETURN_IF_ERROR(MakeStoreTables(light_field, plan, &database));
   LF_ASSIGN_OR_RETURN(const Settings settings, Settings::Read(database, kStoreFormat.name));
   if (const auto difference = FirstDifference(settings, light_field, plan, false))
     return UsageError(

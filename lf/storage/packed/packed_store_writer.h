@@ -26,8 +26,10 @@ struct PackedStorePlan {
   // Id of each LF image in `whole`; kNoWholeId for virtual ones. Empty: 0, 1, 2, ..., and
   // kNoWholeId for virtual ones.
   std::vector<uint32_t> whole_ids;
-  std::vector<PixelRect> rects;  // pixels of each LF image that are encoded; empty: all pixels
-  std::string codec;             // all settings of the encoder, in words
+  // Pixels of each LF image that are encoded. An empty rectangle: the LF image is left out on
+  // purpose, and its LF camera alone is kept. No rectangles: all pixels of all LF images.
+  std::vector<PixelRect> rects;
+  std::string codec;                                 // all settings of the encoder, in words
   std::optional<DisplayLevels> display_levels = {};  // set if images are encoded as kDisplay16
   // Size of a shard. If it is not 0, the encoded images are in STORE-0001.lfs, STORE-0002.lfs, ...
   // of about this size, beside STORE.lfs, which has everything else. 0: the store is one file.
@@ -38,6 +40,9 @@ struct PackedStorePlan {
   // resumed.
   std::string source;   // LIGHTFIELD or packages, as the user gave them
   std::string version;  // version of the program
+
+  // Returns true if any LF image is left out.
+  bool LeavesOut() const;
 };
 
 // One encoded LF image, which PackedStoreWriter::Add() writes.
@@ -90,10 +95,11 @@ class PackedStoreWriter {
   // other LF images.
   uint64_t SourceBytes(LfImageId id) const;
 
-  // Adds an LF image that the store does not have. Commits if 64 LF images were added since the
-  // last commit, or if the first of these was added at least 2 s ago. May be called by many threads
-  // at the same time. kOutput: the disk fails; no LF image can be added afterwards. kUsage: a file
-  // that does not belong to the store has the name of the next shard.
+  // Adds an LF image that the store does not have and that the plan does not leave out. Commits if
+  // 64 LF images were added since the last commit, or if the first of these was added at least 2 s
+  // ago. May be called by many threads at the same time. kOutput: the disk fails; no LF image can
+  // be added afterwards. kUsage: a file that does not belong to the store has the name of the next
+  // shard.
   Result<void> Add(LfImageId id, const CodedImage& image);
 
   // The functions of planes are for densified stores. They may be called by many threads at the

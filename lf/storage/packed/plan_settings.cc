@@ -94,8 +94,13 @@ std::optional<std::string> FirstDifference(const Settings& settings, const Light
                                            const PackedStorePlan& plan, bool any_shards) {
   if (!plan.densified && !settings.Text(kDensifiedKey).empty())
     return TextOfDifference(kDensifiedKey, settings.Text(kDensifiedKey), "");
+  // Older stores do not state the footprint that the pixels show.
+  const auto is_free = [&](const std::string& key) {
+    return (any_shards && key == "shard_bytes") ||
+           (key == "footprint" && settings.Text(key).empty());
+  };
   for (const auto& [key, value] : SettingsOfPlan(light_field, plan))
-    if (settings.Text(key) != value && !(any_shards && key == "shard_bytes"))
+    if (settings.Text(key) != value && !is_free(key))
       return TextOfDifference(key, settings.Text(key), value);
   return {};
 }
