@@ -172,6 +172,48 @@ class DensifyTest(ProgramTestCase):
             self.densify("--resume", store=again)
         self.assertEqual(contents(self.store), contents(again))
 
+    # Packed stores
+
+    def pack(self, profile):
+        store = self.folder / f"{profile}.lfs"
+        self.succeeds(COMPRESSOR, self.field, "-o", store, "--profile", profile)
+        return store
+
+    def test_a_packed_store_is_densified_to_the_bits_of_its_image_files(self):
+        for options in (), ("--bayer",):
+            with self.subTest(options=options):
+                shutil.rmtree(self.field, ignore_errors=True)
+                self.synth(*options)
+                self.densify("--overwrite")
+                dense = self.folder / "of_store.lfs"
+                self.succeeds(DENSIFY, self.pack("lossless"), "-o", dense, "--most", 60, "--overwrite")
+                self.assertEqual(contents(dense), contents(self.store))
+                (self.folder / "lossless.lfs").unlink()
+
+    def test_the_encoded_images_of_a_lossy_store_are_copied(self):
+        for options in (), ("--bayer",):  # linear values of 16 bits are encoded along a curve
+            with self.subTest(options=options):
+                shutil.rmtree(self.field, ignore_errors=True)
+                self.synth(*options)
+                lossy, dense = self.pack("default"), self.folder / "of_store.lfs"
+                self.succeeds(DENSIFY, lossy, "-o", dense, "--most", 60, "--overwrite")
+                virtual = {row[0]: row[1:] for row in contents(dense)[0]}
+                with sqlite3.connect(f"file:{lossy}?immutable=1", uri=True) as database:
+                    for id, code, mask in database.execute("select id, code, mask from blobs"):
+                        self.assertEqual(virtual[id], (code, mask))
+                path = self.write_path()
+                self.densify("--overwrite")
+                guard = ("--no-guard",) if options else ()
+                self.assertGreater(psnr(self.render(dense, path, *guard), self.render(self.store, path, *guard)), 38)
+                lossy.unlink()
+
+    def test_a_store_is_not_written_over_itself(self):
+        self.synth()
+        store = self.pack("lossless")
+        before = store.read_bytes()
+        self.fails(2, ["is the packed store that is densified"], DENSIFY, store, "-o", store, "--overwrite")
+        self.assertEqual(store.read_bytes(), before)
+
     def test_a_broken_lf_image_is_left_out_and_named(self):
         self.synth()
         broken = next(self.field.rglob("*.exr"))

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <memory>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <utility>
 
 #include "lf/core/log.h"
 #include "lf/densify/depth_plane.h"
 #include "lf/densify/folded_poses.h"
+#include "lf/densify/recorded_codes.h"
 #include "lf/densify/recorded_values.h"
 #include "lf/densify/stored_planes.h"
 #include "lf/densify/synthesis.h"
@@ -92,6 +94,7 @@ class Densifier {
   using Loaded = std::vector<std::shared_ptr<const WorkingImage>>;
 
   Result<void> CheckTarget() const;
+  Result<void> FindWhole();
   Result<void> LeaveOutBroken();
   Result<void> CheckPoses();
   Result<void> Test();
@@ -103,7 +106,7 @@ class Densifier {
   Result<void> AddRecorded(LfImageId id);
   Result<void> AddVirtual(const RecordedValues& values, size_t i);
   // Makes kind_ hold the values of a recorded LF image.
-  void Hold(const RecordedImage& image);
+  void Hold(const StoredKind& kind);
   Result<Loaded> Load(std::span<const uint32_t> ids);
   // Calls body(i) for each i on all threads, until a call fails or the user interrupts, and shows
   // progress.
@@ -113,13 +116,14 @@ class Densifier {
     return WorkingCamera(light_field_.Camera(LfImageId{id}), options_.choices.divisor);
   }
 
-  const LightFieldIdentity whole_;
-  LightField light_field_;  // without broken LF images
+  LightFieldIdentity whole_;  // a packed store's is that of the light field that it was made from
+  LightField light_field_;    // without broken LF images
   const DensifyOptions& options_;
   ThreadPool& pool_;
   const std::function<void(const DensifyProgress&)>& progress_;
 
   std::unique_ptr<LfImageStore> store_;
+  std::unique_ptr<RecordedCodes> recorded_;
   std::unique_ptr<WorkingImages> images_;
   std::vector<uint32_t> whole_ids_;  // number of each LF image in the whole light field
   DensifyPlan plan_;
@@ -171,6 +175,10 @@ Result<Densifier::Loaded> Densifier::Load(std::span<const uint32_t> ids) {
 Result<void> Densifier::CheckTarget() const {
   const std::filesystem::path& store = options_.store;
   LF_ASSIGN_OR_RETURN(const bool is_there, IsStoreThere(store));
+  std::error_code error;
+  if (is_there && std::filesystem::equivalent(store, light_field_.folder, error))
+    return UsageError(fmt::format("-o {}: is the packed store that is densified: give another name",
+                                  store.string()));
   if (options_.overwrite) return {};
   if (is_there && !options_.resume)
     return UsageError(
@@ -183,9 +191,26 @@ Result<void> Densifier::CheckTarget() const {
   return {};
 }
 
-// Loads every LF image once, and removes those that cannot be read.
+// Finds the numbers that LF images have in the whole light field.
+Result<void> Densifier::FindWhole() {
+  whole_ids_.resize(light_field_.size());
+  std::iota(whole_ids_.begin(), whole_ids_.end(), 0U);
+  if (!HoldsPackedStore(light_field_)) return {};
+  LF_ASSIGN_OR_RETURN(PackedStoreFacts facts, ReadPackedStore(light_field_.folder));
+  whole_ = facts.whole;
+  whole_ids_ = std::move(facts.whole_ids);
+  return {};
+}
+
+// Loads every LF image once, and removes those that cannot be read. kInput: the light field is a
+// packed store that left out pixels on purpose.
 Result<void> Densifier::LeaveOutBroken() {
   LF_ASSIGN_OR_RETURN(store_, OpenStore(light_field_, Mosaics::kToRgb));
+  if (store_->IsPartial())
+    return InputError(
+        fmt::format("{}: this packed store has only the pixels that packages need: densify the "
+                    "light field that it was made from",
+                    light_field_.folder.string()));
   std::vector<std::string> reasons(light_field_.size());
   LF_RETURN_IF_ERROR(ForEach("checking LF images", light_field_.size(), [&](size_t i) {
     const LfImageId id{static_cast<uint32_t>(i)};
@@ -199,10 +224,11 @@ Result<void> Densifier::LeaveOutBroken() {
     return Result<void>();
   }));
   std::vector<size_t> kept;
+  std::vector<uint32_t> whole_ids;
   for (size_t i = 0; i < reasons.size(); ++i) {
     if (reasons[i].empty()) {
       kept.push_back(i);
-      whole_ids_.push_back(static_cast<uint32_t>(i));
+      whole_ids.push_back(whole_ids_[i]);
     } else {
       report_.skipped.push_back({light_field_.image_names[i], reasons[i]});
     }
@@ -212,6 +238,7 @@ Result<void> Densifier::LeaveOutBroken() {
     return InputError(fmt::format("none of the {} LF images can be read; the first: {}",
                                   light_field_.size(), report_.skipped.front().reason));
   KeepImages(kept, &light_field_);
+  whole_ids_ = std::move(whole_ids);
   LF_ASSIGN_OR_RETURN(store_, OpenStore(light_field_, Mosaics::kToRgb));
   return {};
 }
@@ -269,7 +296,7 @@ Result<void> Densifier::OpenWriter() {
   plan.whole = whole_;
   plan.whole_ids = whole_ids_;
   plan.whole_ids.resize(all_.size(), kNoWholeId);
-  plan.codec = std::string(kLosslessCodec);
+  recorded_->Describe(&plan);
   plan.densified = DensifiedPlan{SettingsInWords(plan_, options_.choices), plan_.range.least,
                                  plan_.range.greatest, options_.choices.divisor};
   plan.source = options_.source_name;
@@ -366,22 +393,21 @@ Result<void> Densifier::RefineAll() {
   });
 }
 
-void Densifier::Hold(const RecordedImage& image) {
+void Densifier::Hold(const StoredKind& kind) {
   const std::lock_guard lock(mutex_);
-  kind_ = KindToHold(kind_, {image.values, image.layout});
+  kind_ = KindToHold(kind_, kind);
 }
 
 Result<void> Densifier::AddRecorded(LfImageId id) {
-  const bool is_added = writer_->Has(id);
-  const Intrinsics& k = light_field_.Camera(id).intrinsics;
-  const PixelRect whole = {0, 0, k.width_px, k.height_px}, a_few = {0, 0, 2, 2};
-  LF_ASSIGN_OR_RETURN(const RecordedImage image,
-                      ReadRecordedImage(light_field_, id, is_added ? a_few : whole));
-  Hold(image);
-  if (is_added) return {};
-  CodecSettings settings;
-  settings.profile = CodecProfile::kLossless;
-  return writer_->Add(id, CodeOf(image, settings));
+  if (writer_->Has(id)) {
+    LF_ASSIGN_OR_RETURN(const StoredKind kind, recorded_->KindOf(id));
+    Hold(kind);
+    return {};
+  }
+  LF_ASSIGN_OR_RETURN(const CodedImage image, recorded_->Of(id));
+  LF_ASSIGN_OR_RETURN(const StoredKind kind, KindOfCode(image));
+  Hold(kind);
+  return writer_->Add(id, image);
 }
 
 Result<void> Densifier::AddVirtual(const RecordedValues& values, size_t i) {
@@ -412,7 +438,9 @@ Result<void> Densifier::AddVirtual(const RecordedValues& values, size_t i) {
 Result<DensifyReport> Densifier::Run() {
   LF_RETURN_IF_ERROR(CheckKind(light_field_));
   LF_RETURN_IF_ERROR(CheckTarget());
+  LF_RETURN_IF_ERROR(FindWhole());
   LF_RETURN_IF_ERROR(LeaveOutBroken());
+  LF_ASSIGN_OR_RETURN(recorded_, RecordedCodes::Open(light_field_));
   LF_RETURN_IF_ERROR(CheckCount(light_field_));
   images_ = std::make_unique<WorkingImages>(light_field_, *store_, options_.choices.divisor,
                                             options_.memory_bytes);

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lf/densify/recorded_codes.h"
+
+#include <algorithm>
+
+#include "lf/storage/load/recorded_image.h"
+
+namespace lf {
+
+Result<StoredKind> KindOfCode(const CodedImage& image) {
+  LF_ASSIGN_OR_RETURN(const CodeInfo info, ReadCodeInfo(image.code));
+  const bool is_on_curve = image.values == StoredValues::kDisplay16;
+  return StoredKind{is_on_curve ? StoredValues::kUint16 : image.values, info.layout};
+}
+
+Result<std::unique_ptr<RecordedCodes>> RecordedCodes::Open(const LightField& light_field) {
+  std::unique_ptr<RecordedCodes> recorded(new RecordedCodes(light_field));
+  if (!HoldsPackedStore(light_field)) return recorded;
+  LF_ASSIGN_OR_RETURN(recorded->codec_, ReadCodecSettings(light_field.folder));
+  LF_ASSIGN_OR_RETURN(recorded->codes_, FindCodes(light_field.folder, light_field));
+  LF_ASSIGN_OR_RETURN(recorded->reader_, PackedCodeReader::Open(light_field.folder));
+  if (std::any_of(recorded->codes_.begin(), recorded->codes_.end(),
+                  [](const PackedCode& code) { return code.values == StoredValues::kDisplay16; })) {
+    LF_ASSIGN_OR_RETURN(recorded->display_levels_, ReadDisplayLevels(light_field.folder));
+  }
+  return recorded;
+}
+
+Result<CodedImage> RecordedCodes::Of(LfImageId id) const {
+  if (codes_.empty()) {
+    const Intrinsics& k = light_field_.Camera(id).intrinsics;
+    LF_ASSIGN_OR_RETURN(const RecordedImage image,
+                        ReadRecordedImage(light_field_, id, {0, 0, k.width_px, k.height_px}));
+    CodecSettings settings;
+    settings.profile = CodecProfile::kLossless;
+    return CodeOf(image, settings);
+  }
+  const PackedCode& code = codes_[id.value];
+  const std::lock_guard lock(mutex_);
+  LF_ASSIGN_OR_RETURN(const PackedCodeReader::Bytes bytes, reader_->Read(code));
+  return CodedImage{code.values, code.rect, std::string(bytes.code), std::string(bytes.mask),
+                    code.bytes};
+}
+
+void RecordedCodes::Describe(PackedStorePlan* plan) const {
+  plan->codec = codec_;
+  plan->display_levels = display_levels_;
+}
+
+Result<StoredKind> RecordedCodes::KindOf(LfImageId id) const {
+  if (codes_.empty()) {
+    LF_ASSIGN_OR_RETURN(const RecordedImage image,
+                        ReadRecordedImage(light_field_, id, {0, 0, 2, 2}));
+    return StoredKind{image.values, image.layout};
+  }
+  LF_ASSIGN_OR_RETURN(const CodedImage image, Of(id));
+  return KindOfCode(image);
+}
+
+}  // namespace lf

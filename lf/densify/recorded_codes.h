@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// The recorded LF images of a light field, encoded as a densified store keeps them. Internal to
+// this folder.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lf/core/ids.h"
+#include "lf/core/result.h"
+#include "lf/densify/recorded_values.h"
+#include "lf/light_field/model/light_field.h"
+#include "lf/pixels/codec/lf_image_codec.h"
+#include "lf/storage/packed/packed_store_file.h"
+#include "lf/storage/packed/packed_store_writer.h"
+
+namespace lf {
+
+// Returns the kind of the stored values that an encoded image stands for; never kDisplay16. kInput:
+// the encoded image is damaged.
+Result<StoredKind> KindOfCode(const CodedImage& image);
+
+class RecordedCodes {
+ public:
+  // The light field must outlive the result. kInput: its packed store is damaged.
+  static Result<std::unique_ptr<RecordedCodes>> Open(const LightField& light_field);
+
+  // Returns an LF image that can be read. An image file is encoded without loss; the encoded image
+  // of a packed store is copied, which loses nothing more. May be called by many threads at the
+  // same time. kInput: the LF image cannot be read.
+  Result<CodedImage> Of(LfImageId id) const;
+
+  // Sets PackedStorePlan::codec and display_levels.
+  void Describe(PackedStorePlan* plan) const;
+
+  // Returns the kind of the stored values of an LF image before it is encoded. kInput: the LF image
+  // cannot be read.
+  Result<StoredKind> KindOf(LfImageId id) const;
+
+ private:
+  explicit RecordedCodes(const LightField& light_field) : light_field_(light_field) {}
+
+  const LightField& light_field_;
+  std::string codec_{kLosslessCodec};
+  std::vector<PackedCode> codes_;  // of each LF image; empty: these are image files
+  std::optional<DisplayLevels> display_levels_;
+  mutable std::mutex mutex_;
+  mutable std::optional<PackedCodeReader> reader_;  // guarded by the mutex
+};
+
+}  // namespace lf
