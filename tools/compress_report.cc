@@ -8,7 +8,6 @@
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
 
-#include "lf/core/shell_word.h"
 #include "lf/render/state/record_fields.h"
 
 namespace lf {
@@ -34,7 +33,8 @@ std::string ProgressDetail(const CompressProgress& now) {
                              : fmt::format("{:.1f} : 1", Ratio(now.pixel_bytes, now.code_bytes));
 }
 
-std::string CompressText(const CompressReport& report, const CompressOptions& options) {
+std::string CompressText(const CompressReport& report, const CompressOptions& options,
+                         const std::string& next) {
   CodecSettings settings = options.codec;
   settings.threshold = report.threshold;
   std::string text = fmt::format(
@@ -80,9 +80,7 @@ std::string CompressText(const CompressReport& report, const CompressOptions& op
                         report.rounded_count);
   for (const CompressReport::Skipped& skipped : report.skipped)
     text += fmt::format("skipped   {}: {}\n", skipped.name, skipped.reason);
-  text +=
-      fmt::format("next: lfrenderer {} PATH.yaml -o frames\n", ShellWord(options.store.string()));
-  return text;
+  return text + next;
 }
 
 MissingImages MissingOf(const CompressReport& report, const CompressOptions& options) {

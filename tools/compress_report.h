@@ -15,7 +15,9 @@ namespace lf {
 std::string ProgressDetail(const CompressProgress& now);
 
 // Returns the report: compression ratio, quality, speed, skipped LF images, and the next command.
-std::string CompressText(const CompressReport& report, const CompressOptions& options);
+//   next  the line of NextRender(), or nothing
+std::string CompressText(const CompressReport& report, const CompressOptions& options,
+                         const std::string& next);
 std::string CompressJson(const CompressReport& report, const CompressOptions& options);
 
 // Returns the LF images to be encoded that are missing in the store.

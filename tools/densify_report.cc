@@ -8,8 +8,6 @@
 
 #include "tools/common/progress.h"
 
-#include "lf/core/shell_word.h"
-
 namespace lf {
 namespace {
 
@@ -22,8 +20,8 @@ double NanosecondsPer(double cpu_s, double pixels) { return pixels > 0 ? cpu_s *
 
 }  // namespace
 
-std::string DensifyText(const DensifyReport& report, const DensifyOptions& options,
-                        double total_s) {
+std::string DensifyText(const DensifyReport& report, const DensifyOptions& options, double total_s,
+                        const std::string& next) {
   std::string text = fmt::format(
       "{}: {} recorded and {} virtual LF images\n"
       "depths    {} to {}; {} were compared; near points shift by {:.1f} px against far ones\n"
@@ -33,7 +31,7 @@ std::string DensifyText(const DensifyReport& report, const DensifyOptions& optio
       report.shift_px, report.distance_w, report.spacing_px);
   for (const DensifyReport::Skipped& skipped : report.skipped)
     text += fmt::format("skipped   {}: {}\n", skipped.name, skipped.reason);
-  if (report.was_there) return text + "existed already: nothing was written\n";
+  if (report.was_there) return text + "existed already: nothing was written\n" + next;
   if (report.spacing_px > options.choices.spacing_px * 1.001)
     text += fmt::format("note: {:.2g} px need more virtual LF images than --most allows\n",
                         options.choices.spacing_px);
@@ -56,9 +54,7 @@ std::string DensifyText(const DensifyReport& report, const DensifyOptions& optio
       "speed     {:.0f} ns per swept pixel, {:.0f} ns per virtual pixel (CPU); {}\n",
       NanosecondsPer(report.sweep_cpu_s, report.swept_pixels),
       NanosecondsPer(report.synthesis_cpu_s, report.made_pixels), ShortDuration(total_s));
-  text +=
-      fmt::format("next: lfrenderer {} PATH.yaml -o frames\n", ShellWord(options.store.string()));
-  return text;
+  return text + next;
 }
 
 std::string DensifyJson(const DensifyReport& report, const DensifyOptions& options,

@@ -12,7 +12,9 @@ namespace lf {
 
 // Returns the report: depths, virtual LF images, how right they are, speed, and the next command.
 //   total_s  elapsed time of the call
-std::string DensifyText(const DensifyReport& report, const DensifyOptions& options, double total_s);
+//   next     the line of NextRender(), or nothing
+std::string DensifyText(const DensifyReport& report, const DensifyOptions& options, double total_s,
+                        const std::string& next);
 std::string DensifyJson(const DensifyReport& report, const DensifyOptions& options, double total_s);
 
 // Returns the LF images that are not used because they are missing or broken.

@@ -241,9 +241,7 @@ std::string ForecastText(const PreprocessReport& report, const CameraPath& path,
   AddDensity(report, path, &lines);
   for (const std::string& warning : DensityWarnings(report, path, facts))
     lines += fmt::format("\nwarning: {}\n", warning);
-  if (!facts.output.empty())
-    lines += fmt::format("\nnext: lfrenderer {}/package-*.lfp -o frames{}\n",
-                         ShellWord(facts.output), facts.render_options);
+  if (!facts.next.empty()) lines += "\n" + facts.next;
   return lines;
 }
 

@@ -13,10 +13,10 @@
 namespace lf {
 
 struct ForecastFacts {
-  std::string light_field;     // LIGHTFIELD as the user typed it
-  std::string output;          // folder of the packages; empty: nothing is written (--plan)
-  std::string render_options;  // options of lfrenderer that the packages need
-  bool rebins = false;         // true for RenderMode::kRebin and kHybrid
+  std::string light_field;  // LIGHTFIELD as the user typed it
+  std::string output;       // folder of the packages; empty: nothing is written (--plan)
+  std::string next;         // line that advises the next step (NextRender()); empty: none
+  bool rebins = false;      // true for RenderMode::kRebin and kHybrid
   ImageOrder order = ImageOrder::kShuffle;
   uint64_t seed = 0;
   int thread_count = 1;

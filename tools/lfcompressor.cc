@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "tools/common/byte_size.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
+#include "tools/common/next_step.h"
 #include "tools/common/program.h"
 #include "tools/common/programs.h"
 #include "tools/common/progress.h"
@@ -19,6 +21,7 @@
 #include "tools/common/validators.h"
 #include "tools/compress_report.h"
 
+#include "lf/core/shell_word.h"
 #include "lf/distribute/compress/compress.h"
 #include "lf/render/package/package_file.h"
 #include "lf/render/pipeline/render_packages.h"
@@ -184,7 +187,23 @@ lf::Result<lf::LightField> OpenSourceOf(const lf::Package& package, const std::s
       path, opened.error().message));
 }
 
-lf::Result<lf::CompressSource> OpenSource(const Arguments& a) {
+// Returns the command that renders the store: of the packages that it was made from, which have
+// everything else that their frames need, or of a path that is not known yet.
+std::string NextOf(const Arguments& a, std::span<const lf::Package> packages) {
+  const std::string store = lf::FileArgument(a.output);
+  if (packages.empty()) return lf::NextRender(lf::ShellCommand({store, "PATH.yaml"}));
+  std::vector<std::string> options = {"--lightfield", store};
+  const lf::PackageChoices& choices = packages[0].choices;
+  if (choices.mode != "collect") options.insert(options.end(), {"--mode", choices.mode});
+  if (!choices.has_neighbours && choices.mode != "rebin")
+    options.insert(options.end(), {"--lens-weights", "none"});
+  if (!choices.has_neighbours && packages[0].whole_virtual_count > 0)
+    options.emplace_back("--no-guard");
+  return lf::NextRender(lf::ShellPackages(a.inputs), options);
+}
+
+//   next  set to the command that renders the store
+lf::Result<lf::CompressSource> OpenSource(const Arguments& a, std::string* next) {
   if (!HasPackages(a)) {
     if (a.inputs.size() > 1)
       return lf::UsageError(
@@ -197,6 +216,7 @@ lf::Result<lf::CompressSource> OpenSource(const Arguments& a) {
     lf::LightFieldArgument argument = a.light_field;
     argument.path = a.inputs.front();
     LF_ASSIGN_OR_RETURN(lf::LightField light_field, argument.Open());
+    *next = NextOf(a, {});
     return lf::SourceOfAll(std::move(light_field));
   }
   LF_RETURN_IF_ERROR(a.light_field.CheckWithPackages());
@@ -211,6 +231,7 @@ lf::Result<lf::CompressSource> OpenSource(const Arguments& a) {
     LF_ASSIGN_OR_RETURN(lf::Package package, lf::OpenPackage(path, place));
     packages.push_back(std::move(package));
   }
+  *next = NextOf(a, packages);
   if (!light_field) {
     LF_ASSIGN_OR_RETURN(light_field, OpenSourceOf(packages.front(), a.inputs.front()));
   }
@@ -221,7 +242,8 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   const std::atomic<bool>& interrupted = lf::CatchInterrupts();
   LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, a.allow_missing.Limit());
   LF_ASSIGN_OR_RETURN(lf::CompressOptions options, MakeOptions(a, common));
-  LF_ASSIGN_OR_RETURN(const lf::CompressSource source, OpenSource(a));
+  std::string next;
+  LF_ASSIGN_OR_RETURN(const lf::CompressSource source, OpenSource(a, &next));
   options.interrupted = &interrupted;
   lf::ThreadPool pool(common.threads);
   lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "LF images");
@@ -229,9 +251,11 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
                       lf::Compress(source, options, pool, [&](const lf::CompressProgress& now) {
                         meter.Update(now.done, now.total, lf::ProgressDetail(now));
                       }));
-  LF_RETURN_IF_ERROR(lf::PrintReport(common.json ? lf::CompressJson(report, options)
-                                                 : lf::CompressText(report, options)));
-  return lf::EndWithMissing(lf::MissingOf(report, options), limit);
+  const lf::Result<void> end = lf::EndWithMissing(lf::MissingOf(report, options), limit);
+  LF_RETURN_IF_ERROR(lf::PrintReport(common.json
+                                         ? lf::CompressJson(report, options)
+                                         : lf::CompressText(report, options, end ? next : "")));
+  return end;
 }
 
 }  // namespace

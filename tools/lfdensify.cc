@@ -9,6 +9,7 @@
 #include "tools/common/byte_size.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
+#include "tools/common/next_step.h"
 #include "tools/common/program.h"
 #include "tools/common/programs.h"
 #include "tools/common/progress.h"
@@ -16,6 +17,7 @@
 #include "tools/common/validators.h"
 #include "tools/densify_report.h"
 
+#include "lf/core/shell_word.h"
 #include "lf/densify/densify.h"
 #include "lf/import/paths/open_path.h"
 #include "lf/storage/packed/packed_store_file.h"
@@ -152,6 +154,7 @@ lf::Result<lf::DensifyOptions> MakeOptions(const Arguments& a, const lf::LightFi
   options.resume = a.resume;
   options.overwrite = a.overwrite;
   options.source_name = a.light_field.path;
+  options.source_options = a.light_field.Words();
   options.version = lf::Version();
   return options;
 }
@@ -175,9 +178,14 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
         "{}; render the light field as it is, or ask for a smaller --spacing", report.dense));
   const double total_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  LF_RETURN_IF_ERROR(lf::PrintReport(common.json ? lf::DensifyJson(report, options, total_s)
-                                                 : lf::DensifyText(report, options, total_s)));
-  return lf::EndWithMissing(lf::MissingOf(report, options), limit);
+  const lf::Result<void> end = lf::EndWithMissing(lf::MissingOf(report, options), limit);
+  const std::string path = a.path.empty() ? "PATH.yaml" : lf::FileArgument(a.path);
+  const std::string next =
+      end ? lf::NextRender(lf::ShellCommand({lf::FileArgument(a.output), path})) : "";
+  LF_RETURN_IF_ERROR(lf::PrintReport(common.json
+                                         ? lf::DensifyJson(report, options, total_s)
+                                         : lf::DensifyText(report, options, total_s, next)));
+  return end;
 }
 
 }  // namespace

@@ -67,19 +67,21 @@ lf::Result<lf::LfImageId> FindCamera(const lf::LightField& light_field,
 void WarnOfDoubt(const lf::ExamplePath& example, const std::string& light_field,
                  const std::vector<std::string>& words, const std::string& output,
                  const std::string& move, const std::string& camera) {
-  std::string distances, command = "lfexample " + lf::ShellWord(light_field);
+  std::string distances;
   for (const double distance_w : example.candidates_w)
     distances += fmt::format("{}{:.4g}", distances.empty() ? "" : ", ", distance_w);
-  for (const std::string& word : words) command += " " + lf::ShellWord(word);
-  command += fmt::format(" -o {} --move {}", lf::ShellWord(output), move);
-  if (camera != "-1") command += " --camera " + lf::ShellWord(camera);
+  std::vector<std::string> command = {"lfexample", lf::FileArgument(light_field)};
+  command.insert(command.end(), words.begin(), words.end());
+  command.insert(command.end(), {"-o", lf::FileArgument(output), "--move", move});
+  if (camera != "-1") command.insert(command.end(), {"--camera", camera});
+  command.insert(command.end(), {"--focus", fmt::format("{:.4g}", example.candidates_w.front())});
   lf::LogWarning(
       "the program is not sure what to focus on ({}). It chose the focus distance {:.4g}, {}, and "
       "the aperture {:.4g}, {} (in world units). The best focus distance{} found: {}. To get a "
-      "wider aperture, choose a focus distance: {} --focus {:.4g}",
+      "wider aperture, choose a focus distance: {}",
       example.doubt, example.focus_distance_w, example.focus_reason, example.aperture_diameter_w,
-      example.aperture_reason, example.candidates_w.size() == 1 ? "" : "s", distances, command,
-      example.candidates_w.front());
+      example.aperture_reason, example.candidates_w.size() == 1 ? "" : "s", distances,
+      lf::ShellCommand(command));
 }
 
 // Refuses to overwrite any file but a camera path or an empty file, in case -o is wrong.

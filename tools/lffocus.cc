@@ -78,7 +78,8 @@ int main(int argc, char** argv) {
   program.SetCommands(commands);
   return program.Run(argc, argv, [&]() -> lf::Result<void> {
     return lf::UsageError(fmt::format(
-        "{}: expected one of the commands {} as the first word, as in lffocus {} --help",
+        "{}: expected one of the commands {} as the first word; for the help of one: lffocus {} "
+        "--help",
         word.empty() ? "no command is given" : word, Names(), kCommands[0].name));
   });
 }

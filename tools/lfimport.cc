@@ -9,6 +9,7 @@
 #include "tools/common/allow_missing.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
+#include "tools/common/next_step.h"
 #include "tools/common/program.h"
 #include "tools/common/programs.h"
 #include "tools/common/progress.h"
@@ -17,6 +18,7 @@
 
 #include "lf/core/file.h"
 #include "lf/core/log.h"
+#include "lf/core/shell_word.h"
 #include "lf/import/check/exclude_images.h"
 #include "lf/import/check/native_folder.h"
 #include "lf/import/check/similarity.h"
@@ -56,6 +58,7 @@ struct Arguments {
   std::vector<std::string> exclude;
   lf::AllowMissing allow_missing;
   lf::ExposureArguments exposure;
+  std::vector<std::string> call;  // all words of the command line
 };
 
 void AddInput(CLI::App& app, Arguments& a) {
@@ -153,6 +156,14 @@ bool WritesAgain(const Arguments& a) {
          lf::HoldsOwnAndItsSource(a.light_field.path);
 }
 
+// Returns the command of this call with options added, and with -o, if the call does not have it.
+std::string ImportAgain(const Arguments& a, const std::vector<std::string>& added,
+                        const std::string& output) {
+  std::vector<std::string> words = added;
+  if (a.output.empty()) words.insert(words.end(), {"-o", lf::FileArgument(output)});
+  return lf::SameCall(a.call, words);
+}
+
 lf::Result<lf::OpenOptions> MakeOpenOptions(const Arguments& a) {
   LF_ASSIGN_OR_RETURN(lf::OpenOptions options, a.light_field.Options());
   if (!a.pitch.empty()) {
@@ -163,6 +174,9 @@ lf::Result<lf::OpenOptions> MakeOpenOptions(const Arguments& a) {
   options.flip_y = a.flip_y;
   options.passes_over_own = WritesAgain(a);
   options.bayer = lf::BayerPatternOf(a.bayer);
+  options.import_again = [&a](const std::vector<std::string>& added) {
+    return ImportAgain(a, added, a.light_field.path);
+  };
   return options;
 }
 
@@ -209,6 +223,9 @@ lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
   lf::ThreadPool pool(common.threads);
   lf::CaptureReportOptions options;
   if (a.distance > 0) options.distance_w = a.distance;
+  options.import_again = [&a](const std::vector<std::string>& added) {
+    return ImportAgain(a, added, "merged");
+  };
   LF_ASSIGN_OR_RETURN(report.exif_gains,
                       lf::StateBrackets(a.exposure, pool, &light_field, &options.lights));
   report.capture = lf::ReportCapture(light_field, options, pool);
@@ -254,6 +271,7 @@ lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
 
 int main(int argc, char** argv) {
   Arguments arguments;
+  arguments.call.assign(argv, argv + argc);
   lf::Program program("lfimport", kHelp);
   AddOptions(program.app(), arguments);
   program.AddCommonOptions({.threads = true,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "tools/common/frame_options.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
+#include "tools/common/next_step.h"
 #include "tools/common/program.h"
 #include "tools/common/programs.h"
 #include "tools/common/progress.h"
@@ -204,6 +206,25 @@ lf::Result<void> ReportNoFrames(const Arguments& a, const lf::CommonOptions& com
   return lf::PrintReport(lf::ForecastJson(report, path, facts));
 }
 
+// Returns the command that renders the packages as the options of this call foresee.
+std::string NextOf(const Arguments& a, const lf::PreprocessReport& report) {
+  std::vector<std::string> packages, options;
+  for (const lf::PackageForecast& package : report.packages)
+    packages.push_back((std::filesystem::path(a.output) / (package.name + ".lfp")).string());
+  const auto repeat = [&](const std::string& option, const std::string& value,
+                          const std::string& otherwise) {
+    if (value != otherwise) options.insert(options.end(), {option, value});
+  };
+  const Arguments usual;
+  repeat("--mode", a.mode, usual.mode);
+  repeat("--lens-weights", a.lens_weights, usual.lens_weights);
+  repeat("--estimator", a.estimator, usual.estimator);
+  repeat("--memory", a.memory, usual.memory);
+  repeat("--allow-missing", a.allow_missing.text, usual.allow_missing.text);
+  if (a.no_guard) options.emplace_back("--no-guard");
+  return lf::NextRender(lf::ShellPackages(packages), options);
+}
+
 lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   const std::atomic<bool>& interrupted = lf::CatchInterrupts();
   LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, a.allow_missing.Limit());
@@ -236,14 +257,12 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   facts.thread_count = pool.thread_count();
   facts.read_s = read_s;
   facts.rebins = lf::Rebins(options.mode);
-  if (facts.rebins) facts.render_options = fmt::format(" --mode {}", a.mode);
-  if (options.lens_weights == lf::LensWeights::kNone && options.mode != lf::RenderMode::kRebin)
-    facts.render_options += " --lens-weights none";
-  if (!options.guard) facts.render_options += " --no-guard";
   facts.depths_from = depths_from;
+  const lf::Result<void> end = lf::EndWithMissing(lf::MissingOf(report), limit);
+  if (end && !a.output.empty()) facts.next = NextOf(a, report);
   LF_RETURN_IF_ERROR(lf::PrintReport(common.json ? lf::ForecastJson(report, path, facts)
                                                  : lf::ForecastText(report, path, facts)));
-  return lf::EndWithMissing(lf::MissingOf(report), limit);
+  return end;
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ lf::Error UnknownCommand(const std::string& word) {
   }
   const std::string nearest = lf::NearestWord(word, names);
   return lf::UsageError(
-      fmt::format("{}: unknown command{} lfr --help lists the commands", word,
+      fmt::format("{}: unknown command{} to list the commands: lfr --help", word,
                   nearest.empty() ? ";" : fmt::format("; did you mean '{}'?", nearest)));
 }
 

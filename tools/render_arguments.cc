@@ -9,9 +9,11 @@
 #include "tools/common/byte_size.h"
 #include "tools/common/duration.h"
 #include "tools/common/help.h"
+#include "tools/common/next_step.h"
 #include "tools/common/validators.h"
 
 #include "lf/core/log.h"
+#include "lf/core/shell_word.h"
 #include "lf/core/value_named.h"
 #include "lf/film/develop/develop.h"
 #include "lf/render/collect/noise_rule.h"
@@ -245,6 +247,17 @@ void AddMeasuring(CLI::App& app, RenderArguments& a) {
                       "reference: the formulas applied literally, one ray at a time");
 }
 
+// Returns the command that makes the store of the inputs, which are LIGHTFIELD and PATH.
+std::string DensifyCommand(std::vector<std::string> words, const LightFieldArgument& light_field,
+                           const std::string& store) {
+  for (std::string& word : words) word = FileArgument(word);
+  words.insert(words.begin(), "lfdensify");
+  words.insert(words.end(), {"-o", store});
+  const std::vector<std::string> options = light_field.Words();
+  words.insert(words.end(), options.begin(), options.end());
+  return ShellCommand(words);
+}
+
 }  // namespace
 
 void RenderArguments::AddTo(CLI::App& app) {
@@ -305,11 +318,6 @@ Result<void> RenderArguments::Check(bool seed_given) const {
           "densify the light field with lfdensify, and make packages of STORE.lfs");
     return light_field.CheckWithPackages();
   }
-  if (densify && !shard.empty())
-    return UsageError(
-        "--densify cannot be used with --shard, because all shards need the same virtual LF "
-        "images: make them first with lfdensify LIGHTFIELD PATH -o STORE.lfs, and give "
-        "STORE.lfs to the shards");
   if (std::any_of(inputs.begin(), inputs.end(), IsPackageName))
     return UsageError(
         "packages and other inputs are given: expected LIGHTFIELD PATH, or only packages "
@@ -319,6 +327,13 @@ Result<void> RenderArguments::Check(bool seed_given) const {
         "{} {} given, expected LIGHTFIELD PATH, or packages (files that end in .lfp, such as "
         "packages/package-0000.lfp)",
         inputs.size(), inputs.size() == 1 ? "input is" : "inputs are"));
+  if (densify && !shard.empty()) {
+    const std::string store = FreeName("dense", ".lfs");
+    return UsageError(
+        fmt::format("--densify cannot be used with --shard, because all shards need the same "
+                    "virtual LF images: give {} to the shards as their light field; to make it: {}",
+                    store, DensifyCommand(inputs, light_field, store)));
+  }
   if (!light_field.path.empty())
     return UsageError(
         "--lightfield can only be used with packages: give the light field as the first argument "

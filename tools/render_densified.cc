@@ -39,6 +39,7 @@ DensifyOptions OptionsOf(const CameraPath& path, const RenderArguments& argument
                                 !PackedStoreWriter::IsUnfinished(densify.store));
   densify.strict = options.work.strict;
   densify.source_name = arguments.inputs.front();
+  densify.source_options = arguments.light_field.Words();
   densify.version = options.folder.version;
   if (options.signals != nullptr) densify.interrupted = &options.signals->stop;
   return densify;

@@ -7,12 +7,12 @@
 #include <cmath>
 #include <functional>
 
+#include "tools/common/next_step.h"
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
 #include "tools/render_end.h"
 
 #include "lf/core/log.h"
-#include "lf/core/shell_word.h"
 
 namespace lf {
 namespace {
@@ -197,16 +197,8 @@ void SummariseRender(const RenderReport& report, const std::string& look_at,
 
 Error WithResumeCommand(Error error, int argc, char** argv) {
   if (error.kind != ErrorKind::kInterrupted) return error;
-  std::string command;
-  bool has_resume = false;
-  for (int i = 0; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (word == "--overwrite") continue;
-    has_resume = has_resume || word == "--resume";
-    if (i > 0) command += ' ';
-    command += ShellWord(word);
-  }
-  error.message += "; continue with: " + command + (has_resume ? "" : " --resume");
+  const std::vector<std::string> call(argv, argv + argc);
+  error.message += "; continue with: " + SameCall(call, {"--resume"}, {"--overwrite"});
   return error;
 }
 

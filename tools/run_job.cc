@@ -34,20 +34,19 @@ bool IsForFarm(const ClusterJob& job) {
 
 Result<void> WriteForFarm(const ClusterJob& job, const std::vector<size_t>& numbers,
                           const std::string& write) {
-  const std::string folder = ShellWord(job.output_folder.string());
+  const std::string status = JobCommand("--status", job.output_folder);
   const auto to = write.empty() ? job.Folder() / NameOf(job.engine) : std::filesystem::path(write);
   LF_ASSIGN_OR_RETURN(const std::filesystem::path file, WriteFarmFiles(job, numbers, to));
   if (job.engine == ClusterEngine::kOpenJd)
     LogInfo(
         "{}: written, for {} packages; submit its folder, for example with deadline bundle "
-        "submit {}; lfsubmit --status {} shows the progress",
-        file.string(), numbers.size(), ShellWord(to.string()), folder);
+        "submit {}; to see the progress: {}",
+        file.string(), numbers.size(), ShellWord(to.string()), status);
   else
     LogInfo(
         "{}: written; its first lines say how to submit it as an array of {} tasks, and "
-        "finish.sh makes the video when all have ended; lfsubmit --status {} shows the "
-        "progress",
-        file.string(), job.packages.size(), folder);
+        "finish.sh makes the video when all have ended; to see the progress: {}",
+        file.string(), job.packages.size(), status);
   return {};
 }
 
@@ -57,25 +56,21 @@ Result<void> RunJob(ClusterJob job, FileLock lock, const std::vector<size_t>& nu
                     const RunJobOptions& options, const CommonOptions& common) {
   if (IsForFarm(job)) return WriteForFarm(job, numbers, options.write);
   std::optional<FileLock> held = std::move(lock);
-  const std::string folder = ShellWord(job.output_folder.string());
+  const std::string see = JobCommand("--status", job.output_folder);
   const auto& stop = CatchInterrupts();
   ProgressMeter meter(ParseProgressStyle(common.progress), "rays");
   Result<void> outcome;
   if (job.engine == ClusterEngine::kLocal) {
     if (!numbers.empty())
-      LogInfo(
-          "{} packages, {} at a time, {} threads and {} each; lfsubmit --status {} shows the "
-          "progress",
-          numbers.size(), job.at_once, job.thread_count, ByteText(job.memory_bytes), folder);
+      LogInfo("{} packages, {} at a time, {} threads and {} each; to see the progress: {}",
+              numbers.size(), job.at_once, job.thread_count, ByteText(job.memory_bytes), see);
     outcome = RunLocally(job, *held, numbers, stop, [&] { Show(job, meter); });
   } else {
     LF_RETURN_IF_ERROR(SubmitToSlurm(&job, numbers));
     held.reset();  // Slurm runs the job now; other programs may resume or cancel it
-    LogInfo(
-        "submitted {} packages (array {}) and finishing task {}; lfsubmit --status {} shows the "
-        "progress",
-        numbers.size(), numbers.empty() ? "-" : job.slurm_array_ids.back(), job.slurm_finishing_id,
-        folder);
+    LogInfo("submitted {} packages (array {}) and finishing task {}; to see the progress: {}",
+            numbers.size(), numbers.empty() ? "-" : job.slurm_array_ids.back(),
+            job.slurm_finishing_id, see);
     if (!options.waits) return {};
     outcome = WaitForJob(job, stop, [&] { Show(job, meter); });
   }

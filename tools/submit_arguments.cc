@@ -315,9 +315,8 @@ Result<void> SubmitArguments::Change(ClusterJob* job, const CommonOptions& commo
     const auto queue = AskSlurm(*job);
     if (queue && !queue->empty())
       return UsageError(fmt::format(
-          "--engine local: {} tasks of the job are still in Slurm's queue: end them with "
-          "lfsubmit --cancel {} first",
-          queue->size(), ShellWord(job->output_folder.string())));
+          "--engine local: {} tasks of the job are still in Slurm's queue: end them first: {}",
+          queue->size(), JobCommand("--cancel", job->output_folder)));
   }
   LF_ASSIGN_OR_RETURN(const Words split, SplitWords(words));
   for (const fs::path& file : split.files) {

@@ -23,4 +23,15 @@ std::string ShellWord(const std::string& word) {
   return quoted;
 }
 
+std::string FileArgument(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  return name.starts_with('-') || name.starts_with('[') ? "./" + name : name;
+}
+
+std::string ShellCommand(std::span<const std::string> words) {
+  std::string command;
+  for (const std::string& word : words) command += (command.empty() ? "" : " ") + ShellWord(word);
+  return command;
+}
+
 }  // namespace lf

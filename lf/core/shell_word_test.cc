@@ -15,5 +15,16 @@ TEST(ShellWord, OthersAreQuoted) {
   EXPECT_EQ(ShellWord("it's"), "'it'\\''s'");
 }
 
+TEST(FileArgument, NamesThatLookLikeOptionsOrListsGetAFolder) {
+  EXPECT_EQ(FileArgument("film/a"), "film/a");
+  EXPECT_EQ(FileArgument("-film"), "./-film");
+  EXPECT_EQ(FileArgument("[a]"), "./[a]");
+}
+
+TEST(ShellCommand, QuotesEachWord) {
+  EXPECT_EQ(ShellCommand({"lfsubmit", "--resume", FileArgument("my film")}),
+            "lfsubmit --resume 'my film'");
+}
+
 }  // namespace
 }  // namespace lf

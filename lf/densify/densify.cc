@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "lf/core/log.h"
+#include "lf/core/shell_word.h"
 #include "lf/densify/depth_plane.h"
 #include "lf/densify/folded_poses.h"
 #include "lf/densify/recorded_codes.h"
@@ -252,7 +253,9 @@ Result<void> Densifier::CheckPoses() {
                       ComparePairs(light_field_, *store_, plan_.plane.points, plan_.range, pool_));
   const std::vector<std::vector<uint32_t>> groups = ContradictingGroups(light_field_.size(), pairs);
   if (groups.empty()) return {};
-  std::string text = ContradictionText(light_field_, groups);
+  std::vector<std::string> source = {FileArgument(options_.source_name)};
+  source.insert(source.end(), options_.source_options.begin(), options_.source_options.end());
+  std::string text = ContradictionText(light_field_, groups, source);
   if (!options_.choices.force) return InputError(std::move(text));
   LogWarning("{}", text);
   return {};

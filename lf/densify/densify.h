@@ -36,7 +36,8 @@ struct DensifyOptions {
   bool overwrite = false;   // true: replaces an existing store, unfinished or complete
   bool strict = false;      // true: an LF image that cannot be read is an error
   std::string source_name;  // LIGHTFIELD, as the user gave it
-  std::string version;      // version of the program
+  std::vector<std::string> source_options = {};  // its options, which advised commands repeat
+  std::string version;                           // version of the program
   const std::atomic<bool>* interrupted = nullptr;
 };
 

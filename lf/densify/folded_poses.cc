@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <mutex>
@@ -15,6 +16,7 @@
 #include <utility>
 
 #include "lf/core/median.h"
+#include "lf/core/shell_word.h"
 #include "lf/densify/natural_neighbours.h"
 #include "lf/densify/semi_global.h"
 #include "lf/densify/working_images.h"
@@ -103,6 +105,14 @@ double UsualBest(size_t count, std::span<const ComparedPair> pairs) {
 
 std::string NameOf(const LightField& light_field, uint32_t id) {
   return std::filesystem::path(light_field.image_names[id]).filename().string();
+}
+
+// Returns a pattern of --exclude that matches the name. Characters that have a meaning in a list of
+// patterns become "?", which matches any character.
+std::string PatternOf(std::string name) {
+  for (size_t i = 0; i < name.size(); ++i)
+    if (std::strchr(",*[\\", name[i]) || (i == 0 && name[i] == '@')) name[i] = '?';
+  return name;
 }
 
 // Returns names with runs of LF images abbreviated: "a.jpg to c.jpg, f.jpg".
@@ -205,7 +215,8 @@ std::vector<std::vector<uint32_t>> ContradictingGroups(size_t count,
 }
 
 std::string ContradictionText(const LightField& light_field,
-                              std::span<const std::vector<uint32_t>> groups) {
+                              std::span<const std::vector<uint32_t>> groups,
+                              std::span<const std::string> source) {
   std::string text =
       "these LF cameras' pictures contradict each other: LF images stand as near to one another as "
       "those that agree, and show different things";
@@ -216,9 +227,11 @@ std::string ContradictionText(const LightField& light_field,
     std::string excluded;
     for (uint32_t id = 0; id < light_field.image_names.size(); ++id)
       if (!std::binary_search(groups[i].begin(), groups[i].end(), id))
-        excluded += (excluded.empty() ? "" : ",") + NameOf(light_field, id);
-    commands += fmt::format("{} lfimport LIGHTFIELD -o group_{} --exclude '{}'", i == 0 ? ":" : ";",
-                            i + 1, excluded);
+        excluded += (excluded.empty() ? "" : ",") + PatternOf(NameOf(light_field, id));
+    std::vector<std::string> words = {"lfimport"};
+    words.insert(words.end(), source.begin(), source.end());
+    words.insert(words.end(), {"-o", fmt::format("group_{}", i + 1), "--exclude", excluded});
+    commands += (i == 0 ? ": " : "; ") + ShellCommand(words);
   }
   return text +
          ". Poses are wrong, for example because equal patterns on two sides were confused, or "

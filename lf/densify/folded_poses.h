@@ -50,7 +50,9 @@ std::vector<std::vector<uint32_t>> ContradictingGroups(size_t count,
                                                        std::span<const ComparedPair> pairs);
 
 // Returns the message for the user: the groups, and how to divide the light field.
+//   source  LIGHTFIELD and its options, as the user gave them, for the commands of the message
 std::string ContradictionText(const LightField& light_field,
-                              std::span<const std::vector<uint32_t>> groups);
+                              std::span<const std::vector<uint32_t>> groups,
+                              std::span<const std::string> source);
 
 }  // namespace lf

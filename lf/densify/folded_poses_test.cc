@@ -66,10 +66,13 @@ TEST(ContradictionText, NamesRunsOfImagesAndTheOtherGroupsForEachCommand) {
   for (const char* name : {"in/a.jpg", "in/b.jpg", "in/c.jpg", "in/d.jpg", "in/e.jpg", "in/f.jpg"})
     light_field.image_names.push_back(name);
   const std::vector<std::vector<uint32_t>> groups = {{0, 1, 2, 5}, {3, 4}};
-  const std::string text = ContradictionText(light_field, groups);
+  const std::vector<std::string> source = {"in put", "--focal-px", "70"};
+  const std::string text = ContradictionText(light_field, groups, source);
   EXPECT_NE(text.find("group 1 has 4 (a.jpg to c.jpg, f.jpg)"), std::string::npos) << text;
-  EXPECT_NE(text.find("-o group_1 --exclude 'd.jpg,e.jpg'"), std::string::npos) << text;
-  EXPECT_NE(text.find("-o group_2 --exclude 'a.jpg,b.jpg,c.jpg,f.jpg'"), std::string::npos) << text;
+  EXPECT_NE(text.find("lfimport 'in put' --focal-px 70 -o group_1 --exclude d.jpg,e.jpg"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("-o group_2 --exclude a.jpg,b.jpg,c.jpg,f.jpg"), std::string::npos) << text;
 }
 
 }  // namespace

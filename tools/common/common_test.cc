@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -13,10 +17,13 @@
 #include "tools/common/describe.h"
 #include "tools/common/duration.h"
 #include "tools/common/help.h"
+#include "tools/common/next_step.h"
 #include "tools/common/parse_errors.h"
 #include "tools/common/program.h"
 #include "tools/common/progress.h"
 #include "tools/common/validators.h"
+
+#include "lf/core/shell_word.h"
 
 namespace lf {
 namespace {
@@ -86,6 +93,30 @@ TEST(MissingLimit, DecidesHowAProgramEnds) {
   EXPECT_EQ(end.error().kind, ErrorKind::kBelowRequired);
   EXPECT_EQ(end.error().message,
             "3 of 25 LF images were left out; --allow-missing 3 would accept this; mend them");
+}
+
+TEST(SameCall, KeepsTheWordsAndAddsOptionsBeforeTheDashes) {
+  const std::vector<std::string> call = {"lfx", "a b", "--overwrite", "-o", "c", "--", "-d"};
+  EXPECT_EQ(SameCall(call, {"--resume"}, {"--overwrite"}), "lfx 'a b' -o c --resume -- -d");
+  EXPECT_EQ(SameCall(call, {"--overwrite", "--pitch", "1"}),
+            "lfx 'a b' --overwrite -o c --pitch 1 -- -d");
+}
+
+TEST(ShellPackages, APatternMatchesThesePackagesAndNoOthers) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / fmt::format("lf it's {}", ::getpid());
+  std::filesystem::create_directory(folder);
+  const auto path = [&](const char* name) { return (folder / name).string(); };
+  for (const char* name : {"package-0000.lfp", "package-0001.lfp"}) std::ofstream(path(name));
+  const std::string quoted = ShellWord(folder.string());
+  const std::vector<std::string> both = {path("package-0000.lfp"), path("package-0001.lfp")};
+  EXPECT_EQ(ShellPackages(both), quoted + "/package-*.lfp");
+  EXPECT_EQ(ShellPackages({both[1]}), ShellWord(both[1]));
+  std::ofstream(path("package-0000-of-frames-3.lfp"));
+  EXPECT_EQ(ShellPackages(both), quoted + "/package-????.lfp");
+  std::ofstream(path("package-0002.lfp"));
+  EXPECT_EQ(ShellPackages(both), ShellCommand(both));
+  std::filesystem::remove_all(folder);
 }
 
 TEST(Duration, ReadsTimesAsPeopleWriteThem) {

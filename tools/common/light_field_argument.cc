@@ -11,6 +11,8 @@
 #include "tools/common/help.h"
 #include "tools/common/validators.h"
 
+#include "lf/core/shell_word.h"
+
 namespace lf {
 namespace {
 
@@ -134,7 +136,7 @@ std::vector<std::string> LightFieldArgument::Words() const {
   std::vector<std::string> words;
   if (focal_px > 0) words.insert(words.end(), {"--focal-px", fmt::format("{}", focal_px)});
   if (fov_deg > 0) words.insert(words.end(), {"--fov-deg", fmt::format("{}", fov_deg)});
-  if (!images.empty()) words.insert(words.end(), {"--images", images});
+  if (!images.empty()) words.insert(words.end(), {"--images", FileArgument(images)});
   if (image_scale != "auto") words.insert(words.end(), {"--image-scale", image_scale});
   if (image_alpha != "auto") words.insert(words.end(), {"--image-alpha", image_alpha});
   if (!background.empty()) words.insert(words.end(), {"--background", background});

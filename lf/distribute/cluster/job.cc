@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "lf/core/file.h"
+#include "lf/core/shell_word.h"
 #include "lf/core/value_named.h"
 #include "lf/render/pipeline/frame_range.h"
 #include "lf/render/state/record_fields.h"
@@ -236,6 +237,10 @@ Result<ClusterJob> ReadJob(const fs::path& output_folder) {
   // this machine.
   job.output_folder = fs::absolute(output_folder);
   return job;
+}
+
+std::string JobCommand(const std::string& option, const fs::path& output_folder) {
+  return ShellCommand({"lfsubmit", option, FileArgument(output_folder)});
 }
 
 }  // namespace lf

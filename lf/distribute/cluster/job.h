@@ -99,6 +99,8 @@ Result<void> WriteJob(const ClusterJob& job);
 // Reads the job in the folder DIR, which may have been moved since WriteJob(). kInput: there is no
 // job, or it is damaged.
 Result<ClusterJob> ReadJob(const std::filesystem::path& output_folder);
+// Returns the command that advises what to do with a job, such as `lfsubmit --resume film`.
+std::string JobCommand(const std::string& option, const std::filesystem::path& output_folder);
 
 // Returns kUsage if job.json belongs to another user (except root), because the commands in it
 // would run with the rights of the caller. kInput: job.json cannot be read.

@@ -64,26 +64,25 @@ Result<FileLock> TakeJob(const ClusterJob& job) {
   LF_RETURN_IF_ERROR(CreateFolder(job.Folder()));
   Result<FileLock> lock = FileLock::Take(job.EngineLock());
   if (lock || !FileLock::IsHeld(job.EngineLock())) return lock;
-  return OutputError(fmt::format("{}, or end its job with lfsubmit --cancel {}",
-                                 lock.error().message, ShellWord(job.output_folder.string())));
+  return OutputError(fmt::format("{}, or end its job: {}", lock.error().message,
+                                 JobCommand("--cancel", job.output_folder)));
 }
 
 Result<void> MakeRoomForJob(const ClusterJob& job, bool overwrite) {
   std::error_code ignored;
   if (!fs::exists(job.File(), ignored) && !overwrite) return {};
-  const std::string folder = ShellWord(job.output_folder.string());
   const Result<ClusterJob> before = ReadJob(job.output_folder);
   if (!overwrite && !before) return before.error();
   if (!overwrite)
     return UsageError(fmt::format(
-        "{}: contains a job already: continue it with lfsubmit --resume {}, or remove it and "
-        "its frames with --overwrite (to remove the job and keep its frames, remove "
-        "{}/cluster)",
-        job.output_folder.string(), folder, folder));
+        "{}: contains a job already: remove it and its frames with --overwrite (to remove the "
+        "job and keep its frames, remove {}), or continue it: {}",
+        job.output_folder.string(), job.Folder().string(),
+        JobCommand("--resume", job.output_folder)));
   if (before && HasTasksAtWork(LookAtJob(*before)))
-    return UsageError(fmt::format(
-        "{}: the job in this folder is still running: end it with lfsubmit --cancel {} first",
-        job.output_folder.string(), folder));
+    return UsageError(fmt::format("{}: the job in this folder is still running: end it first: {}",
+                                  job.output_folder.string(),
+                                  JobCommand("--cancel", job.output_folder)));
   for (const JobPackage& package : job.packages) RemoveFrames(job, package);
   RemoveJob(job);
   return {};
@@ -141,15 +140,15 @@ Result<void> CancelJob(const ClusterJob& job, const std::atomic<bool>& stop) {
     if (job.engine == ClusterEngine::kSlurm) LF_RETURN_IF_ERROR(CancelInSlurm(job));
     status = LookAtJob(job);
   }
-  const std::string again =
-      fmt::format("continue with lfsubmit --resume {}", ShellWord(job.output_folder.string()));
   if (IsAtWork(status))
     return OutputError(fmt::format(
-        "{} packages are still running: they end when they notice the file {}; lfsubmit "
-        "--status shows whether they have ended",
-        status.Count(TaskPhase::kRunning), job.CancelFile().string()));
-  LogInfo("cancelled: {} of {} frames are done, and the state of the others is kept; {}",
-          status.frames_done(), status.frame_total(), again);
+        "{} packages are still running: they end when they notice the file {}; to see whether "
+        "they have ended: {}",
+        status.Count(TaskPhase::kRunning), job.CancelFile().string(),
+        JobCommand("--status", job.output_folder)));
+  LogInfo(
+      "cancelled: {} of {} frames are done, and the state of the others is kept; to continue: {}",
+      status.frames_done(), status.frame_total(), JobCommand("--resume", job.output_folder));
   return {};
 }
 
@@ -165,11 +164,9 @@ Result<void> WaitForJob(const ClusterJob& job, const std::atomic<bool>& stop,
         LogWarning("{}", released.error().message);
     SleepOr(stop, 3);
     if (stop)
-      return Error{
-          ErrorKind::kInterrupted,
-          fmt::format(
-              "no longer waiting; the job continues: lfsubmit --status {} shows its progress",
-              ShellWord(job.output_folder.string()))};
+      return Error{ErrorKind::kInterrupted,
+                   fmt::format("no longer waiting; the job continues; to see its progress: {}",
+                               JobCommand("--status", job.output_folder))};
   }
 }
 

@@ -54,8 +54,7 @@ Result<void> RunLocally(const ClusterJob& job, const FileLock& /*lock*/,
     if (tick % 5 == 0) look();
   }
   for (std::thread& thread : threads) thread.join();
-  const std::string again =
-      fmt::format("continue with lfsubmit --resume {}", ShellWord(job.output_folder.string()));
+  const std::string again = "to continue: " + JobCommand("--resume", job.output_folder);
   if (job.IsCancelled()) return Error{ErrorKind::kInterrupted, "the job was cancelled; " + again};
   if (stop)
     return Error{ErrorKind::kInterrupted,

@@ -37,13 +37,6 @@ double SecondsSince1970() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-// Returns a command as a line for a shell, for messages.
-std::string ShellLine(const std::vector<std::string>& words) {
-  std::string line;
-  for (const std::string& word : words) line += (line.empty() ? "" : " ") + ShellWord(word);
-  return line;
-}
-
 // A task that this process runs: holds its lock, and writes its log and state.
 class TaskRun {
  public:
@@ -137,7 +130,7 @@ Result<ProcessEnd> TaskRun::Run(const std::vector<std::string>& words, const fs:
   if (!command) return command.error();
   ++state_.start_count;
   LogDebug("{}: start {}, process {}: {}", task_.name, state_.start_count, (*command)->process(),
-           ShellLine(words));
+           ShellCommand(words));
   state_.phase = TaskPhase::kRunning;
   state_.node = node_;
   state_.process = (*command)->process();
@@ -219,9 +212,9 @@ Result<void> CheckAllDone(const ClusterJob& job) {
                          FrameRangeText(missing.empty() ? package.frames : missing), reason);
   }
   if (words.empty()) return {};
-  return Error{
-      kind, fmt::format("{}: not all packages are done: {}; continue with lfsubmit --resume {}",
-                        job.output_folder.string(), words, ShellWord(job.output_folder.string()))};
+  return Error{kind, fmt::format("{}: not all packages are done: {}; to continue: {}",
+                                 job.output_folder.string(), words,
+                                 JobCommand("--resume", job.output_folder))};
 }
 
 }  // namespace
@@ -343,9 +336,9 @@ Result<void> FinishFilm(const ClusterJob& job, const std::string& node,
   if (end->exit_code == 0) return {};
   return Error{
       ErrorKind::kBelowRequired,
-      fmt::format("{}; lfsubmit --resume {} -- OPTIONS checks the film again with other options of "
-                  "lfrenderer, such as --allow-missing; --overwrite renders it anew",
-                  last, ShellWord(job.output_folder.string()))};
+      fmt::format("{}; --overwrite renders the film anew; to check it again with other options of "
+                  "lfrenderer, such as --allow-missing: {} -- OPTIONS",
+                  last, JobCommand("--resume", job.output_folder))};
 }
 
 }  // namespace lf

@@ -176,7 +176,9 @@ CaptureReport ReportCapture(const LightField& light_field, const CaptureReportOp
   Append(WarnOfDirections(light_field), &report);
   Append(WarnOfUpsideDown(light_field), &report);
   if (report.brackets)
-    Append(WarnOfBrackets(*report.brackets, light_field.encoding.masks_clipped), &report);
+    Append(
+        WarnOfBrackets(*report.brackets, light_field.encoding.masks_clipped, options.import_again),
+        &report);
   if (positions.size() < 2) return report;
 
   const std::vector<double> nearest_w = NearestDistances(positions, pool);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lf/core/parallel.h"
+#include "lf/core/shell_word.h"
 #include "lf/import/check/find_brackets.h"
 #include "lf/light_field/model/light_field.h"
 
@@ -84,6 +85,8 @@ struct CaptureReport {
 struct CaptureReportOptions {
   std::optional<double> distance_w;  // distance to the scene; unset: from the other DistanceSources
   std::vector<double> lights = {};   // LightOf() (exif_gains.h) of each LF image; empty: unknown
+  CallAgain import_again = {};       // repeats the call of lfimport in warnings; unset: a call with
+                                     // placeholders
 };
 
 // Reports about a light field, which must have at least one LF image. Virtual LF images are only

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "lf/core/median.h"
+#include "lf/core/shell_word.h"
 #include "lf/light_field/model/capture_geometry.h"
 
 namespace lf {
@@ -123,19 +124,23 @@ std::vector<CaptureWarning> WarnOfRepeats(const LightField& light_field,
       repeated)};
 }
 
-std::vector<CaptureWarning> WarnOfBrackets(const FoundBrackets& brackets, bool masks_clipped) {
+std::vector<CaptureWarning> WarnOfBrackets(const FoundBrackets& brackets, bool masks_clipped,
+                                           const CallAgain& import_again) {
   if (brackets.are_gains && masks_clipped) return {};
-  const std::string options = brackets.are_gains ? "--mask-clipped"
-                              : masks_clipped    ? "--gain-from-exif"
-                                                 : "--gain-from-exif --mask-clipped";
+  std::vector<std::string> options;
+  if (!brackets.are_gains) options.emplace_back("--gain-from-exif");
+  if (!masks_clipped) options.emplace_back("--mask-clipped");
   const char* const why =
       brackets.are_gains
           ? "clipped highlights of the brighter images are averaged with the others"
           : "they are averaged as if they had the same exposure, and highlights stay clipped";
   return {{"brackets",
-           fmt::format("{} images are exposure brackets of {} poses: {}. Write a light field that "
-                       "merges them to linear light with lfimport {} -o DIR",
-                       brackets.image_count, brackets.pose_count, why, options),
+           fmt::format("{} images are exposure brackets of {} poses: {}. To write a light field "
+                       "that merges them to linear light: {}",
+                       brackets.image_count, brackets.pose_count, why,
+                       import_again ? import_again(options)
+                                    : ShellCommand({"lfimport", "LIGHTFIELD", "-o", "DIR"}) + " " +
+                                          ShellCommand(options)),
            brackets.image_count,
            {}}};
 }

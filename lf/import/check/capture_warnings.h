@@ -28,7 +28,9 @@ std::vector<CaptureWarning> WarnOfRepeats(const LightField& light_field,
 
 // Returns the warning "brackets" if the calibration does not state the gains of the exposures of a
 // pose, or if clipped pixels are not masked.
-std::vector<CaptureWarning> WarnOfBrackets(const FoundBrackets& brackets, bool masks_clipped);
+//   import_again  of CaptureReportOptions
+std::vector<CaptureWarning> WarnOfBrackets(const FoundBrackets& brackets, bool masks_clipped,
+                                           const CallAgain& import_again);
 
 // Returns the warning "sparse" if the ghosts Density::near_ghost_px are more than 1 % of the image
 // width apart.

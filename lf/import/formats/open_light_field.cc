@@ -176,7 +176,8 @@ Result<LightField> OpenStanford(const fs::path& folder, const OpenOptions& optio
                                      .plane_distance_w = options.plane_distance_w,
                                      .flip_x = options.flip_x,
                                      .flip_y = options.flip_y,
-                                     .asked_for = asked_for});
+                                     .asked_for = asked_for,
+                                     .import_again = options.import_again});
 }
 
 // Completes the encoding after the calibration was read, which may state nothing about the
@@ -263,8 +264,11 @@ Result<void> CompleteAlpha(const OpenOptions& options, const fs::path& path,
   if (!encoding.AlphaIsLight())
     return UsageError(fmt::format(
         "--background: a background has no effect on the LF images of {}, because their alpha is "
-        "{}: leave the option out, or add --image-alpha straight or premultiplied",
-        path.string(), encoding.alpha ? "a mask" : "unknown or absent"));
+        "{}: leave the option out{}",
+        path.string(), encoding.alpha ? "a mask" : "unknown or absent",
+        HoldsPackedStore(*light_field) || encoding.bayer != BayerPattern::kNone
+            ? ""
+            : ", or add --image-alpha straight or premultiplied"));
   const auto& behind = *encoding.background;
   if (*std::max_element(behind.begin(), behind.end()) > encoding.max_radiance)
     return UsageError(

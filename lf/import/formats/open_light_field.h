@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lf/core/result.h"
+#include "lf/core/shell_word.h"
 #include "lf/light_field/model/find_images.h"
 #include "lf/light_field/model/light_field.h"
 
@@ -42,6 +43,8 @@ struct OpenOptions {
   // If true, the transforms.json in a folder is ignored if HoldsOwnAndItsSource() is true. Only
   // lfimport sets this, when it writes that file again.
   bool passes_over_own = false;
+  // StanfordOptions::import_again. Only lfimport sets it.
+  CallAgain import_again = {};
   // Bayer pattern of the images; overrides the calibration and the files. Only lfimport offers it.
   // kUsage for packed stores.
   std::optional<BayerPattern> bayer = {};

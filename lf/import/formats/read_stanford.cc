@@ -86,11 +86,16 @@ void WarnOfOthers(const fs::path& folder, const Listing& listing) {
 // which the user has to replace.
 std::string ImportCommand(const fs::path& folder, const StanfordOptions& options, bool needs_pitch,
                           int width_px) {
-  const std::string word =
-      ShellWord((options.asked_for.empty() ? folder : options.asked_for).string());
-  return fmt::format("lfimport {} -o {}{} --focal-px {}", word, word,
-                     needs_pitch ? " --pitch 1" : "",
-                     options.focal_px.value_or(static_cast<double>(width_px)));
+  std::vector<std::string> missing;
+  if (needs_pitch && !options.pitch_w) missing.insert(missing.end(), {"--pitch", "1"});
+  if (!options.focal_px || !options.import_again)
+    missing.insert(missing.end(),
+                   {"--focal-px", fmt::format("{}", options.focal_px.value_or(width_px))});
+  if (options.import_again) return options.import_again(missing);
+  const std::string name = FileArgument(options.asked_for.empty() ? folder : options.asked_for);
+  std::vector<std::string> words = {"lfimport", name, "-o", name};
+  words.insert(words.end(), missing.begin(), missing.end());
+  return ShellCommand(words);
 }
 
 Result<void> CheckPlaces(const fs::path& folder, const std::vector<StanfordImage>& images) {

@@ -15,6 +15,7 @@
 #include <optional>
 
 #include "lf/core/result.h"
+#include "lf/core/shell_word.h"
 #include "lf/light_field/model/light_field.h"
 
 namespace lf {
@@ -40,6 +41,9 @@ struct StanfordOptions {
   bool flip_y = false;
   // LIGHTFIELD as the user typed it, for the command in messages; empty: the folder.
   std::filesystem::path asked_for = {};
+  // Repeats the call of lfimport in messages. Unset: their command reads `asked_for` and writes
+  // into it.
+  CallAgain import_again = {};
 };
 
 // Reads all images whose names ParseStanfordName() accepts, sorted by row and column. All images
