@@ -234,7 +234,7 @@ std::string ReportJson(const DepthArguments& a, const Made& made) {
 }
 
 // Returns the error of a map in which no element has a depth.
-Error NothingKnown(const DepthMap& map) {
+Error NothingKnown(const DepthArguments& a, const DepthMap& map) {
   constexpr size_t kShare = 10;  // every kShare-th element is surer
   std::vector<float> sure(map.confidence.pixels().begin(), map.confidence.pixels().end());
   const auto tenth = sure.begin() + static_cast<std::ptrdiff_t>(sure.size() / kShare);
@@ -243,8 +243,8 @@ Error NothingKnown(const DepthMap& map) {
       ErrorKind::kBelowRequired,
       fmt::format("no element has a depth (the files are written): 0 of {} are sure enough, and a "
                   "tenth of them reaches a confidence of {:.2f}. Give the distances of the scene "
-                  "by --near and --far, or accept less sure depths by --confidence{}",
-                  sure.size(), *tenth,
+                  "by --near and --far, or accept less sure depths by --confidence{}{}",
+                  sure.size(), *tenth, a.overwrite ? "" : ", and add --overwrite",
                   map.skipped.empty()
                       ? ""
                       : fmt::format("; {} of {} LF images were broken: {}", map.skipped.size(),
@@ -260,7 +260,7 @@ Result<void> Finish(const DepthArguments& a, const CommonOptions& common, const 
       map.view_count, map.planes_w.size() - 2, made.range.near_w, made.range.far_w,
       100 * KnownShare(map));
   if (common.json) LF_RETURN_IF_ERROR(PrintReport(ReportJson(a, made)));
-  if (map.known_count == 0) return NothingKnown(map);
+  if (map.known_count == 0) return NothingKnown(a, map);
   if (map.skipped.empty()) return {};
   LF_ASSIGN_OR_RETURN(const MissingLimit limit, a.allow_missing.Limit());
   return EndWithMissing({map.skipped.size(), map.view_count,

@@ -133,11 +133,13 @@ lf::Result<std::vector<fs::path>> OutputsOf(const Arguments& a,
   for (const lf::PicturePair& pair : pairs) {
     files.push_back(is_film ? out / (pair.name + ".png") : out);
     inputs.insert(inputs.end(), {pair.reference, pair.test});
-    if (!a.overwrite && fs::exists(files.back(), error))
-      return lf::UsageError(fmt::format(
-          "{}: exists: give another name, or replace it with --overwrite", files.back().string()));
   }
+  // Inputs come first, because --overwrite does not replace them.
   LF_RETURN_IF_ERROR(lf::CheckReplacesNone(files, inputs));
+  for (const fs::path& file : files)
+    if (!a.overwrite && fs::exists(file, error))
+      return lf::UsageError(fmt::format(
+          "{}: exists: give another name, or replace it with --overwrite", file.string()));
   if (!is_film) return files;
   fs::create_directories(out, error);
   if (error)

@@ -181,7 +181,7 @@ lf::MissingImages MissingOf(const lf::ExportFacts& facts) {
           fmt::format("{} of {} LF images are not in the export, because they are missing or "
                       "broken; the first: {}",
                       facts.missing_count, facts.image_count, facts.first_missing),
-          "once they are mended, export again"};
+          "once they are mended, export again; both need a new folder for --export"};
 }
 
 lf::Result<void> Run(Arguments& a, const lf::CommonOptions& common) {

@@ -83,7 +83,7 @@ Result<CameraPlane> CameraPlaneOf(const LightField& light_field) {
   if (!subject)
     return InputError(fmt::format(
         "LF cameras look up to {:.0f} degrees away from their mean direction, and not at one "
-        "point: densify parts of the light field that look in one direction (lfimport --exclude)",
+        "point: use parts of the light field that look in one direction (lfimport --exclude)",
         plane.widest_deg));
   LF_RETURN_IF_ERROR(Unroll(centres, *subject, &plane));
   return plane;

@@ -61,6 +61,7 @@ bool MissingLimit::Allows(uint64_t missing, uint64_t asked) const {
 }
 
 CLI::Option* AllowMissing::AddTo(CLI::App& app, const std::string& asked) {
+  app_ = &app;
   OptionGroup input(app, kInputGroup);
   return input.Add(
       "--allow-missing N|PERCENT", text,
@@ -68,6 +69,18 @@ CLI::Option* AllowMissing::AddTo(CLI::App& app, const std::string& asked) {
                   "Such LF images are left out. Up to N of them are accepted, or up to PERCENT of "
                   "{}, such as 2%. If there are more, the program ends with exit code 6.",
                   asked));
+}
+
+Result<MissingLimit> AllowMissing::Limit() const {
+  LF_ASSIGN_OR_RETURN(MissingLimit limit, MissingLimit::Parse(text));
+  const auto is_given = [&](const char* name) {
+    const CLI::Option* const option = app_->get_option_no_throw(name);
+    return option != nullptr && option->count() > 0;
+  };
+  if (app_ != nullptr && app_->get_option_no_throw("--overwrite") != nullptr &&
+      !is_given("--overwrite") && !is_given("--resume"))
+    limit.SetAgain(" --overwrite");
+  return limit;
 }
 
 Result<void> EndWithMissing(const MissingImages& missing, const MissingLimit& limit) {
@@ -81,9 +94,10 @@ Result<void> EndWithMissing(const MissingImages& missing, const MissingLimit& li
     LogWarning("{}; --allow-missing {} accepts this", missing.what, limit.text());
     return {};
   }
-  return Error{ErrorKind::kBelowRequired,
-               fmt::format("{}; --allow-missing {} would accept this; {}", missing.what,
-                           missing.count, missing.advice)};
+  return Error{
+      ErrorKind::kBelowRequired,
+      fmt::format("{}; --allow-missing {}{} would accept this{}{}", missing.what, missing.count,
+                  limit.again(), missing.advice.empty() ? "" : "; ", missing.advice)};
 }
 
 }  // namespace lf

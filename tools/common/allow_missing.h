@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include "lf/core/result.h"
 
@@ -29,9 +30,13 @@ class MissingLimit {
   bool is_share() const { return is_share_; }
   // Returns the value as it was given, such as "2%".
   const std::string& text() const { return text_; }
+  // Options that the same call needs beside --allow-missing, because its output exists now, such as
+  // " --overwrite"; empty: none.
+  const std::string& again() const { return again_; }
+  void SetAgain(std::string options) { again_ = std::move(options); }
 
  private:
-  std::string text_ = "0";
+  std::string text_ = "0", again_;
   uint64_t value_ = 0;  // number of LF images or, if is_share_, millionths of a percent
   bool is_share_ = false;
 };
@@ -43,7 +48,10 @@ struct AllowMissing {
   //   asked  the LF images of which a percentage is taken, in words for the help, such as "the LF
   //          images to be encoded"
   CLI::Option* AddTo(CLI::App& app, const std::string& asked);
-  Result<MissingLimit> Limit() const { return MissingLimit::Parse(text); }
+  Result<MissingLimit> Limit() const;
+
+ private:
+  const CLI::App* app_ = nullptr;
 };
 
 // LF images that a program was to use and has left out.

@@ -64,7 +64,7 @@ Result<double> FindThreshold(const CompressSource& source, const CodecSettings& 
   if (best < psnr_db)
     return UsageError(fmt::format(
         "--target-psnr {}: cannot be reached, because these options give at most {:.1f} "
-        "dB: give a lower PSNR, or --profile lossless",
+        "dB: give a lower PSNR, or --profile lossless instead",
         psnr_db, best));
   int good = 0, bad = kSteps;
   while (bad - good > 1) {

@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "lf/core/file.h"
+#include "lf/light_field/model/brackets.h"
 #include "lf/light_field/model/keep_images.h"
 
 namespace lf {
@@ -102,6 +103,9 @@ Result<size_t> ExcludeImages(std::span<const std::string> patterns, LightField* 
                     light_field->size()));
   const size_t removed = light_field->size() - kept.size();
   KeepImages(kept, light_field);
+  // The rest of brackets may be one exposure, which is then a light field like others.
+  RadianceEncoding& encoding = light_field->encoding;
+  if (encoding.masks_clipped && ApplyBrackets(light_field) == 0) encoding.masks_clipped = false;
   return removed;
 }
 

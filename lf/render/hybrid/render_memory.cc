@@ -20,11 +20,14 @@ Result<void> SetAsideForRays(size_t memory_bytes, RenderMode mode, size_t max_ce
   memory->rebin_bytes = RebinnedRays::BytesOf(max_cells);
   if (max_cells >= RebinnedRays::kLeastCells && memory->rebin_bytes <= memory_bytes) return {};
   const size_t wanted = std::max(max_cells, RebinnedRays::kLeastCells);
+  const bool fewer_fit = wanted > RebinnedRays::kLeastCells &&
+                         RebinnedRays::BytesOf(RebinnedRays::kLeastCells) <= memory_bytes;
   return OutputError(
       fmt::format("--memory {} is too small for {} rebinned rays, which take {} MiB: increase "
-                  "--memory, or reduce --max-rays (without --max-rays, half of --memory is for "
-                  "rays, or a quarter with --mode hybrid)",
-                  ByteText(memory_bytes), wanted, RebinnedRays::BytesOf(wanted) >> 20));
+                  "--memory{} (without --max-rays, half of --memory is for rays, or a quarter with "
+                  "--mode hybrid)",
+                  ByteText(memory_bytes), wanted, RebinnedRays::BytesOf(wanted) >> 20,
+                  fewer_fit ? ", or reduce --max-rays" : ""));
 }
 
 }  // namespace
