@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Finds the messages in the sources that advise something: a command of ours, or an option that mends a call."""
+import pathlib
+import re
+
+PROGRAMS = ("lfr lfsynth lfimport lfexample lfcammvminfo lfpath lfpreprocessor lfcompressor lfdensify lfrenderer "
+            "lffocus lfsubmit lfmerge lfquilt lfcompare lfvisualizer").split()
+TOKEN = re.compile(r'//[^\n]*|R"\((?P<raw>.*?)\)"|(?P<words>"(?:[^"\\\n]|\\.)*"(?:\s*"(?:[^"\\\n]|\\.)*")*)|'
+                   r"'(?:[^'\\\n]|\\.)+'", re.S)
+WORD = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
+# The texts of a program's help: options, and the summary, usage, examples and details of HelpTexts.
+HELP = re.compile(r"(?:\bAdd|\bAddFlag|\bAddChoice|AddTo)\((?:[^;]|;(?=[^\n]*\"))*\Z|"
+                  r"\.(?:summary|usage|examples|details|strict|json|seed) =\s*\Z")
+OPTION = r"--[a-z][a-z-]*"
+# A remedy: a verb that tells what to do, and then an option, or "leave ... out" of a message that names an option.
+REMEDY = re.compile(
+    r"\b(?:leave|add|use|give|given|try|with|replace|continue|continues|raise|lower|reduce|increase|make|state|choose|"
+    r"see|call|run|render|start|accept|keep|allow|correct|merge|by|overrides|out|smaller|larger)\b[^:]*" + OPTION +
+    r"|\bleave\b.* out\b|\(" + OPTION + r"[^)]*\)|" + OPTION +
+    r" (?:continues|removes|leaves|moves|overrides|accepts|renders|would)")
+COMMAND = re.compile(r"\b(?:" + "|".join(PROGRAMS) + r") (?:[-{<]|[A-Z]{2,}|[a-z]+ [-{])")
+
+
+class Message:
+    """A literal of the sources: the file, the line where it begins, and its text."""
+
+    def __init__(self, file, line, text):
+        self.file, self.line, self.text = file, line, text
+
+    def matches(self, key):
+        """Returns true if the key, FILE: WORDS, is about this message."""
+        stem, _, words = key.partition(": ")
+        return pathlib.Path(self.file).stem == stem and words in self.text
+
+    def __str__(self):
+        return f"{self.file}:{self.line}: {self.text}"
+
+
+def literals(text):
+    """Yields (offset, literal) of C++ text, with neighbouring literals joined."""
+    for match in TOKEN.finditer(text):
+        if match["raw"] is not None:
+            yield match.start(), match["raw"]
+        elif match["words"] is not None:
+            joined = "".join(WORD.findall(match["words"]))
+            yield match.start(), joined.replace('\\"', '"').replace("\\n", "\n").replace("\\\\", "\\")
+
+
+def is_help(text, offset):
+    """Returns true if the literal is a text of the help."""
+    statement = text[max(text.rfind(";\n", 0, offset), text.rfind("}\n\n", 0, offset), 0):offset]
+    return bool(HELP.search(statement)) or "HelpTexts" in statement
+
+
+def all_literals(repository: pathlib.Path) -> list:
+    """Returns the literals of the programs and of the library that are no texts of the help."""
+    found = []
+    for folder in "tools", "lf":
+        for file in sorted((repository / folder).rglob("*.cc")) + sorted((repository / folder).rglob("*.h")):
+            if file.stem.endswith(("_test", "_fuzz", "_bench")):
+                continue
+            text = file.read_text()
+            found += [Message(str(file.relative_to(repository)), text.count("\n", 0, offset) + 1, literal)
+                      for offset, literal in literals(text) if not is_help(text, offset)]
+    return found
+
+
+def messages(repository: pathlib.Path) -> list:
+    """Returns the messages that advise a command or an option."""
+    return [message for message in all_literals(repository)
+            if REMEDY.search(message.text) and re.search(OPTION, message.text) or COMMAND.search(message.text)]
