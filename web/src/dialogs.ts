@@ -2,7 +2,7 @@
 // The dialogs of the page: the commands that make this film, the list of keys, and a question to be confirmed.
 
 import { byId, element } from "./element";
-import { filmCommands, preprocessorCommand } from "./path/commands";
+import { filmCommands, lightFieldOptions, preprocessorCommand } from "./path/commands";
 import type { State } from "./state";
 
 function open(...children: (HTMLElement | string)[]): HTMLDialogElement {
@@ -18,16 +18,6 @@ const closeButton = () =>
     { class: "row" },
     element("button", { click: () => byId<HTMLDialogElement>("dialog").close() }, "Close"),
   );
-
-function lightFieldOptions(words: string[]): Record<string, string | number> {
-  const options: Record<string, string | number> = {};
-  for (let i = 0; i + 1 < words.length; i += 2) {
-    if (words[i] === "--focal-px") options.focalPx = Number(words[i + 1]);
-    if (words[i] === "--fov-deg") options.fovDeg = Number(words[i + 1]);
-    if (words[i] === "--images") options.images = words[i + 1];
-  }
-  return options;
-}
 
 // Copies the text. The label of the button then says whether it was copied, because a browser may refuse.
 async function copyText(text: string, button: HTMLElement): Promise<void> {

@@ -6,6 +6,9 @@ export interface LightFieldOptions {
   focalPx?: number;
   fovDeg?: number;
   images?: string;
+  imageScale?: string;
+  imageAlpha?: string;
+  background?: string;
 }
 
 // Options that lfpreprocessor and lfrenderer share. `seed` decides the order of the LF images.
@@ -85,6 +88,9 @@ const kLightField: Record<string, Flag> = {
   focalPx: { flag: "--focal-px", initial: 0 },
   fovDeg: { flag: "--fov-deg", initial: 0 },
   images: { flag: "--images", isFile: true },
+  imageScale: { flag: "--image-scale", initial: "auto" },
+  imageAlpha: { flag: "--image-alpha", initial: "auto" },
+  background: { flag: "--background" },
 };
 
 const kShared: Record<string, Flag> = {
@@ -133,7 +139,7 @@ const kRenderer: Record<string, Flag> = {
 
 // Options that are left out if packages are rendered, because the packages contain them already, and lfrenderer refuses
 // some of them.
-const kInPackages = ["focalPx", "fovDeg", "images", "seed", "maxImages", "maxAngle", "frames"];
+const kInPackages = [...Object.keys(kLightField), "seed", "maxImages", "maxAngle", "frames"];
 
 export function preprocessorCommand(request: PreprocessorRequest): string {
   const target = request.output === undefined ? ["--plan"] : ["-o", quoteFile(request.output)];
@@ -169,6 +175,15 @@ export function filmCommands(request: FilmRequest): string[] {
     preprocessorCommand({ lightField: request.lightField, pathFile: request.pathFile, output: folder, options }),
     rendererCommand({ packageFolder: folder, output: request.output, options }),
   ];
+}
+
+// Returns the options with which a light field was opened, from the words of a command line.
+export function lightFieldOptions(words: readonly string[]): LightFieldOptions {
+  const options: Record<string, string | number> = {};
+  for (let i = 0; i + 1 < words.length; i += 2)
+    for (const [name, { flag, initial }] of Object.entries(kLightField))
+      if (words[i] === flag) options[name] = typeof initial === "number" ? Number(words[i + 1]) : words[i + 1];
+  return options;
 }
 
 // Returns a text as one word of a POSIX shell.

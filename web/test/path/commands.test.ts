@@ -2,7 +2,14 @@
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
 import { test } from "node:test";
-import { filmCommands, preprocessorCommand, quote, quoteFile, rendererCommand } from "../../src/path/commands";
+import {
+  filmCommands,
+  lightFieldOptions,
+  preprocessorCommand,
+  quote,
+  quoteFile,
+  rendererCommand,
+} from "../../src/path/commands";
 
 const request = { lightField: "capture", pathFile: "path.yaml", output: "frames" };
 
@@ -61,6 +68,20 @@ test("options are written as the programs know them", () => {
     }),
     "lfpreprocessor capture path.yaml -o packages --max-angle 30 --packages 4 " + "--depths 0.3 2",
   );
+});
+
+test("commands open the light field as the page does", () => {
+  const words =
+    "--focal-px 70 --fov-deg 40 --images -i --image-scale 0.5 --image-alpha straight --background 0.1,0.2,0.3".split(
+      " ",
+    );
+  const options = lightFieldOptions(words);
+  const opened = words.join(" ").replace("-i ", "./-i ");
+  assert.equal(rendererCommand({ ...request, options }), `lfrenderer capture path.yaml -o frames ${opened}`);
+  assert.deepEqual(filmCommands({ ...request, packageFolder: "packages", options }), [
+    `lfpreprocessor capture path.yaml -o packages ${opened}`,
+    "lfrenderer packages/package-*.lfp -o frames",
+  ]);
 });
 
 test("packages decide about LF images, which lfrenderer films", () => {
