@@ -203,6 +203,7 @@ lf::Result<void> Run(Arguments& a, const lf::CommonOptions& common) {
   a.page.needs = Needs(a);
   a.page.seed = common.seed;
   a.page.threads = common.threads;
+  a.page.interrupted = &interrupted;
   LF_ASSIGN_OR_RETURN(a.page.live_memory_bytes, lf::ParseByteSize(a.live_memory, "--live-memory"));
   LF_ASSIGN_OR_RETURN(lf::LightField light_field, a.light_field.Open());
   LF_ASSIGN_OR_RETURN(const auto scene, lf::PageScene::Open(std::move(light_field), a.page));

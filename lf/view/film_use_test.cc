@@ -5,6 +5,7 @@
 
 #include <atomic>
 
+#include "lf/view/shown_frames.h"
 #include "lf/view/test_grid.h"
 
 namespace lf {
@@ -25,7 +26,7 @@ TEST(FilmUse, CountsWhatItsFramesNeed) {
   ThreadPool pool(2);
   const auto path = Film(4);
   std::atomic<int> told = 0;
-  FilmUse film(index, path, {}, pool, [&] { ++told; });
+  FilmUse film(index, std::make_shared<const PathFrames>(*path), {}, pool, [&] { ++told; });
   film.Wait();
   const FilmUse::Facts facts = film.Get();
   EXPECT_EQ(facts.frames_done, 4u);
@@ -47,8 +48,24 @@ TEST(FilmUse, LeavesOffAtOnce) {
   ThreadPool pool(1);
   const auto path = std::make_shared<CameraPath>();
   path->cameras.assign(200'000, testing::GridFrame());
-  const FilmUse film(index, path, {}, pool, [] {});
-  EXPECT_LT(film.Get().frames_done, path->cameras.size());
+  const FilmUse film(index, std::make_shared<const PathFrames>(*path), {}, pool, [] {});
+  EXPECT_LT(film.Get().frames_done, film.Get().image_counts.size());
+}
+
+TEST(FilmUse, CountsSomeFramesOfALongFilm) {
+  const LightField field = testing::GridField();
+  const ImageIndex index(field);
+  ThreadPool pool(2);
+  const auto path = std::make_shared<CameraPath>();
+  path->cameras.assign(2 * kMostShownFrames, testing::GridFrame());
+  const FilmUse film(index, std::make_shared<const PathFrames>(*path), {}, pool, [] {});
+  EXPECT_LE(film.Get().image_counts.size(), kMostShownFrames);
+  while (film.Get().frames_done < 100) {
+  }
+  const FilmUse::Facts facts = film.Get();
+  const FrameNeeds needs = NeedsOf(index, path->cameras[0], {}, pool);
+  const size_t step = ShownStep(path->frame_count());
+  EXPECT_EQ(facts.frames_of_image[needs.images[0].id.value], facts.frames_done * step);
 }
 
 }  // namespace

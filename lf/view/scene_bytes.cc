@@ -47,10 +47,11 @@ std::string CamerasBytes(const LightField& light_field) {
   return bytes;
 }
 
-std::string FramesBytes(const CameraPath& path) {
+std::string FramesBytes(const PathFrames& path, std::span<const FrameId> frames) {
   std::vector<double> numbers;
-  numbers.reserve(kFrameNumbers * path.frame_count());
-  for (const RenderCamera& camera : path.cameras) {
+  numbers.reserve(kFrameNumbers * frames.size());
+  for (const FrameId frame : frames) {
+    const RenderCamera camera = *path.Camera(frame);
     AddVector(&numbers, camera.pinhole.CentreWorld());
     AddVector(&numbers, camera.pinhole.RightWorld());
     AddVector(&numbers, camera.pinhole.UpWorld());

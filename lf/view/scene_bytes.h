@@ -4,9 +4,10 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 
-#include "lf/camera/path/camera_path.h"
+#include "lf/camera/path/evaluate_path.h"
 #include "lf/core/geometry.h"
 #include "lf/light_field/model/light_field.h"
 #include "lf/view/film_use.h"
@@ -24,14 +25,15 @@ Vec3 SceneOrigin(const LightField& light_field);
 // (12 bytes each).
 std::string CamerasBytes(const LightField& light_field);
 
-// FramesBytes() returns kFrameNumbers doubles for each frame, about its camera: centre, right, up,
+// FramesBytes() returns kFrameNumbers doubles for each of these frames of a path, in which
+// PathFrames::Check() has found no error, about its camera: centre, right, up,
 // forward (12); fx, fy, cx, cy; radius, rotation and blades of the aperture; normal and offset of
 // the focus plane (4); time, focal length, sensor width, focus distance, horizontal and vertical
 // tilt; width and height of the plate; ratio and roundness of the aperture;
 // distance and radius of the hood. Units are as in
 // RenderCamera.
 inline constexpr size_t kFrameNumbers = 35;
-std::string FramesBytes(const CameraPath& path);
+std::string FramesBytes(const PathFrames& path, std::span<const FrameId> frames);
 
 // Returns a head of 16 bytes: uint32 number of LF cameras; uint32 number of LF images that are
 // read; float FrameUse::camera_distance_w (NaN if unset); uint32 0 (unused). Then the ids (uint32)

@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <cstring>
+#include <utility>
+#include <vector>
 
 #include "lf/view/test_grid.h"
 
@@ -32,7 +34,8 @@ TEST(SceneBytes, CamerasAreWhereTheyAre) {
 TEST(SceneBytes, FramesHaveTheirNumbers) {
   CameraPath path;
   path.cameras = {testing::GridFrame(5), testing::GridFrame(3)};
-  const std::string bytes = FramesBytes(path);
+  const std::string bytes =
+      FramesBytes(PathFrames(std::move(path)), std::vector<FrameId>{{1}, {2}});
   ASSERT_EQ(bytes.size(), 8 * kFrameNumbers * 2);
   const auto number = [&](size_t frame, size_t i) {
     return At<double>(bytes, 8 * (kFrameNumbers * frame + i));

@@ -15,6 +15,7 @@
 #include "lf/core/check.h"
 #include "lf/core/file.h"
 #include "lf/core/log.h"
+#include "lf/view/shown_frames.h"
 
 namespace lf {
 namespace {
@@ -119,7 +120,13 @@ Result<ExportFacts> ExportPage(PageScene& scene, const fs::path& folder, size_t 
   PathDraft& draft = *scene.first_draft();
   const std::string base = fmt::format("path/{}/", draft.id);
   const std::shared_ptr<FilmUse> film = scene.FilmOf(draft);
-  const size_t frame_count = draft.path->frame_count();
+  const std::vector<FrameId> frames = ShownFrames(draft.path->frame_count());
+  const size_t frame_count = frames.size();
+  if (frame_count < draft.path->frame_count())
+    LogWarning(
+        "{}: the film has {} frames: the export shows {} of them, one of each {} and the last",
+        scene.arguments().path.string(), draft.path->frame_count(), frame_count,
+        ShownStep(draft.path->frame_count()));
   for (size_t asked = 0; asked < frame_count; asked = film->Get().frames_done) {
     progress(asked, 2 * frame_count);
     if (interrupted) return Interrupted();
@@ -144,9 +151,9 @@ Result<ExportFacts> ExportPage(PageScene& scene, const fs::path& folder, size_t 
     LF_RETURN_IF_ERROR(exporter.WriteAnswer(base + name));
   for (size_t i = 0; i < scene.depths().size(); ++i)
     LF_RETURN_IF_ERROR(exporter.WriteAnswer(fmt::format("depth/{}.bin", i)));
-  for (size_t i = 1; i <= frame_count; ++i) {
-    LF_RETURN_IF_ERROR(exporter.WriteAnswer(fmt::format("{}use/{}.bin", base, i)));
-    LF_RETURN_IF_ERROR(exporter.WriteAnswer(fmt::format("{}density/{}.json", base, i)));
+  for (const FrameId frame : frames) {
+    LF_RETURN_IF_ERROR(exporter.WriteAnswer(fmt::format("{}use/{}.bin", base, frame.value)));
+    LF_RETURN_IF_ERROR(exporter.WriteAnswer(fmt::format("{}density/{}.json", base, frame.value)));
     LF_RETURN_IF_ERROR(step());
   }
   for (size_t i = 0; i < image_count; ++i) {

@@ -24,15 +24,16 @@ struct ExportFacts {
   uint64_t live_bytes = 0;    // size of their files
 };
 
-// Exports the page, and the data that it can show without a server: the LF cameras, the frames of
-// the path, what each frame uses, the points of depth files, and the large pictures of LF images
-// that the film uses: at most `most_images`, spread evenly. For live pictures, shrunken LF images
-// of about `most_live_bytes` are exported as well. An exported path cannot be edited.
+// Exports the page, and the data that it can show without a server: the LF cameras, the shown
+// frames of the path (lf/view/shown_frames.h; a warning counts them if they are not all), what each
+// uses, the points of depth files, and the large pictures of LF images that the film uses: at most
+// `most_images`, spread evenly. For live pictures, shrunken LF images of about `most_live_bytes`
+// are exported as well. An exported path cannot be edited.
 //
 // Data are written as scripts, NAME.js, because a page that is opened from the disk may load
 // scripts and pictures, but no other files.
 //   folder    new or empty
-//   progress  called with numbers of steps: two for each frame, and one for each LF image
+//   progress  called with numbers of steps: two for each shown frame, and one for each LF image
 // kUsage: the folder is not empty. kOutput: the disk fails, or the program was built without the
 // page. kInterrupted: `interrupted` is true.
 Result<ExportFacts> ExportPage(PageScene& scene, const std::filesystem::path& folder,

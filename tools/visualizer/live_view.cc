@@ -60,7 +60,15 @@ void LiveView::Tell() {
 std::atomic<bool>* LiveView::BreakOffStillPictures(bool is_still) {
   const std::lock_guard lock(mutex_);
   for (std::atomic<bool>& flag : still_) flag = true;
-  return is_still ? &still_.emplace_back(false) : nullptr;
+  return is_still ? &still_.emplace_back(is_ending_) : nullptr;
+}
+
+void LiveView::End() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_ending_ = true;
+  }
+  BreakOffStillPictures(false);
 }
 
 // Returns the numbers of a live picture that depend on the LF images in memory alone.

@@ -37,6 +37,8 @@ class LiveView {
   // (doc/formats/page_data.md, POST lens).
   //   recorded_only  as in LiveWish
   PageAnswer AnswerLens(const RenderCamera& frame, size_t most_images, bool recorded_only);
+  // Breaks off still pictures from now on, because the server ends. Any thread may call it.
+  void End();
   // Answers GET live/NAME: the shrunken LF image "DIVISOR/ID.bin". 404 if it is not in memory.
   PageAnswer AnswerImage(std::string_view name);
 
@@ -50,6 +52,7 @@ class LiveView {
   const size_t memory_bytes_;
   ThreadPool pool_;  // separate, so that the page's answers do not wait for pictures
   std::mutex mutex_;
+  bool is_ending_ = false;  // guarded by mutex_
   // For each still picture that is waited for, a flag that breaks it off. Guarded by mutex_.
   std::list<std::atomic<bool>> still_;
   LiveRenderer renderer_;

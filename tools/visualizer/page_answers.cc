@@ -12,12 +12,14 @@
 #include "lf/pixels/files/write_jpeg.h"
 #include "lf/view/lf_picture.h"
 #include "lf/view/scene_bytes.h"
+#include "lf/view/shown_frames.h"
 
 namespace lf {
 namespace {
 
 constexpr int kJpegQuality = 88;
 constexpr const char* kBytes = "application/octet-stream";
+constexpr size_t kFramesPerBlock = 256;  // as in web/src/path_frames.ts
 
 // The parts of a name such as "path/0123/use/7.bin" between the slashes; the last part has no
 // ending.
@@ -76,8 +78,23 @@ PageAnswer OfImage(PageScene& scene, const Name& name) {
   return {200, "image/jpeg", *std::move(jpeg)};
 }
 
+// Answers with the cameras of kFramesPerBlock frames in a row, the block with this number.
+PageAnswer OfBlock(const PathDraft& draft, const Name& name) {
+  const size_t frame_count = draft.path->frame_count();
+  const auto number =
+      NumberOf(name.parts[3], 0, (frame_count + kFramesPerBlock - 1) / kFramesPerBlock);
+  if (!number || name.parts.size() != 4 || name.ending != ".bin") return NotFound();
+  std::vector<FrameId> frames;
+  for (size_t i = *number * kFramesPerBlock; i < frame_count; ++i) {
+    frames.push_back(FrameId{static_cast<uint32_t>(i + 1)});
+    if (frames.size() == kFramesPerBlock) break;
+  }
+  return BytesAnswer(FramesBytes(*draft.path, frames));
+}
+
 PageAnswer OfFrame(PageScene& scene, PathDraft& draft, const Name& name) {
   const std::string& kind = name.parts[2];
+  if (kind == "frames") return OfBlock(draft, name);
   const auto frame_number = NumberOf(name.parts[3], 1, draft.path->frame_count() + 1);
   if (!frame_number) return NotFound();
   const FrameId frame{*frame_number};
@@ -100,7 +117,8 @@ PageAnswer OfPath(PageScene& scene, const Name& name) {
   const std::string file = name.parts[2] + name.ending;
   if (file == "path.json") return JsonAnswer(PathHeadJson(*draft));
   if (file == "path.yaml") return {200, "text/plain; charset=utf-8", draft->text};
-  if (file == "frames.bin") return BytesAnswer(FramesBytes(*draft->path));
+  if (file == "frames.bin")
+    return BytesAnswer(FramesBytes(*draft->path, ShownFrames(draft->path->frame_count())));
   if (file == "film.json") return JsonAnswer(FilmJson(scene.FilmOf(*draft)->Get()));
   if (file == "film.bin") return BytesAnswer(FilmUseBytes(scene.FilmOf(*draft)->Get()));
   return NotFound();

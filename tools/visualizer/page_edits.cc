@@ -12,10 +12,8 @@
 
 #include "tools/visualizer/edit_json.h"
 
-#include "lf/camera/path/path_yaml.h"
 #include "lf/core/file.h"
 #include "lf/focus/focus_pick.h"
-#include "lf/import/paths/transmission_file.h"
 #include "lf/live/shrink.h"
 #include "lf/render/state/record_fields.h"
 
@@ -39,7 +37,7 @@ double NumberOf(const Json& json, const char* key) {
   return found != json.end() && found->is_number() ? found->get<double>() : std::nan("");
 }
 
-std::optional<FrameId> FrameOf(const Json& json, const CameraPath& path) {
+std::optional<FrameId> FrameOf(const Json& json, const PathFrames& path) {
   const double number = NumberOf(json, "frame");
   if (!(number >= 1 && number <= static_cast<double>(path.frame_count()))) return std::nullopt;
   return FrameId{static_cast<uint32_t>(number)};
@@ -83,28 +81,32 @@ PageAnswer Save(PageScene& scene, const Json& json) {
 }
 
 PageAnswer StartPreview(PageScene& scene, PreviewRender& preview, const Json& json) {
-  const std::string text = TextOf(json, "text");
-  const auto draft = scene.AddDraft(text);
-  if (!draft) return RefusedPath(draft.error(), scene.arguments().path.filename().string());
-  const auto frame = FrameOf(json, *(*draft)->path);
+  const std::string file = scene.arguments().path.filename().string();
+  const auto path = scene.FramesOf(TextOf(json, "text"));
+  if (!path) return RefusedPath(path.error(), file);
+  const auto frame = FrameOf(json, **path);
   if (!frame) return Refusal(422, "\"frame\": expected a frame of the path");
-  preview.Start((*draft)->path, *frame, IsTrue(json, "recorded"));
+  if (const auto camera = (*path)->Camera(*frame); !camera)
+    return RefusedPath(camera.error(), file);
+  preview.Start(*path, *frame, IsTrue(json, "recorded"));
   return JsonAnswer(Json::object());
 }
 
 // Answers "live" with a picture, and "lens" with the lens of a picture that the browser renders.
-// The text does not become a draft: drafts are few, and a drag would replace those that pages show.
+// Only the frame that is shown is checked. The text does not become a draft: drafts are few, and a
+// drag would replace those that pages show.
 PageAnswer ShowLive(PageScene& scene, LiveView& live, const Json& json, bool is_lens) {
   const std::string file = scene.arguments().path.filename().string();
-  const auto path = ParsePathYaml(TextOf(json, "text"), file, scene.light_field().unit_m,
-                                  PicturesBeside(scene.arguments().path));
+  const auto path = scene.FramesOf(TextOf(json, "text"));
   if (!path) return RefusedPath(path.error(), file);
-  const auto frame = FrameOf(json, *path);
+  const auto frame = FrameOf(json, **path);
   const double width = NumberOf(json, "width"), budget_ms = NumberOf(json, "budget_ms");
   if (!frame || !(width >= 1))
     return Refusal(422, "expected a frame of the path, and \"width\" from 1 on");
   const int width_px = static_cast<int>(std::min<double>(width, kLongestLiveSide_px));
-  const RenderCamera camera = WithPlateWidth(path->Camera(*frame), width_px, kLongestLiveSide_px);
+  const auto whole = (*path)->Camera(*frame);
+  if (!whole) return RefusedPath(whole.error(), file);
+  const RenderCamera camera = WithPlateWidth(*whole, width_px, kLongestLiveSide_px);
   const double images = NumberOf(json, "images");
   const bool recorded_only = IsTrue(json, "recorded");
   if (is_lens)
@@ -122,7 +124,7 @@ PageAnswer PickFocus(PageScene& scene, const Json& json) {
   const double x = NumberOf(json, "x"), y = NumberOf(json, "y");
   if (!frame || !std::isfinite(x) || !std::isfinite(y))
     return Refusal(422, "expected a frame of the path, \"x\" and \"y\"");
-  const RenderCamera& camera = draft->path->Camera(*frame);
+  const RenderCamera camera = *draft->path->Camera(*frame);
   std::optional<Ray> ray = RayOfPixel(camera.pinhole, x, y);
   if (json.contains("camera")) {
     const double id = NumberOf(json, "camera");

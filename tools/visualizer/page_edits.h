@@ -29,7 +29,8 @@ inline constexpr int kLongestLiveSide_px = 1280;
 //   preview/stop  {} -> {}
 //   live          {"text", "frame", "width": of the picture, in elements; "budget_ms": time for it,
 //                 or left out for a still picture; "recorded" as in preview} -> bytes of a picture
-//                 (doc/formats/page_data.md);
+//                 (doc/formats/page_data.md); {"error"} as for check if the text or this frame is
+//                 faulty. Other frames are not checked;
 //                 {"superseded": true} for a still picture that a newer request has broken off
 //   lens          {"text", "frame", "width", "recorded", "images": largest number of LF images} ->
 //                 bytes of the lens of a picture that the browser renders

@@ -11,6 +11,7 @@
 #include "lf/render/state/record_fields.h"
 #include "lf/view/overlap_outline.h"
 #include "lf/view/scene_bytes.h"
+#include "lf/view/shown_frames.h"
 
 namespace lf {
 namespace {
@@ -80,12 +81,18 @@ PageAnswer Refusal(const Error& error) {
 }
 
 std::string PathHeadJson(const PathDraft& draft) {
-  const CameraPath& path = *draft.path;
-  const Intrinsics& k = path.cameras.front().pinhole.intrinsics;
-  Json head = {{"id", draft.id},        {"frames", path.frame_count()}, {"fps", path.fps},
-               {"unit_m", path.unit_m}, {"width", k.width_px},          {"height", k.height_px}};
-  if (const TransmissionPtr& of_path = path.cameras.front().transmission)
-    head["transmission"] = of_path->Text();
+  const PathFrames& path = *draft.path;
+  const RenderCamera first = *path.Camera(FrameId{1});
+  const Intrinsics& k = first.pinhole.intrinsics;
+  Json head = {{"id", draft.id},
+               {"frames", path.frame_count()},
+               {"shown_step", ShownStep(path.frame_count())},
+               {"fps", path.fps()},
+               {"unit_m", path.unit_m()},
+               {"width", k.width_px},
+               {"height", k.height_px},
+               {"widest_radius", path.widest_radius_w()}};
+  if (first.transmission) head["transmission"] = first.transmission->Text();
   return RecordLine(head);
 }
 
@@ -133,7 +140,7 @@ std::string FilmJson(const FilmUse::Facts& facts) {
 
 std::string DensityJson(PageScene& scene, const PathDraft& draft, FrameId frame) {
   const FrameDensity density =
-      DensityOf(scene.index(), draft.path->Camera(frame), scene.light_field().depth_range);
+      DensityOf(scene.index(), *draft.path->Camera(frame), scene.light_field().depth_range);
   return RecordLine({{"cameras_in_lens", density.cameras_in_lens},
                      {"camera_distance", density.camera_distance_w},
                      {"uncovered_share", density.coverage.uncovered_share},
@@ -165,7 +172,7 @@ std::string CameraJson(const PageScene& scene, LfImageId id) {
 std::string OverlapJson(PageScene& scene, const PathDraft& draft, FrameId frame, LfImageId id) {
   const PinholeCamera camera = scene.light_field().Camera(id);
   Json outlines = Json::array();
-  for (const auto& polygon : OverlapOutlines(camera, draft.path->Camera(frame))) {
+  for (const auto& polygon : OverlapOutlines(camera, *draft.path->Camera(frame))) {
     Json corners = Json::array();
     for (const Vec2& corner : polygon) corners.push_back({corner.x(), corner.y()});
     outlines.push_back(std::move(corners));

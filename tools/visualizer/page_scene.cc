@@ -51,7 +51,7 @@ Result<void> PageScene::OpenFirstDraft() {
   if (is_yaml) {
     LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path));
     LF_ASSIGN_OR_RETURN(first_draft_, AddDraft(text));
-    if (first_draft_->path->focal_surface)
+    if (first_draft_->path->has_focal_surface())
       LogWarning(
           "{}: focus.surface: the page, its live picture and exports show frames that are in focus "
           "on the plane at lens.focus_distance; a preview (P), and lfrenderer, focus on the "
@@ -74,7 +74,7 @@ Result<void> PageScene::OpenFirstDraft() {
                     "as PATH, or remove it",
                     path.string()));
   LogInfo("the path is converted to YAML; the page saves it as {}", path.string());
-  first_draft_ = KeepDraft(yaml.text, std::move(opened));
+  first_draft_ = KeepDraft(yaml.text, PathFrames(std::move(opened)));
   return {};
 }
 
@@ -86,7 +86,9 @@ Result<void> PageScene::OpenPackages() {
           "{}: was made from a light field of {} LF images, but {} has {}: give the light field "
           "of the package",
           name, read.whole.image_count, arguments_.light_field, light_field_.size()));
-    if (HashOfCameras(read.path) != first_draft_->cameras_hash) {
+    packages_hash_ = HashOfCameras(read.path);
+    first_draft_->is_of_packages = HasCamerasOfPackages(*first_draft_->path);
+    if (!first_draft_->is_of_packages) {
       packages_note_ = fmt::format(
           "{} was made for another path than {}: packages are ignored. Make new ones with "
           "lfpreprocessor.",
@@ -119,21 +121,47 @@ Result<void> PageScene::OpenDepths() {
   return {};
 }
 
+Result<PathFrames> PageScene::Parse(const std::string& text) const {
+  return ParsePathFrames(text, arguments_.path.filename().string(), light_field_.unit_m,
+                         PicturesBeside(arguments_.path));
+}
+
 Result<std::shared_ptr<PathDraft>> PageScene::AddDraft(const std::string& text) {
   const std::string id = IdOfText(text);
   if (std::shared_ptr<PathDraft> known = FindDraft(id)) return known;
-  LF_ASSIGN_OR_RETURN(CameraPath path,
-                      ParsePathYaml(text, arguments_.path.filename().string(), light_field_.unit_m,
-                                    PicturesBeside(arguments_.path)));
+  LF_ASSIGN_OR_RETURN(PathFrames path, Parse(text));
+  const std::atomic<bool>* const interrupted = arguments_.interrupted;
+  LF_RETURN_IF_ERROR(
+      path.Check([&] { return events_.is_closed() || (interrupted != nullptr && *interrupted); }));
   return KeepDraft(text, std::move(path));
 }
 
-std::shared_ptr<PathDraft> PageScene::KeepDraft(const std::string& text, CameraPath path) {
+Result<std::shared_ptr<const PathFrames>> PageScene::FramesOf(const std::string& text) {
+  const std::string id = IdOfText(text);
+  if (const std::shared_ptr<PathDraft> known = FindDraft(id)) return known->path;
+  {
+    const std::lock_guard lock(mutex_);
+    if (last_frames_ && last_id_ == id) return last_frames_;
+  }
+  LF_ASSIGN_OR_RETURN(PathFrames path, Parse(text));
+  auto frames = std::make_shared<const PathFrames>(std::move(path));
+  const std::lock_guard lock(mutex_);
+  last_id_ = id;
+  last_frames_ = frames;
+  return frames;
+}
+
+// Packages hold the cameras of the whole film, so that the memory of those of the path is no more.
+bool PageScene::HasCamerasOfPackages(const PathFrames& path) const {
+  return !packages_hash_.empty() && HashOfCameras(*EvaluatePath(path)) == packages_hash_;
+}
+
+std::shared_ptr<PathDraft> PageScene::KeepDraft(const std::string& text, PathFrames path) {
   auto draft = std::make_shared<PathDraft>();
   draft->id = IdOfText(text);
   draft->text = text;
-  draft->path = std::make_shared<const CameraPath>(std::move(path));
-  draft->cameras_hash = HashOfCameras(*draft->path);
+  draft->is_of_packages = HasCamerasOfPackages(path);
+  draft->path = std::make_shared<const PathFrames>(std::move(path));
   std::list<std::shared_ptr<PathDraft>> forgotten;  // their threads end after the lock is released
   const std::lock_guard lock(mutex_);
   drafts_.push_front(draft);
@@ -153,13 +181,15 @@ std::shared_ptr<PathDraft> PageScene::FindDraft(const std::string& id) {
 }
 
 FrameUse PageScene::UseOf(const PathDraft& draft, FrameId frame) {
-  const RenderCamera& camera = draft.path->Camera(frame);
+  const RenderCamera camera = *draft.path->Camera(frame);
   FrameUse use = UseOfCameras(index_, camera, arguments_.needs, pool_);
-  if (draft.cameras_hash != first_draft_->cameras_hash) return use;
+  if (!draft.is_of_packages) return use;
   for (size_t i = 0; i < packages_.size(); ++i) {
     const Package& package = *packages_[i];
-    const std::vector<FrameId> frames = package.FrameIds();
-    if (!std::binary_search(frames.begin(), frames.end(), frame)) continue;
+    const auto found =
+        std::lower_bound(package.frames.begin(), package.frames.end(), frame,
+                         [](const PackageFrame& one, FrameId wanted) { return one.id < wanted; });
+    if (found == package.frames.end() || found->id != frame) continue;
     NeedsOptions options = arguments_.needs;
     options.max_image_count = package.choices.max_image_count;
     options.select.max_angle_rad = package.choices.max_angle_rad;

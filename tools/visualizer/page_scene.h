@@ -3,6 +3,7 @@
 // the render that is watched.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <filesystem>
 #include <list>
@@ -14,7 +15,7 @@
 
 #include "tools/visualizer/event_board.h"
 
-#include "lf/camera/path/camera_path.h"
+#include "lf/camera/path/evaluate_path.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
 #include "lf/light_field/model/light_field.h"
@@ -41,14 +42,16 @@ struct PageArguments {
   uint64_t seed = 0;
   int threads = 0;
   size_t live_memory_bytes = size_t{512} << 20;  // LiveOptions::memory_bytes
+  // Once it is true, PageScene::Open() ends with kInterrupted. May be null.
+  const std::atomic<bool>* interrupted = nullptr;
 };
 
 // A path while it is edited: its text, checked by the parser of the programs.
 struct PathDraft {
   std::string id;  // hash of the text: IdOfText(text)
   std::string text;
-  std::shared_ptr<const CameraPath> path;
-  std::string cameras_hash;       // hash of the cameras, in the form that packages store
+  std::shared_ptr<const PathFrames> path;  // PathFrames::Check() has found no error in it
+  bool is_of_packages = false;    // true if it has the cameras of the packages, if there are some
   std::shared_ptr<FilmUse> film;  // null before FilmOf(), and after newer films have stopped it
   uint64_t film_number = 0;       // number of the film in the order in which films were started
 };
@@ -82,8 +85,13 @@ class PageScene {
 
   // Returns the path in the file as it was when lfvisualizer started.
   std::shared_ptr<PathDraft> first_draft() const { return first_draft_; }
-  // Parses and keeps a draft. kInput: the error that the programs would report.
+  // Parses a draft, checks all its frames, and keeps it. kInput: the error that the programs would
+  // report. kInterrupted: the event board is closed, because the program ends.
   Result<std::shared_ptr<PathDraft>> AddDraft(const std::string& text);
+  // Returns the path of a text that need not be a draft. Its frames are not checked: each may have
+  // an error when it is asked for. Does not parse a text again that is a draft, or that was asked
+  // for last. kInput as for ParsePathFrames().
+  Result<std::shared_ptr<const PathFrames>> FramesOf(const std::string& text);
   // Returns a draft, or nullptr if it is unknown. The scene keeps only the first draft and the few
   // drafts that were used last.
   std::shared_ptr<PathDraft> FindDraft(const std::string& id);
@@ -105,7 +113,9 @@ class PageScene {
   Result<void> OpenFirstDraft();
   Result<void> OpenPackages();
   Result<void> OpenDepths();
-  std::shared_ptr<PathDraft> KeepDraft(const std::string& text, CameraPath path);
+  Result<PathFrames> Parse(const std::string& text) const;
+  bool HasCamerasOfPackages(const PathFrames& path) const;
+  std::shared_ptr<PathDraft> KeepDraft(const std::string& text, PathFrames path);
 
   PageArguments arguments_;
   LightField light_field_;
@@ -115,12 +125,15 @@ class PageScene {
   std::vector<std::unique_ptr<Package>> packages_;
   std::vector<std::unique_ptr<ImageIndex>> package_indices_;
   std::string packages_note_;
+  std::string packages_hash_;  // hash of the cameras of the packages' path
   std::vector<DepthFile> depths_;
   EventBoard events_;
-  std::mutex mutex_;  // guards drafts and their films
+  std::mutex mutex_;  // guards the members below
   uint64_t films_begun_ = 0;
   std::shared_ptr<PathDraft> first_draft_;
-  std::list<std::shared_ptr<PathDraft>> drafts_;  // the most recently used one first
+  std::list<std::shared_ptr<PathDraft>> drafts_;   // the most recently used one first
+  std::string last_id_;                            // IdOfText() of last_frames_
+  std::shared_ptr<const PathFrames> last_frames_;  // the path that FramesOf() parsed last
 };
 
 // Returns a hash of the text: 16 hexadecimal digits.

@@ -115,6 +115,7 @@ Result<void> PageServer::ServeUntil(const std::atomic<bool>& interrupted) {
     daemon.HangUpLate();
   }
   parts_->scene.events().Close();
+  parts_->live.End();
   daemon.Stop();
   watcher.join();
   return started;

@@ -54,7 +54,7 @@ PreviewRender::~PreviewRender() {
   thread_.join();
 }
 
-void PreviewRender::Start(std::shared_ptr<const CameraPath> path, FrameId frame,
+void PreviewRender::Start(std::shared_ptr<const PathFrames> path, FrameId frame,
                           bool recorded_only) {
   const std::lock_guard lock(mutex_);
   wish_ = {std::move(path), frame, recorded_only};
@@ -107,18 +107,22 @@ Result<std::string> PreviewRender::RenderFrame(const Wish& wish) {
   LightField light_field = scene_.light_field();
   if (wish.recorded_only) light_field = RecordedPart(std::move(light_field));
   FilmOptions options = OptionsOf(arguments, light_field.encoding);
-  CameraPath path = *wish.path;
-  // Frames with a focal surface cannot be guarded.
-  if (path.focal_surface) options.guard = false;
+  // The frame is rendered as a film of its own.
+  LF_ASSIGN_OR_RETURN(CameraPath path, wish.path->Some(wish.frame, 1));
+  constexpr FrameId kAlone{1};
+  if (path.focal_surface) {
+    path.focal_surface->file = FileOfFrame(*path.focal_surface, wish.frame.value);
+    options.guard = false;  // frames with a focal surface cannot be guarded
+  }
   LF_RETURN_IF_ERROR(
-      AddFocalSurfaces(arguments.path, light_field, {{wish.frame}, &pool_, &interrupted_}, &path));
+      AddFocalSurfaces(arguments.path, light_field, {{kAlone}, &pool_, &interrupted_}, &path));
   Package film = PackageOfAll(std::move(light_field), std::move(path), arguments.seed);
   film.choices.max_angle_rad = arguments.needs.select.max_angle_rad;
   WorkOptions work;
   work.memory_bytes = kMemory_bytes;
   work.interrupted = work.stop = &interrupted_;
   LF_ASSIGN_OR_RETURN(const std::unique_ptr<FilmRenderer> renderer,
-                      FilmRenderer::Open(std::move(film), options, work, {wish.frame}, pool_));
+                      FilmRenderer::Open(std::move(film), options, work, {kAlone}, pool_));
   LF_RETURN_IF_ERROR(renderer->CheckAnyContributes());
   Clock::time_point next_picture = Clock::now();  // the first picture is made at once
   for (bool is_going_on = true; is_going_on;) {

@@ -16,7 +16,7 @@
 #include "tools/visualizer/page_answers.h"
 #include "tools/visualizer/page_scene.h"
 
-#include "lf/camera/path/camera_path.h"
+#include "lf/camera/path/evaluate_path.h"
 #include "lf/core/ids.h"
 #include "lf/core/parallel.h"
 #include "lf/core/result.h"
@@ -38,7 +38,7 @@ class PreviewRender {
 
   // Starts a render, and stops the current one.
   //   recorded_only  true: virtual LF images are left out
-  void Start(std::shared_ptr<const CameraPath> path, FrameId frame, bool recorded_only);
+  void Start(std::shared_ptr<const PathFrames> path, FrameId frame, bool recorded_only);
   void Stop();
 
   // Answers the name "7.bin" with the newest picture of frame 7; with 404 if the current or last
@@ -47,7 +47,7 @@ class PreviewRender {
 
  private:
   struct Wish {
-    std::shared_ptr<const CameraPath> path;
+    std::shared_ptr<const PathFrames> path;
     FrameId frame;
     bool recorded_only = false;
   };

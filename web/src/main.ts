@@ -206,8 +206,8 @@ function wireKeys(
 ): void {
   const plain: Record<string, (event: KeyboardEvent) => void> = {
     " ": () => timeline.toggle(),
-    ArrowLeft: (event) => state.setFrame(state.frame - (event.shiftKey ? 10 : 1)),
-    ArrowRight: (event) => state.setFrame(state.frame + (event.shiftKey ? 10 : 1)),
+    ArrowLeft: (event) => state.step(event.shiftKey ? -10 : -1),
+    ArrowRight: (event) => state.step(event.shiftKey ? 10 : 1),
     Home: () => state.setFrame(1),
     End: () => state.setFrame(state.path.frames),
     "[": () => (show("image"), state.selectNext(-1)),

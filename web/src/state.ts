@@ -17,6 +17,7 @@ import type {
 import { getBytes, getJson, getText, post, SourceError } from "./data/source";
 import { History } from "./path/history";
 import { PathDocument } from "./path/path_document";
+import { PathFrames } from "./path_frames";
 
 export type Change =
   | "path" // a new valid path: the cameras of all frames may differ
@@ -45,7 +46,7 @@ const MOST_USES_BYTES = 96 << 20; // largest size of the kept use data of visite
 
 export class State {
   path!: PathHead;
-  cameras: FrameCamera[] = [];
+  frames: PathFrames | null = null; // null before open()
   frame = 1;
   use: FrameUse | null = null;
   density: DensityFacts | null = null;
@@ -65,7 +66,7 @@ export class State {
   isDark = true;
 
   private savedText = "";
-  private shownText = ""; // text of the path that `cameras` are of
+  private shownText = ""; // text of the path that `frames` are of
   // The points of the focus plane that were clicked so far in `frame`. Three points define the plane.
   planePoints: { frame: number; points: Vec3[] } | null = null;
   private savedId = "";
@@ -74,6 +75,8 @@ export class State {
   private usesBytes = 0;
   private checking = 0;
   private taking = 0;
+  private wanted = 1; // the frame that was chosen; `frame` follows when its camera is known
+  private isLoadingFrame = false;
   private isSaving = false;
   private broken: string | null = null; // why the typed text is no YAML; null if it is
   // A new version of the file that is not shown because there are unsaved edits; null: none.
@@ -107,12 +110,16 @@ export class State {
   }
 
   get camera(): FrameCamera {
-    return this.cameras[this.frame - 1];
+    return this.frames!.camera(this.frame)!;
+  }
+  // Cameras of the shown frames.
+  get cameras(): FrameCamera[] {
+    return this.frames?.shown ?? [];
   }
   get time(): number {
     return (this.frame - 1) / this.path.fps;
   }
-  // True if `cameras` are those of the document as it is now.
+  // True if `frames` are those of the document as it is now.
   get isShown(): boolean {
     return this.shownText === this.document.text();
   }
@@ -136,12 +143,14 @@ export class State {
 
   private async take(head: PathHead, text: string): Promise<void> {
     const number = ++this.taking;
-    const cameras = readFrames(await getBytes(`path/${head.id}/frames.bin`));
+    const frames = new PathFrames(head, readFrames(await getBytes(`path/${head.id}/frames.bin`)));
+    const frame = () => Math.min(this.wanted, head.frames);
+    while (number === this.taking && !frames.camera(frame())) await frames.load(frame());
     if (number !== this.taking) return; // a later edit was faster
     this.path = head;
     this.shownText = text;
-    this.cameras = cameras;
-    this.frame = Math.min(this.frame, head.frames);
+    this.frames = frames;
+    this.wanted = this.frame = frame();
     this.film = null;
     this.emit("path");
     await this.askFrame();
@@ -275,9 +284,41 @@ export class State {
   // ----------------------------------------------------------------------------------- the frame
 
   setFrame(frame: number): void {
-    const wanted = Math.max(1, Math.min(this.path.frames, Math.round(frame)));
-    if (wanted === this.frame) return;
-    this.frame = wanted;
+    let wanted = Math.max(1, Math.min(this.path.frames, Math.round(frame)));
+    // An export has the shown frames only.
+    if (!this.scene.server) wanted = this.frames!.frameOf(this.frames!.indexOf(wanted));
+    if (wanted === this.wanted) return;
+    this.wanted = wanted;
+    if (this.frames!.camera(wanted)) this.showFrame(wanted);
+    else void this.loadFrame();
+  }
+
+  // Goes to the frame that is `count` frames later, or earlier if it is negative; in an export, to the shown frame.
+  step(count: number): void {
+    const { frames, scene, wanted } = this;
+    this.setFrame(scene.server ? wanted + count : frames!.frameOf(Math.max(0, frames!.indexOf(wanted) + count)));
+  }
+
+  private async loadFrame(isSecond = false): Promise<void> {
+    if (this.isLoadingFrame) return; // the running call ends with the newest frame
+    this.isLoadingFrame = true;
+    let isForgotten = false;
+    try {
+      while (!this.frames!.camera(this.wanted)) await this.frames!.load(this.wanted);
+      if (this.wanted !== this.frame) this.showFrame(this.wanted);
+    } catch (error) {
+      // Status 410: the server has forgotten the path, so the text is sent again.
+      isForgotten = error instanceof SourceError && error.status === 410 && !isSecond;
+      if (!isForgotten) this.fail(error);
+      if (!isForgotten) this.wanted = this.frame;
+    } finally {
+      this.isLoadingFrame = false;
+    }
+    if (isForgotten) await this.check().then(() => this.loadFrame(true));
+  }
+
+  private showFrame(frame: number): void {
+    this.frame = frame;
     this.emit("frame");
     // While the film is played live, the server computes pictures only.
     if (!(this.isPlaying && this.isLive)) void this.askFrame();

@@ -14,8 +14,8 @@ interface Row {
   colour: string;
   quantities: string[]; // names of the quantities whose keys the row shows
   fromZero: boolean;
-  values(): (number | null)[];
-  text(frame: number): string;
+  values(): (number | null)[]; // of the shown frames (PathFrames)
+  text(): string; // of the current frame
 }
 
 const LABELS = 118; // width of the labels to the left of the curves, CSS pixels
@@ -67,8 +67,8 @@ export class Timeline {
         colour: "--curve-0",
         quantities: ["position", "look_at", "orientation", "quaternion", "focal_length"],
         fromZero: true,
-        values: () => state.cameras.map((_, i) => this.speed(i)),
-        text: (i) => `${precise(this.speed(i), 3)} / s`,
+        values: () => state.cameras.map((_, i) => state.frames!.speed(state.frames!.frameOf(i))),
+        text: () => `${precise(state.frames!.speed(state.frame), 3)} / s`,
       },
       {
         label: "Aperture",
@@ -77,8 +77,8 @@ export class Timeline {
         quantities: ["aperture_diameter", "f_number", "blade_rotation"],
         fromZero: true,
         values: () => state.cameras.map((camera) => 2 * camera.radius),
-        text: (i) => {
-          const camera = state.cameras[i];
+        text: () => {
+          const { camera } = state;
           if (camera.radius === 0) return "pinhole";
           return `f/${precise(fNumber(camera), 3)}  ${millimetres(2 * camera.radius, unit())}`;
         },
@@ -90,7 +90,7 @@ export class Timeline {
         quantities: ["focus_distance", "focus_point", "focus_tilt"],
         fromZero: false,
         values: () => state.cameras.map((camera) => camera.focusDistance),
-        text: (i) => precise(state.cameras[i].focusDistance, 4),
+        text: () => precise(state.camera.focusDistance, 4),
       },
       {
         label: "LF images",
@@ -99,10 +99,10 @@ export class Timeline {
         quantities: [],
         fromZero: true,
         values: () => ofFilm(state.film?.images),
-        text: (i) =>
-          state.use && state.use.frame === i + 1
+        text: () =>
+          state.use && state.use.frame === state.frame
             ? shortNumber(state.use.ids.length)
-            : shortNumber(state.film?.images[i] ?? 0),
+            : shortNumber(state.film?.images[state.frames!.indexOf(state.frame)] ?? 0),
       },
       {
         label: "Rays per element",
@@ -114,22 +114,14 @@ export class Timeline {
           ofFilm(state.film?.rays).map((rays) =>
             rays === null ? null : rays / (state.path.width * state.path.height),
           ),
-        text: (i) => {
+        text: () => {
+          const i = state.frames!.indexOf(state.frame);
           if (!state.film || i >= state.film.done) return "…";
           const rays = state.film.rays[i] / (state.path.width * state.path.height);
           return `about ${precise(rays, 3)}`;
         },
       },
     ];
-  }
-
-  // Returns the camera's speed from the frame with this index (from 0) to the next one, in world units per second; at
-  // the last frame, the speed from the previous one.
-  private speed(index: number): number {
-    const { cameras, path } = this.state;
-    const a = cameras[Math.max(0, Math.min(index, cameras.length - 2))].centre;
-    const b = cameras[Math.min(index + 1, cameras.length - 1)].centre;
-    return Math.hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) * path.fps;
   }
 
   // ----------------------------------------------------------------------------------- playing
@@ -279,7 +271,7 @@ export class Timeline {
         isDown = false;
         continue;
       }
-      const x = this.xOf(i / this.state.path.fps);
+      const x = this.xOf((this.state.frames!.frameOf(i) - 1) / this.state.path.fps);
       if (isDown) context.lineTo(x, yOf(value));
       else context.moveTo(x, yOf(value));
       if (values.length === 1) context.lineTo(x + this.width(), yOf(value));
@@ -305,7 +297,7 @@ export class Timeline {
     context.font = "12px system-ui, sans-serif";
     const height = this.rowHeight();
     context.fillStyle = cssColour("--text");
-    this.rows.forEach((row, i) => context.fillText(row.text(state.frame - 1), 8, i * height + height / 2 + 12));
+    this.rows.forEach((row, i) => context.fillText(row.text(), 8, i * height + height / 2 + 12));
     if (this.dragged) drawDiamond(context, this.xOf(this.dragged.time), this.dragged.key.y, cssColour("--text"));
     this.range.value = String(state.frame);
     this.range.setAttribute("aria-valuetext", `frame ${state.frame} of ${state.path.frames}`);

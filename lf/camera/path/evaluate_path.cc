@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "lf/camera/path/orientation.h"
 #include "lf/camera/thin_lens.h"
@@ -17,6 +18,7 @@ namespace {
 // considered wrong.
 constexpr double kLeastHalfView = 1e-6;
 constexpr double kMostHalfView = 1e4;
+constexpr uint32_t kFramesPerLook = 4096;  // frames that are checked between two looks at the stop
 
 // A time at which the path is evaluated.
 struct Moment {
@@ -198,51 +200,117 @@ Result<RenderCamera> CameraAt(const Moment& moment) {
   return camera;
 }
 
-// Rotates the blades while they close: by a constant angle per stop below the widest opening among
-// the path's frames, stops = 2 log2(widest / diameter). An aperture of diameter 0 has no shape to
-// rotate.
-void TurnClosingBlades(double rotation_per_stop_rad, CameraPath* path) {
-  double widest_w = 0;
-  for (const RenderCamera& camera : path->cameras)
-    widest_w = std::max(widest_w, camera.aperture.radius_w);
-  const auto turn = [&](RenderCamera* camera) {
-    if (camera->aperture.radius_w > 0 && widest_w > 0)
-      camera->aperture.rotation_rad +=
-          rotation_per_stop_rad * 2 * std::log2(widest_w / camera->aperture.radius_w);
-  };
-  for (RenderCamera& camera : path->cameras) turn(&camera);
-  for (RenderCamera& camera : path->instants) turn(&camera);
+// Returns the radius of the opening at a moment, which is 0 if the path has an error there.
+double RadiusAt(const Moment& moment) {
+  RenderCamera camera;
+  if (!SetOptics(moment, &camera)) return 0;
+  const Result<double> diameter_w = ApertureDiameterAt(moment, camera.focal_length_w);
+  return diameter_w ? *diameter_w / 2 : 0;
 }
 
-// Evaluates the instants of all frames, unless there is no shutter.
-Result<void> AddInstants(const PathDescription& path, CameraPath* evaluated) {
-  if (!path.shutter.exists()) return {};
-  evaluated->shutter = path.shutter;
-  evaluated->instants.reserve(static_cast<size_t>(path.frame_count) * path.shutter.samples);
-  for (int frame = 1; frame <= path.frame_count; ++frame)
-    for (int k = 0; k < path.shutter.samples; ++k) {
-      const double time_s = (frame - 1 + InstantOffset(path.shutter, k)) / path.fps;
-      LF_ASSIGN_OR_RETURN(RenderCamera camera, CameraAt({path, frame, time_s}));
-      evaluated->instants.push_back(camera);
-    }
-  return {};
+// Returns the largest radius of the opening among the frames of the path.
+double WidestRadius(const PathDescription& path) {
+  const auto moves = [](const std::optional<Quantity>& quantity) {
+    return quantity && Moves(quantity->motion);
+  };
+  const bool is_constant = !moves(path.aperture_diameter_w) && !moves(path.f_number) &&
+                           !moves(path.focal_length_w) && !moves(path.field_of_view_rad);
+  double widest_w = 0;
+  for (int frame = 1; frame <= (is_constant ? 1 : path.frame_count); ++frame)
+    widest_w = std::max(widest_w, RadiusAt({path, frame, (frame - 1) / path.fps}));
+  return widest_w;
 }
 
 }  // namespace
 
-Result<CameraPath> EvaluatePath(const PathDescription& path) {
-  CameraPath evaluated;
-  evaluated.fps = path.fps;
-  evaluated.unit_m = path.unit_m;
-  evaluated.focal_surface = path.focal_surface;
-  evaluated.cameras.reserve(static_cast<size_t>(path.frame_count));
-  for (int frame = 1; frame <= path.frame_count; ++frame) {
-    LF_ASSIGN_OR_RETURN(RenderCamera camera, CameraAt({path, frame, (frame - 1) / path.fps}));
-    evaluated.cameras.push_back(camera);
+PathFrames::PathFrames(PathDescription path) : described_(std::move(path)) {
+  if (described_->blade_rotation_per_stop_rad != 0) widest_radius_w_ = WidestRadius(*described_);
+  whole_.fps = described_->fps;
+  whole_.unit_m = described_->unit_m;
+  whole_.shutter = described_->shutter;
+  whole_.focal_surface = described_->focal_surface;
+}
+
+PathFrames::PathFrames(CameraPath path) : whole_(std::move(path)) {}
+
+size_t PathFrames::frame_count() const {
+  return described_ ? static_cast<size_t>(described_->frame_count) : whole_.frame_count();
+}
+
+// Rotates the blades while they close: by a constant angle per stop below the widest opening among
+// the path's frames, stops = 2 log2(widest / diameter). An aperture of diameter 0 has no shape to
+// rotate.
+Result<RenderCamera> PathFrames::CameraAtTime(FrameId frame, double time_s) const {
+  const PathDescription& path = *described_;
+  LF_ASSIGN_OR_RETURN(RenderCamera camera, CameraAt({path, static_cast<int>(frame.value), time_s}));
+  if (camera.aperture.radius_w > 0 && widest_radius_w_ > 0)
+    camera.aperture.rotation_rad += path.blade_rotation_per_stop_rad * 2 *
+                                    std::log2(widest_radius_w_ / camera.aperture.radius_w);
+  return camera;
+}
+
+Result<RenderCamera> PathFrames::Camera(FrameId frame) const {
+  LF_CHECK(frame.value >= 1 && frame.value <= frame_count());
+  if (!described_) return whole_.Camera(frame);
+  return CameraAtTime(frame, (frame.value - 1) / described_->fps);
+}
+
+Result<RenderCamera> PathFrames::Instant(FrameId frame, int instant) const {
+  LF_CHECK(frame.value >= 1 && frame.value <= frame_count());
+  if (!described_) return whole_.Instants(frame)[static_cast<size_t>(instant)];
+  return CameraAtTime(
+      frame, (frame.value - 1 + InstantOffset(described_->shutter, instant)) / described_->fps);
+}
+
+Result<CameraPath> PathFrames::Some(FrameId begin, size_t count) const {
+  CameraPath some;
+  some.fps = whole_.fps;
+  some.unit_m = whole_.unit_m;
+  some.shutter = whole_.shutter;
+  some.focal_surface = whole_.focal_surface;
+  some.cameras.reserve(count);
+  const auto frame_of = [&](size_t i) { return FrameId{begin.value + static_cast<uint32_t>(i)}; };
+  for (size_t i = 0; i < count; ++i) {
+    LF_ASSIGN_OR_RETURN(RenderCamera camera, Camera(frame_of(i)));
+    some.cameras.push_back(std::move(camera));
   }
-  LF_RETURN_IF_ERROR(AddInstants(path, &evaluated));
-  TurnClosingBlades(path.blade_rotation_per_stop_rad, &evaluated);
-  return evaluated;
+  if (!some.shutter.exists()) return some;
+  some.instants.reserve(count * static_cast<size_t>(some.shutter.samples));
+  for (size_t i = 0; i < count; ++i)
+    for (int k = 0; k < some.shutter.samples; ++k) {
+      LF_ASSIGN_OR_RETURN(RenderCamera camera, Instant(frame_of(i), k));
+      some.instants.push_back(std::move(camera));
+    }
+  return some;
+}
+
+Result<void> PathFrames::CheckAll(const std::function<bool()>& is_stopped,
+                                  const std::function<Result<void>(FrameId)>& check) const {
+  for (uint32_t frame = 1; frame <= frame_count(); ++frame) {
+    if (is_stopped && frame % kFramesPerLook == 0 && is_stopped())
+      return Error{ErrorKind::kInterrupted, "interrupted"};
+    LF_RETURN_IF_ERROR(check(FrameId{frame}));
+  }
+  return {};
+}
+
+// Looks at the frames in the order of Some(), which therefore finds the same error first.
+Result<void> PathFrames::Check(const std::function<bool()>& is_stopped) const {
+  if (!described_) return {};
+  const auto check_camera = [&](FrameId frame) -> Result<void> {
+    const Result<RenderCamera> camera = Camera(frame);
+    return camera ? Result<void>() : camera.error();
+  };
+  LF_RETURN_IF_ERROR(CheckAll(is_stopped, check_camera));
+  if (!whole_.shutter.exists()) return {};
+  return CheckAll(is_stopped, [&](FrameId frame) -> Result<void> {
+    for (int k = 0; k < whole_.shutter.samples; ++k) LF_RETURN_IF_ERROR(Instant(frame, k));
+    return {};
+  });
+}
+
+Result<CameraPath> EvaluatePath(const PathFrames& path) {
+  return path.Some(FrameId{1}, path.frame_count());
 }
 
 }  // namespace lf

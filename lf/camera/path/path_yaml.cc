@@ -118,15 +118,22 @@ PathDescription Describe(const YamlNode& root, std::optional<double> light_field
 
 }  // namespace
 
+Result<PathFrames> ParsePathFrames(std::string_view text, std::string_view name,
+                                   std::optional<double> light_field_unit_m,
+                                   const ReadTransmission& read_transmission) {
+  LF_ASSIGN_OR_RETURN(const YamlNodePtr root, ParseYaml(text, name));
+  YamlErrors errors(name);
+  PathDescription description = Describe(*root, light_field_unit_m, read_transmission, &errors);
+  if (!errors.empty()) return errors.First();
+  return PathFrames(std::move(description));
+}
+
 Result<CameraPath> ParsePathYaml(std::string_view text, std::string_view name,
                                  std::optional<double> light_field_unit_m,
                                  const ReadTransmission& read_transmission) {
-  LF_ASSIGN_OR_RETURN(const YamlNodePtr root, ParseYaml(text, name));
-  YamlErrors errors(name);
-  const PathDescription description =
-      Describe(*root, light_field_unit_m, read_transmission, &errors);
-  if (!errors.empty()) return errors.First();
-  return EvaluatePath(description);
+  LF_ASSIGN_OR_RETURN(const PathFrames frames,
+                      ParsePathFrames(text, name, light_field_unit_m, read_transmission));
+  return EvaluatePath(frames);
 }
 
 Result<CameraPath> ReadPathYaml(const std::filesystem::path& path,

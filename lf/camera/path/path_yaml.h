@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "lf/camera/path/camera_path.h"
+#include "lf/camera/path/evaluate_path.h"
 #include "lf/camera/transmission.h"
 #include "lf/core/result.h"
 
@@ -32,6 +33,11 @@ using ReadTransmission = std::function<Result<Transmission>(const std::string& f
 Result<CameraPath> ParsePathYaml(std::string_view text, std::string_view name,
                                  std::optional<double> light_field_unit_m,
                                  const ReadTransmission& read_transmission = {});
+// Returns the path with its cameras not yet computed. kInput for anything that is wrong whatever
+// the frame; PathFrames::Check() finds the errors of single frames.
+Result<PathFrames> ParsePathFrames(std::string_view text, std::string_view name,
+                                   std::optional<double> light_field_unit_m,
+                                   const ReadTransmission& read_transmission = {});
 Result<CameraPath> ReadPathYaml(const std::filesystem::path& path,
                                 std::optional<double> light_field_unit_m,
                                 const ReadTransmission& read_transmission = {});

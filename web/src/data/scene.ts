@@ -6,10 +6,12 @@ export type Vec3 = [number, number, number];
 export interface PathHead {
   id: string;
   frames: number;
+  shown_step: number; // distance between two shown frames (PathFrames); 1: all are shown
   fps: number;
   unit_m: number;
   width: number;
   height: number;
+  widest_radius: number; // of the opening, of all frames; 0 unless the blades turn as the lens closes
   transmission?: string; // of the lens, as a path file states it; missing if there is none
 }
 
@@ -58,6 +60,7 @@ export interface SceneFacts {
   depths?: DepthFacts[]; // missing: there are none
 }
 
+// Facts about the shown frames (PathFrames).
 export interface FilmFacts {
   done: number;
   total: number;

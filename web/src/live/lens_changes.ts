@@ -65,11 +65,11 @@ export function writeBlades(document: PathDocument, _time: number, camera: Frame
 }
 
 // Returns a function that writes the rotation of the blades.
-//   cameras  those of all frames: blade_rotation_per_stop counts from the widest opening among them
-export function rotationWriter(cameras: readonly FrameCamera[]) {
+//   widest  radius of the widest opening of all frames, from which blade_rotation_per_stop counts
+export function rotationWriter(widest: number) {
   return (document: PathDocument, time: number, camera: FrameCamera): string => {
-    const widest = cameras.reduce((most, one) => Math.max(most, one.radius), 0);
-    const ofStops = camera.radius > 0 ? rotationPerStop(document) * 2 * Math.log2(widest / camera.radius) : 0;
+    const isTurned = camera.radius > 0 && widest > 0;
+    const ofStops = isTurned ? rotationPerStop(document) * 2 * Math.log2(widest / camera.radius) : 0;
     setAtTime(document, "blade_rotation", time, camera.rotation * DEGREES - ofStops);
     return "";
   };

@@ -258,7 +258,7 @@ export class LensPanel {
       (share) => {
         const one = camera.camera;
         const rotation = one.rotation - within(one) + share * 0.999 * period(one);
-        camera.show("turn blades", { ...one, rotation }, rotationWriter(state.cameras));
+        camera.show("turn blades", { ...one, rotation }, rotationWriter(state.path.widest_radius));
       },
       (one) => `${Math.round((within(one) * 180) / Math.PI)}°`,
     );

@@ -94,7 +94,9 @@ export class ImagePanel {
       element("dd", {}, `${precise(selected.focal_px, 5)} px`),
     ];
     const frames = this.state.framesOfCamera?.[selected.id];
-    if (frames !== undefined) rows.push(element("dt", {}, "Taken by"), element("dd", {}, plural(frames, "frame")));
+    const about = this.state.path.shown_step > 1 ? "about " : "";
+    if (frames !== undefined)
+      rows.push(element("dt", {}, "Taken by"), element("dd", {}, about + plural(frames, "frame")));
     const help =
       kind === undefined || USES[kind] === "used"
         ? null

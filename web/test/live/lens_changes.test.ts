@@ -2,7 +2,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import type { FrameCamera } from "../../src/data/frame_camera";
 import {
   rotationPerStop,
   rotationWriter,
@@ -73,10 +72,10 @@ test("blades turn as the lens is stopped down, also while it is dragged", () => 
   const document = PathDocument.parse(text);
   const [open, degrees] = [cameraAt([0, 0, 0], { radius: 0.004, blades: 6 }), Math.PI / 180];
   open.rotation = 5 * degrees;
-  const cameras: FrameCamera[] = [open, withRadius(open, 0.002, rotationPerStop(document))];
-  assertNear([cameras[1].rotation], [25 * degrees]); // two stops
-  // A turn by 3 degrees at the second frame is one of the quantity.
-  rotationWriter(cameras)(document, 0.1, { ...cameras[1], rotation: 28 * degrees });
+  const closed = withRadius(open, 0.002, rotationPerStop(document));
+  assertNear([closed.rotation], [25 * degrees]); // two stops
+  // A turn by 3 degrees is one of the quantity, if the lens is wide open at another frame.
+  rotationWriter(open.radius)(document, 0.1, { ...closed, rotation: 28 * degrees });
   assert.match(document.text(), /blade_rotation_deg: 8\n/);
 });
 
