@@ -204,12 +204,17 @@ void ChildProcess::Signal(int signal) {
   if (!end_) ::kill(pid_, signal);
 }
 
-// Returns an error with the end of the program's standard error, which says why it failed.
-Error ChildProcess::Failure(const std::string& reason) const {
+std::string ChildProcess::Complaints() const {
   constexpr off_t kQuotedBytes = 600;
   std::string words = complaints_ < 0 ? "" : TextOf(complaints_, kQuotedBytes);
   while (!words.empty() && std::isspace(static_cast<unsigned char>(words.back()))) words.pop_back();
   std::replace(words.begin(), words.end(), '\n', ';');
+  return words;
+}
+
+// Returns an error with the end of the program's standard error, which says why it failed.
+Error ChildProcess::Failure(const std::string& reason) const {
+  const std::string words = Complaints();
   return OutputError(fmt::format("{} {}{}{}", name_, reason, words.empty() ? "" : ": ", words));
 }
 

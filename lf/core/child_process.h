@@ -47,6 +47,10 @@ class ChildProcess {
   std::optional<ProcessEnd> Poll();
   void Signal(int signal);
 
+  // Returns the end of what the program has written to its standard error, in one line. Empty if it
+  // has written nothing, or if Options::complaints is given.
+  std::string Complaints() const;
+
   // Writes to the program's input, and raises no SIGPIPE. kOutput if the program has closed its
   // input, or if it has read nothing for patience_s. The program is killed in the
   // second case, and in the first if it still runs after patience_s.

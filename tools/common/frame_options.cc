@@ -7,6 +7,7 @@
 #include "tools/common/validators.h"
 
 #include "lf/core/log.h"
+#include "lf/film/develop/video.h"
 #include "lf/render/pipeline/frame_range.h"
 
 namespace lf {
@@ -108,9 +109,26 @@ Result<PictureOptions> PictureArguments::Make(FrameFormat format) const {
   return options;
 }
 
+namespace {
+
+// Accepts names of videos, so that another name is refused before anything is read.
+CLI::Validator VideoName() {
+  return CLI::Validator(
+      [](const std::string& word) -> std::string {
+        if (IsVideoName(word)) return "";
+        return fmt::format(
+            "expected a name that ends in .mp4, found '{}': no other kind of video is written",
+            word);
+      },
+      "");
+}
+
+}  // namespace
+
 void AddFilmFiles(OptionGroup& output, std::string& video, bool& no_contact_sheet) {
-  output.Add("--video FILE", video, "Also write the frames as this mp4 file; needs ffmpeg")
+  output.Add("--video FILE", video, "Also write the frames as this video, NAME.mp4; needs ffmpeg")
       ->check(NotEmpty())
+      ->check(VideoName())
       ->check(TakesFiles(".mp4"));
   output.AddFlag("--no-contact-sheet", no_contact_sheet,
                  "Do not write contact_sheet.png\n"

@@ -156,9 +156,8 @@ class StackOutputs {
 }  // namespace
 
 FocusStackForm FormOfStack(const fs::path& output) {
-  const std::string extension = output.extension().string();
-  if (extension == ".exr") return FocusStackForm::kExr;
-  return extension == ".mp4" ? FocusStackForm::kVideo : FocusStackForm::kFolder;
+  if (output.extension() == ".exr") return FocusStackForm::kExr;
+  return IsVideoName(output) ? FocusStackForm::kVideo : FocusStackForm::kFolder;
 }
 
 fs::path StackFolder(const fs::path& output) {

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -39,9 +41,13 @@ constexpr const char* kConversion =
     "format=yuv420p";
 
 std::vector<std::string> EncoderArguments(const fs::path& file, int width, int height, double fps) {
+  const std::string rate = FrameRate(fps);
   return {"ffmpeg", "-hide_banner", "-nostats", "-loglevel", "error", "-y",  //
           "-f", "rawvideo", "-pixel_format", "rgb24", "-video_size",
-          fmt::format("{}x{}", width, height), "-framerate", FrameRate(fps), "-i", "pipe:0",
+          fmt::format("{}x{}", width, height),
+          // -framerate alone is a hint, of which ffmpeg makes a usual rate, such as 120 of
+          // 120000/1001; -r sets the times of the pictures.
+          "-framerate", rate, "-r", rate, "-i", "pipe:0",
           // These tags must name the matrix of kConversion, or players shift the colours.
           "-vf", kConversion, "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc",
           "bt709", "-color_range", "tv",                         //
@@ -76,6 +82,13 @@ Result<void> CheckVideoTool() {
   return {};
 }
 
+bool IsVideoName(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& letter : extension)
+    if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+  return extension == ".mp4";
+}
+
 namespace {
 
 // Returns true if the file is empty, or if its first bytes are those of an mp4 (ISO/IEC 14496-12,
@@ -90,6 +103,8 @@ bool IsEmptyOrVideo(const fs::path& path) {
 }  // namespace
 
 Result<void> CheckVideoTarget(const fs::path& path) {
+  if (!IsVideoName(path))
+    return UsageError(fmt::format("--video {}: expected a name that ends in .mp4", path.string()));
   const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
   std::error_code error;
   // The video's folder must exist, because a render makes no folder but that of its frames.
@@ -123,6 +138,45 @@ struct VideoWriter::State {
   }
 };
 
+namespace {
+
+// Returns the last number of pictures in the lines KEY=VALUE of ffmpeg's -progress; 0: there is
+// none.
+size_t CountIn(std::string_view progress) {
+  constexpr std::string_view kKey = "frame=";
+  size_t count = 0;
+  while (!progress.empty()) {
+    const std::string_view line = progress.substr(0, progress.find('\n'));
+    progress.remove_prefix(std::min(line.size() + 1, progress.size()));
+    if (line.starts_with(kKey))
+      std::from_chars(line.data() + kKey.size(), line.data() + line.size(), count);
+  }
+  return count;
+}
+
+// Reads all pictures of a finished video as a player does, but without decoding them. kOutput if
+// the file is not whole or does not have picture_count pictures. The file is read because ffmpeg 5
+// exits with 0 although it could not write the end of a file, such as its index. ffmpeg reads it
+// because this is the program that CheckVideoTool() has tried.
+Result<void> ReadBack(const fs::path& file, size_t picture_count, double patience_s) {
+  constexpr double kSlowDisk = 20e6;  // bytes per second
+  std::error_code error;
+  const auto size_bytes = fs::file_size(file, error);
+  if (error) return OutputError(fmt::format("it cannot be read back: {}", error.message()));
+  LF_ASSIGN_OR_RETURN(const CommandAnswer answer,
+                      RunCommand({"ffmpeg", "-hide_banner", "-nostats", "-loglevel", "error",
+                                  "-xerror", "-i", "file:" + file.string(), "-map", "0:v:0", "-c",
+                                  "copy", "-f", "null", "-progress", "pipe:1", "-"},
+                                 patience_s + static_cast<double>(size_bytes) / kSlowDisk));
+  const size_t found = answer.exit_code == 0 ? CountIn(answer.output) : 0;
+  if (found == picture_count) return {};
+  return OutputError(fmt::format("only {} of its {} pictures can be read back{}{}", found,
+                                 picture_count, answer.complaints.empty() ? "" : ": ",
+                                 answer.complaints.substr(0, answer.complaints.find('\n'))));
+}
+
+}  // namespace
+
 VideoWriter::VideoWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
 VideoWriter::~VideoWriter() {
@@ -132,10 +186,11 @@ VideoWriter::~VideoWriter() {
 
 Result<std::unique_ptr<VideoWriter>> VideoWriter::Open(const fs::path& path, int width, int height,
                                                        double fps, double patience_s) {
-  if (width < 2 || height < 2 || !(fps > 0 && std::isfinite(fps)))
+  constexpr double kSlowest = 1e-3, kFastest = 1e6;  // as in paths
+  if (width < 2 || height < 2 || !(fps >= kSlowest && fps <= kFastest))
     return OutputError(fmt::format(
         "{}: a video of {} x {} pixels at {} frames per second cannot be written: expected at "
-        "least 2 x 2 pixels and more than 0 frames per second",
+        "least 2 x 2 pixels and 0.001 to 1000000 frames per second",
         path.string(), width, height, fps));
   auto state = std::make_unique<State>();
   state->path = path;
@@ -170,6 +225,11 @@ Result<void> VideoWriter::Close() {
   if (const auto end = state_->ffmpeg->Finish(state_->patience_s); !end)
     return state_->Failure(end.error());
   if (state_->picture_count == 0) return state_->Failure(OutputError("it has no frames"));
+  if (const auto whole = ReadBack(state_->unfinished, state_->picture_count, state_->patience_s);
+      !whole) {
+    const std::string words = state_->ffmpeg->Complaints();
+    return state_->Failure(words.empty() ? whole.error() : OutputError("ffmpeg: " + words));
+  }
   return WriteAtomically(state_->path, [&](const fs::path& temporary) -> Result<void> {
     if (::rename(state_->unfinished.c_str(), temporary.c_str()) == 0) return {};
     return OutputError(fmt::format("{}: cannot be renamed: {}", state_->unfinished.string(),

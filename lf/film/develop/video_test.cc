@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lf/film/develop/video.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <array>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 
 #include "lf/core/file.h"
@@ -108,17 +111,27 @@ TEST_F(VideoTest, RoundedRatesOfTelevisionBecomeExact) {
   SKIP_WITHOUT_FFMPEG();
   const fs::path path = folder_ / "film.mp4";
   for (const auto& [fps, rate] :
-       {std::pair(29.97, "30000/1001"), std::pair(23.976, "24000/1001"),
-        std::pair(23.98, "24000/1001"), std::pair(59.94, "60000/1001"),
+       {std::pair(29.97, "30000/1001"),    std::pair(23.976, "24000/1001"),
+        std::pair(23.98, "24000/1001"),    std::pair(59.94, "60000/1001"),
         std::pair(29.97003, "30000/1001"), std::pair(24.97, "2497/100"),
-        std::pair(23.97, "2397/100"), std::pair(30.0, "30/1"), std::pair(12.5, "25/2")}) {
+        std::pair(23.97, "2397/100"),      std::pair(30.0, "30/1"),
+        std::pair(12.5, "25/2"),           std::pair(24.0, "24/1"),
+        std::pair(25.0, "25/1"),           std::pair(0.5, "1/2"),
+        std::pair(101.0, "101/1"),         std::pair(119.88, "120000/1001"),
+        std::pair(120.0, "120/1"),         std::pair(144.5, "289/2"),
+        std::pair(239.76, "240000/1001"),  std::pair(240.0, "240/1"),
+        std::pair(1000.0, "1000/1"),       std::pair(1e-3, "1/1000"),
+        std::pair(1e6, "1000000/1")}) {
     auto video = VideoWriter::Open(path, 64, 32, fps).value();
-    ASSERT_TRUE(video->Add(Patches(64, 32, 0)));
-    ASSERT_TRUE(video->Close());
-    EXPECT_EQ(Output("ffprobe -v error -show_entries stream=r_frame_rate -of csv=p=0 '" +
-                     path.string() + "'"),
-              std::string(rate) + "\n")
-        << fps;
+    for (int frame = 0; frame < 6; ++frame) ASSERT_TRUE(video->Add(Patches(64, 32, frame)));
+    const Result<void> closed = video->Close();
+    ASSERT_TRUE(closed) << fps << ": " << closed.error().message;
+    const std::string tags = Output(
+        "ffprobe -v error -show_entries stream=r_frame_rate,avg_frame_rate,duration -of csv=p=0 '" +
+        path.string() + "'");
+    EXPECT_TRUE(tags.starts_with(fmt::format("{0},{0},", rate))) << fps << ": " << tags;
+    const double duration_s = std::stod(tags.substr(tags.rfind(',') + 1));
+    EXPECT_NEAR(duration_s, 6 / fps, 1e-6 + 1e-3 / fps) << fps;
   }
 }
 
@@ -198,9 +211,102 @@ TEST_F(VideoTest, AStuckFfmpegIsGivenUp) {
   EXPECT_NE(result.error().message.find("was killed"), std::string::npos);
 }
 
+// Limits the size of the files that this process and its children write.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) : old_action_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &old_);
+    const rlimit limit = {bytes, old_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    ::setrlimit(RLIMIT_FSIZE, &old_);
+    std::signal(SIGXFSZ, old_action_);
+  }
+
+ private:
+  rlimit old_ = {};
+  void (*old_action_)(int);
+};
+
+TEST_F(VideoTest, AFileThatMayNotBecomeWholeIsAnErrorAndLeavesTheOldOne) {
+  SKIP_WITHOUT_FFMPEG();
+  const fs::path path = folder_ / "film.mp4";
+  const auto write = [&] {
+    auto video = VideoWriter::Open(path, 64, 32, 25).value();
+    Result<void> result;
+    for (int frame = 0; frame < 20 && result; ++frame) result = video->Add(Patches(64, 32, frame));
+    return result ? video->Close() : result;
+  };
+  ASSERT_TRUE(write());
+  const std::string whole = ReadFile(path).value();
+  // The shares end in the pictures, where the pictures end, in the index, and one byte too early.
+  for (const size_t bytes :
+       {whole.size() / 2, whole.size() - 1500, whole.size() - 300, whole.size() - 1}) {
+    const FileSizeLimit limit(bytes);
+    const Result<void> written = write();
+    ASSERT_FALSE(written) << bytes << " of " << whole.size();
+    EXPECT_EQ(written.error().kind, ErrorKind::kOutput);
+    EXPECT_NE(written.error().message.find("File too large"), std::string::npos)
+        << written.error().message;
+    EXPECT_EQ(ReadFile(path).value(), whole);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
+  }
+}
+
+// An ffmpeg that encodes by writing the file GIVEN, and reads with the true ffmpeg.
+TEST_F(VideoTest, AFileThatIsCutAfterwardsIsNotTaken) {
+  SKIP_WITHOUT_FFMPEG();
+  const std::string tools = ::getenv("PATH");
+  const fs::path whole = folder_ / "whole.mp4", path = folder_ / "film.mp4";
+  auto video = VideoWriter::Open(whole, 64, 32, 25).value();
+  for (int frame = 0; frame < 20; ++frame) ASSERT_TRUE(video->Add(Patches(64, 32, frame)));
+  ASSERT_TRUE(video->Close());
+  const std::string bytes = ReadFile(whole).value();
+  FakeFfmpeg(
+      fmt::format("case \"$*\" in *libx264*) cat > /dev/null; for last; do :; done\n"
+                  "cp '{}' \"${{last#file:}}\";; *) PATH='{}'; exec ffmpeg \"$@\";; esac",
+                  (folder_ / "given").string(), tools));
+  const PathVariable variable(folder_.string() + ":" + tools);
+  const auto close = [&](size_t size, int picture_count) {
+    EXPECT_TRUE(WriteFileAtomically(folder_ / "given", bytes.substr(0, size)));
+    auto cut = VideoWriter::Open(path, 64, 32, 25).value();
+    for (int frame = 0; frame < picture_count; ++frame)
+      EXPECT_TRUE(cut->Add(Patches(64, 32, frame)));
+    return cut->Close();
+  };
+  for (const size_t size :
+       {size_t{0}, size_t{40}, bytes.find("mdat") + 4, bytes.size() / 2, bytes.size() - 1})
+    EXPECT_FALSE(close(size, 20)) << size;
+  const Result<void> other_count = close(bytes.size(), 21);
+  ASSERT_FALSE(other_count);
+  EXPECT_NE(other_count.error().message.find("only 20 of its 21 pictures"), std::string::npos)
+      << other_count.error().message;
+  EXPECT_FALSE(fs::exists(path));
+  EXPECT_TRUE(close(bytes.size(), 20));
+  EXPECT_TRUE(fs::exists(path));
+}
+
+TEST_F(VideoTest, OnlyNamesOfMp4FilesAreTaken) {
+  for (const char* name : {"film.mp4", "film.MP4", "a.gif.Mp4"}) {
+    EXPECT_TRUE(IsVideoName(name)) << name;
+    EXPECT_TRUE(CheckVideoTarget(folder_ / name)) << name;
+  }
+  for (const char* name :
+       {"film", "mp4", ".mp4", "film.gif", "film.webm", "film.mov", "film.mp4 "}) {
+    EXPECT_FALSE(IsVideoName(name)) << name;
+    const Result<void> checked = CheckVideoTarget(folder_ / name);
+    ASSERT_FALSE(checked) << name;
+    EXPECT_EQ(checked.error().kind, ErrorKind::kUsage);
+    EXPECT_NE(checked.error().message.find("ends in .mp4"), std::string::npos);
+  }
+}
+
 TEST_F(VideoTest, SizesAndRatesThatNoFilmHasAreErrors) {
   EXPECT_FALSE(VideoWriter::Open(folder_ / "film.mp4", 1, 480, 10));
   EXPECT_FALSE(VideoWriter::Open(folder_ / "film.mp4", 640, 480, 0));
+  EXPECT_FALSE(VideoWriter::Open(folder_ / "film.mp4", 640, 480, 1e-4));
+  EXPECT_FALSE(VideoWriter::Open(folder_ / "film.mp4", 640, 480, 2e6));
   EXPECT_FALSE(VideoWriter::Open(folder_ / "film.mp4", 640, 480, NAN));
 }
 

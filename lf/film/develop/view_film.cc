@@ -40,7 +40,7 @@ class FilmWriter {
   Result<ViewFilmReport> Write(std::span<const fs::path> frames);
 
  private:
-  bool is_video() const { return options_.output.extension() == ".mp4"; }
+  bool is_video() const { return IsVideoName(options_.output); }
   bool is_left_right() const { return options_.layout == ViewLayout::kLeftRight; }
   // True if EXR frames become PNG files, which show what a video of them shows.
   bool is_developed() const {
