@@ -167,18 +167,36 @@ Result<void> FilmRenderer::PreparePlates(const EarlierRun* earlier) {
     Frame& frame = frames_[f];
     if (!setup_.work().IsStopped() && !frame.is_released) frame.plate = EmptyPlateOf(frame);
   });
-  for (Frame& frame : frames_) {
+  for (size_t f = 0; f < frames_.size(); ++f) {
+    Frame& frame = frames_[f];
     if (setup_.work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
     if (frame.is_released) {
       frame.places.begin = frame.places.end;
       continue;
     }
     LF_ASSIGN_OR_RETURN(const FrameProgress start, LoadPlate(&frame, earlier));
+    if (frame.is_early) frame.is_early = LacksRays(f, start.places_done);
     if (frame.is_early) frame.places.end = std::min(frame.places.end, start.places_done);
     frame.places.begin = start.places_done;
     frame.earlier_rays = start.rays;
   }
   return {};
+}
+
+// Returns true if the earlier run, which has done all LF images before places_done, has left LF
+// images that have rays for the frame. Such a frame is cut short if it is finished now. Any other
+// one is whole, for example if its development was interrupted, and is finished as usual.
+bool FilmRenderer::LacksRays(size_t f, uint32_t places_done) const {
+  const Frame& frame = frames_[f];
+  std::vector<TakingFrame> taking;
+  if (film_.Collects()) {
+    taking = TakingInstants(frame);
+    if (frame.all_lens) taking.push_back(Taking(frame, *frame.all_lens));
+    for (TakingFrame& instant : taking) instant.places = {places_done, frame.places.end};
+  }
+  if (const RenderCamera* const reached = rebinned_ ? rebinned_->ReachedCamera(f) : nullptr)
+    taking.push_back({*reached, {rebinned_->places_done(), frame.places.end}});
+  return !SelectImages(setup_.index(), taking, select_, setup_.pool()).empty();
 }
 
 // Loads a plate of the earlier run. If noise is measured and the plate has no moments, the plate is
@@ -293,13 +311,14 @@ void FilmRenderer::AddRebinnedImages() {
 }
 
 // With kRebin, the earlier run kept only rebinned rays for the picture of a frame. If it kept none,
-// the frame is not finished early.
+// or all of them, the frame is not finished early.
 void FilmRenderer::EndEarlyFrames() {
   if (film_.Collects()) return;
   const uint32_t places_done = rebinned_->places_done();
-  for (Frame& frame : frames_) {
+  for (size_t f = 0; f < frames_.size(); ++f) {
+    Frame& frame = frames_[f];
     if (!frame.is_early || frame.is_released) continue;
-    frame.is_early = places_done > 0;
+    frame.is_early = places_done > 0 && LacksRays(f, places_done);
     if (frame.is_early) frame.places.end = places_done;
   }
 }

@@ -110,7 +110,7 @@ class FilmRenderer {
     return frames_[f].all_lens ? &*frames_[f].all_lens : nullptr;
   }
 
-  // True if the frame is to be finished with the rays of the earlier run.
+  // True if the frame is to be finished with the rays of the earlier run, which are not all.
   bool EndsEarly(size_t f) const { return frames_[f].is_early; }
   // Returns the indices of the frames that the stop rule has stopped and that are not released yet.
   std::vector<size_t> StoppedFrames() const;
@@ -177,7 +177,7 @@ class FilmRenderer {
     bool is_released = false;
     bool is_stopped = false;  // true: stopped by its rule, with the LF images before next_decision
     bool has_noise = false;   // true if the moments include all LF images in the plate
-    bool is_early = false;    // true if the frame is finished with the rays of the earlier run
+    bool is_early = false;  // true: to be finished with the rays of the earlier run, as EndsEarly()
     std::unique_ptr<ReachableElements> reachable;
   };
 
@@ -195,6 +195,7 @@ class FilmRenderer {
   Result<void> CheckReach(const LensGaps& gaps, FrameId frame) const;
   Result<void> PreparePlates(const EarlierRun* earlier);
   Result<FrameProgress> LoadPlate(Frame* frame, const EarlierRun* earlier) const;
+  bool LacksRays(size_t f, uint32_t places_done) const;
   void SelectForFrames();
   void AddRebinnedImages();
   CollectOptions OptionsOfCollector() const;

@@ -230,11 +230,13 @@ class PlatesOf : public EarlierRun {
   bool EndsEarly(FrameId frame) const override { return frame == FrameId{3}; }
   Result<FrameProgress> LoadPlate(FrameId frame, SensorPlate* plate,
                                   std::optional<NoiseMoments>* /*moments*/) const override {
-    plate->Merge(renderer_.plate(frame.value - 1));
+    plate->Merge(renderer_.plate(frame.value - 1));  // not asked of kRebin, which has no plates
     return renderer_.Progress(frame.value - 1);
   }
-  Result<std::optional<Rays>> LoadRays(size_t /*section*/, size_t /*max_cells*/) const override {
-    return std::optional<Rays>();
+  Result<std::optional<Rays>> LoadRays(size_t section, size_t /*max_cells*/) const override {
+    const RebinnedRays* const rebinned = renderer_.rebinned();
+    if (rebinned == nullptr) return std::optional<Rays>();
+    return std::optional<Rays>({rebinned->map(section), rebinned->places_done(section)});
   }
 
  private:
@@ -255,6 +257,23 @@ TEST_F(FilmRendererTest, GoesOnFromAnEarlierRun) {
   EXPECT_EQ(renderer.Develop(1).picture.rgb.pixels(), whole->Develop(1).picture.rgb.pixels());
   EXPECT_EQ(renderer.Develop(2).picture.rgb.pixels(), begun->Develop(2).picture.rgb.pixels());
   EXPECT_NE(renderer.Develop(2).picture.rgb.pixels(), whole->Develop(2).picture.rgb.pixels());
+}
+
+TEST_F(FilmRendererTest, AFrameThatHasAllItsRaysIsNotCutShort) {
+  for (const RenderMode mode : {RenderMode::kCollect, RenderMode::kRebin, RenderMode::kHybrid}) {
+    SCOPED_TRACE(std::string(NameOf(mode)));
+    options_.mode = mode;
+    options_.rebin.max_cells = 100000;
+    const auto whole = Open();
+    Finish(*whole);
+    FilmRenderer renderer(whole->setup(), whole->setup().frames());
+    const PlatesOf earlier(*whole);
+    ASSERT_TRUE(renderer.Begin(&earlier));
+    EXPECT_FALSE(renderer.EndsEarly(2));
+    Finish(renderer);
+    EXPECT_FALSE(renderer.NotesOf(2).places_done);
+    EXPECT_EQ(renderer.Develop(2).picture.rgb.pixels(), whole->Develop(2).picture.rgb.pixels());
+  }
 }
 
 TEST_F(FilmRendererTest, TooManyFramesAtATimeAreRefused) {

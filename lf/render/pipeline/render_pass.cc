@@ -102,14 +102,14 @@ Result<void> RenderPass::Collect() {
 }
 
 // Finishes the frames of early_ before collection, because they get no more rays than the state
-// has.
+// has. A frame of which the state has all rays is finished as usual.
 Result<void> RenderPass::FinishEarlyFrames() {
   std::vector<size_t> early;
   for (size_t f = 0; f < renderer_.frame_count(); ++f) {
     if (renderer_.IsReleased(f) || !EndsEarly(renderer_.id(f))) continue;
     if (renderer_.EndsEarly(f))
       early.push_back(f);
-    else
+    else if (renderer_.Progress(f).places_done == 0)
       LogWarning(
           "--finish: frame {} has no rays yet, and is therefore rendered from all of its LF images",
           renderer_.id(f).value);
