@@ -9,10 +9,12 @@
 #include <vector>
 
 #include "lf/camera/ray_through.h"
+#include "lf/core/folder_names.h"
 #include "lf/core/log.h"
 #include "lf/focus/example_focus.h"
 #include "lf/focus/orbit_coverage.h"
 #include "lf/light_field/model/capture_geometry.h"
+#include "lf/storage/packed/packed_store_file.h"
 
 namespace lf {
 namespace {
@@ -203,11 +205,22 @@ std::optional<ExampleMove> ParseExampleMove(std::string_view name) {
 
 Result<LfImageId> FirstCamera(const LightField& light_field, const LfImageStore& store) {
   MachineFailure failure;
+  FolderNames names;
+  const bool has_files = !HoldsPackedStore(light_field);
+  // Once an LF image cannot be read, those whose files do not exist are not tried: there may be a
+  // million of them.
+  std::vector<bool> is_unreadable;
   const auto is_readable = [&](LfImageId id) {
+    if (!is_unreadable.empty() &&
+        (is_unreadable[id.value] || (has_files && !names.Has(light_field.ImagePath(id)))))
+      return false;
     const Result<LfPixels> pixel =
         LoadWithoutThrowing(store, id, {0, 0, 1, 1}, light_field.image_names[id.value], LfPixels());
-    if (!pixel) failure.Note(pixel.error());
-    return pixel.has_value();
+    if (pixel) return true;
+    failure.Note(pixel.error());
+    is_unreadable.resize(light_field.size());
+    is_unreadable[id.value] = true;
+    return false;
   };
   const Vec3 up = MeanUpWorld(light_field);
   const double most_rad = RadiansFromDegrees(3);
