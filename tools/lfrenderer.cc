@@ -94,6 +94,7 @@ lf::Result<Rendered> RenderLightField(const lf::RenderArguments& arguments,
   options.folder.inputs.emplace_back(arguments.inputs[0]);
   lf::MissingImages missing;
   if (arguments.densify) {
+    const lf::EndsSoon until_densified;
     lf::Result<lf::DensifiedFilm> densified =
         lf::DensifyForFilm(std::move(light_field), path, arguments, options, common, pool);
     if (!densified) return Rendered{densified.error(), options};

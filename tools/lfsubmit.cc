@@ -117,7 +117,7 @@ Result<void> Act(const lf::SubmitArguments& arguments, const lf::CommonOptions& 
   }
   if (!arguments.cancel.empty()) {
     LF_ASSIGN_OR_RETURN(const ClusterJob job, lf::ReadJob(arguments.cancel));
-    LF_RETURN_IF_ERROR(lf::CancelJob(job, lf::CatchInterrupts()));
+    LF_RETURN_IF_ERROR(lf::CancelJob(job, lf::CatchInterruptsOfJob()));
     return common.json ? lf::PrintReport(lf::ToJson(job, lf::LookAtJob(job))) : Result<void>();
   }
   if (!arguments.resume.empty()) return Resume(arguments, common);
@@ -125,7 +125,7 @@ Result<void> Act(const lf::SubmitArguments& arguments, const lf::CommonOptions& 
   if (!arguments.run_finish.empty()) {
     LF_ASSIGN_OR_RETURN(const ClusterJob job, lf::ReadJob(arguments.run_finish));
     LF_RETURN_IF_ERROR(lf::CheckMayRun(job));
-    return lf::FinishFilm(job, lf::NodeName(), lf::CatchInterrupts());
+    return lf::FinishFilm(job, lf::NodeName(), lf::CatchInterruptsOfJob());
   }
   if (!arguments.run_package.empty()) {
     LF_ASSIGN_OR_RETURN(const ClusterJob job, lf::ReadJob(arguments.run_package[1]));
@@ -143,8 +143,9 @@ Result<void> Act(const lf::SubmitArguments& arguments, const lf::CommonOptions& 
       const lf::TaskProgress now = lf::ReadProgress(log);
       meter.Update(now.done, now.total, {{"LF image", now.image_done, now.image_total}});
     };
-    LF_ASSIGN_OR_RETURN(const lf::TaskState state,
-                        lf::RunPackage(job, number, lf::NodeName(), lf::CatchInterrupts(), look));
+    LF_ASSIGN_OR_RETURN(
+        const lf::TaskState state,
+        lf::RunPackage(job, number, lf::NodeName(), lf::CatchInterruptsOfJob(), look));
     const Result<void> outcome = lf::OutcomeOf(job.packages[number].name, state);
     if (state.phase != lf::TaskPhase::kDone || outcome) return outcome;
     // The package is done, but not as required. Slurm must see it as done, because the finishing

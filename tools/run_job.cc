@@ -57,7 +57,7 @@ Result<void> RunJob(ClusterJob job, FileLock lock, const std::vector<size_t>& nu
   if (IsForFarm(job)) return WriteForFarm(job, numbers, options.write);
   std::optional<FileLock> held = std::move(lock);
   const std::string see = JobCommand("--status", job.output_folder);
-  const auto& stop = CatchInterrupts();
+  const auto& stop = CatchInterruptsOfJob();
   ProgressMeter meter(ParseProgressStyle(common.progress), "rays");
   Result<void> outcome;
   if (job.engine == ClusterEngine::kLocal) {

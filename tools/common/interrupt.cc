@@ -4,7 +4,10 @@
 #include <signal.h>
 #include <time.h>
 
+#include <cerrno>
 #include <cstdint>
+
+#include "tools/common/process_start.h"
 
 namespace lf {
 namespace {
@@ -15,6 +18,12 @@ static_assert(std::atomic<int64_t>::is_always_lock_free);
 
 RenderSignals render_signals;
 std::atomic<int64_t> first_interrupt_ns = 0;
+
+// The timer that ends a program whose work does not notice the signal, and the time that it gives.
+timer_t patience_timer{};
+bool has_patience_timer = false;
+constexpr itimerspec kPatience = {.it_interval = {}, .it_value = {1, 500'000'000}};
+std::atomic<bool> ends_soon = false;
 
 // Interrupts within this time count as one, because wrappers such as `timeout` send an interrupt
 // twice: to the program and to its process group.
@@ -29,8 +38,11 @@ int64_t NowNanoseconds() {
 // Sets the flag. If a person repeats SIGINT, ends the program at once.
 void Interrupt(int signal, std::atomic<bool>* flag) {
   if (!*flag) {
+    const int error = errno;
     first_interrupt_ns = NowNanoseconds();
+    if (ends_soon && has_patience_timer) ::timer_settime(patience_timer, 0, &kPatience, nullptr);
     *flag = true;
+    errno = error;
   } else if (signal == SIGINT && NowNanoseconds() - first_interrupt_ns > kOneInterrupt_ns) {
     ::signal(SIGINT, SIG_DFL);
     ::raise(SIGINT);
@@ -54,7 +66,26 @@ bool IsIgnored(int signal) {
 
 }  // namespace
 
+EndsSoon::EndsSoon() {
+  if (!has_patience_timer) {
+    struct sigaction action {};
+    action.sa_handler = [](int) { EndInterrupted(); };
+    ::sigaction(SIGALRM, &action, nullptr);
+    // The timer sends SIGALRM, because nothing else is asked for. If the system has none left, the
+    // program ends when its work notices the flag.
+    has_patience_timer = ::timer_create(CLOCK_MONOTONIC, nullptr, &patience_timer) == 0;
+  }
+  ends_soon = true;
+}
+
+EndsSoon::~EndsSoon() { ends_soon = false; }
+
 const std::atomic<bool>& CatchInterrupts() {
+  static const EndsSoon always;
+  return CatchInterruptsOfJob();
+}
+
+const std::atomic<bool>& CatchInterruptsOfJob() {
   struct sigaction action {};
   action.sa_handler = OnSignal;
   for (const int signal : {SIGINT, SIGTERM}) ::sigaction(signal, &action, nullptr);

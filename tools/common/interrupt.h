@@ -11,11 +11,29 @@ namespace lf {
 // From now on the first SIGINT, SIGTERM or SIGHUP sets the returned flag; under nohup, SIGHUP is
 // ignored. A SIGINT more than half a second later ends the program at once. A second SIGTERM does
 // not end it, because batch systems repeat SIGTERM.
+//
+// If the program has not ended 1.5 seconds after the first signal, because some step of its work
+// takes longer, it ends by EndInterrupted() (process_start.h). It must therefore keep what a kill
+// leaves, as every program does: results have their names only when they are whole.
 const std::atomic<bool>& CatchInterrupts();
 
-// As CatchInterrupts(), for a render: after SIGINT, SIGTERM or SIGHUP the render writes a
+// As CatchInterrupts(), but gives the program the time that it needs: for one that waits for its
+// child processes, which end by themselves.
+const std::atomic<bool>& CatchInterruptsOfJob();
+
+// As CatchInterruptsOfJob(), for a render: after SIGINT, SIGTERM or SIGHUP the render writes a
 // checkpoint and ends; after SIGUSR1 it writes a checkpoint and continues. Must be called only
 // once.
 RenderSignals& CatchRenderSignals();
+
+// While it exists, a signal that CatchRenderSignals() catches ends the program as soon as one that
+// CatchInterrupts() catches: for work before the render that has no checkpoint to finish.
+class EndsSoon {
+ public:
+  EndsSoon();
+  ~EndsSoon();
+  EndsSoon(const EndsSoon&) = delete;
+  EndsSoon& operator=(const EndsSoon&) = delete;
+};
 
 }  // namespace lf

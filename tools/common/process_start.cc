@@ -26,16 +26,9 @@ namespace {
   std::_Exit(status);
 }
 
-// Ignores SIGUSR1; ends the program at any other signal. Calls only functions that signal handlers
-// may call.
+// Ignores SIGUSR1; ends the program at any other signal.
 void OnEarlySignal(int signal) {
-  if (signal == SIGUSR1) return;
-  constexpr const char* kClearLine = "\r\x1b[K";
-  constexpr const char* kMessage = "error: interrupted\n";
-  if (::isatty(STDERR_FILENO) == 1) [[maybe_unused]]
-    const ssize_t cleared = ::write(STDERR_FILENO, kClearLine, std::strlen(kClearLine));
-  [[maybe_unused]] const ssize_t told = ::write(STDERR_FILENO, kMessage, std::strlen(kMessage));
-  ::_exit(static_cast<int>(ErrorKind::kInterrupted));
+  if (signal != SIGUSR1) EndInterrupted();
 }
 
 void OccupyStandardFiles() {
@@ -45,6 +38,16 @@ void OccupyStandardFiles() {
 }
 
 }  // namespace
+
+// Calls only functions that signal handlers may call.
+void EndInterrupted() {
+  constexpr const char* kClearLine = "\r\x1b[K";
+  constexpr const char* kMessage = "error: interrupted\n";
+  if (::isatty(STDERR_FILENO) == 1) [[maybe_unused]]
+    const ssize_t cleared = ::write(STDERR_FILENO, kClearLine, std::strlen(kClearLine));
+  [[maybe_unused]] const ssize_t told = ::write(STDERR_FILENO, kMessage, std::strlen(kMessage));
+  ::_exit(static_cast<int>(ErrorKind::kInterrupted));
+}
 
 void StartProcess() {
   OccupyStandardFiles();

@@ -19,6 +19,11 @@ namespace lf {
 //   keep their temporary names.
 void StartProcess();
 
+// Prints "error: interrupted" as the last line, and ends the program with exit code 5, without
+// destructors: files that are being written keep their temporary names. Signal handlers may call
+// it.
+[[noreturn]] void EndInterrupted();
+
 // Prints the reason of the current exception as the last line. To be called in a catch block or in
 // the handler of uncaught exceptions. Returns the exit code.
 int TellException();
