@@ -105,7 +105,7 @@ class StoreAloneTest(ProgramTestCase):
                 self.assertEqual(self.film(part, self.path, *CUTS[name]), self.film(whole, self.path, *CUTS[name]))
 
     def test_pixels_that_show_points_are_known_though_their_images_are_left_out(self):
-        """What pixels show is measured in three LF images, of which a store may hold none."""
+        """Three LF images tell whether pixels show points, and a store may hold none of them."""
         def checks(index):
             cells = np.add.outer(np.arange(HEIGHT) // 3, (np.arange(WIDTH) + index) // 3) % 2
             return np.repeat((cells * 180 + 30).astype(np.uint8)[..., None], 3, axis=2)

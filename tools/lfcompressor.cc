@@ -45,6 +45,10 @@ every program accepts as LIGHTFIELD (doc/formats/packed_store.md). Until it is c
 STORE.lfs.unfinished. Ctrl-C, kill -9 or a crash lose about two seconds of work at most; --resume
 continues.
 
+A store of packages has the calibration of all LF cameras, and the LF images that the packages need.
+A film of these packages is rendered from the store alone to the bits that a store of the whole
+light field gives. A film that needs other pixels is refused.
+
 LF images that are missing or broken are left out of the store, and the exit code is then 6. While
 the store is unfinished, --resume tries to read them again. To add them to a finished store, make it
 again with --overwrite.)",
