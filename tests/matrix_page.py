@@ -41,24 +41,24 @@ class Refusal(NamedTuple):
 
 class Page:
     def __init__(self, text):
-        self.axes = {axis: [_quoted(row[0])[0] for row in _rows(text, f"axis: {axis}", "end of axis")]
+        self.axes = {axis: [quoted(row[0])[0] for row in rows(text, f"axis: {axis}", "end of axis")]
                      for axis in AXES}
         self.refusals = [self._refusal(row)
-                         for row in _rows(text, "refusals", "end of refusals")]
+                         for row in rows(text, "refusals", "end of refusals")]
 
     def _refusal(self, row):
         values = []
         for axis, column in zip(AXES, row):
-            found = set(_quoted(column))
+            found = set(quoted(column))
             unknown = found - set(self.axes[axis])
             if unknown or bool(found) == (column == "any"):
                 raise ValueError(f"doc/matrix.md: {column!r} in the table of refusals: expected any, "
                                  f"or values of the axis {axis}: {self.axes[axis]}")
             values.append(found or None)
         exit_code, words, why = row[len(AXES):]
-        if not _quoted(words):
+        if not quoted(words):
             raise ValueError(f"doc/matrix.md: no words that a refusal must have: {row}")
-        return Refusal(tuple(values), int(exit_code), _quoted(words), why)
+        return Refusal(tuple(values), int(exit_code), quoted(words), why)
 
     def refusals_of(self, cell):
         return [refusal for refusal in self.refusals if refusal.fits(cell)]
@@ -68,11 +68,11 @@ def read_page(page=PAGE):
     return Page(page.read_text())
 
 
-def _quoted(text):
+def quoted(text):
     return re.findall(r"`([^`]+)`", text)
 
 
-def _rows(text, begin, end):
+def rows(text, begin, end):
     """Returns the cells of each row of a table between two comments, without the header."""
     table = text.split(f"<!-- {begin} -->", 1)[1].split(f"<!-- {end} -->", 1)[0]
     lines = [line for line in table.strip().splitlines() if line.startswith("|")]

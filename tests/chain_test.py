@@ -1,0 +1,101 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""Tests that what one program writes and another reads gives what the direct way gives, as the table of chains of
+doc/matrix.md promises.
+
+usage: chain_test.py BIN [WORD...]   (the folder of the programs; only chains whose names have all words are tried)
+"""
+import concurrent.futures
+import os
+import pathlib
+import resource
+import sys
+import tempfile
+import time
+import traceback
+import unittest
+
+from chain_ends import faults_of_ends
+from chain_page import read_chains
+from chain_ways import THINGS, Ways, all_chains
+from chain_world import Refused
+from matrix_world import Difference
+
+BIN, WORDS, STRENGTH = None, [], 2
+
+
+def try_chain(ways, chain, promise):
+    """Returns how a chain differs from its promise, or an empty text."""
+    try:
+        try:
+            seen, said = ways.see(chain)
+        except Refused as refused:
+            if not promise.is_refusal:
+                return str(refused)
+            if refused.exit_code not in (2, 3) or not refused.last_line.startswith("error: "):
+                return str(refused)
+            missing = [word for word in promise.words if word not in refused.last_line]
+            return f"{refused.last_line}: lacks {missing}" if missing else ""
+        if promise.is_refusal:
+            return "is not refused"
+        if promise.is_warning:
+            missing = [word for word in promise.words if word not in said]
+            return f"the programs said {said.strip()!r}: lacks {missing}" if missing else ""
+        return promise.fault_of(seen, ways.direct(chain))
+    except Difference as difference:
+        return str(difference)
+    except Refused as refused:
+        return f"the direct way: {refused}"
+    except Exception:  # a fault of this test, or a program that does not end
+        return " | ".join(traceback.format_exc().strip().splitlines()[-3:])
+
+
+class ChainTest(unittest.TestCase):
+    def test_chains(self):
+        table = read_chains()
+        chains = [chain for chain in all_chains(STRENGTH) if all(word in chain.name for word in WORDS)]
+        faults, tried, times = [], set(), []
+        with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(2) as threads:
+            ways = Ways(BIN, folder)
+
+            def try_one(chain):
+                start = time.monotonic()
+                row = table.row_of(chain)
+                fault = "no row of the table fits it" if row is None else try_chain(ways, chain, row.promise)
+                times.append((time.monotonic() - start, chain.name))
+                return row, fault
+
+            for chain, (row, fault) in zip(chains, threads.map(try_one, chains)):
+                tried.add(id(row))
+                if fault:
+                    faults.append(f"{chain.name}: {row and row.promise.text}: {fault}")
+                    print(f"wrong: {faults[-1]}", file=sys.stderr, flush=True)
+        if os.environ.get("LF_CHAIN_TIMES"):
+            for seconds, name in sorted(times, reverse=True)[:30]:
+                print(f"{seconds:6.2f} s {name}", file=sys.stderr)
+        spent = resource.getrusage(resource.RUSAGE_CHILDREN)
+        print(f"{len(chains)} chains: {len(faults)} are wrong; {spent.ru_utime + spent.ru_stime:.0f} s of CPU",
+              file=sys.stderr)
+        self.assertEqual(len(faults), 0, "wrong chains are listed above")
+        if not WORDS:
+            unused = [row for row in table.rows if id(row) not in tried]
+            self.assertEqual(unused, [], "rows that are the first to fit no chain")
+
+
+class TableTest(unittest.TestCase):
+    def test_the_table_names_only_what_is_tried(self):
+        axes = [set(values) for values in zip(*all_chains(3))]
+        for row in read_chains().rows:
+            for values, axis in zip(row.values, axes):
+                self.assertLessEqual(values or set(), axis)
+
+    def test_each_file_that_a_program_takes_is_the_end_of_a_chain(self):
+        self.assertEqual(faults_of_ends(pathlib.Path(BIN), THINGS), [])
+
+
+if __name__ == "__main__":
+    BIN, *WORDS = sys.argv[1:]
+    if "--all" in WORDS:
+        WORDS.remove("--all")
+        STRENGTH = 3
+    unittest.main(argv=sys.argv[:1], verbosity=2)
