@@ -7,6 +7,7 @@ from chain_frames import FrameChains
 from chain_light import LightChains
 from chain_page import Chain
 from chain_paths import KINDS, PathChains
+from chain_python import READERS, WRITERS, PythonChains, python_package
 from chain_results import ResultChains
 from chain_world import FIELDS
 from covering_cells import covering_cells
@@ -162,7 +163,9 @@ THINGS = {
     "path": Thing(
         KINDS, PATH_WRITERS, PATH_READERS, _direct_path,
         # Frames of a path are resampled as those of lfpath itself; several views of a moment are another matter.
-        lambda chain: chain.writer == "lfpath --frames" and chain.flaws not in ("stereo", "quilt", "surface")),
+        # The package tells by a warning of Python what a file of a path with a shutter lacks (python/tests).
+        lambda chain: (chain.writer == "lfpath --frames" and chain.flaws not in ("stereo", "quilt", "surface")) or
+        (chain.writer.startswith("lf.") and chain.flaws == "shutter")),
     "packages": Thing(
         FIELDS, {"lfpreprocessor": "packages_of"},
         {"lfrenderer": "see_package_film", "lfsubmit": "see_package_job", "lfcompressor": "see_package_store"},
@@ -174,8 +177,9 @@ THINGS = {
             ways.direct_recoloured if chain.reader.endswith("space") else ways.whole_film)(chain.flaws)),
     "pictures": Thing(
         FIELDS, PICTURE_WRITERS, {"lfcompare": "see_pictures_compared", "lfquilt": "see_pictures_joined"},
-        lambda ways, chain, written: (
-            ways.direct_compared if chain.reader == "lfcompare" else ways.direct_joined)(written),
+        lambda ways, chain, written: {
+            "lfcompare": ways.direct_compared, "lfquilt": ways.direct_joined,
+            "lf.read_image": ways.direct_python}[chain.reader](written),
         # The true frames are those of a scene of lfsynth.
         lambda chain: chain.writer == "lfsynth --truth" and chain.flaws != "synth"),
     "depths": Thing(
@@ -200,7 +204,16 @@ def all_chains(strength=2):
     return [chain for chain in chains if not THINGS[chain.what].skips(chain)]
 
 
-class Ways(LightChains, PathChains, FrameChains, ResultChains):
+def add_python():
+    """Adds the chains of the Python package. ImportError if it is not there."""
+    python_package()
+    for what, writers in WRITERS.items():
+        THINGS[what].writers.update(writers)
+    for what, readers in READERS.items():
+        THINGS[what].readers.update(readers)
+
+
+class Ways(LightChains, PathChains, FrameChains, ResultChains, PythonChains):
     """All writers, readers and direct ways."""
 
     def __init__(self, programs, folder):
