@@ -63,8 +63,10 @@ class Chains:
 
     def __init__(self, text):
         self.rows = []
+        groups = {word: set(quoted(names)) for word, names in rows(text, "chain groups", "end of chain groups")}
         for cells in rows(text, "chains", "end of chains"):
-            values = [None if cell == "any" else set(quoted(cell)) or {cell} for cell in cells[:len(COLUMNS)]]
+            values = [None if cell == "any" else set(quoted(cell)) or groups.get(cell, {cell})
+                      for cell in cells[:len(COLUMNS)]]
             self.rows.append(Row(tuple(values), Promise(cells[len(COLUMNS)])))
 
     def row_of(self, chain):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Chains of camera paths: each format that a program writes, and each program that reads one."""
 import json
+import math
 
 from chain_world import seen_numbers, seen_words
 from exr_file import channels_of
@@ -9,7 +10,8 @@ from matrix_world import once
 # Paths with which chains are tried: those of chain_world, the one of lfexample, and paths with several views.
 KINDS = ("plain", "lens", "shutter", "surface", "example", "stereo", "quilt")
 # The lens and the picture of the path `still`.
-LENS = ("--aperture-diameter-mm", 24, "--focus-distance", 0.25, "--resolution", "40x30", "--fps", 25)
+LENS = ("--aperture-diameter-mm", 24, "--focus-distance", 0.25, "--resolution", "40x30", "--fps", 25,
+        "--sensor-width-mm", 70 * math.tan(math.radians(20)))
 VIEWS = {"stereo": ("--stereo", 0.01, "--convergence", 0.27),
          "quilt": ("--quilt", "3x1", "--view-angle", 4, "--convergence", 0.27)}
 
