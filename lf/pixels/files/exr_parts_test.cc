@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "lf/pixels/files/image_file.h"
+#include "lf/pixels/files/picture_header.h"
 #include "lf/pixels/files/test_folder.h"
 
 namespace lf {
@@ -49,6 +50,24 @@ TEST_F(ExrPartsTest, KeepPixelsAndAttributes) {
     for (size_t k = 0; k < 200; ++k)
       ASSERT_EQ(image.pixels()[k], static_cast<float>(i + 1) + static_cast<float>(k));
   }
+}
+
+TEST_F(ExrPartsTest, SeveralPicturesAreNoPicture) {
+  std::vector<ExrPart> parts;
+  for (const std::string name : {"near", "far"}) {
+    const Image<float> image(2, 2, 1);
+    const auto path = folder_ / (name + ".exr");
+    const std::vector<ExrChannel> channels = {{"R", image.view(), 0, false},
+                                              {"G", image.view(), 0, false},
+                                              {"B", image.view(), 0, false}};
+    ASSERT_TRUE(WriteExr(path, channels));
+    EXPECT_TRUE(ReadPictureHeader(path));
+    parts.push_back({path, name});
+  }
+  ASSERT_TRUE(JoinExr(joined(), parts));
+  const auto header = ReadPictureHeader(joined());
+  ASSERT_FALSE(header);
+  EXPECT_NE(header.error().message.find("joined.exr: holds 2 pictures"), std::string::npos);
 }
 
 TEST_F(ExrPartsTest, MustHaveOneSize) {

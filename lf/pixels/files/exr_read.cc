@@ -184,6 +184,15 @@ class ExrDecoder : public PictureDecoder {
     return facts;
   }
 
+  int picture_count() const override {
+    int count = 0;  // parts with the channels R, G and B
+    for (int part = 0; part < file_->parts(); ++part) {
+      const Imf::ChannelList& channels = file_->header(part).channels();
+      count += channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B");
+    }
+    return count;
+  }
+
   // OpenEXR converts halves and integers (exactly up to 2^24) to floats.
   Result<void> Read(StoredImage* image) override {
     Image<float>& floats = Resized<float>(info_.width, info_.height, info_.channels, image);

@@ -62,6 +62,12 @@ Result<PictureHeader> HeaderFrom(const FileBytes& file) {
     return PictureHeader{info, {TypeOfValues(info)}, {}};
   }
   LF_ASSIGN_OR_RETURN(const std::unique_ptr<PictureDecoder> picture, Open(file, format));
+  if (picture->picture_count() > 1)
+    return InputError(
+        fmt::format("{}: holds {} pictures, such as the planes of a focus stack, and one is "
+                    "expected: give a file with one picture, such as a frame of the folder that "
+                    "lffocus stack writes without .exr",
+                    file.name, picture->picture_count()));
   return PictureHeader{picture->info(), picture->colours(), picture->projection()};
 }
 

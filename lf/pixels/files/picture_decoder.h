@@ -30,6 +30,8 @@ class PictureDecoder {
   virtual const ImageFileInfo& info() const = 0;
   virtual ColourFacts colours() const { return {TypeOfValues(info())}; }
   virtual StatedProjection projection() const { return {}; }
+  // Number of parts that hold colours. Only the first part is decoded.
+  virtual int picture_count() const { return 1; }
   // Decodes all pixels. `image` becomes an Image of the type that info() states, in the same memory
   // if possible. kInput: the file is truncated or damaged anywhere, even if the library could guess
   // what is missing.

@@ -57,7 +57,8 @@ struct PictureHeader {
   StatedProjection projection = {};
 };
 
-// Reads the header alone. Errors as for ReadImageInfo().
+// Reads the header alone. Errors as for ReadImageInfo(); kInput also if an EXR file holds several
+// pictures, such as a focus stack, of which only the first would be read.
 Result<PictureHeader> ReadPictureHeader(const std::filesystem::path& path);
 // Reads the header of a file that is in memory; messages call the file `name`.
 Result<PictureHeader> ReadPictureHeaderBytes(std::string_view bytes, const std::string& name);
