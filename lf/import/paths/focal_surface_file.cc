@@ -174,7 +174,7 @@ struct SurfacePicture {
 Result<SurfacePicture> LoadPicture(const fs::path& file, const FocalSurfaceSource& source) {
   SurfacePicture picture;
   picture.file = file;
-  LF_ASSIGN_OR_RETURN(picture.values, ReadSurfaceFile(file));
+  LF_ASSIGN_OR_RETURN(picture.values, ReadSurfaceFile(file, source));
   if (source.nodata)
     for (float& value : picture.values.pixels())
       if (value == static_cast<float>(*source.nodata)) value = kUnknown;
@@ -337,7 +337,7 @@ Result<Image<float>> ParsePfm(std::string_view bytes, const std::string& name) {
   return image;
 }
 
-Result<Image<float>> ReadSurfaceFile(const fs::path& file) {
+Result<Image<float>> ReadSurfaceFile(const fs::path& file, const FocalSurfaceSource& source) {
   const std::string name = file.string();
   LF_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(file, kMostFileBytes));
   if (bytes.starts_with("Pf") || bytes.starts_with("PF")) return ParsePfm(bytes, name);
@@ -348,6 +348,14 @@ Result<Image<float>> ReadSurfaceFile(const fs::path& file) {
     return InputError(
         fmt::format("{}: has the channels {}; expected one channel, or a channel named Z", name,
                     fmt::join(info.channel_names, ", ")));
+  constexpr int kBitsForPeople = 8;
+  if (info.bits == kBitsForPeople && source.kind == FocalSurfaceSource::Kind::kDepths &&
+      !source.has_scale)
+    return InputError(
+        fmt::format("{}: has 8 bits, as pictures of depths for people have, and focus.scale is not "
+                    "stated: give the .exr or .pfm that lffocus depth writes, or add the scale to "
+                    "'focus' in the path, the world units of one grey level",
+                    name));
   LF_ASSIGN_OR_RETURN(const StoredImage stored, ReadImageBytes(bytes, name));
   return std::visit([&](const auto& picture) { return ChannelAsFloats(picture, channel); }, stored);
 }

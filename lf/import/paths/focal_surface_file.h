@@ -23,8 +23,11 @@ namespace lf {
 // Reads a picture of one number for each place: the channel Z of an EXR file, the only channel of
 // any other file of ReadImage(), or a PFM file with one channel ("Pf"). Integers stay as stored:
 // 0 to 255 or 65535. Returns [height][width], from the uppermost row on.
-// kInput: the file cannot be read, has no such channel, or more than 2^28 places.
-Result<Image<float>> ReadSurfaceFile(const std::filesystem::path& file);
+//   source  kind and scale: without a scale, 8 bits hold no depths but a picture for people
+// kInput: the file cannot be read, has no such channel, or more than 2^28 places; depths of 8 bits
+// without a scale.
+Result<Image<float>> ReadSurfaceFile(const std::filesystem::path& file,
+                                     const FocalSurfaceSource& source);
 
 // Reads a PFM file of one channel; messages call it `name`. kInput: it is damaged, truncated, or of
 // another kind.

@@ -169,6 +169,18 @@ TEST_F(FocalSurfaceFolder, AValueThatStandsForNoDataIsUnknown) {
   }
 }
 
+TEST_F(FocalSurfaceFolder, APictureOfDepthsForPeopleIsNoDepthPicture) {
+  Image<uint8_t> grey(16, 12);
+  std::fill(grey.pixels().begin(), grey.pixels().end(), uint8_t{40});
+  ASSERT_TRUE(WriteImage(folder_ / "z.png", grey.view()));
+  const auto path = folder_ / "p.yaml";
+  ASSERT_TRUE(WriteFileAtomically(path, PathText("focus: {surface: z.png, kind: depth}\n")));
+  EXPECT_NE(ErrorOf(path).find("z.png: has 8 bits"), std::string::npos) << ErrorOf(path);
+  ASSERT_TRUE(
+      WriteFileAtomically(path, PathText("focus: {surface: z.png, kind: depth, scale: 0.1}\n")));
+  EXPECT_EQ(ErrorOf(path), "");
+}
+
 // A roof z = 2 - |x| / 2 of the world, seen by a camera 10 above z = 0 that looks down.
 TEST(FocalSurfaceFile, HeightsAreMetFromAbove) {
   PinholeCamera camera;

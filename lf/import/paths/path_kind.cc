@@ -56,6 +56,22 @@ bool LooksLikeLinesOfNumbers(std::string_view text) {
   return ParseNumber(text.substr(0, text.find_first_of(kWhiteSpace))).has_value();
 }
 
+// Returns an error for files of ours that are no camera paths, and for USD.
+Result<void> CheckIsNoOtherFile(std::string_view text, const std::string& name) {
+  if (text.starts_with("SQLite format 3"))
+    return InputError(fmt::format(
+        "{}: is a packed store or a package, but no camera path: give a camera path, "
+        "such as lfexample writes, or the transforms.json whose LF cameras shall become "
+        "frames",
+        name));
+  if (text.starts_with("#usda") || text.starts_with("PXR-USDC"))
+    return InputError(
+        fmt::format("{}: is a USD scene, which is written but not read as a camera path: give the "
+                    "path that it was made from, or let the other program export a .chan",
+                    name));
+  return {};
+}
+
 }  // namespace
 
 std::vector<std::string> TopLevelKeys(std::string_view text) {
@@ -78,6 +94,7 @@ std::vector<std::string> TopLevelKeys(std::string_view text) {
 }
 
 Result<PathKind> PathKindOf(std::string_view text, const std::filesystem::path& file) {
+  LF_RETURN_IF_ERROR(CheckIsNoOtherFile(text, file.string()));
   if (!LooksLikeJson(text))
     return LooksLikeLinesOfNumbers(text) ? PathKind::kChan : PathKind::kYaml;
   std::vector<std::string> keys = TopLevelKeys(text);

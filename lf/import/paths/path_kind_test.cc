@@ -37,6 +37,11 @@ TEST(PathKind, TheContentTellsTheForm) {
   EXPECT_EQ(kind("-3 1"), PathKind::kChan);
 }
 
+TEST(PathKind, FilesOfOurOwnAndUsdAreRefusedByName) {
+  ExpectPathError(PathKindOf("SQLite format 3", "p"), "p", {"packed store", "no camera path"});
+  ExpectPathError(PathKindOf("#usda 1.0\n(", "p"), "p", {"USD", "not read", "camera path"});
+}
+
 TEST(PathKind, OtherJsonIsRefusedWithTheKeysFound) {
   ExpectPathError(PathKindOf(R"({"cameras": [], "x": {"path": []}})", "p"), "p",
                   {"found 'cameras', 'x'", "camera_path"});
