@@ -9,8 +9,8 @@ import subprocess
 
 from common_options import OFFERED
 
-# What programs write, by call and kind of file (tools/common/file_kinds.h): the thing and the writer of THINGS; or a
-# reason.
+# Files that programs write, by call and kind of file (tools/common/file_kinds.h): the thing and the writer of THINGS;
+# or a reason.
 WRITTEN = {
     ("lfsynth", "folder"): "the light field `synth` of all chains",
     ("lfimport", "folder"): ("light field", "lfimport"),

@@ -11,17 +11,17 @@ from matrix_world import once
 
 # Ends that THINGS gets if the package is there.
 WRITERS = {
-    "light field": {"lf.compress": "light_python_store"},
-    "path": {"lf.Path.save .yaml": "path_python_yaml", "lf.Path.save .json": "path_python_json"},
-    "packages": {"lf.write_packages": "packages_python"},
-    "plates": {"lf.Plate.save": "plates_python"},
-    "pictures": {"lf.Frame.save .exr": "pictures_python_exr", "lf.Frame.save .png": "pictures_python_png"},
+    "light field": {"lf.compress()": "light_python_store"},
+    "path": {"lf.Path.save() .yaml": "path_python_yaml", "lf.Path.save() .json": "path_python_json"},
+    "packages": {"lf.write_packages()": "packages_python"},
+    "plates": {"lf.Plate.save()": "plates_python"},
+    "pictures": {"lf.Frame.save() .exr": "pictures_python_exr", "lf.Frame.save() .png": "pictures_python_png"},
 }
 READERS = {
-    "light field": {"lf.open": "see_python_film"},
-    "path": {"lf.Path.load": "see_path_python_film"},
-    "plates": {"lf.Plate.load": "see_plates_python"},
-    "pictures": {"lf.read_image": "see_pictures_python"},
+    "light field": {"lf.open()": "see_python_film"},
+    "path": {"lf.Path.load()": "see_path_python_film"},
+    "plates": {"lf.Plate.load()": "see_plates_python"},
+    "pictures": {"lf.read_image()": "see_pictures_python"},
 }
 
 

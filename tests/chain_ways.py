@@ -179,7 +179,7 @@ THINGS = {
         FIELDS, PICTURE_WRITERS, {"lfcompare": "see_pictures_compared", "lfquilt": "see_pictures_joined"},
         lambda ways, chain, written: {
             "lfcompare": ways.direct_compared, "lfquilt": ways.direct_joined,
-            "lf.read_image": ways.direct_python}[chain.reader](written),
+            "lf.read_image()": ways.direct_python}[chain.reader](written),
         # The true frames are those of a scene of lfsynth.
         lambda chain: chain.writer == "lfsynth --truth" and chain.flaws != "synth"),
     "depths": Thing(

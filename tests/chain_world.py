@@ -226,7 +226,7 @@ def write_pfm(file, values):
     file.write_bytes(f"Pf\n{width} {height}\n-1\n".encode() + values[::-1].astype("<f4").tobytes())
 
 
-# What a reader sees: a dictionary of arrays, numbers and texts by name. Light has the names FRAME.R, FRAME.G, FRAME.B,
+# A reader shows a dictionary of arrays, numbers and texts by name. Light has the names FRAME.R, FRAME.G, FRAME.B,
 # and FRAME.coverage tells where it was recorded.
 
 
