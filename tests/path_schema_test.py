@@ -54,7 +54,8 @@ HEIGHTS = {"surface": "map.png", "kind": "height", "origin": [0, 0, 0], "cell": 
 FAULTS = [
     ("format", "lfpath 2"), ("fps", 0), ("fps", "fast"), ("fps", None), ("frames", 1.5), ("frames", 0),
     ("frames", 1000001), ("frames", None), ("resolution", [80]), ("resolution", [80, 0]), ("resolution", [80, 65537]),
-    ("resolution", "80x60"), ("unit_m", 0), ("colour", 1), ("camera", None), ("camera", []), ("lens", None),
+    ("resolution", "80x60"), ("unit_m", 0), ("views", 0), ("views", 1.5), ("views", [2]),
+    ("colour", 1), ("camera", None), ("camera", []), ("lens", None),
     ("shutter/angle_deg", 361), ("shutter/samples", 0), ("shutter/samples", 65), ("shutter/samples", None),
     ("shutter/curve", 1),
     ("camera/position", None), ("camera/position", [0, 0]), ("camera/position", [0, 0, "a"]),

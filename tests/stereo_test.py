@@ -232,8 +232,34 @@ class StereoTest(ProgramTestCase):
         offsets = eval("{" + re.search(r"horizontalApertureOffset.timeSamples = {(.*?)}", text, re.S)[1] + "}")
         for number, fact in enumerate(facts, 1):
             self.assertAlmostEqual(offsets[number], fact["shift_mm"][0] / 100, delta=1e-9)  # tenths of a world unit
-        self.fails(2, ["--stereo", "s.chan", "yaml, nerfstudio"], PATH, self.path, "-o", self.folder / "s.chan", *words)
-        self.fails(2, ["--quilt", "s.chan"], PATH, self.path, "-o", self.folder / "s.chan", "--quilt", "2x2")
+        self.fails(2, ["2 views", "s.chan", "yaml, nerfstudio"], PATH, self.path, "-o", self.folder / "s.chan", *words)
+        self.fails(2, ["4 views", "s.chan"], PATH, self.path, "-o", self.folder / "s.chan", "--quilt", "2x2")
+
+    def test_resampled_views_keep_their_distance_and_their_order(self):
+        """Each view is interpolated with the same view of the next moment, in every form of the path."""
+        words = "--stereo", SEPARATION, "--convergence", CONVERGENCE
+        for out, form in ("s.yaml", "yaml"), ("s.json", "nerfstudio"), ("n.json", "instant-ngp"):
+            self.succeeds(PATH, self.path, "-o", self.folder / out, "--format", form, *words, "-q")
+            for change, moments in (("--frames", 8), 4), (("--frames", 2), 1), (("--fps", 72), 4):
+                with self.subTest(out=out, change=change):
+                    slow = self.folder / f"slow_{out}"
+                    self.succeeds(PATH, self.folder / out, "-o", slow, *change, "--scale", 2, "--overwrite", "-q")
+                    cameras = np.array([fact["position"] for fact in self.facts(slow)]).reshape(moments, 2, 3)
+                    self.assertLess(np.abs(cameras[:, 1] - cameras[:, 0] - [2 * SEPARATION, 0, 0]).max(), 1e-9)
+                    middle = 0.12 / 24 * 2 * np.arange(moments) / max(moments - 1, 1)
+                    self.assertLess(np.abs(cameras.mean(axis=1)[:, 0] - middle).max(), 1e-9)
+        self.fails(2, ["--frames 7", "multiple of 2"], PATH, self.folder / "s.yaml", "-o", self.folder / "odd.yaml",
+                   "--frames", 7)
+        self.fails(3, ["2 views of each moment already"], PATH, self.folder / "s.json", "-o", self.folder / "odd.yaml",
+                   "--quilt", "2x2")
+        self.assertFalse((self.folder / "odd.yaml").exists())
+
+    def test_a_plain_path_that_is_resampled_loses_nothing(self):
+        path = self.folder / "shaped.yaml"
+        path.write_text(PATH_YAML.replace("focus_distance: 0.75", "focus_distance: 0.75, ratio: 1.3, "
+                                          "blade_roundness: 0.3, blades: 5, hood_distance: 0.11, hood_diameter: 0.07"))
+        result = self.call(PATH, path, "-o", self.folder / "long.yaml", "--frames", 29)
+        self.assertEqual((result.returncode, "no place" in result.stderr), (0, False), result.stderr)
 
     def test_views_of_a_path_of_another_program(self):
         self.succeeds(PATH, self.path, "-o", self.folder / "p.json", "-q")

@@ -141,14 +141,16 @@ void AddOutput(CLI::App& app, Arguments& a) {
   output
       .Add("--fps RATE", a.fps,
            "Frames per second (as PATH states, else 30)\n"
-           "If PATH states another rate, the path is resampled: it lasts as long as before.")
+           "If PATH states another rate, the path is resampled: it lasts as long as before. With "
+           "several views of each moment, the rate is that of the moments.")
       ->check(CLI::Range(1e-3, 1e6));
   output
       .Add(
           "--frames N", a.frames,
           "Number of frames (as PATH states)\n"
           "The frames are spread evenly from the first camera to the last. The rate stays, so that "
-          "the film takes longer or shorter.")
+          "the film takes longer or shorter. With several views of each moment, N counts all views "
+          "and is a multiple of their number.")
       ->check(CLI::Range(1, 1'000'000));
   output.AddFlag("--overwrite", a.overwrite, "Replace OUT")->needs(out);
 }
@@ -296,11 +298,6 @@ lf::Result<void> Write(const Arguments& a, lf::PathOptions options, const lf::Ca
         fmt::format("--out-dataparser-transforms can only be used with --format nerfstudio, but {} "
                     "is written as {}: leave it out",
                     a.output, lf::NameOf(format)));
-  if (a.makes_views() && !lf::HoldsShift(format))
-    return lf::UsageError(fmt::format(
-        "--{} cannot be used with -o {}, because the format {} has no place for the shift of the "
-        "views: use --format yaml, nerfstudio, instant-ngp or usda",
-        a.quilt ? "quilt" : "stereo", a.output, lf::NameOf(format)));
   std::error_code error;
   if (!a.overwrite && std::filesystem::exists(a.output, error))
     return lf::UsageError(fmt::format(

@@ -131,7 +131,7 @@ class Camera:
         if transmission is not None:
             text += f'  transmission: "{_transmission_text(transmission)}"\n'
         try:
-            cameras, _, _, _ = _core.parse_path(text, "camera", None)
+            cameras, _, _, _, _ = _core.parse_path(text, "camera", None)
         except InputError as error:
             # A position in this text would say nothing to the caller.
             words = re.sub(r"^camera:\d+:\d+: (?:camera\.|lens\.)?| \(also wrong: line.*\)$", "", str(error))

@@ -24,6 +24,10 @@ class Path(Sequence[Camera]):
         Angle in degrees, from 0 to 360, and number of samples, from 1 to 64; or a mapping with the keys angle_deg and
         samples. Each frame is exposed for this part of its duration, centred at its time, and is the mean of this many
         cameras. Between the frames, cameras are interpolated. None: each frame is one moment.
+    views : int, optional
+        Number of views of each moment, as in the paths of stereo pairs and light field displays that ``lfpath`` makes
+        (``--stereo``, ``--quilt``). The first cameras are the views of the first moment, the next ones those of the
+        second moment, and so on; `fps` is the rate of the moments. With more than one, there is no shutter.
 
     Examples
     --------
@@ -36,7 +40,7 @@ class Path(Sequence[Camera]):
     """
 
     def __init__(self, cameras: Iterable[Camera], fps: float = 24,
-                 shutter: Union[None, Tuple[float, int], Mapping[str, Any]] = None) -> None:
+                 shutter: Union[None, Tuple[float, int], Mapping[str, Any]] = None, views: int = 1) -> None:
         self._cameras: List[Camera] = list(arguments.iterator("cameras", cameras, "lf.Camera objects"))
         self.fps = fps
         for camera in self._cameras:
@@ -48,17 +52,24 @@ class Path(Sequence[Camera]):
             values = {getattr(camera, what) for camera in self._cameras}
             if len(values) > 1:
                 raise UsageError(f"the cameras of a path must have one {what}, found {sorted(values)[:4]}")
+        self._views = arguments.whole_within("views", views, 1, 1_000_000)
+        if len(self._cameras) % self._views:
+            raise UsageError(f"views={self._views}: does not divide the {len(self._cameras)} cameras of the path; "
+                             f"expected the same number of views of every moment")
         # Angle, number of samples, and the cameras of all instants; None if each frame is one moment.
         self._shutter: _core._Shutter = None
         if shutter is not None:
             angle, samples = _angle_and_samples(shutter)
+            if samples > 1 and self._views > 1:
+                raise UsageError(f"shutter: the path has {self._views} views of each moment, between which no camera "
+                                 f"moves; leave the shutter out")
             if samples > 1:
                 self._shutter = (angle, samples, _core.instants([camera._core for camera in self._cameras], self.fps,
                                                                 angle, samples))
 
     @classmethod
-    def _of(cls, cameras: Iterable[_core.RenderCamera], fps: float, shutter: _core._Shutter) -> Path:
-        path = cls((Camera._of(core) for core in cameras), fps)
+    def _of(cls, cameras: Iterable[_core.RenderCamera], fps: float, shutter: _core._Shutter, views: int) -> Path:
+        path = cls((Camera._of(core) for core in cameras), fps, views=views)
         path._shutter = shutter
         return path
 
@@ -66,6 +77,12 @@ class Path(Sequence[Camera]):
     def shutter(self) -> Optional[Tuple[float, int]]:
         """Angle in degrees and number of samples of the shutter; None if each frame is one moment."""
         return None if self._shutter is None else self._shutter[:2]
+
+    @property
+    def views(self) -> int:
+        """Number of views of each moment. A part of the path (a slice) has as many if it consists of whole moments,
+        otherwise 1."""
+        return self._views
 
     @property
     def fps(self) -> float:
@@ -96,8 +113,8 @@ class Path(Sequence[Camera]):
             The file cannot be read, has a mistake, or states another unit than `unit_m`.
         """
         unit = None if unit_m is None else arguments.positive("unit_m", unit_m)
-        cameras, fps, _, shutter = _core.read_path(arguments.file_name("path", path), unit)
-        return cls._of(cameras, fps, shutter)
+        cameras, fps, _, shutter, views = _core.read_path(arguments.file_name("path", path), unit)
+        return cls._of(cameras, fps, shutter, views)
 
     @classmethod
     def parse(cls, text: str, name: str = "path", unit_m: Optional[float] = None) -> Path:
@@ -105,9 +122,9 @@ class Path(Sequence[Camera]):
         # Text that is not Unicode cannot be in a path, and stands in messages with question marks.
         utf8, utf8_name = (arguments.text(what, value).encode("utf-8", "replace")
                            for what, value in (("text", text), ("name", name)))
-        cameras, fps, _, shutter = _core.parse_path(utf8, utf8_name, None if unit_m is None
-                                                    else arguments.positive("unit_m", unit_m))
-        return cls._of(cameras, fps, shutter)
+        cameras, fps, _, shutter, views = _core.parse_path(utf8, utf8_name, None if unit_m is None
+                                                           else arguments.positive("unit_m", unit_m))
+        return cls._of(cameras, fps, shutter, views)
 
     def save(self, path: Union[str, os.PathLike[str]], format: Optional[str] = None) -> None:
         """Write a camera path file. Each frame gets a camera of its own. Only YAML keeps the shutter, and interpolates
@@ -136,7 +153,7 @@ class Path(Sequence[Camera]):
         if format is None and os.path.splitext(os.fsdecode(file))[1] not in (".json", ".chan", ".usda"):
             format = "yaml"
         lost = _core.save_path(file, [camera._core for camera in self._cameras], self.fps,
-                               self._shutter, None if format is None else arguments.text("format", format))
+                               self._shutter, self._views, None if format is None else arguments.text("format", format))
         if lost:
             warnings.warn(f"{os.fsdecode(file)}: the format has no place for {'; for '.join(lost)}", stacklevel=2)
         if self._shutter and format == "yaml":
@@ -161,11 +178,13 @@ class Path(Sequence[Camera]):
 
     def __getitem__(self, i: Union[int, slice]) -> Union[Camera, Path]:
         if isinstance(i, slice):
-            part = Path(self._cameras[i], self.fps)
+            frames = range(len(self))[i]
+            whole = frames.step == 1 and frames.start % self._views == 0 and len(frames) % self._views == 0
+            part = Path(self._cameras[i], self.fps, views=self._views if whole else 1)
             if self._shutter is not None:
                 angle, samples, instants = self._shutter
                 part._shutter = (angle, samples, [instants[frame * samples + k]
-                                                  for frame in range(len(self))[i] for k in range(samples)])
+                                                  for frame in frames for k in range(samples)])
             return part
         return self._cameras[i]
 
@@ -174,11 +193,12 @@ class Path(Sequence[Camera]):
 
     def __eq__(self, other: object) -> bool:
         return (isinstance(other, Path) and self.fps == other.fps and self._cameras == other._cameras
-                and self._shutter == other._shutter)
+                and self._shutter == other._shutter and self._views == other._views)
 
     def __repr__(self) -> str:
         shutter = "" if self._shutter is None else f", shutter {self._shutter[0]:g} degrees"
-        return f"<Path of {len(self)} frames, {self.fps:g} per second{shutter}>"
+        views = "" if self._views == 1 else f", {self._views} views of each moment"
+        return f"<Path of {len(self)} frames, {self.fps:g} per second{shutter}{views}>"
 
 
 def _angle_and_samples(shutter: Union[Tuple[float, int], Mapping[str, Any]]) -> Tuple[float, int]:

@@ -149,7 +149,7 @@ py::tuple TupleOf(const CameraPath& path) {
   ShutterWords shutter;
   if (path.shutter.exists())
     shutter.emplace(path.shutter.angle_deg, path.shutter.samples, path.instants);
-  return py::make_tuple(path.cameras, path.fps, path.unit_m, shutter);
+  return py::make_tuple(path.cameras, path.fps, path.unit_m, shutter, path.views);
 }
 
 // Returns the instants of a shutter, which are interpolated between the cameras of the frames.
@@ -186,7 +186,7 @@ py::tuple ReadPath(const std::string& file, std::optional<double> unit_m) {
 // Writes a path file in a format, or in the one of the file's extension. Returns what other
 // programs do not find in the file.
 std::vector<std::string> SavePath(const std::string& file, const std::vector<RenderCamera>& cameras,
-                                  double fps, const ShutterWords& shutter,
+                                  double fps, const ShutterWords& shutter, int views,
                                   const std::optional<std::string>& name) {
   return CallWithoutGil([&]() -> std::vector<std::string> {
     for (const RenderCamera& camera : cameras)
@@ -203,6 +203,7 @@ std::vector<std::string> SavePath(const std::string& file, const std::vector<Ren
           "\"nerfstudio\", \"instant-ngp\", \"chan\" or \"usda\"{}",
           file, name ? fmt::format(", found \"{}\"", *name) : ""))));
     CameraPath path = PathOf(cameras, fps, cameras.front().unit_m, shutter);
+    path.views = views;
     // Each format states or computes the times itself.
     path.cameras = cameras;
     if (*format == PathFormat::kYaml) {

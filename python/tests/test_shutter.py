@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Frames of a path with a shutter."""
 import pickle
+import warnings
 
 import numpy as np
 import pytest
@@ -78,6 +79,26 @@ def test_a_path_keeps_its_shutter(field, path, tmp_path):
     assert np.abs(lf.render(field, read, frames=(2,)).rgb - rgb).max() < 0.02
     needs = lf.select(field, blurred, 2)
     assert len(needs.ids) >= len(lf.select(field, lf.Path(cameras, path.fps), 2).ids)
+
+
+def test_a_path_of_views_keeps_its_moments(path, tmp_path):
+    cameras = [path[0], path[1]] * 3
+    views = lf.Path(cameras, path.fps, views=2)
+    assert views.views == 2 and lf.Path(cameras).views == 1 and views != lf.Path(cameras, path.fps)
+    assert "2 views" in repr(views) and pickle.loads(pickle.dumps(views)) == views
+    assert [views[part].views for part in (slice(2, 6), slice(1, 3), slice(0, 3), slice(None, None, 2))] == [2, 1, 1, 1]
+    for name in "v.yaml", "v.json", "v.usda":
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            views.save(tmp_path / name)
+        assert any("2 views of each moment" in str(warning.message) for warning in told) == (name != "v.yaml")
+        if name != "v.usda":
+            assert lf.Path.load(tmp_path / name).views == 2
+    with pytest.raises(lf.UsageError, match="2 views of each moment"):
+        views.save(tmp_path / "v.chan")
+    for faults in {"views": 4}, {"views": 0}, {"views": 1.5}, {"views": 2, "shutter": (180, 4)}:
+        with pytest.raises((lf.UsageError, TypeError)):
+            lf.Path(cameras, path.fps, **faults)
 
 
 def test_focus_stacks_and_ground_truth_are_exposed(field, path, tmp_path):

@@ -20,6 +20,7 @@ inline constexpr int kLargestPlateSide_px = 65536;
 inline constexpr long long kMostPlateElements = 1LL << 30;
 inline constexpr int kMostShutterSamples = 64;
 inline constexpr long long kMostInstants = 1'000'000;  // of all frames together
+inline constexpr int kMostViews = 1'000'000;           // of each moment
 
 // The time for which each frame is exposed. It is centred at the time of the frame, and divided
 // into `samples` equal parts; the instants of the frame are the middles of these parts.
@@ -39,6 +40,10 @@ struct CameraPath {
   double unit_m = 1;                  // metres per world unit
   std::vector<RenderCamera> cameras;  // one for each frame 1, 2, ...; frame 1 is at time 0
   Shutter shutter = {};
+  // Number of views of each moment (view_cameras.h), which divides the number of frames: the first
+  // frames are the views of the first moment, the next ones those of the second moment, and so on.
+  // fps is then the rate of the moments. With more than 1, there is no shutter.
+  int views = 1;
   // The cameras of the instants, [frame - 1][instant]; empty if there is no shutter.
   std::vector<RenderCamera> instants = {};
   // The picture that the focal surfaces of the cameras are made of, if the file of the path names
@@ -47,6 +52,7 @@ struct CameraPath {
   std::optional<FocalSurfaceSource> focal_surface = {};
 
   size_t frame_count() const { return cameras.size(); }
+  size_t moment_count() const { return cameras.size() / static_cast<size_t>(views); }
   // Returns the camera at the time of the frame, for metadata, previews and depths.
   const RenderCamera& Camera(FrameId frame) const {
     LF_CHECK(frame.value >= 1 && frame.value <= cameras.size());

@@ -228,6 +228,7 @@ PathFrames::PathFrames(PathDescription path) : described_(std::move(path)) {
   whole_.fps = described_->fps;
   whole_.unit_m = described_->unit_m;
   whole_.shutter = described_->shutter;
+  whole_.views = described_->views;
   whole_.focal_surface = described_->focal_surface;
 }
 
@@ -268,6 +269,8 @@ Result<CameraPath> PathFrames::Some(FrameId begin, size_t count) const {
   some.unit_m = whole_.unit_m;
   some.shutter = whole_.shutter;
   some.focal_surface = whole_.focal_surface;
+  // A part of the frames may end within a moment.
+  if (count == frame_count()) some.views = whole_.views;
   some.cameras.reserve(count);
   const auto frame_of = [&](size_t i) { return FrameId{begin.value + static_cast<uint32_t>(i)}; };
   for (size_t i = 0; i < count; ++i) {

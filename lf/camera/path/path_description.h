@@ -32,6 +32,7 @@ struct PathDescription {
   double unit_m = 1;
   int width_px = 0;
   int height_px = 0;
+  int views = 1;  // of each moment (CameraPath::views)
   Shutter shutter;
 
   Quantity position_w;

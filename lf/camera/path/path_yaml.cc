@@ -63,7 +63,19 @@ void ReadUnit(YamlMap* file, std::optional<double> light_field_unit_m, PathDescr
   if (!light_field_unit_m) path->unit_m = *unit_m;
 }
 
-// Reads the mapping `shutter`. ReadClock() must have been called.
+// Reads the key `views`. ReadClock() must have been called.
+void ReadViews(YamlMap* file, PathDescription* path) {
+  const YamlEntry* entry = file->Find("views");
+  if (!entry) return;
+  path->views = ReadInteger(*entry->value, "views", 1, kMostViews, file->errors()).value_or(1);
+  if (path->frame_count % path->views != 0)
+    file->errors()->Add(entry->value->place,
+                        fmt::format("views: {} do not divide the {} frames of the path: expected "
+                                    "the same number of views of every moment",
+                                    path->views, path->frame_count));
+}
+
+// Reads the mapping `shutter`. ReadViews() must have been called.
 void ReadShutter(YamlMap* file, PathDescription* path) {
   const YamlEntry* entry = file->Find("shutter");
   if (!entry) return;
@@ -78,6 +90,12 @@ void ReadShutter(YamlMap* file, PathDescription* path) {
           .value_or(0);
   path->shutter.samples =
       ReadInteger(*samples->value, "shutter.samples", 1, kMostShutterSamples, errors).value_or(1);
+  if (path->shutter.exists() && path->views > 1)
+    errors->Add(
+        entry->place,
+        fmt::format("shutter: the path has {} views of each moment, between which no camera "
+                    "moves: remove the shutter",
+                    path->views));
   const long long count = static_cast<long long>(path->frame_count) * path->shutter.samples;
   if (path->shutter.exists() && count > kMostInstants)
     errors->Add(entry->place,
@@ -100,6 +118,7 @@ PathDescription Describe(const YamlNode& root, std::optional<double> light_field
   YamlMap file(root, "", errors);
   if (!errors->empty() || !CheckFormat(&file)) return path;
   ReadClock(&file, &path);
+  ReadViews(&file, &path);
   ReadShutter(&file, &path);
   ReadUnit(&file, light_field_unit_m, &path);
   ReadResolution(&file, &path);

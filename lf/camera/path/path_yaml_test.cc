@@ -298,5 +298,21 @@ TEST(PathYaml, ChecksTheShutter) {
       << error("{angle_deg: 180, samples: 64}", "20000");
 }
 
+TEST(PathYaml, StatesTheViewsOfEachMoment) {
+  TestPath path;
+  EXPECT_EQ(path.Parse()->views, 1);
+  path.clock = "fps: 10\nframes: 21\nviews: 7\nresolution: [200, 100]\n";
+  EXPECT_EQ(path.Parse()->views, 7);
+  EXPECT_EQ(path.Parse()->moment_count(), 3u);
+  path.clock = "fps: 10\nframes: 21\nviews: 2\nresolution: [200, 100]\n";
+  EXPECT_EQ(path.Error(),
+            "4:8: views: 2 do not divide the 21 frames of the path: expected the same number of "
+            "views of every moment");
+  path.clock =
+      "fps: 10\nframes: 4\nviews: 2\nresolution: [200, 100]\nshutter: {angle_deg: 90, samples: "
+      "2}\n";
+  EXPECT_NE(path.Error().find("remove the shutter"), std::string::npos) << path.Error();
+}
+
 }  // namespace
 }  // namespace lf

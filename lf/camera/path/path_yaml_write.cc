@@ -184,6 +184,20 @@ std::string ShapeText(const RenderCamera& camera) {
   return text;
 }
 
+// Returns true if two cameras have the same quantities of ShapeText(), but for rounding errors.
+bool HaveOneShape(const RenderCamera& a, const RenderCamera& b) {
+  const auto agree = [](double x, double y) {
+    return std::abs(x - y) <= kEqualOptics * std::max(std::abs(x), std::abs(y));
+  };
+  const bool same_transmission =
+      a.transmission == b.transmission ||
+      (a.transmission && b.transmission && *a.transmission == *b.transmission);
+  return a.aperture.blades == b.aperture.blades && same_transmission &&
+         agree(a.aperture.roundness, b.aperture.roundness) &&
+         agree(a.aperture.ratio, b.aperture.ratio) && a.hood.exists() == b.hood.exists() &&
+         agree(a.hood.distance_w, b.hood.distance_w) && agree(a.hood.radius_w, b.hood.radius_w);
+}
+
 // Returns the section of the focal surface.
 std::string FocusText(const FocalSurfaceSource& source) {
   std::string quoted;
@@ -210,12 +224,11 @@ std::string FocusText(const FocalSurfaceSource& source) {
 }
 
 std::vector<std::string> LostOf(const CameraPath& path) {
-  const std::string shape = ShapeText(path.cameras[0]);
   size_t stretched = 0, shapes = 0;
   for (const RenderCamera& camera : path.cameras) {
     const Intrinsics& k = camera.pinhole.intrinsics;
     if (std::abs(k.fx_px - k.fy_px) > kEqualOptics * k.fx_px || k.skew_px != 0) ++stretched;
-    if (ShapeText(camera) != shape) ++shapes;
+    if (!HaveOneShape(camera, path.cameras[0])) ++shapes;
   }
   std::vector<std::string> lost;
   const auto add = [&](size_t count, const char* what) {
@@ -236,6 +249,7 @@ Result<PathYaml> PathYamlOf(const CameraPath& path) {
   yaml.text =
       fmt::format("format: lfpath 1\nfps: {}\nframes: {}\nunit_m: {}\nresolution: [{}, {}]\n",
                   path.fps, path.frame_count(), path.unit_m, plate.width_px, plate.height_px);
+  if (path.views > 1) yaml.text += fmt::format("views: {}\n", path.views);
   if (path.shutter.exists())
     yaml.text += fmt::format("shutter: {{angle_deg: {}, samples: {}}}\n", path.shutter.angle_deg,
                              path.shutter.samples);

@@ -20,9 +20,9 @@ struct PathYaml {
 // these times they move smoothly. A quantity that never changes is stated once. Reading the text
 // returns the same cameras but for rounding errors. If there is a shutter, the cameras of its
 // instants follow from the cameras of the frames. Lost are: elements that are no squares, skew, and
-// blades, ratio, hood and transmission where they differ from those of the first frame. kOutput:
-// the file would exceed the limits of its reader, such as some 20,000 frames that move in every
-// respect.
+// blades, ratio, hood and transmission where they differ from those of the first frame by more than
+// rounding errors. kOutput: the file would exceed the limits of its reader, such as some 20,000
+// frames that move in every respect.
 Result<PathYaml> PathYamlOf(const CameraPath& path);
 
 }  // namespace lf

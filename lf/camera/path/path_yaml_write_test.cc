@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "lf/camera/path/test_path.h"
 
 namespace lf {
@@ -107,6 +109,18 @@ TEST(PathYamlWrite, TellsWhatTheFileCannotHold) {
   ASSERT_TRUE(yaml);
   ASSERT_EQ(yaml->lost.size(), 2u);
   EXPECT_NE(yaml->lost[0].find("of 1 frame"), std::string::npos) << yaml->lost[0];
+}
+
+TEST(PathYamlWrite, ARoundingErrorOfTheShapeIsNoLoss) {
+  CameraPath path = Parsed({.aperture = "aperture_diameter_mm: 4, ratio: 1.3, hood_distance: 0.1, "
+                                        "hood_diameter: 0.07"});
+  path.cameras[3].aperture.ratio = std::nextafter(1.3, 2);
+  path.cameras[4].hood.radius_w = std::nextafter(path.cameras[4].hood.radius_w, 1);
+  const Result<PathYaml> yaml = PathYamlOf(path);
+  ASSERT_TRUE(yaml);
+  EXPECT_TRUE(yaml->lost.empty()) << yaml->lost[0];
+  path.cameras[3].aperture.ratio = 1.300001;
+  EXPECT_EQ(PathYamlOf(path)->lost.size(), 1u);
 }
 
 TEST(PathYamlWrite, TooLongFilmsAreRefused) {

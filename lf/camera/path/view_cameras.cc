@@ -18,6 +18,11 @@ Result<CameraPath> PathOfViews(const CameraPath& path, int view_count,
     return InputError(fmt::format(
         "{} views of {} frames are {} cameras: expected at most {}", view_count, path.frame_count(),
         path.frame_count() * static_cast<size_t>(view_count), kMostFrames));
+  if (path.views > 1)
+    return InputError(
+        fmt::format("the path has {} views of each moment already: make the views of the path that "
+                    "it was made of",
+                    path.views));
   if (path.shutter.exists())
     return InputError(
         "the path has a shutter, but a path of views has none, because its cameras jump from view "
@@ -31,6 +36,7 @@ Result<CameraPath> PathOfViews(const CameraPath& path, int view_count,
   views.focal_surface = path.focal_surface;
   views.fps = path.fps;
   views.unit_m = path.unit_m;
+  views.views = view_count;
   views.cameras.reserve(path.frame_count() * static_cast<size_t>(view_count));
   for (size_t frame = 0; frame < path.frame_count(); ++frame) {
     const RenderCamera& camera = path.cameras[frame];

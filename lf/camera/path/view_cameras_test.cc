@@ -40,6 +40,8 @@ TEST(ViewCameras, PointsOfTheConvergencePlaneHaveOnePositionInAllViews) {
   const auto views = QuiltPath(path, 5, RadiansFromDegrees(40), 1.5);
   ASSERT_TRUE(views);
   ASSERT_EQ(views->frame_count(), 5 * path.frame_count());
+  EXPECT_EQ(views->views, 5);
+  EXPECT_EQ(views->moment_count(), path.frame_count());
   for (size_t i = 0; i < views->frame_count(); ++i) {
     const RenderCamera& camera = path.cameras[i / 5];
     for (const auto& [x, y] : {std::pair(0.0, 0.0), std::pair(-0.4, 0.2), std::pair(0.3, 0.7)}) {
@@ -162,6 +164,14 @@ TEST(ViewCameras, TimesCountTheCamerasOfThePath) {
   EXPECT_EQ(views->fps, path.fps);
   for (size_t i = 0; i < views->frame_count(); ++i)
     EXPECT_DOUBLE_EQ(views->cameras[i].time_s, static_cast<double>(i) / path.fps);
+}
+
+TEST(ViewCameras, APathOfViewsHasNoViewsOfItsOwn) {
+  const auto views = StereoPath(LivelyPath(), 0.065, std::nullopt);
+  ASSERT_TRUE(views);
+  const auto again = StereoPath(*views, 0.065, std::nullopt);
+  ASSERT_FALSE(again);
+  EXPECT_NE(again.error().message.find("2 views of each moment already"), std::string::npos);
 }
 
 }  // namespace

@@ -190,6 +190,14 @@ double VerticalFov_deg(const Intrinsics& k) {
   return DegreesFromRadians(2 * std::atan(k.height_px / (2 * k.fy_px)));
 }
 
+Result<int> ViewsOfKey(const JsonFields& top) {
+  constexpr NumberRule kViews = {"the number of views of each moment, from 1 to 1e6", [](double x) {
+                                   return x >= 1 && x <= kMostViews && x == std::floor(x);
+                                 }};
+  LF_ASSIGN_OR_RETURN(const std::optional<double> views, top.Number("lf_views", kViews));
+  return static_cast<int>(views.value_or(1));
+}
+
 void MoveInto(const Similarity& b_from_a, ForeignCamera* camera) {
   camera->pinhole.cam_from_world = PoseIn(b_from_a, camera->pinhole.cam_from_world);
   for (std::optional<double>* length : {&camera->sensor_width_w, &camera->focal_length_w,
@@ -204,6 +212,12 @@ Result<CameraPath> CompletePath(ForeignPath&& path, const std::filesystem::path&
   LF_CHECK(!path.cameras.empty());
   CameraPath complete;
   complete.fps = path.fps;
+  complete.views = path.views;
+  if (path.cameras.size() % static_cast<size_t>(path.views) != 0)
+    return InputError(fmt::format(
+        "{}: \"lf_views\" is {}, but the file has {} frames: expected the same number of views of "
+        "every moment",
+        file.string(), path.views, path.cameras.size()));
   LF_ASSIGN_OR_RETURN(complete.unit_m, UnitOf(path, file, options));
   const Defaults defaults = DefaultsFor(complete.unit_m, options, &path);
   complete.cameras.reserve(path.cameras.size());

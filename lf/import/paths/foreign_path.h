@@ -14,6 +14,7 @@
 #include "lf/core/result.h"
 #include "lf/import/check/similarity.h"
 #include "lf/import/paths/open_path.h"
+#include "lf/light_field/transforms_json/json_fields.h"
 
 namespace lf {
 
@@ -32,6 +33,7 @@ struct ForeignPath {
   double fps = 30;
   std::optional<double> unit_m;  // metres per world unit
   std::vector<ForeignCamera> cameras;
+  int views = 1;                          // of each moment (CameraPath::views)
   std::optional<DepthRange> depth_range;  // depths of the scene, if the file states them
   // Phrases of the warning, such as "no frames per second (30 are used: --fps)".
   std::vector<std::string> lacks;
@@ -55,12 +57,17 @@ Intrinsics IntrinsicsOfFov(double fov_deg, const std::array<int, 2>& resolution_
 // Returns the vertical field of view of a plate in degrees, as IntrinsicsOfFov() takes it.
 double VerticalFov_deg(const Intrinsics& k);
 
+// Returns the number of views of each moment, which the key lf_views of the top level states; 1 if
+// it is missing. CompletePath() checks that it divides the number of frames.
+Result<int> ViewsOfKey(const JsonFields& top);
+
 // Moves the camera into world b, its lens included.
 void MoveInto(const Similarity& b_from_a, ForeignCamera* camera);
 
 // Completes the cameras. A warning lists the quantities that the file lacks.
 //   file  for messages
-// kInput: path.unit_m contradicts the light field; a quantity of a frame is out of its range.
+// kInput: path.unit_m contradicts the light field; a quantity of a frame is out of its range; the
+// views of a moment do not divide the frames.
 Result<CameraPath> CompletePath(ForeignPath&& path, const std::filesystem::path& file,
                                 const PathOptions& options);
 

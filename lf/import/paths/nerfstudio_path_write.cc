@@ -30,10 +30,11 @@ std::string NerfstudioText(const CameraPath& path, std::string_view space) {
   out.Add(
       "{{\n\"camera_type\": \"perspective\",\n\"render_width\": {},\n\"render_height\": {},\n"
       "\"fps\": {},\n\"seconds\": {},\n\"is_cycle\": false,\n\"smoothness_value\": 0,\n"
-      "\"default_fov\": {},\n\"lf_space\": \"{}\",\n\"lf_unit_m\": {},\n\"keyframes\": [],\n"
-      "\"camera_path\": [",
+      "\"default_fov\": {},\n\"lf_space\": \"{}\",\n\"lf_unit_m\": {},\n",
       plate.width_px, plate.height_px, path.fps, static_cast<double>(path.frame_count()) / path.fps,
       VerticalFov_deg(plate), space, path.unit_m);
+  if (path.views > 1) out.Add("\"lf_views\": {},\n", path.views);
+  out.Add("\"keyframes\": [],\n\"camera_path\": [");
   for (size_t i = 0; i < path.frame_count(); ++i) {
     out.Add("{}\n", i > 0 ? "," : "");
     AddNerfstudioFrame(path.cameras[i], &out);

@@ -21,8 +21,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kKeysKey = "path";
-constexpr const char* kNgpTopKeys[] = {"lf_unit_m", "lf_fps",   "lf_resolution",
-                                       "lf_frames", "lf_scale", "lf_offset"};
+constexpr const char* kNgpTopKeys[] = {"lf_unit_m", "lf_fps",    "lf_resolution", "lf_frames",
+                                       "lf_scale",  "lf_offset", "lf_views"};
 // Films of files that state no duration last as long as instant-ngp's script makes them.
 constexpr double kDefaultDuration_s = 1;
 
@@ -88,10 +88,13 @@ Result<void> ReadClock(const JsonFields& top, const PathOptions& options, NgpHea
                       top.Number("duration_seconds", kNgpTime));
   head->duration_s = duration_s.value_or(0) > 0 ? *duration_s : kDefaultDuration_s;
   LF_ASSIGN_OR_RETURN(const std::optional<double> frames, top.Number("lf_frames", kNgpFrames));
+  if (!frames && top.Has("lf_views"))
+    return top.Wrong("lf_views", "no such key without \"lf_frames\", because a curve has no views");
   if (!frames) return {};
   if (*frames > static_cast<double>(top.ListSize(kKeysKey).value_or(0)))
     return top.Wrong("lf_frames", kNgpFrames.expected);
   head->frame_count = static_cast<size_t>(*frames);
+  LF_ASSIGN_OR_RETURN(path->views, ViewsOfKey(top));
   return {};
 }
 

@@ -16,7 +16,7 @@
 namespace lf {
 namespace {
 
-// Difference of two places, in frames, that are the same but for rounding errors.
+// Difference of two places, in moments, that are the same but for rounding errors.
 constexpr double kSamePlace = 1e-9;
 constexpr int kNumbersBetween = 16;  // number of values that NumberBetween() knows
 
@@ -44,42 +44,53 @@ double& NumberBetween(RenderCamera* camera, int index) {
 
 using ValueOfCamera = std::function<MotionValue(const RenderCamera&)>;
 
-// Returns the curve through a value of all cameras, whose parameter is the index of the frame.
-KeyframeCurve CurveThrough(const CameraPath& path, SmoothCurve curve, const ValueOfCamera& value) {
+// Returns the cameras of one view of all moments. A path with one view has its frames in it.
+std::vector<RenderCamera> CamerasOfView(const CameraPath& path, int view) {
+  std::vector<RenderCamera> cameras;
+  cameras.reserve(path.moment_count());
+  for (size_t moment = 0; moment < path.moment_count(); ++moment)
+    cameras.push_back(path.cameras[moment * static_cast<size_t>(path.views) + view]);
+  return cameras;
+}
+
+// Returns the curve through a value of the cameras, whose parameter is their index.
+KeyframeCurve CurveThrough(const std::vector<RenderCamera>& cameras, SmoothCurve curve,
+                           const ValueOfCamera& value) {
   std::vector<Key> keys;
-  keys.reserve(path.frame_count());
-  for (const RenderCamera& camera : path.cameras)
+  keys.reserve(cameras.size());
+  for (const RenderCamera& camera : cameras)
     keys.push_back({static_cast<double>(keys.size()), value(camera), Interpolation::kSmooth});
   return {std::move(keys), curve};
 }
 
+// The cameras of one view, which move from moment to moment.
 class CameraCurves {
  public:
-  explicit CameraCurves(const CameraPath& path)
-      : path_(path),
-        position_(CurveThrough(path, SmoothCurve::kCatmullRom,
+  explicit CameraCurves(std::vector<RenderCamera> cameras)
+      : cameras_(std::move(cameras)),
+        position_(CurveThrough(cameras_, SmoothCurve::kCatmullRom,
                                [](const RenderCamera& camera) -> MotionValue {
                                  return camera.pinhole.CentreWorld();
                                })),
         rotation_(CurveThrough(
-            path, SmoothCurve::kRotation, [](const RenderCamera& camera) -> MotionValue {
+            cameras_, SmoothCurve::kRotation, [](const RenderCamera& camera) -> MotionValue {
               const Mat3 world_from_cam = camera.pinhole.cam_from_world.rotation.transpose();
               const Eigen::Quaterniond q(world_from_cam);
               return Eigen::Vector4d(q.w(), q.x(), q.y(), q.z());
             })) {
     for (int i = 0; i < kNumbersBetween; ++i)
-      numbers_.push_back(CurveThrough(path, SmoothCurve::kMonotone,
+      numbers_.push_back(CurveThrough(cameras_, SmoothCurve::kMonotone,
                                       [i](const RenderCamera& camera) -> MotionValue {
                                         RenderCamera copy = camera;
                                         return MotionValue::Constant(1, NumberBetween(&copy, i));
                                       }));
   }
 
-  // Returns the camera at a place from 0 to the index of the last frame.
+  // Returns the camera at a place from 0 to the index of the last moment.
   RenderCamera At(double place) const {
     const double nearest = std::round(place);
-    if (std::abs(place - nearest) <= kSamePlace) return path_.cameras[static_cast<size_t>(nearest)];
-    RenderCamera camera = path_.cameras[static_cast<size_t>(place)];  // with its size and blades
+    if (std::abs(place - nearest) <= kSamePlace) return cameras_[static_cast<size_t>(nearest)];
+    RenderCamera camera = cameras_[static_cast<size_t>(place)];  // with its size and blades
     const MotionValue q = rotation_.At(place);
     camera.pinhole.cam_from_world =
         CamFromWorld(Eigen::Quaterniond(q[0], q[1], q[2], q[3]), position_.At(place));
@@ -90,7 +101,7 @@ class CameraCurves {
   }
 
  private:
-  const CameraPath& path_;
+  std::vector<RenderCamera> cameras_;
   KeyframeCurve position_, rotation_;
   std::vector<KeyframeCurve> numbers_;
 };
@@ -99,14 +110,21 @@ class CameraCurves {
 
 Result<CameraPath> ResamplePath(const CameraPath& path, std::optional<double> fps,
                                 std::optional<uint32_t> frame_count) {
-  const double last = static_cast<double>(path.frame_count() - 1);  // place of the last camera
+  const double last = static_cast<double>(path.moment_count() - 1);  // place of the last camera
   const double new_fps = fps.value_or(path.fps);
+  const auto views = static_cast<uint32_t>(path.views);
+  if (frame_count && *frame_count % views != 0)
+    return UsageError(
+        fmt::format("--frames {}: the path has {} views of each moment, which are frames of their "
+                    "own: expected a multiple of {}",
+                    *frame_count, views, views));
+  // Number of new moments.
   const double count =
-      frame_count ? *frame_count : std::floor(last / path.fps * new_fps + kSamePlace) + 1;
-  if (!(count <= kMostFrames))
+      frame_count ? *frame_count / views : std::floor(last / path.fps * new_fps + kSamePlace) + 1;
+  if (!(count * views <= kMostFrames))
     return UsageError(fmt::format("--fps {} makes {} frames of the path: expected at most {}",
-                                  new_fps, count, kMostFrames));
-  // Distance of two new frames, in old frames.
+                                  new_fps, count * views, kMostFrames));
+  // Distance of two new moments, in old moments.
   const double step = frame_count ? last / std::max(count - 1, 1.0) : path.fps / new_fps;
   if (path.focal_surface && path.focal_surface->kind == FocalSurfaceSource::Kind::kDepths)
     return InputError(
@@ -117,12 +135,15 @@ Result<CameraPath> ResamplePath(const CameraPath& path, std::optional<double> fp
   resampled.focal_surface = path.focal_surface;
   resampled.fps = new_fps;
   resampled.unit_m = path.unit_m;
-  resampled.cameras.reserve(static_cast<size_t>(count));
-  const CameraCurves curves(path);
-  for (size_t i = 0; i < static_cast<size_t>(count); ++i) {
-    RenderCamera camera = curves.At(std::min(static_cast<double>(i) * step, last));
-    camera.time_s = static_cast<double>(i) / new_fps;
-    resampled.cameras.push_back(camera);
+  resampled.views = path.views;
+  resampled.cameras.resize(static_cast<size_t>(count) * views);
+  for (uint32_t view = 0; view < views; ++view) {
+    const CameraCurves curves(CamerasOfView(path, static_cast<int>(view)));
+    for (size_t moment = 0; moment < static_cast<size_t>(count); ++moment) {
+      const size_t i = moment * views + view;
+      resampled.cameras[i] = curves.At(std::min(static_cast<double>(moment) * step, last));
+      resampled.cameras[i].time_s = static_cast<double>(i) / new_fps;
+    }
   }
   LF_RETURN_IF_ERROR(AddShutter(path.shutter, &resampled));
   return resampled;
@@ -132,13 +153,18 @@ Result<void> AddShutter(const Shutter& shutter, CameraPath* path) {
   path->shutter = shutter;
   path->instants.clear();
   if (!shutter.exists()) return {};
+  if (path->views > 1)
+    return UsageError(fmt::format(
+        "the path has {} views of each moment, between which no camera moves: leave the "
+        "shutter out",
+        path->views));
   const auto samples = static_cast<size_t>(shutter.samples);
   if (path->frame_count() * samples > kMostInstants)
     return UsageError(
         fmt::format("{} frames with {} samples of the shutter are {} cameras: expected at most {}",
                     path->frame_count(), samples, path->frame_count() * samples, kMostInstants));
   path->instants.reserve(path->frame_count() * samples);
-  const CameraCurves curves(*path);
+  const CameraCurves curves(path->cameras);
   const double last = static_cast<double>(path->frame_count() - 1);
   for (size_t i = 0; i < path->frame_count(); ++i)
     for (int k = 0; k < shutter.samples; ++k) {

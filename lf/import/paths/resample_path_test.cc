@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "lf/camera/path/test_path.h"
+#include "lf/camera/path/view_cameras.h"
 
 namespace lf {
 namespace {
@@ -93,6 +94,51 @@ TEST(ResamplePath, TheShutterIsKeptAndItsInstantsLieBetweenTheFrames) {
   EXPECT_EQ(slow->instants.size(), 4 * slow->frame_count());
   path.cameras.resize(20'000, path.cameras.front());
   EXPECT_EQ(AddShutter({180, kMostShutterSamples}, &path).error().kind, ErrorKind::kUsage);
+}
+
+// Expects the path of views to be MovingPath() at these times, each camera moved aside by its
+// offset.
+void ExpectViewsMovedTo(const CameraPath& views, std::initializer_list<double> offsets_w,
+                        double distance_s) {
+  ASSERT_EQ(views.views, static_cast<int>(offsets_w.size()));
+  for (size_t i = 0; i < views.frame_count(); ++i) {
+    const double time_s = static_cast<double>(i / offsets_w.size()) * distance_s;
+    const double offset_w = *(offsets_w.begin() + i % offsets_w.size());
+    const RenderCamera& camera = views.cameras[i];
+    const double yaw_rad = RadiansFromDegrees(20 * time_s);
+    const Vec3 right(std::cos(yaw_rad), 0, -std::sin(yaw_rad));
+    const Vec3 centre = Vec3(time_s, 0, -2) + offset_w * right;
+    // Between two moments, an eye goes straight on, and does not turn about the other.
+    EXPECT_LT((camera.pinhole.CentreWorld() - centre).norm(), 1e-6) << i;
+    EXPECT_EQ(camera.time_s, static_cast<double>(i) / views.fps);
+  }
+}
+
+TEST(ResamplePath, EveryViewIsInterpolatedWithItselfAtTheNextMoment) {
+  const auto stereo = StereoPath(MovingPath(), 0.02, std::nullopt);
+  ASSERT_TRUE(stereo);
+  const auto twice = ResamplePath(*stereo, std::nullopt, 42);
+  ASSERT_TRUE(twice) << twice.error().message;
+  EXPECT_EQ(twice->frame_count(), 42u);
+  EXPECT_EQ(twice->fps, 10);
+  ExpectViewsMovedTo(*twice, {-0.01, 0.01}, 0.05);
+  const auto fine = ResamplePath(*stereo, 20, std::nullopt);  // also 21 moments
+  ASSERT_TRUE(fine);
+  EXPECT_EQ(fine->frame_count(), 42u);
+  ExpectViewsMovedTo(*fine, {-0.01, 0.01}, 0.05);
+  const auto one = ResamplePath(*stereo, std::nullopt, 2);
+  ASSERT_TRUE(one);
+  ExpectViewsMovedTo(*one, {-0.01, 0.01}, 0);
+}
+
+TEST(ResamplePath, PartsOfMomentsAndAShutterOfViewsAreRefused) {
+  auto stereo = StereoPath(MovingPath(), 0.02, std::nullopt);
+  ASSERT_TRUE(stereo);
+  const auto odd = ResamplePath(*stereo, std::nullopt, 7);
+  ASSERT_FALSE(odd);
+  EXPECT_EQ(odd.error().kind, ErrorKind::kUsage);
+  EXPECT_NE(odd.error().message.find("multiple of 2"), std::string::npos) << odd.error().message;
+  EXPECT_EQ(AddShutter({180, 4}, &*stereo).error().kind, ErrorKind::kUsage);
 }
 
 TEST(ResamplePath, TooManyFramesAreRefused) {

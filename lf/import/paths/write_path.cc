@@ -65,6 +65,10 @@ std::vector<std::string> LostIn(PathFormat format, const CameraPath& path) {
   else
     add(AnyCamera(path, HasLens), "the lens");
   if (path.focal_surface) lost.emplace_back("the focal surface (only YAML keeps it)");
+  if (path.views > 1)
+    lost.push_back(fmt::format(
+        "the moments of the film: the {} views of each moment are frames that follow each other{}",
+        path.views, note));
   if (path.shutter.exists())
     lost.emplace_back("the shutter, so that a moving camera does not blur its frames");
   return lost;
@@ -156,6 +160,11 @@ bool HoldsShift(PathFormat format) { return format != PathFormat::kChan; }
 
 Result<std::vector<std::string>> WritePath(const CameraPath& path, const fs::path& file,
                                            PathFormat format, const PathOptions& options) {
+  if (path.views > 1 && !HoldsShift(format))
+    return UsageError(fmt::format(
+        "{}: the format {} has no place for the {} views of each moment and the shift of "
+        "their plates: use --format yaml, nerfstudio, instant-ngp or usda",
+        file.string(), NameOf(format), path.views));
   std::vector<std::string> lost;
   LF_ASSIGN_OR_RETURN(const std::string text, TextOf(path, file, format, options, &lost));
   LF_RETURN_IF_ERROR(WriteFileAtomically(file, text));

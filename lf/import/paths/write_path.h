@@ -35,8 +35,9 @@ bool HoldsShift(PathFormat format);
 //            default those of the light field's transforms.json, otherwise 0.33 and 0.5. .chan:
 //            rotation_order
 // Returns phrases about what the format cannot hold, such as "blades"; our own programs restore
-// from JSON what is not named. kInput: an error of the dataparser_transforms. kOutput: the file
-// cannot be written.
+// from JSON what is not named. kUsage: the path has several views of each moment, and the format
+// does not hold the shift of their plates. kInput: an error of the dataparser_transforms. kOutput:
+// the file cannot be written.
 Result<std::vector<std::string>> WritePath(const CameraPath& path,
                                            const std::filesystem::path& file, PathFormat format,
                                            const PathOptions& options);

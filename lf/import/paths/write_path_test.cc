@@ -107,18 +107,45 @@ TEST_F(WritePathTest, ViewsKeepTheirPlatesInEveryFormatThatHoldsAShift) {
   std::vector<std::string> lost;
   for (const PathFormat format : {PathFormat::kNerfstudio, PathFormat::kNgp}) {
     EXPECT_TRUE(HoldsShift(format));
-    ExpectSameCameras(*views, ThereAndBack(*views, format, {}, &lost));
+    const CameraPath read = ThereAndBack(*views, format, {}, &lost);
+    ExpectSameCameras(*views, read);
+    EXPECT_EQ(read.views, 2);
+    EXPECT_NE(lost.back().find("2 views of each moment"), std::string::npos);
   }
   EXPECT_TRUE(HoldsShift(PathFormat::kYaml));
   const CameraPath again = ThereAndBack(*views, PathFormat::kYaml, {}, &lost);
   ASSERT_EQ(again.frame_count(), 18u);
+  EXPECT_EQ(again.views, 2);
   for (size_t i = 0; i < 18; ++i) {
     const Intrinsics& old = views->cameras[i].pinhole.intrinsics;
     EXPECT_NEAR(again.cameras[i].pinhole.intrinsics.cx_px, old.cx_px, 1e-9);
     EXPECT_GT(std::abs(old.cx_px - 100.5), 1);
   }
   EXPECT_FALSE(HoldsShift(PathFormat::kChan));
+  EXPECT_EQ(WritePath(*views, folder_ / "v.chan", PathFormat::kChan, {}).error().kind,
+            ErrorKind::kUsage);
+  const auto usda = WritePath(*views, folder_ / "v.usda", PathFormat::kUsda, {});
+  ASSERT_TRUE(usda);
+  EXPECT_NE(usda->back().find("2 views of each moment"), std::string::npos);
   EXPECT_TRUE(HoldsShift(PathFormat::kUsda));
+}
+
+TEST_F(WritePathTest, ViewsThatDoNotFitTheFramesAreRefused) {
+  const auto views = StereoPath(Lively(), 0.2, 1.7);
+  ASSERT_TRUE(views);
+  for (const PathFormat format : {PathFormat::kNerfstudio, PathFormat::kNgp}) {
+    ASSERT_TRUE(WritePath(*views, folder_ / "v.json", format, {}));
+    std::string text = *ReadFile(folder_ / "v.json");
+    const std::string key = "\"lf_views\": 2";
+    ASSERT_NE(text.find(key), std::string::npos);
+    text.replace(text.find(key), key.size(), "\"lf_views\": 4");
+    ASSERT_TRUE(WriteFileAtomically(folder_ / "v.json", text));
+    const auto read = OpenPath(folder_ / "v.json", {});
+    ASSERT_FALSE(read);
+    EXPECT_NE(read.error().message.find("\"lf_views\" is 4, but the file has 18 frames"),
+              std::string::npos)
+        << read.error().message;
+  }
 }
 
 TEST_F(WritePathTest, OtherProgramsFindTheirOwnKeys) {
