@@ -5,6 +5,7 @@ scanned.
 
 usage: program_options_test.py FOLDER_OF_THE_PROGRAMS
 """
+import json
 import pathlib
 import re
 import subprocess
@@ -140,6 +141,61 @@ class ProgramOptionsTest(ProgramTestCase):
                     self.assertEqual(result.returncode, 2, result.stderr)
                     self.assertIn(f"Try '{name} --help'", result.stderr)
                     self.assertIn(option, result.stderr.splitlines()[-1])
+
+    def refuses(self, name, *words, option):
+        result = self.call(name, *words)
+        self.assertEqual(result.returncode, 2, (words, result.stderr))
+        self.assertIn(option, result.stderr.splitlines()[-1])
+
+    def test_numbers_are_read_whole(self):
+        """Every option that takes a number, of every program, refuses a text of which only a part is one."""
+        count = 0
+        for name in OFFERED:
+            description = json.loads(self.succeeds(name, "--describe"))
+            options = [option for group in description["groups"] for option in group["options"]]
+            for option in options:
+                wrong = ["abc", "", "0x1", "1 2", " 1", "1 ", "nan", "inf"]
+                if option["type"] == "whole number":
+                    wrong += ["1.5", "1e3", "+1"]
+                elif option["type"] != "number":
+                    continue
+                long_name = next(word for word in option["names"] if word.startswith("--"))
+                count += 1
+                for word in wrong:
+                    with self.subTest(program=name, option=long_name, word=word):
+                        self.refuses(name, *CALLS[name], long_name, *[word] * option["value_count"], option=long_name)
+        self.assertGreater(count, 100)
+        for word in "20x20x", "x20x20", "20xx20":
+            self.refuses("lfpath", "no.yaml", "--resolution", word, option="--resolution")
+
+    def test_other_texts_of_numbers_are_read_whole(self):
+        """Options whose texts are numbers with a unit, or words."""
+        wrong = {"--memory": ["1.2.3G", "8GiB", "0x10G", " 8G", "8G "], "--fill": ["0x1", "1.5", "1 "],
+                 "--max-rays": ["1.2.3M", "3Mi", "0x3", " 3M", ""], "--image-scale": ["0.5x", "0x1", "1 "],
+                 "--dump-every": ["1.2.3s", "0x1s"], "--allow-missing": ["0x1", "1.5", "1 "],
+                 "--background": ["0x1,0,0", "1,1,1x"], "--shard": ["1/2x", "0x1/2", "1.0/2"],
+                 "--time-limit": ["1.2.3h", "0x1h"], "--pitch": ["0.5x", "0x1", "1,2,3"],
+                 "--quantizer": ["0x10", "16 ", "1e3"], "--focus-distance": ["0.5x", "0x1"]}
+        field = small_field.write_field(self.folder / "field")
+        path = small_field.write_path(self.folder, frames=2)
+        packages = self.folder / "packages"
+        self.succeeds("lfpreprocessor", field, path, "-o", packages)
+        out = self.folder / "out"
+        calls = {"lfrenderer": [field, path, "-o", out, "--mode", "rebin"], "lfimport": [field, "-o", out],
+                 "lfcompressor": [field, "-o", f"{out}.lfs", "--profile", "thesis"],
+                 "lfsubmit": [*packages.glob("*.lfp"), "-o", out, "--engine", "slurm"],
+                 "lffocus views": [field, "--grid", "2x2", "-o", out]}
+        tried = set()
+        for name, words in calls.items():
+            for option in wrong:
+                if option not in self.succeeds(name, "--help-all"):
+                    continue
+                for word in wrong[option]:
+                    with self.subTest(program=name, option=option, word=word):
+                        self.refuses(name, *words, f"{option}={word}", option=option)
+                        tried.add(option)
+        self.assertEqual(tried, set(wrong))
+        self.assertFalse(out.exists())
 
     def calls(self):
         """Returns, for each program that prints more with -v, a call and a word of that output."""

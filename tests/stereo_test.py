@@ -244,7 +244,7 @@ class StereoTest(ProgramTestCase):
                 with self.subTest(out=out, change=change):
                     slow = self.folder / f"slow_{out}"
                     self.succeeds(PATH, self.folder / out, "-o", slow, *change, "--scale", 2, "--overwrite", "-q")
-                    cameras = np.array([fact["position"] for fact in self.facts(slow)]).reshape(moments, 2, 3)
+                    cameras = np.array([fact["position_w"] for fact in self.facts(slow)]).reshape(moments, 2, 3)
                     self.assertLess(np.abs(cameras[:, 1] - cameras[:, 0] - [2 * SEPARATION, 0, 0]).max(), 1e-9)
                     middle = 0.12 / 24 * 2 * np.arange(moments) / max(moments - 1, 1)
                     self.assertLess(np.abs(cameras.mean(axis=1)[:, 0] - middle).max(), 1e-9)

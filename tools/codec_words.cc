@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
+#include "lf/core/parse_number.h"
 
 namespace lf {
 namespace {
@@ -31,7 +31,8 @@ Result<void> SetCodec(const CodecWords& words, CompressOptions* options) {
       return UsageError(
           "--quantizer can only be used with --profile thesis: leave it out, or add --profile "
           "thesis");
-    if (!CLI::detail::lexical_cast(words.quantizer, options->codec.quantizer))
+    const auto steps = ParseWhole<int>(words.quantizer);
+    if (!steps)
       return UsageError(fmt::format(
           "--quantizer {}: expected 8bit, or a whole number from 2 to 65536", words.quantizer));
   }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // lfexample LIGHTFIELD -o PATH.yaml: writes a first camera path that is ready to render.
-#include <charconv>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -14,6 +13,7 @@
 #include "lf/camera/path/path_yaml.h"
 #include "lf/core/file.h"
 #include "lf/core/log.h"
+#include "lf/core/parse_number.h"
 #include "lf/core/shell_word.h"
 #include "lf/focus/example_path.h"
 #include "lf/light_field/model/keep_images.h"
@@ -53,9 +53,7 @@ lf::Result<lf::LfImageId> FindCamera(const lf::LightField& light_field,
         "or the number of the camera",
         text, found.size(), light_field.image_names[found[0]], light_field.image_names[found[1]]));
   if (found.size() == 1) return lf::LfImageId{found[0]};
-  uint32_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error == std::errc() && end == text.data() + text.size()) return lf::LfImageId{number};
+  if (const auto number = lf::ParseWhole<uint32_t>(text)) return lf::LfImageId{*number};
   return lf::UsageError(fmt::format(
       "--camera {}: no LF image has this name: give a name such as {}, or the number of the camera",
       text, light_field.image_names[0]));

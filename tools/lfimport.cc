@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/common/allow_missing.h"
@@ -18,6 +19,7 @@
 
 #include "lf/core/file.h"
 #include "lf/core/log.h"
+#include "lf/core/parse_number.h"
 #include "lf/core/shell_word.h"
 #include "lf/import/check/exclude_images.h"
 #include "lf/import/check/native_folder.h"
@@ -138,12 +140,11 @@ void AddOptions(CLI::App& app, Arguments& a) {
 
 // Parses the value of --pitch: P or PX,PY.
 lf::Result<lf::Vec2> ParsePitch(const std::string& text) {
-  lf::Vec2 pitch;
-  int end_of_one = -1, end_of_two = -1;
-  std::sscanf(text.c_str(), "%lf%n,%lf%n", &pitch.x(), &end_of_one, &pitch.y(), &end_of_two);
-  const int size = static_cast<int>(text.size());
-  if (end_of_one == size) return lf::Vec2(pitch.x(), pitch.x());
-  if (end_of_two == size) return pitch;
+  const std::string_view words = text;
+  const size_t comma = words.find(',');
+  const auto x = lf::ParseNumber(words.substr(0, comma));
+  const auto y = comma == std::string::npos ? x : lf::ParseNumber(words.substr(comma + 1));
+  if (x && y) return lf::Vec2(*x, *y);
   return lf::UsageError(fmt::format(
       "--pitch {}: expected P or PX,PY, numbers in world units, such as 0.5 or 0.5,0.4", text));
 }

@@ -47,7 +47,8 @@ struct Arguments {
   lf::FrameRangeArguments frames;
   std::string path, output, memory = "8G", order = "shuffle", balance = "rays";
   std::string estimator = "auto", lens_weights = "auto", mode = "collect";
-  int64_t packages = 0, frames_per_package = 0, max_images = 0;
+  int64_t packages = 0, frames_per_package = 0;
+  uint64_t max_images = 0;
   double max_angle_deg = 0;
   std::vector<double> depths;
   bool no_guard = false, plan = false, overwrite = false;
@@ -110,12 +111,10 @@ void AddRender(CLI::App& app, Arguments& a) {
 
 void AddQuality(CLI::App& app, Arguments& a) {
   lf::OptionGroup quality(app, lf::kQualityGroup), running(app, lf::kRunningGroup);
-  quality
-      .Add("--max-images N", a.max_images,
-           "Maximum number of LF images per frame (all)\n"
-           "A frame uses the first N of the LF images that contribute to it, in the order of "
-           "--order.")
-      ->check(lf::WholeNumber());
+  quality.Add("--max-images N", a.max_images,
+              "Maximum number of LF images per frame (all)\n"
+              "A frame uses the first N of the LF images that contribute to it, in the order of "
+              "--order.");
   quality
       .Add("--max-angle DEGREES", a.max_angle_deg,
            "Largest angle between LF camera and frame axes (no limit)\n"

@@ -129,12 +129,11 @@ void AddQuality(CLI::App& app, Arguments& a) {
                     "Lens weights of the render\n"
                     "Give the value that lfrenderer --lens-weights will have. Which LF cameras the "
                     "page shows as used depends on it.");
-  quality
-      .Add("--max-images N", a.max_images,
-           "Maximum number of LF images per frame (all)\n"
-           "A frame uses the first N of the LF images that contribute to it, in a random order, as "
-           "with lfrenderer --max-images.")
-      ->check(lf::WholeNumber());
+  quality.Add(
+      "--max-images N", a.max_images,
+      "Maximum number of LF images per frame (all)\n"
+      "A frame uses the first N of the LF images that contribute to it, in a random order, as "
+      "with lfrenderer --max-images.");
   quality
       .Add("--max-angle DEGREES", a.page.max_angle_deg,
            "Largest angle between LF camera and frame axes (no limit)\n"

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "tools/common/count.h"
 #include "tools/common/help.h"
 #include "tools/common/program.h"
 #include "tools/common/validators.h"
@@ -21,11 +22,13 @@ void AddKeptRays(OptionGroup& group, RebinArguments& a) {
       "edges: a random selection of these rays, more of them where the LF image changes strongly\n"
       "auto: all if there are at most --max-rays of them, otherwise edges");
   group
-      .Add("--max-rays N", a.max_rays,
-           "Most rebinned rays (cells) in memory (as --memory allows)\n"
-           "A rebinned ray is the mean of all rays in one cell of the slab. 0: as many as fit into "
-           "half of --memory, or into a quarter of it with --mode hybrid.")
-      ->check(WholeNumber());
+      .Add(
+          "--max-rays N", a.max_rays,
+          "Most rebinned rays (cells) in memory (as --memory allows)\n"
+          "A rebinned ray is the mean of all rays in one cell of the slab. N may end in k, M or G, "
+          "such as 3M for 3 million. 0: as many as fit into half of --memory, or into a quarter of "
+          "it with --mode hybrid.")
+      ->check(NotEmpty());
   group.AddChoice(
       "--average-others", a.average_others, {"on", "off"},
       "Average rays that are not kept into existing cells\n"
@@ -179,8 +182,8 @@ Result<RebinPassOptions> RebinArguments::Make(uint64_t seed) const {
   made.nearest = static_cast<size_t>(nearest);
   made.coverage = options.coverage;
   made.kept = ValueNamed(kept, {KeptRays::kAll, KeptRays::kEdges}).value_or(KeptRays::kAuto);
-  made.max_cells = static_cast<size_t>(max_rays);
-  if (max_rays > 0 && made.max_cells < RebinnedRays::kLeastCells)
+  LF_ASSIGN_OR_RETURN(made.max_cells, ParseCount(max_rays, "--max-rays"));
+  if (made.max_cells > 0 && made.max_cells < RebinnedRays::kLeastCells)
     return UsageError(
         fmt::format("--max-rays {}: expected 0 (as many as --memory allows), or at least {}",
                     max_rays, RebinnedRays::kLeastCells));

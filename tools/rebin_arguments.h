@@ -16,7 +16,7 @@ struct RebinArguments {
   int nearest = 0;
   std::string kept = "auto", preview = "auto", average_others = "off", reparameterise = "on";
   RebinPassOptions options;  // the options that are parsed directly; Make() sets the others
-  int64_t max_rays = 0;
+  std::string max_rays = "0";
   double r_st_w = 0, r_uv_w = 0, slab_distance_w = 0;
   std::vector<double> slab_position_w, slab_forward;
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "tools/common/byte_size.h"
 #include "tools/common/duration.h"
@@ -13,6 +12,7 @@
 #include "tools/common/validators.h"
 
 #include "lf/core/log.h"
+#include "lf/core/parse_number.h"
 #include "lf/core/shell_word.h"
 #include "lf/core/value_named.h"
 #include "lf/film/develop/develop.h"
@@ -26,11 +26,8 @@ namespace {
 // Parses the value of --fill: a radius in elements, or "off", which is 0.
 Result<int> ParseFill(const std::string& text) {
   if (text == "off") return 0;
-  int radius_px = -1;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), radius_px);
-  if (error == std::errc() && end == text.data() + text.size() && radius_px >= 0 &&
-      radius_px <= kMostFillRadius_px)
-    return radius_px;
+  const std::optional<int> radius_px = ParseWhole<int>(text);
+  if (radius_px && *radius_px >= 0 && *radius_px <= kMostFillRadius_px) return *radius_px;
   return UsageError(fmt::format("--fill {}: expected a number of elements from 0 to {}, or off",
                                 text, kMostFillRadius_px));
 }
@@ -136,12 +133,10 @@ void AddPicture(CLI::App& app, RenderArguments& a) {
 
 void AddQuality(CLI::App& app, RenderArguments& a) {
   OptionGroup quality(app, kQualityGroup);
-  quality
-      .Add("--max-images N", a.max_images,
-           "Maximum number of LF images per frame (all)\n"
-           "A frame uses the first N of the LF images that contribute to it, in the order of "
-           "--order, which is random by default.")
-      ->check(WholeNumber());
+  quality.Add("--max-images N", a.max_images,
+              "Maximum number of LF images per frame (all)\n"
+              "A frame uses the first N of the LF images that contribute to it, in the order of "
+              "--order, which is random by default.");
   quality
       .Add("--max-angle DEGREES", a.max_angle_deg,
            "Largest angle between LF camera and frame axes (no limit)\n"

@@ -32,7 +32,7 @@ struct RenderArguments {
   PictureArguments picture;
   RebinArguments rebin;
   AllowMissing allow_missing;
-  int64_t max_images = 0;    // 0: no limit
+  uint64_t max_images = 0;   // 0: no limit
   double max_angle_deg = 0;  // 0: no limit
   uint32_t smooth_below = 0;
   bool densify = false, no_guard = false, no_contact_sheet = false, resume = false,

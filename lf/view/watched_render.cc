@@ -14,6 +14,7 @@
 #include <utility>
 #include <variant>
 
+#include "lf/core/parse_number.h"
 #include "lf/light_field/model/radiance.h"
 #include "lf/pixels/files/image_file.h"
 
@@ -33,11 +34,9 @@ std::optional<FrameId> FrameOfName(const fs::path& path) {
   const std::string stem = path.stem().string(), extension = path.extension().string();
   constexpr std::string_view kPrefix = "frame_";
   if (!stem.starts_with(kPrefix) || (extension != ".exr" && extension != ".png")) return {};
-  const std::string digits = stem.substr(kPrefix.size());
-  if (digits.empty() || digits.size() > kMostDigits ||
-      digits.find_first_not_of("0123456789") != std::string::npos)
-    return {};
-  return FrameId{static_cast<uint32_t>(std::stoul(digits))};
+  const std::string_view digits = std::string_view(stem).substr(kPrefix.size());
+  const auto number = digits.size() > kMostDigits ? std::nullopt : ParseWhole<uint32_t>(digits);
+  return number ? std::optional(FrameId{*number}) : std::nullopt;
 }
 
 int64_t ChangedNanoseconds(const fs::path& path) {

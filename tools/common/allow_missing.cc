@@ -4,11 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
+#include <optional>
 
 #include "tools/common/help.h"
 
 #include "lf/core/log.h"
+#include "lf/core/parse_number.h"
 
 namespace lf {
 namespace {
@@ -19,9 +20,9 @@ constexpr size_t kMostDecimals = 6;
 // Reads a number that consists of digits. Returns false for other characters, an empty text, or too
 // many digits.
 bool ReadDigits(std::string_view text, uint64_t* value) {
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, *value);
-  return error == std::errc{} && rest == end;
+  const std::optional<uint64_t> number = ParseWhole<uint64_t>(text);
+  if (number) *value = *number;
+  return number.has_value();
 }
 
 // Reads a percentage from 0 to 100, such as "2.5", as a number of millionths of a percent.

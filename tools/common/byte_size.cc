@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdlib>
+#include <optional>
+
+#include "lf/core/parse_number.h"
 
 namespace lf {
 
@@ -18,7 +20,8 @@ Result<size_t> ParseByteSize(const std::string& text, const std::string& option)
   };
   if (text.empty() || std::isdigit(static_cast<unsigned char>(text[0])) == 0) return error();
   const size_t digits = std::min(text.find_first_not_of("0123456789."), text.size());
-  double value = std::strtod(text.substr(0, digits).c_str(), nullptr);
+  std::optional<double> value = ParseNumber(text.substr(0, digits));
+  if (!value) return error();
   std::string unit = text.substr(digits);
   if (!unit.empty() && (unit.back() == 'B' || unit.back() == 'b')) unit.pop_back();
   if (unit.size() > 1) return error();
@@ -26,10 +29,10 @@ Result<size_t> ParseByteSize(const std::string& text, const std::string& option)
     const std::string units = "KMGT";
     const size_t power = units.find(static_cast<char>(std::toupper(unit[0])));
     if (power == std::string::npos) return error();
-    value *= std::pow(1024.0, static_cast<double>(power + 1));
+    *value *= std::pow(1024.0, static_cast<double>(power + 1));
   }
-  if (!(value >= 1 && value < 0x1p60)) return error();
-  return static_cast<size_t>(value);
+  if (!(*value >= 1 && *value < 0x1p60)) return error();
+  return static_cast<size_t>(*value);
 }
 
 }  // namespace lf

@@ -14,6 +14,7 @@
 
 #include "tools/common/allow_missing.h"
 #include "tools/common/byte_size.h"
+#include "tools/common/count.h"
 #include "tools/common/describe.h"
 #include "tools/common/duration.h"
 #include "tools/common/help.h"
@@ -125,11 +126,27 @@ TEST(Duration, ReadsTimesAsPeopleWriteThem) {
   EXPECT_EQ(*ParseDuration("10m", "--dump-every"), 600);
   EXPECT_EQ(*ParseDuration("1.5h", "--dump-every"), 5400);
   EXPECT_EQ(*ParseDuration("0", "--dump-every"), 0);
-  for (const char* text : {"", "s", "-1s", "30 s", "30S", "1d", "1e30", "nan", "99999999h"}) {
+  for (const char* text :
+       {"", "s", "-1s", "30 s", "30S", "1d", "1e30", "nan", "99999999h", "1.2.3s", "."}) {
     const Result<double> time_s = ParseDuration(text, "--dump-every");
     ASSERT_FALSE(time_s) << text;
     EXPECT_EQ(time_s.error().kind, ErrorKind::kUsage);
     EXPECT_NE(time_s.error().message.find("--dump-every"), std::string::npos);
+  }
+}
+
+TEST(Count, ReadsNumbersOfThingsAsPeopleWriteThem) {
+  EXPECT_EQ(*ParseCount("0", "--max-rays"), 0u);
+  EXPECT_EQ(*ParseCount("250000", "--max-rays"), 250'000u);
+  EXPECT_EQ(*ParseCount("250k", "--max-rays"), 250'000u);
+  EXPECT_EQ(*ParseCount("3M", "--max-rays"), 3'000'000u);
+  EXPECT_EQ(*ParseCount("1.5g", "--max-rays"), 1'500'000'000u);
+  for (const char* text : {"", "M", "-1", "+1", "1.5", "3 M", "3Mi", "3MB", "3e6", "0x3", "nan",
+                           "1.2.3M", "1.0005k", "99999T"}) {
+    const Result<uint64_t> count = ParseCount(text, "--max-rays");
+    ASSERT_FALSE(count) << text;
+    EXPECT_EQ(count.error().kind, ErrorKind::kUsage);
+    EXPECT_NE(count.error().message.find("--max-rays"), std::string::npos);
   }
 }
 
@@ -155,8 +172,15 @@ TEST(Program, WholeNumbersAreDecimalAndFit) {
   std::string word = "010";
   EXPECT_EQ(WholeNumber()(word), "");
   EXPECT_EQ(word, "10");
-  for (std::string wrong : {"", "-1", "a", "1.5", "18446744073709551616", "0x10"})
-    EXPECT_NE(WholeNumber()(wrong).find("expected a whole number"), std::string::npos) << wrong;
+  word = "-010";
+  EXPECT_EQ(WholeNumber()(word), "");
+  EXPECT_EQ(word, "-10");
+  for (std::string wrong : {"", "-1", "a", "1.5", "18446744073709551616", "0x10", "+5", " 5", "5 "})
+    EXPECT_NE(WholeNumberFromZero()(wrong).find("expected a whole number"), std::string::npos)
+        << wrong;
+  for (std::string wrong : {"nan", "inf", "0x1p3", " 1", "1 ", "1,5", "1e999", ""})
+    EXPECT_NE(Number()(wrong), "") << wrong;
+  for (std::string good : {"1", "-1.5e-3", "+.5", "1."}) EXPECT_EQ(Number()(good), "") << good;
   std::string empty;
   EXPECT_NE(NotEmpty()(empty), "");
 }
@@ -242,6 +266,10 @@ TEST_F(HelpTest, ErrorsNameTheAllowedValues) {
   EXPECT_EQ(Parse("a --format gif"), "--format: gif not in {exr,png}");
   EXPECT_NE(Parse("a --threads 999").find("999 not in range 0 to 512"), std::string::npos);
   EXPECT_EQ(text_, "--threads N: expected a number from 0 to 512, found '999'");
+  Parse("a --threads 1.5");
+  EXPECT_EQ(text_, "--threads N: expected a whole number from 0 to 512, found '1.5'");
+  Parse("a --threads=0x10");
+  EXPECT_EQ(text_, "--threads N: expected a whole number from 0 to 512, found '0x10'");
   Parse("a --threads");
   EXPECT_EQ(text_, "--threads: expected a value, found nothing: --threads N");
   Parse("a --slab-position 1");

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <cctype>
-#include <cstdlib>
+#include <optional>
+
+#include "lf/core/parse_number.h"
 
 namespace lf {
 
@@ -15,11 +17,11 @@ Result<double> ParseDuration(const std::string& text, const std::string& option)
   };
   if (text.empty() || std::isdigit(static_cast<unsigned char>(text[0])) == 0) return error();
   const size_t digits = std::min(text.find_first_not_of("0123456789."), text.size());
-  const double value = std::strtod(text.substr(0, digits).c_str(), nullptr);
+  const std::optional<double> value = ParseNumber(text.substr(0, digits));
   const std::string unit = text.substr(digits);
   const double unit_s = unit.empty() || unit == "s" ? 1 : unit == "m" ? 60 : unit == "h" ? 3600 : 0;
-  if (unit_s == 0 || !(value * unit_s <= 1e9)) return error();
-  return value * unit_s;
+  if (!value || unit_s == 0 || !(*value * unit_s <= 1e9)) return error();
+  return *value * unit_s;
 }
 
 }  // namespace lf

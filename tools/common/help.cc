@@ -4,12 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
 #include <sstream>
 #include <string_view>
 
 #include "tools/common/option_facts.h"
+#include "tools/common/validators.h"
 
 namespace lf {
 namespace {
@@ -17,16 +16,6 @@ namespace {
 constexpr size_t kWidth = 100;
 // An option whose names are wider does not widen the column of the names.
 constexpr size_t kWidestName = 38;
-CLI::Validator NotNan() {
-  return CLI::Validator(
-      [](const std::string& word) -> std::string {
-        return std::isnan(std::strtod(word.c_str(), nullptr))
-                   ? fmt::format("expected a number, found '{}'", word)
-                   : "";
-      },
-      "");
-}
-
 // Returns the text with each line indented. Lines that do not begin with two spaces are wrapped at
 // kWidth columns.
 std::string Wrapped(std::string_view text, size_t indent) {
@@ -109,8 +98,13 @@ std::string WithJoinedLines(std::string_view text) {
 
 OptionGroup::OptionGroup(CLI::App& app, std::string name) : app_(app), name_(std::move(name)) {}
 
+void OptionGroup::AddCheck(CLI::Option* option, OptionWords words) {
+  if (words == OptionWords::kNumbers) option->check(Number());
+  if (words == OptionWords::kWholeNumbers) option->transform(WholeNumber());
+  if (words == OptionWords::kWholeNumbersFromZero) option->transform(WholeNumberFromZero());
+}
+
 CLI::Option* OptionGroup::Present(CLI::Option* option, const std::string& placeholder) const {
-  if (option->get_type_name() == "FLOAT") option->check(NotNan());
   // The type stays beside the placeholder, for TypeOf().
   if (!placeholder.empty()) option->type_name(placeholder + ":" + TypeName(*option));
   return option->group(name_);

@@ -15,9 +15,12 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <concepts>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -73,6 +76,25 @@ inline constexpr const char* kExitCodes =
 // two spaces stay as they are.
 std::string WithJoinedLines(std::string_view text);
 
+// The words that an option takes.
+enum class OptionWords { kAny, kNumbers, kWholeNumbers, kWholeNumbersFromZero };
+
+// Words of an option whose value has this type: numbers, optional numbers, and pairs and vectors of
+// numbers consist of numbers.
+template <typename Value>
+inline constexpr OptionWords kWordsOf = OptionWords::kAny;
+template <std::floating_point Value>
+inline constexpr OptionWords kWordsOf<Value> = OptionWords::kNumbers;
+template <std::integral Value>
+requires(!std::same_as<Value, bool>) inline constexpr OptionWords kWordsOf<Value> =
+    std::is_signed_v<Value> ? OptionWords::kWholeNumbers : OptionWords::kWholeNumbersFromZero;
+template <typename Value>
+inline constexpr OptionWords kWordsOf<std::optional<Value>> = kWordsOf<Value>;
+template <typename Value>
+inline constexpr OptionWords kWordsOf<std::vector<Value>> = kWordsOf<Value>;
+template <typename Value>
+inline constexpr OptionWords kWordsOf<std::pair<Value, Value>> = kWordsOf<Value>;
+
 // Adds options to one group of a program.
 class OptionGroup {
  public:
@@ -80,12 +102,14 @@ class OptionGroup {
   OptionGroup(CLI::App& app, std::string name);
 
   // Adds an option, such as "-o,--output DIR", or a positional argument, such as "LIGHTFIELD". If
-  // `value` is a floating-point number or contains such numbers, "nan" is refused.
+  // `value` is a number or contains numbers, words are refused that are no numbers as a whole
+  // (lf/core/parse_number.h), such as "0x10", "nan" and, for whole numbers, "1.5".
   template <typename Value>
   CLI::Option* Add(const std::string& names_and_placeholder, Value& value,
                    const std::string& text) {
     const size_t end = names_and_placeholder.find(' ');
     CLI::Option* const option = app_.add_option(names_and_placeholder.substr(0, end), value, text);
+    AddCheck(option, kWordsOf<Value>);
     return Present(option, end == std::string::npos ? "" : names_and_placeholder.substr(end + 1));
   }
 
@@ -104,6 +128,7 @@ class OptionGroup {
   }
 
  private:
+  static void AddCheck(CLI::Option* option, OptionWords words);
   CLI::Option* Present(CLI::Option* option, const std::string& placeholder) const;
 
   CLI::App& app_;

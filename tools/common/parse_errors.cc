@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
-#include <cstdlib>
 #include <regex>
 #include <string_view>
 
@@ -48,12 +46,6 @@ std::string Found(const std::string& word) {
   return word.empty() ? "found nothing" : fmt::format("found '{}'", word);
 }
 
-bool IsNumber(const std::string& word) {
-  char* end = nullptr;
-  std::strtod(word.c_str(), &end);
-  return !word.empty() && *end == '\0';
-}
-
 }  // namespace
 
 std::string ParseErrorText(const CLI::App& app, const CLI::ParseError& error, int argc,
@@ -66,15 +58,20 @@ std::string ParseErrorText(const CLI::App& app, const CLI::ParseError& error, in
   static const std::regex missing(
       "(.+): (?:\\d+ required .* missing|At least \\d+ required but received \\d+)");
   static const std::regex type("Could not convert: (.+) = (.*)");
-  if (std::regex_match(text, part, range)) {
-    const std::string usage = Usage(app, part[1]);
-    std::string word = part[2];
+  static const std::regex number("(.+): expected a (whole )?number( from 0)?, found '([^]*)'");
+  if (std::regex_match(text, part, range))
+    return fmt::format("{}: expected a number{}, {}", Usage(app, part[1]), Limits(app, part[1]),
+                       Found(part[2]));
+  if (std::regex_match(text, part, number)) {
+    const std::string usage = Usage(app, part[1]), whole = part[2];
+    std::string word = part[4], limits = Limits(app, part[1]);
+    if (limits.empty()) limits = part[3];
     // A list that is written in another form is one word for CLI11, which takes the next option for
     // its second number.
-    const bool is_list = !IsNumber(word) && usage.find_first_of("x,") != std::string::npos;
+    const bool is_list = usage.find_first_of("x,") != std::string::npos;
     if (is_list && word.starts_with("-")) word = WordOf(part[1], argc, argv);
-    return fmt::format("{}: expected {}{}, {}", usage, is_list ? "numbers" : "a number",
-                       Limits(app, part[1]), Found(word));
+    return fmt::format("{}: expected {}{}{}{}, {}", usage, is_list ? "" : "a ", whole,
+                       is_list ? "numbers" : "number", limits, Found(word));
   }
   if (std::regex_match(text, part, above))
     return fmt::format("{}: expected a number above 0, {}", Usage(app, part[1]), Found(part[2]));
@@ -89,6 +86,18 @@ std::string ParseErrorText(const CLI::App& app, const CLI::ParseError& error, in
   if (std::regex_match(text, part, type))
     return fmt::format("{}: expected a number, {}", Usage(app, part[1]), Found(part[2]));
   return text;
+}
+
+std::string EmptyPartText(const CLI::App& app, int argc, const char* const* argv) {
+  for (const CLI::Option* option : app.get_options()) {
+    const char delimiter = option->get_delimiter();
+    if (delimiter == '\0' || option->count() == 0) continue;
+    const std::string name = option->get_name(), word = WordOf(name, argc, argv);
+    if (word.starts_with(delimiter) || word.ends_with(delimiter) ||
+        word.find(std::string(2, delimiter)) != std::string::npos)
+      return fmt::format("{}: expected a value of this form, {}", Usage(app, name), Found(word));
+  }
+  return "";
 }
 
 }  // namespace lf

@@ -14,4 +14,8 @@ namespace lf {
 std::string ParseErrorText(const CLI::App& app, const CLI::ParseError& error, int argc,
                            const char* const* argv);
 
+// Returns the message for the first option whose list has an empty part, such as --grid 5x5x; ""
+// if there is none. CLI11 drops empty parts without an error.
+std::string EmptyPartText(const CLI::App& app, int argc, const char* const* argv);
+
 }  // namespace lf

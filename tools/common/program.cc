@@ -19,6 +19,17 @@
 
 namespace lf {
 
+namespace {
+
+// Prints the error of a command line. Returns the exit code.
+int Refuse(const CLI::App& app, const std::string& message) {
+  std::fprintf(stderr, "Try '%s --help'.\n", app.get_name().c_str());
+  LogMessage(LogLevel::kError, message);
+  return static_cast<int>(ErrorKind::kUsage);
+}
+
+}  // namespace
+
 Result<void> PrintReport(const std::string& text) {
   std::cout.flush();  // CLI11 prints to std::cout
   if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0 &&
@@ -58,7 +69,7 @@ void Program::AddCommonOptions(const OfferedOptions& offered) {
   OptionGroup input(app_, kInputGroup), output(app_, kOutputGroup), running(app_, kRunningGroup);
   if (offered.strict) input.AddFlag("--strict", common_.strict, offered.strict);
   if (offered.json) output.AddFlag("--json", common_.json, offered.json);
-  if (offered.seed) running.Add("--seed N", common_.seed, offered.seed)->check(WholeNumber());
+  if (offered.seed) running.Add("--seed N", common_.seed, offered.seed);
   if (offered.threads)
     running.Add("--threads N", common_.threads, "Number of threads (as many as the machine has)")
         ->check(CLI::Range(0, 512));
@@ -101,10 +112,10 @@ int Program::Run(int argc, char** argv, const std::function<Result<void>()>& bod
     LogMessage(LogLevel::kError, printed.error().message);
     return static_cast<int>(printed.error().kind);
   } catch (const CLI::ParseError& error) {
-    std::fprintf(stderr, "Try '%s --help'.\n", app_.get_name().c_str());
-    LogMessage(LogLevel::kError, ParseErrorText(app_, error, argc, argv));
-    return static_cast<int>(ErrorKind::kUsage);
+    return Refuse(app_, ParseErrorText(app_, error, argc, argv));
   }
+  if (const std::string text = EmptyPartText(app_, argc, argv); !text.empty())
+    return Refuse(app_, text);
   SetLogLevel(quiet_ ? LogLevel::kWarning : verbosity_ > 0 ? LogLevel::kDebug : LogLevel::kInfo);
   try {
     const Result<void> result = body();

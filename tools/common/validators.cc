@@ -3,26 +3,39 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cstdint>
+#include <optional>
 #include <string>
 
-namespace lf {
+#include "lf/core/parse_number.h"
 
-CLI::Validator WholeNumber() {
+namespace lf {
+namespace {
+
+template <typename Whole>
+CLI::Validator WholeNumberOf(const char* expected) {
   return CLI::Validator(
-      [](std::string& word) -> std::string {
-        uint64_t number = 0;
-        const char* const end = word.data() + word.size();
-        const auto [rest, error] = std::from_chars(word.data(), end, number);
-        if (error != std::errc{} || rest != end)
-          return fmt::format("expected a whole number from 0 to {}, found '{}'", UINT64_MAX, word);
-        // Removes leading zeros, with which CLI11 would read an octal number.
-        word = fmt::format("{}", number);
+      [expected](std::string& word) -> std::string {
+        const std::optional<Whole> number = ParseWhole<Whole>(word);
+        if (!number) return fmt::format("expected {}, found '{}'", expected, word);
+        word = fmt::format("{}", *number);
         return {};
       },
       "");
 }
+
+}  // namespace
+
+CLI::Validator Number() {
+  return CLI::Validator(
+      [](const std::string& word) -> std::string {
+        return ParseNumber(word) ? "" : fmt::format("expected a number, found '{}'", word);
+      },
+      "");
+}
+
+CLI::Validator WholeNumber() { return WholeNumberOf<int64_t>("a whole number"); }
+CLI::Validator WholeNumberFromZero() { return WholeNumberOf<uint64_t>("a whole number from 0"); }
 
 CLI::Validator NotEmpty() {
   return CLI::Validator(

@@ -6,8 +6,14 @@
 
 namespace lf {
 
-// Accepts a decimal number from 0 to 2^64 - 1.
+// The three checks below are those of every option that holds numbers (OptionGroup::Add). Their
+// messages are completed by ParseErrorText().
+// Accepts a finite decimal number.
+CLI::Validator Number();
+// Accept a whole decimal number that fits into 64 bits, and remove its leading zeros, with which
+// CLI11 would read an octal number.
 CLI::Validator WholeNumber();
+CLI::Validator WholeNumberFromZero();
 // Accepts a word that is not empty.
 CLI::Validator NotEmpty();
 

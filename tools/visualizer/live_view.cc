@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/visualizer/live_view.h"
 
-#include <charconv>
 #include <cstdint>
 #include <memory>
 #include <string>
 
 #include "tools/visualizer/live_bytes.h"
 
+#include "lf/core/parse_number.h"
 #include "lf/render/state/record_fields.h"
 #include "lf/view/scene_bytes.h"
 #include "lf/view/watched_render.h"
@@ -33,10 +33,8 @@ Json LoadingJson(const ResidentImages::Status& status) {
 
 // Returns the whole number, from 0, that the text is; nullopt if it is anything else.
 std::optional<int> WholeNumber(std::string_view text) {
-  int number = 0;
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, number);
-  return error == std::errc() && rest == end && number >= 0 ? std::optional(number) : std::nullopt;
+  const std::optional<int> number = ParseWhole<int>(text);
+  return number && *number >= 0 ? number : std::nullopt;
 }
 
 }  // namespace

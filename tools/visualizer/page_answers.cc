@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <optional>
 #include <vector>
 
 #include "tools/visualizer/render_folder.h"
 
+#include "lf/core/parse_number.h"
 #include "lf/pixels/files/write_jpeg.h"
 #include "lf/view/lf_picture.h"
 #include "lf/view/scene_bytes.h"
@@ -45,11 +45,8 @@ Name Split(std::string_view text) {
 
 // Parses a decimal number in [begin, end).
 std::optional<uint32_t> NumberOf(const std::string& text, size_t begin, size_t end) {
-  uint32_t number = 0;
-  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || rest != text.data() + text.size()) return std::nullopt;
-  if (number < begin || number >= end) return std::nullopt;
-  return number;
+  const std::optional<uint32_t> number = ParseWhole<uint32_t>(text);
+  return number && *number >= begin && *number < end ? number : std::nullopt;
 }
 
 PageAnswer NotFound() { return Refusal(404, "there is nothing of this name"); }

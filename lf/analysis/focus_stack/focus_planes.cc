@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
 #include "lf/camera/thin_lens.h"
 #include "lf/core/log.h"
+#include "lf/core/parse_number.h"
 #include "lf/focus/swept_depths.h"
 #include "lf/storage/load/open_store.h"
 
@@ -96,11 +96,9 @@ Result<double> ParseFocusDistance(std::string_view text, std::string_view what, 
     number.remove_suffix(2);
     w_per_unit = 1e-3 / unit_m;
   }
-  double value = 0;
-  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
-  const double distance_w = value * w_per_unit;
-  if (error != std::errc() || end != number.data() + number.size() ||
-      !(distance_w >= kLeastFocusDistance_w && distance_w <= kMostFocusDistance_w))
+  const std::optional<double> value = ParseNumber(number);
+  const double distance_w = value.value_or(0) * w_per_unit;
+  if (!value || !(distance_w >= kLeastFocusDistance_w && distance_w <= kMostFocusDistance_w))
     return BadDistance(what, text);
   return distance_w;
 }

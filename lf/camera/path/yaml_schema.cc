@@ -11,6 +11,7 @@
 
 #include "lf/camera/path/spelling.h"
 #include "lf/core/check.h"
+#include "lf/core/parse_number.h"
 
 namespace lf {
 namespace {
@@ -147,11 +148,8 @@ std::optional<double> ReadNumber(const YamlNode& node, std::string_view label,
 
 std::optional<int> ReadInteger(const YamlNode& node, std::string_view label, int min, int max,
                                YamlErrors* errors) {
-  int value = 0;
-  const auto [end, error] =
-      std::from_chars(node.text.data(), node.text.data() + node.text.size(), value);
-  if (node.kind != YamlNode::Kind::kPlain || error != std::errc() ||
-      end != node.text.data() + node.text.size() || value < min || value > max) {
+  const std::optional<int> value = ParseWhole<int>(node.text);
+  if (node.kind != YamlNode::Kind::kPlain || !value || *value < min || *value > max) {
     AddExpected(node, label, fmt::format("a whole number from {} to {}", min, max), errors);
     return std::nullopt;
   }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -13,6 +12,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "lf/core/parse_number.h"
 #include "lf/film/develop/frame_file.h"
 #include "lf/film/develop/join_views.h"
 
@@ -25,13 +25,10 @@ std::optional<uint32_t> NumberInName(const fs::path& file) {
   const std::string stem = file.stem().string();
   constexpr std::string_view kBegin = "frame_";
   if (!stem.starts_with(kBegin)) return std::nullopt;
-  uint32_t number = 0;
-  const char* const end = stem.data() + stem.size();
-  const std::from_chars_result read = std::from_chars(stem.data() + kBegin.size(), end, number);
-  const fs::path extension = file.extension();
-  if (read.ec != std::errc() || read.ptr != end || number == 0) return std::nullopt;
+  const auto number = ParseWhole<uint32_t>(std::string_view(stem).substr(kBegin.size()));
+  if (!number || *number == 0) return std::nullopt;
   for (const FrameFormat format : {FrameFormat::kExrHalf, FrameFormat::kPng8})
-    if (FramePath("", FrameId{number}, format) == file.filename()) return number;
+    if (FramePath("", FrameId{*number}, format) == file.filename()) return number;
   return std::nullopt;
 }
 

@@ -5,12 +5,12 @@
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
-#include <charconv>
 #include <cmath>
 #include <system_error>
 #include <vector>
 
 #include "lf/core/file.h"
+#include "lf/core/parse_number.h"
 
 namespace lf {
 namespace {
@@ -27,14 +27,11 @@ Result<std::vector<double>> ParseNumbers(std::string_view text) {
     if (text.empty()) return numbers;
     const std::string_view word = text.substr(0, text.find_first_of(kSeparators));
     text.remove_prefix(word.size());
-    const std::string_view digits = word.substr(word.starts_with('+') ? 1 : 0);
-    double number = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-    if (error != std::errc() || end != digits.data() + digits.size() ||
-        !(std::abs(number) <= kLargest_w))
+    const std::optional<double> number = ParseNumber(word);
+    if (!number || !(std::abs(*number) <= kLargest_w))
       return InputError(fmt::format(
           "the transform holds \"{}\": expected a number from -1e12 to 1e12", word.substr(0, 40)));
-    numbers.push_back(number);
+    numbers.push_back(*number);
     if (numbers.size() > 16) return numbers;
   }
 }

@@ -13,9 +13,9 @@
 
 #include "lf/core/file.h"
 #include "lf/core/log.h"
+#include "lf/core/parse_number.h"
 #include "lf/import/formats/import_limits.h"
 #include "lf/light_field/model/image_files.h"
-#include "lf/light_field/model/parse_number.h"
 #include "lf/light_field/model/rotation.h"
 #include "lf/light_field/transforms_json/json_syntax.h"
 #include "lf/light_field/transforms_json/opengl_pose.h"

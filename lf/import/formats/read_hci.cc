@@ -10,7 +10,7 @@
 
 #include "lf/core/file.h"
 #include "lf/light_field/model/distinct_intrinsics.h"
-#include "lf/light_field/model/parse_number.h"
+#include "lf/core/parse_number.h"
 
 namespace lf {
 namespace fs = std::filesystem;

@@ -14,7 +14,7 @@
 #include "lf/import/formats/import_limits.h"
 #include "lf/light_field/model/distinct_intrinsics.h"
 #include "lf/light_field/model/find_images.h"
-#include "lf/light_field/model/parse_number.h"
+#include "lf/core/parse_number.h"
 #include "lf/light_field/model/rotation.h"
 
 namespace lf {

@@ -18,6 +18,7 @@
 #include "lf/camera/fit_surface.h"
 #include "lf/core/file.h"
 #include "lf/core/log.h"
+#include "lf/core/parse_number.h"
 #include "lf/pixels/files/image_file.h"
 
 namespace lf {
@@ -63,15 +64,6 @@ std::string_view NextWord(std::string_view* rest) {
   const std::string_view word = rest->substr(begin, end - begin);
   rest->remove_prefix(end);
   return word;
-}
-
-std::optional<double> NumberOf(std::string_view word) {
-  if (word.empty()) return std::nullopt;
-  const std::string text(word);
-  char* end = nullptr;
-  const double number = std::strtod(text.c_str(), &end);
-  if (end != text.c_str() + text.size() || !std::isfinite(number)) return std::nullopt;
-  return number;
 }
 
 // A height map in coordinates in which sample (column, row) is at x = column and y = row, and z is
@@ -310,8 +302,9 @@ Result<Image<float>> ParsePfm(std::string_view bytes, const std::string& name) {
   if (magic != "Pf")
     return InputError(fmt::format("{}: no PFM file with one channel, which begins with \"Pf\"{}",
                                   name, magic == "PF" ? "; it has three channels" : ""));
-  const std::optional<double> width = NumberOf(NextWord(&rest)), height = NumberOf(NextWord(&rest));
-  const std::optional<double> scale = NumberOf(NextWord(&rest));
+  const std::optional<double> width = ParseNumber(NextWord(&rest)),
+                              height = ParseNumber(NextWord(&rest));
+  const std::optional<double> scale = ParseNumber(NextWord(&rest));
   if (!width || !height || !scale || *scale == 0 || std::abs(*width) > 1e9 ||
       std::abs(*height) > 1e9 || *width != std::floor(*width) || *height != std::floor(*height) ||
       rest.empty())

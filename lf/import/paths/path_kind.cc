@@ -10,8 +10,8 @@
 
 #include "lf/camera/path/yaml_tree.h"
 #include "lf/core/byte_stream.h"
+#include "lf/core/parse_number.h"
 #include "lf/light_field/colmap/read_colmap.h"
-#include "lf/light_field/model/parse_number.h"
 
 namespace lf {
 namespace {

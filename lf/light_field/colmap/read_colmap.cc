@@ -12,6 +12,7 @@
 
 #include "lf/core/files_nearby.h"
 #include "lf/core/log.h"
+#include "lf/core/parse_number.h"
 #include "lf/light_field/colmap/colmap_binary.h"
 #include "lf/light_field/colmap/colmap_scene.h"
 #include "lf/light_field/colmap/colmap_text.h"
@@ -67,12 +68,11 @@ Result<uint64_t> CountImages(const fs::path& folder, const std::string& extensio
 
 // Returns the folders whose names are numbers, in ascending order.
 std::vector<fs::path> NumberedFolders(const fs::path& folder) {
-  std::vector<std::pair<unsigned long, fs::path>> found;
+  std::vector<std::pair<uint32_t, fs::path>> found;
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
     const std::string name = it->path().filename().string();
-    if (name.size() <= 9 && name.find_first_not_of("0123456789") == std::string::npos)
-      found.emplace_back(std::stoul(name), it->path());
+    if (const auto number = ParseWhole<uint32_t>(name)) found.emplace_back(*number, it->path());
   }
   std::sort(found.begin(), found.end());
   std::vector<fs::path> folders;

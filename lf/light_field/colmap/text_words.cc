@@ -7,7 +7,7 @@
 #include <array>
 #include <charconv>
 
-#include "lf/light_field/model/parse_number.h"
+#include "lf/core/parse_number.h"
 
 namespace lf {
 namespace {
@@ -137,12 +137,11 @@ Result<double> TextWords::Number(const char* name) {
 
 Result<uint64_t> TextWords::Whole(const char* name, uint64_t max) {
   const std::string_view word = Word();
-  uint64_t value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size() || value > max)
+  const std::optional<uint64_t> value = ParseWhole<uint64_t>(word);
+  if (!value || *value > max)
     return Fault(
         fmt::format("{} is {}: expected a whole number from 0 to {}", name, Shown(word), max));
-  return value;
+  return *value;
 }
 
 Error TextWords::Fault(std::string_view message) const {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "lf/core/log.h"
+#include "lf/core/parse_number.h"
 #include "lf/light_field/model/image_files.h"
 
 namespace lf {
@@ -266,14 +266,13 @@ Result<size_t> FindImageFiles(const std::optional<fs::path>& images_folder,
 Result<ImageScale> ParseImageScale(const std::string& text) {
   if (text == "auto") return ImageScale{};
   if (text == "off") return ImageScale{ImageScale::Kind::kOff};
-  double factor = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), factor);
-  if (error != std::errc() || end != text.data() + text.size() || !(factor > 0 && factor <= 100))
+  const std::optional<double> factor = ParseNumber(text);
+  if (!factor || !(*factor > 0 && *factor <= 100))
     return UsageError(
         fmt::format("--image-scale {}: expected auto, off, or a factor above 0 and up to 100, such "
                     "as 0.25 (the size of the image files divided by the calibrated size)",
                     text));
-  return ImageScale{ImageScale::Kind::kFactor, factor};
+  return ImageScale{ImageScale::Kind::kFactor, *factor};
 }
 
 Result<double> FitToImageFiles(const ImageScale& scale, LightField* light_field) {

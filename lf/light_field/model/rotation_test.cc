@@ -9,7 +9,6 @@
 #include <string>
 
 #include "lf/core/random.h"
-#include "lf/light_field/model/parse_number.h"
 
 namespace lf {
 namespace {
@@ -51,15 +50,6 @@ TEST(NearestRotation, WhatIsNoneIsRefusedWithItsReason) {
   EXPECT_NE(ErrorOf(Mat3::Zero(), 1e-2), "");
   matrix(2, 2) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_NE(ErrorOf(matrix, 1e-4).find("not finite"), std::string::npos);
-}
-
-TEST(ParseNumber, TakesWholeFiniteDecimalNumbersOnly) {
-  EXPECT_EQ(ParseNumber("-1.5e-3"), -1.5e-3);
-  EXPECT_EQ(ParseNumber("+7"), 7);
-  EXPECT_EQ(ParseNumber(".5"), 0.5);
-  for (const char* text : {"", "+", "-", "+-1", "--1", " 1", "1 ", "1,5", "0x10", "nan", "inf",
-                           "-infinity", "1e999", "1e", "abc"})
-    EXPECT_FALSE(ParseNumber(text)) << text;
 }
 
 }  // namespace

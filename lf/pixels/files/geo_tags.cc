@@ -5,12 +5,14 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <system_error>
 
 #include "lf/core/file.h"
+#include "lf/core/parse_number.h"
 #include "lf/pixels/files/file_bytes.h"
 #include "lf/pixels/files/libtiff_handle.h"
 
@@ -85,12 +87,14 @@ class Reader {
     LF_ASSIGN_OR_RETURN(const std::span<const char> text,
                         ValuesOf<char>(handle_, name_, kNodata, TIFF_ASCII));
     if (text.empty()) return {};
-    const std::string number(text.begin(), text.end());
-    char* end = nullptr;
-    const double value = std::strtod(number.c_str(), &end);
-    if (end == number.c_str())
-      return InputError(
-          fmt::format("{}: the TIFF tag {} (GDAL_NODATA) is no number", name_, kNodata));
+    std::string_view number(text.data(), text.size());
+    // The text ends with a NUL, before which some programs write blanks.
+    number = number.substr(0, number.find_last_not_of(std::string_view(" \0", 2)) + 1);
+    const bool is_nan = number == "nan" || number == "NaN" || number == "NAN";
+    const std::optional<double> value = is_nan ? std::nan("") : ParseNumber(number);
+    if (!value)
+      return InputError(fmt::format("{}: the TIFF tag {} (GDAL_NODATA) is '{}': expected a number",
+                                    name_, kNodata, number));
     tags_.nodata = value;
     return {};
   }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -15,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "lf/core/parse_number.h"
 #include "lf/pixels/files/exif_orientation.h"
 #include "lf/pixels/files/picture_decoder.h"
 #include "lf/pixels/files/png_calls.h"
@@ -100,10 +100,8 @@ std::optional<double> FrameRateOf(png_structp png, png_infop info) {
   png_get_text(png, info, &texts, &count);
   for (const png_text& text : std::span(texts, static_cast<size_t>(count))) {
     if (std::string_view(text.key) != kFrameRateText) continue;
-    double rate = 0;
-    const char* const end = text.text + text.text_length;
-    const std::from_chars_result read = std::from_chars(text.text, end, rate);
-    if (read.ec == std::errc() && read.ptr == end && rate > 0 && std::isfinite(rate)) return rate;
+    const auto rate = ParseNumber({text.text, text.text_length});
+    if (rate && *rate > 0) return rate;
   }
   return std::nullopt;
 }

@@ -5,10 +5,11 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <limits>
 #include <string_view>
 #include <vector>
+
+#include "lf/core/parse_number.h"
 
 namespace lf {
 namespace {
@@ -22,17 +23,15 @@ bool IsNoiseRule(const std::string& text) { return text.starts_with(kNoiseStart)
 
 Result<double> ParseNoiseRule(const std::string& text, const std::string& option) {
   constexpr std::string_view kWords = "noise<=";
-  double noise = 0;
-  const char* const begin = text.data() + std::min(text.size(), kWords.size());
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(begin, end, noise);
-  const bool is_number = error == std::errc{} && rest == end;
-  if (!text.starts_with(kWords) || !is_number || !(noise > 0 && noise <= kMostNoise))
+  const std::optional<double> noise =
+      text.starts_with(kWords) ? ParseNumber(std::string_view(text).substr(kWords.size()))
+                               : std::nullopt;
+  if (!noise || !(*noise > 0 && *noise <= kMostNoise))
     return UsageError(
         fmt::format("{} '{}': expected noise<=X with X above 0 and up to {}, such as noise<=0.002 "
                     "(linear light, white is 1)",
                     option, text, kMostNoise));
-  return noise;
+  return *noise;
 }
 
 std::string TextOfNoiseRule(double noise) { return fmt::format("noise<={}", noise); }

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <string_view>
 #include <utility>
@@ -13,6 +12,7 @@
 #include "lf/camera/hood.h"
 #include "lf/camera/ray_through.h"
 #include "lf/core/check.h"
+#include "lf/core/parse_number.h"
 #include "lf/render/collect/collect.h"
 #include "lf/selection/ideal_cells.h"
 #include "lf/selection/overlap.h"
@@ -68,16 +68,14 @@ size_t MayLack(size_t count) {
 
 Result<uint32_t> ParseSampleRule(const std::string& text, const std::string& option) {
   constexpr std::string_view kSamplesStart = "samples>=";
-  uint32_t samples = 0;
-  const char* const end = text.data() + text.size();
   if (!text.starts_with(kSamplesStart))
     return UsageError(
         fmt::format("{} '{}': expected a rule such as samples>=8 or noise<=0.002", option, text));
-  const auto [rest, error] = std::from_chars(text.data() + kSamplesStart.size(), end, samples);
-  if (error != std::errc{} || rest != end || samples < 1 || samples > SensorPlate::kMaxCount)
+  const auto samples = ParseWhole<uint32_t>(std::string_view(text).substr(kSamplesStart.size()));
+  if (!samples || *samples < 1 || *samples > SensorPlate::kMaxCount)
     return UsageError(fmt::format("{} '{}': expected samples>=N with N from 1 to {}", option, text,
                                   SensorPlate::kMaxCount));
-  return samples;
+  return *samples;
 }
 
 ReachableElements::ReachableElements(const ImageIndex& index, const RenderCamera& camera,

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "lf/core/parse_number.h"
 #include "lf/core/value_named.h"
 #include "lf/render/collect/frame_lens.h"
 #include "lf/render/state/record_fields.h"
@@ -76,11 +77,9 @@ class NotesReader {
 
   uint64_t WholeNumber(const char* key, uint64_t most) {
     const std::string text = Text(key);
-    uint64_t number = 0;
-    const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc{} || rest != text.data() + text.size() || number > most)
-      Fault(key, fmt::format("a whole number up to {}", most));
-    return number;
+    const std::optional<uint64_t> number = ParseWhole<uint64_t>(text);
+    if (!number || *number > most) Fault(key, fmt::format("a whole number up to {}", most));
+    return number.value_or(0);
   }
 
   std::vector<std::string> Names(const char* key) {

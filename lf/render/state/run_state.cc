@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <memory>
 #include <optional>
 #include <system_error>
 
 #include "lf/core/file.h"
 #include "lf/core/log.h"
+#include "lf/core/parse_number.h"
 #include "lf/core/temporary_file.h"
 #include "lf/pixels/files/whole_file.h"
 #include "lf/rebinning/ray_map_file.h"
@@ -31,11 +31,9 @@ std::optional<FrameId> FrameOf(const fs::path& path) {
   constexpr std::string_view kPrefix = "frame_";
   const std::string stem = path.stem().string();
   if (!stem.starts_with(kPrefix)) return std::nullopt;
-  FrameId frame;
-  const char* const end = stem.data() + stem.size();
-  const auto [rest, error] = std::from_chars(stem.data() + kPrefix.size(), end, frame.value);
-  if (error != std::errc{} || rest != end || frame.value == 0) return std::nullopt;
-  return frame;
+  const auto number = ParseWhole<uint32_t>(std::string_view(stem).substr(kPrefix.size()));
+  if (!number || *number == 0) return std::nullopt;
+  return FrameId{*number};
 }
 
 // Advice for a damaged file: only the work that it holds is done again if it is removed.
@@ -85,9 +83,10 @@ Result<void> NumberOf(const fs::path& path, const PlateEntries& entries, const c
                       const char* advice, Number* value) {
   const std::string* text = FindEntry(entries, key);
   const std::string number = text == nullptr ? "(none)" : *text;
-  const char* const end = number.data() + number.size();
-  const auto [rest, error] = std::from_chars(number.data(), end, *value);
-  if (error == std::errc{} && rest == end) return {};
+  if (const auto whole = ParseWhole<Number>(number)) {
+    *value = *whole;
+    return {};
+  }
   return WithAdvice(InputError(fmt::format("{}: its entry {} is \"{}\", expected a whole number",
                                            path.string(), key, number)),
                     advice);

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <charconv>
 #include <string_view>
 
+#include "lf/core/parse_number.h"
 #include "lf/storage/tables/stored_numbers.h"
 
 namespace lf {
@@ -64,11 +64,9 @@ Result<double> Settings::Number(const std::string& key, double low, double high)
 
 Result<uint64_t> Settings::Whole(const std::string& key) const {
   const std::string text = Text(key);
-  uint64_t number = 0;
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, number);
-  if (error != std::errc{} || rest != end) return Wrong(key, "a whole number");
-  return number;
+  const std::optional<uint64_t> number = ParseWhole<uint64_t>(text);
+  if (!number) return Wrong(key, "a whole number");
+  return *number;
 }
 
 Result<int> Settings::Word(const std::string& key, std::span<const char* const> words) const {

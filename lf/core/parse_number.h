@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parses numbers that come from outside: words of command lines, of files, and of names of files.
+// A text is a number as a whole, or it is none: "12abc", "0x10", " 5" and "" are none. The
+// program's locale has no influence.
+#pragma once
+
+#include <charconv>
+#include <cmath>
+#include <concepts>
+#include <optional>
+#include <string_view>
+#include <system_error>
+
+namespace lf {
+
+// Returns the number if the whole of `text` is a finite decimal number with or without sign and
+// exponent, otherwise nullopt.
+inline std::optional<double> ParseNumber(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || text.empty() ||
+      !std::isfinite(value))
+    return std::nullopt;
+  return value;
+}
+
+// Returns the number if the whole of `text` consists of decimal digits, with a minus before them if
+// it is negative, and the number fits into the type, otherwise nullopt.
+template <std::integral Whole>
+std::optional<Whole> ParseWhole(std::string_view text) {
+  Whole value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+}  // namespace lf
