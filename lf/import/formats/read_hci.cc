@@ -9,8 +9,8 @@
 #include <system_error>
 
 #include "lf/core/file.h"
-#include "lf/light_field/model/distinct_intrinsics.h"
 #include "lf/core/parse_number.h"
+#include "lf/light_field/model/distinct_intrinsics.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -150,14 +150,14 @@ Result<LightField> ParseHci(std::string_view text, const fs::path& path) {
 }
 
 Result<LightField> ReadHci(const fs::path& path) {
-  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path));
+  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path, kMostBytes));
   return ParseHci(text, path);
 }
 
 bool IsHciFile(const fs::path& path) {
   std::error_code error;
   if (!fs::is_regular_file(path, error) || fs::file_size(path, error) > kMostBytes) return false;
-  const Result<std::string> text = ReadFile(path);
+  const Result<std::string> text = ReadFile(path, kMostBytes);
   return text && text->find("num_cams_x") != std::string::npos;
 }
 

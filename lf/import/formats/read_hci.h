@@ -26,6 +26,7 @@ inline constexpr const char* kHciName = "parameters.cfg";
 // kInput names the file, the key, the value found and what was expected.
 Result<LightField> ParseHci(std::string_view text, const std::filesystem::path& path);
 
+// kInput if the file is larger than 1 MiB.
 Result<LightField> ReadHci(const std::filesystem::path& path);
 
 // Returns true if the file has at most 1 MiB and states a grid of cameras (num_cams_x). Other

@@ -11,16 +11,17 @@
 #include <system_error>
 
 #include "lf/core/file.h"
+#include "lf/core/parse_number.h"
 #include "lf/import/formats/import_limits.h"
 #include "lf/light_field/model/distinct_intrinsics.h"
 #include "lf/light_field/model/find_images.h"
-#include "lf/core/parse_number.h"
 #include "lf/light_field/model/rotation.h"
 
 namespace lf {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr size_t kMostFileBytes = size_t{256} << 20;
 constexpr size_t kNumberCount = 21;  // count of the numbers K, R and t in a line
 constexpr double kMiddleburyRotationTolerance = 1e-4;
 constexpr const char* kLineForm =
@@ -206,7 +207,7 @@ Result<LightField> ParseMiddlebury(std::string_view text, const fs::path& path,
 }
 
 Result<LightField> ReadMiddlebury(const fs::path& path) {
-  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path));
+  LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path, kMostFileBytes));
   return ParseMiddlebury(
       text, path, [&](const fs::path& image) { return SizeWherever(image, path.parent_path()); });
 }

@@ -27,7 +27,8 @@ Result<LightField> ParseMiddlebury(std::string_view text, const std::filesystem:
                                    const ImageSizeSource& image_size);
 
 // Reads a file as ParseMiddlebury() does. The size of the images is read from the header of the
-// first image, which is searched by name if it is not beside the file.
+// first image, which is searched by name if it is not beside the file. kInput if the file is larger
+// than 256 MiB.
 Result<LightField> ReadMiddlebury(const std::filesystem::path& path);
 
 bool IsMiddleburyName(std::string_view file_name);  // true if the name ends in _par.txt

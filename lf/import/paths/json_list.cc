@@ -55,7 +55,8 @@ Result<void> ReadJsonList(std::string_view text, const std::filesystem::path& fi
   FrameCutter counter(list_key, [&](const std::string&) { ++count; });
   add_to(&counter);
   JsonObject object;
-  if (counter.is_in_frame() || !object.Parse(counter.rest())) return SyntaxErrorIn(text, file);
+  if (counter.is_not_json() || counter.is_in_frame() || !object.Parse(counter.rest()))
+    return SyntaxErrorIn(text, file);
   const JsonFields top(object, file);
   LF_RETURN_IF_ERROR(CheckList(top, list_key, count));
   LF_RETURN_IF_ERROR(read_top(top));
@@ -81,12 +82,9 @@ Result<void> ReadTopLevel(const std::filesystem::path& file, const char* list_ke
                           JsonObject* top) {
   LF_ASSIGN_OR_RETURN(ByteStream stream, ByteStream::Open(file));
   FrameCutter cutter(list_key, [](const std::string&) {});
-  for (std::string_view piece = stream.Window(); !piece.empty(); piece = stream.Window()) {
-    cutter.Add(piece);
-    stream.Skip(piece.size());
-  }
-  LF_RETURN_IF_ERROR(stream.Status());
-  if (cutter.is_in_frame() || !top->Parse(cutter.rest())) {
+  LF_RETURN_IF_ERROR(AddFile(
+      &stream, [] { return true; }, &cutter));
+  if (cutter.is_not_json() || cutter.is_in_frame() || !top->Parse(cutter.rest())) {
     LF_ASSIGN_OR_RETURN(ByteStream again, ByteStream::Open(file));
     return JsonSyntaxError(&again);
   }

@@ -27,7 +27,8 @@ Result<void> ReadJsonList(std::string_view text, const std::filesystem::path& fi
                           const ReadFields& read_entry);
 
 // Reads the top level of a JSON file without the entries of the list `list_key`. Reads the file in
-// pieces. kInput if it cannot be read or is not JSON.
+// pieces, of which at most kMostHeldBytes (frame_cutter.h) are held. kInput if it cannot be read or
+// is not JSON.
 Result<void> ReadTopLevel(const std::filesystem::path& file, const char* list_key, JsonObject* top);
 
 }  // namespace lf

@@ -88,7 +88,8 @@ std::string_view TextWords::Word() {
     const std::string_view window = stream_->Window();
     const auto end = std::find_if(window.begin(), window.end(), EndsWord);
     const std::string_view part = window.substr(0, static_cast<size_t>(end - window.begin()));
-    const bool is_whole = end != window.end() || window.empty();
+    // The rest of a word that is too long is not looked for, because the word is wrong in any case.
+    const bool is_whole = end != window.end() || window.empty() || word_.size() >= kMaxWordSize;
     if (!is_whole || !word_.empty())
       word_.append(part.substr(0, kMaxWordSize - std::min(word_.size(), kMaxWordSize)));
     stream_->Skip(part.size());
@@ -113,7 +114,7 @@ std::string TextWords::Rest(size_t max_size) {
 std::optional<uint64_t> TextWords::SkipNumbers() {
   uint64_t word_count = 0;
   bool in_word = false, are_numbers = true;
-  while (Peek()) {
+  while (are_numbers && Peek()) {
     const std::string_view window = stream_->Window();
     size_t size = 0;
     for (; size < window.size() && window[size] != '\n'; ++size) {

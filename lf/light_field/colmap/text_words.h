@@ -16,7 +16,7 @@ namespace lf {
 // Blanks, tabs and carriage returns separate words; a line feed ends a line.
 class TextWords {
  public:
-  static constexpr size_t kMaxWordSize = 1024;  // bytes; the rest of a longer word is skipped
+  static constexpr size_t kMaxWordSize = 1024;  // bytes of a word
 
   // `stream` must outlive this object.
   explicit TextWords(ByteStream* stream) : stream_(stream) {}
@@ -35,14 +35,15 @@ class TextWords {
     SkipBlanks();
     return !Peek();
   }
-  // Returns the next word of this line, or "" if there is none. Valid until another function of
-  // this object is called.
+  // Returns the next word of this line, or "" if there is none. Of a word that is longer than
+  // kMaxWordSize, only the beginning is read, because no word of a model is that long: the next
+  // word goes on behind it. Valid until another function of this object is called.
   std::string_view Word();
   // Returns the rest of this line without surrounding blanks. If it is longer than max_size,
   // returns its first max_size + 1 bytes.
   std::string Rest(size_t max_size);
-  // Skips the rest of this line. Returns the number of its words; nullopt if it contains a
-  // character that cannot be part of a number.
+  // Skips the rest of this line. Returns the number of its words; nullopt, before the end of the
+  // line, if it contains a character that cannot be part of a number.
   std::optional<uint64_t> SkipNumbers();
 
   // Number() reads the next word as a finite number, Whole() as a whole number from 0 to max.

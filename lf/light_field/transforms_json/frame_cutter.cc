@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lf/light_field/transforms_json/frame_cutter.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -40,7 +42,20 @@ bool IsKey(std::string_view key, std::string_view wanted) {
 FrameCutter::FrameCutter(std::string_view list_key, std::function<void(const std::string&)> take)
     : list_key_(list_key), take_(std::move(take)) {}
 
+void FrameCutter::LookForJson(std::string_view piece) {
+  if (piece.find('\0') != std::string_view::npos) is_not_json_ = true;
+  if (has_begun_) return;
+  // Some editors begin a text with the mark of UTF-8.
+  constexpr std::string_view kBlanksAndMark = " \t\r\n\xEF\xBB\xBF";
+  const size_t begin = piece.find_first_not_of(kBlanksAndMark);
+  if (begin == std::string_view::npos) return;
+  has_begun_ = true;
+  constexpr std::string_view kBeginnings = "{[\"-0123456789tfn";
+  if (kBeginnings.find(piece[begin]) == std::string_view::npos) is_not_json_ = true;
+}
+
 void FrameCutter::Add(std::string_view piece) {
+  LookForJson(piece);
   while (!piece.empty()) {
     size_t taken = 0;
     if (in_string_)
@@ -121,6 +136,24 @@ void FrameCutter::Enter(char bracket) {
     is_frames_list_ = bracket == '[' && !is_over_ &&
                       IsKey(std::string_view(rest_).substr(key_begin_, key_size_), list_key_);
   ++depth_;
+}
+
+Result<void> AddFile(ByteStream* stream, const std::function<bool()>& goes_on,
+                     FrameCutter* cutter) {
+  if (stream->remaining() > kMostJsonBytes)
+    return InputError(fmt::format("{}: has {} bytes: expected a JSON file of at most {}",
+                                  stream->path().string(), stream->remaining(), kMostJsonBytes));
+  for (std::string_view piece = stream->Window(); !piece.empty(); piece = stream->Window()) {
+    cutter->Add(piece);
+    stream->Skip(piece.size());
+    if (cutter->is_not_json() || !goes_on()) return {};
+    if (cutter->held_bytes() > kMostHeldBytes)
+      return InputError(
+          fmt::format("{}: holds more than {} bytes in one frame or outside of all frames: is it "
+                      "another file?",
+                      stream->path().string(), kMostHeldBytes));
+  }
+  return stream->Status();
 }
 
 }  // namespace lf

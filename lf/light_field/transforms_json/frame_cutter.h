@@ -5,9 +5,13 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <string_view>
+
+#include "lf/core/byte_stream.h"
+#include "lf/core/result.h"
 
 namespace lf {
 
@@ -21,6 +25,11 @@ class FrameCutter {
 
   // Adds the next piece of the text, of any size.
   void Add(std::string_view piece);
+
+  // Returns true if the text so far cannot be the beginning of JSON, because its first character
+  // behind blanks begins no value, or because it holds a NUL byte, as the holes of a sparse file
+  // do. The rest of the text need not be read.
+  bool is_not_json() const { return is_not_json_; }
 
   // Returns the text outside frames so far, with {} in place of each frame.
   const std::string& rest() const { return rest_; }
@@ -37,6 +46,8 @@ class FrameCutter {
   void Enter(char bracket);
   bool BeginsFrame() const { return depth_ == 2 && is_frames_list_; }
 
+  void LookForJson(std::string_view piece);
+
   std::string_view list_key_;
   std::function<void(const std::string&)> take_;
   std::string rest_, frame_;
@@ -47,8 +58,19 @@ class FrameCutter {
   size_t key_begin_ = 0;     // index in rest_ at which the last string of the top level begins
   size_t key_size_ = 0;      // size of this string without quotation marks, in bytes
   bool is_frames_list_ =
-      false;              // true if the last bracket that opened depth 2 is that of list_key_
+      false;                // true if the last bracket that opened depth 2 is that of list_key_
+  bool has_begun_ = false;  // true behind the blanks at the beginning
+  bool is_not_json_ = false;
   bool is_over_ = false;  // true if no frame can follow: the top level ended or is no object
 };
+
+// Largest size of a file, and of the text of one frame and of all that is outside of frames.
+inline constexpr uint64_t kMostJsonBytes = uint64_t{4} << 30;
+inline constexpr size_t kMostHeldBytes = size_t{256} << 20;
+
+// Adds a file up to its end, or as far as it may be JSON. kInput if it cannot be read, is larger
+// than kMostJsonBytes, or more than kMostHeldBytes would be held.
+//   goes_on  called after each piece; false: the rest is not read
+Result<void> AddFile(ByteStream* stream, const std::function<bool()>& goes_on, FrameCutter* cutter);
 
 }  // namespace lf

@@ -53,6 +53,21 @@ TEST(FrameCutter, WhereThePiecesEndDoesNotMatter) {
     EXPECT_EQ(Cut(text, piece_size), whole) << piece_size;
 }
 
+TEST(FrameCutter, TextThatCannotBeJsonIsSeenAtOnce) {
+  const auto is_not_json = [](std::string_view text) {
+    FrameCutter cutter("frames", [](const std::string&) {});
+    cutter.Add(text);
+    return cutter.is_not_json();
+  };
+  using namespace std::string_view_literals;
+  for (const std::string_view text : {"\0"sv, "\0\0{}"sv, " \n\0"sv, "{\"frames\": [\0"sv,
+                                      "{\"a\": \"\0\""sv, "<html>"sv, "what: []"sv})
+    EXPECT_TRUE(is_not_json(text)) << text;
+  for (const std::string_view text :
+       {""sv, " \r\n\t"sv, "\xEF\xBB\xBF {"sv, "[1]"sv, "-5"sv, "\"a\""sv})
+    EXPECT_FALSE(is_not_json(text)) << text;
+}
+
 TEST(FrameCutter, AKeyMayBeWrittenWithEscapes) {
   EXPECT_EQ(Cut(R"({"fr\u0061mes": [{}]})").frames.size(), 1u);
   EXPECT_EQ(Cut(R"({"fr\\ames": [{}]})").frames.size(), 0u);

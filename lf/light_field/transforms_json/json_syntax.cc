@@ -70,6 +70,13 @@ Error JsonSyntaxError(ByteStream* stream) {
     const json nothing = json::parse(StreamIterator(stream), StreamIterator(), keep_nothing);
   } catch (const json::exception& exception) {
     error = IsNotJson(stream->path(), exception.what());
+    // The parser takes a NUL byte for the end of the text.
+    if (stream->remaining() > 0 &&
+        std::string_view(exception.what()).find("unexpected end") != std::string_view::npos)
+      error = InputError(fmt::format(
+          "{}: is not JSON: byte {} is a NUL byte, which no text has: was the file cut off, or not "
+          "copied to its end?",
+          stream->path().string(), stream->position()));
   }
   if (Result<void> status = stream->Status(); !status) return status.error();
   if (error) return *error;

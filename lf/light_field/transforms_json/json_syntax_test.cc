@@ -4,7 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <ctime>
+#include <filesystem>
 #include <string>
+
+#include "lf/core/file.h"
+#include "lf/light_field/transforms_json/transforms_json.h"
+#include "lf/pixels/files/test_folder.h"
 
 namespace lf {
 namespace {
@@ -35,6 +42,12 @@ TEST(JsonSyntax, UsualMistakesAreNamed) {
   EXPECT_EQ(advice("\xff\xfe{"), "; it has to be text in UTF-8 that begins with {");
 }
 
+TEST(JsonSyntax, ANulByteIsNotTheEndOfTheText) {
+  using namespace std::string_view_literals;
+  EXPECT_EQ(SyntaxErrorOf("\0\0{}"sv).find("a.json: is not JSON: byte 1 is a NUL byte"), 0u);
+  EXPECT_EQ(SyntaxErrorOf("{\"a\": \0 1}"sv).find("a.json: is not JSON: byte 7 is a NUL byte"), 0u);
+}
+
 TEST(JsonSyntax, NestingTakesNoMemory) {
   EXPECT_NE(SyntaxErrorOf(std::string(1'000'000, '[')).find("column 1000001"), std::string::npos);
 }
@@ -42,6 +55,25 @@ TEST(JsonSyntax, NestingTakesNoMemory) {
 TEST(JsonSyntax, AFileThatIsJsonNowHasChanged) {
   EXPECT_EQ(SyntaxErrorOf("{}"),
             "a.json: changed while it was read; try again when no other program writes it");
+}
+
+class HugeFileTest : public FolderTest {};
+
+TEST_F(HugeFileTest, IsRefusedAtTheFirstByteThatIsNotJson) {
+  for (const char* beginning : {"", " \n", "{\"w\": 8, \"frames\": [{\"file_path\": \"a"}) {
+    const std::filesystem::path file = folder_ / "transforms.json";
+    ASSERT_TRUE(WriteFileAtomically(file, beginning));
+    std::filesystem::resize_file(file, uint64_t{4} << 30);  // a hole, which is read as NUL bytes
+    const std::clock_t begin = std::clock();
+    const Result<LightField> read = ReadTransformsJson(file);
+    EXPECT_LT(std::clock() - begin, 2 * CLOCKS_PER_SEC);
+    ASSERT_FALSE(read);
+    EXPECT_EQ(read.error().kind, ErrorKind::kInput);
+    EXPECT_NE(read.error().message.find("is not JSON"), std::string::npos) << read.error().message;
+    std::filesystem::resize_file(file, uint64_t{8} << 30);
+    EXPECT_NE(ReadTransformsJson(file).error().message.find("has 8589934592 bytes"),
+              std::string::npos);
+  }
 }
 
 }  // namespace

@@ -27,7 +27,6 @@ using nlohmann::json;
 using Event = json::parse_event_t;
 
 constexpr size_t kMaxFrameCount = size_t{1} << 24;
-constexpr size_t kMaxHeldBytes = size_t{1} << 30;
 constexpr int kMaxDepth = 8;  // values nested more deeply are not read, so that they take no memory
 
 constexpr NumberRule kFinite = {"finite", [](double) { return true; }};
@@ -301,18 +300,9 @@ Result<LightField> Read(const fs::path& path, const StreamSource& open,
   FrameCutter cutter("frames",
                      [&](const std::string& frame) { is_json &= reader.TakeFrame(frame); });
   LF_ASSIGN_OR_RETURN(ByteStream stream, open());
-  for (std::string_view piece = stream.Window(); is_json && !piece.empty();
-       piece = stream.Window()) {
-    cutter.Add(piece);
-    stream.Skip(piece.size());
-    if (cutter.held_bytes() > kMaxHeldBytes)
-      return InputError(
-          fmt::format("{}: holds more than {} bytes in one frame or outside of all frames: "
-                      "expected a transforms.json; is it another file?",
-                      path.string(), kMaxHeldBytes));
-  }
-  LF_RETURN_IF_ERROR(stream.Status());
-  if (!is_json || cutter.is_in_frame()) return SyntaxError(open);
+  LF_RETURN_IF_ERROR(AddFile(
+      &stream, [&] { return is_json; }, &cutter));
+  if (!is_json || cutter.is_not_json() || cutter.is_in_frame()) return SyntaxError(open);
   std::optional<Result<LightField>> light_field = reader.TakeRest(cutter.rest());
   return light_field ? *std::move(light_field) : SyntaxError(open);
 }

@@ -28,8 +28,9 @@ Result<LightField> ParseTransformsJson(std::string_view text, const std::filesys
                                        const RawFactsSource& raw_facts = {});
 
 // Reads a file as ParseTransformsJson() does, but in pieces, so that memory holds the light field
-// and not the whole text. Missing sizes and missing facts of camera raw files are read from image
-// files.
+// and not the whole text. A text that cannot be JSON is refused at the first byte that shows it,
+// and no more than kMostHeldBytes (frame_cutter.h) of text are held. Missing sizes and missing
+// facts of camera raw files are read from image files.
 Result<LightField> ReadTransformsJson(const std::filesystem::path& path);
 
 // Writes `light_field` such that reading the file returns bit-identical cameras, except that
