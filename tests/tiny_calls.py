@@ -104,6 +104,7 @@ class TinyCalls:
         quilt = self.quilt()
         images = sorted(self.field.rglob("*.png"))
         compare = self.words("lfcompare", *images[:2], "-o", out.with_suffix(".png"))
+        compare_films = self.words("lfcompare", self.field / "images", self.field / "images", "-o", out)
         return [Call("lfsynth", synth, [[*synth, "--overwrite"]]),
                 Call("lfimport", convert, [[*convert, "--force"]]),
                 Call("lfexample", self.words("lfexample", self.field, "-o", out.with_suffix(".yaml"))),
@@ -124,7 +125,8 @@ class TinyCalls:
                 Call("lffocus views", views, [[*views, "--overwrite"]]),
                 Call("lffocus views, an array", array, [[*array, "--overwrite"]]),
                 Call("lfquilt", quilt, [[*quilt, "--resume"], [*quilt, "--overwrite"]]),
-                Call("lfcompare", compare, [[*compare, "--overwrite"]])]
+                Call("lfcompare", compare, [[*compare, "--overwrite"]]),
+                Call("lfcompare, folders", compare_films, [[*compare_films, "--overwrite"]])]
 
     def submitters(self):
         """Returns calls of lfsubmit, in which lfsubmit or its lfrenderer is disturbed, and calls that resume or

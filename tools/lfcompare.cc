@@ -120,11 +120,14 @@ lf::Result<std::vector<fs::path>> OutputsOf(const Arguments& a,
   if (a.output.empty()) return files;
   std::error_code error;
   const fs::path out = a.output;
-  const bool is_film = fs::is_directory(a.reference, error);
+  const bool is_film = pairs.front().reference != a.reference;  // pairs of two folders
   if (!is_film && out.extension() != ".png")
     return lf::UsageError(
         fmt::format("-o {}: its extension is \"{}\": expected a name that ends in .png", a.output,
                     out.extension().string()));
+  if (const fs::file_status status = fs::status(out, error); status.type() == fs::file_type::none)
+    return lf::OutputError(
+        fmt::format("-o {}: cannot be looked at: {}", a.output, error.message()));
   if (is_film && fs::exists(out, error) && !fs::is_directory(out, error))
     return lf::UsageError(
         fmt::format("-o {}: is a file: expected a folder for the pictures of the differences of {} "

@@ -62,10 +62,15 @@ Result<std::vector<PicturePair>> FindPicturePairs(const fs::path& reference, con
   std::error_code error;
   for (const fs::path& path : {reference, test})
     if (!fs::exists(path, error))
-      return InputError(fmt::format(
-          "{}: does not exist: expected a picture or a folder of pictures", path.string()));
+      return InputError(
+          fmt::format("{}: {}: expected a picture or a folder of pictures", path.string(),
+                      error ? "cannot be read: " + error.message() : "does not exist"));
   const bool is_folder = fs::is_directory(reference, error);
-  if (is_folder != fs::is_directory(test, error))
+  const bool are_equal = !error && is_folder == fs::is_directory(test, error);
+  if (error)
+    return InputError(fmt::format("{} and {}: cannot be read: {}", reference.string(),
+                                  test.string(), error.message()));
+  if (!are_equal)
     return InputError(fmt::format("{} is a folder, but {} is a file: expected two of a kind",
                                   (is_folder ? reference : test).string(),
                                   (is_folder ? test : reference).string()));
