@@ -48,7 +48,8 @@ Result<void> CheckKind(const LightField& light_field) {
         "estimated: use --image-alpha mask");
   if (light_field.encoding.masks_clipped)
     return InputError(
-        "the light field has brackets (lf_masks_clipped), which are not supported: densify the LF "
+        "the light field has brackets (\"lf_clipped\": \"masked\"), which are not supported: "
+        "densify the LF "
         "images of one exposure");
   return {};
 }
