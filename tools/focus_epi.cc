@@ -137,7 +137,8 @@ Result<EpipolarOptions> OptionsOf(const Arguments& a, const LightField& light_fi
   EpipolarOptions options;
   options.kind = a.row ? LineKind::kRow : LineKind::kColumn;
   options.pixel = a.row ? *a.row : *a.column;
-  options.through = MiddleCamera(light_field);
+  options.through = MiddleCamera(
+      light_field, [&](LfImageId id) { return !light_field.cameras[id.value].is_virtual; });
   if (!a.through.empty()) {
     LF_ASSIGN_OR_RETURN(options.through, LfImageNamed(light_field, a.through));
   }

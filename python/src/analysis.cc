@@ -75,7 +75,12 @@ uint32_t IdOfName(const OpenedField& field, const std::string& name) {
   return Take(LfImageNamed(field.light_field, name)).value;
 }
 
-uint32_t MiddleId(const OpenedField& field) { return MiddleCamera(field.light_field).value; }
+uint32_t MiddleId(const OpenedField& field) {
+  const LightField& light_field = field.light_field;
+  return MiddleCamera(light_field,
+                      [&](LfImageId id) { return !light_field.cameras[id.value].is_virtual; })
+      .value;
+}
 
 // Returns the size of the views of a grid, and of each view its position, calibration matrix, pose
 // [R|t] and LF image (-1: none).

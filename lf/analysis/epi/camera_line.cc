@@ -2,12 +2,16 @@
 #include "lf/analysis/epi/camera_line.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "lf/camera/path/spelling.h"
 #include "lf/light_field/model/capture_geometry.h"
@@ -105,6 +109,27 @@ void SortAlong(const std::vector<OnLine>& cameras, CameraLine* line) {
   }
 }
 
+// Returns the LF image if it was recorded; otherwise an error that names the nearest recorded ones.
+Result<LfImageId> Recorded(const LightField& light_field, LfImageId id) {
+  if (!light_field.cameras[id.value].is_virtual) return id;
+  constexpr size_t kMostNamed = 3;
+  const Vec3 centre = light_field.Camera(id).CentreWorld();
+  std::vector<std::pair<double, uint32_t>> recorded;  // distance and LF image
+  for (uint32_t i = 0; i < light_field.size(); ++i)
+    if (!light_field.cameras[i].is_virtual)
+      recorded.emplace_back((light_field.Camera(LfImageId{i}).CentreWorld() - centre).norm(), i);
+  const auto named =
+      recorded.begin() + static_cast<ptrdiff_t>(std::min(kMostNamed, recorded.size()));
+  std::partial_sort(recorded.begin(), named, recorded.end());
+  std::vector<std::string> names;
+  for (auto one = recorded.begin(); one != named; ++one)
+    names.push_back(light_field.image_names[one->second]);
+  return UsageError(fmt::format(
+      "{}: is a virtual LF image, which lfdensify has interpolated: expected a recorded one; the "
+      "nearest are {}",
+      light_field.image_names[id.value], fmt::join(names, ", ")));
+}
+
 }  // namespace
 
 Result<CameraLine> FindCameraLine(const LightField& light_field, LfImageId through, LineKind kind,
@@ -150,11 +175,12 @@ Result<CameraLine> FindCameraLine(const LightField& light_field, LfImageId throu
 Result<LfImageId> LfImageNamed(const LightField& light_field, const std::string& name) {
   const std::vector<std::string>& names = light_field.image_names;
   const auto exact = std::find(names.begin(), names.end(), name);
-  if (exact != names.end()) return LfImageId{static_cast<uint32_t>(exact - names.begin())};
+  if (exact != names.end())
+    return Recorded(light_field, LfImageId{static_cast<uint32_t>(exact - names.begin())});
   std::vector<uint32_t> found;
   for (uint32_t i = 0; i < names.size(); ++i)
     if (std::filesystem::path(names[i]).filename() == name) found.push_back(i);
-  if (found.size() == 1) return LfImageId{found[0]};
+  if (found.size() == 1) return Recorded(light_field, LfImageId{found[0]});
   if (found.size() > 1)
     return UsageError(
         fmt::format("{}: {} LF images have this name, such as {} and {}: give the "

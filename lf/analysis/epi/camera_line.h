@@ -42,7 +42,8 @@ Result<CameraLine> FindCameraLine(const LightField& light_field, LfImageId throu
 
 // Returns the LF image with a name, as the calibration states it, or the only one whose file has
 // this name in any folder.
-// kUsage: there is none, or there are several; the message suggests the nearest name.
+// kUsage: there is none, or there are several; the message suggests the nearest name. kUsage if it
+// is virtual, because it was not taken by any camera; the message names the nearest recorded ones.
 Result<LfImageId> LfImageNamed(const LightField& light_field, const std::string& name);
 
 }  // namespace lf

@@ -128,5 +128,19 @@ TEST(LfImageName, IsThatOfTheCalibrationOrOfItsFile) {
             std::string::npos);
 }
 
+TEST(LfImageName, IsOfARecordedLfImage) {
+  LightField light_field = Grid(5, 1, 0);
+  light_field.image_names = {"0.png", "1.png", "virtual/2.png", "3.png", "4.png"};
+  light_field.cameras[2].is_virtual = true;
+  EXPECT_EQ(LfImageNamed(light_field, "3.png")->value, 3u);
+  for (const char* name : {"virtual/2.png", "2.png"}) {
+    const auto found = LfImageNamed(light_field, name);
+    ASSERT_FALSE(found) << name;
+    EXPECT_EQ(found.error().kind, ErrorKind::kUsage);
+    for (const char* word : {"virtual/2.png: is a virtual LF image", "1.png", "3.png"})
+      EXPECT_NE(found.error().message.find(word), std::string::npos) << found.error().message;
+  }
+}
+
 }  // namespace
 }  // namespace lf
