@@ -165,7 +165,7 @@ std::string CameraJson(const CameraPath& path, const std::vector<FrameId>& frame
     for (const CameraFact& fact : FactsOf(path, frame)) camera[fact.name] = JsonOf(fact);
     cameras.push_back(std::move(camera));
   }
-  return json.dump(1) + "\n";
+  return json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace lf

@@ -35,6 +35,7 @@
 #include "lf/render/pipeline/check_outputs.h"
 #include "lf/render/pipeline/develop_frame.h"
 #include "lf/render/pipeline/frame_metadata.h"
+#include "lf/render/state/record_fields.h"
 #include "lf/selection/image_index.h"
 #include "lf/storage/load/open_store.h"
 
@@ -230,7 +231,7 @@ std::string ReportJson(const DepthArguments& a, const Made& made) {
                                    {"lf_images_compared", made.map.view_count},
                                    {"lf_images_skipped", made.map.skipped.size()},
                                    {"known_share", KnownShare(made.map)}};
-  return report.dump(2) + "\n";
+  return RecordText(report);
 }
 
 // Returns the error of a map in which no element has a depth.

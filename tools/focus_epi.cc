@@ -29,6 +29,7 @@
 #include "lf/light_field/model/radiance.h"
 #include "lf/pixels/files/image_file.h"
 #include "lf/render/pipeline/check_outputs.h"
+#include "lf/render/state/record_fields.h"
 #include "lf/storage/load/open_store.h"
 
 namespace lf {
@@ -232,7 +233,7 @@ std::string ReportJson(const LightField& light_field, const EpipolarOptions& opt
   json["skipped_lf_images"] = nlohmann::ordered_json::array();
   for (const LfImageId id : picture.missing)
     json["skipped_lf_images"].push_back(light_field.image_names[id.value]);
-  return json.dump(2) + "\n";
+  return RecordText(json);
 }
 
 Result<void> Run(const Arguments& a, const CommonOptions& common) {

@@ -28,6 +28,7 @@
 #include "lf/core/geometry.h"
 #include "lf/core/log.h"
 #include "lf/import/paths/open_path.h"
+#include "lf/render/state/record_fields.h"
 
 namespace lf {
 namespace {
@@ -265,7 +266,7 @@ std::string ReportJson(const Rendered& rendered) {
   if (rendered.report) report = nlohmann::ordered_json::parse(ToJson(**rendered.report));
   report["focus_stack"] =
       nlohmann::ordered_json::parse(FocusPlanesJson(rendered.stack, rendered.options));
-  return report.dump(2) + "\n";
+  return RecordText(report);
 }
 
 Result<void> Run(Arguments* a, const Program& program, bool has_format, int argc, char** argv) {

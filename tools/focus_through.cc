@@ -34,6 +34,7 @@
 #include "lf/import/paths/open_path.h"
 #include "lf/render/pipeline/check_outputs.h"
 #include "lf/render/pipeline/frame_output.h"
+#include "lf/render/state/record_fields.h"
 
 namespace lf {
 namespace {
@@ -338,14 +339,14 @@ std::string ReportJson(const Arguments& a, const StatisticFrame& frame, const Ra
   report["rays_median"] = counts.median;
   report["rays_most"] = counts.most;
   report["seen_share"] = counts.seen_share;
-  return report.dump(2) + "\n";
+  return RecordText(report);
 }
 
 // Returns the report of a film, with the entry "through".
 std::string FilmJson(const Arguments& a, const RenderReport& film) {
   nlohmann::ordered_json report = nlohmann::ordered_json::parse(ToJson(film));
   report["through"] = StatisticJson(a);
-  return report.dump(2) + "\n";
+  return RecordText(report);
 }
 
 // Makes the frame of --frame, and writes its files.

@@ -27,6 +27,7 @@
 #include "lf/analysis/views/view_grid.h"
 #include "lf/core/log.h"
 #include "lf/render/pipeline/check_outputs.h"
+#include "lf/render/state/record_fields.h"
 
 namespace lf {
 namespace {
@@ -168,7 +169,7 @@ std::string ReportJson(const ViewGrid& grid, const WrittenViews& written, double
   json["unrecorded_share"] = written.unrecorded_share;
   json["clipped_share"] = written.clipped_share;
   json["skipped_lf_images"] = report.missing;
-  return json.dump(2) + "\n";
+  return RecordText(json);
 }
 
 void Tell(const Arguments& a, const ViewGrid& grid, const WrittenViews& written) {

@@ -220,6 +220,7 @@ lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
   lf::ImportReport report;
   report.light_field = a.light_field.path;
   LF_ASSIGN_OR_RETURN(lf::LightField light_field, OpenChanged(a, &report.excluded_count));
+  if (!a.output.empty()) LF_RETURN_IF_ERROR(lf::CheckNames(a.output, light_field));
   report.first_image = light_field.ImagePath({0}).lexically_normal().string();
   lf::ThreadPool pool(common.threads);
   lf::CaptureReportOptions options;

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "lf/core/file.h"
+#include "lf/light_field/transforms_json/json_text.h"
 #include "lf/light_field/transforms_json/transforms_json.h"
 #include "lf/storage/packed/packed_store_file.h"
 
@@ -30,24 +31,44 @@ bool AreNear(const fs::path& a, const fs::path& b) {
   return *part_a == *part_b;
 }
 
+// Returns the path from the folder `to` to the folder `from`; empty if both are the same.
+fs::path PrefixOf(const fs::path& from, const fs::path& to) {
+  return from == to ? fs::path() : from.lexically_relative(to);
+}
+
+// Returns the name of a file as it is written into the folder `to`.
+//   prefix  PrefixOf() the folder in which it has its name
+std::string NameIn(const fs::path& to, const fs::path& prefix, const std::string& name) {
+  if (name.empty()) return name;
+  const fs::path path(name);
+  if (path.is_absolute()) return AreNear(path, to) ? path.lexically_relative(to).string() : name;
+  return prefix.empty() ? name : (prefix / path).string();
+}
+
 }  // namespace
 
 Result<void> MoveToFolder(const fs::path& folder, LightField* light_field) {
   LF_ASSIGN_OR_RETURN(const fs::path from, Canonical(light_field->folder));
   LF_ASSIGN_OR_RETURN(const fs::path to, Canonical(folder));
-  const fs::path prefix = from == to ? fs::path() : from.lexically_relative(to);
-  const auto rename = [&](std::string* name) {
-    if (name->empty()) return;
-    const fs::path path(*name);
-    if (path.is_absolute()) {
-      if (AreNear(path, to)) *name = path.lexically_relative(to).string();
-    } else if (!prefix.empty()) {
-      *name = (prefix / path).string();
-    }
-  };
-  for (std::string& name : light_field->image_names) rename(&name);
-  for (std::string& name : light_field->mask_names) rename(&name);
+  const fs::path prefix = PrefixOf(from, to);
+  for (std::string& name : light_field->image_names) name = NameIn(to, prefix, name);
+  for (std::string& name : light_field->mask_names) name = NameIn(to, prefix, name);
   light_field->folder = folder;
+  return {};
+}
+
+Result<void> CheckNames(const fs::path& folder, const LightField& light_field) {
+  LF_ASSIGN_OR_RETURN(const fs::path from, Canonical(light_field.folder));
+  std::error_code error;
+  const fs::path to = fs::weakly_canonical(folder, error);
+  const fs::path prefix = PrefixOf(from, to);
+  for (const auto* const names : {&light_field.image_names, &light_field.mask_names})
+    for (const std::string& name : *names)
+      if (JsonText text; !error && !text.AddString(NameIn(to, prefix, name)))
+        return UsageError(fmt::format(
+            "{}: is not UTF-8, so that a transforms.json cannot name it: rename the file or its "
+            "folder",
+            NameIn(to, prefix, name)));
   return {};
 }
 

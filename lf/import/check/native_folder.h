@@ -24,6 +24,10 @@ Result<void> MoveToFolder(const std::filesystem::path& folder, LightField* light
 Result<void> CheckMayWrite(const std::filesystem::path& source, const std::filesystem::path& folder,
                            bool force);
 
+// Checks that WriteNativeFolder() can name all images and masks. kUsage: a name is not UTF-8.
+// kInput: LightField::folder does not exist.
+Result<void> CheckNames(const std::filesystem::path& folder, const LightField& light_field);
+
 // Creates the folder, moves the light field to it with MoveToFolder(), and writes its
 // transforms.json. Returns the path of the file. kOutput: the folder or file cannot be written.
 // kUsage: the light field is a packed store, whose LF images are no files.
