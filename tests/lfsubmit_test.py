@@ -250,6 +250,50 @@ class LocalJobTest(ClusterTestCase):
         self.fails(2, ["is not a package", "lfpreprocessor"], submit, self.field, self.path, "-o",
                    self.film)
 
+    def test_the_number_of_a_package_is_read_whole(self):
+        """A farm whose index variable is empty must not render package 0 in every task."""
+        self.submit("--frames", "1")
+        (self.film / "frame_0001.exr").unlink()
+        for word in ("abc", "", "0x0", "0.9", " 0", "0 ", "+0", "-1", "0,1", "3", "99999999999999999999"):
+            words = [f"--run-package {word}", "number of a package, 0 to 0", "" if word else "SLURM_ARRAY_TASK_ID"]
+            self.fails(2, words, cluster_test_case.SUBMIT, f"--run-package={word}", self.film)
+        self.assertFalse((self.film / "frame_0001.exr").exists())
+        self.succeeds(cluster_test_case.SUBMIT, "--run-package", 0, self.film)
+        self.assertTrue((self.film / "frame_0001.exr").exists())
+
+    def test_the_folder_of_a_job_names_no_program(self):
+        """It may come out of an archive of somebody else."""
+        self.submit("--frames", "1")
+        touched, evil = self.folder / "touched", self.folder / "evil"
+        evil.write_text(f"#!/bin/sh\ntouch {touched}\n")
+        evil.chmod(0o755)
+        file = self.film / "cluster" / "job.json"
+        good = json.loads(file.read_text())
+        self.assertNotIn("lfrenderer", file.read_text())
+        submit = cluster_test_case.SUBMIT
+        for change, code, words in (
+                ({"lfrenderer": str(evil), "lfsubmit": str(evil)}, 0, []),
+                ({"arguments": ["-o", str(self.folder / "elsewhere")]}, 3, ["job.json", "-o"]),
+                ({"arguments": ["--video=/elsewhere.mp4"]}, 3, ["job.json", "--video"]),
+                ({"engine": "slurm", "sbatch_options": [f"--export=BASH_ENV={evil}"]}, 2, ["--export", "--sbatch="]),
+                ({"engine": "slurm", "sbatch_options": [f"--mem=1G --wrap={evil}"]}, 2, ["--wrap", "--sbatch="])):
+            with self.subTest(change=change):
+                (self.film / "frame_0001.exr").unlink(missing_ok=True)
+                file.write_text(json.dumps(good | change))
+                if code == 0:
+                    self.succeeds(submit, "--run-package", 0, self.film)
+                    (self.film / "frame_0001.exr").unlink()
+                    self.succeeds(submit, "--resume", self.film)
+                    self.assertTrue((self.film / "frame_0001.exr").exists())
+                else:
+                    self.fails(code, words, submit, "--resume", self.film)
+                self.assertFalse(touched.exists())
+        self.assertFalse((self.folder / "elsewhere").exists())
+        # A program of the call is run.
+        file.write_text(json.dumps(good))
+        self.call(submit, "--resume", self.film, "--lfrenderer", evil)
+        self.assertTrue(touched.exists())
+
     def test_damaged_states_are_named(self):
         self.submit()
         state = self.film / "cluster" / "packages" / "package-0001.json"

@@ -7,6 +7,7 @@ usage: schemas_test.py PROGRAMS SOURCE
 """
 import base64
 import json
+import os
 import pathlib
 import re
 import signal
@@ -373,7 +374,14 @@ class SchemasTest(ProgramTestCase):
         for task in [film / "cluster/finish.json", *(film / "cluster/packages").glob("*.json")]:
             self.valid_file("job_task", task)
         self.valid_file("job", SOURCE / "fuzz/corpus/job_files/job.json")
-        for name in "job", "job_task", "job_finish":
+        no_text = self.folder / os.fsdecode(b"names\xff")  # a name that is not UTF-8
+        (self.folder / "packages").rename(no_text)
+        for package in no_text.glob("*.lfp"):
+            package.rename(no_text / (package.stem + os.fsdecode(b"\xff.lfp")))
+        self.succeeds(PROGRAMS / "lfsubmit", *no_text.glob("*.lfp"), "-o", no_text / "film", "--engine", "array")
+        self.valid_file("job", no_text / "film/cluster/job.json")
+        self.covered("job", [f"{key}/bytes" for key in ("working_folder", "arguments", "video")])
+        for name in "job_task", "job_finish":
             self.covered(name)
         # Only a batch system gives these.
         slurm = ["queue_error", *(f"{task}/{key}" for task in ("packages", "finishing") for key in

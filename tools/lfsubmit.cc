@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +18,7 @@
 
 #include "lf/core/file.h"
 #include "lf/core/log.h"
+#include "lf/core/parse_number.h"
 #include "lf/distribute/cluster/finish_frames.h"
 #include "lf/distribute/cluster/job_status.h"
 #include "lf/distribute/cluster/resume_job.h"
@@ -80,12 +82,10 @@ Result<void> Submit(const lf::SubmitArguments& arguments, const lf::CommonOption
 }
 
 Result<void> Resume(const lf::SubmitArguments& arguments, const lf::CommonOptions& common) {
-  LF_ASSIGN_OR_RETURN(ClusterJob job, lf::ReadJob(arguments.resume));
-  LF_RETURN_IF_ERROR(lf::CheckMayRun(job));
+  LF_ASSIGN_OR_RETURN(ClusterJob job, arguments.ReadJobToRun(arguments.resume));
   LF_ASSIGN_OR_RETURN(lf::FileLock lock, lf::TakeJob(job));
   // Another program may have changed the job before we got the lock.
-  LF_ASSIGN_OR_RETURN(job, lf::ReadJob(arguments.resume));
-  LF_RETURN_IF_ERROR(lf::CheckMayRun(job));
+  LF_ASSIGN_OR_RETURN(job, arguments.ReadJobToRun(arguments.resume));
   LF_RETURN_IF_ERROR(arguments.Change(&job, common));
   const lf::JobStatus status = lf::LookAtJob(job);
   if (status.phase == lf::TaskPhase::kDone && arguments.video.empty() && !common.strict &&
@@ -108,6 +108,18 @@ Result<void> Finish(const std::string& folder, const std::string& frames) {
   return {};
 }
 
+// Parses the number of a package, which a batch system states as the index of the task.
+Result<size_t> NumberOfPackage(const std::string& text, const ClusterJob& job) {
+  const std::optional<size_t> number = lf::ParseWhole<size_t>(text);
+  if (number && *number < job.packages.size()) return *number;
+  return lf::UsageError(fmt::format(
+      "--run-package {}: expected the number of a package, 0 to {}{}", text.empty() ? "''" : text,
+      job.packages.size() - 1,
+      text.empty() ? ", found nothing: is the variable unset in which the batch system states the "
+                     "index of a task, such as SLURM_ARRAY_TASK_ID?"
+                   : ""));
+}
+
 Result<void> Act(const lf::SubmitArguments& arguments, const lf::CommonOptions& common) {
   LF_RETURN_IF_ERROR(arguments.Check());
   if (!arguments.status.empty()) {
@@ -123,18 +135,12 @@ Result<void> Act(const lf::SubmitArguments& arguments, const lf::CommonOptions& 
   if (!arguments.resume.empty()) return Resume(arguments, common);
   if (!arguments.finish.empty()) return Finish(arguments.finish[0], arguments.finish[1]);
   if (!arguments.run_finish.empty()) {
-    LF_ASSIGN_OR_RETURN(const ClusterJob job, lf::ReadJob(arguments.run_finish));
-    LF_RETURN_IF_ERROR(lf::CheckMayRun(job));
+    LF_ASSIGN_OR_RETURN(const ClusterJob job, arguments.ReadJobToRun(arguments.run_finish));
     return lf::FinishFilm(job, lf::NodeName(), lf::CatchInterruptsOfJob());
   }
   if (!arguments.run_package.empty()) {
-    LF_ASSIGN_OR_RETURN(const ClusterJob job, lf::ReadJob(arguments.run_package[1]));
-    LF_RETURN_IF_ERROR(lf::CheckMayRun(job));
-    const size_t number = std::strtoull(arguments.run_package[0].c_str(), nullptr, 10);
-    if (number >= job.packages.size())
-      return lf::UsageError(
-          fmt::format("--run-package {}: expected the number of a package, 0 to {}",
-                      arguments.run_package[0], job.packages.size() - 1));
+    LF_ASSIGN_OR_RETURN(const ClusterJob job, arguments.ReadJobToRun(arguments.run_package[1]));
+    LF_ASSIGN_OR_RETURN(const size_t number, NumberOfPackage(arguments.run_package[0], job));
     // Batch systems keep what a task prints. Only farms that ask for progress get it.
     lf::ProgressMeter meter(common.progress == "auto" ? lf::ProgressStyle::kNone
                                                       : lf::ParseProgressStyle(common.progress),

@@ -28,10 +28,6 @@ void Show(const ClusterJob& job, ProgressMeter& meter) {
   meter.Update(status.rays_done(), status.ray_total(), JobSummary(status));
 }
 
-bool IsForFarm(const ClusterJob& job) {
-  return job.engine == ClusterEngine::kOpenJd || job.engine == ClusterEngine::kArray;
-}
-
 Result<void> WriteForFarm(const ClusterJob& job, const std::vector<size_t>& numbers,
                           const std::string& write) {
   const std::string status = JobCommand("--status", job.output_folder);

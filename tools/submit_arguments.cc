@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 #include <thread>
 
 #include "tools/common/byte_size.h"
@@ -18,6 +19,7 @@
 
 #include "lf/core/log.h"
 #include "lf/core/shell_word.h"
+#include "lf/distribute/cluster/farm_files.h"
 #include "lf/distribute/cluster/slurm.h"
 #include "lf/render/package/package_file.h"
 #include "lf/render/pipeline/render.h"
@@ -54,6 +56,29 @@ Result<fs::path> FindRenderer(const std::string& asked_for) {
   return renderer;
 }
 
+// Refuses the arguments of lfrenderer that lfsubmit itself decides on, and those that render
+// nothing.
+Result<void> CheckRendererArguments(const std::vector<std::string>& arguments) {
+  for (const std::string& argument : arguments) {
+    const auto is = [&](const std::string& word) {
+      return argument == word || argument.starts_with(word + "=");
+    };
+    if (std::any_of(kRefusedAfterDashes.begin() + kRenderNothingCount, kRefusedAfterDashes.end(),
+                    is))
+      return UsageError(fmt::format(
+          "{}: cannot be given after --, because lfsubmit itself decides on this option of "
+          "lfrenderer: leave it out, or give it to lfsubmit (before --), if lfsubmit has it",
+          argument));
+    if (std::any_of(kRefusedAfterDashes.begin(), kRefusedAfterDashes.begin() + kRenderNothingCount,
+                    is))
+      return UsageError(fmt::format(
+          "{}: cannot be given after --, because lfrenderer would only print a text and render "
+          "nothing: leave it out, or call lfrenderer {}",
+          argument, argument));
+  }
+  return {};
+}
+
 // The parts of the command line of lfsubmit: PACKAGES -- ARGUMENTS, the latter for lfrenderer.
 struct Words {
   std::vector<fs::path> files;
@@ -73,24 +98,32 @@ Result<Words> SplitWords(const std::vector<std::string>& words) {
     split.files.push_back(fs::absolute(*word).lexically_normal());
   }
   split.arguments.assign(arguments, words.end());
-  for (const std::string& argument : split.arguments) {
-    const auto is = [&](const std::string& word) {
-      return argument == word || argument.starts_with(word + "=");
-    };
-    if (std::any_of(kRefusedAfterDashes.begin() + kRenderNothingCount, kRefusedAfterDashes.end(),
-                    is))
-      return UsageError(fmt::format(
-          "{}: cannot be given after --, because lfsubmit itself decides on this option of "
-          "lfrenderer: leave it out, or give it to lfsubmit (before --), if lfsubmit has it",
-          argument));
-    if (std::any_of(kRefusedAfterDashes.begin(), kRefusedAfterDashes.begin() + kRenderNothingCount,
-                    is))
-      return UsageError(fmt::format(
-          "{}: cannot be given after --, because lfrenderer would only print a text and render "
-          "nothing: leave it out, or call lfrenderer {}",
-          argument, argument));
-  }
+  LF_RETURN_IF_ERROR(CheckRendererArguments(split.arguments));
   return split;
+}
+
+// Returns true if an option of sbatch only says where and how long tasks run. Other options may
+// make Slurm run programs: --export=LD_PRELOAD=..., --wrap, --container, --bbf. So may a second
+// option behind a blank.
+bool OnlyAsksForResources(const std::string& option) {
+  constexpr auto kHarmless =
+      std::to_array<std::string_view>({"--account",       "--partition",   "--qos",
+                                       "--time",          "--time-min",    "--begin",
+                                       "--deadline",      "--nodelist",    "--exclude",
+                                       "--constraint",    "--prefer",      "--reservation",
+                                       "--nice",          "--priority",    "--mem",
+                                       "--mem-per-cpu",   "--mem-per-gpu", "--cpus-per-task",
+                                       "--gres",          "--gpus",        "--gpus-per-node",
+                                       "--gpus-per-task", "--licenses",    "--exclusive",
+                                       "--hint",          "--tmp",         "--clusters",
+                                       "--comment",       "--mail-type",   "--mail-user",
+                                       "--requeue",       "--no-requeue",  "--threads-per-core"});
+  constexpr std::string_view kShort = "ApqtwxCLM";  // all have a value
+  if (option.find_first_of(" \t") != std::string::npos) return false;
+  const std::string_view name = std::string_view(option).substr(0, option.find('='));
+  if (option.starts_with("--"))
+    return std::find(kHarmless.begin(), kHarmless.end(), name) != kHarmless.end();
+  return option.size() >= 2 && kShort.find(option[1]) != std::string_view::npos;
 }
 
 // Adds --strict to the arguments of lfrenderer, unless they contain it.
@@ -188,12 +221,10 @@ void AddResources(CLI::App& app, SubmitArguments& a) {
   running
       .Add("--write FOLDER", a.write, "Folder of the files for --engine openjd|array (DIR/cluster)")
       ->check(NotEmpty());
-  running
-      .Add("--jobs N", a.at_once,
-           "Packages rendered at the same time\n"
-           "If the option is not given: 1 with --engine local; with --engine slurm, as many as "
-           "Slurm starts.")
-      ->check(WholeNumber());
+  running.Add("--jobs N", a.at_once,
+              "Packages rendered at the same time\n"
+              "If the option is not given: 1 with --engine local; with --engine slurm, as many as "
+              "Slurm starts.");
   running.Add("--memory SIZE", a.memory,
               "Upper limit of the memory of each lfrenderer (8G)\n"
               "With --engine local, the default is less than 8G if the processes of --jobs would "
@@ -216,7 +247,13 @@ void AddResources(CLI::App& app, SubmitArguments& a) {
       "--crashes N", a.most_crashes,
       "Most crashes of a package before it fails (10)\n"
       "A package fails if lfrenderer, or the node that runs it, crashes more often than this.");
-  running.Add("--lfrenderer FILE", a.renderer, "Path of lfrenderer (the one beside lfsubmit)");
+  running
+      .Add("--lfrenderer FILE", a.renderer,
+           "Path of lfrenderer (the one beside lfsubmit)\n"
+           "The folder of a job does not remember it, because the folder may come from somebody "
+           "else: "
+           "give it again with --resume. The scripts of --engine slurm, openjd and array name it.")
+      ->check(NotEmpty());
 }
 
 }  // namespace
@@ -252,6 +289,31 @@ Result<void> SubmitArguments::Check() const {
         "--status, --cancel, --resume and --finish with DIR");
   if (output.empty()) return UsageError("-o DIR is missing: give the folder of the frames");
   return {};
+}
+
+Result<void> SubmitArguments::TakePrograms(ClusterJob* job) const {
+  LF_ASSIGN_OR_RETURN(job->renderer, FindRenderer(renderer));
+  LF_ASSIGN_OR_RETURN(job->submitter, ProgramFolder());
+  job->submitter /= "lfsubmit";
+  return {};
+}
+
+Result<ClusterJob> SubmitArguments::ReadJobToRun(const std::string& folder) const {
+  LF_ASSIGN_OR_RETURN(ClusterJob job, ReadJob(folder));
+  LF_RETURN_IF_ERROR(CheckMayRun(job));
+  LF_RETURN_IF_ERROR(TakePrograms(&job));
+  if (const auto good = CheckRendererArguments(job.arguments); !good)
+    return InputError(
+        fmt::format("{}: \"arguments\": {}", job.File().string(), good.error().message));
+  if (!resume.empty() && sbatch_options.empty() && job.engine == ClusterEngine::kSlurm)
+    for (const std::string& option : job.sbatch_options)
+      if (!OnlyAsksForResources(option))
+        return UsageError(
+            fmt::format("{}: \"sbatch_options\" has {}, which may make Slurm run programs that the "
+                        "folder names: "
+                        "give the options of the job again, as in lfsubmit --resume {} --sbatch={}",
+                        job.File().string(), option, ShellWord(folder), ShellWord(option)));
+  return job;
 }
 
 bool SubmitArguments::HasRendererArguments() const {
@@ -340,10 +402,8 @@ Result<void> SubmitArguments::Change(ClusterJob* job, const CommonOptions& commo
   }
   if (common.strict) MakeStrict(job);
   if (no_contact_sheet) job->contact_sheet = false;
-  if (!renderer.empty()) {
-    LF_ASSIGN_OR_RETURN(job->renderer, FindRenderer(renderer));
-  }
   if (!video.empty()) job->video = fs::absolute(video).lexically_normal();
+  if (IsForFarm(*job)) LF_RETURN_IF_ERROR(CheckFarmPaths(*job));
   return WriteJob(*job);
 }
 
@@ -357,9 +417,7 @@ Result<ClusterJob> SubmitArguments::MakeJob(const CommonOptions& common) const {
   if (!job.output_folder.has_filename()) job.output_folder = job.output_folder.parent_path();
   std::error_code error;
   job.working_folder = fs::current_path(error);
-  LF_ASSIGN_OR_RETURN(job.renderer, FindRenderer(renderer));
-  LF_ASSIGN_OR_RETURN(job.submitter, ProgramFolder());
-  job.submitter /= "lfsubmit";
+  LF_RETURN_IF_ERROR(TakePrograms(&job));
   PackagedFilm film;
   LF_ASSIGN_OR_RETURN(const RenderOptions options,
                       TryArguments(files, job.output_folder, frames, job.arguments, &film));
@@ -372,6 +430,7 @@ Result<ClusterJob> SubmitArguments::MakeJob(const CommonOptions& common) const {
   if (!video.empty()) job.video = fs::absolute(video).lexically_normal();
   job.contact_sheet = !no_contact_sheet;
   LF_RETURN_IF_ERROR(TakeResources(&job, common, true));
+  if (IsForFarm(job)) LF_RETURN_IF_ERROR(CheckFarmPaths(job));
   return job;
 }
 

@@ -54,10 +54,17 @@ struct SubmitArguments {
   // Returns a new job. Reads all packages and checks the arguments of lfrenderer. The job has no
   // packages if --clamp-frames leaves out all frames.
   Result<ClusterJob> MakeJob(const CommonOptions& common) const;
+  // Reads the job in a folder whose tasks will be run by the programs of this call. kUsage: the
+  // folder belongs to another user; or --resume without --sbatch would give Slurm options of the
+  // folder that may run programs. kInput: there is no job, or its options of lfrenderer are none
+  // that may follow --.
+  Result<ClusterJob> ReadJobToRun(const std::string& folder) const;
   // Applies the given arguments to a job that is resumed, and writes the job to its file.
   Result<void> Change(ClusterJob* job, const CommonOptions& common) const;
 
  private:
+  // Sets the programs of the job: this lfsubmit, and the lfrenderer beside it or of --lfrenderer.
+  Result<void> TakePrograms(ClusterJob* job) const;
   Result<void> TakeResources(ClusterJob* job, const CommonOptions& common, bool is_new) const;
 };
 

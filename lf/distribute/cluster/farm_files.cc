@@ -17,9 +17,15 @@ namespace {
 
 constexpr size_t kMostPathBytes = 1024;  // length limit of job parameters in Open Job Description
 
-// Returns a text in double quotes, as YAML and JSON read it.
-std::string Quoted(const std::string& text) {
-  return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
+// Returns a text in double quotes, as YAML and JSON read it. CheckFarmPaths() has seen that it is
+// UTF-8.
+std::string Quoted(const std::string& text) { return RecordLine(text); }
+
+// Returns the words of RendererOption() for a list of arguments of a template, each after a comma.
+std::string RendererTemplateWords(const ClusterJob& job) {
+  std::string text;
+  for (const std::string& word : RendererOption(job)) text += ", " + Quoted(word);
+  return text;
 }
 
 std::string JobName(const ClusterJob& job) {
@@ -28,9 +34,16 @@ std::string JobName(const ClusterJob& job) {
   return "lf-" + (folder.empty() ? "film" : folder).substr(0, kMostBytes);
 }
 
-Result<void> CheckPaths(const ClusterJob& job) {
-  for (const fs::path& path : {job.output_folder, job.submitter}) {
+}  // namespace
+
+Result<void> CheckFarmPaths(const ClusterJob& job) {
+  for (const fs::path& path : {job.output_folder, job.submitter, job.renderer}) {
     const std::string text = path.string();
+    if (job.engine == ClusterEngine::kOpenJd && !IsUtf8(text))
+      return UsageError(fmt::format(
+          "{}: is not UTF-8, as the job template of Open Job Description must be: give the folder "
+          "another name, or use --engine array",
+          text));
     const bool is_expression =
         job.engine == ClusterEngine::kOpenJd && text.find("{{") != std::string::npos;
     if (OneLine(text) != text || is_expression || text.size() > kMostPathBytes)
@@ -41,6 +54,8 @@ Result<void> CheckPaths(const ClusterJob& job) {
   }
   return {};
 }
+
+namespace {
 
 constexpr const char* kParameters = R"(parameterDefinitions:
 - name: JobFolder
@@ -73,7 +88,7 @@ constexpr const char* kPackagesStep = R"(- name: Packages
     actions:
       onRun:
         command: "{{{{Param.Lfsubmit}}}}"
-        args: [--run-package, "{{{{Task.Param.Package}}}}", "{{{{Param.JobFolder}}}}", --progress, openjd]
+        args: [--run-package, "{{{{Task.Param.Package}}}}", "{{{{Param.JobFolder}}}}", --progress, openjd{}]
         # SIGTERM makes lfrenderer write its checkpoint; SIGKILL would lose the work since the last one.
         cancelation:
           mode: NOTIFY_THEN_TERMINATE
@@ -85,7 +100,7 @@ constexpr const char* kFilmStep = R"(- name: Film
     actions:
       onRun:
         command: bash
-        args: ["{{{{Task.File.Finish}}}}", "{{{{Param.Lfsubmit}}}}", "{{{{Param.JobFolder}}}}"]
+        args: ["{{{{Task.File.Finish}}}}", "{{{{Param.Lfsubmit}}}}", "{{{{Param.JobFolder}}}}"{}]
         cancelation:
           mode: NOTIFY_THEN_TERMINATE
           notifyPeriodInSeconds: 120
@@ -97,7 +112,7 @@ constexpr const char* kFilmStep = R"(- name: Film
         #!/bin/bash
         # Checks that all frames exist, and makes contact sheet and video.
         trap 'kill -TERM $task' TERM
-        "$1" --run-finish "$2" --progress openjd &
+        "$1" --run-finish "${{@:2}}" --progress openjd &
         task=$!
         wait $task
         code=$?
@@ -154,7 +169,7 @@ fi
 # Schedulers announce the end of a task by different signals, some of them to all processes of the task. Only
 # SIGTERM makes lfsubmit write its state; the others must not end it.
 trap 'kill -TERM $task' TERM INT USR1 USR2 XCPU
-(trap '' USR1 USR2 XCPU; exec {submitter} --run-package "$number" {folder}) &
+(trap '' USR1 USR2 XCPU; exec {submitter} --run-package "$number" {folder}{renderer}) &
 task=$!
 wait $task
 code=$?
@@ -170,7 +185,7 @@ constexpr const char* kArrayFinishingScript = R"(#!/bin/bash
 # Made by lfsubmit. To be run when all packages have ended: checks that all frames exist, then makes contact
 # sheet and video. Fails if frames are missing, and names them.
 
-exec {} --run-finish {}
+exec {} --run-finish {}{}
 )";
 
 }  // namespace
@@ -187,9 +202,10 @@ std::string OpenJdTemplate(const ClusterJob& job, const std::vector<size_t>& num
   const uint64_t memory_mib = (job.memory_bytes >> 20) + 256;
   if (!numbers.empty())
     text += fmt::format(kPackagesStep, Quoted(ArrayText(numbers)), std::max(job.thread_count, 1),
-                        memory_mib);
+                        memory_mib, RendererTemplateWords(job));
   text +=
-      fmt::format(kFilmStep, numbers.empty() ? "" : "  dependencies:\n  - dependsOn: Packages\n");
+      fmt::format(kFilmStep, numbers.empty() ? "" : "  dependencies:\n  - dependsOn: Packages\n",
+                  RendererTemplateWords(job));
   return text;
 }
 
@@ -197,17 +213,18 @@ std::string ArrayScript(const ClusterJob& job) {
   return fmt::format(kArrayScript, fmt::arg("last", job.packages.size() - 1),
                      fmt::arg("count", job.packages.size()), fmt::arg("script", "packages.sh"),
                      fmt::arg("submitter", ShellWord(job.submitter.string())),
-                     fmt::arg("folder", ShellWord(job.output_folder.string())));
+                     fmt::arg("folder", ShellWord(job.output_folder.string())),
+                     fmt::arg("renderer", RendererOptionText(job)));
 }
 
 std::string ArrayFinishingScript(const ClusterJob& job) {
   return fmt::format(kArrayFinishingScript, ShellWord(job.submitter.string()),
-                     ShellWord(job.output_folder.string()));
+                     ShellWord(job.output_folder.string()), RendererOptionText(job));
 }
 
 Result<fs::path> WriteFarmFiles(const ClusterJob& job, const std::vector<size_t>& numbers,
                                 const fs::path& folder) {
-  LF_RETURN_IF_ERROR(CheckPaths(job));
+  LF_RETURN_IF_ERROR(CheckFarmPaths(job));
   LF_RETURN_IF_ERROR(CreateFolder(folder));
   if (job.engine == ClusterEngine::kOpenJd) {
     LF_RETURN_IF_ERROR(WriteFileAtomically(folder / "template.yaml", OpenJdTemplate(job, numbers)));

@@ -13,6 +13,11 @@
 
 namespace lf {
 
+// Returns true if the user submits the tasks of the job to a farm.
+inline bool IsForFarm(const ClusterJob& job) {
+  return job.engine == ClusterEngine::kOpenJd || job.engine == ClusterEngine::kArray;
+}
+
 // Returns a job template of Open Job Description (jobtemplate-2023-09): a step whose tasks render
 // packages (`numbers`: indices in job.packages, ascending), and a step that makes contact sheet and
 // video. Tasks get SIGTERM two minutes before they are killed. The first step is left out if there
@@ -26,9 +31,14 @@ std::string ArrayScript(const ClusterJob& job);
 // Returns a batch script for the finishing task.
 std::string ArrayFinishingScript(const ClusterJob& job);
 
+// Returns kUsage if WriteFarmFiles() would, because a path of the job contains characters that
+// files for farms cannot contain: control characters, "{{" and bytes that are not UTF-8 in
+// templates.
+Result<void> CheckFarmPaths(const ClusterJob& job);
+
 // Writes template.yaml (kOpenJd), or packages.sh and finish.sh (kArray) into a folder, which it
-// creates, and returns the path of the first. kUsage: a path contains characters that such files
-// cannot contain. kOutput: the folder cannot be written.
+// creates, and returns the path of the first. kUsage: CheckFarmPaths(). kOutput: the folder cannot
+// be written.
 Result<std::filesystem::path> WriteFarmFiles(const ClusterJob& job,
                                              const std::vector<size_t>& numbers,
                                              const std::filesystem::path& folder);

@@ -48,13 +48,36 @@ TEST(FarmFiles, ScriptsQuoteTheirPaths) {
 }
 
 TEST(FarmFiles, PathsThatFilesCannotContainAreRefused) {
-  for (const char* folder : {"/films/a\nb", "/films/{{Param.JobFolder}}"}) {
+  for (const char* folder : {"/films/a\nb", "/films/{{Param.JobFolder}}", "/films/\xff"}) {
     ClusterJob job = FilmOfThree();
     job.output_folder = folder;
     const auto written = WriteFarmFiles(job, {0}, "/nonexistent/bundle");
     ASSERT_FALSE(written) << folder;
     EXPECT_EQ(written.error().kind, ErrorKind::kUsage);
   }
+}
+
+TEST(FarmFiles, AnotherLfrendererIsNamedByTheTasks) {
+  ClusterJob job = FilmOfThree();
+  job.renderer = "/opt/lf/lfrenderer";  // the one beside lfsubmit
+  for (const std::string& text :
+       {OpenJdTemplate(job, {0}), ArrayScript(job), ArrayFinishingScript(job)})
+    EXPECT_FALSE(Contains(text, "--lfrenderer")) << text;
+  job.renderer = "/new/lfrenderer";
+  for (const std::string& text : {ArrayScript(job), ArrayFinishingScript(job)})
+    EXPECT_TRUE(Contains(text, " --lfrenderer /new/lfrenderer")) << text;
+  const std::string text = OpenJdTemplate(job, {0});
+  EXPECT_TRUE(Contains(text, R"(openjd, "--lfrenderer", "/new/lfrenderer"])")) << text;
+  EXPECT_TRUE(Contains(text, R"("{{Param.JobFolder}}", "--lfrenderer", "/new/lfrenderer"])"));
+  EXPECT_TRUE(Contains(text, R"("$1" --run-finish "${@:2}" --progress openjd &)"));
+}
+
+TEST(FarmFiles, NamesOfAnyBytesAreKeptByScripts) {
+  ClusterJob job = FilmOfThree();
+  job.engine = ClusterEngine::kArray;
+  job.output_folder = "/films/\xff";
+  EXPECT_TRUE(CheckFarmPaths(job));
+  EXPECT_TRUE(Contains(ArrayScript(job), "'/films/\xff'"));
 }
 
 }  // namespace

@@ -57,8 +57,8 @@ std::string FaultOf(const ClusterJob& job) {
 }
 
 Json PackageToJson(const JobPackage& package) {
-  return {{"file", package.file.string()},
-          {"name", package.name},
+  return {{"file", NameToJson(package.file.string())},
+          {"name", NameToJson(package.name)},
           {"frames", FrameRangeText(package.frames)},
           {"is_whole", package.is_whole},
           {"rays", package.ray_count}};
@@ -106,6 +106,21 @@ bool ClusterJob::IsCancelled() const {
   return fs::exists(CancelFile(), ignored);
 }
 
+std::vector<std::string> RendererOption(const ClusterJob& job) {
+  if (job.renderer.empty() || job.renderer == job.submitter.parent_path() / "lfrenderer") return {};
+  return {"--lfrenderer", job.renderer.string()};
+}
+
+std::string RendererOptionText(const ClusterJob& job) {
+  std::string text;
+  for (const std::string& word : RendererOption(job)) text += " " + ShellWord(word);
+  return text;
+}
+
+std::string ResumeCommand(const ClusterJob& job) {
+  return JobCommand("--resume", job.output_folder) + RendererOptionText(job);
+}
+
 ClusterTask PackageTask(const ClusterJob& job, size_t number) {
   const std::string& name = job.packages[number].name;
   const fs::path folder = job.Folder() / "packages";
@@ -132,14 +147,14 @@ std::string FrameRangeText(const std::vector<FrameId>& frames) {
 std::string ToJson(const ClusterJob& job) {
   Json packages = Json::array();
   for (const JobPackage& package : job.packages) packages.push_back(PackageToJson(package));
+  Json arguments = Json::array();
+  for (const std::string& argument : job.arguments) arguments.push_back(NameToJson(argument));
   const Json json = {{"format", kJobFormat},
-                     {"output_folder", job.output_folder.string()},
-                     {"working_folder", job.working_folder.string()},
-                     {"lfrenderer", job.renderer.string()},
-                     {"lfsubmit", job.submitter.string()},
-                     {"arguments", job.arguments},
+                     {"output_folder", NameToJson(job.output_folder.string())},
+                     {"working_folder", NameToJson(job.working_folder.string())},
+                     {"arguments", std::move(arguments)},
                      {"frame_extension", job.frame_extension},
-                     {"video", job.video ? job.video->string() : ""},
+                     {"video", NameToJson(job.video ? job.video->string() : "")},
                      {"contact_sheet", job.contact_sheet},
                      {"engine", NameOf(job.engine)},
                      {"at_once", job.at_once},
@@ -155,15 +170,13 @@ std::string ToJson(const ClusterJob& job) {
 }
 
 Result<ClusterJob> ParseJob(std::string_view text, const std::string& name) {
-  std::string fault, engine, video, output, working, renderer, submitter;
+  std::string fault, engine, video, output, working;
   ClusterJob job;
   const Json json = ParseRecord(text, kJobFormat, &fault);
   if (fault.empty()) {
     RecordFields fields(json, &fault);
     fields.Get("output_folder", &output);
     fields.Get("working_folder", &working);
-    fields.Get("lfrenderer", &renderer);
-    fields.Get("lfsubmit", &submitter);
     fields.Get("arguments", &job.arguments);
     fields.Get("frame_extension", &job.frame_extension);
     fields.Get("video", &video);
@@ -200,8 +213,6 @@ Result<ClusterJob> ParseJob(std::string_view text, const std::string& name) {
         "{}: is not a job file of lfsubmit: {}; remove the file to submit a new job", name, fault));
   job.output_folder = output;
   job.working_folder = working;
-  job.renderer = renderer;
-  job.submitter = submitter;
   if (!video.empty()) job.video = video;
   return job;
 }
@@ -218,8 +229,8 @@ Result<void> CheckMayRun(const ClusterJob& job) {
         fmt::format("{}: cannot be read: {}", job.File().string(), std::strerror(errno)));
   if (status.st_uid == ::geteuid() || status.st_uid == 0) return {};
   return UsageError(fmt::format(
-      "{}: belongs to the user with id {}; the program that this file names would run with "
-      "your rights: submit the packages again, into a folder of your own",
+      "{}: belongs to the user with id {}; lfrenderer would run with your rights and with the "
+      "options that this file names: submit the packages again, into a folder of your own",
       job.File().string(), status.st_uid));
 }
 

@@ -47,8 +47,10 @@ struct JobPackage {
 struct ClusterJob {
   std::filesystem::path output_folder;   // folder DIR of the frames and of the job's own files
   std::filesystem::path working_folder;  // folder where lfrenderer runs; relative paths start here
-  std::filesystem::path renderer;        // path of lfrenderer
-  std::filesystem::path submitter;       // path of lfsubmit, for batch scripts
+  // The two programs that run are those of the call. The folder of a job does not name them,
+  // because it may come from somebody else, in an archive: ReadJob() leaves them empty.
+  std::filesystem::path renderer;   // path of lfrenderer
+  std::filesystem::path submitter;  // path of lfsubmit, for batch scripts
   std::vector<JobPackage> packages;
   std::vector<std::string> arguments;  // arguments of lfrenderer for all packages
   std::string frame_extension = ".exr";
@@ -87,6 +89,14 @@ struct ClusterTask {
 ClusterTask PackageTask(const ClusterJob& job, size_t number);
 ClusterTask FinishingTask(const ClusterJob& job);
 
+// Returns the words by which a task of the job tells lfsubmit which lfrenderer to run: --lfrenderer
+// and its path, or none if it is the one beside lfsubmit.
+std::vector<std::string> RendererOption(const ClusterJob& job);
+// Returns these words for a shell, each after a blank.
+std::string RendererOptionText(const ClusterJob& job);
+// Returns the command that continues the job, for messages.
+std::string ResumeCommand(const ClusterJob& job);
+
 // Returns a text such as "1-3,7", which ParseFrameRange() reads.
 //   frames  ascending
 std::string FrameRangeText(const std::vector<FrameId>& frames);
@@ -102,8 +112,8 @@ Result<ClusterJob> ReadJob(const std::filesystem::path& output_folder);
 // Returns the command that advises what to do with a job, such as `lfsubmit --resume film`.
 std::string JobCommand(const std::string& option, const std::filesystem::path& output_folder);
 
-// Returns kUsage if job.json belongs to another user (except root), because the commands in it
-// would run with the rights of the caller. kInput: job.json cannot be read.
+// Returns kUsage if job.json belongs to another user (except root), because lfrenderer would run
+// with the options in it and the rights of the caller. kInput: job.json cannot be read.
 Result<void> CheckMayRun(const ClusterJob& job);
 
 }  // namespace lf

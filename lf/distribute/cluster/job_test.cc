@@ -38,6 +38,44 @@ TEST(ClusterJob, IsTheSameWhenWrittenAndRead) {
   EXPECT_EQ(*job->video, "/films/film.mp4");
 }
 
+TEST(ClusterJob, DoesNotNameThePrograms) {
+  const std::string text = ToJson(SomeJob());
+  EXPECT_EQ(text.find("/bin/"), std::string::npos) << text;
+  const std::string with_program =
+      text.substr(0, text.find('{') + 1) +
+      "\n  \"lfrenderer\": \"/tmp/evil\", \"lfsubmit\": \"/tmp/evil\"," +
+      text.substr(text.find('{') + 1);
+  const Result<ClusterJob> job = ParseJob(with_program, "job");
+  ASSERT_TRUE(job.has_value()) << job.error().message;
+  EXPECT_EQ(job->renderer, "");
+  EXPECT_EQ(job->submitter, "");
+  EXPECT_TRUE(RendererOption(SomeJob()).empty());
+  ClusterJob other = SomeJob();
+  other.renderer = "/opt/lfrenderer";
+  EXPECT_EQ(RendererOption(other), (std::vector<std::string>{"--lfrenderer", "/opt/lfrenderer"}));
+  EXPECT_EQ(ResumeCommand(other), "lfsubmit --resume '/films/a film' --lfrenderer /opt/lfrenderer");
+  EXPECT_EQ(ResumeCommand(SomeJob()), "lfsubmit --resume '/films/a film'");
+}
+
+TEST(ClusterJob, KeepsNamesThatAreNotUtf8) {
+  ClusterJob job = SomeJob();
+  job.working_folder = "/films/\xff";
+  job.packages[0].file = "/p\xfe/package-0000.lfp";
+  job.video = "/films/\xff.mp4";
+  job.arguments = {"--cache", "/a\xff\xfe"};
+  const Result<ClusterJob> read = ParseJob(ToJson(job), "job");
+  ASSERT_TRUE(read.has_value()) << read.error().message;
+  EXPECT_EQ(read->working_folder, job.working_folder);
+  EXPECT_EQ(read->packages[0].file, job.packages[0].file);
+  EXPECT_EQ(*read->video, *job.video);
+  EXPECT_EQ(read->arguments, job.arguments);
+  std::string damaged = ToJson(job);
+  const size_t digits = damaged.find("2f66696c6d732fff");  // /films/ and the byte
+  ASSERT_NE(digits, std::string::npos) << damaged;
+  damaged[digits] = 'x';
+  EXPECT_FALSE(ParseJob(damaged, "job").has_value());
+}
+
 TEST(ClusterJob, IsRefusedWhereItsNamesWouldLeaveTheFolder) {
   for (const char* name :
        {"../../etc/passwd", "/etc/passwd", "a/../../b", "..", ".hidden", "", "a\nb"}) {

@@ -77,8 +77,7 @@ Result<void> MakeRoomForJob(const ClusterJob& job, bool overwrite) {
     return UsageError(fmt::format(
         "{}: contains a job already: remove it and its frames with --overwrite (to remove the "
         "job and keep its frames, remove {}), or continue it: {}",
-        job.output_folder.string(), job.Folder().string(),
-        JobCommand("--resume", job.output_folder)));
+        job.output_folder.string(), job.Folder().string(), ResumeCommand(job)));
   if (before && HasTasksAtWork(LookAtJob(*before)))
     return UsageError(fmt::format("{}: the job in this folder is still running: end it first: {}",
                                   job.output_folder.string(),
@@ -148,7 +147,7 @@ Result<void> CancelJob(const ClusterJob& job, const std::atomic<bool>& stop) {
         JobCommand("--status", job.output_folder)));
   LogInfo(
       "cancelled: {} of {} frames are done, and the state of the others is kept; to continue: {}",
-      status.frames_done(), status.frame_total(), JobCommand("--resume", job.output_folder));
+      status.frames_done(), status.frame_total(), ResumeCommand(job));
   return {};
 }
 

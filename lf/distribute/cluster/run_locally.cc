@@ -14,7 +14,6 @@
 
 #include "lf/core/file.h"
 #include "lf/core/log.h"
-#include "lf/core/shell_word.h"
 #include "lf/distribute/cluster/run_package.h"
 
 namespace lf {
@@ -54,7 +53,7 @@ Result<void> RunLocally(const ClusterJob& job, const FileLock& /*lock*/,
     if (tick % 5 == 0) look();
   }
   for (std::thread& thread : threads) thread.join();
-  const std::string again = "to continue: " + JobCommand("--resume", job.output_folder);
+  const std::string again = "to continue: " + ResumeCommand(job);
   if (job.IsCancelled()) return Error{ErrorKind::kInterrupted, "the job was cancelled; " + again};
   if (stop)
     return Error{ErrorKind::kInterrupted,

@@ -213,8 +213,7 @@ Result<void> CheckAllDone(const ClusterJob& job) {
   }
   if (words.empty()) return {};
   return Error{kind, fmt::format("{}: not all packages are done: {}; to continue: {}",
-                                 job.output_folder.string(), words,
-                                 JobCommand("--resume", job.output_folder))};
+                                 job.output_folder.string(), words, ResumeCommand(job))};
 }
 
 }  // namespace
@@ -338,7 +337,7 @@ Result<void> FinishFilm(const ClusterJob& job, const std::string& node,
       ErrorKind::kBelowRequired,
       fmt::format("{}; --overwrite renders the film anew; to check it again with other options of "
                   "lfrenderer, such as --allow-missing: {} -- OPTIONS",
-                  last, JobCommand("--resume", job.output_folder))};
+                  last, ResumeCommand(job))};
 }
 
 }  // namespace lf

@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "lf/core/child_process.h"
 #include "lf/core/file.h"
 #include "lf/core/log.h"
+#include "lf/core/parse_number.h"
 #include "lf/core/shell_word.h"
 
 namespace lf {
@@ -109,10 +109,15 @@ std::string PackagesScript(const ClusterJob& job) {
           "To submit all:\n"
           "# sbatch --array={} {}\n"
           "\n"
+          "if [[ ! $SLURM_ARRAY_TASK_ID ]]; then\n"
+          "  echo 'error: SLURM_ARRAY_TASK_ID, the number of the package, is empty: submit this "
+          "script as an array' >&2\n"
+          "  exit 2\n"
+          "fi\n"
           "is_ending=\n"
           "trap 'is_ending=1; kill -TERM $task' TERM\n"
           "for start in {{1..10}}; do\n"
-          "  {} --run-package \"$SLURM_ARRAY_TASK_ID\" {} &\n"
+          "  {} --run-package \"$SLURM_ARRAY_TASK_ID\" {}{} &\n"
           "  task=$!\n"
           "  wait $task\n"
           "  code=$?\n"
@@ -133,7 +138,7 @@ std::string PackagesScript(const ClusterJob& job) {
           "exit $code\n",
           fmt::format("0-{}", job.packages.size() - 1),
           ShellWord((job.Folder() / "packages.sbatch").string()), ShellWord(job.submitter.string()),
-          ShellWord(job.output_folder.string()), cancelled);
+          ShellWord(job.output_folder.string()), RendererOptionText(job), cancelled);
   return text;
 }
 
@@ -144,8 +149,9 @@ std::string FinishingScript(const ClusterJob& job) {
              "writes the\n"
              "# contact sheet and the video. Fails if frames are missing, and names them.\n"
              "\n"
-             "exec {} --run-finish {}\n",
-             ShellWord(job.submitter.string()), ShellWord(job.output_folder.string()));
+             "exec {} --run-finish {}{}\n",
+             ShellWord(job.submitter.string()), ShellWord(job.output_folder.string()),
+             RendererOptionText(job));
 }
 
 std::string ArrayText(const std::vector<size_t>& numbers) {
@@ -164,7 +170,7 @@ Result<void> SubmitToSlurm(ClusterJob* job, const std::vector<size_t>& numbers) 
   const fs::path packages = job->Folder() / "packages.sbatch",
                  finish = job->Folder() / "finish.sbatch";
   // A line break in a path would end a comment or #SBATCH line, even inside quotes.
-  for (const fs::path& path : {job->output_folder, job->submitter})
+  for (const fs::path& path : {job->output_folder, job->submitter, job->renderer})
     if (const std::string text = path.string(); OneLine(text) != text)
       return UsageError(fmt::format(
           "{}: contains a line break or another control character, which batch scripts of "
@@ -227,11 +233,9 @@ std::vector<QueuedTask> ParseQueue(std::string_view text, const ClusterJob& job)
     task.is_finishing = !id.empty() && id == job.slurm_finishing_id;
     if (!task.is_finishing) {
       const auto known = std::find(job.slurm_array_ids.begin(), job.slurm_array_ids.end(), id);
-      const char* const end = index.data() + index.size();
-      const auto [rest, error] = std::from_chars(index.data(), end, task.number);
-      if (known == job.slurm_array_ids.end() || error != std::errc{} || rest != end ||
-          task.number >= job.packages.size())
-        continue;
+      const auto number = ParseWhole<size_t>(index);
+      if (known == job.slurm_array_ids.end() || !number || *number >= job.packages.size()) continue;
+      task.number = *number;
     }
     tasks.push_back(std::move(task));
   }

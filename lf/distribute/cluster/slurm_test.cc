@@ -40,6 +40,19 @@ TEST(SlurmScripts, AreBash) {
   }
 }
 
+TEST(SlurmScripts, EndWhereTheNumberOfThePackageIsEmpty) {
+  ClusterJob job = SlurmJob();
+  job.submitter = "/bin/echo";
+  for (const char* const variable : {"SLURM_ARRAY_TASK_ID=", "OTHER=1"}) {
+    const auto answer = RunCommand(
+        {"env", "-u", "SLURM_ARRAY_TASK_ID", variable, "bash", "-c", PackagesScript(job)}, 10);
+    ASSERT_TRUE(answer.has_value()) << answer.error().message;
+    EXPECT_EQ(answer->exit_code, 2);
+    EXPECT_NE(answer->complaints.find("SLURM_ARRAY_TASK_ID"), std::string::npos);
+    EXPECT_EQ(answer->output, "");
+  }
+}
+
 TEST(SlurmArray, JoinsNeighbours) {
   EXPECT_EQ(ArrayText({0, 1, 2, 5, 7, 8}), "0-2,5,7-8");
   EXPECT_EQ(ArrayText({4}), "4");

@@ -5,10 +5,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -19,6 +22,42 @@
 namespace lf {
 
 using Json = nlohmann::ordered_json;
+
+// Returns true if the text is UTF-8, which JSON requires. Names of files may have any bytes.
+inline bool IsUtf8(const std::string& text) {
+  try {
+    return !Json(text).dump().empty();
+  } catch (const Json::exception&) {
+    return false;
+  }
+}
+
+// Returns the JSON of a name that is read again by RecordFields::Get(), to the byte: the text or,
+// if it is not UTF-8, {"bytes": "61ff62"} with two hexadecimal digits for each byte.
+inline Json NameToJson(const std::string& name) {
+  if (IsUtf8(name)) return name;
+  std::string digits;
+  for (const char c : name) digits += fmt::format("{:02x}", static_cast<unsigned char>(c));
+  return {{"bytes", digits}};
+}
+
+// Returns the text of the JSON of a text or of NameToJson(); nullopt for any other JSON.
+inline std::optional<std::string> NameFromJson(const Json& json) {
+  if (json.is_string()) return json.get<std::string>();
+  if (!json.is_object() || json.size() != 1 || !json.contains("bytes") ||
+      !json["bytes"].is_string())
+    return std::nullopt;
+  const std::string digits = json["bytes"].get<std::string>();
+  std::string name;
+  for (size_t i = 0; i < digits.size(); i += 2) {
+    unsigned char byte = 0;
+    const char* const end = digits.data() + std::min(i + 2, digits.size());
+    const auto [rest, error] = std::from_chars(digits.data() + i, end, byte, 16);
+    if (error != std::errc() || rest != digits.data() + i + 2) return std::nullopt;
+    name += static_cast<char>(byte);
+  }
+  return name;
+}
 
 // Reads values of a JSON object by their keys. Get() leaves `value` unchanged if the key is missing
 // or the type is wrong; but if an item of a list or object has a wrong type, the items before it
@@ -47,10 +86,11 @@ class RecordFields {
         Complain(key, "a whole number");
     }
   }
+  // Reads a text or a name (NameToJson()).
   void Get(const char* key, std::string* value) {
     if (const Json* json = Find(key)) {
-      if (json->is_string())
-        *value = json->get<std::string>();
+      if (const auto name = NameFromJson(*json))
+        *value = *name;
       else
         Complain(key, "text");
     }
@@ -83,8 +123,9 @@ class RecordFields {
   }
   void Get(const char* key, std::vector<std::string>* values) {
     for (const Json* item : List(key)) {
-      if (!item->is_string()) return Complain(key, "a list of texts");
-      values->push_back(item->get<std::string>());
+      const std::optional<std::string> name = NameFromJson(*item);
+      if (!name) return Complain(key, "a list of texts");
+      values->push_back(*name);
     }
   }
   // Returns the items of a list; empty if the key is missing or its value is no list.
@@ -128,8 +169,9 @@ inline Json ParseRecord(std::string_view text, const char* format, std::string* 
   return fault->empty() ? std::move(json) : Json::object();
 }
 
-// Returns the text of a JSON value. Bytes that are not UTF-8 are replaced, because names may have
-// any bytes.
+// Returns the text of a JSON value. Bytes that are not UTF-8 are replaced by U+FFFD, because names
+// may have any bytes: reports are for people, and no program uses their names again. A name that is
+// used again is written by NameToJson().
 inline std::string RecordText(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
