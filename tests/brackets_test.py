@@ -185,7 +185,8 @@ class BracketsTest(ProgramTestCase):
         report = json.loads(self.succeeds(IMPORTER, field, "--json", "--gain-from-exif",
                                           "--distance", 1000))
         self.assertEqual(self.kinds(report), ["brackets"])
-        self.assertNotIn("exif", report["warnings"][0]["message"])
+        self.assertTrue(report["warnings"][0]["message"].endswith(
+            f"lfimport {field} --json --gain-from-exif --distance 1000 --mask-clipped -o merged"))
         self.assertEqual(report["exif_gains"], {"images": 3 * POSES, "gain_min": 0.25, "gain_max": 4,
                                                 "has_f_numbers": True})
         report = json.loads(self.succeeds(IMPORTER, self.merged(field), "--json", "--distance", 1000))

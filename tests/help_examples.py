@@ -8,7 +8,7 @@ import numpy as np
 from PIL import Image
 
 import small_field
-from printed_commands import PROGRAMS
+from printed_commands import PROGRAMS, save_photograph
 
 COMMANDS = ("stack", "depth", "sharp", "through", "epi", "views")
 # Examples that are not run, each with the reason. A key is the beginning of the example.
@@ -58,12 +58,6 @@ def line_of(call, example):
     return "; ".join([*lines, example])
 
 
-def with_exif(pixels, file, time_s):
-    exif = Image.Exif()
-    exif[0x8769] = {0x829A: time_s, 0x829D: 8.0, 0x8827: 100}
-    Image.fromarray(pixels).save(file, exif=exif, quality=95)
-
-
 def make_world(folder: pathlib.Path, shell):
     """Makes the files that the examples read."""
     folder.mkdir()
@@ -96,8 +90,8 @@ def make_world(folder: pathlib.Path, shell):
     for i in range(4):
         for stop, time_s in enumerate((0.01, 0.04)):
             name = f"b{i}_{stop}.jpg"
-            with_exif(np.minimum(small_field.wall(i).astype(int) * 4 ** stop, 255).astype(np.uint8),
-                      folder / "brackets" / name, time_s)
+            save_photograph(np.minimum(small_field.wall(i).astype(int) * 4 ** stop, 255).astype(np.uint8),
+                            folder / "brackets" / name, time_s)
             frames.append(dict(field["frames"][i], file_path=name))
     small = {"fl_x": 70, "fl_y": 70, "cx": 32, "cy": 24, "w": 64, "h": 48, "frames": frames}
     (folder / "brackets" / "transforms.json").write_text(json.dumps(small))

@@ -284,6 +284,8 @@ class ImportTest(unittest.TestCase):
                                (EXAMPLE, "-o", self.folder / "p.yaml"), (IMPORT,)):
             last = self.run_tool(program, grid, *rest, code=3).stderr.strip().splitlines()[-1]
             command = f"lfimport '{grid}' -o '{grid}' --pitch 1 --focal-px 32"
+            if program == IMPORT:  # repeats the call
+                command = f"lfimport '{grid}' --pitch 1 --focal-px 32 -o '{grid}'"
             self.assertTrue(last.endswith(command), last)
         # The suggested command works.
         shell = command.replace("lfimport", str(IMPORT), 1)

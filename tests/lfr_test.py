@@ -67,7 +67,7 @@ class LfrTest(ProgramTestCase):
 
     def test_an_unknown_command_names_the_nearest(self):
         self.fails(2, ["rendr: unknown command; did you mean 'render'?"], BIN / "lfr", "rendr", "--whatever")
-        self.fails(2, ["xyzzy: unknown command; lfr --help lists"], BIN / "lfr", "xyzzy")
+        self.fails(2, ["xyzzy: unknown command; to list the commands: lfr --help"], BIN / "lfr", "xyzzy")
         self.fails(2, ["rendr: unknown command"], BIN / "lfr", "help", "rendr")
         self.fails(2, ["--no-such-option"], BIN / "lfr", "--no-such-option")
         self.fails(2, [": unknown command"], BIN / "lfr", "")

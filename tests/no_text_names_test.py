@@ -108,9 +108,8 @@ class NoTextNamesTest(ProgramTestCase):
         images = self.place / "images"
         images.mkdir()
         for number, image in enumerate(sorted(self.calls.field.rglob("*.png"))):
-            place = os.fsdecode(b"_00_0%d_%d_0_\xff.png" % (number, number))
-            shutil.copy(image, images / f"out{place}")
-        done = self.run_in_bytes([BIN / "lfimport", images, "--focal-px", "100", "-o", self.place / "imported"], code=2)
+            shutil.copy(image, images / os.fsdecode(b"\xff_00_0%d_0.0_%d.0_10_10.png" % (number, number)))
+        done = self.run_in_bytes([BIN / "lfimport", images, "-o", self.place / "imported"], code=2)
         self.assertIn(b"is not UTF-8", done.stderr.splitlines()[-1])
         self.assertFalse((self.place / "imported").exists())
 

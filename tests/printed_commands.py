@@ -18,7 +18,7 @@ from source_messages import PROGRAMS
 
 COMMAND = re.compile(r"(?:: |^  )((?:" + "|".join(PROGRAMS) + r")(?: .*)?)$", re.M)
 TRY = re.compile(r"Try '([^']+)'")
-# What people replace in a printed command, because no program can know it.
+# The words that people replace in a printed command, because no program can know them.
 PLACEHOLDERS = {
     "PATH.yaml": "a camera path of theirs",
     "LIGHTFIELD": "their light field",
@@ -101,12 +101,16 @@ def make_world(folder: pathlib.Path, shell: Shell):
     with_brackets(folder / "capture", folder / "brackets")
     write_field(folder / "flat", lambda index: np.full((48, 64, 3), 90, np.uint8))
     reduced(folder / "capture", folder / "half")
+    photographed(folder / "capture", folder / "photos")
     named_by_grid(folder / "capture", folder / "cards")
     for line in SETUP:
         shell.must(line, folder)
+    folded(folder / "sparse", folder / "folded")
 
 
 SETUP = [
+    "lfsynth still-life -o sparse --count 16 --size 160x120 --spacing 0.02 --format png -q",
+    "lfexample sparse -o sparse.yaml --move static -q && sed -i 's/diameter: [0-9.]*/diameter: 0.05/' sparse.yaml",
     "lfpreprocessor capture path.yaml -o packages --packages 2 -q",
     "lfpreprocessor capture path.yaml -o plain --lens-weights none -q",
     "lfpreprocessor capture path.yaml -o few --max-images 4 -q",
@@ -130,6 +134,35 @@ def with_alpha(source, folder):
         alpha[:10, :10] = 0
         alpha[10:14, :10] = 128
         Image.fromarray(np.concatenate([pixels, alpha], axis=2)).save(file)
+
+
+def folded(source, folder):
+    """Copies a light field of 4 x 4 LF cameras, every second of which sees the world turned upside down, as the
+    opposite one sees it."""
+    shutil.copytree(source, folder)
+    frames = json.loads((folder / "transforms.json").read_text())["frames"]
+    for row in range(4):
+        for column in range(row % 2, 4, 2):
+            opposite = Image.open(source / frames[15 - 4 * row - column]["file_path"])
+            opposite.transpose(Image.Transpose.ROTATE_180).save(folder / frames[4 * row + column]["file_path"])
+
+
+def save_photograph(pixels, file, time_s):
+    """Writes a JPEG file that states its exposure."""
+    exif = Image.Exif()
+    exif[0x8769] = {0x829A: time_s, 0x829D: 8.0, 0x8827: 100}  # exposure time, f-number, ISO sensitivity
+    Image.fromarray(pixels).save(file, exif=exif, quality=95)
+
+
+def photographed(source, folder):
+    """Copies a light field as photographs that state their exposure, all but one; one states a wrong time."""
+    changed(source, folder, lambda frames: [frame.update(file_path=frame["file_path"].replace(".png", ".jpg"))
+                                            for frame in frames])
+    for file in list(folder.glob("*.png")):
+        save_photograph(np.asarray(Image.open(file)), file.with_suffix(".jpg"),
+                        1e-9 if file.stem == "image_09" else 0.01)
+        file.unlink()
+    Image.open(folder / "image_07.jpg").save(folder / "image_07.jpg")
 
 
 def changed(source, folder, change):

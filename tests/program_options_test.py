@@ -163,7 +163,8 @@ class ProgramOptionsTest(ProgramTestCase):
                 count += 1
                 for word in wrong:
                     with self.subTest(program=name, option=long_name, word=word):
-                        self.refuses(name, *CALLS[name], long_name, *[word] * option["value_count"], option=long_name)
+                        call = CALLS.get(name, ["no", "no.yaml", "-o", "no"])
+                        self.refuses(name, *call, long_name, *[word] * option["value_count"], option=long_name)
         self.assertGreater(count, 100)
         for word in "20x20x", "x20x20", "20xx20":
             self.refuses("lfpath", "no.yaml", "--resolution", word, option="--resolution")

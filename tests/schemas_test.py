@@ -378,7 +378,7 @@ class SchemasTest(ProgramTestCase):
         (self.folder / "packages").rename(no_text)
         for package in no_text.glob("*.lfp"):
             package.rename(no_text / (package.stem + os.fsdecode(b"\xff.lfp")))
-        self.succeeds(PROGRAMS / "lfsubmit", *no_text.glob("*.lfp"), "-o", no_text / "film", "--engine", "array")
+        self.succeeds(PROGRAMS / "lfsubmit", *no_text.glob("*.lfp"), "-o", no_text / "film", "--engine", "array", "-q")
         self.valid_file("job", no_text / "film/cluster/job.json")
         self.covered("job", [f"{key}/bytes" for key in ("working_folder", "arguments", "video")])
         for name in "job_task", "job_finish":

@@ -87,7 +87,11 @@ void WarnOfOthers(const fs::path& folder, const Listing& listing) {
 std::string ImportCommand(const fs::path& folder, const StanfordOptions& options, bool needs_pitch,
                           int width_px) {
   std::vector<std::string> missing;
-  if (needs_pitch && !options.pitch_w) missing.insert(missing.end(), {"--pitch", "1"});
+  if (needs_pitch && !(options.pitch_w && options.import_again)) {
+    const Vec2 pitch_w = options.pitch_w.value_or(Vec2(1, 1));
+    missing.insert(missing.end(), {"--pitch", fmt::format("{},{}", pitch_w.x(), pitch_w.y())});
+    if (pitch_w.x() == pitch_w.y()) missing.back() = fmt::format("{}", pitch_w.x());
+  }
   if (!options.focal_px || !options.import_again)
     missing.insert(missing.end(),
                    {"--focal-px", fmt::format("{}", options.focal_px.value_or(width_px))});
