@@ -30,6 +30,7 @@
 #include "lf/analysis/depth/depth_map.h"
 #include "lf/analysis/focus_stack/focus_planes.h"
 #include "lf/core/log.h"
+#include "lf/core/output_files.h"
 #include "lf/film/develop/frame_file.h"
 #include "lf/import/paths/open_path.h"
 #include "lf/render/pipeline/check_outputs.h"
@@ -150,10 +151,9 @@ Result<void> CheckOutputs(const DepthArguments& a, const LightField& light_field
       return UsageError(fmt::format(
           "{}: exists already: give another name, or replace it with --overwrite", output));
   }
-  std::vector<std::filesystem::path> inputs = FilesOfLightField(light_field);
-  inputs.emplace_back(a.light_field.path);
+  std::vector<std::filesystem::path> inputs = FilesOfLightField(light_field, a.light_field.path);
   for (std::filesystem::path& file : FilesOfPath(a.frame.path)) inputs.push_back(std::move(file));
-  return CheckReplacesNone({a.outputs.begin(), a.outputs.end()}, inputs);
+  return CheckOutputFiles({a.outputs.begin(), a.outputs.end()}, inputs);
 }
 
 Result<DepthRange> RangeOf(const DepthArguments& a, const LightField& light_field,
@@ -175,6 +175,7 @@ struct Made {
   DepthMap map;
   DevelopedFrame picture;
   DepthRange range;
+  std::vector<FileLock> locks;  // of the outputs
 };
 
 Result<Made> Make(const DepthArguments& a, const CommonOptions& common, ThreadPool& pool,
@@ -186,10 +187,12 @@ Result<Made> Make(const DepthArguments& a, const CommonOptions& common, ThreadPo
   LF_ASSIGN_OR_RETURN(options.memory_bytes, ParseByteSize(a.memory, "--memory"));
   LF_ASSIGN_OR_RETURN(const LightField light_field, a.light_field.Open());
   LF_RETURN_IF_ERROR(CheckOutputs(a, light_field));
+  Made made;
+  LF_ASSIGN_OR_RETURN(made.locks, LockOutputs({a.outputs.begin(), a.outputs.end()}));
+  LF_RETURN_IF_ERROR(CheckOutputs(a, light_field));  // another call may have ended just now
   LF_ASSIGN_OR_RETURN(const CameraPath path,
                       a.frame.Open(light_field, a.light_field.path, PathOptions::Surface::kName));
   const RenderCamera& camera = path.Camera(a.frame.id());
-  Made made;
   LF_ASSIGN_OR_RETURN(made.range, RangeOf(a, light_field, camera, pool));
   options.range = made.range;
   options.plane_count = a.planes;

@@ -25,6 +25,7 @@
 #include "lf/analysis/epi/epipolar_picture.h"
 #include "lf/analysis/focus_stack/focus_planes.h"
 #include "lf/core/log.h"
+#include "lf/core/output_files.h"
 #include "lf/light_field/model/capture_geometry.h"
 #include "lf/light_field/model/radiance.h"
 #include "lf/pixels/files/image_file.h"
@@ -166,9 +167,8 @@ Result<void> CheckOutput(const Arguments& a, const LightField& light_field) {
   if (!a.overwrite && std::filesystem::exists(a.output, error))
     return UsageError(fmt::format(
         "{}: exists already: give another name, or replace it with --overwrite", a.output));
-  std::vector<std::filesystem::path> inputs = FilesOfLightField(light_field);
-  inputs.emplace_back(a.light_field.path);
-  return CheckReplacesNone({a.output}, inputs);
+  return CheckOutputFiles({std::filesystem::path(a.output)},
+                          FilesOfLightField(light_field, a.light_field.path));
 }
 
 // Returns the picture as it is written: lines are thick, and those of a column are upright.

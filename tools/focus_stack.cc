@@ -27,10 +27,12 @@
 #include "lf/core/file.h"
 #include "lf/core/geometry.h"
 #include "lf/core/log.h"
+#include "lf/core/output_files.h"
 #include "lf/import/paths/open_path.h"
 #include "lf/render/state/record_fields.h"
 
 namespace lf {
+namespace fs = std::filesystem;
 namespace {
 
 constexpr HelpTexts kHelp = {
@@ -177,7 +179,7 @@ Result<void> CheckForm(Arguments* a, bool has_format) {
 Result<std::vector<double>> GivenDistances(const Arguments& a, double unit_m) {
   Result<std::vector<double>> list = ParseFocusDistances(a.distances, "--distances", unit_m);
   std::error_code error;
-  if (list || !std::filesystem::exists(a.distances, error)) return list;
+  if (list || !fs::exists(a.distances, error)) return list;
   constexpr size_t kMostBytes = size_t{1} << 20;
   LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(a.distances, kMostBytes));
   return ParseFocusDistances(text + "\n", a.distances, unit_m);
@@ -240,8 +242,15 @@ Result<Rendered> RenderStack(const Arguments& a, const CommonOptions& common, Th
   options.render.folder.output_folder = StackFolder(options.output);
   std::optional<double> max_angle_rad;
   if (a.render.max_angle_deg > 0) max_angle_rad = RadiansFromDegrees(a.render.max_angle_deg);
-  options.inputs = StackInputs(light_field, stack, options, *ImageOrderOf(a.render.order),
-                               common.seed, max_angle_rad, a.render.densify);
+  LF_ASSIGN_OR_RETURN(options.inputs,
+                      StackInputs(light_field, stack, options, *ImageOrderOf(a.render.order),
+                                  common.seed, max_angle_rad, a.render.densify));
+  // The lock outlasts FILE.partial, which is removed when the file is complete.
+  std::optional<FileLock> lock;
+  if (FormOfStack(options.output) != FocusStackForm::kFolder) {
+    LF_RETURN_IF_ERROR(CreateFolder(fs::absolute(options.output).parent_path()));
+    LF_ASSIGN_OR_RETURN(lock, LockOutput(options.output));
+  }
   LF_ASSIGN_OR_RETURN(const bool is_finished, IsFinishedStack(stack, options));
   if (is_finished) return Rendered{std::nullopt, options, std::move(stack)};
   LF_RETURN_IF_ERROR(CheckFocusStack(light_field, options));

@@ -29,6 +29,7 @@
 #include "lf/analysis/lens_statistics/statistic_film.h"
 #include "lf/core/geometry.h"
 #include "lf/core/log.h"
+#include "lf/core/output_files.h"
 #include "lf/core/value_named.h"
 #include "lf/film/develop/frame_file.h"
 #include "lf/import/paths/open_path.h"
@@ -253,10 +254,9 @@ Result<void> CheckOutputs(const Arguments& a, const LightField& light_field) {
       return UsageError(fmt::format(
           "{} exists already: give another name, or --overwrite to replace it", output));
   }
-  std::vector<fs::path> inputs = FilesOfLightField(light_field);
-  inputs.emplace_back(a.light_field.path);
+  std::vector<fs::path> inputs = FilesOfLightField(light_field, a.light_field.path);
   for (fs::path& file : FilesOfPath(a.frame.path)) inputs.push_back(std::move(file));
-  return CheckReplacesNone({a.outputs.begin(), a.outputs.end()}, inputs);
+  return CheckOutputFiles({a.outputs.begin(), a.outputs.end()}, inputs);
 }
 
 // The light field, and the path with the focal surfaces of the frames that are made.
@@ -362,6 +362,9 @@ Result<void> RunFiles(const Arguments& a, const Program& program,
   }
   ThreadPool pool(program.common().threads);
   LF_ASSIGN_OR_RETURN(Opened opened, Open(a, false, *options.stop, pool));
+  LF_ASSIGN_OR_RETURN(const std::vector<FileLock> locks,
+                      LockOutputs({a.outputs.begin(), a.outputs.end()}));
+  LF_RETURN_IF_ERROR(CheckOutputs(a, opened.light_field));  // another call may have ended just now
   LF_ASSIGN_OR_RETURN(const StatisticFrame frame,
                       MakeOne(a, std::move(opened), options, program.common(), pool));
   for (size_t i = 0; i < formats.size(); ++i)

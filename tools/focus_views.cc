@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -26,6 +27,7 @@
 #include "lf/analysis/views/view_files.h"
 #include "lf/analysis/views/view_grid.h"
 #include "lf/core/log.h"
+#include "lf/core/output_files.h"
 #include "lf/render/pipeline/check_outputs.h"
 #include "lf/render/state/record_fields.h"
 
@@ -135,14 +137,11 @@ Result<void> CheckOutputs(const Arguments& a, const LightField& light_field, con
   std::vector<fs::path> files =
       IsArray(a) ? std::vector<fs::path>{a.output}
                  : FilesOfViews(grid, a.output, light_field.unit_m, ValuesOf(a.values));
-  std::vector<fs::path> inputs = FilesOfLightField(light_field);
-  inputs.emplace_back(a.light_field.path);
-  if (fs::is_directory(a.light_field.path, error))
-    inputs.push_back(fs::path(a.light_field.path) / "transforms.json");
   if (!IsArray(a))
     for (fs::path& other : OtherViews(grid, a.output, light_field.unit_m, ValuesOf(a.values)))
       files.push_back(std::move(other));
-  LF_RETURN_IF_ERROR(CheckReplacesNone(files, inputs));
+  LF_RETURN_IF_ERROR(CheckOutputFiles({files.begin(), files.end()},
+                                      FilesOfLightField(light_field, a.light_field.path)));
   if (a.overwrite) return {};
   const auto old = std::find_if(files.begin(), files.end(),
                                 [&](const fs::path& file) { return fs::exists(file, error); });
@@ -209,6 +208,12 @@ Result<void> Run(const Arguments& a, const CommonOptions& common) {
                       ViewGrid::Make(light_field, a.grid.first, a.grid.second));
   LF_RETURN_IF_ERROR(CheckForViews(light_field));
   LF_RETURN_IF_ERROR(CheckOutputs(a, light_field, grid));
+  // An array is one file, which is written in one step.
+  std::optional<FileLock> lock;
+  if (!IsArray(a)) {
+    LF_ASSIGN_OR_RETURN(lock, LockOutputFolder(a.output));
+    LF_RETURN_IF_ERROR(CheckOutputs(a, light_field, grid));  // another call may have ended just now
+  }
   ViewOptions options;
   LF_ASSIGN_OR_RETURN(options.memory_bytes, ParseByteSize(a.memory, "--memory"));
   if (!a.focus_distance.empty()) {

@@ -20,12 +20,12 @@
 #include "tools/compare_report.h"
 
 #include "lf/core/log.h"
+#include "lf/core/output_files.h"
 #include "lf/film/compare/compare_pictures.h"
 #include "lf/film/compare/difference_picture.h"
 #include "lf/film/compare/picture_light.h"
 #include "lf/film/compare/picture_pairs.h"
 #include "lf/pixels/files/image_file.h"
-#include "lf/render/pipeline/check_outputs.h"
 
 namespace {
 namespace fs = std::filesystem;
@@ -113,9 +113,14 @@ void AddOptions(CLI::App& app, Arguments& a) {
               "FLIP that no picture may exceed, otherwise exit code 6");
 }
 
-// Returns the file of the picture of the differences of each pair; empty if none is wanted.
-lf::Result<std::vector<fs::path>> OutputsOf(const Arguments& a,
-                                            const std::vector<lf::PicturePair>& pairs) {
+// The file of the picture of the differences of each pair; empty if none is wanted.
+struct Outputs {
+  std::vector<fs::path> files;
+  std::optional<lf::FileLock> lock;  // of the folder of several files
+};
+
+lf::Result<std::vector<fs::path>> FilesOf(const Arguments& a,
+                                          const std::vector<lf::PicturePair>& pairs) {
   std::vector<fs::path> files, inputs;
   if (a.output.empty()) return files;
   std::error_code error;
@@ -138,17 +143,22 @@ lf::Result<std::vector<fs::path>> OutputsOf(const Arguments& a,
     inputs.insert(inputs.end(), {pair.reference, pair.test});
   }
   // Inputs come first, because --overwrite does not replace them.
-  LF_RETURN_IF_ERROR(lf::CheckReplacesNone(files, inputs));
+  LF_RETURN_IF_ERROR(lf::CheckOutputFiles({files.begin(), files.end()}, inputs));
   for (const fs::path& file : files)
     if (!a.overwrite && fs::exists(file, error))
       return lf::UsageError(fmt::format(
           "{}: exists: give another name, or replace it with --overwrite", file.string()));
-  if (!is_film) return files;
-  fs::create_directories(out, error);
-  if (error)
-    return lf::OutputError(
-        fmt::format("-o {}: the folder cannot be made: {}", a.output, error.message()));
   return files;
+}
+
+lf::Result<Outputs> OutputsOf(const Arguments& a, const std::vector<lf::PicturePair>& pairs) {
+  Outputs outputs;
+  LF_ASSIGN_OR_RETURN(outputs.files, FilesOf(a, pairs));
+  std::error_code error;
+  if (outputs.files.empty() || !fs::is_directory(a.reference, error)) return outputs;
+  LF_ASSIGN_OR_RETURN(outputs.lock, lf::LockOutputFolder(a.output));
+  LF_RETURN_IF_ERROR(FilesOf(a, pairs));  // another call may have ended just now
+  return outputs;
 }
 
 lf::Error WithName(const std::string& name, lf::Error error) {
@@ -181,7 +191,7 @@ lf::Result<lf::ComparedPair> ComparePair(const Arguments& a, const lf::PicturePa
 lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   const std::atomic<bool>& is_interrupted = lf::CatchInterrupts();
   LF_ASSIGN_OR_RETURN(const auto pairs, lf::FindPicturePairs(a.reference, a.test, a.common));
-  LF_ASSIGN_OR_RETURN(const std::vector<fs::path> outputs, OutputsOf(a, pairs));
+  LF_ASSIGN_OR_RETURN(const Outputs outputs, OutputsOf(a, pairs));
   lf::ThreadPool pool(common.threads);
   lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "pictures");
   std::vector<lf::ComparedPair> compared;
@@ -191,7 +201,7 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
                        fmt::format("interrupted after {} of {} pictures; nothing is reported, and "
                                    "pictures of differences that were written stay",
                                    compared.size(), pairs.size())};
-    const fs::path* const out = outputs.empty() ? nullptr : &outputs[compared.size()];
+    const fs::path* const out = outputs.files.empty() ? nullptr : &outputs.files[compared.size()];
     LF_ASSIGN_OR_RETURN(lf::ComparedPair one, ComparePair(a, pair, out, pool));
     compared.push_back(std::move(one));
     meter.Update(compared.size(), pairs.size(), "");

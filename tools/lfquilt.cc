@@ -89,8 +89,11 @@ void AddOptions(CLI::App& app, Arguments& a) {
       ->check(CLI::Range(1, 1000));
   output.Add("--fps RATE", a.fps, "Frames per second of a video (as the frames state, else 30)")
       ->check(CLI::Range(1e-3, 1e6));
-  auto* resume =
-      running.AddFlag("--resume", a.resume, "Keep the files that exist, write the others");
+  auto* resume = running.AddFlag(
+      "--resume", a.resume,
+      "Keep the files that exist, write the others\n"
+      "A file that exists must be of the same frames and options: a file states what "
+      "it was made of.");
   running.AddFlag("--overwrite", a.overwrite, "Replace the files that exist")->excludes(resume);
 }
 

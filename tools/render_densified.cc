@@ -4,14 +4,16 @@
 #include <fmt/format.h>
 
 #include <utility>
+#include <vector>
 
 #include "tools/common/progress.h"
 #include "tools/densify_report.h"
 
 #include "lf/core/file.h"
 #include "lf/core/log.h"
+#include "lf/core/output_files.h"
 #include "lf/densify/densify.h"
-#include "lf/render/pipeline/check_outputs.h"
+#include "lf/render/pipeline/render.h"
 #include "lf/storage/packed/packed_store_file.h"
 #include "lf/storage/packed/packed_store_writer.h"
 
@@ -61,7 +63,9 @@ Result<DensifiedFilm> DensifyForFilm(LightField light_field, const CameraPath& p
                                      const CommonOptions& common, ThreadPool& pool) {
   LF_RETURN_IF_ERROR(CheckDensified(light_field, path, options));
   const DensifyOptions densify = OptionsOf(path, arguments, options);
-  LF_RETURN_IF_ERROR(CheckReplacesNone({densify.store}, options.folder.inputs));
+  std::vector<OutputFile> outputs = {{densify.store, "the densified store"}};
+  if (options.folder.video) outputs.emplace_back(*options.folder.video, "the video", "--video");
+  LF_RETURN_IF_ERROR(CheckOutputFiles(std::move(outputs), options.folder.inputs));
   LF_RETURN_IF_ERROR(CreateFolder(options.folder.output_folder));
   ProgressMeter meter(ParseProgressStyle(common.progress), "LF images");
   LF_ASSIGN_OR_RETURN(const DensifyReport report,

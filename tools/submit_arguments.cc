@@ -22,6 +22,7 @@
 #include "lf/distribute/cluster/farm_files.h"
 #include "lf/distribute/cluster/slurm.h"
 #include "lf/render/package/package_file.h"
+#include "lf/render/pipeline/check_outputs.h"
 #include "lf/render/pipeline/render.h"
 #include "lf/render/pipeline/render_packages.h"
 
@@ -34,6 +35,24 @@ uint64_t MachineMemoryBytes() {
   return pages > 0 && page_bytes > 0
              ? static_cast<uint64_t>(pages) * static_cast<uint64_t>(page_bytes)
              : uint64_t{8} << 30;
+}
+
+// kUsage if the video of the job is another of its files, or one of its packages.
+Result<void> CheckVideo(const ClusterJob& job) {
+  std::vector<FrameId> frames;
+  std::vector<std::string> names;
+  std::vector<fs::path> packages;
+  for (const JobPackage& package : job.packages) {
+    frames.insert(frames.end(), package.frames.begin(), package.frames.end());
+    names.push_back(package.name);
+    packages.push_back(package.file);
+  }
+  const FrameFormat format =
+      job.frame_extension == ".exr" ? FrameFormat::kExrHalf : FrameFormat::kPng8;
+  LF_ASSIGN_OR_RETURN(const OutputFiles outputs,
+                      MakeFilmOutputs(OutputsOfFilm(job.output_folder, frames, format, names),
+                                      job.output_folder, job.video));
+  return outputs.CheckReplacesNone(packages);
 }
 
 int MachineThreads() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
@@ -402,7 +421,10 @@ Result<void> SubmitArguments::Change(ClusterJob* job, const CommonOptions& commo
   }
   if (common.strict) MakeStrict(job);
   if (no_contact_sheet) job->contact_sheet = false;
-  if (!video.empty()) job->video = fs::absolute(video).lexically_normal();
+  if (!video.empty()) {
+    job->video = fs::absolute(video).lexically_normal();
+    LF_RETURN_IF_ERROR(CheckVideo(*job));
+  }
   if (IsForFarm(*job)) LF_RETURN_IF_ERROR(CheckFarmPaths(*job));
   return WriteJob(*job);
 }
@@ -428,6 +450,7 @@ Result<ClusterJob> SubmitArguments::MakeJob(const CommonOptions& common) const {
         {part.path, part.path.stem().string(), part.frames, part.is_whole, part.ray_count});
   job.frame_extension = FramePath("", FrameId{1}, options.folder.format).extension().string();
   if (!video.empty()) job.video = fs::absolute(video).lexically_normal();
+  LF_RETURN_IF_ERROR(CheckVideo(job));
   job.contact_sheet = !no_contact_sheet;
   LF_RETURN_IF_ERROR(TakeResources(&job, common, true));
   if (IsForFarm(job)) LF_RETURN_IF_ERROR(CheckFarmPaths(job));

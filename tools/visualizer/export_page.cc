@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <iterator>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -15,6 +17,7 @@
 #include "lf/core/check.h"
 #include "lf/core/file.h"
 #include "lf/core/log.h"
+#include "lf/core/output_files.h"
 #include "lf/view/shown_frames.h"
 
 namespace lf {
@@ -44,6 +47,16 @@ std::string MarkedPage(std::string_view html) {
   const size_t at = marked.find(kBefore);
   LF_CHECK(at != std::string::npos);
   return marked.insert(at + kBefore.size(), " data-files=\"scripts\"");
+}
+
+// kUsage if the folder has more than `known` files.
+Result<void> CheckIsNew(const fs::path& folder, std::ptrdiff_t known) {
+  std::error_code error;
+  if (!fs::exists(folder, error)) return {};
+  const fs::directory_iterator files(folder, error);
+  if (!error && std::distance(begin(files), end(files)) <= known) return {};
+  return UsageError(fmt::format("--export {}: exists already and is not empty; give a new folder",
+                                folder.string()));
 }
 
 Error Interrupted() { return {ErrorKind::kInterrupted, "interrupted; the export is incomplete"}; }
@@ -108,14 +121,13 @@ class Exporter {
 Result<ExportFacts> ExportPage(PageScene& scene, const fs::path& folder, size_t most_images,
                                size_t most_live_bytes, const std::atomic<bool>& interrupted,
                                const std::function<void(size_t, size_t)>& progress) {
-  std::error_code error;
-  if (fs::exists(folder, error) && !fs::is_empty(folder, error))
-    return UsageError(fmt::format("--export {}: exists already and is not empty; give a new folder",
-                                  folder.string()));
+  LF_RETURN_IF_ERROR(CheckIsNew(folder, 0));
   if (PageFiles().empty())
     return OutputError(
         "this lfvisualizer was built without its page, because Node.js and npm were missing: "
         "install them, and build it again");
+  LF_ASSIGN_OR_RETURN(const FileLock lock, LockOutputFolder(folder));
+  LF_RETURN_IF_ERROR(CheckIsNew(folder, 1));  // another export may have ended just now
   Exporter exporter(scene, folder);
   PathDraft& draft = *scene.first_draft();
   const std::string base = fmt::format("path/{}/", draft.id);

@@ -34,8 +34,8 @@ struct ExportFacts {
 // scripts and pictures, but no other files.
 //   folder    new or empty
 //   progress  called with numbers of steps: two for each shown frame, and one for each LF image
-// kUsage: the folder is not empty. kOutput: the disk fails, or the program was built without the
-// page. kInterrupted: `interrupted` is true.
+// kUsage: the folder is not empty. kOutput: the disk fails, another program writes into the folder,
+// or the program was built without the page. kInterrupted: `interrupted` is true.
 Result<ExportFacts> ExportPage(PageScene& scene, const std::filesystem::path& folder,
                                size_t most_images, size_t most_live_bytes,
                                const std::atomic<bool>& interrupted,

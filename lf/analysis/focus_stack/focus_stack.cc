@@ -12,15 +12,19 @@
 #include "lf/core/check.h"
 #include "lf/core/file.h"
 #include "lf/core/log.h"
+#include "lf/film/develop/file_inputs.h"
 #include "lf/film/develop/frame_file.h"
 #include "lf/film/develop/video.h"
 #include "lf/pixels/files/exr_parts.h"
+#include "lf/pixels/files/picture_header.h"
 #include "lf/render/pipeline/check_outputs.h"
 #include "lf/render/pipeline/setup_inputs.h"
 
 namespace lf {
 namespace fs = std::filesystem;
 namespace {
+
+constexpr const char* kPlanes = "planes.json";
 
 std::string PartName(FrameId plane) { return fmt::format("focus_{:04}", plane.value); }
 
@@ -39,13 +43,6 @@ bool IsOurs(const fs::path& folder) {
                      [](const fs::directory_entry& entry) {
                        return entry.path().filename().string().starts_with("densified.lfs");
                      });
-}
-
-// Returns the files that the render reads.
-std::vector<fs::path> InputsOf(const LightField& light_field, const RenderOptions& options) {
-  std::vector<fs::path> files = FilesOfLightField(light_field);
-  files.insert(files.end(), options.folder.inputs.begin(), options.folder.inputs.end());
-  return files;
 }
 
 Result<void> CheckFile(const FocusStackOptions& options) {
@@ -71,24 +68,24 @@ Result<void> CheckFile(const FocusStackOptions& options) {
   return CheckVideoTarget(options.output);
 }
 
-constexpr const char* kInputsAttribute = "lf:stack_inputs";
-
-// Returns the inputs as lines of key and value, and back.
-std::string TextOfInputs(const RunInputs& inputs) {
-  std::string text;
-  for (const auto& [key, value] : inputs) text += fmt::format("{} {}\n", key, OneLine(value));
-  return text;
-}
-RunInputs InputsOfText(const std::string& text) {
-  RunInputs inputs;
-  for (size_t begin = 0; begin < text.size();) {
-    const size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string line = text.substr(begin, end - begin);
-    const size_t blank = std::min(line.find(' '), line.size());
-    inputs.emplace_back(line.substr(0, blank), line.substr(std::min(blank + 1, line.size())));
-    begin = end + 1;
+// Returns the error of a file whose planes are not those of the stack.
+Result<void> CheckPlanes(const CameraPath& stack, const FocusStackOptions& options) {
+  const Result<std::vector<double>> distances_w =
+      NumbersOfParts(options.output, "lf:focus_distance_w");
+  const auto refuse = [&options](const std::string& why) {
+    return CannotResume(options.output, why);
+  };
+  if (!distances_w) return refuse("is no focus stack");
+  if (distances_w->size() != stack.frame_count())
+    return refuse(fmt::format("has {} planes, and this call asks for {}", distances_w->size(),
+                              stack.frame_count()));
+  for (size_t i = 0; i < distances_w->size(); ++i) {
+    const double asked_w = stack.Camera(FrameId{static_cast<uint32_t>(i + 1)}).focus_distance_w;
+    if ((*distances_w)[i] != asked_w)
+      return refuse(fmt::format("its plane {} is at {} world units, and this call asks for {}",
+                                i + 1, (*distances_w)[i], asked_w));
   }
-  return inputs;
+  return {};
 }
 
 // Returns the planes in the order in which a video shows them.
@@ -109,7 +106,7 @@ class StackOutputs {
   Result<void> Write() const {
     switch (FormOfStack(options_.output)) {
       case FocusStackForm::kFolder:
-        return WriteFileAtomically(folder_ / "planes.json", FocusPlanesJson(stack_, options_));
+        return WriteFileAtomically(folder_ / kPlanes, FocusPlanesJson(stack_, options_));
       case FocusStackForm::kExr:
         return WriteExrFile();
       case FocusStackForm::kVideo:
@@ -131,7 +128,7 @@ class StackOutputs {
     for (const FrameId plane : ShownPlanes(stack_.frame_count(), false))
       parts.push_back({PathOf(plane), PartName(plane)});
     return JoinExr(options_.output, parts, [this] { return IsStopped(); },
-                   {{kInputsAttribute, TextOfInputs(options_.inputs)}});
+                   {{kInputsText, TextOfInputs(options_.inputs)}});
   }
 
   Result<void> WriteVideo() const {
@@ -145,7 +142,7 @@ class StackOutputs {
                           ReadDisplayImage(PathOf(plane), options_.render.folder.picture.colours));
       LF_RETURN_IF_ERROR(writer->Add(picture));
     }
-    return writer->Close();
+    return writer->Close(TextOfInputs(options_.inputs));
   }
 
   const CameraPath& stack_;
@@ -167,9 +164,11 @@ fs::path StackFolder(const fs::path& output) {
 
 Result<void> CheckFocusStack(const LightField& light_field, const FocusStackOptions& options) {
   const bool is_folder = FormOfStack(options.output) == FocusStackForm::kFolder;
+  std::vector<fs::path> inputs = FilesOfLightField(light_field, light_field.folder);
+  const std::vector<fs::path>& others = options.render.folder.inputs;
+  inputs.insert(inputs.end(), others.begin(), others.end());
   LF_RETURN_IF_ERROR(
-      CheckReplacesNone({is_folder ? options.output / "planes.json" : options.output},
-                        InputsOf(light_field, options.render)));
+      CheckOutputFiles({is_folder ? options.output / kPlanes : options.output}, inputs));
   return is_folder ? Result<void>() : CheckFile(options);
 }
 
@@ -179,38 +178,23 @@ Result<bool> IsFinishedStack(const CameraPath& stack, const FocusStackOptions& o
   if (form == FocusStackForm::kFolder || !options.render.folder.resume ||
       !fs::is_regular_file(options.output, error) || Exists(StackFolder(options.output)))
     return false;
-  if (form == FocusStackForm::kVideo) return true;
-  const Result<std::vector<double>> distances_w =
-      NumbersOfParts(options.output, "lf:focus_distance_w");
   const auto refuse = [&options](const std::string& why) {
-    return UsageError(
-        fmt::format("{}: exists already, but {}, so that --resume cannot continue; give another "
-                    "name, or --overwrite instead of --resume",
-                    options.output.string(), why));
+    return CannotResume(options.output, why);
   };
-  if (!distances_w) return refuse("is no focus stack");
-  if (distances_w->size() != stack.frame_count())
-    return refuse(fmt::format("has {} planes, and this call asks for {}", distances_w->size(),
-                              stack.frame_count()));
-  for (size_t i = 0; i < distances_w->size(); ++i) {
-    const double asked_w = stack.Camera(FrameId{static_cast<uint32_t>(i + 1)}).focus_distance_w;
-    if ((*distances_w)[i] != asked_w)
-      return refuse(fmt::format("its plane {} is at {} world units, and this call asks for {}",
-                                i + 1, (*distances_w)[i], asked_w));
-  }
-  const std::optional<std::string> text = TextOfFirstPart(options.output, kInputsAttribute);
-  if (!text) return refuse("does not tell how it was made");
-  const auto difference =
-      FirstDifference(InputsOfText(*text), InputsOfText(TextOfInputs(options.inputs)));
+  if (form == FocusStackForm::kExr) LF_RETURN_IF_ERROR(CheckPlanes(stack, options));
+  const std::optional<FileInputs> inputs = ReadInputs(options.output);
+  if (!inputs) return refuse("does not tell how it was made");
+  const auto difference = FirstDifference(*inputs, InputsOfText(TextOfInputs(options.inputs)));
   if (difference) return refuse(difference->Text("was made with", "and this call has"));
   return true;
 }
 
-RunInputs StackInputs(const LightField& light_field, const CameraPath& stack,
-                      const FocusStackOptions& options, ImageOrder order, uint64_t seed,
-                      std::optional<double> max_angle_rad, bool densifies) {
+Result<RunInputs> StackInputs(const LightField& light_field, const CameraPath& stack,
+                              const FocusStackOptions& options, ImageOrder order, uint64_t seed,
+                              std::optional<double> max_angle_rad, bool densifies) {
   const FilmOptions& film = options.render.film;
   RunChoices choices;
+  LF_ASSIGN_OR_RETURN(choices.pixels, PixelsOf(light_field));
   choices.reading = film.reading;
   choices.back_end = film.back_end;
   choices.order = order;
@@ -233,6 +217,9 @@ RunInputs StackInputs(const LightField& light_field, const CameraPath& stack,
   inputs.emplace_back("cameras", cameras);
   inputs.emplace_back("densify", densifies ? "on" : "off");
   inputs.emplace_back("guard", film.guard ? "on" : "off");
+  if (FormOfStack(options.output) != FocusStackForm::kVideo) return inputs;
+  inputs.emplace_back("video.fps", fmt::format("{}", stack.fps));
+  inputs.emplace_back("video.back_and_forth", options.back_and_forth ? "on" : "off");
   return inputs;
 }
 
@@ -249,6 +236,7 @@ Result<RenderReport> RenderFocusStack(Package package, const FocusStackOptions& 
   render.folder.output_folder = folder;
   render.folder.complete = [&outputs] { return outputs.Write(); };
   if (is_file) render.folder.contact_sheet = false;
+  if (!is_file) render.folder.more_outputs = {folder / kPlanes};
   Result<RenderReport> report = Render(std::move(package), render, pool, progress);
   if (!report || !is_file) return report;
   std::error_code error;

@@ -46,8 +46,8 @@ struct FocusStackOptions {
   // True: the video goes back from the last plane to the first, so that it can be repeated. Used by
   // kVideo.
   bool back_and_forth = false;
-  // Inputs that decide the pictures, besides the focus distances (StackInputs()): recorded in an
-  // EXR file, so that IsFinishedStack() finds that a call asks for another stack.
+  // Inputs that decide the file (StackInputs()). It states them (film/develop/file_inputs.h), so
+  // that IsFinishedStack() finds that a call asks for another stack.
   RunInputs inputs = {};
   // Options of the render. RenderFocusStack() sets folder.output_folder, folder.complete and, for
   // a file, folder.contact_sheet. `frames` must be empty. For a file, folder.video must be unset,
@@ -67,13 +67,14 @@ Result<void> CheckFocusStack(const LightField& light_field, const FocusStackOpti
 //   stack        path of FocusStackPath()
 //   options      options.render.film and options.render.folder are used
 //   order, seed, max_angle_rad, densifies  choices of the package
-RunInputs StackInputs(const LightField& light_field, const CameraPath& stack,
-                      const FocusStackOptions& options, ImageOrder order, uint64_t seed,
-                      std::optional<double> max_angle_rad, bool densifies);
+// kInput: the packed store of the light field cannot be read.
+Result<RunInputs> StackInputs(const LightField& light_field, const CameraPath& stack,
+                              const FocusStackOptions& options, ImageOrder order, uint64_t seed,
+                              std::optional<double> max_angle_rad, bool densifies);
 
 // Returns true if `resume` is set, the output is a file that exists, and no render of it is
 // unfinished: there is nothing left to do. kUsage: it is an EXR file with other planes than the
-// stack, made with other `inputs`, or of something else. Videos tell neither planes nor inputs.
+// stack, made with other `inputs`, or of something else.
 //   stack  path of FocusStackPath()
 Result<bool> IsFinishedStack(const CameraPath& stack, const FocusStackOptions& options);
 

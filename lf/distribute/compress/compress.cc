@@ -298,7 +298,8 @@ Result<CompressReport> Compressor::Run() {
   }
   LF_RETURN_IF_ERROR(ChooseThreshold());
   if (report_.was_there) {
-    LF_RETURN_IF_ERROR(CheckStoreFacts(source_, Verification()));
+    if (const Result<void> same = CheckStoreFacts(source_, Verification()); !same)
+      return Error{same.error().kind, same.error().message + ", or replace it with --overwrite"};
     LF_RETURN_IF_ERROR(FindSkipped());
   } else {
     LF_RETURN_IF_ERROR(Write(std::move(*held.lock)));

@@ -17,6 +17,7 @@
 #include "lf/core/child_process.h"
 #include "lf/core/file.h"
 #include "lf/core/temporary_file.h"
+#include "lf/film/develop/file_inputs.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -221,7 +222,7 @@ Result<void> VideoWriter::Add(const Image<uint8_t>& picture) {
   return {};
 }
 
-Result<void> VideoWriter::Close() {
+Result<void> VideoWriter::Close(std::string_view inputs) {
   if (const auto end = state_->ffmpeg->Finish(state_->patience_s); !end)
     return state_->Failure(end.error());
   if (state_->picture_count == 0) return state_->Failure(OutputError("it has no frames"));
@@ -230,6 +231,7 @@ Result<void> VideoWriter::Close() {
     const std::string words = state_->ffmpeg->Complaints();
     return state_->Failure(words.empty() ? whole.error() : OutputError("ffmpeg: " + words));
   }
+  if (!inputs.empty()) LF_RETURN_IF_ERROR(AppendInputs(state_->unfinished, inputs));
   return WriteAtomically(state_->path, [&](const fs::path& temporary) -> Result<void> {
     if (::rename(state_->unfinished.c_str(), temporary.c_str()) == 0) return {};
     return OutputError(fmt::format("{}: cannot be renamed: {}", state_->unfinished.string(),

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <string_view>
 
 #include "lf/core/image.h"
 #include "lf/core/result.h"
@@ -42,7 +43,8 @@ class VideoWriter {
   // Waits for ffmpeg, has the file read by another ffmpeg, and gives it its name. kOutput with
   // ffmpeg's last message if the file is not whole or has another number of pictures than were
   // added, and if none was; a file of this name then stays. Must be called only once.
-  Result<void> Close();
+  //   inputs  text of the inputs that the file states (file_inputs.h); none if it is empty
+  Result<void> Close(std::string_view inputs = {});
 
  private:
   struct State;

@@ -12,9 +12,12 @@
 
 #include "lf/core/file.h"
 #include "lf/core/log.h"
+#include "lf/core/output_files.h"
+#include "lf/film/develop/file_inputs.h"
 #include "lf/film/develop/join_views.h"
 #include "lf/film/develop/video.h"
 #include "lf/film/develop/view_frames.h"
+#include "lf/pixels/files/whole_file.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -41,6 +44,10 @@ class FilmWriter {
 
  private:
   bool is_video() const { return IsVideoName(options_.output); }
+  // True if the file has the bytes of a frame.
+  bool is_copied(const Target& target) const {
+    return target.eye && !is_video() && !is_developed();
+  }
   bool is_left_right() const { return options_.layout == ViewLayout::kLeftRight; }
   // True if EXR frames become PNG files, which show what a video of them shows.
   bool is_developed() const {
@@ -50,10 +57,18 @@ class FilmWriter {
     return {options_.layout, options_.grid, is_video() || is_developed()};
   }
 
+  std::string LayoutText() const {
+    if (options_.layout != ViewLayout::kQuilt) return NameOf(options_.layout);
+    return fmt::format("quilt {}x{}", options_.grid.columns, options_.grid.rows);
+  }
+
   Result<void> CheckOutput() const;
   Result<void> CheckShape() const;
   Result<void> PlanTargets();
+  Result<void> CheckTargets() const;
   Result<void> CheckTarget(Target* target) const;
+  Result<FileInputs> InputsOf(const Target& target) const;
+  Result<bool> IsMadeOfThese(const Target& target) const;
   Result<void> ChooseRate();
   Result<void> WriteTarget(const Target& target);
   Result<void> WriteVideo(const Target& target);
@@ -71,6 +86,7 @@ class FilmWriter {
   std::mutex mutex_;  // guards the two below
   size_t done_ = 0;
   size_t total_ = 0;
+  std::optional<FileLock> lock_;
 };
 
 Error Interrupted() {
@@ -120,21 +136,72 @@ Result<void> FilmWriter::CheckShape() const {
   return {};
 }
 
+// Checks that the files replace no frame.
+Result<void> FilmWriter::CheckTargets() const {
+  std::vector<OutputFile> outputs;
+  for (const Target& target : targets_) outputs.emplace_back(target.file, "a picture");
+  std::vector<fs::path> frames;
+  for (const ViewMoment& moment : moments_)
+    frames.insert(frames.end(), moment.files.begin(), moment.files.end());
+  LF_ASSIGN_OR_RETURN(const OutputFiles files, OutputFiles::Make(std::move(outputs)));
+  return files.CheckReplacesNone(frames, "a frame that is joined");
+}
+
 // Checks that the file may be written, and decides whether it is kept.
 Result<void> FilmWriter::CheckTarget(Target* target) const {
   std::error_code error;
   if (!fs::exists(target->file, error)) return {};
-  for (const ViewMoment& moment : moments_)
-    for (const fs::path& frame : moment.files)
-      if (fs::equivalent(frame, target->file, error))
-        return UsageError(fmt::format("-o {}: would replace the frame {}: give another name",
-                                      options_.output.string(), frame.string()));
-  target->is_kept = options_.resume;
-  if (options_.resume || options_.overwrite) return {};
-  return UsageError(fmt::format(
-      "{}: exists already: give another name, keep what exists with --resume, or replace it with "
-      "--overwrite",
-      target->file.string()));
+  if (is_video()) LF_RETURN_IF_ERROR(CheckVideoTarget(target->file));
+  if (options_.overwrite) return {};
+  if (!options_.resume)
+    return UsageError(fmt::format(
+        "{}: exists already: give another name, keep what exists with --resume, or replace it with "
+        "--overwrite",
+        target->file.string()));
+  LF_ASSIGN_OR_RETURN(target->is_kept, IsMadeOfThese(*target));
+  return {};
+}
+
+// Returns what the file is made of, besides its own name.
+Result<FileInputs> FilmWriter::InputsOf(const Target& target) const {
+  std::vector<fs::path> files;
+  for (const ViewMoment& moment : target.moments) {
+    const std::span<const fs::path> views = moment.files;
+    const auto taken = target.eye ? views.subspan(static_cast<size_t>(*target.eye), 1) : views;
+    files.insert(files.end(), taken.begin(), taken.end());
+  }
+  LF_ASSIGN_OR_RETURN(const std::string frames, HashOfFiles(files, pool_, options_.is_interrupted));
+  FileInputs inputs = {{"layout", LayoutText()},
+                       {"moment", fmt::format("{}", target.moments[0].number)},
+                       {"moments", fmt::format("{}", target.moments.size())},
+                       {"frames", frames}};
+  if (report_.fps) inputs.emplace_back("fps", fmt::format("{}", *report_.fps));
+  return inputs;
+}
+
+// Returns true if the file that exists was made of these frames, in this way, and is whole. kUsage:
+// it was made of others.
+Result<bool> FilmWriter::IsMadeOfThese(const Target& target) const {
+  if (is_copied(target)) {
+    const fs::path frame = target.moments[0].files[static_cast<size_t>(*target.eye)];
+    LF_ASSIGN_OR_RETURN(const std::string copy, HashOfFiles(std::span(&target.file, 1), pool_));
+    LF_ASSIGN_OR_RETURN(const std::string original, HashOfFiles(std::span(&frame, 1), pool_));
+    if (copy == original) return true;
+    return CannotResume(target.file, fmt::format("is no copy of {}", frame.string()));
+  }
+  const std::optional<FileInputs> stated = ReadInputs(target.file);
+  if (!stated) return CannotResume(target.file, "does not tell what it was made of");
+  LF_ASSIGN_OR_RETURN(const FileInputs asked, InputsOf(target));
+  for (size_t i = 0; i < asked.size(); ++i) {
+    if (i < stated->size() && (*stated)[i] == asked[i]) continue;
+    const std::string was = i < stated->size() ? (*stated)[i].second : "something else";
+    return CannotResume(target.file, fmt::format("was made with {} {}, and this call has {}",
+                                                 asked[i].first, was, asked[i].second));
+  }
+  if (is_video()) return true;
+  const Result<void> whole = CheckFileIsWhole(target.file);
+  if (!whole) LogWarning("{}; it is made again", whole.error().message);
+  return whole.has_value();
 }
 
 Result<void> FilmWriter::PlanTargets() {
@@ -150,9 +217,12 @@ Result<void> FilmWriter::PlanTargets() {
       LF_ASSIGN_OR_RETURN(target.file, PathOfViews(options_.output, name));
       target.moments = is_video() ? moments : moments.subspan(i, 1);
       if (is_left_right()) target.eye = eye;
-      LF_RETURN_IF_ERROR(CheckTarget(&target));
       targets_.push_back(std::move(target));
     }
+  LF_RETURN_IF_ERROR(CheckTargets());
+  // The lock keeps the files of two calls from being mixed.
+  LF_ASSIGN_OR_RETURN(lock_, LockOutput(options_.output));
+  for (Target& target : targets_) LF_RETURN_IF_ERROR(CheckTarget(&target));
   for (const Target& target : targets_) {
     report_.files.push_back(target.file);
     const size_t views = target.eye ? 1 : static_cast<size_t>(report_.view_count);
@@ -199,7 +269,8 @@ Result<void> FilmWriter::WriteVideo(const Target& target) {
     LF_ASSIGN_OR_RETURN(const StoredImage joined, Join(moment, target.eye));
     LF_RETURN_IF_ERROR(video->Add(std::get<Image<uint8_t>>(joined)));
   }
-  return video->Close();
+  LF_ASSIGN_OR_RETURN(const FileInputs inputs, InputsOf(target));
+  return video->Close(TextOfInputs(inputs));
 }
 
 Result<void> FilmWriter::CopyFrame(const Target& target) {
@@ -212,16 +283,15 @@ Result<void> FilmWriter::CopyFrame(const Target& target) {
 
 Result<void> FilmWriter::WriteTarget(const Target& target) {
   if (is_video()) return WriteVideo(target);
-  if (target.eye && !is_developed()) return CopyFrame(target);
+  if (is_copied(target)) return CopyFrame(target);
   const ViewMoment& moment = target.moments[0];
+  LF_ASSIGN_OR_RETURN(const FileInputs inputs, InputsOf(target));
   LF_ASSIGN_OR_RETURN(const StoredImage joined, Join(moment, target.eye));
   LF_ASSIGN_OR_RETURN(const std::vector<std::string> names,
                       JoinedChannels(header_, join(), moment.files[0].string()));
-  const ImageMetadata metadata = {
-      {"lf:layout", options_.layout == ViewLayout::kQuilt
-                        ? fmt::format("quilt {}x{}", options_.grid.columns, options_.grid.rows)
-                        : std::string(NameOf(options_.layout))},
-      {"imageCounter", moment.number}};
+  const ImageMetadata metadata = {{"lf:layout", LayoutText()},
+                                  {"imageCounter", moment.number},
+                                  {kInputsText, TextOfInputs(inputs)}};
   const ColourFacts colours =
       is_developed()
           ? ColourFacts{PixelType::kUint8, {}, header_.colours.frames_per_second, true, {}}
@@ -241,8 +311,9 @@ Result<ViewFilmReport> FilmWriter::Write(std::span<const fs::path> frames) {
   report_.width = grid.columns * header_.info.width;
   report_.height = grid.rows * header_.info.height;
   LF_RETURN_IF_ERROR(CheckShape());
-  LF_RETURN_IF_ERROR(PlanTargets());
   LF_RETURN_IF_ERROR(ChooseRate());
+  if (const Result<void> planned = PlanTargets(); !planned)
+    return planned.error().kind == ErrorKind::kInterrupted ? Interrupted() : planned.error();
   for (const Target& target : targets_) {
     if (target.is_kept) continue;
     if (options_.is_interrupted && options_.is_interrupted()) return Interrupted();

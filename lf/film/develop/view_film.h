@@ -23,7 +23,7 @@ struct ViewFilmOptions {
   std::filesystem::path output;
   // Frame rate of the video. By default that which the frames state, or 30, with a warning.
   std::optional<double> fps = {};
-  bool resume = false;     // keep the files that exist, and write the others
+  bool resume = false;     // keep files of the same frames and options, and write the others
   bool overwrite = false;  // replace the files that exist
   std::function<bool()> is_interrupted = {};
 };
@@ -43,11 +43,14 @@ struct ViewFilmReport {
 // 8-bit sRGB, composited over black. Each file appears under its name when it is complete.
 //   frames       as for FindViewMoments()
 //   on_progress  called when a view has been joined, by one thread at a time; may be empty
+// Each file but copies of frames states what it was made of (file_inputs.h): its layout, and a hash
+// of its frames.
 // kUsage: the extension of the output fits neither the frames nor a video; a file exists, and
-// neither resume nor overwrite is set; a file would replace a frame; fps without a video. kInput:
+// neither resume nor overwrite is set; resume is set, and a file was made of other frames or in
+// another way; a file would replace a frame; fps without a video. kInput:
 // errors of FindViewMoments(), CommonHeader(), JoinedChannels(); the joined picture would have more
 // than 2^30 pixels, or, for the video of a quilt, an odd size. kOutput: a file cannot be written,
-// or ffmpeg is missing. kInterrupted: complete files stay.
+// ffmpeg is missing, or another call writes files of this name. kInterrupted: complete files stay.
 Result<ViewFilmReport> WriteViewFilm(
     std::span<const std::filesystem::path> frames, const ViewFilmOptions& options, ThreadPool& pool,
     const std::function<void(size_t done, size_t total)>& on_progress);

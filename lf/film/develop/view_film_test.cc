@@ -275,7 +275,7 @@ TEST_F(ViewFilmTest, AnInputIsNeverReplaced) {
   WriteFrames<uint8_t>(1, 2);
   const ViewFilmOptions options = {
       .layout = ViewLayout::kAnaglyph, .output = views_ / "frame_0001.png", .overwrite = true};
-  ExpectWords(ErrorOf(options, ErrorKind::kUsage), {"would replace the frame", "frame_0001.png"});
+  ExpectWords(ErrorOf(options, ErrorKind::kUsage), {"would be replaced", "a frame that is joined"});
 }
 
 TEST_F(ViewFilmTest, WhatExistsIsKeptOrReplacedOnDemandOnly) {
@@ -284,18 +284,59 @@ TEST_F(ViewFilmTest, WhatExistsIsKeptOrReplacedOnDemandOnly) {
   ASSERT_TRUE(Write(options));
   ExpectWords(ErrorOf(options, ErrorKind::kUsage), {"s_0001.png: exists", "--overwrite"});
   const std::string whole = ReadFile(folder_ / "s_0001.png").value();
-  ASSERT_TRUE(WriteFileAtomically(folder_ / "s_0001.png", "other"));
   fs::remove(folder_ / "s_0002.png");
   options.resume = true;
   const auto resumed = Write(options);
   ASSERT_TRUE(resumed) << resumed.error().message;
   EXPECT_EQ(resumed->kept_count, 1u);
-  EXPECT_EQ(ReadFile(folder_ / "s_0001.png").value(), "other");
+  EXPECT_EQ(ReadFile(folder_ / "s_0001.png").value(), whole);
   EXPECT_TRUE(fs::exists(folder_ / "s_0002.png"));
+  // A file that was cut is made again.
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "s_0001.png", whole.substr(0, whole.size() - 20)));
+  ASSERT_TRUE(Write(options));
+  EXPECT_EQ(ReadFile(folder_ / "s_0001.png").value(), whole);
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "s_0001.png", "other"));
+  ExpectWords(ErrorOf(options, ErrorKind::kUsage),
+              {"s_0001.png: exists already", "does not tell", "--overwrite"});
   options.resume = false;
   options.overwrite = true;
   ASSERT_TRUE(Write(options));
   EXPECT_EQ(ReadFile(folder_ / "s_0001.png").value(), whole);
+}
+
+TEST_F(ViewFilmTest, FilesOfOtherFramesOrLayoutsAreNotKept) {
+  WriteFrames<uint8_t>(1, 4);
+  const auto expect_refused = [&](ViewFilmOptions options, const ViewFilmOptions& other,
+                                  const std::string& word) {
+    ASSERT_TRUE(Write(options));
+    options.resume = true;
+    const auto same = Write(options);
+    ASSERT_TRUE(same) << same.error().message;
+    EXPECT_EQ(same->kept_count, same->files.size());
+    ViewFilmOptions resumed = other;
+    resumed.resume = true;
+    ExpectWords(ErrorOf(resumed, ErrorKind::kUsage), {"exists already", word, "--overwrite"});
+  };
+  for (const char* const name : {"s.png", "s.mp4"}) {
+    const ViewFilmOptions one = {ViewLayout::kAnaglyph, {}, folder_ / name};
+    expect_refused(one, {ViewLayout::kSideBySide, {}, folder_ / name}, "layout anaglyph");
+  }
+  const ViewFilmOptions slow = {ViewLayout::kAnaglyph, {}, folder_ / "f.mp4", 12};
+  expect_refused(slow, {ViewLayout::kAnaglyph, {}, folder_ / "f.mp4", 24}, "fps 12");
+  for (const ViewLayout layout : {ViewLayout::kSideBySide, ViewLayout::kLeftRight})
+    for (const char* const name : {"o.png", "o.mp4"}) {
+      const ViewFilmOptions options = {layout, {}, folder_ / (NameOf(layout) + std::string(name))};
+      ASSERT_TRUE(Write(options));
+    }
+  ASSERT_TRUE(WriteStoredImage(FramePath(views_, FrameId{4}, FrameFormat::kPng8),
+                               Picture<uint8_t>(9, 6, 4, 3), {"R", "G", "B"},
+                               {PixelType::kUint8, {}, {}, true}));
+  for (const ViewLayout layout : {ViewLayout::kSideBySide, ViewLayout::kLeftRight})
+    for (const char* const name : {"o.png", "o.mp4"}) {
+      ViewFilmOptions options = {layout, {}, folder_ / (NameOf(layout) + std::string(name))};
+      options.resume = true;
+      ErrorOf(options, ErrorKind::kUsage);
+    }
 }
 
 TEST_F(ViewFilmTest, AnInterruptionLeavesCompleteFiles) {

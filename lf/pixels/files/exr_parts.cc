@@ -156,20 +156,6 @@ Result<void> JoinExr(const std::filesystem::path& path, std::span<const ExrPart>
   });
 }
 
-std::optional<std::string> TextOfFirstPart(const std::filesystem::path& path,
-                                           const std::string& attribute) {
-  try {
-    const Imf::MultiPartInputFile file(path.c_str(), kThreadsOfParts);
-    const auto* const text = file.header(0).findTypedAttribute<Imf::StringAttribute>(attribute);
-    if (text != nullptr) return text->value();
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception&) {
-    return std::nullopt;
-  }
-  return std::nullopt;
-}
-
 Result<std::vector<double>> NumbersOfParts(const std::filesystem::path& path,
                                            const std::string& attribute) {
   std::vector<double> numbers;

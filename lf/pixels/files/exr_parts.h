@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -30,11 +29,6 @@ struct ExrPart {
 Result<void> JoinExr(const std::filesystem::path& path, std::span<const ExrPart> parts,
                      const std::function<bool()>& is_interrupted = {},
                      const std::vector<std::pair<std::string, std::string>>& texts = {});
-
-// Returns the value of an attribute of type string in the first part of an EXR file; nullopt if the
-// file cannot be read or has no such attribute.
-std::optional<std::string> TextOfFirstPart(const std::filesystem::path& path,
-                                           const std::string& attribute);
 
 // Returns the value of an attribute of type double in each part of an EXR file. kInput: the file
 // cannot be read, or a part has no such attribute.

@@ -157,11 +157,13 @@ class ExrDecoder : public PictureDecoder {
       const double rate = Imf::framesPerSecond(header);
       if (rate > 0 && std::isfinite(rate)) facts.frames_per_second = rate;
     }
-    facts.camera = StatedCameraOf([&header](const char* key) {
-      const auto* const text = header.findTypedAttribute<Imf::StringAttribute>(key);
-      return text == nullptr ? std::string() : text->value();
-    });
+    facts.camera = StatedCameraOf([this](const char* key) { return Text(key); });
     return facts;
+  }
+
+  std::string Text(const char* key) const override {
+    const auto* const text = file_->header(0).findTypedAttribute<Imf::StringAttribute>(key);
+    return text == nullptr ? std::string() : text->value();
   }
 
   StatedProjection projection() const override {

@@ -59,7 +59,7 @@ Result<PictureHeader> HeaderFrom(const FileBytes& file) {
   LF_ASSIGN_OR_RETURN(const ImageFormat format, ProbeImage(file.read, file.name));
   if (format == ImageFormat::kJpeg || format == ImageFormat::kRaw) {
     LF_ASSIGN_OR_RETURN(const ImageFileInfo info, InfoFrom(file));
-    return PictureHeader{info, {TypeOfValues(info)}, {}};
+    return PictureHeader{info, {TypeOfValues(info)}, {}, ""};
   }
   LF_ASSIGN_OR_RETURN(const std::unique_ptr<PictureDecoder> picture, Open(file, format));
   if (picture->picture_count() > 1)
@@ -68,7 +68,8 @@ Result<PictureHeader> HeaderFrom(const FileBytes& file) {
                     "expected: give a file with one picture, such as a frame of the folder that "
                     "lffocus stack writes without .exr",
                     file.name, picture->picture_count()));
-  return PictureHeader{picture->info(), picture->colours(), picture->projection()};
+  return PictureHeader{picture->info(), picture->colours(), picture->projection(),
+                       picture->Text(kInputsText)};
 }
 
 Result<ExposureFacts> ExposureFrom(const FileBytes& file) {

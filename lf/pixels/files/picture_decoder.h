@@ -32,6 +32,8 @@ class PictureDecoder {
   virtual StatedProjection projection() const { return {}; }
   // Number of parts that hold colours. Only the first part is decoded.
   virtual int picture_count() const { return 1; }
+  // Returns the text that the header states under this key; "" if there is none.
+  virtual std::string Text(const char* /*key*/) const { return ""; }
   // Decodes all pixels. `image` becomes an Image of the type that info() states, in the same memory
   // if possible. kInput: the file is truncated or damaged anywhere, even if the library could guess
   // what is missing.

@@ -17,6 +17,9 @@
 namespace lf {
 
 inline constexpr const char* kFrameRateText = "lf:fps";
+// The text, or the attribute of an EXR file, that states what a file was made of
+// (film/develop/file_inputs.h).
+inline constexpr const char* kInputsText = "lf:inputs";
 
 // The camera of a frame, in world coordinates: its position, and unit vectors ahead and up.
 struct StatedCamera {
@@ -55,6 +58,8 @@ struct PictureHeader {
   ImageFileInfo info;
   ColourFacts colours;
   StatedProjection projection = {};
+  // EXR, of its first part, and PNG: the text kInputsText; "" if there is none.
+  std::string inputs = {};
 };
 
 // Reads the header alone. Errors as for ReadImageInfo(); kInput also if an EXR file holds several

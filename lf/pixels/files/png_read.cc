@@ -138,6 +138,9 @@ class PngDecoder : public PictureDecoder {
 
   const ImageFileInfo& info() const override { return info_; }
   ColourFacts colours() const override { return colours_; }
+  std::string Text(const char* key) const override {
+    return TextBeforePixels(png_, png_info_, key);
+  }
   Result<void> Open();
   Result<void> Read(StoredImage* image) override;
 
@@ -222,8 +225,7 @@ void PngDecoder::ReadHeader() {
   colours_.type = TypeOfValues(info_);
   colours_.is_srgb = png_get_valid(png_, png_info_, PNG_INFO_sRGB) != 0;
   colours_.frames_per_second = FrameRateOf(png_, png_info_);
-  colours_.camera =
-      StatedCameraOf([this](const char* key) { return TextBeforePixels(png_, png_info_, key); });
+  colours_.camera = StatedCameraOf([this](const char* key) { return Text(key); });
 }
 
 void PngDecoder::ReadPalette() {

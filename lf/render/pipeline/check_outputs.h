@@ -1,30 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks that a render does not overwrite the files that it reads.
+// The files that a render reads and writes, for the rule of core/output_files.h.
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "lf/core/ids.h"
+#include "lf/core/output_files.h"
 #include "lf/core/result.h"
+#include "lf/film/develop/frame_file.h"
 #include "lf/render/package/package.h"
 #include "lf/render/pipeline/render.h"
 
 namespace lf {
 
-// Returns kUsage if an output and an input are the same file, even if their paths differ. An output
-// that does not exist yet replaces nothing. Each input costs one access to the disk, unless no
-// output exists.
-Result<void> CheckReplacesNone(const std::vector<std::filesystem::path>& outputs,
-                               const std::vector<std::filesystem::path>& inputs);
+// Returns the files of a light field that was opened from the file or folder `opened`: the image
+// files and masks or, if it is a packed store, the file of the store; and its transforms.json.
+std::vector<std::filesystem::path> FilesOfLightField(const LightField& light_field,
+                                                     const std::filesystem::path& opened);
 
-// Returns the image files and masks of a light field or, if it is a packed store, the file of the
-// store.
-std::vector<std::filesystem::path> FilesOfLightField(const LightField& light_field);
+// Returns the files that a film has in its folder: frames, contact sheets and reports.
+//   parts  names of the packages or shards, each of which has a report of its own
+std::vector<OutputFile> OutputsOfFilm(const std::filesystem::path& folder,
+                                      const std::vector<FrameId>& frames, FrameFormat format,
+                                      const std::vector<std::string>& parts = {});
 
-// Returns kUsage if a file that the render writes into its folder is an LF image or a mask of the
-// package, or one of options.folder.inputs. CheckVideoTarget() checks the video. Links to folders
-// are followed. Links to image files and masks are followed only if the light field has at most
-// 20,000 LF images, because following them costs one access to the disk for each file.
+// Adds the video of a film to its outputs. kUsage: two outputs are the same file, or the video lies
+// in a folder that the render or a job uses in the folder of the film. kOutput: errors of
+// CheckVideoTarget() for a video that exists.
+Result<OutputFiles> MakeFilmOutputs(std::vector<OutputFile> outputs,
+                                    const std::filesystem::path& folder,
+                                    const std::optional<std::filesystem::path>& video);
+
+// Checks the files that the render writes, the video included. kUsage: one of them is an LF image
+// or a mask of the package, or one of options.folder.inputs; and errors of MakeFilmOutputs().
 Result<void> CheckOutputs(const Package& package, const RenderOptions& options);
 
 }  // namespace lf

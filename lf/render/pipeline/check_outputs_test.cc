@@ -55,7 +55,7 @@ TEST_F(CheckOutputsTest, LfImagesStay) {
   AddImage("images/frame_0007.png");
   for (const char* const folder : {"field/images", "field/../field/images/."}) {
     options_.folder.output_folder = folder_ / folder;
-    EXPECT_NE(Refusal().find("frame_0007.png: would be replaced by the render, but is an LF image"),
+    EXPECT_NE(Refusal().find("frame_0007.png: would be replaced, but is an LF image"),
               std::string::npos)
         << Refusal();
   }
@@ -91,6 +91,19 @@ TEST_F(CheckOutputsTest, MasksContactSheetsAndFilesThatAreReadStay) {
   EXPECT_EQ(Refusal(), "");
   std::ofstream(folder_ / "field" / "report.json") << "path";
   EXPECT_NE(Refusal().find("is an input file"), std::string::npos) << Refusal();
+}
+
+TEST_F(CheckOutputsTest, AVideoIsNoOtherFileOfTheRender) {
+  for (const char* const name :
+       {"frame_0007.png", "contact_sheet.png", "report.json", "planes.json", "frame_0001.plate",
+        "partial/frame_0001.png", "partial/film.mp4", "cluster/film.mp4"}) {
+    options_.folder.keep_plates = true;
+    options_.folder.more_outputs = {folder_ / "film" / "planes.json"};
+    options_.folder.video = folder_ / "film" / name;
+    EXPECT_NE(Refusal().find("give another --video"), std::string::npos) << name << Refusal();
+  }
+  options_.folder.video = folder_ / "film" / "film.mp4";
+  EXPECT_EQ(Refusal(), "");
 }
 
 TEST_F(CheckOutputsTest, FilesThatAreReadStayInTheStateOfAShard) {

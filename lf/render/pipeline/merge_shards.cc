@@ -130,11 +130,11 @@ class Merger {
     WarnOfGaps();
     LogDebug("{} plates of {} frames, the first in {} shards", files.size(), frames_.size(),
              First().shard.count);
+    LF_RETURN_IF_ERROR(CheckOutputs(files));
     if (options_.video) {
       LF_RETURN_IF_ERROR(CheckVideoTool());
       LF_RETURN_IF_ERROR(CheckVideoTarget(*options_.video));
     }
-    LF_RETURN_IF_ERROR(CheckOutputs(files));
     LF_RETURN_IF_ERROR(Lock());
     LF_RETURN_IF_ERROR(FindFinished());
     now_.frame_total = frames_.size();
@@ -167,10 +167,14 @@ class Merger {
   }
 
   Result<void> CheckOutputs(const std::vector<fs::path>& files) const {
-    std::vector<fs::path> outputs = {ReportPath(), options_.output_folder / kContactSheet};
-    for (const auto& [id, frame] : frames_) outputs.push_back(PathOf(id));
-    LF_RETURN_IF_ERROR(CheckReplacesNone(outputs, files));
-    return CheckReplacesNone(outputs, options_.kept_files);
+    std::vector<FrameId> frames;
+    for (const auto& [id, frame] : frames_) frames.push_back(id);
+    const fs::path& folder = options_.output_folder;
+    LF_ASSIGN_OR_RETURN(
+        const OutputFiles outputs,
+        MakeFilmOutputs(OutputsOfFilm(folder, frames, options_.format), folder, options_.video));
+    LF_RETURN_IF_ERROR(outputs.CheckReplacesNone(files, "a plate that is read"));
+    return outputs.CheckReplacesNone(options_.kept_files, "an LF image");
   }
 
   // A render into the same folder takes the same lock, unless it renders a package file or a shard

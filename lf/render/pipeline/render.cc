@@ -178,11 +178,9 @@ std::vector<FrameId> Renderer::FramesToRender() {
   for (const FrameId frame : setup_->frames()) {
     const auto finished = state_->finished().find(frame);
     if (finished != state_->finished().end()) {
-      std::filesystem::path plate = FramePath(folder_.output_folder, frame, folder_.format);
       const bool lacks_samples = setup_->film().require_samples && !finished->second.samples;
       const bool lacks_noise = setup_->film().require_noise && !finished->second.noise;
-      const bool lacks_plate =
-          folder_.keep_plates && !std::filesystem::exists(plate.replace_extension(".plate"));
+      const bool lacks_plate = folder_.keep_plates && !state_->HasPlateBeside(frame);
       if (!lacks_samples && !lacks_noise && !lacks_plate) continue;
       LogInfo("frame {} is rendered again, for {}", frame.value,
               lacks_samples ? "--require: its samples were not measured"

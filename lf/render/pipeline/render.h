@@ -36,6 +36,8 @@ struct FolderOptions {
   // Files other than LF images that the program reads, such as the calibration and the path. No
   // output may replace them.
   std::vector<std::filesystem::path> inputs;
+  // Files that `complete` writes, and that no other output may be.
+  std::vector<std::filesystem::path> more_outputs = {};
   FrameFormat format = FrameFormat::kExrHalf;
   PictureOptions picture;
   // Path of an mp4 of the frames to write. Must be unset for a shard.

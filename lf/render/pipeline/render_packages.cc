@@ -9,8 +9,10 @@
 #include "lf/core/log.h"
 #include "lf/film/develop/video.h"
 #include "lf/render/package/package_file.h"
+#include "lf/render/pipeline/check_outputs.h"
 #include "lf/render/pipeline/frame_output.h"
 #include "lf/render/state/run_inputs.h"
+#include "lf/render/state/run_state.h"
 #include "lf/storage/packed/packed_store_file.h"
 
 namespace lf {
@@ -120,6 +122,23 @@ void TellOfOthers(size_t given, size_t count) {
     LogWarning(
         "only {} of the film's {} packages are given; the frames of the others are not rendered",
         given, count);
+}
+
+// Checks the files that all packages write together, and the video. Render() checks the files of
+// each package.
+Result<void> CheckFilmOutputs(const PackagedFilm& film, const std::vector<PackagePart>& parts,
+                              const RenderOptions& options) {
+  std::vector<FrameId> frames;
+  std::vector<std::string> names;
+  for (const PackagePart& part : parts) {
+    frames.insert(frames.end(), part.frames.begin(), part.frames.end());
+    names.push_back(NameOfState(part.path.stem().string(), options.film.shard));
+  }
+  const FolderOptions& to = options.folder;
+  LF_ASSIGN_OR_RETURN(const OutputFiles outputs,
+                      MakeFilmOutputs(OutputsOfFilm(to.output_folder, frames, to.format, names),
+                                      to.output_folder, to.video));
+  return outputs.CheckReplacesNone(film.paths);
 }
 
 // Records size and modification time of the file. If the size cannot be read, file_bytes is 0, and
@@ -260,6 +279,7 @@ Result<RenderReport> RenderPackages(PackagedFilm film, const RenderOptions& opti
                                     ThreadPool& pool,
                                     const std::function<void(const RenderProgress&)>& progress) {
   LF_ASSIGN_OR_RETURN(const std::vector<PackagePart> parts, PartsWith(film, options.frames));
+  LF_RETURN_IF_ERROR(CheckFilmOutputs(film, parts, options));
   if (options.folder.video) {
     LF_RETURN_IF_ERROR(CheckVideoTool());
     LF_RETURN_IF_ERROR(CheckVideoTarget(*options.folder.video));

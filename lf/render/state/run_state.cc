@@ -274,6 +274,17 @@ Result<void> RunState::CheckPlate(FrameId frame) const {
   return Check(PlatePath(frame).string(), frame, recorded, false);
 }
 
+bool RunState::HasPlateBeside(FrameId frame) const {
+  const Result<PlateReader> reader =
+      PlateReader::Open(FinishedPath(frame).replace_extension(".plate"));
+  if (!reader) return false;
+  const RunInputs wanted = Joined(options_.rays, InputsOfFrame(path_, frame));
+  return std::all_of(wanted.begin(), wanted.end(), [&reader](const auto& input) {
+    const std::string* const recorded = FindEntry(reader->entries(), input.first);
+    return recorded != nullptr && *recorded == input.second;
+  });
+}
+
 Result<void> RunState::Check(const std::string& place, FrameId frame, const RunInputs& recorded,
                              bool has_picture) const {
   constexpr const char* kAdvice =

@@ -79,6 +79,10 @@ class RunState {
   // Returns the path of the file of a finished frame: its picture or, for a shard, its plate.
   std::filesystem::path FinishedPath(FrameId frame) const;
 
+  // True if the plate beside the file of a finished frame (FolderOptions::keep_plates) has the rays
+  // of this run's inputs: an earlier render of the folder may have left another one.
+  bool HasPlateBeside(FrameId frame) const;
+
   // Adds the rays of the frame's plate in the state to `plate`, and returns the frame's progress.
   // If the state has no plate of the frame, adds nothing and returns zeros.
   //   plate    empty, of the frame's size
