@@ -16,6 +16,7 @@
 #include "lf/core/parse_number.h"
 #include "lf/core/shell_word.h"
 #include "lf/focus/example_path.h"
+#include "lf/import/paths/write_path.h"
 #include "lf/light_field/model/keep_images.h"
 #include "lf/storage/load/open_store.h"
 
@@ -82,18 +83,6 @@ void WarnOfDoubt(const lf::ExamplePath& example, const std::string& light_field,
       lf::ShellCommand(command));
 }
 
-// Refuses to overwrite any file but a camera path or an empty file, in case -o is wrong.
-lf::Result<void> CheckMayWrite(const std::string& output) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(output, error)) return {};
-  constexpr size_t kLongestPath = size_t{64} << 20;
-  const lf::Result<std::string> text = lf::ReadFile(output, kLongestPath);
-  if (!text) return text.error();
-  if (text->empty() || text->find("format: lfpath") != std::string::npos) return {};
-  return lf::UsageError(fmt::format(
-      "{}: exists, and is not a camera path: give another name, or remove the file", output));
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -124,7 +113,7 @@ int main(int argc, char** argv) {
   program.AddCommonOptions({.threads = true, .verbose = true, .quiet = true});
 
   return program.Run(argc, argv, [&]() -> lf::Result<void> {
-    LF_RETURN_IF_ERROR(CheckMayWrite(output));
+    LF_RETURN_IF_ERROR(lf::CheckReplacesPath(output));
     LF_ASSIGN_OR_RETURN(lf::LightField opened, input.Open());
     // Focus and aperture are chosen for what was recorded.
     const lf::LightField light_field = lf::RecordedPart(std::move(opened));

@@ -19,11 +19,13 @@
 #include "lf/analysis/focus_stack/focus_planes.h"
 #include "lf/camera/path/view_cameras.h"
 #include "lf/core/log.h"
+#include "lf/core/output_files.h"
 #include "lf/import/check/similarity.h"
 #include "lf/import/formats/open_light_field.h"
 #include "lf/import/paths/open_path.h"
 #include "lf/import/paths/resample_path.h"
 #include "lf/import/paths/write_path.h"
+#include "lf/render/pipeline/check_outputs.h"
 
 namespace {
 
@@ -225,13 +227,31 @@ void AddPicture(CLI::App& app, Arguments& a) {
       ->check(CLI::Range(1e-6, 1e9));
 }
 
-// Returns the options for reading PATH.
+// kUsage if OUT is a file that is read besides PATH, or must not be replaced.
+lf::Result<void> CheckOutput(const Arguments& a, const std::vector<std::filesystem::path>& inputs) {
+  if (a.output.empty()) return {};
+  std::error_code error;
+  if (!a.overwrite && std::filesystem::exists(a.output, error))
+    return lf::UsageError(fmt::format(
+        "{}: exists already: give another name, or replace it with --overwrite", a.output));
+  LF_RETURN_IF_ERROR(lf::CheckOutputFiles({std::filesystem::path(a.output)}, inputs));
+  return lf::CheckReplacesPath(a.output);
+}
+
+// Returns the options for reading PATH. kUsage: errors of CheckOutput().
 lf::Result<lf::PathOptions> OptionsOf(const Arguments& a) {
   lf::PathOptions options;
+  std::vector<std::filesystem::path> inputs = lf::FilesOfPath(a.path);
+  inputs.erase(inputs.begin());  // with --overwrite, PATH itself may be changed in its place
+  for (const std::string* file : {&a.dataparser, &a.out_dataparser, &a.transform})
+    inputs.emplace_back(*file);
   if (!a.light_field.empty()) {
     LF_ASSIGN_OR_RETURN(const lf::LightField light_field, lf::OpenLightField(a.light_field));
+    for (std::filesystem::path& file : lf::FilesOfLightField(light_field, a.light_field))
+      inputs.push_back(std::move(file));
     options = lf::PathOptionsFor(light_field, a.light_field);
   }
+  LF_RETURN_IF_ERROR(CheckOutput(a, inputs));
   if (a.unit_m) options.light_field_unit_m = a.unit_m;
   options.dataparser_transforms = a.dataparser;
   options.ngp_scale = a.ngp_scale;
@@ -298,10 +318,6 @@ lf::Result<void> Write(const Arguments& a, lf::PathOptions options, const lf::Ca
         fmt::format("--out-dataparser-transforms can only be used with --format nerfstudio, but {} "
                     "is written as {}: leave it out",
                     a.output, lf::NameOf(format)));
-  std::error_code error;
-  if (!a.overwrite && std::filesystem::exists(a.output, error))
-    return lf::UsageError(fmt::format(
-        "{}: exists already: give another name, or replace it with --overwrite", a.output));
   options.dataparser_transforms = a.out_dataparser;
   LF_ASSIGN_OR_RETURN(const std::vector<std::string> lost,
                       lf::WritePath(path, a.output, format, options));

@@ -132,7 +132,8 @@ class Path(Sequence[Camera]):
 
         When a YAML file is read again, directions and fields of view differ by at most 1e-12 (entries of the rotation
         matrix, and relative), and other values by no more than the rounding of double precision. JSON files give the
-        same bits. The file appears only when it is whole. A warning tells what the file does not hold.
+        same bits. The file appears only when it is whole, and replaces an older camera path of this name. A warning
+        tells what the file does not hold.
 
         Parameters
         ----------
@@ -145,7 +146,8 @@ class Path(Sequence[Camera]):
         Raises
         ------
         UsageError
-            The format is unknown, or is "yaml" and cannot express the cameras, such as numbers of blades that differ.
+            The format is unknown, or is "yaml" and cannot express the cameras, such as numbers of blades that differ;
+            or a file of this name exists that is no camera path, such as a calibration.
         OutputError
             The file cannot be written.
         """

@@ -202,6 +202,7 @@ std::vector<std::string> SavePath(const std::string& file, const std::vector<Ren
           "{}: expected a name that ends in .yaml, .json, .chan or .usda, or the format \"yaml\", "
           "\"nerfstudio\", \"instant-ngp\", \"chan\" or \"usda\"{}",
           file, name ? fmt::format(", found \"{}\"", *name) : ""))));
+    Take(CheckReplacesPath(file));
     CameraPath path = PathOf(cameras, fps, cameras.front().unit_m, shutter);
     path.views = views;
     // Each format states or computes the times itself.

@@ -180,6 +180,19 @@ def test_paths_that_a_file_cannot_say(tmp_path):
         lf.Path([camera()]).save(tmp_path / "missing" / "path.yaml")
 
 
+def test_a_saved_path_replaces_paths_alone(tmp_path):
+    path = lf.Path([camera()])
+    lf.synth("chart", tmp_path / "field", count=1, size=(16, 12), samples=1)
+    calibration = tmp_path / "field/transforms.json"
+    before = calibration.read_bytes()
+    with pytest.raises(lf.UsageError, match="transforms.json: exists, and is not a camera path"):
+        path.save(calibration)
+    assert calibration.read_bytes() == before
+    for name in ("path.yaml", "path.json", "path.usda"):
+        path.save(tmp_path / name)
+        path.save(tmp_path / name)
+
+
 def test_path_files_have_their_errors(tmp_path):
     file = tmp_path / "path.yaml"
     file.write_text("format: lfpath 1\nfpss: 24\n")

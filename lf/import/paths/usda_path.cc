@@ -104,11 +104,12 @@ std::string UsdaText(const CameraPath& path) {
     farthest_w = std::max(farthest_w, camera.focus_distance_w);
   }
   std::string text = fmt::format(
-      "#usda 1.0\n(\n    defaultPrim = \"camera\"\n    startTimeCode = 1\n    endTimeCode = {}\n"
+      "{}    startTimeCode = 1\n    endTimeCode = {}\n"
       "    timeCodesPerSecond = {}\n    framesPerSecond = {}\n    metersPerUnit = {}\n"
       "    upAxis = \"Y\"\n)\n\ndef Camera \"camera\"\n{{\n"
       "    token projection = \"perspective\"\n    float2 clippingRange = ({}, {})\n",
-      path.frame_count(), path.fps, path.fps, path.unit_m, nearest_w / 100, farthest_w * 100);
+      kUsdaStart, path.frame_count(), path.fps, path.fps, path.unit_m, nearest_w / 100,
+      farthest_w * 100);
   AddOptics(path, &text);
   AddAttribute("matrix4d xformOp:transform", path, MatrixText, &text);
   text += "    uniform token[] xformOpOrder = [\"xformOp:transform\"]\n}\n";

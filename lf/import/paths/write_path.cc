@@ -5,15 +5,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <system_error>
 #include <utility>
 
 #include "lf/camera/path/path_yaml_write.h"
+#include "lf/core/byte_stream.h"
 #include "lf/core/file.h"
 #include "lf/core/value_named.h"
 #include "lf/import/paths/chan_path.h"
 #include "lf/import/paths/foreign_path.h"
 #include "lf/import/paths/nerfstudio_path.h"
 #include "lf/import/paths/ngp_path.h"
+#include "lf/import/paths/path_kind.h"
 #include "lf/import/paths/usda_path.h"
 
 namespace lf {
@@ -124,6 +127,30 @@ Result<void> MoveCamera(const Similarity& b_from_a, const fs::path& file, size_t
   return {};
 }
 
+// True if the file is a path in one of the forms that we write.
+bool IsCameraPath(const fs::path& file) {
+  Result<ByteStream> stream = ByteStream::Open(file);
+  if (!stream) return false;
+  const std::string_view text = stream->Window();
+  if (text.starts_with(kUsdaStart)) return true;
+  const Result<PathKind> kind = PathKindOf(text, file);
+  if (!kind) return false;
+  switch (*kind) {
+    case PathKind::kNerfstudio:
+    case PathKind::kNgp:
+      return true;
+    case PathKind::kYaml:
+      return text.find("lfpath") != std::string_view::npos;
+    case PathKind::kChan:
+      return ReadChan(file, {}).has_value();
+    case PathKind::kTransforms:
+    case PathKind::kSplatCameras:
+    case PathKind::kColmap:
+      break;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::string_view NameOf(PathFormat format) {
@@ -157,6 +184,15 @@ std::optional<PathFormat> PathFormatOfFile(const fs::path& file) {
 }
 
 bool HoldsShift(PathFormat format) { return format != PathFormat::kChan; }
+
+Result<void> CheckReplacesPath(const fs::path& file) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error) || fs::is_empty(file, error) || IsCameraPath(file))
+    return {};
+  return UsageError(
+      fmt::format("{}: exists, and is not a camera path: give another name, or remove the file",
+                  file.string()));
+}
 
 Result<std::vector<std::string>> WritePath(const CameraPath& path, const fs::path& file,
                                            PathFormat format, const PathOptions& options) {

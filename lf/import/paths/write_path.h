@@ -29,6 +29,11 @@ std::optional<PathFormat> PathFormatOfFile(const std::filesystem::path& file);
 // (camera.shift). In JSON, only our own programs read the shift.
 bool HoldsShift(PathFormat format);
 
+// Checks that a file of this name may be replaced by a path: it is missing, empty, or a camera path
+// itself (our own YAML, a path of nerfstudio or instant-ngp, a .chan, or a .usda as we write it).
+// All programs call it before they write a path. kUsage otherwise, for a calibration in particular.
+Result<void> CheckReplacesPath(const std::filesystem::path& file);
+
 // Writes a path.
 //   options  nerfstudio: if dataparser_transforms is set, the cameras are moved into that trained
 //            space; light_field as for OpenPath(). instant-ngp: ngp_scale and ngp_offset; by

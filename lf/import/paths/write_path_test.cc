@@ -200,6 +200,26 @@ TEST_F(WritePathTest, AMovedPathSeesTheMovedScene) {
   ExpectPathError(MovePath(move, "p", &path), "p", {"frame 1", "reduce"});
 }
 
+TEST_F(WritePathTest, PathsReplacePathsAlone) {
+  const auto file = folder_ / "written";
+  EXPECT_TRUE(CheckReplacesPath(file)) << "no file is there";
+  for (const PathFormat format : {PathFormat::kYaml, PathFormat::kNerfstudio, PathFormat::kNgp,
+                                  PathFormat::kChan, PathFormat::kUsda}) {
+    ASSERT_TRUE(WritePath(Lively(), file, format, {}));
+    EXPECT_TRUE(CheckReplacesPath(file)) << NameOf(format);
+  }
+  for (const char* const text : {R"({"frames": []})", R"({"transform": []})", "1\na.png 1 0 0\n",
+                                 "#usda 1.0\ndef Xform \"house\" {}\n", "key: value\n"}) {
+    ASSERT_TRUE(WriteFileAtomically(file, text));
+    const Result<void> checked = CheckReplacesPath(file);
+    ASSERT_FALSE(checked) << text;
+    EXPECT_EQ(checked.error().kind, ErrorKind::kUsage);
+    EXPECT_NE(checked.error().message.find("is not a camera path"), std::string::npos);
+  }
+  ASSERT_TRUE(WriteFileAtomically(file, ""));
+  EXPECT_TRUE(CheckReplacesPath(file));
+}
+
 TEST(PathFormat, ExtensionsAndNames) {
   EXPECT_EQ(PathFormatOfFile("a/b.yml"), PathFormat::kYaml);
   EXPECT_EQ(PathFormatOfFile("b.json"), PathFormat::kNerfstudio);
