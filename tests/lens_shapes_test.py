@@ -75,7 +75,7 @@ class LensShapesTest(StillLifeCase):
     def truth(self, path):
         out = self.folder / f"truth-{path.stem}"
         self.succeeds(SYNTH, "still-life", "-o", out, "--calibration-only", "--truth", path, "--truth-samples", 400,
-                      "-q")
+                      "-q", "--overwrite")
         return picture(out / "truth/frame_0001.exr")
 
     def test_frames_are_those_of_true_lenses(self):

@@ -60,7 +60,7 @@ class DensifyTest(ProgramTestCase):
 
     def synth(self, *options):
         self.succeeds(SYNTH, "still-life", "-o", self.field, "--count", 16, "--size", "160x120", "--spacing", 0.02,
-                      "-q", *options)
+                      "-q", "--overwrite", *options)
 
     def cameras(self):
         text = json.loads((self.field / "transforms.json").read_text())

@@ -64,13 +64,15 @@ class SynthTest(unittest.TestCase):
         self.run_tool(EXAMPLE, field, "-o", path, "--move", "static", "--focus", "1")
         path.write_text("\n".join("frames: 2" if line.startswith("frames:") else line
                                   for line in path.read_text().splitlines()) + "\n")
-        self.synth("lights", "lights", "--calibration-only", "--truth", path, "--truth-samples", 4)
+        self.synth("lights", "lights", "--calibration-only", "--truth", path, "--truth-samples", 4,
+                   "--overwrite")
         names = sorted(file.name for file in (field / "truth").iterdir())
         self.assertEqual(names, ["frame_0001.exr", "frame_0002.exr"])
 
     def test_an_older_field_is_replaced_whole(self):
-        options = ("--size", "24x16", "--samples", 1)
-        field = self.synth("chart", "field", "--count", 9, *options)
+        first = ("--size", "24x16", "--samples", 1)
+        options = (*first, "--overwrite")
+        field = self.synth("chart", "field", "--count", 9, *first)
         (field / "images/0009.exr").write_bytes(b"of somebody else")
         self.synth("lights", "field", "--count", 4, "--calibration-only", *options)
         self.assertEqual(len(list((field / "images").iterdir())), 10)
@@ -97,7 +99,7 @@ class SynthTest(unittest.TestCase):
 
     def test_seeds_choose_the_jitter(self):
         def poses(name, *options):
-            field = self.synth("chart", name, "--calibration-only", "--count", 9, *options)
+            field = self.synth("chart", name, "--calibration-only", "--overwrite", "--count", 9, *options)
             return (field / "transforms.json").read_text()
         self.assertEqual(poses("a", "--jitter", 0.5), poses("b", "--jitter", 0.5))
         self.assertNotEqual(poses("a", "--jitter", 0.5), poses("c", "--jitter", 0.5, "--seed", 1))

@@ -246,7 +246,7 @@ class ProgramOptionsTest(ProgramTestCase):
         path = small_field.write_path(self.folder, frames=2)
         for arguments in (["lfrenderer", field, path, "-o", self.folder / "frames"],
                           ["lfexample", field, "-o", self.folder / "example.yaml"],
-                          ["lfsynth", "lights", "-o", self.folder / "lights", "--calibration-only"]):
+                          ["lfsynth", "lights", "-o", self.folder / "lights", "--calibration-only", "--overwrite"]):
             plain, quiet = self.call(*arguments), self.call(*arguments, "-q")
             self.assertEqual((plain.returncode, quiet.returncode), (0, 0))
             self.assertNotEqual(plain.stderr, "")

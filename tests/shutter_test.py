@@ -76,7 +76,7 @@ class ShutterTest(StillLifeCase):
         path = self.path(f"truth-{frame}", "", first_s, SAMPLES / open_s, SAMPLES, wide)
         out = self.folder / f"truth-{frame}"
         self.succeeds(SYNTH, "still-life", "-o", out, "--calibration-only", "--truth", path, "--truth-samples", 256,
-                      "-q")
+                      "-q", "--overwrite")
         pictures = [cv2.imread(str(out / f"truth/frame_{k + 1:04d}.exr"), cv2.IMREAD_UNCHANGED)[..., :3]
                     for k in range(SAMPLES)]
         return np.clip(np.mean(pictures, axis=0), 0, 1)

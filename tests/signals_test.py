@@ -83,7 +83,7 @@ class SignalsTest(WritersCase):
         self.same("lfquilt", "--resume")
 
     def test_lfsynth(self):
-        self.same("lfsynth")
+        self.same("lfsynth", "--overwrite")
 
     def test_lfimport(self):
         self.same("lfimport")

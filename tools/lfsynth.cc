@@ -47,10 +47,8 @@ void AddOutput(CLI::App& app, lf::SyntheticFieldOptions& a) {
              "shutter, a frame is the mean of the pictures at its instants. The channel Z is the "
              "depth of the surface that is seen through the lens centre.");
   output.AddFlag("--overwrite", a.overwrite,
-                 "Replace a light field in DIR not written by lfsynth\n"
-                 "Needed if another program wrote the transforms.json in DIR, or if it was changed "
-                 "after lfsynth "
-                 "wrote it.");
+                 "Replace the light field in DIR\n"
+                 "LF images of a light field that lfsynth wrote into DIR before are removed.");
 }
 
 void AddRig(CLI::App& app, lf::SyntheticFieldOptions& a) {

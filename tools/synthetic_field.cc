@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "lf/core/file.h"
-#include "lf/core/file_lock.h"
 #include "lf/core/log.h"
+#include "lf/core/output_files.h"
 #include "lf/import/formats/open_light_field.h"
 #include "lf/import/paths/open_path.h"
 #include "lf/light_field/synthetic/built_in_scenes.h"
@@ -72,37 +74,47 @@ std::filesystem::path CalibrationIn(const SyntheticFieldOptions& a) {
   return std::filesystem::path(a.output) / "transforms.json";
 }
 
-Result<FileLock> LockFolder(const std::filesystem::path& folder) {
-  LF_RETURN_IF_ERROR(CreateFolder(folder));
-  LF_ASSIGN_OR_RETURN(FileLock lock, FileLock::Take(folder / ".lfsynth.lock"));
-  lock.RemoveInTheEnd();
-  return lock;
-}
-
-// Refuses to overwrite a light field that lfsynth did not write, or that was edited since. Returns
-// the paths of the LF images of the light field that is replaced, if lfsynth wrote it.
-Result<std::vector<std::filesystem::path>> ImagesToReplace(const SyntheticFieldOptions& a) {
+// Refuses to replace a light field without being asked.
+Result<void> CheckMayReplace(const SyntheticFieldOptions& a) {
+  if (a.overwrite || !HoldsLightField(a.output)) return {};
   std::error_code error;
-  std::vector<std::filesystem::path> images;
-  const bool is_there = std::filesystem::exists(CalibrationIn(a), error);
-  if (is_there) {
-    LF_ASSIGN_OR_RETURN(const bool is_ours, IsAsWritten(CalibrationIn(a), kSynthProgram));
-    if (is_ours) {
-      LF_ASSIGN_OR_RETURN(const LightField earlier, ReadTransformsJson(CalibrationIn(a)));
-      for (uint32_t i = 0; i < earlier.size(); ++i) images.push_back(earlier.ImagePath({i}));
-      return images;
-    }
-  }
-  if (a.overwrite || !HoldsLightField(a.output)) return images;
   return UsageError(
-      is_there
-          ? fmt::format("{}: was not written by lfsynth, or was changed afterwards: give another "
-                        "folder, or replace this light field with --overwrite",
+      std::filesystem::exists(CalibrationIn(a), error)
+          ? fmt::format("{}: exists already: give another folder, or replace this light field with "
+                        "--overwrite",
                         CalibrationIn(a).string())
           : fmt::format("{}: holds a light field that lfsynth did not write, and that a "
                         "transforms.json would hide: give another folder, or write beside it with "
                         "--overwrite",
                         a.output));
+}
+
+// Returns the paths of the LF images of the light field that is replaced, if lfsynth wrote it and
+// nobody changed it since.
+Result<std::vector<std::filesystem::path>> ImagesToReplace(const SyntheticFieldOptions& a) {
+  std::vector<std::filesystem::path> images;
+  std::error_code error;
+  if (!std::filesystem::exists(CalibrationIn(a), error)) return images;
+  LF_ASSIGN_OR_RETURN(const bool is_ours, IsAsWritten(CalibrationIn(a), kSynthProgram));
+  if (!is_ours) return images;
+  LF_ASSIGN_OR_RETURN(const LightField earlier, ReadTransformsJson(CalibrationIn(a)));
+  for (uint32_t i = 0; i < earlier.size(); ++i) images.push_back(earlier.ImagePath({i}));
+  return images;
+}
+
+// Refuses outputs, and LF images that are removed, if they are files of the path.
+Result<void> CheckKeepsPath(const SyntheticFieldOptions& a, const LightField& light_field,
+                            const std::vector<std::filesystem::path>& earlier, size_t frame_count) {
+  if (a.truth.empty()) return {};
+  const std::vector<std::filesystem::path> path = FilesOfPath(a.truth);
+  std::vector<OutputFile> outputs = {{CalibrationIn(a), "the calibration"}};
+  for (uint32_t i = 0; i < light_field.size() && !a.calibration_only; ++i)
+    outputs.emplace_back(light_field.ImagePath({i}), "an LF image");
+  for (size_t i = 1; i <= frame_count; ++i)
+    outputs.emplace_back(TruthPath(light_field.folder / "truth", i), "a frame");
+  LF_RETURN_IF_ERROR(CheckOutputFiles(std::move(outputs), path));
+  // The LF images that are removed.
+  return CheckOutputFiles({earlier.begin(), earlier.end()}, path);
 }
 
 // Removes those LF images of an earlier light field that the new one does not replace.
@@ -140,7 +152,8 @@ Result<void> WriteSyntheticField(const SyntheticFieldOptions& options, ThreadPoo
     instants = static_cast<size_t>(path.shutter.samples);
   }
   // The lock keeps two processes from mixing their scenes in one folder.
-  LF_ASSIGN_OR_RETURN(const FileLock lock, LockFolder(options.output));
+  LF_ASSIGN_OR_RETURN(const FileLock lock, LockOutputFolder(options.output));
+  LF_RETURN_IF_ERROR(CheckMayReplace(options));
   LF_ASSIGN_OR_RETURN(const std::vector<std::filesystem::path> earlier, ImagesToReplace(options));
   const auto [width_px, height_px] =
       options.size_px.value_or(std::pair(built_in->width_px, built_in->height_px));
@@ -149,6 +162,8 @@ Result<void> WriteSyntheticField(const SyntheticFieldOptions& options, ThreadPoo
   LightField light_field =
       DescribeLightField(poses, intrinsics, format, built_in->max_radiance, options.output);
   light_field.encoding.alpha = AlphaMeaningOf(options.alpha);
+  const size_t frame_count = truth.size() / instants;
+  LF_RETURN_IF_ERROR(CheckKeepsPath(options, light_field, earlier, frame_count));
   const Surroundings surroundings =
       light_field.encoding.AlphaIsLight() ? Surroundings::kTransparent : Surroundings::kShown;
   const Scene scene(built_in->describe());
@@ -163,7 +178,6 @@ Result<void> WriteSyntheticField(const SyntheticFieldOptions& options, ThreadPoo
   }
   LogInfo("{}: {} LF cameras, {:.4g} apart", options.output, poses.size(), RigPitch(rig));
   if (truth.empty()) return {};
-  const size_t frame_count = truth.size() / instants;
   return WriteTruth(
       scene, truth, {options.truth_samples, 0}, light_field.folder / "truth", pool, surroundings,
       [&](size_t done) { return keep_going(done, frame_count, true); }, instants);

@@ -40,9 +40,9 @@ using SyntheticProgress = std::function<bool(size_t done, size_t total, bool is_
 
 // Writes the LF images, their calibration and, if a path is given, the ground truth. LF images of
 // an earlier light field of lfsynth in the folder are removed, unless calibration_only is true.
-// kUsage: options that do not exist or contradict each other; the folder holds another light field,
-// in any form, and `overwrite` is false. kInput: the path cannot be read. kOutput: the folder or
-// the disk fails. kInterrupted: keep_going() returned false.
+// kUsage: options that do not exist or contradict each other; the folder holds a light field, in
+// any form, and `overwrite` is false; an output is a file of the path. kInput: the path cannot be
+// read. kOutput: the folder or the disk fails. kInterrupted: keep_going() returned false.
 Result<void> WriteSyntheticField(const SyntheticFieldOptions& options, ThreadPool& pool,
                                  const SyntheticProgress& keep_going);
 

@@ -283,9 +283,9 @@ def synth(scene: str, folder: FilePath, *, capture: str = "planar", count: Optio
     calibration_only : bool
         True: write no images.
     overwrite : bool
-        A light field that this function or `lfsynth` wrote there is replaced, and those of its LF images that the new
-        one does not have are removed, unless `calibration_only` is True. False: a light field of another origin, or one
-        whose calibration was changed, is an error; True: the files of the new one are written beside its files.
+        False: a light field in the folder is an error. True: it is replaced. If this function or `lfsynth` wrote it,
+        and its calibration was not changed, those of its LF images that the new one does not have are removed, unless
+        `calibration_only` is True.
     seed : int
         Seed of `jitter` and `noise`.
     threads : int

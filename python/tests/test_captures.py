@@ -134,10 +134,12 @@ def test_synthetic_fields_are_those_of_lfsynth(run, tmp_path, path_file, path):
 def test_older_synthetic_fields_are_replaced_whole(tmp_path):
     lf.synth("chart", tmp_path, count=9, size=(16, 12), samples=1)
     (tmp_path / "images/notes.txt").write_text("kept")
-    lf.synth("lights", tmp_path, count=4, size=(16, 12), samples=1)
+    with pytest.raises(lf.UsageError, match="exists already"):
+        lf.synth("lights", tmp_path, count=4, size=(16, 12), samples=1)
+    lf.synth("lights", tmp_path, count=4, size=(16, 12), samples=1, overwrite=True)
     assert sorted(file.name for file in (tmp_path / "images").iterdir()) == [
         "0000.exr", "0001.exr", "0002.exr", "0003.exr", "notes.txt"]
-    lf.synth("lights", tmp_path, count=4, size=(16, 12), samples=1, format="png")
+    lf.synth("lights", tmp_path, count=4, size=(16, 12), samples=1, format="png", overwrite=True)
     assert sorted(file.name for file in (tmp_path / "images").iterdir())[:2] == ["0000.png", "0001.png"]
 
 

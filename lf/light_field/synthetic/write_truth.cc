@@ -31,6 +31,10 @@ Image<float> MeanPhotograph(const Scene& scene, std::span<const RenderCamera> ca
 
 }  // namespace
 
+std::filesystem::path TruthPath(const std::filesystem::path& folder, size_t number) {
+  return folder / fmt::format("frame_{:04}.exr", number);
+}
+
 Result<void> WriteTruth(const Scene& scene, std::span<const RenderCamera> cameras,
                         const LensSampling& sampling, const std::filesystem::path& folder,
                         ThreadPool& pool, Surroundings surroundings,
@@ -49,12 +53,14 @@ Result<void> WriteTruth(const Scene& scene, std::span<const RenderCamera> camera
     for (int c = 0; c < picture.channels(); ++c)
       channels.push_back({names[static_cast<size_t>(c)], picture.view(), c, false});
     channels.push_back({"Z", depths.view(), 0, false});
-    LF_RETURN_IF_ERROR(WriteExr(folder / fmt::format("frame_{:04}.exr", i + 1), channels));
+    LF_RETURN_IF_ERROR(WriteExr(TruthPath(folder, i + 1), channels));
     if (keep_going && !keep_going(i + 1) && i + 1 < count)
       return Error{
           ErrorKind::kInterrupted,
-          fmt::format("{}: stopped after {} of {} frames; run the same command again to start anew",
-                      folder.string(), i + 1, count)};
+          fmt::format(
+              "{}: stopped after {} of {} frames; run the command again with --overwrite to start "
+              "anew",
+              folder.string(), i + 1, count)};
   }
   return {};
 }

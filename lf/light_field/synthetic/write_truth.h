@@ -16,7 +16,10 @@
 
 namespace lf {
 
-// Writes the frames folder/frame_0001.exr ..., one for each camera: R, G, B as floats, linear
+// Returns the file of a frame: folder/frame_0001.exr for number 1.
+std::filesystem::path TruthPath(const std::filesystem::path& folder, size_t number);
+
+// Writes the frames TruthPath(folder, 1), ..., one for each camera: R, G, B as floats, linear
 // light, and Z, the depths that are seen through the lens centre (DepthsSeen()). If `instants` is
 // above 1, a frame is the mean of this many consecutive cameras (CameraPath::instants), and Z is
 // that of the middle one. If surroundings are transparent, R, G and B are multiplied by alpha, and
