@@ -159,6 +159,8 @@ lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::Comm
     options.output_folder = a.output;
   }
   options.overwrite = a.overwrite;
+  options.inputs = lf::FilesOfPath(a.path);
+  options.inputs.emplace_back(a.light_field.path);
   LF_ASSIGN_OR_RETURN(options.frames, a.frames.Of(path.frame_count()));
   options.order = *lf::ImageOrderOf(a.order);
   options.seed = common.seed;

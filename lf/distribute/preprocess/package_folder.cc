@@ -7,6 +7,8 @@
 #include <system_error>
 #include <utility>
 
+#include "lf/core/output_files.h"
+
 namespace lf {
 namespace fs = std::filesystem;
 namespace {
@@ -65,6 +67,19 @@ std::vector<fs::path> PackageFolder::Packages() const {
            (!part_.empty() && name.find(part_ + ".") == std::string::npos);
   });
   return packages;
+}
+
+Result<void> PackageFolder::CheckKeeps(const LightField& light_field,
+                                       const std::vector<fs::path>& inputs) const {
+  std::vector<OutputFile> files;
+  for (const fs::path& package : Packages()) files.emplace_back(package, "a package");
+  LF_ASSIGN_OR_RETURN(const OutputFiles replaced, OutputFiles::Make(std::move(files)));
+  LF_RETURN_IF_ERROR(replaced.CheckReplacesNone(inputs));
+  // The folder of a packed store is its file.
+  LF_RETURN_IF_ERROR(replaced.CheckReplacesNone({light_field.folder}));
+  for (const auto* names : {&light_field.image_names, &light_field.mask_names})
+    LF_RETURN_IF_ERROR(replaced.CheckReplacesNone(light_field.folder, *names, "an LF image"));
+  return {};
 }
 
 fs::path PackageFolder::PathOf(const std::string& name) const {

@@ -32,6 +32,10 @@ class PackageFolder {
   PackageFolder(PackageFolder&&) noexcept = default;
   PackageFolder& operator=(PackageFolder&&) = delete;
 
+  // kUsage if a file that Publish() replaces or removes is a file of the light field, or one of the
+  // inputs.
+  Result<void> CheckKeeps(const LightField& light_field,
+                          const std::vector<std::filesystem::path>& inputs) const;
   // Returns the final path of a package.
   std::filesystem::path PathOf(const std::string& name) const;
   // Writes a package under a temporary name. kOutput: the file cannot be written.

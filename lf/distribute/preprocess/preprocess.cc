@@ -183,6 +183,7 @@ Result<void> Preprocessor::Begin() {
         PackageFolder folder,
         PackageFolder::Open(*options_.output_folder,
                             NameOfPart(options_.frames, path_.frame_count()), options_.overwrite));
+    LF_RETURN_IF_ERROR(folder.CheckKeeps(light_field_, options_.inputs));
     folder_.emplace(std::move(folder));
   }
   LF_ASSIGN_OR_RETURN(store_,

@@ -32,6 +32,8 @@ enum class PackageBalance { kRays, kFrames };
 struct PreprocessOptions {
   std::optional<std::filesystem::path> output_folder;  // unset: only forecasts
   bool overwrite = false;                              // true: existing packages are replaced
+  // Files that are read, besides those of the light field, and that no package may replace.
+  std::vector<std::filesystem::path> inputs = {};
   std::vector<FrameId> frames;  // frames to pack, ascending; empty: all frames of the path
   ImageOrder order = ImageOrder::kShuffle;
   uint64_t seed = 0;
@@ -113,7 +115,8 @@ struct PreprocessReport {
 };
 
 // Makes the packages. They appear under their final names at the same time, when all are complete
-// (package_folder.h). kUsage: packages exist already; the lens of a frame is a pinhole, but the
+// (package_folder.h). kUsage: packages exist already; a package would replace a file that is read,
+// or be written in its place; the lens of a frame is a pinhole, but the
 // weights are kArea; the mode is kRebin, but lens_weights is not kNone; the mode rebins, but
 // max_image_count is set, or the LF images have opacity. kInput: no LF image contributes to any
 // frame; an LF image is missing and `strict` is set; a packed store lacks pixels. kOutput: the disk
