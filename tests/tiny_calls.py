@@ -96,6 +96,8 @@ class TinyCalls:
         epi = self.words("lffocus", "epi", self.field, "--row", "9", "-o", out.with_suffix(".png"))
         depth = self.words("lffocus", "depth", self.field, self.path, "--planes", "3", "--near", "2", "--far", "4",
                            "--confidence", "0", "-o", out.with_suffix(".exr"), "-o", out.with_suffix(".ply"))
+        sharp = self.words("lffocus", "sharp", self.field, self.path, "--planes", "3", "--near", "2", "--far", "4",
+                           "-o", out.with_suffix(".png"))
         through = self.words("lffocus", "through", self.field, self.path, "-o", out.with_suffix(".exr"))
         through_film = self.words("lffocus", "through", self.field, self.path, "--frames", "1-2", "-o", out)
         views = self.words("lffocus", "views", self.field, "--grid", "3x3", "-o", out)
@@ -120,6 +122,7 @@ class TinyCalls:
                 Call("lffocus stack", stack, [[*stack, "--resume"], [*stack, "--overwrite"]]),
                 Call("lffocus epi", epi, [[*epi, "--overwrite"]]),
                 Call("lffocus depth", depth, [[*depth, "--overwrite"]]),
+                Call("lffocus sharp", sharp, [[*sharp, "--overwrite"]]),
                 Call("lffocus through", through, [[*through, "--overwrite"]]),
                 Call("lffocus through, a film", through_film, [[*through_film, "--resume"]]),
                 Call("lffocus views", views, [[*views, "--overwrite"]]),
