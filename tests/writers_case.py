@@ -107,7 +107,7 @@ class WritersCase(ProgramTestCase):
             "lffocus depth": [*depth, out / "depth.exr", "-o", out / "depth.ply"],
             "lffocus sharp": [*depth[:-2], "-o", out / "sharp.exr"],
             "lffocus epi": [other, "--row", 9 + is_b, "-o", out / "epi.png"],
-            "lffocus views": [other, "--grid", "3x3", "-o", out, "--focus-distance", 3 + is_b],
+            "lffocus views": [self.other if is_b else other, "--grid", "3x3", "-o", out, "--focus-distance", 3],
         }[call]]
 
     def command(self, call, way, out, *more):
