@@ -327,6 +327,24 @@ class PackagesTest(ProgramTestCase):
 
     # Reports
 
+    def test_a_forecast_is_the_sum_of_the_stages_of_its_mode(self):
+        field, path = self.film()
+        memory = {}
+        for mode, options in (("collect", []), ("rebin", ["--lens-weights", "none"]), ("hybrid", [])):
+            plan = json.loads(self.succeeds(PREPROCESSOR, field, path, "--plan", "--json", "--packages", "1",
+                                            "--mode", mode, *options))
+            package = plan["packages"][0]
+            stages = package["cpu_s_of"]
+            self.assertAlmostEqual(package["cpu_s"], sum(stages.values()), 9)
+            self.assertAlmostEqual(stages["load"], plan["rate"]["cpu_s_per_lf_image"] * package["lf_images"], 9)
+            self.assertAlmostEqual(stages["finish"], plan["rate"]["cpu_s_per_frame"] * len(package["frames"]), 9)
+            self.assertEqual(stages["rebin"] + stages["complete"] > 0, mode != "collect", stages)
+            self.assertEqual(stages["collect"] > 0, mode != "rebin", stages)
+            memory[mode] = package["memory_bytes"]
+        # Rays take the memory that they fill, not the half of --memory that is theirs.
+        self.assertLess(max(memory.values()), 400e6, memory)
+        self.assertGreater(memory["rebin"], 0)
+
     def test_a_plan_tells_what_packages_will_be(self):
         field, path = self.film()
         plan = json.loads(self.succeeds(PREPROCESSOR, field, path, "--plan", "--json",

@@ -67,7 +67,7 @@ void AddPackages(const PreprocessReport& report, const ForecastFacts& facts, std
                     frames, package.image_count, package.neighbour_count,
                     ShortNumber(static_cast<double>(package.ray_count)), Bytes(package.read_bytes),
                     Bytes(package.memory_bytes), package.pass_count,
-                    report.rate ? ShortDuration(package.cpu_s / facts.thread_count) : "-");
+                    report.rate ? ShortDuration(package.cpu.Sum() / facts.thread_count) : "-");
   }
   if (report.packages.size() > 1)
     *lines +=
@@ -187,13 +187,14 @@ std::string ForecastText(const PreprocessReport& report, const CameraPath& path,
   const Intrinsics& plate = path.Camera(report.frames.front().frame).pinhole.intrinsics;
   size_t image_count = 0, virtual_count = 0;
   uint64_t rays = 0, bytes = 0;
-  double cpu_s = 0;
+  double cpu_s = 0, rebinned_s = 0;
   for (const PackageForecast& package : report.packages) {
     image_count += package.image_count;
     virtual_count += package.virtual_count;
     rays += package.ray_count;
     bytes += package.read_bytes;
-    cpu_s += package.cpu_s;
+    cpu_s += package.cpu.Sum();
+    rebinned_s += package.cpu.rebin_s + package.cpu.complete_s;
   }
   AddLine("light field",
           fmt::format("{}, {} LF images{}", facts.light_field, report.light_field_image_count,
@@ -228,7 +229,9 @@ std::string ForecastText(const PreprocessReport& report, const CameraPath& path,
                         ShortDuration(cpu_s / facts.thread_count), facts.thread_count,
                         1e3 * report.rate->load_s, 1e9 * report.rate->collect_s,
                         1e3 * report.rate->finish_s) +
-                (facts.rebins ? "; the time to make frames from rebinned rays is not included" : "")
+                (facts.rebins ? fmt::format("; rebinned rays take {:.0f} % of it",
+                                            100 * rebinned_s / std::max(cpu_s, 1e-9))
+                              : "")
           : "not known: " + report.rate_error,
       &lines);
   AddLine(
@@ -287,7 +290,12 @@ std::string ForecastJson(const PreprocessReport& report, const CameraPath& path,
                                 {"bytes_to_read", package.read_bytes},
                                 {"memory_bytes", package.memory_bytes},
                                 {"passes", package.pass_count},
-                                {"cpu_s", report.rate ? Json(package.cpu_s) : Json()}});
+                                {"cpu_s", report.rate ? Json(package.cpu.Sum()) : Json()}});
+    if (report.rate)
+      json["packages"].back()["cpu_s_of"] = {
+          {"begin", package.cpu.begin_s},       {"load", package.cpu.load_s},
+          {"collect", package.cpu.collect_s},   {"rebin", package.cpu.rebin_s},
+          {"complete", package.cpu.complete_s}, {"finish", package.cpu.finish_s}};
     add_virtual(package.virtual_count, &json["packages"].back());
   }
   json["frames"] = Json::array();

@@ -38,6 +38,14 @@ constexpr size_t kAhead = 32;
 // Returns the number of cells to expect in the fullest shard if all shards together have `cells`.
 size_t MostOfShard(size_t cells) { return cells / RayMap::kShards * 9 / 8 + 64; }
 
+// Returns the number of slots to which a full shard grows: twice as many, but not beyond the number
+// that max_cells cells need. A shard that needs still more before the next Trim() grows by a
+// quarter.
+size_t GrownSlots(size_t slots, size_t max_cells) {
+  const size_t most = SlotsFor(MostOfShard(max_cells));
+  return slots < most ? std::min(2 * slots, most) : slots + slots / 4;
+}
+
 }  // namespace
 
 // Allocates memory for the expected cells at once. Growing later would take longer than adding the
@@ -54,11 +62,14 @@ RayMap::RayMap(size_t max_cells, size_t expected_cells, uint64_t limit, bool is_
   shards_[0].is_too_coarse = is_too_coarse;  // is_too_coarse() combines the flags of all shards
 }
 
-// Doubles the number of slots, but not beyond the number that max_cells cells need. A shard that
-// needs still more before the next Trim() grows by a quarter.
+size_t RayMap::BytesFor(size_t max_cells, size_t expected_cells, size_t cells) {
+  size_t slots = SlotsFor(MostOfShard(std::min(std::max<size_t>(max_cells, 1), expected_cells)));
+  while (slots < SlotsFor(cells / kShards)) slots = GrownSlots(slots, max_cells);
+  return kShards * slots * sizeof(BinnedCell);
+}
+
 void RayMap::Grow(Shard& shard) {
-  const size_t now = shard.slots.size(), most = SlotsFor(MostOfShard(max_cells_));
-  LargeVector<BinnedCell> slots(now < most ? std::min(2 * now, most) : now + now / 4);
+  LargeVector<BinnedCell> slots(GrownSlots(shard.slots.size(), max_cells_));
   for (const BinnedCell& cell : shard.slots)
     if (cell.cell != 0) *Find(slots, cell.cell, MixBits(cell.cell)) = cell;
   shard.slots = std::move(slots);

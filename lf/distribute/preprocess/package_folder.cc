@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "lf/core/hash.h"
 #include "lf/core/output_files.h"
 
 namespace lf {
@@ -32,6 +33,22 @@ void RemoveFiles(const std::vector<fs::path>& files) {
 }
 
 }  // namespace
+
+std::string NameOfPart(const std::vector<FrameId>& frames, size_t film_frame_count) {
+  if (frames.empty() || frames.size() == film_frame_count) return "";
+  std::string ranges;
+  for (size_t begin = 0, end = 0; begin < frames.size(); begin = end) {
+    for (end = begin + 1; end < frames.size(); ++end)
+      if (frames[end].value != frames[end - 1].value + 1) break;
+    ranges += fmt::format("{}{}", ranges.empty() ? "" : "+", frames[begin].value);
+    if (end > begin + 1) ranges += fmt::format("-{}", frames[end - 1].value);
+  }
+  constexpr size_t kLongest = 40;
+  if (ranges.size() > kLongest)
+    ranges = fmt::format("{}-{}-{:08x}", frames.front().value, frames.back().value,
+                         static_cast<uint32_t>(HashBytes(ranges)));
+  return "-of-frames-" + ranges;
+}
 
 PackageFolder::PackageFolder(fs::path folder, std::string part, FileLock lock)
     : folder_(std::move(folder)), part_(std::move(part)), lock_(std::move(lock)) {}

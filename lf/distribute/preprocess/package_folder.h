@@ -8,11 +8,17 @@
 
 #include "lf/core/file.h"
 #include "lf/core/file_lock.h"
+#include "lf/core/ids.h"
 #include "lf/core/result.h"
 #include "lf/core/temporary_file.h"
 #include "lf/render/package/package_file.h"
 
 namespace lf {
+
+// Returns the suffix of the packages' names: "-of-frames-1-4", for example, if only some frames of
+// the film are packed; empty for the whole film. Because of the suffix, packages, reports and
+// states of different parts of a film can be in the same folder.
+std::string NameOfPart(const std::vector<FrameId>& frames, size_t film_frame_count);
 
 // Holds the lock DIR/.packages.lock during its lifetime. Packages are written under temporary
 // names. Publish() renames all of them when they are complete. If the process is killed before

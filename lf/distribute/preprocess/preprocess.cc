@@ -9,11 +9,13 @@
 #include <memory>
 #include <numeric>
 
-#include "lf/core/hash.h"
 #include "lf/core/log.h"
+#include "lf/distribute/preprocess/expected_memory.h"
+#include "lf/distribute/preprocess/forecast_rebinning.h"
 #include "lf/distribute/preprocess/package_folder.h"
 #include "lf/distribute/preprocess/split_film.h"
 #include "lf/render/collect/frame_lens.h"
+#include "lf/render/hybrid/rebin_cost.h"
 #include "lf/render/hybrid/render_memory.h"
 #include "lf/render/needs/film_order.h"
 #include "lf/render/needs/frame_needs.h"
@@ -22,32 +24,12 @@
 
 namespace lf {
 namespace {
-
 // Largest memory for Preprocessor::kept_needs_; enough for the needs of 300 frames with 20,000 LF
 // images each.
 constexpr uint64_t kMostKeptBytes = uint64_t{256} << 20;
 
 double SecondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-// Returns the suffix of the packages' names: "-of-frames-1-4", for example, if only some frames of
-// the film are packed; empty for the whole film. Because of the suffix, packages, reports and
-// states of different parts of a film can be in the same folder.
-std::string NameOfPart(const std::vector<FrameId>& frames, size_t film_frame_count) {
-  if (frames.empty() || frames.size() == film_frame_count) return "";
-  std::string ranges;
-  for (size_t begin = 0, end = 0; begin < frames.size(); begin = end) {
-    for (end = begin + 1; end < frames.size(); ++end)
-      if (frames[end].value != frames[end - 1].value + 1) break;
-    ranges += fmt::format("{}{}", ranges.empty() ? "" : "+", frames[begin].value);
-    if (end > begin + 1) ranges += fmt::format("-{}", frames[end - 1].value);
-  }
-  constexpr size_t kLongest = 40;
-  if (ranges.size() > kLongest)
-    ranges = fmt::format("{}-{}-{:08x}", frames.front().value, frames.back().value,
-                         static_cast<uint32_t>(HashBytes(ranges)));
-  return "-of-frames-" + ranges;
 }
 
 // Joins the needs of all frames of a package.
@@ -106,7 +88,7 @@ class Preprocessor {
   Result<void> ForecastFrames();
   Result<void> DescribeSurroundings(const std::map<FrameId, FrameSampling>& sampling);
   Result<void> Measure();
-  Result<MemoryPlan> MemoryOf(const LightField& light_field, size_t frame_count) const;
+  Result<RenderMemory> MemoryOf(const LightField& light_field, size_t frame_count) const;
   Result<std::vector<Section>> Split() const;
   Result<void> MakePackage(size_t number, const Section& section, size_t count);
   Package PackageOf(const Section& section, const Gathering& gathering) const;
@@ -157,6 +139,7 @@ class Preprocessor {
   std::vector<FrameSurroundings> surroundings_;  // [frame number - 1], for all frames of the film
   std::vector<double> instant_distances_w_;      // Package::instant_distances_w, of all packages
   size_t done_ = 0;
+  double begin_cpu_s_ = 0;        // CPU time of the steps of Begin() that a render also takes
   std::vector<bool> is_counted_;  // [LF image]: true if a finished package needs it
   PreprocessReport report_;
 };
@@ -194,9 +177,11 @@ Result<void> Preprocessor::Begin() {
   report_.light_field_virtual_count = light_field_.size() - report_.light_field_image_count;
   whole_ = IdentityOf(light_field_);
   footprint_ = light_field_.encoding.footprint;
+  const double start_s = ProcessCpuSeconds();
   if (options_.reading.estimator == Estimator::kBilinear) {
     LF_ASSIGN_OR_RETURN(footprint_, FootprintOf(light_field_, *store_));
   }
+  begin_cpu_s_ += ProcessCpuSeconds() - start_s;
   return {};
 }
 
@@ -222,6 +207,7 @@ Result<void> Preprocessor::CheckOptions() const {
 
 Result<void> Preprocessor::MakeIndex() {
   const auto start = std::chrono::steady_clock::now();
+  const double start_cpu_s = ProcessCpuSeconds();
   const Result<ImagePlaces> places =
       PlacesOfFilm(options_.order, options_.seed, light_field_, path_, needs_, pool_);
   LF_RETURN_IF_ERROR(CheckInterrupted());
@@ -229,6 +215,7 @@ Result<void> Preprocessor::MakeIndex() {
   places_ = *places;
   index_.emplace(light_field_, places_);
   report_.index_s = SecondsSince(start);
+  begin_cpu_s_ += ProcessCpuSeconds() - start_cpu_s;
   LogDebug("order {} of {} LF images by seed {}, and their octree: {:.2f} s",
            NameOf(options_.order), light_field_.size(), options_.seed, report_.index_s);
   return {};
@@ -258,8 +245,12 @@ Result<void> Preprocessor::ForecastFrames() {
     const auto virtual_count = static_cast<size_t>(std::count_if(
         needs.images.begin(), needs.images.end(),
         [this](const auto& image) { return light_field_.cameras[image.id.value].is_virtual; }));
-    report_.frames.push_back(
-        {frame, needs.images.size() - virtual_count, virtual_count, needs.RayCount(), {}});
+    report_.frames.push_back({frame,
+                              needs.images.size() - virtual_count,
+                              virtual_count,
+                              needs.RayCount(),
+                              needs.rebinned_count,
+                              {}});
     if (needs.sampling) sampling[frame] = *needs.sampling;
     KeepDistances(frame, needs.instant_distances_w);
     Keep(frame, std::move(needs));
@@ -317,19 +308,16 @@ Result<void> Preprocessor::Measure() {
   return {};
 }
 
-Result<MemoryPlan> Preprocessor::MemoryOf(const LightField& light_field, size_t frame_count) const {
+Result<RenderMemory> Preprocessor::MemoryOf(const LightField& light_field,
+                                            size_t frame_count) const {
   const Intrinsics& plate = path_.Camera(frames_.front()).pinhole.intrinsics;
-  LF_ASSIGN_OR_RETURN(
-      RenderMemory memory,
-      PlanRenderMemory(options_.memory_bytes, options_.mode, 0, light_field, options_.reading,
-                       plate.width_px, plate.height_px, frame_count, pool_.thread_count(), 0,
-                       needs_.guard, static_cast<size_t>(path_.shutter.samples)));
-  memory.plan.total_bytes += memory.rebin_bytes;
-  return memory.plan;
+  return PlanRenderMemory(options_.memory_bytes, options_.mode, 0, light_field, options_.reading,
+                          plate.width_px, plate.height_px, frame_count, pool_.thread_count(), 0,
+                          needs_.guard, static_cast<size_t>(path_.shutter.samples));
 }
 
 Result<std::vector<Section>> Preprocessor::Split() const {
-  LF_ASSIGN_OR_RETURN(const MemoryPlan memory, MemoryOf(light_field_, frames_.size()));
+  LF_ASSIGN_OR_RETURN(const RenderMemory memory, MemoryOf(light_field_, frames_.size()));
   std::vector<uint64_t> costs;
   for (const FrameForecast& frame : report_.frames)
     costs.push_back(options_.balance == PackageBalance::kRays ? frame.ray_count : 1);
@@ -340,7 +328,7 @@ Result<std::vector<Section>> Preprocessor::Split() const {
       sections.push_back({begin, std::min(frames_.size(), begin + *options_.frames_per_package)});
     return sections;
   }
-  return SplitToFit(costs, memory.frames_per_pass);
+  return SplitToFit(costs, memory.plan.frames_per_pass);
 }
 
 Result<void> Preprocessor::MakePackage(size_t number, const Section& section, size_t count) {
@@ -459,25 +447,47 @@ std::vector<uint64_t> Preprocessor::FileSizes(const Package& package) const {
 
 Result<void> Preprocessor::Forecast(const Package& package, PackageForecast* forecast) const {
   forecast->frames = package.FrameIds();
+  uint64_t rebinned_count = 0;
+  for (const FrameForecast& frame : report_.frames)
+    if (std::binary_search(forecast->frames.begin(), forecast->frames.end(), frame.frame))
+      rebinned_count += frame.rebinned_count;
+  ReadImages read;
   for (size_t i = 0; i < package.images.size(); ++i) {
     const PackageImage& image = package.images[i];
     const bool is_virtual = package.light_field.cameras[i].is_virtual;
     ++(image.frame_count == 0 ? forecast->neighbour_count
        : is_virtual           ? forecast->virtual_count
                               : forecast->image_count);
+    read.pixel_count += static_cast<uint64_t>(image.rect.pixel_count());  // 0 for neighbours
     forecast->read_bytes += image.file_bytes;
     forecast->ray_count += image.ray_count;
   }
-  LF_ASSIGN_OR_RETURN(const MemoryPlan memory,
-                      MemoryOf(package.light_field, package.frames.size()));
-  forecast->memory_bytes = memory.total_bytes;
-  forecast->pass_count =
-      (package.frames.size() + memory.frames_per_pass - 1) / memory.frames_per_pass;
-  if (report_.rate)
-    forecast->cpu_s = report_.rate->load_s *
-                          static_cast<double>(forecast->image_count + forecast->virtual_count) +
-                      report_.rate->collect_s * static_cast<double>(forecast->ray_count) +
-                      report_.rate->finish_s * static_cast<double>(package.frames.size());
+  read.count = forecast->image_count + forecast->virtual_count;
+  const size_t frame_count = package.frames.size();
+  LF_ASSIGN_OR_RETURN(const RenderMemory memory, MemoryOf(package.light_field, frame_count));
+  const size_t per_pass = std::min(memory.plan.frames_per_pass, frame_count);
+  forecast->pass_count = (frame_count + per_pass - 1) / per_pass;
+  RebinCost cost;
+  StageTimes cpu;
+  if (Rebins(options_.mode)) {
+    // The passes have about equal numbers of frames, and the first stands for all.
+    const auto pass = std::span<const FrameId>(forecast->frames).first(per_pass);
+    LF_ASSIGN_OR_RETURN(cost, ForecastRebinning(*index_, *store_, path_, surroundings_, pass,
+                                                needs_, options_.reading, memory.max_cells, pool_));
+    LF_RETURN_IF_ERROR(CheckInterrupted());
+    const auto passes = static_cast<double>(frame_count) / static_cast<double>(per_pass);
+    cpu = {passes * cost.begin_s, 0, 0, passes * cost.rebin_s, passes * cost.complete_s, 0};
+  }
+  forecast->memory_bytes =
+      ExpectedBytes(memory, package.light_field, read, Collects(options_.mode),
+                    options_.reading.Prefilters(), Rebins(options_.mode) ? &cost : nullptr);
+  if (!report_.rate) return {};
+  cpu.begin_s += begin_cpu_s_;
+  cpu.load_s = report_.rate->load_s * static_cast<double>(read.count);
+  cpu.collect_s =
+      report_.rate->collect_s * static_cast<double>(forecast->ray_count - rebinned_count);
+  cpu.finish_s = report_.rate->finish_s * static_cast<double>(frame_count);
+  forecast->cpu = cpu;
   return {};
 }
 

@@ -72,12 +72,27 @@ struct PreprocessOptions {
 
 struct FrameForecast {
   FrameId frame;
-  size_t image_count = 0;    // number of recorded LF images that are read
-  size_t virtual_count = 0;  // number of virtual LF images that are read
-  uint64_t ray_count = 0;    // number of rays that are tested or rebinned
+  size_t image_count = 0;       // number of recorded LF images that are read
+  size_t virtual_count = 0;     // number of virtual LF images that are read
+  uint64_t ray_count = 0;       // number of rays that are tested or rebinned
+  uint64_t rebinned_count = 0;  // number of these that are rebinned
   FrameDensity density;
 
   bool ReadsNone() const { return image_count + virtual_count == 0; }
+};
+
+// CPU time of a render, by its stages.
+struct StageTimes {
+  // Prefilters, order of the LF images and octree of the LF cameras; with rebinned rays also their
+  // slabs, the gaps of the lenses, and the maps of what is needed.
+  double begin_s = 0;
+  double load_s = 0;      // to read and decode LF images
+  double collect_s = 0;   // to collect rays
+  double rebin_s = 0;     // to sort LF pixels into cells of rebinned rays
+  double complete_s = 0;  // to interpolate frames from rebinned rays
+  double finish_s = 0;    // lens weights, developing and writing
+
+  double Sum() const { return begin_s + load_s + collect_s + rebin_s + complete_s + finish_s; }
 };
 
 struct PackageForecast {
@@ -93,7 +108,7 @@ struct PackageForecast {
   // Number of passes over the LF images; above 1 if the plates do not all fit into the memory at
   // the same time.
   size_t pass_count = 0;
-  double cpu_s = 0;  // CPU time to render; 0 if PreprocessReport::rate is unset
+  StageTimes cpu;  // CPU time to render; 0 if PreprocessReport::rate is unset
 };
 
 struct PreprocessReport {

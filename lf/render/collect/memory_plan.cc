@@ -141,6 +141,7 @@ Result<MemoryPlan> PlanMemory(size_t memory_bytes, const LightField& light_field
   const size_t plates_bytes = free_bytes - std::min(free_bytes, images_bytes);
   plan.frames_per_pass =
       std::clamp<size_t>(plates_bytes / frame_bytes, 1, std::max<size_t>(1, frame_count));
+  plan.batches_bytes = images_bytes;
   plan.total_bytes = set_aside + images_bytes + plan.frames_per_pass * frame_bytes;
   return plan;
 }

@@ -20,8 +20,10 @@ struct MemoryPlan {
   // its LF images had
   size_t frames_finished_at_once = 1;
   size_t image_bytes = 0;  // size of the largest decoded LF image
+  // Memory for two batches, for filtered copies of the LF images of one, and for their plans.
+  size_t batches_bytes = 0;
   size_t plate_bytes = 0;  // size of the plate of one frame
-  size_t total_bytes = 0;  // expected memory of the program; includes all of the above
+  size_t total_bytes = 0;  // largest memory of the program; includes all of the above
 };
 
 // Divides memory_bytes. First sets memory aside for the program itself, its threads, the

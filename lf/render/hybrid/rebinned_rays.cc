@@ -52,6 +52,7 @@ struct RebinnedRays::Section {
   SlabSection plan;        // begin and end are indices of asking_
   CoverageMap in_the_end;  // covers the rays that finished frames need
   CoverageMap previews;    // covers the rays that previews of the current phase need
+  Expected expected;
   std::unique_ptr<RayMap> map;
   uint32_t phase = 0;
   uint32_t places_done = 0;
@@ -129,9 +130,16 @@ void RebinnedRays::MakeMaps(const ImageIndex& index) {
   keeps_all_ =
       options_.kept == KeptRays::kAll ||
       (options_.kept == KeptRays::kAuto && most_asked <= kFitShare * static_cast<double>(most));
-  for (size_t i = 0; i < sections_.size(); ++i)
-    sections_[i]->map = std::make_unique<RayMap>(
-        most, static_cast<size_t>(totals[i] * (keeps_all_ ? kRoom : kRoomByEdges)));
+  for (size_t i = 0; i < sections_.size(); ++i) {
+    Section& section = *sections_[i];
+    section.expected.pixel_count = totals[i];
+    section.expected.allocated_cells =
+        static_cast<size_t>(totals[i] * (keeps_all_ ? kRoom : kRoomByEdges));
+    for (size_t k = section.plan.begin; k < section.plan.end; ++k)
+      section.expected.frame_count += asking_[k].asked.asks_in_the_end() ? 1 : 0;
+    section.map =
+        std::make_unique<RayMap>(most, options_.allocates ? section.expected.allocated_cells : 0);
+  }
 }
 
 // Begins a phase (PhaseOf()): updates the coverage of previews, and drops the cells that only
@@ -162,6 +170,14 @@ uint32_t RebinnedRays::places_done() const {
 }
 uint32_t RebinnedRays::places_done(size_t section) const { return sections_[section]->places_done; }
 const RayMap& RebinnedRays::map(size_t section) const { return *sections_[section]->map; }
+RebinnedRays::Expected RebinnedRays::expected(size_t section) const {
+  return sections_[section]->expected;
+}
+
+void RebinnedRays::SortCells() {
+  for (const auto& section : sections_)
+    if (!section->cells) section->cells = section->map->Cells(pool_);
+}
 
 void RebinnedRays::Restore(size_t number, RayMap map, uint32_t places_done) {
   Section& section = *sections_[number];

@@ -61,6 +61,9 @@ struct RebinPassOptions {
   // Largest number of cells in the maps of all sections together; 0 only before PlanRenderMemory()
   // has chosen a number.
   size_t max_cells = 0;
+  // True: memory for the expected cells is allocated at once. False: memory grows with the cells,
+  // because only a few LF images are taken (rebin_cost.h).
+  bool allocates = true;
 };
 
 // A frame that may be completed by rebinned rays. Rebinned rays are made from LF images at all
@@ -100,6 +103,7 @@ class RebinnedRays : public ImageConsumer {
   // get equal parts of the memory.
   size_t section_count() const { return sections_.size(); }
   const RayMap& map(size_t section) const;
+  // Largest number of cells of a section.
   size_t max_cells_per_section() const { return max_cells_per_section_; }
   uint32_t places_done(size_t section) const;
   // Replaces the map of a section, for example by one that an earlier run saved.
@@ -114,6 +118,16 @@ class RebinnedRays : public ImageConsumer {
   static size_t BytesOf(size_t max_cells) {
     return max_cells * kBytesPerCell + (size_t{192} << 20);
   }
+
+  // Expectations of a section before LF images are taken; estimated from calibrations.
+  struct Expected {
+    size_t frame_count = 0;      // number of frames that need rays when they are finished
+    double pixel_count = 0;      // number of LF pixels whose rays these frames need
+    size_t allocated_cells = 0;  // number of cells for which memory is allocated at once
+  };
+  Expected expected(size_t section) const;
+  // Sorts the cells of all sections, which the next Complete() of a section would do.
+  void SortCells();
 
   struct Facts {
     size_t section_count = 0;

@@ -95,8 +95,9 @@ class NeedsFinder {
     for (const SelectedImage& image :
          SelectImages(index_, std::span(&asked.camera(), 1), options_.select, pool_)) {
       const PixelRect rect = RebinnedRect(asked, image);
-      if (!rect.empty())
-        rebinned.push_back({image.id, rect, static_cast<uint64_t>(rect.pixel_count())});
+      if (rect.empty()) continue;
+      rebinned.push_back({image.id, rect, static_cast<uint64_t>(rect.pixel_count())});
+      needs_.rebinned_count += rebinned.back().ray_count;
     }
     Join(rebinned);
   }
@@ -206,12 +207,15 @@ FrameSurroundings SurroundingsOf(const FrameSampling& sampling) {
           sampling.hole_w, sampling.recorded_distance_w};
 }
 
+FrameSampling SamplingOf(const FrameSurroundings& surroundings) {
+  return {{surroundings.camera_distance_w, surroundings.pixel_rad, surroundings.middle_world},
+          surroundings.hole_w,
+          surroundings.recorded_distance_w};
+}
+
 std::optional<FrameSampling> SamplingOf(const Package& package, FrameId frame) {
   if (package.surroundings.empty()) return std::nullopt;
-  const FrameSurroundings& around = package.surroundings[frame.value - 1];
-  return FrameSampling{{around.camera_distance_w, around.pixel_rad, around.middle_world},
-                       around.hole_w,
-                       around.recorded_distance_w};
+  return SamplingOf(package.surroundings[frame.value - 1]);
 }
 
 FrameNeeds NeedsOf(const ImageIndex& index, const RenderCamera& frame, const NeedsOptions& options,

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Forecasts the memory of a render. A plan (render/collect/memory_plan.h) promises what is never
+// exceeded; most renders take less, because they read few LF images, or only parts of them.
+// Internal to this folder.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "lf/light_field/model/light_field.h"
+#include "lf/render/hybrid/rebin_cost.h"
+#include "lf/render/hybrid/render_memory.h"
+
+namespace lf {
+
+// LF images that are read.
+struct ReadImages {
+  size_t count = 0;
+  uint64_t pixel_count = 0;  // number of pixels that are read, of all LF images together
+};
+
+// Returns the memory of a render, in bytes: that of the plan, where the LF images of two batches
+// have their mean size and are not more than are read, the plans of rays take an eighth of their
+// share, and rebinned rays take what they fill. Frames are interpolated when the LF images are no
+// longer needed, so that the larger of both counts.
+//   collects  true if rays are collected; filtered copies of LF images are made only then
+//   cost      null: the mode has no rebinned rays
+size_t ExpectedBytes(const RenderMemory& memory, const LightField& light_field,
+                     const ReadImages& read, bool collects, bool prefilters, const RebinCost* cost);
+
+}  // namespace lf

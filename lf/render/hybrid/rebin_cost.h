@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// Forecasts the CPU time and the memory of the rebinned rays of a pass (rebinned_rays.h). How many
+// LF pixels become rays follows from the calibration. How long that takes, how many cells they
+// fill, and how long frames take to be interpolated from these is measured with a few LF images.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lf/core/parallel.h"
+#include "lf/core/result.h"
+#include "lf/light_field/model/lf_pixels.h"
+#include "lf/render/collect/collect_batch.h"
+#include "lf/render/hybrid/film_slabs.h"
+#include "lf/render/hybrid/rebinned_rays.h"
+#include "lf/selection/image_index.h"
+#include "lf/selection/select.h"
+#include "lf/storage/load/lf_image_store.h"
+
+namespace lf {
+
+// Returns the CPU time of all threads of this process so far. Differences are the times of a step
+// if nothing else runs in the process.
+double ProcessCpuSeconds();
+
+// CPU times of the rebinned rays of a pass.
+struct RebinCost {
+  double begin_s = 0;        // plans which rays are kept
+  double rebin_s = 0;        // sorts LF pixels into cells
+  double complete_s = 0;     // interpolates all frames
+  uint64_t pixel_count = 0;  // number of LF pixels that are sorted into cells
+  size_t cell_count = 0;
+  size_t map_bytes = 0;    // memory of the cells
+  size_t frame_bytes = 0;  // memory of the rays of one frame, which are made from the cells
+};
+
+// Times and counts that were measured with a few LF images. LF images, frames and cells of the pass
+// are in proportion to it.
+struct RebinSample {
+  size_t image_count = 0;    // number of LF images of the sample; may be 0
+  uint64_t pixel_count = 0;  // number of LF pixels that were sorted into cells
+  size_t cell_count = 0;     // number of cells that they filled
+  double rebin_s = 0;        // CPU time to sort them
+  double find_s = 0;         // CPU time to find the pixels of one LF image that become rays
+  double sort_s = 0;         // CPU time to sort the cells
+  double empty_s = 0;        // CPU time to interpolate one frame from no cells
+  double complete_s = 0;     // CPU time to interpolate one frame from the sorted cells
+};
+
+// Number of frames and LF pixels of a section (RebinnedRays::section_count()).
+struct RebinSection {
+  size_t frame_count = 0;  // number of frames that need rebinned rays when they are finished
+  double pixel_count = 0;  // expected number of LF pixels that become rays
+};
+
+// Returns the cost of a pass, of which begin_s is 0. A stage costs as much for each LF pixel, LF
+// image, cell or frame as in the sample. Each frame is interpolated from all cells of its section.
+//   image_count  number of LF images that are rebinned
+//   max_cells    largest number of cells of a section
+//   expected     number of cells of a section for which memory is allocated at once
+RebinCost CostOf(const RebinSample& sample, std::span<const RebinSection> sections,
+                 size_t image_count, size_t max_cells, std::span<const size_t> expected);
+
+// Returns the cost of a pass. Loads up to `most` LF images that the frames need, and rebins them.
+//   collects  true if the frames also collect rays
+//   begin_s   CPU time that the caller has taken to make `frames` and `slabs`
+// Errors are those of Collect(), except that missing LF images are left out.
+Result<RebinCost> MeasureRebinning(const ImageIndex& index, const LfImageStore& store,
+                                   const FilmSlabs& slabs, std::vector<RebinnedFrame> frames,
+                                   bool collects, const SelectOptions& select,
+                                   RebinPassOptions options, const RayReading& reading,
+                                   double begin_s, size_t most, ThreadPool& pool);
+
+}  // namespace lf
