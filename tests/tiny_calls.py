@@ -97,7 +97,7 @@ class TinyCalls:
         depth = self.words("lffocus", "depth", self.field, self.path, "--planes", "3", "--near", "2", "--far", "4",
                            "--confidence", "0", "-o", out.with_suffix(".exr"), "-o", out.with_suffix(".ply"))
         sharp = self.words("lffocus", "sharp", self.field, self.path, "--planes", "3", "--near", "2", "--far", "4",
-                           "-o", out.with_suffix(".png"))
+                           "--confidence", "0", "-o", out.with_suffix(".png"))
         through = self.words("lffocus", "through", self.field, self.path, "-o", out.with_suffix(".exr"))
         through_film = self.words("lffocus", "through", self.field, self.path, "--frames", "1-2", "-o", out)
         views = self.words("lffocus", "views", self.field, "--grid", "3x3", "-o", out)
