@@ -127,11 +127,11 @@ Result<void> MoveCamera(const Similarity& b_from_a, const fs::path& file, size_t
   return {};
 }
 
-// True if the file is a path in one of the forms that we write.
-bool IsCameraPath(const fs::path& file) {
-  Result<ByteStream> stream = ByteStream::Open(file);
-  if (!stream) return false;
-  const std::string_view text = stream->Window();
+// Returns true if the file is a path in one of the forms that we write. kInput: it cannot be read.
+Result<bool> IsCameraPath(const fs::path& file) {
+  LF_ASSIGN_OR_RETURN(ByteStream stream, ByteStream::Open(file));
+  const std::string_view text = stream.Window();
+  LF_RETURN_IF_ERROR(stream.Status());
   if (text.starts_with(kUsdaStart)) return true;
   const Result<PathKind> kind = PathKindOf(text, file);
   if (!kind) return false;
@@ -187,8 +187,9 @@ bool HoldsShift(PathFormat format) { return format != PathFormat::kChan; }
 
 Result<void> CheckReplacesPath(const fs::path& file) {
   std::error_code error;
-  if (!fs::is_regular_file(file, error) || fs::is_empty(file, error) || IsCameraPath(file))
-    return {};
+  if (!fs::is_regular_file(file, error) || fs::is_empty(file, error)) return {};
+  LF_ASSIGN_OR_RETURN(const bool is_path, IsCameraPath(file));
+  if (is_path) return {};
   return UsageError(
       fmt::format("{}: exists, and is not a camera path: give another name, or remove the file",
                   file.string()));

@@ -32,6 +32,7 @@ bool HoldsShift(PathFormat format);
 // Checks that a file of this name may be replaced by a path: it is missing, empty, or a camera path
 // itself (our own YAML, a path of nerfstudio or instant-ngp, a .chan, or a .usda as we write it).
 // All programs call it before they write a path. kUsage otherwise, for a calibration in particular.
+// kInput: the file cannot be read, so that nobody knows.
 Result<void> CheckReplacesPath(const std::filesystem::path& file);
 
 // Writes a path.
