@@ -48,9 +48,8 @@ Result<void> CheckKind(const LightField& light_field) {
         "estimated: use --image-alpha mask");
   if (light_field.encoding.masks_clipped)
     return InputError(
-        "the light field has brackets (\"lf_clipped\": \"masked\"), which are not supported: "
-        "densify the LF "
-        "images of one exposure");
+        "the light field has brackets (\"lf_clipped\": \"mask\"), which are not supported: densify "
+        "the LF images of one exposure");
   return {};
 }
 
@@ -118,7 +117,7 @@ class Densifier {
     return WorkingCamera(light_field_.Camera(LfImageId{id}), options_.choices.divisor);
   }
 
-  LightFieldIdentity whole_;  // a packed store's is that of the light field that it was made from
+  LightFieldIdentity whole_;  // for a packed store, the light field that it was made from
   LightField light_field_;    // without broken LF images
   const DensifyOptions& options_;
   ThreadPool& pool_;

@@ -45,7 +45,7 @@ class RecordedCodes {
 
   const LightField& light_field_;
   std::string codec_{kLosslessCodec};
-  std::vector<PackedCode> codes_;  // of each LF image; empty: these are image files
+  std::vector<PackedCode> codes_;  // [LF image]; empty if the light field has image files
   std::optional<DisplayLevels> display_levels_;
   mutable std::mutex mutex_;
   mutable std::optional<PackedCodeReader> reader_;  // guarded by the mutex

@@ -114,7 +114,8 @@ TEST(GainsToHold, AreNoLargerThanTheLightThatIsKeptRequires) {
   EXPECT_NEAR(GainsToHold(field, sources)[0], 9, 0.01);
 }
 
-// The brightest and the darkest light that sources with gains record, as 16-bit radiance.
+// Stores the brightest and the darkest light that sources with gains record, and compares the
+// 16-bit radiance that is loaded with it.
 TEST(RecordedValues, HoldAllLightOfSourcesWithGains) {
   for (const StoredValues values :
        {StoredValues::kUint8, StoredValues::kUint16, StoredValues::kHalf})
