@@ -43,7 +43,7 @@ class OutputFiles {
 
   // kUsage if an output is one of the files. Each costs one access to the disk, or none if
   // AnyExists() is false.
-  //   what  of the files, such as "an input file", for the message
+  //   what  names the files in the message, such as "an input file"
   Result<void> CheckReplacesNone(const std::vector<std::filesystem::path>& inputs,
                                  std::string_view what = "an input file") const;
   // As above, for files in a folder. Empty names are left out. Links to folders are followed. Links
@@ -57,26 +57,26 @@ class OutputFiles {
   const OutputFile* FindByNumber(const std::filesystem::path& input) const;
 
   std::vector<OutputFile> files_;
-  // Indices of files_: by device and inode, of those that exist; by canonical path, of all.
+  // Indices of files_: of existing files by device and inode; of all files by canonical path.
   std::map<std::pair<dev_t, ino_t>, size_t> numbers_;
   std::map<std::string, size_t> paths_;
   std::set<std::string, std::less<>> names_;  // file names of paths_
 };
 
-// Checks outputs that are not many, against inputs that are. kUsage as for OutputFiles.
+// Checks a few outputs against any number of inputs. kUsage as for OutputFiles.
 Result<void> CheckOutputFiles(std::vector<OutputFile> outputs,
                               const std::vector<std::filesystem::path>& inputs);
 
-// True if the path, which need not exist, is in the folder or in a folder of it, after links to
-// folders are followed.
+// True if the path, which need not exist, is the folder or lies in it at any depth. Links to
+// folders are followed first.
 bool LiesIn(const std::filesystem::path& path, const std::filesystem::path& folder);
 
 // Takes the lock of a folder that several files are written into, FOLDER/.outputs.lock. Creates the
 // folder if it is missing. The lock file is removed in the end. Errors of FileLock::Take().
 Result<FileLock> LockOutputFolder(const std::filesystem::path& folder);
 
-// Takes the lock of an output, .NAME.lock beside it: for several files that are named after it. The
-// lock file is removed in the end. Errors of FileLock::Take().
+// Takes the lock of an output and of the files that are named after it, .NAME.lock beside the
+// output. The lock file is removed in the end. Errors of FileLock::Take().
 Result<FileLock> LockOutput(const std::filesystem::path& output);
 
 // Takes the locks of outputs that are written one after the other. Takes none for a single output,

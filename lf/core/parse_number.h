@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Parses numbers that come from outside: words of command lines, of files, and of names of files.
-// A text is a number as a whole, or it is none: "12abc", "0x10", " 5" and "" are none. The
-// program's locale has no influence.
+// The whole text must be a number: "12abc", "0x10", " 5" and "" are refused. The program's locale
+// has no influence.
 #pragma once
 
 #include <charconv>

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Counts the LF images that are loaded. Only one can be.
+// Counts the calls of Load(). Only the LF image `good` can be loaded.
 class CountingStore : public LfImageStore {
  public:
   Result<void> Load(LfImageId id, const PixelRect&, LfPixels*) const override {

@@ -96,8 +96,8 @@ class RayMap {
 
   size_t size() const;
   size_t size_bytes() const;
-  // Returns about the size_bytes() that a map of these arguments of the constructor has when it
-  // holds `cells` cells.
+  // Returns the approximate size_bytes() of a map that was constructed with max_cells and
+  // expected_cells, and holds `cells` cells.
   static size_t BytesFor(size_t max_cells, size_t expected_cells, size_t cells);
 
   // Returns all cells, sorted by ascending keys: row by row of the uv plane.

@@ -25,8 +25,8 @@ Vec3 SceneOrigin(const LightField& light_field);
 // (12 bytes each).
 std::string CamerasBytes(const LightField& light_field);
 
-// FramesBytes() returns kFrameNumbers doubles for each of these frames of a path, in which
-// PathFrames::Check() has found no error, about its camera: centre, right, up,
+// FramesBytes() returns kFrameNumbers doubles for the camera of each of these frames of a path, in
+// which PathFrames::Check() has found no error: centre, right, up,
 // forward (12); fx, fy, cx, cy; radius, rotation and blades of the aperture; normal and offset of
 // the focus plane (4); time, focal length, sensor width, focus distance, horizontal and vertical
 // tilt; width and height of the plate; ratio and roundness of the aperture;

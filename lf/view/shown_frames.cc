@@ -6,7 +6,7 @@
 
 namespace lf {
 
-// The last frame is one of those that are shown, in addition to one of each `step`.
+// The last frame counts as one of kMostShownFrames, in addition to every step-th frame.
 size_t ShownStep(size_t frame_count) {
   if (frame_count <= kMostShownFrames) return 1;
   return (frame_count - 1 + kMostShownFrames - 2) / (kMostShownFrames - 1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The frames of a film whose data the page has at once: curves, the line of the path, counts of LF
-// images. A long film has some of its frames, so that data do not grow with its length.
+// The shown frames: those whose data the page has at once (curves, the line of the path, counts of
+// LF images). A long film shows only some of its frames, so that data do not grow with its length.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace lf {
 
-// The largest number of shown frames. More than a timeline has places.
+// The largest number of shown frames. A timeline is fewer pixels wide.
 inline constexpr size_t kMostShownFrames = 10'000;
 
 // Returns the distance between two shown frames: 1 if all are shown.

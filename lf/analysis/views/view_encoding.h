@@ -8,8 +8,9 @@
 namespace lf {
 
 // Returns the encoding of floats that hold light as LightOf() returns it. It keeps the whole range
-// of this light: with white balance and the colours of the display, it may be brighter than
-// recorded.max_radiance, and darker than black. It is the recorded encoding if that has neither.
+// of this light: with white balance and the colours of the display, light may be brighter than
+// recorded.max_radiance, and darker than black. The range is the recorded one if the recorded
+// encoding has neither white balance nor a colour matrix.
 //   recorded  encoding of the LF images
 RadianceEncoding EncodingOfLight(const RadianceEncoding& recorded);
 

@@ -51,7 +51,8 @@ std::vector<std::byte> BytesOfView(const Image<float>& light, ViewValues values)
   return BytesOf(numbers);
 }
 
-// Writes light / gain, with an alpha channel if a pixel is NaN: 0 there, 1 elsewhere.
+// Writes light / gain. If any pixel is NaN, the file has an alpha channel, which is 0 where pixels
+// are NaN and 1 elsewhere.
 Result<void> WriteViewImage(const fs::path& path, const Image<float>& light, ViewValues values,
                             double gain) {
   const auto& from = light.pixels();
@@ -243,7 +244,7 @@ Result<WrittenViews> WriteViewFolder(const LightField& light_field, const ViewGr
         if (value > brightest) brightest = value;
       return {};
     }));
-    // Beyond the largest light that LF images can have, interpolation overshoots.
+    // Brighter light than LF images can have comes from interpolation that overshoots.
     written.gain = static_cast<float>(std::min(brightest, encoding.max_radiance));
   }
   LF_RETURN_IF_ERROR(CreateFolder(folder));

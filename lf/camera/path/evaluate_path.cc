@@ -18,7 +18,7 @@ namespace {
 // considered wrong.
 constexpr double kLeastHalfView = 1e-6;
 constexpr double kMostHalfView = 1e4;
-constexpr uint32_t kFramesPerLook = 4096;  // frames that are checked between two looks at the stop
+constexpr uint32_t kFramesPerLook = 4096;  // frames that are checked between calls of is_stopped
 
 // A time at which the path is evaluated.
 struct Moment {

@@ -13,7 +13,7 @@
 
 namespace lf {
 
-// The cameras of a path, each of which is computed when it is asked for, with the bits that
+// The cameras of a path. Each camera is computed when it is asked for, with the bits that
 // EvaluatePath() gives it. Takes the memory of the description, however many frames the path has.
 // Several threads may use it at the same time.
 class PathFrames {
@@ -39,8 +39,8 @@ class PathFrames {
   // their own. Errors are those that EvaluatePath() would return for these frames.
   Result<CameraPath> Some(FrameId begin, size_t count) const;
   // Returns the error that EvaluatePath() would return. Computes every camera, but keeps none.
-  //   is_stopped  looked at about a hundred times a second; kInterrupted once it returns true. May
-  //               be empty
+  //   is_stopped  called about a hundred times a second; kInterrupted once it returns true. May be
+  //               empty
   Result<void> Check(const std::function<bool()>& is_stopped) const;
 
  private:

@@ -45,9 +45,9 @@ Result<CameraPath> StereoPath(const CameraPath& path, double separation_w,
 //   view_count      at least 2
 //   view_angle_rad  between the outermost views, within the limits above
 //   convergence_w   c, above 0; by default the focus distance of each frame
-// The frame rate stays, as that of the moments. kInput: the path has several views of each moment
-// already; a path would have more than kMostFrames cameras; the path has a
-// shutter; or an error of MovedAside(), with the frame and the view.
+// The frame rate stays, and becomes that of the moments. kInput: the path has several views of each
+// moment already; a path would have more than kMostFrames cameras; the path has a shutter; or an
+// error of MovedAside(), with the frame and the view.
 Result<CameraPath> QuiltPath(const CameraPath& path, int view_count, double view_angle_rad,
                              std::optional<double> convergence_w);
 

@@ -17,8 +17,8 @@ namespace {
 
 constexpr size_t kMostPathBytes = 1024;  // length limit of job parameters in Open Job Description
 
-// Returns a text in double quotes, as YAML and JSON read it. CheckFarmPaths() has seen that it is
-// UTF-8.
+// Returns a text in double quotes, as YAML and JSON read it. CheckFarmPaths() has checked that it
+// is UTF-8.
 std::string Quoted(const std::string& text) { return RecordLine(text); }
 
 // Returns the words of RendererOption() for a list of arguments of a template, each after a comma.

@@ -109,7 +109,7 @@ Result<void> WriteJob(const ClusterJob& job);
 // Reads the job in the folder DIR, which may have been moved since WriteJob(). kInput: there is no
 // job, or it is damaged.
 Result<ClusterJob> ReadJob(const std::filesystem::path& output_folder);
-// Returns the command that advises what to do with a job, such as `lfsubmit --resume film`.
+// Returns a command of lfsubmit for a job, such as `lfsubmit --status film`, for messages.
 std::string JobCommand(const std::string& option, const std::filesystem::path& output_folder);
 
 // Returns kUsage if job.json belongs to another user (except root), because lfrenderer would run

@@ -29,16 +29,17 @@ struct CompressSource {
 };
 
 // Returns all LF images of the light field, with all their pixels. kUsage: the light field is a
-// packed store already. kOutput: the machine lacks something to measure the footprint.
+// packed store already. kOutput as MeasureFootprint(), which is called if the calibration does not
+// state the footprint.
 Result<CompressSource> SourceOfAll(LightField light_field);
 
 // Returns the LF images from which frames of the packages take rays, and leaves out all others.
 //   light_field    the light field that the packages were made from
 //   needed_pixels  true: of each LF image, only the bounds of the pixels that these frames need;
 //                  false: all pixels
-// Pixels become light as the packages say. kUsage: the packages are of different light fields or of
-// a packed store, or none of their frames takes a ray. kInput: `light_field` is another one than
-// that of the packages. kOutput as SourceOfAll().
+// The result has the radiance encoding of the packages. kUsage: the packages are of different light
+// fields or of a packed store, or none of their frames takes a ray. kInput: `light_field` is
+// another one than that of the packages. kOutput as SourceOfAll().
 Result<CompressSource> SourceOfPackages(LightField light_field, std::span<const Package> packages,
                                         bool needed_pixels);
 

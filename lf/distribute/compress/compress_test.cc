@@ -48,7 +48,7 @@ LightField Field() {
   return field;
 }
 
-// Returns a package of these LF images of the light field.
+// Returns a package of these LF images of Field().
 Package PackageOf(const std::string& name, std::vector<PackageImage> images) {
   Package package;
   package.name = name;

@@ -19,10 +19,11 @@ struct ReadImages {
   uint64_t pixel_count = 0;  // number of pixels that are read, of all LF images together
 };
 
-// Returns the memory of a render, in bytes: that of the plan, where the LF images of two batches
-// have their mean size and are not more than are read, the plans of rays take an eighth of their
-// share, and rebinned rays take what they fill. Frames are interpolated when the LF images are no
-// longer needed, so that the larger of both counts.
+// Returns the memory of a render, in bytes. It is the memory of the plan with three changes:
+// - Two batches hold LF images of the mean size, and no more of them than are read.
+// - The plans of rays take an eighth of their share.
+// - Rebinned rays take what they fill. Frames are interpolated when the LF images are no longer
+//   needed, so that the larger of both counts.
 //   collects  true if rays are collected; filtered copies of LF images are made only then
 //   cost      null: the mode has no rebinned rays
 size_t ExpectedBytes(const RenderMemory& memory, const LightField& light_field,

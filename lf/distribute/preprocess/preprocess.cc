@@ -24,8 +24,7 @@
 
 namespace lf {
 namespace {
-// Largest memory for Preprocessor::kept_needs_; enough for the needs of 300 frames with 20,000 LF
-// images each.
+// Largest memory for kept_needs_; enough for 300 frames with 20,000 LF images each.
 constexpr uint64_t kMostKeptBytes = uint64_t{256} << 20;
 
 double SecondsSince(std::chrono::steady_clock::time_point start) {
@@ -118,8 +117,7 @@ class Preprocessor {
   void KeepDistances(FrameId frame, const std::vector<double>& distances_w);
 
   const LightField& light_field_;
-  // The footprint is stored in packages, so that all machines that render them use the same
-  // prefilters.
+  // The footprint of packages, so that all machines that render them use the same prefilters.
   std::optional<PixelFootprint> footprint_;
   const CameraPath& path_;
   const PreprocessOptions& options_;

@@ -86,10 +86,10 @@ struct StageTimes {
   // Prefilters, order of the LF images and octree of the LF cameras; with rebinned rays also their
   // slabs, the gaps of the lenses, and the maps of what is needed.
   double begin_s = 0;
-  double load_s = 0;      // to read and decode LF images
-  double collect_s = 0;   // to collect rays
-  double rebin_s = 0;     // to sort LF pixels into cells of rebinned rays
-  double complete_s = 0;  // to interpolate frames from rebinned rays
+  double load_s = 0;      // reading and decoding LF images
+  double collect_s = 0;   // collecting rays
+  double rebin_s = 0;     // sorting LF pixels into cells of rebinned rays
+  double complete_s = 0;  // interpolating frames from rebinned rays
   double finish_s = 0;    // lens weights, developing and writing
 
   double Sum() const { return begin_s + load_s + collect_s + rebin_s + complete_s + finish_s; }
@@ -130,9 +130,9 @@ struct PreprocessReport {
 };
 
 // Makes the packages. They appear under their final names at the same time, when all are complete
-// (package_folder.h). kUsage: packages exist already; a package would replace a file that is read,
-// or be written in its place; the lens of a frame is a pinhole, but the
-// weights are kArea; the mode is kRebin, but lens_weights is not kNone; the mode rebins, but
+// (package_folder.h). kUsage: packages exist already; a package would replace a file that is read;
+// the lens of a frame is a pinhole, but the weights are kArea; the mode is kRebin, but lens_weights
+// is not kNone; the mode rebins, but
 // max_image_count is set, or the LF images have opacity. kInput: no LF image contributes to any
 // frame; an LF image is missing and `strict` is set; a packed store lacks pixels. kOutput: the disk
 // fails; another process writes packages into the folder; one frame needs more than memory_bytes.

@@ -13,7 +13,7 @@
 
 namespace lf {
 
-// CPU times of the parts of a render. Those of rebinned rays are measured for each package
+// CPU times of the parts of a render. The times of rebinned rays are measured for each package
 // (render/hybrid/rebin_cost.h).
 struct RenderRate {
   double load_s = 0;     // CPU time to load one LF image

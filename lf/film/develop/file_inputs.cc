@@ -20,13 +20,13 @@ namespace fs = std::filesystem;
 namespace {
 
 // A box begins with its size, a big-endian number, and its type. Size 1: the size has 64 bits and
-// stands behind the type. Size 0: the box ends with the file. "uuid" is followed by 16 bytes that
-// tell the program.
+// stands behind the type. Size 0: the box ends with the file. The type "uuid" is followed by 16
+// bytes that name the program.
 constexpr size_t kHeadBytes = 8, kUuidBytes = 16;
 constexpr std::string_view kUuid = "lfrendertools in";
 static_assert(kUuid.size() == kUuidBytes);
 constexpr uint64_t kMostTextBytes = uint64_t{1} << 20;
-// A file of ours has fewer than ten.
+// Limit for files of others: a video of these programs has fewer than ten boxes.
 constexpr int kMostBoxes = 1000;
 
 uint64_t BigEndian(std::span<const char> bytes) {

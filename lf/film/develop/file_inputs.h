@@ -35,7 +35,7 @@ std::optional<FileInputs> ReadInputs(const std::filesystem::path& file);
 //   why  such as "was made with layout anaglyph, and this call has side-by-side"
 Error CannotResume(const std::filesystem::path& file, std::string_view why);
 
-// Adds the box to a whole mp4 file. kOutput if it cannot be written.
+// Appends the box with this text to a complete mp4 file. kOutput if it cannot be written.
 Result<void> AppendInputs(const std::filesystem::path& video, std::string_view text);
 // Returns the text of the box in an mp4 file; nullopt if there is none. Reads only the heads of the
 // other boxes.

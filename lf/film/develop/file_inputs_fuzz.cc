@@ -18,7 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (!text) return 0;
   LF_CHECK(bytes.find(*text) != std::string_view::npos);
   const lf::FileInputs inputs = lf::InputsOfText(*text);
-  // A text of ours is read back as it was.
+  // Inputs that are written as a text are as many when the text is read.
   LF_CHECK(lf::InputsOfText(lf::TextOfInputs(inputs)).size() == inputs.size());
   return 0;
 }

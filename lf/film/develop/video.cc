@@ -46,8 +46,8 @@ std::vector<std::string> EncoderArguments(const fs::path& file, int width, int h
   return {"ffmpeg", "-hide_banner", "-nostats", "-loglevel", "error", "-y",  //
           "-f", "rawvideo", "-pixel_format", "rgb24", "-video_size",
           fmt::format("{}x{}", width, height),
-          // -framerate alone is a hint, of which ffmpeg makes a usual rate, such as 120 of
-          // 120000/1001; -r sets the times of the pictures.
+          // -framerate alone is a hint, which ffmpeg rounds to a usual rate, such as 120000/1001 to
+          // 120; -r sets the times of the pictures.
           "-framerate", rate, "-r", rate, "-i", "pipe:0",
           // These tags must name the matrix of kConversion, or players shift the colours.
           "-vf", kConversion, "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc",
@@ -141,7 +141,7 @@ struct VideoWriter::State {
 
 namespace {
 
-// Returns the last number of pictures in the lines KEY=VALUE of ffmpeg's -progress; 0: there is
+// Returns the last number of pictures in the lines KEY=VALUE of ffmpeg's -progress; 0 if there is
 // none.
 size_t CountIn(std::string_view progress) {
   constexpr std::string_view kKey = "frame=";
@@ -157,8 +157,8 @@ size_t CountIn(std::string_view progress) {
 
 // Reads all pictures of a finished video as a player does, but without decoding them. kOutput if
 // the file is not whole or does not have picture_count pictures. The file is read because ffmpeg 5
-// exits with 0 although it could not write the end of a file, such as its index. ffmpeg reads it
-// because this is the program that CheckVideoTool() has tried.
+// exits with 0 although it could not write the end of a file, such as its index. ffmpeg reads it,
+// and not ffprobe, because CheckVideoTool() has tried ffmpeg alone.
 Result<void> ReadBack(const fs::path& file, size_t picture_count, double patience_s) {
   constexpr double kSlowDisk = 20e6;  // bytes per second
   std::error_code error;

@@ -42,7 +42,7 @@ class VideoWriter {
 
   // Waits for ffmpeg, has the file read by another ffmpeg, and gives it its name. kOutput with
   // ffmpeg's last message if the file is not whole or has another number of pictures than were
-  // added, and if none was; a file of this name then stays. Must be called only once.
+  // added, and if no picture was added; a file of this name then stays. Must be called only once.
   //   inputs  text of the inputs that the file states (file_inputs.h); none if it is empty
   Result<void> Close(std::string_view inputs = {});
 

@@ -240,7 +240,7 @@ TEST_F(VideoTest, AFileThatMayNotBecomeWholeIsAnErrorAndLeavesTheOldOne) {
   };
   ASSERT_TRUE(write());
   const std::string whole = ReadFile(path).value();
-  // The shares end in the pictures, where the pictures end, in the index, and one byte too early.
+  // The limits cut the file in the pictures, where they end, in the index, and at the last byte.
   for (const size_t bytes :
        {whole.size() / 2, whole.size() - 1500, whole.size() - 300, whole.size() - 1}) {
     const FileSizeLimit limit(bytes);
@@ -254,7 +254,7 @@ TEST_F(VideoTest, AFileThatMayNotBecomeWholeIsAnErrorAndLeavesTheOldOne) {
   }
 }
 
-// An ffmpeg that encodes by writing the file GIVEN, and reads with the true ffmpeg.
+// The fake ffmpeg copies the file `given` instead of encoding, and reads with the true ffmpeg.
 TEST_F(VideoTest, AFileThatIsCutAfterwardsIsNotTaken) {
   SKIP_WITHOUT_FFMPEG();
   const std::string tools = ::getenv("PATH");

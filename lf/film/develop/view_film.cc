@@ -162,7 +162,7 @@ Result<void> FilmWriter::CheckTarget(Target* target) const {
   return {};
 }
 
-// Returns what the file is made of, besides its own name.
+// Returns the inputs that the file states: layout, moments, a hash of its frames, and its rate.
 Result<FileInputs> FilmWriter::InputsOf(const Target& target) const {
   std::vector<fs::path> files;
   for (const ViewMoment& moment : target.moments) {

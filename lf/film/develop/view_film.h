@@ -43,14 +43,13 @@ struct ViewFilmReport {
 // 8-bit sRGB, composited over black. Each file appears under its name when it is complete.
 //   frames       as for FindViewMoments()
 //   on_progress  called when a view has been joined, by one thread at a time; may be empty
-// Each file but copies of frames states what it was made of (file_inputs.h): its layout, and a hash
-// of its frames.
-// kUsage: the extension of the output fits neither the frames nor a video; a file exists, and
-// neither resume nor overwrite is set; resume is set, and a file was made of other frames or in
-// another way; a file would replace a frame; fps without a video. kInput:
-// errors of FindViewMoments(), CommonHeader(), JoinedChannels(); the joined picture would have more
-// than 2^30 pixels, or, for the video of a quilt, an odd size. kOutput: a file cannot be written,
-// ffmpeg is missing, or another call writes files of this name. kInterrupted: complete files stay.
+// Each file that is no copy of a frame states what it was made of (file_inputs.h): its layout, and
+// a hash of its frames. kUsage: the extension of the output fits neither the frames nor a video; a
+// file exists, and neither resume nor overwrite is set; resume is set, and a file was made of other
+// frames or in another way; a file would replace a frame; fps without a video. kInput: errors of
+// FindViewMoments(), CommonHeader(), JoinedChannels(); the joined picture would have more than 2^30
+// pixels, or, for the video of a quilt, an odd size. kOutput: a file cannot be written, ffmpeg is
+// missing, or another call writes files of this name. kInterrupted: complete files stay.
 Result<ViewFilmReport> WriteViewFilm(
     std::span<const std::filesystem::path> frames, const ViewFilmOptions& options, ThreadPool& pool,
     const std::function<void(size_t done, size_t total)>& on_progress);

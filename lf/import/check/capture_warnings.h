@@ -28,7 +28,7 @@ std::vector<CaptureWarning> WarnOfRepeats(const LightField& light_field,
 
 // Returns the warning "brackets" if the calibration does not state the gains of the exposures of a
 // pose, or if clipped pixels are not masked.
-//   import_again  of CaptureReportOptions
+//   import_again  as CaptureReportOptions::import_again
 std::vector<CaptureWarning> WarnOfBrackets(const FoundBrackets& brackets, bool masks_clipped,
                                            const CallAgain& import_again);
 

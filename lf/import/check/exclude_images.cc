@@ -103,7 +103,7 @@ Result<size_t> ExcludeImages(std::span<const std::string> patterns, LightField* 
                     light_field->size()));
   const size_t removed = light_field->size() - kept.size();
   KeepImages(kept, light_field);
-  // The rest of brackets may be one exposure, which is then a light field like others.
+  // If only one exposure of the brackets is left, the light field has no brackets any more.
   RadianceEncoding& encoding = light_field->encoding;
   if (encoding.masks_clipped && ApplyBrackets(light_field) == 0) encoding.masks_clipped = false;
   return removed;

@@ -31,13 +31,14 @@ bool AreNear(const fs::path& a, const fs::path& b) {
   return *part_a == *part_b;
 }
 
-// Returns the path from the folder `to` to the folder `from`; empty if both are the same.
+// Returns the path of the folder `from` relative to the folder `to`; empty if both are the same.
 fs::path PrefixOf(const fs::path& from, const fs::path& to) {
   return from == to ? fs::path() : from.lexically_relative(to);
 }
 
-// Returns the name of a file as it is written into the folder `to`.
-//   prefix  PrefixOf() the folder in which it has its name
+// Returns the name that a transforms.json in the folder `to` has for a file.
+//   prefix  PrefixOf(from, to)
+//   name    absolute, or relative to `from`
 std::string NameIn(const fs::path& to, const fs::path& prefix, const std::string& name) {
   if (name.empty()) return name;
   const fs::path path(name);

@@ -360,7 +360,7 @@ Image<float> InverseDepthsOfPicture(const Image<float>& depths, double scale, in
     const double depth_w = scale * depths.at(column, row);
     return depth_w > 0 && std::isfinite(depth_w) ? 1 / depth_w : 0;
   };
-  constexpr double kOneSurface = 1.05;  // of inverse depths
+  constexpr double kOneSurface = 1.05;  // largest ratio of the inverse depths of one surface
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       const double u = (x + 0.5) * depths.width() / width - 0.5;

@@ -23,7 +23,8 @@ namespace lf {
 // Reads a picture of one number for each place: the channel Z of an EXR file, the only channel of
 // any other file of ReadImage(), or a PFM file with one channel ("Pf"). Integers stay as stored:
 // 0 to 255 or 65535. Returns [height][width], from the uppermost row on.
-//   source  kind and scale: without a scale, 8 bits hold no depths but a picture for people
+//   source  its kind and scale are read: without a scale, depths of 8 bits are refused, because
+//           they are a picture for people
 // kInput: the file cannot be read, has no such channel, or more than 2^28 places; depths of 8 bits
 // without a scale.
 Result<Image<float>> ReadSurfaceFile(const std::filesystem::path& file,

@@ -67,7 +67,7 @@ void MoveInto(const Similarity& b_from_a, ForeignCamera* camera);
 // Completes the cameras. A warning lists the quantities that the file lacks.
 //   file  for messages
 // kInput: path.unit_m contradicts the light field; a quantity of a frame is out of its range; the
-// views of a moment do not divide the frames.
+// number of views of a moment does not divide the number of frames.
 Result<CameraPath> CompletePath(ForeignPath&& path, const std::filesystem::path& file,
                                 const PathOptions& options);
 

@@ -44,7 +44,7 @@ double& NumberBetween(RenderCamera* camera, int index) {
 
 using ValueOfCamera = std::function<MotionValue(const RenderCamera&)>;
 
-// Returns the cameras of one view of all moments. A path with one view has its frames in it.
+// Returns the cameras of one view of all moments. If there is one view, these are all cameras.
 std::vector<RenderCamera> CamerasOfView(const CameraPath& path, int view) {
   std::vector<RenderCamera> cameras;
   cameras.reserve(path.moment_count());
@@ -110,7 +110,7 @@ class CameraCurves {
 
 Result<CameraPath> ResamplePath(const CameraPath& path, std::optional<double> fps,
                                 std::optional<uint32_t> frame_count) {
-  const double last = static_cast<double>(path.moment_count() - 1);  // place of the last camera
+  const double last = static_cast<double>(path.moment_count() - 1);  // place of the last moment
   const double new_fps = fps.value_or(path.fps);
   const auto views = static_cast<uint32_t>(path.views);
   if (frame_count && *frame_count % views != 0)

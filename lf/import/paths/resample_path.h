@@ -21,8 +21,8 @@ namespace lf {
 // A new frame at the time of an old one has the same camera, bit for bit. Between old frames,
 // positions follow a Catmull-Rom curve, rotations the shorter arc, and other numbers monotone
 // cubics, as keyframes do (motion.h). The shutter is kept, with the instants of AddShutter().
-// kUsage: more than kMostFrames frames, or more than kMostInstants instants; a frame_count that the
-// views do not divide.
+// kUsage: more than kMostFrames frames, or more than kMostInstants instants; the number of views
+// does not divide frame_count.
 Result<CameraPath> ResamplePath(const CameraPath& path, std::optional<double> fps,
                                 std::optional<uint32_t> frame_count);
 

@@ -16,7 +16,7 @@ namespace lf {
 // Blanks, tabs and carriage returns separate words; a line feed ends a line.
 class TextWords {
  public:
-  static constexpr size_t kMaxWordSize = 1024;  // bytes of a word
+  static constexpr size_t kMaxWordSize = 1024;  // most bytes that Word() returns
 
   // `stream` must outlive this object.
   explicit TextWords(ByteStream* stream) : stream_(stream) {}
@@ -35,9 +35,9 @@ class TextWords {
     SkipBlanks();
     return !Peek();
   }
-  // Returns the next word of this line, or "" if there is none. Of a word that is longer than
-  // kMaxWordSize, only the beginning is read, because no word of a model is that long: the next
-  // word goes on behind it. Valid until another function of this object is called.
+  // Returns the next word of this line, or "" if there is none. If the word is longer than
+  // kMaxWordSize, which no word of a model is, only its beginning is read and returned, and the
+  // next call continues within the word. Valid until another function of this object is called.
   std::string_view Word();
   // Returns the rest of this line without surrounding blanks. If it is longer than max_size,
   // returns its first max_size + 1 bytes.

@@ -45,7 +45,7 @@ FrameCutter::FrameCutter(std::string_view list_key, std::function<void(const std
 void FrameCutter::LookForJson(std::string_view piece) {
   if (piece.find('\0') != std::string_view::npos) is_not_json_ = true;
   if (has_begun_) return;
-  // Some editors begin a text with the mark of UTF-8.
+  // Some editors begin a text with the byte order mark of UTF-8.
   constexpr std::string_view kBlanksAndMark = " \t\r\n\xEF\xBB\xBF";
   const size_t begin = piece.find_first_not_of(kBlanksAndMark);
   if (begin == std::string_view::npos) return;

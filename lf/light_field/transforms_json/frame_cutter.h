@@ -64,8 +64,9 @@ class FrameCutter {
   bool is_over_ = false;  // true if no frame can follow: the top level ended or is no object
 };
 
-// Largest size of a file, and of the text of one frame and of all that is outside of frames.
+// Largest size of a file.
 inline constexpr uint64_t kMostJsonBytes = uint64_t{4} << 30;
+// Largest FrameCutter::held_bytes() while a file is added.
 inline constexpr size_t kMostHeldBytes = size_t{256} << 20;
 
 // Adds a file up to its end, or as far as it may be JSON. kInput if it cannot be read, is larger

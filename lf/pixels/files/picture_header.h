@@ -58,7 +58,7 @@ struct PictureHeader {
   ImageFileInfo info;
   ColourFacts colours;
   StatedProjection projection = {};
-  // EXR, of its first part, and PNG: the text kInputsText; "" if there is none.
+  // The text kInputsText of a PNG file, or of the first part of an EXR file; "" if there is none.
   std::string inputs = {};
 };
 

@@ -57,7 +57,7 @@ RebinCost CostOf(const RebinSample& sample, std::span<const RebinSection> sectio
   }
   cost.pixel_count = static_cast<uint64_t>(pixel_count);
   cost.frame_bytes = largest * kBytesPerRay;
-  // The pixels of an LF image are found when it is selected, read, and rebinned.
+  // The pixels of an LF image are found three times: when it is selected, read, and rebinned.
   constexpr double kFound = 3;
   cost.rebin_s = sample.rebin_s / pixels * pixel_count +
                  kFound * sample.find_s * static_cast<double>(image_count);

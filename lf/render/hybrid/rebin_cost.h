@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Forecasts the CPU time and the memory of the rebinned rays of a pass (rebinned_rays.h). How many
-// LF pixels become rays follows from the calibration. How long that takes, how many cells they
-// fill, and how long frames take to be interpolated from these is measured with a few LF images.
+// Forecasts the CPU time and the memory of the rebinned rays of a pass (rebinned_rays.h). The
+// number of LF pixels that become rays follows from the calibration. The time to rebin them, the
+// number of cells that they fill, and the time to interpolate frames from these cells are measured
+// with a few LF images.
 #pragma once
 
 #include <cstddef>
@@ -27,17 +28,17 @@ double ProcessCpuSeconds();
 
 // CPU times of the rebinned rays of a pass.
 struct RebinCost {
-  double begin_s = 0;        // plans which rays are kept
-  double rebin_s = 0;        // sorts LF pixels into cells
-  double complete_s = 0;     // interpolates all frames
+  double begin_s = 0;        // planning which rays are kept
+  double rebin_s = 0;        // sorting LF pixels into cells
+  double complete_s = 0;     // interpolating all frames
   uint64_t pixel_count = 0;  // number of LF pixels that are sorted into cells
   size_t cell_count = 0;
   size_t map_bytes = 0;    // memory of the cells
   size_t frame_bytes = 0;  // memory of the rays of one frame, which are made from the cells
 };
 
-// Times and counts that were measured with a few LF images. LF images, frames and cells of the pass
-// are in proportion to it.
+// Times and counts that were measured with a few LF images of a pass. CostOf() scales them to all
+// LF images, frames and cells.
 struct RebinSample {
   size_t image_count = 0;    // number of LF images of the sample; may be 0
   uint64_t pixel_count = 0;  // number of LF pixels that were sorted into cells
@@ -55,11 +56,11 @@ struct RebinSection {
   double pixel_count = 0;  // expected number of LF pixels that become rays
 };
 
-// Returns the cost of a pass, of which begin_s is 0. A stage costs as much for each LF pixel, LF
+// Returns the cost of a pass, with 0 for begin_s. A stage costs as much for each LF pixel, LF
 // image, cell or frame as in the sample. Each frame is interpolated from all cells of its section.
 //   image_count  number of LF images that are rebinned
 //   max_cells    largest number of cells of a section
-//   expected     number of cells of a section for which memory is allocated at once
+//   expected     [section]: number of cells for which memory is allocated at once
 RebinCost CostOf(const RebinSample& sample, std::span<const RebinSection> sections,
                  size_t image_count, size_t max_cells, std::span<const size_t> expected);
 

@@ -56,7 +56,7 @@ struct FrameNeeds {
     // pixels that are rebinned
     uint64_t ray_count = 0;
   };
-  uint64_t rebinned_count = 0;  // number of pixels that are rebinned, of all ray_count together
+  uint64_t rebinned_count = 0;  // number of pixels that are rebinned; a part of RayCount()
   std::vector<Image> images;    // the LF images that are read, by ascending ranks
   // Other LF cameras that are needed to compute lens weights and gaps (render/hybrid/lens_gaps.h),
   // by ascending ids. The LF cameras of `images` and `neighbours` alone give the same lens weights
@@ -75,7 +75,8 @@ struct FrameNeeds {
   uint64_t RayCount() const;
 };
 
-// Returns a sampling in the form that a package stores, and the sampling that this form stands for.
+// SurroundingsOf() returns a sampling in the form that a package stores; SamplingOf() returns the
+// sampling that this form stands for.
 FrameSurroundings SurroundingsOf(const FrameSampling& sampling);
 FrameSampling SamplingOf(const FrameSurroundings& surroundings);
 // Returns the sampling that the package stores of a frame of the film; nullopt if the package

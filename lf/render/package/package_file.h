@@ -16,8 +16,8 @@ namespace lf {
 bool IsPackageName(const std::filesystem::path& path);
 
 struct PackageNotes {
-  std::string version;                           // version of the program
-  std::string light_field;                       // LIGHTFIELD, as the user gave it
+  std::string version;                                // version of the program
+  std::string light_field;                            // LIGHTFIELD, as the user gave it
   std::vector<std::string> light_field_options = {};  // PackageSource::options
 };
 

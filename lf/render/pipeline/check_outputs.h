@@ -27,9 +27,10 @@ std::vector<OutputFile> OutputsOfFilm(const std::filesystem::path& folder,
                                       const std::vector<FrameId>& frames, FrameFormat format,
                                       const std::vector<std::string>& parts = {});
 
-// Adds the video of a film to its outputs. kUsage: two outputs are the same file, or the video lies
-// in a folder that the render or a job uses in the folder of the film. kOutput: errors of
-// CheckVideoTarget() for a video that exists.
+// Returns the outputs of a film, its video added to them if there is one. kUsage: two outputs are
+// the same file, or the video lies in the state of the render or of a job, in the folder of the
+// film; and errors of CheckVideoTarget() for a video that exists. kOutput: other errors of
+// CheckVideoTarget().
 Result<OutputFiles> MakeFilmOutputs(std::vector<OutputFile> outputs,
                                     const std::filesystem::path& folder,
                                     const std::optional<std::filesystem::path>& video);

@@ -184,8 +184,8 @@ Result<void> FilmRenderer::PreparePlates(const EarlierRun* earlier) {
 }
 
 // Returns true if the earlier run, which has done all LF images before places_done, has left LF
-// images that have rays for the frame. Such a frame is cut short if it is finished now. Any other
-// one is whole, for example if its development was interrupted, and is finished as usual.
+// images that have rays for the frame. Such a frame is cut short if it is finished now. A frame
+// that has all its rays, for example if its development was interrupted, is finished as usual.
 bool FilmRenderer::LacksRays(size_t f, uint32_t places_done) const {
   const Frame& frame = frames_[f];
   std::vector<TakingFrame> taking;

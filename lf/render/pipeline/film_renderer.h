@@ -110,7 +110,7 @@ class FilmRenderer {
     return frames_[f].all_lens ? &*frames_[f].all_lens : nullptr;
   }
 
-  // True if the frame is to be finished with the rays of the earlier run, which are not all.
+  // True if the frame is to be finished with the rays of the earlier run, although it lacks others.
   bool EndsEarly(size_t f) const { return frames_[f].is_early; }
   // Returns the indices of the frames that the stop rule has stopped and that are not released yet.
   std::vector<size_t> StoppedFrames() const;

@@ -230,7 +230,7 @@ class PlatesOf : public EarlierRun {
   bool EndsEarly(FrameId frame) const override { return frame == FrameId{3}; }
   Result<FrameProgress> LoadPlate(FrameId frame, SensorPlate* plate,
                                   std::optional<NoiseMoments>* /*moments*/) const override {
-    plate->Merge(renderer_.plate(frame.value - 1));  // not asked of kRebin, which has no plates
+    plate->Merge(renderer_.plate(frame.value - 1));  // not called with kRebin, which has no plates
     return renderer_.Progress(frame.value - 1);
   }
   Result<std::optional<Rays>> LoadRays(size_t section, size_t /*max_cells*/) const override {

@@ -102,7 +102,7 @@ Result<void> RenderPass::Collect() {
 }
 
 // Finishes the frames of early_ before collection, because they get no more rays than the state
-// has. A frame of which the state has all rays is finished as usual.
+// has. If the state has all rays of a frame, the frame is finished as usual.
 Result<void> RenderPass::FinishEarlyFrames() {
   std::vector<size_t> early;
   for (size_t f = 0; f < renderer_.frame_count(); ++f) {

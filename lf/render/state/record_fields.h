@@ -41,7 +41,8 @@ inline Json NameToJson(const std::string& name) {
   return {{"bytes", digits}};
 }
 
-// Returns the text of the JSON of a text or of NameToJson(); nullopt for any other JSON.
+// Returns the name that NameToJson() has written, or the text of a JSON text; nullopt for any other
+// JSON.
 inline std::optional<std::string> NameFromJson(const Json& json) {
   if (json.is_string()) return json.get<std::string>();
   if (!json.is_object() || json.size() != 1 || !json.contains("bytes") ||

@@ -39,8 +39,8 @@ class PackedStore : public LfImageStore {
   Result<void> Load(LfImageId id, const PixelRect& rect, LfPixels* pixels) const override;
   bool LoadsDepths() const override { return densified_.has_value(); }
   bool IsPartial() const override;
-  // As PackedCode::Keeps(). The pixels of a mosaic that is loaded as RGB include those beside
-  // `rect`, of which colours are made.
+  // As PackedCode::Keeps(). If a mosaic is loaded as RGB, the pixels beside `rect` from which its
+  // colours are made must also be kept.
   bool Keeps(LfImageId id, const PixelRect& rect) const override;
   // Returns true if the store's table lists encoded pixels.
   bool IsThere(LfImageId id) const override { return codes_[id.value].bytes > 0; }

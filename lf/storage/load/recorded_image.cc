@@ -42,7 +42,8 @@ Image<To> Cut(const Image<From>& stored, const PixelRect& stored_rect, const Pix
   return cut;
 }
 
-// Returns the largest value of floats that is finite, but at least 0.
+// Sets the values and pixels of `image`. Returns the largest finite value of floats; 0 if none is
+// above 0.
 float CutStored(const ImagePart& part, int channels, RecordedImage* image) {
   float largest = 0;
   if (const auto* bytes = std::get_if<Image<uint8_t>>(&part.image)) {
@@ -85,8 +86,8 @@ Result<RecordedImage> ReadMaskAsOpacities(const LightField& light_field, LfImage
 }
 
 // Returns kInput if half floats would change the light of a float file by more than their rounding:
-// if light would become infinite that is not too bright to be kept, or if gains make the steps of
-// the smallest half floats larger than those of 16-bit radiance.
+// if light below max_radiance would become infinite, or if gains make the steps of the smallest
+// half floats larger than those of 16-bit radiance.
 //   largest  the largest value that is finite
 Result<void> CheckHalfHolds(const LightField& light_field, LfImageId id, float largest) {
   constexpr double kMost = 65520, kLeastStep = 0x1p-24;

@@ -113,7 +113,7 @@ struct PackedCode {
 
   bool is_listed() const { return id != kNotListed; }
   // Returns false if the store was made without some of the pixels `wanted`. An LF image that could
-  // not be read then counts as kept, because it is skipped like a broken file.
+  // not be read when the store was made counts as kept, because it is skipped like a broken file.
   bool Keeps(const PixelRect& wanted) const {
     if (!is_listed()) return false;
     if (wanted.empty()) return true;
