@@ -55,8 +55,9 @@ rectified to a plane, so are the views.
 
 OUT is a folder, or a file of NumPy if its name ends in .npy. A folder receives out_VV_UU_Y_X.png: row,
 column, and position in millimetres, down and to the right, as the Stanford Light Field Archive names
-images; and a transforms.json, with which the folder is a light field for all programs: one with the
-same light, where light is brighter than display white, and where nothing was recorded. The array has
+images; and a transforms.json, with which the folder is a light field for all programs. It has the
+light of LIGHTFIELD, also if that is brighter than display white, and masks the pixels where LIGHTFIELD
+has recorded nothing. The array has
 the shape [rows][columns][height][width][3]. lf.views() of the Python package also writes HDF5.
 
 Views are made one at a time. If the program is interrupted, call it again with --overwrite.)",
@@ -83,8 +84,8 @@ void AddOptions(CLI::App& app, Arguments& a) {
                    "srgb8, srgb16: sRGB for display, with 8 or 16 bits (PNG, or uint8 or uint16)\n"
                    "linear: linear light as floats (EXR, or float32)\n"
                    "Where no LF image shows anything, pictures are transparent, and arrays are "
-                   "not-a-number (linear) or black. Light darker than black is clipped in sRGB; "
-                   "brighter light than display white: see --clip.");
+                   "not-a-number (linear) or black. Light darker than black is clipped in sRGB. "
+                   "--clip decides about light that is brighter than display white.");
   output.AddFlag("--clip", a.clip,
                  "Clip light that is brighter than display white, in sRGB pictures\n"
                  "Without this option, pictures are darkened if there is such light, so that none "

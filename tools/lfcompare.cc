@@ -113,10 +113,10 @@ void AddOptions(CLI::App& app, Arguments& a) {
               "FLIP that no picture may exceed, otherwise exit code 6");
 }
 
-// The file of the picture of the differences of each pair; empty if none is wanted.
+// The pictures of the differences of all pairs.
 struct Outputs {
-  std::vector<fs::path> files;
-  std::optional<lf::FileLock> lock;  // of the folder of several files
+  std::vector<fs::path> files;       // one for each pair; empty if none is wanted
+  std::optional<lf::FileLock> lock;  // held if the files are written into a folder
 };
 
 lf::Result<std::vector<fs::path>> FilesOf(const Arguments& a,
@@ -125,7 +125,7 @@ lf::Result<std::vector<fs::path>> FilesOf(const Arguments& a,
   if (a.output.empty()) return files;
   std::error_code error;
   const fs::path out = a.output;
-  const bool is_film = pairs.front().reference != a.reference;  // pairs of two folders
+  const bool is_film = pairs.front().reference != a.reference;  // true if two folders are compared
   if (!is_film && out.extension() != ".png")
     return lf::UsageError(
         fmt::format("-o {}: its extension is \"{}\": expected a name that ends in .png", a.output,

@@ -46,8 +46,8 @@ STORE.lfs.unfinished. Ctrl-C, kill -9 or a crash lose about two seconds of work 
 continues.
 
 A store of packages has the calibration of all LF cameras, and the LF images that the packages need.
-A film of these packages is rendered from the store alone to the bits that a store of the whole
-light field gives. A film that needs other pixels is refused.
+A film of these packages that is rendered from the store alone has the bits of a film that is
+rendered from a store of the whole light field. A film that needs other pixels is refused.
 
 LF images that are missing or broken are left out of the store, and the exit code is then 6. While
 the store is unfinished, --resume tries to read them again. To add them to a finished store, make it
@@ -174,8 +174,8 @@ lf::Result<lf::CompressOptions> MakeOptions(const Arguments& a, const lf::Common
   return options;
 }
 
-// Opens the light field that a package was made from, as its maker did. A store has all LF cameras,
-// of which a package has only some.
+// Opens the light field that a package was made from, with the options that it was opened with
+// then. The store has all LF cameras, and a package has only some of them.
 lf::Result<lf::LightField> OpenSourceOf(const lf::Package& package, const std::string& path) {
   const auto open = [&]() -> lf::Result<lf::LightField> {
     LF_ASSIGN_OR_RETURN(
@@ -191,8 +191,8 @@ lf::Result<lf::LightField> OpenSourceOf(const lf::Package& package, const std::s
       path, opened.error().message));
 }
 
-// Returns the command that renders the store: of the packages that it was made from, which have
-// everything else that their frames need, or of a path that is not known yet.
+// Returns the line that advises how to render from the store: the packages that it was made from,
+// which have everything else that their frames need, or a path that is not known yet.
 std::string NextOf(const Arguments& a, std::span<const lf::Package> packages) {
   const std::string store = lf::FileArgument(a.output);
   if (packages.empty()) return lf::NextRender(lf::ShellCommand({store, "PATH.yaml"}));
@@ -206,7 +206,8 @@ std::string NextOf(const Arguments& a, std::span<const lf::Package> packages) {
   return lf::NextRender(lf::ShellPackages(a.inputs), options);
 }
 
-//   next  set to the command that renders the store
+// Returns the LF images to compress.
+//   next  set to NextOf()
 lf::Result<lf::CompressSource> OpenSource(const Arguments& a, std::string* next) {
   if (!HasPackages(a)) {
     if (a.inputs.size() > 1)

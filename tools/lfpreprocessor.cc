@@ -207,7 +207,8 @@ lf::Result<void> ReportNoFrames(const Arguments& a, const lf::CommonOptions& com
   return lf::PrintReport(lf::ForecastJson(report, path, facts));
 }
 
-// Returns the command that renders the packages as the options of this call foresee.
+// Returns the line that advises how to render the packages, with those options of this call that
+// lfrenderer must be given again.
 std::string NextOf(const Arguments& a, const lf::PreprocessReport& report) {
   std::vector<std::string> packages, options;
   for (const lf::PackageForecast& package : report.packages)

@@ -242,7 +242,8 @@ void AddMeasuring(CLI::App& app, RenderArguments& a) {
                       "reference: the formulas applied literally, one ray at a time");
 }
 
-// Returns the command that makes the store of the inputs, which are LIGHTFIELD and PATH.
+// Returns the command of lfdensify that makes `store`.
+//   words  LIGHTFIELD and PATH
 std::string DensifyCommand(std::vector<std::string> words, const LightFieldArgument& light_field,
                            const std::string& store) {
   for (std::string& word : words) word = FileArgument(word);

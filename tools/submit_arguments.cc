@@ -122,8 +122,8 @@ Result<Words> SplitWords(const std::vector<std::string>& words) {
 }
 
 // Returns true if an option of sbatch only says where and how long tasks run. Other options may
-// make Slurm run programs: --export=LD_PRELOAD=..., --wrap, --container, --bbf. So may a second
-// option behind a blank.
+// make Slurm run programs: --export=LD_PRELOAD=..., --wrap, --container, --bbf. A text with a blank
+// counts as such an option, because a second option may follow the blank.
 bool OnlyAsksForResources(const std::string& option) {
   constexpr auto kHarmless =
       std::to_array<std::string_view>({"--account",       "--partition",   "--qos",
@@ -137,7 +137,7 @@ bool OnlyAsksForResources(const std::string& option) {
                                        "--hint",          "--tmp",         "--clusters",
                                        "--comment",       "--mail-type",   "--mail-user",
                                        "--requeue",       "--no-requeue",  "--threads-per-core"});
-  constexpr std::string_view kShort = "ApqtwxCLM";  // all have a value
+  constexpr std::string_view kShort = "ApqtwxCLM";  // options of one letter; all have a value
   if (option.find_first_of(" \t") != std::string::npos) return false;
   const std::string_view name = std::string_view(option).substr(0, option.find('='));
   if (option.starts_with("--"))

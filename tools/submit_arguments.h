@@ -56,8 +56,8 @@ struct SubmitArguments {
   Result<ClusterJob> MakeJob(const CommonOptions& common) const;
   // Reads the job in a folder whose tasks will be run by the programs of this call. kUsage: the
   // folder belongs to another user; or --resume without --sbatch would give Slurm options of the
-  // folder that may run programs. kInput: there is no job, or its options of lfrenderer are none
-  // that may follow --.
+  // folder that may run programs. kInput: there is no job, or it has options of lfrenderer that may
+  // not follow --.
   Result<ClusterJob> ReadJobToRun(const std::string& folder) const;
   // Applies the given arguments to a job that is resumed, and writes the job to its file.
   Result<void> Change(ClusterJob* job, const CommonOptions& common) const;

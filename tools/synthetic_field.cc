@@ -74,7 +74,7 @@ std::filesystem::path CalibrationIn(const SyntheticFieldOptions& a) {
   return std::filesystem::path(a.output) / "transforms.json";
 }
 
-// Refuses to replace a light field without being asked.
+// kUsage if the folder holds a light field, and `overwrite` is false.
 Result<void> CheckMayReplace(const SyntheticFieldOptions& a) {
   if (a.overwrite || !HoldsLightField(a.output)) return {};
   std::error_code error;
@@ -102,7 +102,7 @@ Result<std::vector<std::filesystem::path>> ImagesToReplace(const SyntheticFieldO
   return images;
 }
 
-// Refuses outputs, and LF images that are removed, if they are files of the path.
+// kUsage if an output, or an LF image that is removed, is a file of the path.
 Result<void> CheckKeepsPath(const SyntheticFieldOptions& a, const LightField& light_field,
                             const std::vector<std::filesystem::path>& earlier, size_t frame_count) {
   if (a.truth.empty()) return {};
@@ -113,7 +113,7 @@ Result<void> CheckKeepsPath(const SyntheticFieldOptions& a, const LightField& li
   for (size_t i = 1; i <= frame_count; ++i)
     outputs.emplace_back(TruthPath(light_field.folder / "truth", i), "a frame");
   LF_RETURN_IF_ERROR(CheckOutputFiles(std::move(outputs), path));
-  // The LF images that are removed.
+  // LF images that are removed are checked apart, because some are also outputs.
   return CheckOutputFiles({earlier.begin(), earlier.end()}, path);
 }
 

@@ -76,11 +76,11 @@ inline constexpr const char* kExitCodes =
 // two spaces stay as they are.
 std::string WithJoinedLines(std::string_view text);
 
-// The words that an option takes.
+// The kind of words that an option takes.
 enum class OptionWords { kAny, kNumbers, kWholeNumbers, kWholeNumbersFromZero };
 
-// Words of an option whose value has this type: numbers, optional numbers, and pairs and vectors of
-// numbers consist of numbers.
+// The kind of words of an option whose value has this type. Optional numbers, and pairs and vectors
+// of numbers have the kind of their numbers.
 template <typename Value>
 inline constexpr OptionWords kWordsOf = OptionWords::kAny;
 template <std::floating_point Value>
@@ -102,8 +102,8 @@ class OptionGroup {
   OptionGroup(CLI::App& app, std::string name);
 
   // Adds an option, such as "-o,--output DIR", or a positional argument, such as "LIGHTFIELD". If
-  // `value` is a number or contains numbers, words are refused that are no numbers as a whole
-  // (lf/core/parse_number.h), such as "0x10", "nan" and, for whole numbers, "1.5".
+  // `value` is a number or contains numbers, a word is refused unless the whole of it is a number
+  // (lf/core/parse_number.h): "0x10" and "nan" are refused and, for whole numbers, "1.5".
   template <typename Value>
   CLI::Option* Add(const std::string& names_and_placeholder, Value& value,
                    const std::string& text) {

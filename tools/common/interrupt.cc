@@ -19,7 +19,7 @@ static_assert(std::atomic<int64_t>::is_always_lock_free);
 RenderSignals render_signals;
 std::atomic<int64_t> first_interrupt_ns = 0;
 
-// The timer that ends a program whose work does not notice the signal, and the time that it gives.
+// The timer that ends a program whose work does not notice the signal, and the time until then.
 timer_t patience_timer{};
 bool has_patience_timer = false;
 constexpr itimerspec kPatience = {.it_interval = {}, .it_value = {1, 500'000'000}};

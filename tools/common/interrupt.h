@@ -13,12 +13,12 @@ namespace lf {
 // not end it, because batch systems repeat SIGTERM.
 //
 // If the program has not ended 1.5 seconds after the first signal, because some step of its work
-// takes longer, it ends by EndInterrupted() (process_start.h). It must therefore keep what a kill
-// leaves, as every program does: results have their names only when they are whole.
+// takes longer, it ends by EndInterrupted() (process_start.h). Its files must therefore be right
+// after a kill, as those of every program are: a result gets its name only when it is complete.
 const std::atomic<bool>& CatchInterrupts();
 
-// As CatchInterrupts(), but gives the program the time that it needs: for one that waits for its
-// child processes, which end by themselves.
+// As CatchInterrupts(), but gives the program the time that it needs to end: for a program that
+// waits until its child processes have ended.
 const std::atomic<bool>& CatchInterruptsOfJob();
 
 // As CatchInterruptsOfJob(), for a render: after SIGINT, SIGTERM or SIGHUP the render writes a
@@ -26,8 +26,8 @@ const std::atomic<bool>& CatchInterruptsOfJob();
 // once.
 RenderSignals& CatchRenderSignals();
 
-// While it exists, a signal that CatchRenderSignals() catches ends the program as soon as one that
-// CatchInterrupts() catches: for work before the render that has no checkpoint to finish.
+// While an object exists, a signal that CatchRenderSignals() catches ends the program within the
+// time of CatchInterrupts(): for work before a render, which writes no checkpoint.
 class EndsSoon {
  public:
   EndsSoon();

@@ -30,7 +30,7 @@ struct LightFieldArgument {
   Result<void> CheckWithPackages() const;
   // Returns the given options, without `path`, as words for the command line of another program.
   std::vector<std::string> Words() const;
-  // Returns the same for a file that is used in other working folders: paths are absolute.
+  // Returns these words with absolute paths, for a file that is read in other working folders.
   std::vector<std::string> WordsToKeep() const;
 
   // Returns the argument with the options that WordsToKeep() has returned. kInput: `words` holds

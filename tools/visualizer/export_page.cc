@@ -135,10 +135,9 @@ Result<ExportFacts> ExportPage(PageScene& scene, const fs::path& folder, size_t 
   const std::vector<FrameId> frames = ShownFrames(draft.path->frame_count());
   const size_t frame_count = frames.size();
   if (frame_count < draft.path->frame_count())
-    LogWarning(
-        "{}: the film has {} frames: the export shows {} of them, one of each {} and the last",
-        scene.arguments().path.string(), draft.path->frame_count(), frame_count,
-        ShownStep(draft.path->frame_count()));
+    LogWarning("{}: the film has {} frames: the export shows {} of them: every {}-th, and the last",
+               scene.arguments().path.string(), draft.path->frame_count(), frame_count,
+               ShownStep(draft.path->frame_count()));
   for (size_t asked = 0; asked < frame_count; asked = film->Get().frames_done) {
     progress(asked, 2 * frame_count);
     if (interrupted) return Interrupted();

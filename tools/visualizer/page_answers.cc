@@ -75,7 +75,7 @@ PageAnswer OfImage(PageScene& scene, const Name& name) {
   return {200, "image/jpeg", *std::move(jpeg)};
 }
 
-// Answers with the cameras of kFramesPerBlock frames in a row, the block with this number.
+// Answers with a block: the cameras of kFramesPerBlock consecutive frames.
 PageAnswer OfBlock(const PathDraft& draft, const Name& name) {
   const size_t frame_count = draft.path->frame_count();
   const auto number =

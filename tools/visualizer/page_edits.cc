@@ -93,8 +93,8 @@ PageAnswer StartPreview(PageScene& scene, PreviewRender& preview, const Json& js
 }
 
 // Answers "live" with a picture, and "lens" with the lens of a picture that the browser renders.
-// Only the frame that is shown is checked. The text does not become a draft: drafts are few, and a
-// drag would replace those that pages show.
+// Only the frame that is shown is checked. The text does not become a draft, because few drafts are
+// kept, and a drag would replace those that pages show.
 PageAnswer ShowLive(PageScene& scene, LiveView& live, const Json& json, bool is_lens) {
   const std::string file = scene.arguments().path.filename().string();
   const auto path = scene.FramesOf(TextOf(json, "text"));

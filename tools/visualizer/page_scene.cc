@@ -151,7 +151,8 @@ Result<std::shared_ptr<const PathFrames>> PageScene::FramesOf(const std::string&
   return frames;
 }
 
-// Packages hold the cameras of the whole film, so that the memory of those of the path is no more.
+// Computes the cameras of the whole path. They take no more memory than the packages, which hold
+// the cameras of the whole film.
 bool PageScene::HasCamerasOfPackages(const PathFrames& path) const {
   return !packages_hash_.empty() && HashOfCameras(*EvaluatePath(path)) == packages_hash_;
 }

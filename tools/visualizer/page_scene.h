@@ -51,7 +51,7 @@ struct PathDraft {
   std::string id;  // hash of the text: IdOfText(text)
   std::string text;
   std::shared_ptr<const PathFrames> path;  // PathFrames::Check() has found no error in it
-  bool is_of_packages = false;    // true if it has the cameras of the packages, if there are some
+  bool is_of_packages = false;    // true if packages are shown that have the cameras of this path
   std::shared_ptr<FilmUse> film;  // null before FilmOf(), and after newer films have stopped it
   uint64_t film_number = 0;       // number of the film in the order in which films were started
 };
@@ -86,11 +86,11 @@ class PageScene {
   // Returns the path in the file as it was when lfvisualizer started.
   std::shared_ptr<PathDraft> first_draft() const { return first_draft_; }
   // Parses a draft, checks all its frames, and keeps it. kInput: the error that the programs would
-  // report. kInterrupted: the event board is closed, because the program ends.
+  // report. kInterrupted: the program ends (PageArguments::interrupted, or a closed event board).
   Result<std::shared_ptr<PathDraft>> AddDraft(const std::string& text);
   // Returns the path of a text that need not be a draft. Its frames are not checked: each may have
-  // an error when it is asked for. Does not parse a text again that is a draft, or that was asked
-  // for last. kInput as for ParsePathFrames().
+  // an error when it is asked for. A text is not parsed again if it is a draft, or if the last call
+  // had it. kInput as for ParsePathFrames().
   Result<std::shared_ptr<const PathFrames>> FramesOf(const std::string& text);
   // Returns a draft, or nullptr if it is unknown. The scene keeps only the first draft and the few
   // drafts that were used last.
