@@ -75,7 +75,7 @@ def views(field: LightField, grid: Tuple[int, int], *, focus_distance: Optional[
         Depth at which rendered views are sharp. Default None: in the middle of the depths of the scene.
     values : {"linear", "srgb8", "srgb16"}
         "linear": linear light, float32, NaN where no LF image shows anything. "srgb8", "srgb16": sRGB for display with
-        8 or 16 bits, black there, and clipped to what a display shows.
+        8 or 16 bits, clipped at black and display white, and black where no LF image shows anything.
     out : array, optional
         Receives the views, such as a `numpy.memmap` or a dataset of h5py, for light fields larger than the memory.
     file : path, optional
@@ -99,7 +99,7 @@ def views(field: LightField, grid: Tuple[int, int], *, focus_distance: Optional[
     InputError
         The LF cameras look in too many directions; or the depths of the scene are neither stated nor found, but needed.
     UsageError
-        The LF images are transparent in front of nothing (the background "none"), because views have no opacity.
+        The LF images are transparent in front of nothing (the background "none"), but views have no opacity.
 
     Notes
     -----

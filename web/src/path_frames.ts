@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cameras of the frames of a path. A short film has all of them at once. A long one has the shown frames: one of
-// each `step`, and the last; the others are loaded in blocks when they are needed (lf/view/shown_frames.h).
+// The cameras of the frames of a path. A short film has all of them at once. A long film has those of the shown frames:
+// every shown_step-th frame, and the last. Others are loaded in blocks when they are needed (lf/view/shown_frames.h).
 
 import { readFrames, type FrameCamera } from "./data/frame_camera";
 import type { PathHead } from "./data/scene";
@@ -42,8 +42,8 @@ export class PathFrames {
     for (const old of this.blocks.keys()) if (this.blocks.size > MOST_BLOCKS) this.blocks.delete(old);
   }
 
-  // Returns the camera's speed from a frame to the next one, of which the camera is known, in world units per second; at
-  // the last frame, the speed from the previous one.
+  // Returns the camera's speed from a frame to the next one whose camera is known, in world units per second; at the
+  // last frame, the speed from the previous one.
   speed(frame: number): number {
     const index = Math.max(0, Math.min(this.indexOf(frame), this.shown.length - 2));
     let [a, b] = [this.frameOf(index), this.frameOf(Math.min(index + 1, this.shown.length - 1))];

@@ -66,7 +66,7 @@ export class State {
   isDark = true;
 
   private savedText = "";
-  private shownText = ""; // text of the path that `frames` are of
+  private shownText = ""; // text of the path whose cameras `frames` has
   // The points of the focus plane that were clicked so far in `frame`. Three points define the plane.
   planePoints: { frame: number; points: Vec3[] } | null = null;
   private savedId = "";
@@ -293,7 +293,7 @@ export class State {
     else void this.loadFrame();
   }
 
-  // Goes to the frame that is `count` frames later, or earlier if it is negative; in an export, to the shown frame.
+  // Goes `count` frames forward, or back if it is negative. In an export, `count` is a number of shown frames.
   step(count: number): void {
     const { frames, scene, wanted } = this;
     this.setFrame(scene.server ? wanted + count : frames!.frameOf(Math.max(0, frames!.indexOf(wanted) + count)));

@@ -14,8 +14,8 @@ interface Row {
   colour: string;
   quantities: string[]; // names of the quantities whose keys the row shows
   fromZero: boolean;
-  values(): (number | null)[]; // of the shown frames (PathFrames)
-  text(): string; // of the current frame
+  values(): (number | null)[]; // one for each shown frame (PathFrames)
+  text(): string; // describes the current frame
 }
 
 const LABELS = 118; // width of the labels to the left of the curves, CSS pixels

@@ -11,7 +11,7 @@ export interface PathHead {
   unit_m: number;
   width: number;
   height: number;
-  widest_radius: number; // of the opening, of all frames; 0 unless the blades turn as the lens closes
+  widest_radius: number; // radius of the widest opening of all frames; 0 unless blades turn as the lens closes
   transmission?: string; // of the lens, as a path file states it; missing if there is none
 }
 

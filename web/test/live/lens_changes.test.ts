@@ -74,7 +74,7 @@ test("blades turn as the lens is stopped down, also while it is dragged", () => 
   open.rotation = 5 * degrees;
   const closed = withRadius(open, 0.002, rotationPerStop(document));
   assertNear([closed.rotation], [25 * degrees]); // two stops
-  // A turn by 3 degrees is one of the quantity, if the lens is wide open at another frame.
+  // A turn by 3 degrees is written as a change of blade_rotation, without the rotation that the stops cause.
   rotationWriter(open.radius)(document, 0.1, { ...closed, rotation: 28 * degrees });
   assert.match(document.text(), /blade_rotation_deg: 8\n/);
 });
