@@ -13,8 +13,8 @@ class Situation:
     begins: str  # the printed command begins with these words
     before: str = ""
     code: int = 0  # exit code of the call
-    mend: str = "true"  # run after the call, to mend what it failed of
-    where: str = "."  # folder in which people are
+    mend: str = "true"  # run after the call, to mend what made it fail
+    where: str = "."  # folder in which the call is made
     values: dict = dataclasses.field(default_factory=dict)  # of placeholders in the printed command
     # Command that must succeed after the printed one, which shows that the promise was kept.
     promise: str = "true"
@@ -55,7 +55,7 @@ FILM = "lfrenderer capture path.yaml"
 NEXT = ("next_step: next: lfrenderer",)
 PATH = {"PATH.yaml": "path.yaml"}
 SLOW = " --back-end reference --threads 1 --dump-every 0.01s"
-AGAIN = "lfpreprocessor capture path.yaml -o packages --packages 2 --overwrite -q"  # refers to this capture
+AGAIN = "lfpreprocessor capture path.yaml -o packages --packages 2 --overwrite -q"  # of the capture in this folder
 ODD = "mkdir \"it's (1)\" && cp -r capture path.yaml \"it's (1)\" && "
 
 

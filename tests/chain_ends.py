@@ -72,7 +72,7 @@ NOT_READ = {
     ("lfvisualizer", "--watch"): "frames of a render that runs, web.page",
     ("lfvisualizer", "PACKAGE"): "shows which LF images a package has, tests.lfvisualizer",
 }
-# Readers of things that are found by other options than their kind says.
+# Readers of options whose kind of file does not tell which thing they read.
 READ_AS = {
     ("lfvisualizer", "--depth"): ("depths", "lfvisualizer --depth"),
     ("lfsubmit", "--status"): ("job", "lfsubmit --status"),
@@ -82,8 +82,8 @@ READ_AS = {
     ("lfcompare", "TEST"): ("pictures", "lfcompare"),
 }
 
-# Options of the group Output that take no file. Those of TRIED change what is written, and are in the name of a writer
-# or reader; the others choose how much is written, or are tried in other ways.
+# Options of the group Output that take no file. Options of TRIED change what is written, and are in the name of a
+# writer or reader; options of OTHERS choose how much is written, or are tried in other ways.
 TRIED = ("--format", "--values", "--colour-space", "--frame-alpha", "--z", "--keep-plates", "--stereo", "--quilt",
          "--frames", "--text", "--plan", "--fill", "--views", "--layout", "--json", "--convergence", "--view-angle")
 OTHERS = ("--calibration-only", "--overwrite", "--force", "--clip", "--scale", "--unit-m", "--distance", "--frame",

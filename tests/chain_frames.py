@@ -225,13 +225,13 @@ class FrameChains:
 
 
 def even(files):
-    """Returns pairs of pictures: a single one twice, and of an odd number all but the last."""
+    """Returns an even number of pictures: a single one twice, and otherwise without the last if their number is odd."""
     return files * 2 if len(files) == 1 else files[:len(files) // 2 * 2]
 
 
 def read_picture(file):
     """Returns the values of a picture without programs of ours, [row][column][B, G, R], or with A, and True if they are
-    values for a display. Of a file of several parts, the first."""
+    values for a display. If a file has several parts, the first is read."""
     if file.suffix == ".png":
         picture = cv2.imread(str(file), cv2.IMREAD_UNCHANGED)
         return (picture if picture.ndim == 3 else np.repeat(picture[..., None], 3, 2)), True

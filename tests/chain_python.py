@@ -32,7 +32,7 @@ def python_package():
 
 @contextlib.contextmanager
 def refusing():
-    """Makes errors of the package what errors of programs are. LF images that are left out are accepted."""
+    """Raises Refused for an error of the package, as for one of a program. LF images that are left out are accepted."""
     lf = python_package()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")

@@ -18,7 +18,7 @@ class Thing(NamedTuple):
     """Something that programs hand on. Methods of Ways are named by the words that the table has for them.
 
     direct  method(ways, chain, written): what the reader sees in the direct way
-    skips   pairs of writer and flaws that make no sense, with the reason in a comment
+    skips   True for chains that make no sense, each with the reason in a comment
     """
     flaws: tuple
     writers: dict
@@ -131,8 +131,8 @@ VIDEO_WRITERS = {
 
 
 def _is_of_another_capture(chain):
-    """Returns True if a reader shows which LF cameras there are, and the light field has others by intention: a store
-    of packages those of one film, a densified one virtual ones, and views have other numbers."""
+    """Returns True if a reader shows or needs all LF images, and the light field has others by intention: a store of
+    packages has the LF images of one film, a densified light field has virtual ones, and views are numbered anew."""
     if chain.writer.startswith("lfcompressor PACKAGE"):
         return chain.reader not in ("lfrenderer", "lfpreprocessor")
     if "densify" in chain.writer:
@@ -162,7 +162,7 @@ THINGS = {
         _is_of_another_capture),
     "path": Thing(
         KINDS, PATH_WRITERS, PATH_READERS, _direct_path,
-        # Frames of a path are resampled as those of lfpath itself; several views of a moment are another matter.
+        # Only paths of views have a direct way of --frames: the moments are resampled before they get their views.
         # The package tells by a warning of Python what a file of a path with a shutter lacks (python/tests).
         lambda chain: (chain.writer == "lfpath --frames" and chain.flaws not in ("stereo", "quilt", "surface")) or
         (chain.writer.startswith("lf.") and chain.flaws == "shutter")),

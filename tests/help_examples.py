@@ -104,7 +104,7 @@ SETUP = [
     "lfpath path.yaml -o camera_path.json --format nerfstudio -q && lfpath path.yaml -o nuke.chan -q",
     "lfpreprocessor capture path.yaml -o packages --packages 2 -q",
     "lfcompressor capture -o capture.lfs -q && lfcompressor packages/*.lfp -o film.lfs -q",
-    "cp capture.lfs dense.lfs",  # any store: what is in it does not matter
+    "cp capture.lfs dense.lfs",  # any store, because its content does not matter
     "lfrenderer capture path.yaml -o frames -q --frames 1-3 --keep-plates --format exr",
     "for k in 1 2 3; do lfrenderer capture path.yaml -o frames --frames 7 --shard $k/3 -q; done",
     "for k in 1 2; do lfrenderer capture path.yaml -o $(echo xab | cut -c$((k+1))) --frames 7 --shard $k/2 -q; done",

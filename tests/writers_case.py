@@ -20,7 +20,7 @@ KINDS = {"lfrenderer": "frame_*", "lfmerge": "frame_*", "lfsubmit": "frame_*", "
          "lfquilt": "film*", "lfcompare": "**/*.png", "lfsynth": "**/[!.]*", "lffocus stack": "*stack*",
          "lffocus through": "[!.]*_*.exr", "lffocus depth": "depth.*", "lffocus sharp": "*.exr", "lffocus epi": "*.png",
          "lffocus views": "*", "lfvisualizer": "**/*.js"}
-# Films that programs of LF images may make, and those that are joined, in addition to the calls of KINDS.
+# Further calls of these programs, which write files of other kinds.
 VARIANTS = {"lffocus stack": ("a folder", "a video"), "lffocus through": ("two files",), "lfquilt": ("a video",)}
 
 
@@ -40,7 +40,7 @@ class WritersCase(ProgramTestCase):
         text = re.sub(r"(?m)^frames:.*$", "frames: 4", cls.path.read_text())
         cls.path.write_text(re.sub(r"(?m)^resolution:.*$", "resolution: [60, 40]", text))
         (cls.world / "path_c.yaml").write_text(cls.path.read_text().replace("focus_distance: 3", "focus_distance: 2"))
-        # A store of the light field with other pixels: only the settings of its codec tell.
+        # A store of the light field with other pixels, which only the settings of its codec tell from the light field.
         cls.made("lfcompressor", cls.field, "-o", cls.world / "lossy.lfs", "--threshold", 20)
         cls.ways = {"a": "nearest", "b": "bilinear", "c": "nearest"}
         for way in "abc":
