@@ -51,8 +51,8 @@ std::vector<std::byte> BytesOfView(const Image<float>& light, ViewValues values)
   return BytesOf(numbers);
 }
 
-// Writes light / gain. If any pixel is NaN, the file has an alpha channel, which is 0 where pixels
-// are NaN and 1 elsewhere.
+// Writes light / gain; the gain of linear values is 1. If any pixel is NaN, the file has an alpha
+// channel, which is 0 where pixels are NaN and 1 elsewhere.
 Result<void> WriteViewImage(const fs::path& path, const Image<float>& light, ViewValues values,
                             double gain) {
   const auto& from = light.pixels();
@@ -78,7 +78,7 @@ Result<void> WriteViewImage(const fs::path& path, const Image<float>& light, Vie
                                                    : PixelType::kUint16);
 }
 
-// Counts the pixels of views.
+// Counts the pixels of views that show no LF image, and those whose light is clipped.
 class PixelCounts {
  public:
   //   most  light above it is clipped

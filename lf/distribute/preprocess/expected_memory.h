@@ -24,6 +24,7 @@ struct ReadImages {
 // - The plans of rays take an eighth of their share.
 // - Rebinned rays take what they fill. Frames are interpolated when the LF images are no longer
 //   needed, so that the larger of both counts.
+// The result is at most plan.total_bytes + rebin_bytes.
 //   collects  true if rays are collected; filtered copies of LF images are made only then
 //   cost      null: the mode has no rebinned rays
 size_t ExpectedBytes(const RenderMemory& memory, const LightField& light_field,
