@@ -23,8 +23,8 @@ from matrix_world import (BROKEN, FRAMES, MISSING, MODES, MOST_IMAGES, OF_FILES,
 SHARDS = 2
 LEAST_PSNR_DB = 38
 # The least PSNR where decoded pixels decide which rays are used, so that a packed store may have others than the image
-# files: noise rules may stop at another LF image, and rebinning may keep other rays. Two frames that each stop at a noise
-# of 0.02 differ by 0.028, which is 31 dB below white, and fewer dB below the brightest element, which is darker.
+# files: noise rules may stop at another LF image, and rebinning may keep other rays. Two frames that each stop at a
+# noise of 0.02 differ by 0.028, which is 31 dB below white, and fewer dB below the brightest element, which is darker.
 LEAST_PSNR_OF_DRAWN_DB = 28
 DUMP_OFTEN = ["--dump-every", "0.001s"]
 RUNS = {  # options with which a run changes the content of the frames

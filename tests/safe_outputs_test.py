@@ -51,7 +51,9 @@ class SafeOutputsTest(ProgramTestCase):
         self.succeeds(PROGRAMS / "lfexample", self.field, "-o", self.path, "--focus", "4", "-q")
 
     def test_a_video_replaces_videos_alone(self):
-        for there in (self.path, self.calibration, next(self.field.rglob("*.png"))):
+        for file in (self.path, self.calibration, next(self.field.rglob("*.png"))):
+            there = self.folder / f"{file.stem}.mp4"
+            shutil.copy(file, there)
             self.keeps(there, 4, ["--video", there.name, "is not an mp4 video"], "lfrenderer", self.field, self.path,
                        "-o", self.folder / "film", "--video", there)
             self.assertFalse(list(self.folder.glob("film/frame_*")))

@@ -257,10 +257,19 @@ class SchemasTest(ProgramTestCase):
         field.write_text(json.dumps(text | {"frames": frames}))
         return field
 
+    def store_of_packages(self):
+        """Returns a store that has only the calibration of some LF images."""
+        packages, store = self.folder / "few", self.folder / "few.lfs"
+        self.succeeds(PROGRAMS / "lfpreprocessor", self.field,
+                      small_field.write_path(self.folder, frames=1, aperture=0.01), "-o", packages)
+        self.succeeds(PROGRAMS / "lfcompressor", *packages.glob("*.lfp"), "-o", store)
+        return store
+
     def test_reports_of_imports(self):
         self.prints("import_report", "lfimport", self.field, "--check", "none")
         self.prints("import_report", "lfimport", self.broken_field(), code=6)
         self.prints("import_report", "lfimport", self.densified)
+        self.prints("import_report", "lfimport", self.store_of_packages())
         alpha = {"lf_alpha": "straight", "lf_depth_range": [0.3, 2]}
         for background in "none", [0, 0.5, 1]:
             field = small_field.write_field(self.folder / "alpha", lambda index: np.full((48, 64, 4), index, np.uint8),

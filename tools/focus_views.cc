@@ -208,19 +208,19 @@ Result<void> Run(const Arguments& a, const CommonOptions& common) {
   LF_ASSIGN_OR_RETURN(const ViewGrid grid,
                       ViewGrid::Make(light_field, a.grid.first, a.grid.second));
   LF_RETURN_IF_ERROR(CheckForViews(light_field));
-  LF_RETURN_IF_ERROR(CheckOutputs(a, light_field, grid));
-  // An array is one file, which is written in one step.
-  std::optional<FileLock> lock;
-  if (!IsArray(a)) {
-    LF_ASSIGN_OR_RETURN(lock, LockOutputFolder(a.output));
-    LF_RETURN_IF_ERROR(CheckOutputs(a, light_field, grid));  // another call may have ended just now
-  }
   ViewOptions options;
   LF_ASSIGN_OR_RETURN(options.memory_bytes, ParseByteSize(a.memory, "--memory"));
   if (!a.focus_distance.empty()) {
     LF_ASSIGN_OR_RETURN(
         options.focus_distance_w,
         ParseFocusDistance(a.focus_distance, "--focus-distance", light_field.unit_m));
+  }
+  LF_RETURN_IF_ERROR(CheckOutputs(a, light_field, grid));
+  // An array is one file, which is written in one step.
+  std::optional<FileLock> lock;
+  if (!IsArray(a)) {
+    LF_ASSIGN_OR_RETURN(lock, LockOutputFolder(a.output));
+    LF_RETURN_IF_ERROR(CheckOutputs(a, light_field, grid));  // another call may have ended just now
   }
   options.strict = common.strict;
   options.stop = options.interrupted = &interrupted;

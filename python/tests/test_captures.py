@@ -17,7 +17,7 @@ def without_times(facts):
     """Returns the facts without those that differ from run to run."""
     if isinstance(facts, dict):
         return {key: without_times(value) for key, value in facts.items()
-                if not key.endswith("_s") and key not in ("rate", "threads", "spent_s")}
+                if not key.endswith("_s") and key not in ("rate", "threads", "cpu_s_of")}
     return [without_times(value) for value in facts] if isinstance(facts, list) else facts
 
 

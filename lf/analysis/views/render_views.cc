@@ -204,11 +204,7 @@ Result<void> CheckForViews(const LightField& light_field) {
 Result<ViewsReport> MakeViews(const LightField& light_field, const ViewGrid& grid,
                               const ViewOptions& options, ThreadPool& pool, const ViewSink& sink,
                               const std::function<void(size_t done, size_t total)>& progress) {
-  if (light_field.encoding.HasOpacity())
-    return UsageError(
-        "the LF images are transparent in front of nothing (background \"none\"), and views have "
-        "no "
-        "opacity: state another background, such as black");
+  LF_RETURN_IF_ERROR(CheckForViews(light_field));
   return ViewMaker(light_field, grid, options, pool, sink, progress).Make();
 }
 

@@ -103,23 +103,24 @@ bool IsEmptyOrVideo(const fs::path& path) {
 
 }  // namespace
 
-Result<void> CheckVideoTarget(const fs::path& path) {
+Result<void> CheckVideoTarget(const fs::path& path, std::string_view option) {
   if (!IsVideoName(path))
-    return UsageError(fmt::format("--video {}: expected a name that ends in .mp4", path.string()));
+    return UsageError(
+        fmt::format("{} {}: expected a name that ends in .mp4", option, path.string()));
   const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
   std::error_code error;
   // The video's folder must exist, because a render makes no folder but that of its frames.
   if (!fs::is_directory(folder, error))
     return OutputError(
-        fmt::format("--video {}: the folder {} does not exist: make it, or give another name",
+        fmt::format("{} {}: the folder {} does not exist: make it, or give another name", option,
                     path.string(), folder.string()));
   if (fs::exists(path, error) && !fs::is_regular_file(path, error))
-    return OutputError(
-        fmt::format("--video {}: is a folder or a device: give the name of a file", path.string()));
+    return OutputError(fmt::format("{} {}: is a folder or a device: give the name of a file",
+                                   option, path.string()));
   if (fs::exists(path, error) && !IsEmptyOrVideo(path))
-    return OutputError(fmt::format(
-        "--video {}: exists, and is not an mp4 video: give another name, or remove the file",
-        path.string()));
+    return OutputError(
+        fmt::format("{} {}: exists, and is not an mp4 video: give another name, or remove the file",
+                    option, path.string()));
   return {};
 }
 

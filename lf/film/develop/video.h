@@ -17,9 +17,11 @@ Result<void> CheckVideoTool();
 // Returns true if the name ends in .mp4, in small letters or capitals. Videos have no other names,
 // because players and editors choose the format by the name.
 bool IsVideoName(const std::filesystem::path& path);
-// Checks the file of --video before the render. kUsage unless it has the name of a video. kOutput
-// unless its folder exists, and the file is absent, empty or an mp4 video.
-Result<void> CheckVideoTarget(const std::filesystem::path& path);
+// Checks the file of --video, or of the option that messages name, before the render. kUsage unless
+// it has the name of a video. kOutput unless its folder exists, and the file is absent, empty or an
+// mp4 video.
+Result<void> CheckVideoTarget(const std::filesystem::path& path,
+                              std::string_view option = "--video");
 
 // Writes an mp4 (H.264, yuv420p, sRGB tagged as BT.709) of 8-bit sRGB pictures, frame by frame. An
 // odd width or height is cropped by one pixel, because yuv420p needs even ones. The file appears

@@ -151,7 +151,7 @@ Result<void> FilmWriter::CheckTargets() const {
 Result<void> FilmWriter::CheckTarget(Target* target) const {
   std::error_code error;
   if (!fs::exists(target->file, error)) return {};
-  if (is_video()) LF_RETURN_IF_ERROR(CheckVideoTarget(target->file));
+  if (is_video()) LF_RETURN_IF_ERROR(CheckVideoTarget(target->file, "-o"));
   if (options_.overwrite) return {};
   if (!options_.resume)
     return UsageError(fmt::format(

@@ -93,7 +93,6 @@ Result<RebinCost> MeasureRebinning(const ImageIndex& index, const LfImageStore& 
     used.push_back(image);
   }
   RebinSample sample;
-  sample.image_count = used.size();
   sample.find_s =
       (ProcessCpuSeconds() - find_start_s) / static_cast<double>(std::max<size_t>(1, found));
   const std::vector<size_t> measured = MeasuredFrames(asking);
@@ -106,9 +105,7 @@ Result<RebinCost> MeasureRebinning(const ImageIndex& index, const LfImageStore& 
   collect.decision_places = kDecisionPlaces;
   collect.consumer = &rays;
   if (!used.empty()) {
-    LF_ASSIGN_OR_RETURN(const CollectStatistics statistics,
-                        Collect(index.light_field(), store, {}, used, collect, pool, nullptr));
-    sample.image_count -= statistics.skipped.size();
+    LF_RETURN_IF_ERROR(Collect(index.light_field(), store, {}, used, collect, pool, nullptr));
   }
   const RebinnedRays::Facts facts = rays.facts();
   sample.pixel_count = facts.looked_at;

@@ -40,7 +40,6 @@ struct RebinCost {
 // Times and counts that were measured with a few LF images of a pass. CostOf() scales them to all
 // LF images, frames and cells.
 struct RebinSample {
-  size_t image_count = 0;    // number of LF images of the sample; may be 0
   uint64_t pixel_count = 0;  // number of LF pixels that were sorted into cells
   size_t cell_count = 0;     // number of cells that they filled
   double rebin_s = 0;        // CPU time to sort them

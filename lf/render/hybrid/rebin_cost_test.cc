@@ -15,7 +15,6 @@ namespace {
 // A tenth of the LF images of one section: 1000 of 10,000 LF pixels, in 400 of 4000 cells.
 RebinSample Tenth() {
   RebinSample sample;
-  sample.image_count = 2;
   sample.pixel_count = 1000;
   sample.cell_count = 400;
   sample.rebin_s = 0.5;

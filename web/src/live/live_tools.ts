@@ -30,7 +30,7 @@ export function depthFactor(depths: readonly [number, number | null] | undefined
 
 export class LiveTools {
   mode: Mode = "focus";
-  private start: FrameCamera; // the camera at the begin of a drag or pinch
+  private start!: FrameCamera; // the camera at the begin of a drag or pinch, set there
   private readonly listeners: (() => void)[] = [];
 
   constructor(
@@ -38,7 +38,6 @@ export class LiveTools {
     private readonly camera: LiveCamera,
     private readonly box: HTMLElement,
   ) {
-    this.start = camera.camera;
     new PicturePointer(box, {
       begin: () => {
         camera.finish();
