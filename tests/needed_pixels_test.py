@@ -136,7 +136,7 @@ class NeededPixelsTest(ProgramTestCase):
         packages = self.packages(path, name="with-neighbours")
         store = self.store(packages, "neighbours")
         self.fails(3, ["lacks pixels that frame", "this packed store", "--mode",
-                       "--needed-pixels"],
+                       "packages of these frames"],
                    RENDERER, *packages, "--lightfield", store, "--mode", "rebin", "-o",
                    self.folder / "none")
         self.assertFalse(list((self.folder / "none").glob("frame_*")))

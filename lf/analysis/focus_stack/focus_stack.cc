@@ -65,7 +65,7 @@ Result<void> CheckFile(const FocusStackOptions& options) {
                     options.output.string()));
   if (FormOfStack(options.output) != FocusStackForm::kVideo) return {};
   LF_RETURN_IF_ERROR(CheckVideoTool());
-  return CheckVideoTarget(options.output);
+  return CheckVideoTarget(options.output, "-o");
 }
 
 // Returns the error of a file whose planes are not those of the stack.

@@ -13,6 +13,7 @@
 #include "lf/core/check.h"
 #include "lf/core/hash.h"
 #include "lf/core/log.h"
+#include "lf/film/develop/video.h"
 #include "lf/pixels/files/picture_header.h"
 
 namespace lf {
@@ -56,7 +57,7 @@ FileInputs InputsOfText(std::string_view text) {
 
 std::optional<FileInputs> ReadInputs(const fs::path& file) {
   std::optional<std::string> text;
-  if (file.extension() == ".mp4") {
+  if (IsVideoName(file)) {
     std::error_code error;
     const uint64_t size_bytes = fs::file_size(file, error);
     std::ifstream stream(file, std::ios::binary);
@@ -65,8 +66,8 @@ std::optional<FileInputs> ReadInputs(const fs::path& file) {
       stream.seekg(static_cast<std::streamoff>(offset));
       return static_cast<bool>(stream.read(to.data(), static_cast<std::streamsize>(to.size())));
     });
-  } else if (const Result<PictureHeader> header = ReadPictureHeader(file); header) {
-    text = header->inputs;
+  } else if (const Result<std::string> stated = ReadStatedText(file, kInputsText); stated) {
+    text = *stated;
   }
   if (!text || text->empty()) return std::nullopt;
   return InputsOfText(*text);

@@ -28,7 +28,7 @@ std::string TextOfInputs(const FileInputs& inputs);
 FileInputs InputsOfText(std::string_view text);
 
 // Returns the inputs that an EXR, PNG or mp4 file states; nullopt if it cannot be read or states
-// none.
+// none. An EXR file may hold several pictures, such as a focus stack.
 std::optional<FileInputs> ReadInputs(const std::filesystem::path& file);
 
 // Returns the error of --resume for a finished file that was made of something else.

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "lf/core/file.h"
+#include "lf/pixels/files/exr_parts.h"
 #include "lf/pixels/files/picture_header.h"
 #include "lf/pixels/files/test_folder.h"
 
@@ -33,6 +35,20 @@ TEST_F(FileInputsTest, PicturesStateWhatTheyAreMadeOf) {
   }
   ASSERT_TRUE(WriteFileAtomically(folder_ / "a.png", "no picture"));
   EXPECT_EQ(ReadInputs(folder_ / "a.png"), std::nullopt);
+}
+
+TEST_F(FileInputsTest, AFileOfSeveralPicturesStatesWhatItIsMadeOf) {
+  std::vector<ExrPart> planes;
+  for (const std::string name : {"near", "far"}) {
+    planes.push_back({folder_ / (name + ".exr"), name});
+    ASSERT_TRUE(WriteStoredImage(planes.back().from, Image<float>(4, 3, 3), {"R", "G", "B"},
+                                 {PixelType::kHalf}));
+  }
+  const auto stack = folder_ / "stack.exr";
+  ASSERT_TRUE(JoinExr(stack, planes));
+  EXPECT_EQ(ReadInputs(stack), std::nullopt);
+  ASSERT_TRUE(JoinExr(stack, planes, {}, {{kInputsText, TextOfInputs(kInputs)}}));
+  EXPECT_EQ(ReadInputs(stack), kInputs);
 }
 
 TEST_F(FileInputsTest, VideosStateWhatTheyAreMadeOf) {

@@ -232,7 +232,9 @@ Result<void> VideoWriter::Close(std::string_view inputs) {
     const std::string words = state_->ffmpeg->Complaints();
     return state_->Failure(words.empty() ? whole.error() : OutputError("ffmpeg: " + words));
   }
-  if (!inputs.empty()) LF_RETURN_IF_ERROR(AppendInputs(state_->unfinished, inputs));
+  if (!inputs.empty())
+    if (const auto stated = AppendInputs(state_->unfinished, inputs); !stated)
+      return state_->Failure(stated.error());
   return WriteAtomically(state_->path, [&](const fs::path& temporary) -> Result<void> {
     if (::rename(state_->unfinished.c_str(), temporary.c_str()) == 0) return {};
     return OutputError(fmt::format("{}: cannot be renamed: {}", state_->unfinished.string(),

@@ -130,21 +130,25 @@ TEST_F(ExrFileTest, EveryTypeBecomesTheFloatOfItsValue) {
   EXPECT_TRUE(std::signbit(image.at(2, 0, 1)));
 }
 
-TEST_F(ExrFileTest, TheFirstPartIsRead) {
-  const Image<float> first = Picture(5, 4, 3), second(7, 2, 3, 0.5f);
+TEST_F(ExrFileTest, TheFirstPartIsReadIfTheOthersHoldNoPicture) {
+  const Image<float> first = Picture(5, 4, 3), second(7, 2, 1, 0.5f);
   Imf::Header headers[] = {Imf::Header(5, 4), Imf::Header(7, 2)};
+  AddRgb(&headers[0]);
+  headers[1].channels().insert("Z", Imf::Channel(Imf::FLOAT));
   for (int i = 0; i < 2; ++i) {
-    AddRgb(&headers[i]);
-    headers[i].setName(i == 0 ? "left" : "right");
+    headers[i].setName(i == 0 ? "beauty" : "depth");
     headers[i].setType(Imf::SCANLINEIMAGE);
   }
   {
     Imf::MultiPartOutputFile file(path().c_str(), headers, 2, true);
-    Imf::OutputPart left(file, 0), right(file, 1);
-    left.setFrameBuffer(BufferOf(first));
-    left.writePixels(4);
-    right.setFrameBuffer(BufferOf(second));
-    right.writePixels(2);
+    Imf::OutputPart beauty(file, 0), depth(file, 1);
+    beauty.setFrameBuffer(BufferOf(first));
+    beauty.writePixels(4);
+    Imf::FrameBuffer buffer;
+    buffer.insert("Z",
+                  Imf::Slice::Make(Imf::FLOAT, second.pixels().data(), headers[1].dataWindow()));
+    depth.setFrameBuffer(buffer);
+    depth.writePixels(2);
   }
   EXPECT_EQ(Read().pixels(), first.pixels());
 }
@@ -173,10 +177,9 @@ TEST_F(ExrFileTest, WhatIsNoPictureOfWholePixelsIsRefused) {
 // OpenEXR would allocate as much memory as the length of an attribute states.
 TEST_F(ExrFileTest, AttributesBeyondTheFileAreAnError) {
   Imf::Header headers[] = {Imf::Header(5, 4), Imf::Header(7, 2)};
-  for (Imf::Header& header : headers) {
-    AddRgb(&header);
-    header.setType(Imf::SCANLINEIMAGE);
-  }
+  AddRgb(&headers[0]);
+  headers[1].channels().insert("Z", Imf::Channel(Imf::FLOAT));
+  for (Imf::Header& header : headers) header.setType(Imf::SCANLINEIMAGE);
   for (const int parts : {1, 2}) {
     headers[parts - 1].setName("last");
     headers[parts - 1].insert("story", Imf::StringAttribute("of a file"));

@@ -64,10 +64,17 @@ TEST_F(ExrPartsTest, SeveralPicturesAreNoPicture) {
     EXPECT_TRUE(ReadPictureHeader(path));
     parts.push_back({path, name});
   }
-  ASSERT_TRUE(JoinExr(joined(), parts));
-  const auto header = ReadPictureHeader(joined());
-  ASSERT_FALSE(header);
-  EXPECT_NE(header.error().message.find("joined.exr: holds 2 pictures"), std::string::npos);
+  ASSERT_TRUE(JoinExr(joined(), parts, {}, {{"story", "of two"}}));
+  const auto expect_refused = [](const auto& read) {
+    ASSERT_FALSE(read);
+    EXPECT_EQ(read.error().kind, ErrorKind::kInput);
+    EXPECT_NE(read.error().message.find("joined.exr: holds 2 pictures"), std::string::npos);
+  };
+  expect_refused(ReadPictureHeader(joined()));
+  expect_refused(ReadImageInfo(joined()));
+  expect_refused(ReadImage(joined()));
+  EXPECT_EQ(ReadStatedText(joined(), "story").value(), "of two");
+  EXPECT_EQ(ReadStatedText(joined(), "name of none").value(), "");
 }
 
 TEST_F(ExrPartsTest, MustHaveOneSize) {

@@ -59,7 +59,7 @@ Result<ImageFileInfo> ReadImageInfo(const std::filesystem::path& path);
 
 // Reads all pixels and channels as stored: no colour conversion, no multiplication by alpha, no
 // rotation. The content decides the format, not the name. If a file has several parts, the first is
-// read.
+// read; those that follow in an EXR file must hold no picture.
 // - EXR: channels come in the order R, G, B, A, then the others. If no channel is named R, G or B,
 //   but one layer has all three (beauty.R), the channels of this layer come first. It is an error
 //   if several layers have all three.
@@ -71,9 +71,10 @@ Result<ImageFileInfo> ReadImageInfo(const std::filesystem::path& path);
 //   height.
 // kInput, naming the file: it is missing, unreadable, truncated or damaged (JPEG: also if libjpeg
 // had to guess pixels); it has another format, or pixels of a kind that is not read, such as CMYK
-// colours, deep data, or a raw mosaic that is not Bayer (the message says which); it is larger than
-// 4 GiB, 2^30 pixels or 2^32 values, which is checked before pixels are allocated. kOutput: the
-// machine lacks something (KindOfReadFailure() of core/file.h).
+// colours, deep data, or a raw mosaic that is not Bayer (the message says which); it is an EXR file
+// of several pictures, such as a focus stack, which means that several parts have channels R, G and
+// B; it is larger than 4 GiB, 2^30 pixels or 2^32 values, which is checked before pixels are
+// allocated. kOutput: the machine lacks something (KindOfReadFailure() of core/file.h).
 Result<StoredImage> ReadImage(const std::filesystem::path& path);
 
 // Reads pixels and header at once.

@@ -40,6 +40,18 @@ Result<std::unique_ptr<PictureDecoder>> Open(const FileBytes& file, ImageFormat 
   LF_CHECK(false);
 }
 
+// Opens a file that is neither JPEG nor raw. kInput also if it holds several pictures.
+Result<std::unique_ptr<PictureDecoder>> OpenSingle(const FileBytes& file, ImageFormat format) {
+  LF_ASSIGN_OR_RETURN(std::unique_ptr<PictureDecoder> picture, Open(file, format));
+  if (picture->picture_count() > 1)
+    return InputError(
+        fmt::format("{}: holds {} pictures, such as the planes of a focus stack, and one is "
+                    "expected: give a file with one picture, such as a frame of the folder that "
+                    "lffocus stack writes without .exr",
+                    file.name, picture->picture_count()));
+  return picture;
+}
+
 Result<ImageFileInfo> InfoFrom(const FileBytes& file) {
   LF_ASSIGN_OR_RETURN(const ImageFormat format, ProbeImage(file.read, file.name));
   if (format == ImageFormat::kJpeg) {
@@ -51,7 +63,7 @@ Result<ImageFileInfo> InfoFrom(const FileBytes& file) {
                         RawReader::Open(file.read, file.size_bytes, file.name));
     return raw.info();
   }
-  LF_ASSIGN_OR_RETURN(const std::unique_ptr<PictureDecoder> picture, Open(file, format));
+  LF_ASSIGN_OR_RETURN(const std::unique_ptr<PictureDecoder> picture, OpenSingle(file, format));
   return picture->info();
 }
 
@@ -59,17 +71,17 @@ Result<PictureHeader> HeaderFrom(const FileBytes& file) {
   LF_ASSIGN_OR_RETURN(const ImageFormat format, ProbeImage(file.read, file.name));
   if (format == ImageFormat::kJpeg || format == ImageFormat::kRaw) {
     LF_ASSIGN_OR_RETURN(const ImageFileInfo info, InfoFrom(file));
-    return PictureHeader{info, {TypeOfValues(info)}, {}, ""};
+    return PictureHeader{info, {TypeOfValues(info)}};
   }
+  LF_ASSIGN_OR_RETURN(const std::unique_ptr<PictureDecoder> picture, OpenSingle(file, format));
+  return PictureHeader{picture->info(), picture->colours(), picture->projection()};
+}
+
+Result<std::string> TextFrom(const FileBytes& file, const char* key) {
+  LF_ASSIGN_OR_RETURN(const ImageFormat format, ProbeImage(file.read, file.name));
+  if (format == ImageFormat::kJpeg || format == ImageFormat::kRaw) return std::string();
   LF_ASSIGN_OR_RETURN(const std::unique_ptr<PictureDecoder> picture, Open(file, format));
-  if (picture->picture_count() > 1)
-    return InputError(
-        fmt::format("{}: holds {} pictures, such as the planes of a focus stack, and one is "
-                    "expected: give a file with one picture, such as a frame of the folder that "
-                    "lffocus stack writes without .exr",
-                    file.name, picture->picture_count()));
-  return PictureHeader{picture->info(), picture->colours(), picture->projection(),
-                       picture->Text(kInputsText)};
+  return picture->Text(key);
 }
 
 Result<ExposureFacts> ExposureFrom(const FileBytes& file) {
@@ -117,7 +129,7 @@ Result<void> PartFrom(const FileBytes& file, const WantedPixels& wanted, ImagePa
   if (format == ImageFormat::kJpeg) return PartOfJpeg(file, wanted, part);
   if (format == ImageFormat::kRaw) return PartOfRaw(file, wanted, part);
   if (format == ImageFormat::kPng) LF_RETURN_IF_ERROR(CheckPngIsComplete(file.read, file.name));
-  LF_ASSIGN_OR_RETURN(const std::unique_ptr<PictureDecoder> picture, Open(file, format));
+  LF_ASSIGN_OR_RETURN(const std::unique_ptr<PictureDecoder> picture, OpenSingle(file, format));
   part->info = picture->info();
   if (const auto rect = wanted(part->info); !rect) return rect.error();
   part->rect = {0, 0, part->info.width, part->info.height};
@@ -178,6 +190,10 @@ Result<PictureHeader> ReadPictureHeader(const fs::path& path) {
 
 Result<PictureHeader> ReadPictureHeaderBytes(std::string_view bytes, const std::string& name) {
   return WithoutThrowing(name, [&] { return HeaderFrom(FileInMemory(bytes, name)); });
+}
+
+Result<std::string> ReadStatedText(const fs::path& path, const char* key) {
+  return FromFile(path, [key](const FileBytes& file) { return TextFrom(file, key); });
 }
 
 Result<ExposureFacts> ReadExposureFacts(const fs::path& path) {

@@ -58,15 +58,17 @@ struct PictureHeader {
   ImageFileInfo info;
   ColourFacts colours;
   StatedProjection projection = {};
-  // The text kInputsText of a PNG file, or of the first part of an EXR file; "" if there is none.
-  std::string inputs = {};
 };
 
-// Reads the header alone. Errors as for ReadImageInfo(); kInput also if an EXR file holds several
-// pictures, such as a focus stack, of which only the first would be read.
+// Reads the header alone. Errors as for ReadImageInfo().
 Result<PictureHeader> ReadPictureHeader(const std::filesystem::path& path);
 // Reads the header of a file that is in memory; messages call the file `name`.
 Result<PictureHeader> ReadPictureHeaderBytes(std::string_view bytes, const std::string& name);
+
+// Returns the text that a PNG file, or the first part of an EXR file, states under this key, such
+// as kInputsText; "" if there is none. Reads the header alone. An EXR file may hold several
+// pictures, such as a focus stack. Errors are otherwise as for ReadImageInfo().
+Result<std::string> ReadStatedText(const std::filesystem::path& path, const char* key);
 
 // Writes pixels as they are, atomically, as a file that states these facts; the extension of `path`
 // chooses the format. Errors as for WriteImage().
