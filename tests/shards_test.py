@@ -49,6 +49,15 @@ class ShardsTest(ProgramTestCase):
         self.succeeds(MERGE, *plates, "-o", self.folder / out, *options)
         return digests(self.folder / out)
 
+    def test_frames_of_two_light_fields_are_no_film(self):
+        self.render("film", "--keep-plates")
+        other = small_field.write_field(self.folder / "other", fl_x=71)
+        self.succeeds(RENDERER, other, self.path, "-o", self.folder / "film", "--frames", 2, "--keep-plates",
+                      "--overwrite")
+        self.fails(3, ["frame_0002.plate", "light_field.", "plates of one light field only"], MERGE,
+                   self.folder / "film", "-o", self.folder / "merged")
+        self.assertFalse(list(self.folder.glob("merged/frame_*")))
+
     def test_one_program_at_a_time_writes_into_the_folder(self):
         plates = self.shards("cut", 2)
         lock = self.folder / "out" / "partial" / "lock"

@@ -38,6 +38,15 @@ struct ShardPlate {
   PlateKind kind = PlateKind::kColours;
 };
 
+// Returns the inputs that say which light field a plate was rendered from, and how its numbers
+// became light.
+RunInputs LightFieldOf(const ShardPlate& plate) {
+  RunInputs inputs;
+  for (const auto& entry : plate.inputs)
+    if (entry.first.starts_with("light_field.")) inputs.push_back(entry);
+  return inputs;
+}
+
 Result<std::vector<fs::path>> FilesOf(const std::vector<fs::path>& given) {
   std::vector<fs::path> files;
   for (const fs::path& path : given) {
@@ -206,6 +215,10 @@ class Merger {
             "{}: has {} x {} elements, but {} has {} x {}: give plates of one film only",
             one.path.string(), one.width_px, one.height_px, first.path.string(), first.width_px,
             first.height_px));
+      if (const auto difference = FirstDifference(LightFieldOf(one), LightFieldOf(first)))
+        return InputError(fmt::format(
+            "frame {}: {}: give plates of one light field only", id.value,
+            difference->Text(one.path.string() + " was made with", first.path.string() + " with")));
       std::set<uint32_t> there;
       for (const ShardPlate& plate : plates) {
         if (plate.shard.count != one.shard.count)
