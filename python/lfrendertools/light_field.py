@@ -438,7 +438,7 @@ def read_image(path: FilePath) -> npt.NDArray[Any]:
     Raises
     ------
     InputError
-        The file is missing, damaged or of another kind.
+        The file is missing, damaged or of another kind, or holds several pictures, as a focus stack does.
     """
     return _core.read_image(arguments.file_name("path", path))
 
