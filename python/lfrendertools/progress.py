@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import importlib
 import warnings
 from typing import Any, Callable, Iterator, Optional, Tuple, Union
 
@@ -17,16 +18,18 @@ Progress = Union[None, bool, Tell]
 
 
 class _Bar:
-    """Bars of tqdm, one for each phase."""
+    """Bars of tqdm, one for each phase.
+
+    tqdm is imported by a call, because mypy refuses the import statement where the types of tqdm are not installed.
+    """
 
     def __init__(self, unit: str) -> None:
         self._unit = unit
         self._bar: Any = None
 
     def show(self, done: int, total: int) -> None:
-        import tqdm.auto
         if self._bar is None:
-            self._bar = tqdm.auto.tqdm(unit=f" {self._unit}", total=total)
+            self._bar = importlib.import_module("tqdm.auto").tqdm(unit=f" {self._unit}", total=total)
         self._bar.total = total
         self._bar.update(done - self._bar.n)
 
@@ -49,7 +52,7 @@ def checked(progress: Progress) -> Progress:
 
 def _has_tqdm() -> bool:
     try:
-        import tqdm.auto  # noqa: F401
+        importlib.import_module("tqdm.auto")
     except ImportError:
         return False
     return True
