@@ -97,6 +97,8 @@ export class SpaceView {
   // Returns the foremost point of the depths at a position in the view.
   private pickPoint(x: number, y: number): PickedPoint | null {
     const { clientWidth, clientHeight } = this.canvas;
+    // The camera may have moved since the last drawing, which is what brings its matrices up to date.
+    this.camera.updateMatrixWorld();
     const picked = this.clouds.map((cloud) => cloud.pick(this.camera, clientWidth, clientHeight, x, y));
     return picked.reduce((best, one) => (one && (!best || one.ahead < best.ahead) ? one : best), null);
   }

@@ -37,7 +37,7 @@ function difference(page, width) {
       picture = await pictures.local.ask(request);
       const server = await pictures.server.ask(request);
       // A picture that the page has asked for may supersede that of the server.
-      const isLoaded = server && server.facts.done === server.facts.wanted;
+      const isLoaded = server?.facts.images > 0 && server.facts.done === server.facts.wanted;
       if (isLoaded && picture?.facts.images === server.facts.images) return compared(picture, server);
       await new Promise((resolve) => setTimeout(resolve, 50));
     }
