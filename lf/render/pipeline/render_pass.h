@@ -91,6 +91,8 @@ class RenderPass : private EarlierRun {
   RenderReport Totals() const;
 
   Result<void> Save(double picture_budget_s);
+  Result<void> SaveAllRays();
+  Result<void> SavePlates(std::span<const size_t> frames);
   Result<void> SaveRays();
   Result<void> SavePictures(double picture_budget_s);
   Result<void> SaveWhenDue();

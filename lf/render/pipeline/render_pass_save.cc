@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The parts of RenderPass that write checkpoints.
 #include <algorithm>
+#include <atomic>
 #include <functional>
+#include <vector>
 
 #include "lf/core/log.h"
 #include "lf/render/pipeline/render_pass.h"
@@ -12,25 +14,46 @@ namespace {
 // Largest share of the time that checkpoints may spend on pictures: half of the share that
 // checkpoints may take altogether (dump_clock.h).
 constexpr double kPictureShare = DumpClock::kMostShare / 2;
-// Time for pictures after a signal to stop, in addition to the time for the plates.
-constexpr double kLastPictures_s = 2;
+// Time for the plates and pictures after a signal to stop. The plates are written even if they take
+// longer; no picture is begun then.
+constexpr double kLastSave_s = 1;
+// One plate is compressed while the disk takes the other. More would need more memory.
+constexpr size_t kPlatesAtOnce = 2;
 
 }  // namespace
 
-// Saves the plates, then the rebinned rays, then pictures of unfinished frames. Those pictures that
-// were written longest ago come first; no picture is begun after picture_budget_s.
+// Saves the rays of all frames, then pictures of unfinished frames.
 Result<void> RenderPass::Save(double picture_budget_s) {
-  LF_RETURN_IF_ERROR(context_.state.SaveTotals(Totals()));
-  for (size_t f = 0; f < saved_.size(); ++f) {
-    const FrameProgress progress = renderer_.Progress(f);
-    if (renderer_.IsReleased(f) || progress.places_done == saved_[f].places) continue;
-    if (context_.setup.film().HasPlates())
-      LF_RETURN_IF_ERROR(context_.state.SavePlate(renderer_.id(f), progress, renderer_.plate(f),
-                                                  context_.setup.pool(), renderer_.moments(f)));
-    saved_[f].places = progress.places_done;
-  }
-  LF_RETURN_IF_ERROR(SaveRays());
+  LF_RETURN_IF_ERROR(SaveAllRays());
   return SavePictures(picture_budget_s);
+}
+
+// Saves the plates, then the rebinned rays.
+Result<void> RenderPass::SaveAllRays() {
+  LF_RETURN_IF_ERROR(context_.state.SaveTotals(Totals()));
+  std::vector<size_t> changed;
+  for (size_t f = 0; f < saved_.size(); ++f)
+    if (!renderer_.IsReleased(f) && renderer_.Progress(f).places_done != saved_[f].places)
+      changed.push_back(f);
+  if (context_.setup.film().HasPlates()) LF_RETURN_IF_ERROR(SavePlates(changed));
+  for (const size_t f : changed) saved_[f].places = renderer_.Progress(f).places_done;
+  return SaveRays();
+}
+
+Result<void> RenderPass::SavePlates(std::span<const size_t> frames) {
+  ThreadPool& pool = context_.setup.pool();
+  std::atomic<size_t> next = 0;
+  std::vector<Result<void>> saved(frames.size());
+  pool.ForEach(std::min(kPlatesAtOnce, frames.size()), [&](size_t) {
+    for (size_t i = next++; i < frames.size(); i = next++) {
+      const size_t f = frames[i];
+      saved[i] = context_.state.SavePlate(renderer_.id(f), renderer_.Progress(f),
+                                          renderer_.plate(f), pool, renderer_.moments(f));
+      if (!saved[i]) next = frames.size();
+    }
+  });
+  for (const Result<void>& one : saved) LF_RETURN_IF_ERROR(one);
+  return {};
 }
 
 Result<void> RenderPass::SaveRays() {
@@ -45,7 +68,10 @@ Result<void> RenderPass::SaveRays() {
   return {};
 }
 
+// Saves pictures of unfinished frames. Those that were written longest ago come first; no picture
+// is begun after picture_budget_s.
 Result<void> RenderPass::SavePictures(double picture_budget_s) {
+  if (picture_budget_s <= 0) return {};
   std::vector<size_t> oldest_first;
   for (size_t f = 0; f < saved_.size(); ++f)
     if (!renderer_.IsReleased(f) && saved_[f].places > 0) oldest_first.push_back(f);
@@ -87,7 +113,10 @@ Result<void> RenderPass::SaveWhenDue() {
 
 Error RenderPass::Interrupt() {
   LogInfo("interrupted: writing the state");
-  if (const Result<void> saved = Save(kLastPictures_s); !saved) return saved.error();
+  const double begin_s = NowSeconds();
+  Result<void> saved = SaveAllRays();
+  if (saved) saved = SavePictures(kLastSave_s - (NowSeconds() - begin_s));
+  if (!saved) return saved.error();
   return {ErrorKind::kInterrupted, "interrupted"};
 }
 

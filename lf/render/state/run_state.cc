@@ -359,6 +359,7 @@ Result<void> RunState::SavePlate(FrameId frame, const FrameProgress& progress,
                                  const NoiseMoments* moments) {
   LF_RETURN_IF_ERROR(
       WritePlate(PlatePath(frame), PlateText(frame, progress, moments), plate, pool));
+  const std::lock_guard lock(plates_mutex_);
   plates_.insert(frame);
   return {};
 }

@@ -17,6 +17,7 @@
 
 #include <filesystem>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
@@ -92,7 +93,8 @@ class RunState {
   Result<FrameProgress> LoadPlate(FrameId frame, SensorPlate* plate,
                                   std::optional<NoiseMoments>* moments = nullptr) const;
   // Writes the frame's plate and its moments (unless null) into one file, so that both always have
-  // the same LF images. kOutput: the file cannot be written; the previous file is intact.
+  // the same LF images. Several threads may call this at the same time, for different frames.
+  // kOutput: the file cannot be written; the previous file is intact.
   Result<void> SavePlate(FrameId frame, const FrameProgress& progress, const SensorPlate& plate,
                          ThreadPool& pool, const NoiseMoments* moments = nullptr);
   // LoadRays() and SaveRays() read and write the rebinned rays of one section of a pass. `first` is
@@ -156,6 +158,7 @@ class RunState {
   const CameraPath& path_;
   std::filesystem::path partial_;
   FileLock lock_;
+  std::mutex plates_mutex_;    // held while SavePlate() changes plates_
   std::set<FrameId> plates_;   // unfinished frames with a plate in the state
   std::set<FrameId> records_;  // finished frames with a report in the state
   bool has_rays_ = false;
