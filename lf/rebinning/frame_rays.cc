@@ -2,6 +2,7 @@
 #include "lf/rebinning/frame_rays.h"
 
 #include <algorithm>
+#include <atomic>
 #include <optional>
 
 #include "lf/rebinning/frame_view.h"
@@ -42,9 +43,17 @@ LargeVector<FrameRay> RaysOfCells(std::span<const BinnedCell> cells, ThreadPool&
                                   const See& see) {
   constexpr size_t kCellsAtOnce = 65536;
   std::vector<std::vector<FrameRay>> parts((cells.size() + kCellsAtOnce - 1) / kCellsAtOnce);
-  pool.ForEach(parts.size(), [&](size_t i) {
-    const size_t begin = i * kCellsAtOnce;
-    see(cells.subspan(begin, std::min(kCellsAtOnce, cells.size() - begin)), &parts[i]);
+  // A thread collects the rays of all its parts in the same memory. If each part grew its own, the
+  // system would spend more time on that memory than the rays take.
+  std::atomic<size_t> next = 0;
+  pool.ForEach(std::min(parts.size(), static_cast<size_t>(pool.thread_count())), [&](size_t) {
+    std::vector<FrameRay> seen;
+    for (size_t i = next++; i < parts.size(); i = next++) {
+      const size_t begin = i * kCellsAtOnce;
+      seen.clear();
+      see(cells.subspan(begin, std::min(kCellsAtOnce, cells.size() - begin)), &seen);
+      parts[i] = seen;  // exactly as large as needed
+    }
   });
   size_t count = 0;
   for (const auto& part : parts) count += part.size();

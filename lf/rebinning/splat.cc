@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -293,13 +294,16 @@ SplatFrame Splat(std::span<const FrameRay> rays, int width_px, int height_px,
   const TileRays by_tile = SortIntoTiles(rays, grid, kReach_sigmas * kernel.sigma_uv_px, pool);
   const LensGrid lens(lens_points, ReachOf(kernel, lens_points).lens_w);
   const std::vector<GroupedSet> sets = GroupsOfSets(lens_points, kernel);
-  pool.ForEach(grid.tile_count(), [&](size_t tile) {
+  // A thread keeps its splatter, because the system takes long to give each tile new memory.
+  std::atomic<size_t> next = 0;
+  pool.ForEach(std::min(grid.tile_count(), static_cast<size_t>(pool.thread_count())), [&](size_t) {
     TileSplatter splatter(kernel, sets, lens, shares, &frame);
-    splatter.Run(
-        rays,
-        std::span(by_tile.rays)
-            .subspan(by_tile.begins[tile], by_tile.begins[tile + 1] - by_tile.begins[tile]),
-        grid.RectOf(tile), lens_points.k);
+    for (size_t tile = next++; tile < grid.tile_count(); tile = next++)
+      splatter.Run(
+          rays,
+          std::span(by_tile.rays)
+              .subspan(by_tile.begins[tile], by_tile.begins[tile + 1] - by_tile.begins[tile]),
+          grid.RectOf(tile), lens_points.k);
   });
   return frame;
 }
