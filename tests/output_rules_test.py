@@ -18,7 +18,7 @@ import sys
 import unittest
 
 from tiny_calls import TinyCalls
-from writers_case import KINDS, VARIANTS, WritersCase
+from writers_case import KINDS, TINY, VARIANTS, WritersCase
 
 WritersCase.programs = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".")
 
@@ -111,6 +111,41 @@ class OutputRulesTest(WritersCase):
                     self.assertIn(done.returncode, (2, 3), done.stderr)
                     self.assertRegex(done.stderr.strip().splitlines()[-1], "^error: .*(--overwrite|another -o)")
                     self.assertEqual(self.files(call, out), made)
+
+    # Films in one folder
+
+    def test_two_films_are_not_mixed_in_a_folder(self):
+        """Renders frames of the way "a", then some frames of another way into the same folder."""
+        packages = sorted((self.world / "packages_a").glob("*.lfp"))
+        path = self.folder / "path.yaml"
+        path.write_text(self.path.read_text().replace("focus_distance: 3", "focus_distance: 2.5"))
+        whole = [self.field, self.path]
+        first = {"a film": whole, "packages": packages, "a film in two calls": whole}
+        self.made("lfsynth", "chart", "-o", self.folder / "moved", *TINY, "--jitter", 0.1)
+        others = {"light field": [self.folder / "moved", self.path], "pixels": [self.world / "lossy.lfs", self.path],
+                  "path": [self.field, path], "options": [self.field, self.path, "--estimator", "bilinear"]}
+        for name, words in first.items():
+            for other, more in others.items():
+                with self.subTest(name, other=other):
+                    film = self.folder / f"{name}, other {other}"
+                    frames = ["-o", film, "--no-contact-sheet", "--threads", 2]
+                    self.made("lfrenderer", *words, *frames, "--estimator", "nearest")
+                    if name == "a film in two calls":
+                        self.made("lfrenderer", *words, *frames, "--estimator", "nearest", "--frames", "1")
+                    before = content(film)
+                    estimator = [] if other == "options" else ["--estimator", "nearest"]
+                    call = [self.programs / "lfrenderer", *more, *frames, *estimator, "--frames", "1"]
+                    done = subprocess.run([*map(str, call)], capture_output=True, text=True, timeout=240)
+                    self.assertEqual(done.returncode, 2, done.stderr)
+                    self.assertRegex(done.stderr.strip().splitlines()[-1],
+                                     r"^error: .* files are frames of another film, the first: frame_000[12]\.exr, was")
+                    self.assertEqual(content(film), before)
+                    done = subprocess.run([*map(str, call), "--overwrite"], capture_output=True, text=True, timeout=240)
+                    self.assertEqual(done.returncode, 0, done.stderr)
+                    self.assertRegex(done.stderr, r"warning: .* files are frames of another film, the first: frame_")
+                    now = content(film)
+                    self.assertNotEqual(now["frame_0001.exr"], before["frame_0001.exr"])
+                    self.assertEqual(now["frame_0002.exr"], before["frame_0002.exr"])
 
     # Outputs that are inputs or other outputs
 

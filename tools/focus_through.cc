@@ -35,6 +35,7 @@
 #include "lf/import/paths/open_path.h"
 #include "lf/render/pipeline/check_outputs.h"
 #include "lf/render/pipeline/frame_output.h"
+#include "lf/render/state/other_films.h"
 #include "lf/render/state/record_fields.h"
 
 namespace lf {
@@ -126,7 +127,8 @@ void AddRunning(CLI::App& app, Arguments& a) {
       .AddFlag("--overwrite", a.overwrite,
                "Replace files that exist, and remove an unfinished render\n"
                "Needed, unless --resume is given, if a file exists, or if the folder has an "
-               "unfinished render. Finished frames in the folder are replaced one by one.")
+               "unfinished render or frames of another film. Finished frames in the folder are "
+               "replaced one by one.")
       ->excludes(resume);
 }
 
@@ -248,15 +250,17 @@ Result<LensStatisticOptions> OptionsOf(const Arguments& a, const CommonOptions& 
 }
 
 Result<void> CheckOutputs(const Arguments& a, const LightField& light_field) {
+  // Inputs come first, because --overwrite does not replace them.
+  std::vector<fs::path> inputs = FilesOfLightField(light_field, a.light_field.path);
+  for (fs::path& file : FilesOfPath(a.frame.path)) inputs.push_back(std::move(file));
+  LF_RETURN_IF_ERROR(CheckOutputFiles({a.outputs.begin(), a.outputs.end()}, inputs));
   for (const std::string& output : a.outputs) {
     std::error_code error;
     if (!a.overwrite && fs::exists(output, error))
       return UsageError(fmt::format(
           "{} exists already: give another name, or --overwrite to replace it", output));
   }
-  std::vector<fs::path> inputs = FilesOfLightField(light_field, a.light_field.path);
-  for (fs::path& file : FilesOfPath(a.frame.path)) inputs.push_back(std::move(file));
-  return CheckOutputFiles({a.outputs.begin(), a.outputs.end()}, inputs);
+  return {};
 }
 
 // The light field, and the path with the focal surfaces of the frames that are made.
@@ -282,8 +286,8 @@ Result<Opened> Open(const Arguments& a, bool has_folder, const std::atomic<bool>
   if (a.frames.IsNone(opened.frames)) return opened;
   SurfaceWork work = {opened.frames, &pool, &interrupted};
   if (!has_folder) work.frames = {a.frame.id()};
-  // A resumed film compares the surfaces of all frames that it finds, even of others.
-  if (a.resume) work.frames.clear();
+  // A film compares the surfaces of all frames of earlier renders that it finds.
+  if (a.resume || (has_folder && !ReportsIn(a.outputs.front()).empty())) work.frames.clear();
   LF_RETURN_IF_ERROR(AddFocalSurfaces(a.frame.path, opened.light_field, work, &opened.path));
   return opened;
 }

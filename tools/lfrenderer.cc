@@ -24,6 +24,7 @@
 #include "lf/import/paths/open_path.h"
 #include "lf/render/pipeline/render.h"
 #include "lf/render/pipeline/render_packages.h"
+#include "lf/render/state/other_films.h"
 
 namespace {
 
@@ -85,10 +86,12 @@ lf::Result<Rendered> RenderLightField(const lf::RenderArguments& arguments,
   LF_ASSIGN_OR_RETURN(lf::RenderOptions options, arguments.MakeOptions(common, path.frame_count()));
   if (arguments.HasNoFrame(options)) return NoFrames(arguments, std::move(options));
   options.signals = signals;
-  // A resumed render compares the surfaces of all frames that it finds, even of others.
+  // A render compares the surfaces of all frames of earlier renders that it finds.
+  const bool has_other_frames =
+      options.folder.resume || !lf::ReportsIn(options.folder.output_folder).empty();
   LF_RETURN_IF_ERROR(lf::AddFocalSurfaces(
       arguments.inputs[1], light_field,
-      {options.folder.resume ? std::vector<lf::FrameId>() : options.frames, &pool, &signals->stop},
+      {has_other_frames ? std::vector<lf::FrameId>() : options.frames, &pool, &signals->stop},
       &path));
   options.folder.inputs = lf::FilesOfPath(arguments.inputs[1]);
   options.folder.inputs.emplace_back(arguments.inputs[0]);

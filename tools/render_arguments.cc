@@ -44,6 +44,7 @@ void AddInput(CLI::App& app, RenderArguments& a) {
            "calibration (doc/formats/foreign_paths.md)\n"
            "PACKAGE: a file that lfpreprocessor has written")
       ->required()
+      ->check(NotEmpty())
       ->check(TakesFiles("light_field path package"));
   input
       .Add("--lightfield LIGHTFIELD", a.light_field.path,
@@ -195,9 +196,10 @@ void AddRunning(CLI::App& app, RenderArguments& a) {
       .AddFlag(
           "--overwrite", a.overwrite,
           "Remove an unfinished render in DIR and start anew\n"
-          "Needed, unless --resume is given, if DIR has an unfinished render. Finished frames "
-          "in DIR are replaced one by one; only --resume keeps them. Frames in another --format "
-          "stay, and a warning names them.")
+          "Needed, unless --resume is given, if DIR has an unfinished render, or frames of another "
+          "film that this one does not replace. Finished frames in DIR are replaced one by one; "
+          "only --resume keeps them. Frames of another film or in another --format stay, and a "
+          "warning names them.")
       ->excludes(resume);
   running
       .Add(

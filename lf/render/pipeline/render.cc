@@ -38,9 +38,9 @@ RunStateOptions StateOptions(const FilmSetup& setup, const FolderOptions& folder
   choices.look = folder.picture;
   RunInputs picture = InputsOfPicture(choices);
   if (!package.name.empty()) picture.emplace_back(kFilmOfPackage, HashOfCameras(package.path));
-  return {folder.output_folder, package.name,       package.FrameIds(),
-          folder.format,        folder.resume,      folder.overwrite,
-          std::move(rays),      std::move(picture), setup.film().shard};
+  return {folder.output_folder, package.name,     package.FrameIds(), folder.format,
+          folder.resume,        folder.overwrite, std::move(rays),    std::move(picture),
+          setup.film().shard,   setup.frames()};
 }
 
 WorkOptions WithFlags(WorkOptions work, const RenderSignals* signals) {

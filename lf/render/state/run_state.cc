@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <system_error>
+#include <utility>
 
 #include "lf/core/file.h"
 #include "lf/core/log.h"
@@ -14,6 +15,7 @@
 #include "lf/core/temporary_file.h"
 #include "lf/pixels/files/whole_file.h"
 #include "lf/rebinning/ray_map_file.h"
+#include "lf/render/state/other_films.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -160,23 +162,26 @@ Result<void> RunState::FindEarlierRun() {
     has_rays_ = has_rays_ || file.extension() == kRaysExtension;
   }
   LF_RETURN_IF_ERROR(CheckOtherPackages());
-  if (options_.resume) return Read();
-  if (options_.overwrite) {
-    RemoveAll();
-  } else if (HasPlates() || !records_.empty()) {
+  if (options_.resume) {
+    LF_RETURN_IF_ERROR(Read());
+    return FindOtherFilms();
+  }
+  if (!options_.overwrite && (HasPlates() || !records_.empty()))
     return UsageError(fmt::format(
         "{}: contains an unfinished render ({} frames finished, {} begun): continue it with "
         "--resume, or remove it and start again with --overwrite",
         partial_.string(), records_.size(), plates_.size()));
-  }
-  // The report and the contact sheet of an earlier render are removed. Otherwise, if this render
-  // fails, they would look like its results.
+  LF_RETURN_IF_ERROR(FindOtherFilms());
+  if (options_.overwrite) RemoveAll();
+  // The contact sheet of an earlier render is removed, and its report, but for frames that stay.
+  // Otherwise, if this render fails, they would look like its results.
   std::error_code ignored;
   if (fs::exists(ReportPath(), ignored))
     LogWarning(
         "{}: the earlier render in this folder is complete, and its frames are replaced one by one",
         options_.folder.string());
   fs::remove(ReportPath(), ignored);
+  if (staying_) LF_RETURN_IF_ERROR(WriteReport(*staying_, ReportPath()));
   if (Name().empty()) fs::remove(options_.folder / "contact_sheet.png", ignored);
   return {};
 }
@@ -185,10 +190,8 @@ Result<void> RunState::FindEarlierRun() {
 // frames of two films in one folder would look like one film.
 Result<void> RunState::CheckOtherPackages() const {
   if (Name().empty()) return {};
-  for (const fs::path& file : FilesOf(options_.folder)) {
-    const std::string name = file.filename().string();
-    if (!name.starts_with("report-") || file.extension() != ".json" || file == ReportPath())
-      continue;
+  for (const fs::path& file : ReportsIn(options_.folder)) {
+    if (file.filename() == "report.json" || file == ReportPath()) continue;
     LF_ASSIGN_OR_RETURN(const RenderReport other, ReadReport(file));
     if (const auto difference =
             FirstDifference(other.inputs, Joined(options_.rays, options_.picture)))
@@ -196,6 +199,45 @@ Result<void> RunState::CheckOtherPackages() const {
           "{}: is the report of another package or shard, which {}: the frames of both would look "
           "like one film; give another -o, or remove the frames and reports in this folder",
           file.string(), difference->Text("was rendered with", "this one has")));
+  }
+  return {};
+}
+
+// Looks for frames of earlier renders in the reports of the folder and, because --overwrite removes
+// the state but not the finished frames, in its records. Sets staying_.
+Result<void> RunState::FindOtherFilms() {
+  std::vector<fs::path> reports;
+  for (const fs::path& file : ReportsIn(options_.folder)) {
+    const std::string name = file.filename().string();
+    // CheckOtherPackages() compares packages and shards with each other. The frames of a shard are
+    // plates, which no other render takes for frames.
+    const bool is_other = name == "report.json" || Name().empty();
+    const bool has_plates = options_.shard || name.find("shard_") != std::string::npos;
+    if (file == ReportPath() ? !options_.resume : is_other && !has_plates) reports.push_back(file);
+  }
+  if (!options_.resume)  // Read() compares the report and the records of the state
+    for (const FrameId frame : records_) reports.push_back(RecordPath(frame));
+  const RunInputs inputs = Joined(options_.rays, options_.picture);
+  FilmInFolder film = {path_, inputs, {}, [this](FrameId frame) { return FinishedPath(frame); }};
+  for (const fs::path& report : reports) {
+    const bool is_ours = report == ReportPath() || report.parent_path() == partial_;
+    // A report of others stays, and would describe even the frames that are replaced.
+    film.frames = {};
+    if (is_ours) film.frames = options_.written.empty() ? options_.frames : options_.written;
+    const Result<FramesThatStay> found = FindFramesThatStay(report, film);
+    if (!found) {
+      LogWarning("{}; frames of another film may be in this folder", found.error().message);
+    } else if (!found->others.empty() && options_.overwrite) {
+      LogWarning("{}: {}; they stay: remove them, unless they are wanted", options_.folder.string(),
+                 found->others);
+    } else if (!found->others.empty()) {
+      return UsageError(fmt::format(
+          "{}: {}: both would look like one film; give another -o, or --overwrite{}",
+          options_.folder.string(), found->others, options_.resume ? " instead of --resume" : ""));
+    } else if (is_ours && found->same) {
+      const std::optional<RenderReport> before = std::exchange(staying_, found->same);
+      if (before) AddFrames(*before, &*staying_);
+    }
   }
   return {};
 }
@@ -446,7 +488,9 @@ Error RunState::Interruption(std::span<const FrameId> frames) const {
 }
 
 Result<void> RunState::Close(const RenderReport& report) {
-  LF_RETURN_IF_ERROR(WriteReport(report, ReportPath()));
+  RenderReport all = report;
+  if (staying_) AddFrames(*staying_, &all);
+  LF_RETURN_IF_ERROR(WriteReport(all, ReportPath()));
   std::error_code ignored;
   for (const FrameId frame : records_) fs::remove(RecordPath(frame), ignored);
   records_.clear();

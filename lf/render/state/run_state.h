@@ -50,6 +50,7 @@ struct RunStateOptions {
   RunInputs rays;          // result of InputsOfRays(), and what only rebinned rays depend on
   RunInputs picture;       // result of InputsOfPicture(), and kFilmOfPackage if there is a package
   std::optional<Shard> shard = std::nullopt;
+  std::vector<FrameId> written = {};  // frames that the render writes, ascending; empty: all
 };
 
 // Returns the name of the state's folder below DIR/partial/, which also is in the name of the
@@ -62,7 +63,9 @@ class RunState {
   // must outlive the object.
   // kUsage: the folder has an unfinished render, and neither resume nor overwrite is set; the state
   // was made from other inputs (the message names the first input that differs, and both values);
-  // or packages or shards that are in the folder were rendered from other inputs.
+  // packages or shards that are in the folder were rendered from other inputs; or frames of another
+  // film would stay in the folder (other_films.h), and overwrite is not set: it makes a warning of
+  // this error.
   // kInput: a file of the state is damaged.
   // kOutput: the folder cannot be written, or another process renders into it.
   static Result<std::unique_ptr<RunState>> Open(const RunStateOptions& options,
@@ -134,14 +137,16 @@ class RunState {
   // Removes the files of the state, except for `lock`.
   void RemoveAll();
   // Ends a finished render: writes report.json (report-NAME.json if the state is in
-  // DIR/partial/NAME/), and removes the state. If the state still has plates of unfinished frames,
-  // only the reports of finished frames are removed.
+  // DIR/partial/NAME/) with the frames of `report` and those of the same film that an earlier
+  // render left in the folder, and removes the state. If the state still has plates of unfinished
+  // frames, only the reports of finished frames are removed.
   Result<void> Close(const RenderReport& report);
 
  private:
   RunState(const RunStateOptions& options, const CameraPath& path, FileLock lock);
   Result<void> FindEarlierRun();
   Result<void> CheckOtherPackages() const;
+  Result<void> FindOtherFilms();
   Result<void> Read();
   bool IsKept(const std::filesystem::path& picture) const;
   Result<void> ReadFinished(const std::filesystem::path& path);
@@ -164,6 +169,7 @@ class RunState {
   bool has_rays_ = false;
   std::map<FrameId, FrameReport> finished_;
   RenderReport earlier_;
+  std::optional<RenderReport> staying_;  // frames of this film that the render does not write
 };
 
 }  // namespace lf

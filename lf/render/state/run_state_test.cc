@@ -156,6 +156,66 @@ TEST_F(RunStateTest, OtherInputsAreNamed) {
   EXPECT_NE(refused.error().message.find("frame 3, but the camera path has 2"), std::string::npos);
 }
 
+// The frames of two films in one folder would look like one film.
+TEST_F(RunStateTest, FramesOfAnotherFilmAreNotLeftBesideNewOnes) {
+  const auto open = [this](std::vector<FrameId> written, uint64_t seed, bool overwrite = false) {
+    RunChoices choices;
+    choices.seed = seed;
+    RunStateOptions options = {folder_,
+                               "",
+                               {},
+                               FrameFormat::kExrHalf,
+                               false,
+                               overwrite,
+                               InputsOfRays(IdentityOf(field_), field_.encoding, choices),
+                               InputsOfPicture(choices)};
+    for (uint32_t n = 1; n <= path_.frame_count(); ++n) options.frames.push_back(FrameId{n});
+    options.written = std::move(written);
+    return RunState::Open(options, path_);
+  };
+  const auto leave_finished = [&] {
+    fs::remove_all(folder_);
+    LeaveUnfinished();
+    const std::unique_ptr<RunState> state = *Open(true);
+    RenderReport report;
+    for (const auto& [frame, finished] : state->finished()) report.frames.push_back(finished);
+    RunChoices choices;
+    report.inputs = InputsOfRays(IdentityOf(field_), field_.encoding, choices);
+    for (const auto& input : InputsOfPicture(choices)) report.inputs.push_back(input);
+    state->RemoveAll();
+    ASSERT_TRUE(state->Close(report));
+  };
+  leave_finished();
+  const auto refused = open({FrameId{1}}, 7);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);
+  EXPECT_NE(refused.error().message.find(
+                "a file is a frame of another film, the first: frame_0003.exr, was rendered with "),
+            std::string::npos)
+      << refused.error().message;
+  EXPECT_TRUE(fs::exists(folder_ / "report.json"));
+  EXPECT_TRUE(open({FrameId{1}, FrameId{3}}, 7));  // nothing stays
+  leave_finished();
+  {
+    const Result<std::unique_ptr<RunState>> state = open({FrameId{1}}, 0);  // the same film
+    ASSERT_TRUE(state);
+    FrameReport frame;
+    frame.frame = FrameId{1};
+    RenderReport report;
+    report.frames = {frame};
+    ASSERT_TRUE((*state)->Close(report));
+  }
+  // The report has the frame that stays, so that another film is still refused.
+  EXPECT_EQ(ReadReport(folder_ / "report.json")->frames.size(), 2);
+  leave_finished();
+  EXPECT_TRUE(open({FrameId{1}}, 7, true));
+  leave_finished();
+  path_.cameras[2].aperture.radius_w *= 2;  // the same light field, but another path
+  EXPECT_FALSE(open({FrameId{1}}, 0));
+  fs::remove(folder_ / "frame_0003.exr");
+  EXPECT_TRUE(open({FrameId{1}}, 0));
+}
+
 TEST_F(RunStateTest, AFinishedFrameThatWasRemovedIsRenderedAgain) {
   LeaveUnfinished();
   fs::remove(folder_ / "frame_0003.exr");
