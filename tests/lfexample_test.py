@@ -33,7 +33,7 @@ class ExampleTest(unittest.TestCase):
 
     def example(self, *options):
         path = self.folder / "path.yaml"
-        result = self.run_tool(EXAMPLE, self.field, "-o", path, *options)
+        result = self.run_tool(EXAMPLE, self.field, "-o", path, "--overwrite", *options)
         self.assertEqual(result.returncode, 0, result.stderr)
         return path, result.stderr
 
@@ -157,7 +157,6 @@ class ExampleTest(unittest.TestCase):
         command = warning[warning.index("lfexample "):]
         self.assertIn(f"--focus {distances.split(', ')[0]}", command)
         self.assertIn("--camera 7", command)
-        path.unlink()
         result = subprocess.run(command.replace("lfexample", EXAMPLE, 1), shell=True, capture_output=True,
                                 text=True)
         self.assertEqual(result.returncode, 0, result.stderr)

@@ -48,7 +48,13 @@ class SafeOutputsTest(ProgramTestCase):
         self.keeps(self.calibration, 2, ["is not a camera path"], "lfexample", self.field, "-o", self.calibration)
         picture = next(self.field.rglob("*.png"))
         self.keeps(picture, 2, ["is not a camera path"], "lfexample", self.field, "-o", picture)
-        self.succeeds(PROGRAMS / "lfexample", self.field, "-o", self.path, "--focus", "4", "-q")
+        again = [self.field, "-o", self.path, "--move", "static", "--focus"]
+        self.succeeds(PROGRAMS / "lfexample", *again, "3", "-q")  # the same text
+        self.keeps(self.path, 2, ["path.yaml", "exists already", "--overwrite"], "lfexample", *again, "4")
+        self.path.write_text(self.path.read_text() + "# edited\n")
+        self.keeps(self.path, 2, ["path.yaml", "exists already", "--overwrite"], "lfexample", *again, "3")
+        self.succeeds(PROGRAMS / "lfexample", *again, "4", "--overwrite", "-q")
+        self.assertNotIn("# edited", self.path.read_text())
 
     def test_a_video_replaces_videos_alone(self):
         for file in (self.path, self.calibration, next(self.field.rglob("*.png"))):
@@ -171,7 +177,8 @@ class SafeOutputsTest(ProgramTestCase):
 
     def test_a_frame_that_was_cut_is_rendered_again(self):
         film = self.folder / "film"
-        self.succeeds(PROGRAMS / "lfexample", self.field, "-o", self.path, "--move", "dolly", "--focus", "3", "-q")
+        self.succeeds(PROGRAMS / "lfexample", self.field, "-o", self.path, "--move", "dolly", "--focus", "3",
+                      "--overwrite", "-q")
         for form in ("exr", "png16"):
             shutil.rmtree(film, ignore_errors=True)
             call = [PROGRAMS / "lfrenderer", self.field, self.path, "-o", film, "--no-contact-sheet", "--format", form,

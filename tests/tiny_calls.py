@@ -152,12 +152,12 @@ class TinyCalls:
         packages = self.preprocess(self.path, out, "--overwrite")
         merge = self.words("lfmerge", self.shards / "partial" / "shards", "-o", out)
         synth = self.synth(out, "--overwrite")
-        path = self.example(out.with_suffix(".yaml"))
+        path = [*self.example(out.with_suffix(".yaml")), *anew]
         convert = self.words("lfimport", self.field, "-o", out, "--force")
         old_import = self.words("lfimport", self.field, "-o", out, "--scale", "2")
         return [Call("lfsynth --overwrite", synth, before=[self.synth(out, "--spacing", "0.03")]),
                 Call("lfimport --force", convert, before=[old_import]),
-                Call("lfexample, over a path", path, before=[self.example(out.with_suffix(".yaml"), "4")]),
+                Call("lfexample --overwrite", path, before=[self.example(out.with_suffix(".yaml"), "4")]),
                 Call("lfpreprocessor --overwrite", packages, before=[self.preprocess(other, out)]),
                 Call("lfcompressor --overwrite", store + anew, [store + resume, store + anew],
                      before=[[*store, "--threshold", "20"]]),

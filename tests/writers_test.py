@@ -75,7 +75,7 @@ class WritersTest(WritersCase):
 # Words that the second call may say if the first ended before it began. Calls that are not named here get --overwrite.
 MAY_REFUSE = {"lfrenderer": ["exists already", "unfinished"], "lfpreprocessor": ["contains 2 packages"],
               "lfsynth": ["exists already"], "lfvisualizer": ["exists already"], "lffocus views": ["exists already"],
-              "lfimport": [], "lfexample": []}
+              "lfimport": []}
 
 
 def test_of(call):

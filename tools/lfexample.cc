@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -60,6 +61,17 @@ lf::Result<lf::LfImageId> FindCamera(const lf::LightField& light_field,
       text, light_field.image_names[0]));
 }
 
+// Refuses to replace a path that a person may have edited. An empty file holds none.
+lf::Result<void> CheckKeepsPath(const std::string& output, const std::string& yaml) {
+  std::error_code error;
+  if (!std::filesystem::exists(output, error) || std::filesystem::is_empty(output, error))
+    return {};
+  LF_ASSIGN_OR_RETURN(const std::string before, lf::ReadFile(output));
+  if (before == yaml) return {};
+  return lf::UsageError(
+      fmt::format("{}: exists already: give another name, or replace it with --overwrite", output));
+}
+
 // Warns that the focus is uncertain: states where it is, why it is uncertain, and how to choose
 // another focus.
 //   words  the options of the light field, which the shown command repeats
@@ -73,7 +85,8 @@ void WarnOfDoubt(const lf::ExamplePath& example, const std::string& light_field,
   command.insert(command.end(), words.begin(), words.end());
   command.insert(command.end(), {"-o", lf::FileArgument(output), "--move", move});
   if (camera != "-1") command.insert(command.end(), {"--camera", camera});
-  command.insert(command.end(), {"--focus", fmt::format("{:.4g}", example.candidates_w.front())});
+  command.insert(command.end(), {"--focus", fmt::format("{:.4g}", example.candidates_w.front()),
+                                 "--overwrite"});  // the path was written just now
   lf::LogWarning(
       "the program is not sure what to focus on ({}). It chose the focus distance {:.4g}, {}, and "
       "the aperture {:.4g}, {} (in world units). The best focus distance{} found: {}. To get a "
@@ -90,10 +103,13 @@ int main(int argc, char** argv) {
   lf::LightFieldArgument input;
   std::string output, move = "focus-pull", camera = "-1";
   double focus = 0;
+  bool overwrite = false;
   CLI::App& app = program.app();
   input.AddTo(app);
   lf::OptionGroup output_group(app, lf::kOutputGroup), picture(app, lf::kPictureGroup);
   output_group.Add("-o,--output PATH.yaml", output, "Camera path to write")->required();
+  output_group.AddFlag("--overwrite", overwrite,
+                       "Replace PATH.yaml if it exists and is another path");
   picture.Add(
       "--camera NUMBER|NAME", camera,
       "LF camera at which the path begins (near the middle)\n"
@@ -131,6 +147,7 @@ int main(int argc, char** argv) {
                         lf::MakeExamplePath(light_field, *store, options, pool));
     // A path that cannot be parsed is a bug of ours, and is reported here instead of by lfrenderer.
     LF_RETURN_IF_ERROR(lf::ParsePathYaml(example.yaml, output, light_field.unit_m));
+    if (!overwrite) LF_RETURN_IF_ERROR(CheckKeepsPath(output, example.yaml));
     LF_RETURN_IF_ERROR(lf::WriteFileAtomically(output, example.yaml));
     if (!example.doubt.empty())
       WarnOfDoubt(example, input.path, input.Words(), output, move, camera);
