@@ -176,6 +176,19 @@ class ShardsTest(ProgramTestCase):
         self.assertEqual(self.merge("out", plates, options=["--overwrite"]), expected)
         self.assertNotEqual(first.stat().st_mtime_ns, before)
 
+    def test_resuming_with_fewer_plates_shortens_no_video(self):
+        plates = self.shards("out", 2)
+        film, video = self.folder / "film", self.folder / "film.mp4"
+        self.succeeds(MERGE, plates, "-o", film, "--video", video)
+        before = video.read_bytes(), (film / "report.json").read_bytes()
+        few = [*plates.rglob("frame_0001.plate"), *plates.rglob("frame_0002.plate")]
+        self.fails(2, ["no plates are given of 1 finished frame, the first:", "frame_0003.exr", "film.mp4"], MERGE, *few,
+                   "-o", film, "--video", video, "--resume")
+        self.assertEqual((video.read_bytes(), (film / "report.json").read_bytes()), before)
+        done = self.call(MERGE, *few, "-o", film, "--resume")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("warning: no plates are given of 1 finished frame", done.stderr)
+
     # A limit of the file size stands for a full disk. Existing files stay, and no partial file is left.
     def test_a_full_disk_costs_no_frame(self):
         plates = self.shards("out", 2)

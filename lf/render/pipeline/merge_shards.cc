@@ -272,11 +272,32 @@ class Merger {
                gaps.size() > said ? ", ..." : "");
   }
 
+  // Refuses to replace a finished video by one without frames of the earlier film, and warns if
+  // only the report loses them: plates of one machine may have been forgotten.
+  Result<void> CheckKeepsFrames(const RenderReport& earlier) const {
+    std::vector<FrameId> lost;
+    for (const FrameReport& frame : earlier.frames)
+      if (!frames_.contains(frame.frame) && fs::exists(PathOf(frame.frame)))
+        lost.push_back(frame.frame);
+    if (lost.empty()) return {};
+    const std::string words =
+        fmt::format("no plates are given of {} finished frame{}, the first: {}", lost.size(),
+                    lost.size() == 1 ? "" : "s", PathOf(lost.front()).string());
+    if (options_.video && fs::exists(*options_.video))
+      return UsageError(
+          fmt::format("{}, so that --resume would shorten {}: give their plates, too, or another "
+                      "--video",
+                      words, options_.video->string()));
+    LogWarning("{}: they stay, but the report does not describe them", words);
+    return {};
+  }
+
   Result<void> FindFinished() {
     RunInputs film_before;
     if (options_.resume && fs::exists(ReportPath())) {
       LF_ASSIGN_OR_RETURN(const RenderReport earlier, ReadReport(ReportPath()));
       film_before = earlier.inputs;
+      LF_RETURN_IF_ERROR(CheckKeepsFrames(earlier));
       for (const FrameReport& report : earlier.frames)
         if (const auto found = frames_.find(report.frame); found != frames_.end())
           found->second.report = report;

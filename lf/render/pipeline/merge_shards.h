@@ -47,12 +47,13 @@ struct MergeProgress {
 //   plates  plate files and folders, in any order; the files *.plate anywhere below a folder are
 //           read
 //
-// kUsage: a frame exists already, and neither resume nor overwrite is set; an output would replace
-// a plate or one of kept_files; the same plate file is listed twice.
-// kInput: there are no plates; a plate has no notes (render/state/plate_notes.h) or is damaged; a
-// shard of a frame is missing or exists twice, or the shards are of different renders (the message
-// names them); every frame is black. kOutput: the disk or ffmpeg failed, or another process writes
-// frames into the folder. kInterrupted: frames that were written before are kept.
+// kUsage: a frame exists already, and neither resume nor overwrite is set; resume is set, but the
+// video would lose frames; an output would replace a plate or one of kept_files; the same plate
+// file is listed twice. kInput: there are no plates; a plate has no notes
+// (render/state/plate_notes.h) or is damaged; a shard of a frame is missing or exists twice, or the
+// shards are of different renders (the message names them); every frame is black. kOutput: the disk
+// or ffmpeg failed, or another process writes frames into the folder. kInterrupted: frames that
+// were written before are kept.
 Result<RenderReport> MergeShards(const std::vector<std::filesystem::path>& plates,
                                  const MergeOptions& options, ThreadPool& pool,
                                  const std::function<void(const MergeProgress&)>& progress);
