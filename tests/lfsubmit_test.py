@@ -254,12 +254,18 @@ class LocalJobTest(ClusterTestCase):
         """A farm whose index variable is empty must not render package 0 in every task."""
         self.submit("--frames", "1")
         (self.film / "frame_0001.exr").unlink()
-        for word in ("abc", "", "0x0", "0.9", " 0", "0 ", "+0", "0,1", "3", "99999999999999999999"):
+        for word in ("abc", "", "0x0", "0.9", " 0", "0 ", "00", "+0", "0,1", "3", "99999999999999999999"):
             words = [f"--run-package {word}", "number of a package, 0 to 0", "" if word else "SLURM_ARRAY_TASK_ID"]
             self.fails(2, words, cluster_test_case.SUBMIT, "--run-package", word, self.film)
         self.assertFalse((self.film / "frame_0001.exr").exists())
         self.succeeds(cluster_test_case.SUBMIT, "--run-package", 0, self.film)
         self.assertTrue((self.film / "frame_0001.exr").exists())
+
+    def test_a_program_that_is_no_lfrenderer_is_an_output_that_failed(self):
+        self.fails(4, ["not all packages are done", "/bin/false ended with exit code 1 and without a message"],
+                   cluster_test_case.SUBMIT, *self.package_files[:1], "-o", self.film, "--lfrenderer", "/bin/false")
+        self.fails(4, ["/bin/false ended with exit code 1"], cluster_test_case.SUBMIT, "--run-package", 0, self.film,
+                   "--lfrenderer", "/bin/false")
 
     def test_the_folder_of_a_job_names_no_program(self):
         """It may come out of an archive of somebody else."""

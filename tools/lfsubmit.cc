@@ -111,7 +111,8 @@ Result<void> Finish(const std::string& folder, const std::string& frames) {
 // Parses the number of a package, which a batch system states as the index of the task.
 Result<size_t> NumberOfPackage(const std::string& text, const ClusterJob& job) {
   const std::optional<size_t> number = lf::ParseWhole<size_t>(text);
-  if (number && *number < job.packages.size()) return *number;
+  // "00" is refused: if two tasks state one package in two ways, a package is left out.
+  if (number && *number < job.packages.size() && fmt::format("{}", *number) == text) return *number;
   return lf::UsageError(fmt::format(
       "--run-package {}: expected the number of a package, 0 to {}{}", text.empty() ? "''" : text,
       job.packages.size() - 1,

@@ -23,6 +23,10 @@
 namespace lf {
 namespace {
 
+std::string PackagesText(size_t count) {
+  return fmt::format("{} package{}", count, count == 1 ? "" : "s");
+}
+
 void Show(const ClusterJob& job, ProgressMeter& meter) {
   const JobStatus status = LookAtJob(job);
   meter.Update(status.rays_done(), status.ray_total(), JobSummary(status));
@@ -35,14 +39,14 @@ Result<void> WriteForFarm(const ClusterJob& job, const std::vector<size_t>& numb
   LF_ASSIGN_OR_RETURN(const std::filesystem::path file, WriteFarmFiles(job, numbers, to));
   if (job.engine == ClusterEngine::kOpenJd)
     LogInfo(
-        "{}: written, for {} packages; submit its folder, for example with deadline bundle "
-        "submit {}; to see the progress: {}",
-        file.string(), numbers.size(), ShellWord(to.string()), status);
+        "{}: written, for {}; submit its folder, for example with deadline bundle submit {}; to "
+        "see the progress: {}",
+        file.string(), PackagesText(numbers.size()), ShellWord(to.string()), status);
   else
     LogInfo(
-        "{}: written; its first lines say how to submit it as an array of {} tasks, and "
+        "{}: written; its first lines say how to submit it as an array of {} task{}, and "
         "finish.sh makes the video when all have ended; to see the progress: {}",
-        file.string(), job.packages.size(), status);
+        file.string(), job.packages.size(), job.packages.size() == 1 ? "" : "s", status);
   return {};
 }
 
@@ -58,14 +62,15 @@ Result<void> RunJob(ClusterJob job, FileLock lock, const std::vector<size_t>& nu
   Result<void> outcome;
   if (job.engine == ClusterEngine::kLocal) {
     if (!numbers.empty())
-      LogInfo("{} packages, {} at a time, {} threads and {} each; to see the progress: {}",
-              numbers.size(), job.at_once, job.thread_count, ByteText(job.memory_bytes), see);
+      LogInfo("{}, {} at a time, {} thread{} and {} each; to see the progress: {}",
+              PackagesText(numbers.size()), job.at_once, job.thread_count,
+              job.thread_count == 1 ? "" : "s", ByteText(job.memory_bytes), see);
     outcome = RunLocally(job, *held, numbers, stop, [&] { Show(job, meter); });
   } else {
     LF_RETURN_IF_ERROR(SubmitToSlurm(&job, numbers));
     held.reset();  // Slurm runs the job now; other programs may resume or cancel it
-    LogInfo("submitted {} packages (array {}) and finishing task {}; to see the progress: {}",
-            numbers.size(), numbers.empty() ? "-" : job.slurm_array_ids.back(),
+    LogInfo("submitted {} (array {}) and finishing task {}; to see the progress: {}",
+            PackagesText(numbers.size()), numbers.empty() ? "-" : job.slurm_array_ids.back(),
             job.slurm_finishing_id, see);
     if (!options.waits) return {};
     outcome = WaitForJob(job, stop, [&] { Show(job, meter); });

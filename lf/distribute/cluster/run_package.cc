@@ -37,6 +37,13 @@ double SecondsSince1970() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
+// Returns the kind of error that an exit code of lfrenderer stands for; 1 is a bug in it. 0 and
+// other codes are failures of a program that we call.
+ErrorKind KindOfExit(int exit_code) {
+  const bool is_ours = exit_code >= 1 && exit_code <= static_cast<int>(ErrorKind::kBelowRequired);
+  return is_ours ? static_cast<ErrorKind>(exit_code) : ErrorKind::kOutput;
+}
+
 // A task that this process runs: holds its lock, and writes its log and state.
 class TaskRun {
  public:
@@ -54,8 +61,9 @@ class TaskRun {
   // lfrenderer gets SIGTERM.
   Result<ProcessEnd> Run(const std::vector<std::string>& words, const fs::path& output,
                          const std::function<bool()>& wants_restart);
-  // Returns the last message of lfrenderer in the log.
-  std::string LastMessage() const;
+  // Returns the error that lfrenderer has ended with, with the last message in the log. A program
+  // that ends with another code, or without a message, is no lfrenderer: kOutput.
+  Error ErrorOf(int exit_code) const;
 
  private:
   const ClusterJob& job_;
@@ -90,11 +98,13 @@ Result<void> TaskRun::Begin() {
   return {};
 }
 
-std::string TaskRun::LastMessage() const {
+Error TaskRun::ErrorOf(int exit_code) const {
   constexpr std::string_view kError = "error: ";
   std::string message = ReadProgress(task_.log).message;
   if (message.starts_with(kError)) message.erase(0, kError.size());
-  return message;
+  if (!message.empty()) return {KindOfExit(exit_code), message};
+  return OutputError(fmt::format("{} ended with exit code {} and without a message; its log: {}",
+                                 job_.renderer.string(), exit_code, task_.log.string()));
 }
 
 Result<void> TaskRun::End(TaskPhase phase, int exit_code, const std::string& message) {
@@ -205,7 +215,7 @@ Result<void> CheckAllDone(const ClusterJob& job) {
     if (state.phase == TaskPhase::kDone && missing.empty()) continue;
     std::string reason = NameOf(state.phase);
     if (state.phase == TaskPhase::kFailed && kind == ErrorKind::kInterrupted)
-      kind = state.exit_code == 0 ? ErrorKind::kOutput : static_cast<ErrorKind>(state.exit_code);
+      kind = KindOfExit(state.exit_code);
     if (!state.message.empty()) reason += fmt::format(" on {}: {}", state.node, state.message);
     if (state.phase == TaskPhase::kDone) reason = "done, but their files are missing";
     words += fmt::format("{}{} (frames {}: {})", words.empty() ? "" : "; ", task.name,
@@ -223,9 +233,8 @@ Result<void> OutcomeOf(const std::string& name, const TaskState& state) {
   if (state.phase == TaskPhase::kDone && state.exit_code == kBelow)
     return Error{ErrorKind::kBelowRequired, fmt::format("{}: {}", name, state.message)};
   if (state.phase == TaskPhase::kDone) return {};
-  const ErrorKind kind = state.phase != TaskPhase::kFailed ? ErrorKind::kInterrupted
-                         : state.exit_code > 0             ? static_cast<ErrorKind>(state.exit_code)
-                                                           : ErrorKind::kOutput;
+  const ErrorKind kind =
+      state.phase == TaskPhase::kFailed ? KindOfExit(state.exit_code) : ErrorKind::kInterrupted;
   return Error{kind, fmt::format("{}: {}: {}", name, NameOf(state.phase), state.message)};
 }
 
@@ -273,14 +282,15 @@ Result<TaskState> RunPackage(const ClusterJob& job, size_t number, const std::st
       ++state.crash_count;
       LF_RETURN_IF_ERROR(run.End(TaskPhase::kInterrupted, 0, WordsOf(end)));
     } else if (end.exit_code == 0 || end.exit_code == 6) {
-      LF_RETURN_IF_ERROR(
-          run.End(TaskPhase::kDone, end.exit_code, end.exit_code == 0 ? "" : run.LastMessage()));
+      LF_RETURN_IF_ERROR(run.End(TaskPhase::kDone, end.exit_code,
+                                 end.exit_code == 0 ? "" : run.ErrorOf(6).message));
       return state;
     } else if (end.exit_code == 5) {
       LF_RETURN_IF_ERROR(
           run.End(TaskPhase::kInterrupted, 5, "interrupted; it continues when it runs again"));
     } else {
-      LF_RETURN_IF_ERROR(run.End(TaskPhase::kFailed, end.exit_code, run.LastMessage()));
+      const Error error = run.ErrorOf(end.exit_code);
+      LF_RETURN_IF_ERROR(run.End(TaskPhase::kFailed, static_cast<int>(error.kind), error.message));
       return state;
     }
   }
@@ -325,9 +335,8 @@ Result<void> FinishFilm(const ClusterJob& job, const std::string& node,
   if (end->signal == SIGTERM && run.IsAskedToEnd())
     return fail({ErrorKind::kInterrupted, "interrupted"});
   if (end->signal != 0) return fail(OutputError("the finishing task was " + WordsOf(*end)));
-  const std::string last = end->exit_code == 0 ? "" : run.LastMessage();
-  if (end->exit_code != 0 && end->exit_code != 6)
-    return fail({static_cast<ErrorKind>(end->exit_code), last});
+  if (end->exit_code != 0 && end->exit_code != 6) return fail(run.ErrorOf(end->exit_code));
+  const std::string last = end->exit_code == 0 ? "" : run.ErrorOf(6).message;
   if (const Result<void> kept = RenameFlushed(printed.path(), report); !kept)
     return fail(kept.error());
   printed.Keep();
