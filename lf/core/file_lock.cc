@@ -126,9 +126,12 @@ Result<std::optional<FileLock>> FileLock::TakeOpenFile(const std::filesystem::pa
   if (!IsStill(fd, path)) return std::optional<FileLock>();
   // The process number is for people and messages only. The lock does not depend on it.
   const std::string text = fmt::format("{}\n", ::getpid());
-  if (::ftruncate(fd, 0) != 0 || !Write(fd, text))
-    return OutputError(
-        fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
+  if (::ftruncate(fd, 0) != 0 || !Write(fd, text)) {
+    const Error error =
+        OutputError(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
+    lock.Remove();  // on a full disk nothing is left behind
+    return error;
+  }
   return std::optional<FileLock>(std::move(lock));
 }
 

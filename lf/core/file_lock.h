@@ -12,10 +12,10 @@ namespace lf {
 
 class FileLock {
  public:
-  // Locks the file, and creates it if it is missing. kOutput if another process (the message gives
-  // its number) or another FileLock holds the lock, or if the file cannot be created, locked or
-  // written. Waits a few milliseconds for the lock, and up to a second for a process that has
-  // locked the file to write its number.
+  // Locks the file, and creates it if it is missing. If it cannot be written, it is removed.
+  // kOutput if another process (the message gives its number) or another FileLock holds the lock,
+  // or if the file cannot be created, locked or written. Waits a few milliseconds for the lock, and
+  // up to a second for a process that has locked the file to write its number.
   static Result<FileLock> Take(const std::filesystem::path& path);
   // Creates the folder if it is missing, and takes the lock of the file FOLDER/lock. Other
   // processes may remove the folder whenever it is empty: it is then created again. kOutput as for

@@ -4,11 +4,13 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <chrono>
+#include <csignal>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -148,6 +150,23 @@ TEST(FileLock, IsTakenInAFolderThatOthersRemove) {
     lock->Remove();
   }
   std::filesystem::remove(folder);
+}
+
+// A limit of the file size stands for a full disk.
+TEST(FileLock, LeavesNoFileOnAFullDisk) {
+  const auto path = LockPath("h");
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = ::signal(SIGXFSZ, SIG_IGN);
+  rlimit none = before;
+  none.rlim_cur = 0;
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &none), 0);
+  const Result<FileLock> lock = FileLock::Take(path);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+  ::signal(SIGXFSZ, handler);
+  ASSERT_FALSE(lock);
+  EXPECT_EQ(lock.error().kind, ErrorKind::kOutput);
+  EXPECT_FALSE(std::filesystem::exists(path));
 }
 
 TEST(FileLock, NeedsAFolder) {
