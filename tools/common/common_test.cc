@@ -101,6 +101,11 @@ TEST(SameCall, KeepsTheWordsAndAddsOptionsBeforeTheDashes) {
   EXPECT_EQ(SameCall(call, {"--resume"}, {"--overwrite"}), "lfx 'a b' -o c --resume -- -d");
   EXPECT_EQ(SameCall(call, {"--overwrite", "--pitch", "1"}),
             "lfx 'a b' --overwrite -o c --pitch 1 -- -d");
+  const std::vector<std::string> twice = {"lfx",       "--pitch", "1", "a",
+                                          "--pitch=3", "--at",    "1", "-2"};
+  EXPECT_EQ(SameCall(twice, {"--pitch", "2", "--at", "-3", "4", "--resume"}),
+            "lfx a --pitch 2 --at -3 4 --resume");
+  EXPECT_EQ(SameCall(twice, {"--at", "-3", "4"}), "lfx --pitch 1 a --pitch=3 --at -3 4");
 }
 
 TEST(ShellPackages, APatternMatchesThesePackagesAndNoOthers) {

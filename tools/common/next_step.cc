@@ -5,7 +5,9 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <filesystem>
+#include <iterator>
 #include <set>
 #include <string_view>
 
@@ -17,6 +19,23 @@ namespace {
 
 bool Has(const std::vector<std::string>& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+// True for "--pitch" and "-o", but not for the value "-1".
+bool IsOption(std::string_view word) {
+  return word.size() > 1 && word[0] == '-' && (word[1] < '0' || word[1] > '9') && word[1] != '.';
+}
+
+// Removes each use of an option, "--pitch 1" or "--pitch=1", with its values.
+void RemoveOption(const std::string& option, size_t value_count, std::vector<std::string>* words) {
+  for (size_t i = 0; i < words->size();) {
+    size_t count = 0;
+    if ((*words)[i] == option) count = 1 + value_count;
+    if ((*words)[i].starts_with(option + "=")) count = value_count;
+    const auto begin = words->begin() + static_cast<std::ptrdiff_t>(i);
+    words->erase(begin, begin + static_cast<std::ptrdiff_t>(std::min(count, words->size() - i)));
+    if (count == 0) ++i;
+  }
 }
 
 // Returns the files in a folder whose names match a pattern of the shell.
@@ -38,8 +57,14 @@ std::string SameCall(std::span<const std::string> call, const std::vector<std::s
   std::vector<std::string> words;
   for (auto word = call.begin(); word != rest; ++word)
     if (!Has(dropped, *word)) words.push_back(*word);
-  for (const std::string& word : added)
-    if (!word.starts_with("--") || !Has(words, word)) words.push_back(word);
+  for (auto option = added.begin(); option != added.end();) {
+    const auto next =
+        std::find_if(std::next(option), added.end(), [](const auto& w) { return IsOption(w); });
+    const auto value_count = static_cast<size_t>(std::distance(option, next)) - 1;
+    if (value_count > 0) RemoveOption(*option, value_count, &words);
+    if (value_count > 0 || !Has(words, *option)) words.insert(words.end(), option, next);
+    option = next;
+  }
   words.insert(words.end(), rest, call.end());
   return ShellCommand(words);
 }

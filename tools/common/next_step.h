@@ -12,7 +12,7 @@ namespace lf {
 // after "--" keeps them last.
 //   call     its words, the first of which is the program
 //   added    put after the other options. An option without a value is not repeated if the call
-//            has it; an option with a value must not be in the call
+//            has it; an option with values replaces those of the call
 //   dropped  options without a value, which are left out
 std::string SameCall(std::span<const std::string> call, const std::vector<std::string>& added,
                      const std::vector<std::string>& dropped = {});
