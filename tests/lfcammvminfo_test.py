@@ -55,6 +55,14 @@ class CameraMovementTest(unittest.TestCase):
             path.write_text(text)
             self.assertEqual(self.json_of(path)["frames"], 60)
 
+    def test_the_views_of_a_moment_have_its_time(self):
+        text = re.sub(r"(?m)^frames:.*$", "frames: 6\nviews: 2", self.path.read_text())
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "path.yaml"
+            path.write_text(text)
+            told = self.json_of(path)
+        self.assertEqual([round(camera["time_s"] * told["fps"]) for camera in told["cameras"]], [0, 0, 1, 1, 2, 2])
+
     def test_the_manual_has_every_key(self):
         manual = (REPOSITORY / "doc" / "formats" / "path.md").read_text()
         for section in "camera", "lens":

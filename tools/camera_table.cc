@@ -20,7 +20,11 @@ std::string Brief(double value) {
 
 // Returns the facts of the camera of a frame and, at the end, of the shutter, if there is one.
 std::vector<CameraFact> FactsOf(const CameraPath& path, FrameId frame) {
-  std::vector<CameraFact> facts = CameraFacts(path.Camera(frame), frame);
+  RenderCamera camera = path.Camera(frame);
+  // The views of a moment are frames of the same time.
+  if (path.views > 1)
+    camera.time_s = (frame.value - 1) / static_cast<uint32_t>(path.views) / path.fps;
+  std::vector<CameraFact> facts = CameraFacts(camera, frame);
   if (path.shutter.exists())
     facts.push_back({"shutter",
                      {"angle_deg", "samples"},

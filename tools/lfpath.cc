@@ -329,8 +329,14 @@ lf::Result<void> Write(const Arguments& a, lf::PathOptions options, const lf::Ca
         a.output);
   if (!lost.empty())
     lf::LogWarning("{}: the format has no place for {}", a.output, fmt::join(lost, "; for "));
-  lf::LogInfo("{}: {} frame{} at {} per second, as {}", a.output, path.frame_count(),
-              path.frame_count() == 1 ? "" : "s", path.fps, lf::NameOf(format));
+  const size_t moments = path.moment_count();
+  const std::string views = path.views == 1
+                                ? ""
+                                : fmt::format(", {} views of each of {} moment{},", path.views,
+                                              moments, moments == 1 ? "" : "s");
+  lf::LogInfo("{}: {} frame{}{} at {} {}per second, as {}", a.output, path.frame_count(),
+              path.frame_count() == 1 ? "" : "s", views, path.fps,
+              path.views == 1 ? "" : "moments ", lf::NameOf(format));
   return {};
 }
 
