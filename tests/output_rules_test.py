@@ -17,6 +17,8 @@ import subprocess
 import sys
 import unittest
 
+from PIL import Image
+
 from tiny_calls import TinyCalls
 from writers_case import KINDS, TINY, VARIANTS, WritersCase
 
@@ -198,6 +200,13 @@ class OutputRulesTest(WritersCase):
         yield "lfquilt", [image, image, "-o", text, "--layout", "anaglyph", "--overwrite"], text
         yield "lfcompare", [image, image, "-o", image, "--overwrite"], image
         yield "lfcompare", [field, field, "-o", field, "--overwrite"], image
+        yield "lfcompare", [here / "some", here / "others", "-o", here / "some"], here / "some" / "a.png"
+        yield "lfcompare", [here / "some", here / "others", "-o", here.parent / "link" / "others", "--overwrite"], \
+            here / "others" / "a.png"
+        for command, *more in (["epi", field, "--row", 9], ["sharp", field, path, *near, "--confidence", 0],
+                               ["depth", field, path, *near, "--confidence", 0], ["through", field, path],
+                               ["stack", field, path, *near]):
+            yield f"lffocus {command}", [*more, "-o", here / "field" / "frame_0001.png"], calibration
         yield "lffocus epi", [field, "--row", 9, "-o", image, "--overwrite"], image
         yield "lffocus sharp", [field, path, "-o", image, "--overwrite"], image
         yield "lffocus depth", [field, path, "-o", image, "--overwrite"], image
@@ -230,6 +239,9 @@ class OutputRulesTest(WritersCase):
         self.made("lfpreprocessor", here / "field", here / "path.yaml", "-o", here / "packages", "--packages", "2")
         shutil.copytree(self.world / "cut_a", here / "cut")
         self.made("lffocus", "views", self.field, "--grid", "3x3", "--focus-distance", 3, "-o", here / "views")
+        for folder in ("some", "others"):
+            (here / folder).mkdir()
+            Image.open(here / "field" / "frame_0001.png").convert("RGB").save(here / folder / "a.jpg")
         (here / "text.mp4").write_text("no video")
         (here.parent / "link").symlink_to(here)
 
@@ -253,7 +265,10 @@ class OutputRulesTest(WritersCase):
                     shutil.rmtree(here)
                     shutil.copytree(whole, here)
                 self.assertIn(done.returncode, (2, 3, 4), done.stderr)
-                self.assertTrue(done.stderr.strip().splitlines()[-1].startswith("error: "), done.stderr)
+                last = done.stderr.strip().splitlines()[-1]
+                self.assertTrue(last.startswith("error: "), done.stderr)
+                if name != "lfsynth":  # which reads nothing, and may replace a light field of its own
+                    self.assertNotIn("--overwrite", last, "it replaces no input either")
                 self.assertEqual({key: after.get(key) for key in before}, before, done.stderr)
                 # No frame was made before the refusal.
                 self.assertEqual([key for key in after if "frame_" in key and key not in before], [], done.stderr)

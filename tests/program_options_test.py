@@ -76,6 +76,15 @@ class ProgramOptionsTest(ProgramTestCase):
         program, *command = name.split()
         return super().call(BIN / program, *command, *arguments)
 
+    def test_an_empty_name_is_told_with_its_argument(self):
+        for words, name in ((["lfrenderer", "", "p.yaml", "-o", "x"], "INPUT"),
+                            (["lfimport", "", "-o", "x"], "LIGHTFIELD"),
+                            (["lfsubmit", "", "-o", "x"], "PACKAGES"), (["lffocus epi", ""], "LIGHTFIELD"),
+                            (["lfsubmit", "--run-package", "0"], "--run-package NUMBER DIR")):
+            done = self.call(*words)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(f"error: {name}: expected a value", done.stderr)
+
     def test_all_programs_are_listed(self):
         programs = {path.name for path in BIN.iterdir() if path.name.startswith("lf")}
         self.assertEqual(programs, {name.split()[0] for name in OFFERED})

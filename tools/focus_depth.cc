@@ -145,15 +145,17 @@ void AddRunning(CLI::App& app, DepthArguments& a) {
 }
 
 Result<void> CheckOutputs(const DepthArguments& a, const LightField& light_field) {
+  // Inputs come first, because --overwrite does not replace them.
+  std::vector<std::filesystem::path> inputs = FilesOfLightField(light_field, a.light_field.path);
+  for (std::filesystem::path& file : FilesOfPath(a.frame.path)) inputs.push_back(std::move(file));
+  LF_RETURN_IF_ERROR(CheckOutputFiles({a.outputs.begin(), a.outputs.end()}, inputs));
   for (const std::string& output : a.outputs) {
     std::error_code error;
     if (!a.overwrite && std::filesystem::exists(output, error))
       return UsageError(fmt::format(
           "{}: exists already: give another name, or replace it with --overwrite", output));
   }
-  std::vector<std::filesystem::path> inputs = FilesOfLightField(light_field, a.light_field.path);
-  for (std::filesystem::path& file : FilesOfPath(a.frame.path)) inputs.push_back(std::move(file));
-  return CheckOutputFiles({a.outputs.begin(), a.outputs.end()}, inputs);
+  return {};
 }
 
 Result<DepthRange> RangeOf(const DepthArguments& a, const LightField& light_field,

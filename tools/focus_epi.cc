@@ -163,12 +163,14 @@ Result<void> CheckOutput(const Arguments& a, const LightField& light_field) {
   const std::string extension = std::filesystem::path(a.output).extension().string();
   if (extension != ".png" && extension != ".exr")
     return UsageError(fmt::format("-o {}: expected a name that ends in .png or .exr", a.output));
+  // Inputs come first, because --overwrite does not replace them.
+  LF_RETURN_IF_ERROR(CheckOutputFiles({std::filesystem::path(a.output)},
+                                      FilesOfLightField(light_field, a.light_field.path)));
   std::error_code error;
   if (!a.overwrite && std::filesystem::exists(a.output, error))
     return UsageError(fmt::format(
         "{}: exists already: give another name, or replace it with --overwrite", a.output));
-  return CheckOutputFiles({std::filesystem::path(a.output)},
-                          FilesOfLightField(light_field, a.light_field.path));
+  return {};
 }
 
 // Returns the picture as it is written: lines are thick, and those of a column are upright.

@@ -190,9 +190,7 @@ Result<std::vector<double>> DistancesOf(const Arguments& a, const LightField& li
   if (!a.distances.empty()) return GivenDistances(a, camera.unit_m);
   DepthRange range;
   if (a.near.empty() || a.far.empty()) {
-    Result<DepthRange> found = FindFocusRange(light_field, camera, pool);
-    if (!found) return Error{found.error().kind, found.error().message + ", by --near and --far"};
-    range = *found;
+    LF_ASSIGN_OR_RETURN(range, FindFocusRange(light_field, camera, pool, ", by --near and --far"));
   }
   if (!a.near.empty()) {
     LF_ASSIGN_OR_RETURN(range.near_w, ParseFocusDistance(a.near, "--near", camera.unit_m));

@@ -142,6 +142,11 @@ lf::Result<std::vector<fs::path>> FilesOf(const Arguments& a,
     files.push_back(is_film ? out / (pair.name + ".png") : out);
     inputs.insert(inputs.end(), {pair.reference, pair.test});
   }
+  // The folders that are compared would gain pictures of differences, which the next call compares.
+  for (const std::string& folder : {a.reference, a.test})
+    if (is_film && lf::LiesIn(out, folder) && lf::LiesIn(folder, out))
+      return lf::UsageError(fmt::format("-o {}: is a folder that is compared ({}): give another -o",
+                                        a.output, folder));
   // Inputs come first, because --overwrite does not replace them.
   LF_RETURN_IF_ERROR(lf::CheckOutputFiles({files.begin(), files.end()}, inputs));
   for (const fs::path& file : files)

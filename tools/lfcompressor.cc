@@ -187,7 +187,7 @@ lf::Result<lf::LightField> OpenSourceOf(const lf::Package& package, const std::s
   if (opened) return opened;
   return lf::InputError(fmt::format(
       "{}: the light field that it was made from, with the calibration of all LF cameras, cannot "
-      "be opened ({}): give it with --lightfield",
+      "be opened ({}): give it with --lightfield, and with --images if its LF images lie elsewhere",
       path, opened.error().message));
 }
 

@@ -192,9 +192,11 @@ Result<RenderOptions> TryArguments(const std::vector<fs::path>& packages, const 
 
 void AddNewJob(CLI::App& app, SubmitArguments& a) {
   OptionGroup input(app, kInputGroup), output(app, kOutputGroup);
-  input.Add("PACKAGES", a.words,
-            "Packages that lfpreprocessor has written\n"
-            "Options after -- are passed to lfrenderer for every package.");
+  input
+      .Add("PACKAGES", a.words,
+           "Packages that lfpreprocessor has written\n"
+           "Options after -- are passed to lfrenderer for every package.")
+      ->check(NotEmpty());
   output.Add("-o,--output DIR", a.output, "Folder of the frames, shared by all machines")
       ->check(NotEmpty());
   a.frames.AddTo(output, "render", "nothing is submitted");

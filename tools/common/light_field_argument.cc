@@ -75,7 +75,8 @@ void LightFieldArgument::AddTo(CLI::App& app) {
            "The calibration is a transforms.json, or a calibration of COLMAP, Middlebury, LLFF, "
            "HCI or AOS. A packed store is one file, STORE.lfs. A folder of images with Stanford "
            "names is also a light field: the names contain the calibration.")
-      ->required();
+      ->required()
+      ->check(NotEmpty());
   AddOptionsTo(app);
 }
 

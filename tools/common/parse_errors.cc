@@ -20,6 +20,15 @@ std::string WordOf(const std::string& option, int argc, const char* const* argv)
   return {};
 }
 
+// Returns the name of the first option in the words that the help does not show, because CLI11 does
+// not name such options in its errors; "" if there is none.
+std::string HiddenOption(const CLI::App& app, int argc, const char* const* argv) {
+  for (int i = 1; i < argc; ++i)
+    for (const CLI::Option* option : app.get_options())
+      if (option->get_group().empty() && option->check_name(argv[i])) return argv[i];
+  return {};
+}
+
 // Returns the option and its placeholder, such as "--grid COLUMNSxROWS".
 std::string Usage(const CLI::App& app, const std::string& name) {
   const CLI::Option* const option = app.get_option_no_throw(name);
@@ -50,7 +59,8 @@ std::string Found(const std::string& word) {
 
 std::string ParseErrorText(const CLI::App& app, const CLI::ParseError& error, int argc,
                            const char* const* argv) {
-  const std::string text = error.what();
+  std::string text = error.what();
+  if (text.starts_with(": ")) text = HiddenOption(app, argc, argv) + text;
   std::smatch part;
   static const std::regex range("(.+): Value (.*) not in range .+ to .+");
   static const std::regex above("(.+): Number less or equal to 0: (.*)");

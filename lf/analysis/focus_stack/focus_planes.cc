@@ -172,7 +172,7 @@ Result<CameraPath> FocusStackPath(const CameraPath& path, FrameId frame,
 }
 
 Result<DepthRange> FindFocusRange(const LightField& light_field, const RenderCamera& camera,
-                                  ThreadPool& pool) {
+                                  ThreadPool& pool, std::string_view advice) {
   const Vec3 centre_world = camera.pinhole.CentreWorld();
   std::optional<DepthRange> depths = light_field.depth_range;
   std::string why;
@@ -185,8 +185,8 @@ Result<DepthRange> FindFocusRange(const LightField& light_field, const RenderCam
   if (!depths || light_field.size() == 0)
     return InputError(
         fmt::format("the depths of the scene are not stated by the light field, and comparing LF "
-                    "images did not find them surely{}: state the focus distance yourself",
-                    why.empty() ? "" : " (" + why + ")"));
+                    "images did not find them surely{}: state the focus distance yourself{}",
+                    why.empty() ? "" : " (" + why + ")", advice));
   const PinholeCamera lf_camera = light_field.Camera(NearestCamera(light_field, centre_world));
   const DepthRange near = DepthsFrom(camera, lf_camera, depths->near_w);
   const DepthRange far = DepthsFrom(camera, lf_camera, depths->far_w);
@@ -195,8 +195,8 @@ Result<DepthRange> FindFocusRange(const LightField& light_field, const RenderCam
   if (!(range.near_w < range.far_w))
     return InputError(
         fmt::format("the depths of the scene, {:.6g} to {:.6g}, {}, are not in front of the render "
-                    "camera: state the focus distance yourself",
-                    depths->near_w, depths->far_w, source));
+                    "camera: state the focus distance yourself{}",
+                    depths->near_w, depths->far_w, source, advice));
   LogDebug("depths of the scene, {}: {:.6g} to {:.6g}; focus distances {:.6g} to {:.6g}", source,
            depths->near_w, depths->far_w, range.near_w, range.far_w);
   return range;

@@ -61,8 +61,9 @@ Result<CameraPath> FocusStackPath(const CameraPath& path, FrameId frame,
 // (focus/swept_depths.h). Both are depths of the LF camera nearest to the lens. They are converted
 // to distances along the axis of `camera`: the nearest and the farthest of the corners and the
 // middle of that LF camera's view at these depths.
+//   advice  says at the end of the error how to state them, such as ", by --near and --far"
 // kInput: the depths are neither stated nor found, or are not in front of the camera.
 Result<DepthRange> FindFocusRange(const LightField& light_field, const RenderCamera& camera,
-                                  ThreadPool& pool);
+                                  ThreadPool& pool, std::string_view advice = "");
 
 }  // namespace lf

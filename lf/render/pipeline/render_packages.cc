@@ -84,16 +84,18 @@ Result<void> CheckImageFiles(const fs::path& path, const Package& package) {
     const uint64_t bytes = fs::file_size(file, error);
     if (!error && bytes == package.images[id.value].file_bytes) return {};
     if (first) continue;
-    first =
-        error ? InputError(fmt::format("{}: its LF images are not at {} ({}: {}): give their light "
-                                       "field with --lightfield",
-                                       path.string(), package.light_field.folder.string(),
-                                       file.string(), error.message()))
-              : InputError(fmt::format("{}: was made from another light field than the one at {}: "
-                                       "{} has {} bytes, but had {} then; give the package's light "
-                                       "field with --lightfield, or make the package again",
-                                       path.string(), package.light_field.folder.string(),
-                                       file.string(), bytes, package.images[id.value].file_bytes));
+    first = error
+                ? InputError(fmt::format(
+                      "{}: its LF images are not at {} ({}: {}): give their light field with "
+                      "--lightfield, and with --images if the LF images lie elsewhere",
+                      path.string(), package.light_field.folder.string(), file.string(),
+                      error.message()))
+                : InputError(fmt::format(
+                      "{}: was made from another light field than the one at {}: {} has {} bytes, "
+                      "but had {} then; give the package's light field with --lightfield, and with "
+                      "--images if the LF images lie elsewhere, or make the package again",
+                      path.string(), package.light_field.folder.string(), file.string(), bytes,
+                      package.images[id.value].file_bytes));
   }
   if (first) return *first;
   return {};
