@@ -182,8 +182,8 @@ class ShardsTest(ProgramTestCase):
         self.succeeds(MERGE, plates, "-o", film, "--video", video)
         before = video.read_bytes(), (film / "report.json").read_bytes()
         few = [*plates.rglob("frame_0001.plate"), *plates.rglob("frame_0002.plate")]
-        self.fails(2, ["no plates are given of 1 finished frame, the first:", "frame_0003.exr", "film.mp4"], MERGE, *few,
-                   "-o", film, "--video", video, "--resume")
+        self.fails(2, ["no plates are given of 1 finished frame, the first:", "frame_0003.exr", "film.mp4"], MERGE,
+                   *few, "-o", film, "--video", video, "--resume")
         self.assertEqual((video.read_bytes(), (film / "report.json").read_bytes()), before)
         done = self.call(MERGE, *few, "-o", film, "--resume")
         self.assertEqual(done.returncode, 0, done.stderr)

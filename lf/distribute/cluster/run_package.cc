@@ -62,7 +62,7 @@ class TaskRun {
   Result<ProcessEnd> Run(const std::vector<std::string>& words, const fs::path& output,
                          const std::function<bool()>& wants_restart);
   // Returns the error that lfrenderer has ended with, with the last message in the log. A program
-  // that ends with another code, or without a message, is no lfrenderer: kOutput.
+  // that ends with another code, or with 1 and without a message, is no lfrenderer: kOutput.
   Error ErrorOf(int exit_code) const;
 
  private:
@@ -103,8 +103,9 @@ Error TaskRun::ErrorOf(int exit_code) const {
   std::string message = ReadProgress(task_.log).message;
   if (message.starts_with(kError)) message.erase(0, kError.size());
   if (!message.empty()) return {KindOfExit(exit_code), message};
-  return OutputError(fmt::format("{} ended with exit code {} and without a message; its log: {}",
-                                 job_.renderer.string(), exit_code, task_.log.string()));
+  return {exit_code == 1 ? ErrorKind::kOutput : KindOfExit(exit_code),
+          fmt::format("{} ended with exit code {} and without a message; its log: {}",
+                      job_.renderer.string(), exit_code, task_.log.string())};
 }
 
 Result<void> TaskRun::End(TaskPhase phase, int exit_code, const std::string& message) {
