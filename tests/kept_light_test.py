@@ -3,25 +3,28 @@
 """Tests that light keeps its range and its absence through light fields that the programs write and read again: gains
 above 1, lenses with dark corners, masks, alpha and missing LF images give the films of the light field that was read.
 
-usage: kept_light_test.py LFDENSIFY LFFOCUS LFSYNTH LFRENDERER LFCOMPRESSOR
+usage: kept_light_test.py LFDENSIFY LFFOCUS LFSYNTH LFRENDERER LFCOMPRESSOR LFVISUALIZER
 """
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
 import tempfile
 import unittest
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "bench"))
 os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # must be set before cv2 is imported
 import cv2
 import numpy as np
 
 from exr_file import channels_of
+from live_pictures import LiveServer
 from program_test_case import ProgramTestCase
 
-DENSIFY = FOCUS = SYNTH = RENDERER = COMPRESSOR = None
+DENSIFY = FOCUS = SYNTH = RENDERER = COMPRESSOR = VISUALIZER = None
 
 PATH_YAML = """format: lfpath 1
 fps: 25
@@ -39,6 +42,7 @@ lens:
 """
 FALLOFF = (-0.35, 0.0, -0.1)  # 55 % of the light remain in the corners
 SIDE = 4
+FILTERS = ("nearest", "bilinear", "bicubic", "prefiltered")
 
 
 def light_of(stored):
@@ -79,11 +83,13 @@ class KeptLightTest(ProgramTestCase):
     def field(self, name, change=None, *, top=None, frame=None):
         """Writes a light field of the plain one's LF images.
 
-        change(index, bgr) -> picture, both of 16 bits; top: keys of the whole; frame(index) -> keys of a frame
+        change(index, bgr) -> picture, both of 16 bits; top: keys of the whole, which has no lf_max_radiance by default;
+        frame(index) -> keys of a frame
         """
         folder = self.folder / name
         folder.mkdir()
         text = json.loads((self.plain / "transforms.json").read_text())
+        del text["lf_max_radiance"]
         for index, of_frame in enumerate(text["frames"]):
             picture = cv2.imread(str(self.plain / of_frame["file_path"])).astype(np.uint16) * 257
             of_frame["file_path"] = f"{index:02}.png"
@@ -120,6 +126,53 @@ class KeptLightTest(ProgramTestCase):
         self.assertGreater(db, least_db)
         self.assertAlmostEqual(a.mean() / b.mean(), 1, delta=percent / 100)
 
+    # The brightest light
+
+    def bright_field(self, name, gain=3, change=None, **top):
+        return self.field(name, change, top=top, frame=lambda index: {"lf_gain": gain})
+
+    def test_no_filter_clips_light_of_gain_3(self):
+        once, thrice = self.field("once"), self.bright_field("thrice")
+        for name in FILTERS:
+            with self.subTest(filter=name):
+                film = self.film(thrice, "--filter", name)
+                self.expect_same(film, self.film(once, "--filter", name), 3, 70, 0.01)
+                self.assertGreater(max(film[c].max() for c in "RGB"), 2.5)
+
+    def test_all_filters_clip_light_at_the_same_limit(self):
+        """Compares with LF images in which the light was clipped when they were recorded."""
+        thrice = self.bright_field("thrice", lf_max_radiance=1.5)
+        clipped = self.bright_field("clipped", 3, lambda index, bgr: stored_of(np.minimum(light_of(bgr), 0.5)),
+                                    lf_max_radiance=1.5)
+        for name in FILTERS:
+            with self.subTest(filter=name):
+                self.expect_same(self.film(thrice, "--filter", name), self.film(clipped, "--filter", name), 1, 70,
+                                 0.01)
+
+    def test_stores_and_live_pictures_keep_light_of_gain_3(self):
+        once, thrice = self.field("once"), self.bright_field("thrice")
+        store = self.folder / "thrice.lfs"
+        self.succeeds(COMPRESSOR, thrice, "-o", store, "--profile", "lossless", "-q")
+        direct, stored = self.film(thrice), self.film(store)
+        for channel in "RGB":
+            np.testing.assert_array_equal(stored[channel], direct[channel])
+        lives = []
+        for field in (once, thrice):
+            with LiveServer(VISUALIZER, field, self.path) as server:
+                server.load_all(self.path.read_text(), 120)
+                lives.append(server.ask(self.path.read_text(), 120)[1])
+        self.assertGreater(lives[1].max(), 2.5)
+        self.assertAlmostEqual(lives[1].mean() / lives[0].mean(), 3, delta=0.003)
+
+    def test_light_that_needs_coarse_steps_is_clipped_with_a_warning(self):
+        field = self.bright_field("40", 40)
+        words = (RENDERER, field, self.path, "-o", self.folder / "frames", "--no-contact-sheet", "--overwrite")
+        (advice,) = re.findall(r'add ("lf_max_radiance": 40)', self.call(*words).stderr)
+        calibration = field / "transforms.json"
+        calibration.write_text(calibration.read_text().replace("{", "{" + advice + ", ", 1))
+        self.assertNotIn("lf_max_radiance", self.call(*words).stderr)
+        self.expect_same(self.film(field), self.film(self.field("once")), 40, 40, 0.1)
+
     # Virtual LF images
 
     def dense(self, field):
@@ -128,8 +181,9 @@ class KeptLightTest(ProgramTestCase):
         return store
 
     def test_densified_light_of_gain_3_is_3_times_as_bright(self):
-        once, thrice = (self.dense(self.field(str(gain), top={"lf_max_radiance": 3},
-                                              frame=lambda index: {"lf_gain": gain})) for gain in (1, 3))
+        # Both have the same room for the overshoot of interpolation.
+        once, thrice = (self.dense(self.field(str(gain), top=top, frame=lambda index: {"lf_gain": gain}))
+                        for gain, top in ((1, {"lf_max_radiance": 3}), (3, {})))
         # Depths are found on a tone curve, which compresses brighter light more.
         for guard in ((), ("--no-guard",)):
             self.expect_same(self.film(thrice, *guard), self.film(once, *guard), 3, 40, 0.1)
@@ -189,8 +243,7 @@ class KeptLightTest(ProgramTestCase):
     def uneven_field(self):
         """Returns a light field with gains up to 3 and dark corners, of light up to 3 / 0.55."""
         gains = np.random.default_rng(2).uniform(1, 3, (SIDE * SIDE, 3))
-        return self.field("bright", top={"lf_max_radiance": 5.5, "lf_vignetting": FALLOFF},
-                          frame=lambda index: {"lf_gain": list(gains[index])})
+        return self.field("bright", top={"lf_vignetting": FALLOFF}, frame=lambda index: {"lf_gain": list(gains[index])})
 
     def test_views_keep_light_that_is_brighter_than_white(self):
         field = self.uneven_field()
@@ -202,7 +255,7 @@ class KeptLightTest(ProgramTestCase):
                 self.assertEqual("lf_gain" in said, values != "linear", said)
 
     def test_views_of_gain_3_are_3_times_as_bright(self):
-        thrice = self.field("thrice", top={"lf_max_radiance": 3}, frame=lambda index: {"lf_gain": 3})
+        thrice = self.bright_field("thrice")
         for values in ("linear", "srgb16"):
             films = [self.film(self.views(field, f"{values} {field.name}", "--values", values)[0])
                      for field in (self.plain, thrice)]
@@ -288,5 +341,5 @@ class KeptLightTest(ProgramTestCase):
 
 
 if __name__ == "__main__":
-    DENSIFY, FOCUS, SYNTH, RENDERER, COMPRESSOR = sys.argv[1:6]
+    DENSIFY, FOCUS, SYNTH, RENDERER, COMPRESSOR, VISUALIZER = sys.argv[1:7]
     unittest.main(argv=sys.argv[:1], verbosity=2)

@@ -88,9 +88,10 @@ void AddOptions(CLI::App& app, Arguments& a) {
                    "--clip decides about light that is brighter than display white.");
   output.AddFlag("--clip", a.clip,
                  "Clip light that is brighter than display white, in sRGB pictures\n"
-                 "Without this option, pictures are darkened if there is such light, so that none "
-                 "is lost: their values are light divided by the brightest one, which "
-                 "transforms.json states as lf_gain. Arrays of sRGB values are always clipped.");
+                 "Without this option, pictures are darkened if there is such light, so that light "
+                 "up to lf_max_radiance is kept: their values are light divided by the brightest "
+                 "one, which transforms.json states as lf_gain. Arrays of sRGB values are always "
+                 "clipped.");
   output.AddFlag("--overwrite", a.overwrite,
                  "Replace the views of OUT\n"
                  "Files of the same names are replaced, and those of a larger grid that "
@@ -184,11 +185,16 @@ void Tell(const Arguments& a, const ViewGrid& grid, const WrittenViews& written)
   const auto percent = [](double share) { return fmt::format("{:.2g} %", 100 * share); };
   if (written.gain != 1)
     LogInfo(
-        "{}: the brightest light is {:.4g}: values are light divided by it (lf_gain), so that none "
-        "is lost; --values linear keeps light as it is, --clip keeps only what a display shows",
+        "{}: the brightest light is {:.4g}: values are light divided by it (lf_gain), so that it "
+        "is kept; --values linear keeps light as it is, --clip keeps only what a display shows",
         a.output, written.gain);
   if (a.values == "linear") return;
-  if (written.clipped_share > 0)
+  if (written.clipped_share > 0 && written.gain != 1)
+    LogWarning(
+        "{}: {} of the pixels are brighter than {:.4g}, the largest light that is kept "
+        "(lf_max_radiance), because interpolation overshoots beside lights, and are clipped",
+        a.output, percent(written.clipped_share), written.gain);
+  else if (written.clipped_share > 0)
     LogWarning(
         "{}: {} of the pixels are brighter than display white, and are clipped: --values linear "
         "keeps their light",

@@ -47,8 +47,8 @@ std::vector<std::filesystem::path> OtherViews(const ViewGrid& grid,
 struct WrittenViews {
   ViewsReport views;
   double gain = 1;  // light / gain was written
-  // Shares of the pixels where no LF image shows anything, and of those whose light was clipped at
-  // display white.
+  // Shares of the pixels where no LF image shows anything, and of those whose light was clipped: at
+  // the gain, which is 1 (display white) or at most EncodingOfLight().max_radiance.
   double unrecorded_share = 0, clipped_share = 0;
 };
 
@@ -57,8 +57,9 @@ struct WrittenViews {
 //   folder is a light field. Its cameras are in the world of `light_field`. Pixels where no LF
 //   image shows anything are transparent, and are masked by this (lf_alpha). If light is brighter
 //   than display white, sRGB values are those of light / gain, where gain (lf_gain) is the
-//   brightest light; `make` is called twice then, because the brightest light must be known first.
-//   OtherViews() and an older transforms.json are removed before a view is written.
+//   brightest light, but no larger than recorded light can be; `make` is called twice then, because
+//   the brightest light must be known first. OtherViews() and an older transforms.json are removed
+//   before a view is written.
 // - WriteViewArray(): one file of NumPy, [row][column][height][width][channel], which appears when
 //   it is complete. sRGB values are clipped, and black where no LF image shows anything.
 // Errors are those of `make`, and kOutput if a file cannot be written.

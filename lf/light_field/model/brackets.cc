@@ -151,17 +151,26 @@ double ExposureOf(const LfCamera& camera) {
   return std::exp(-log_gain / 3);
 }
 
-void MakeRoomForGains(LightField* light_field) {
-  if (DefaultMaxRadiance(light_field->image_names) > 1) return;
+double BrightestWhite(const LightField& light_field, const RadianceEncoding& encoding) {
+  const double white =
+      encoding.transfer == Transfer::kResponse ? encoding.response.back() : double{1};
   double most = 1;
-  for (const LfCamera& camera : light_field->cameras) {
-    const Intrinsics& k = light_field->intrinsics[camera.intrinsics_index];
-    for (const float gain : camera.gain.of_channels)
-      most = std::max(most, gain / FalloffRangeOf(k).min);
+  for (size_t i = 0; i < light_field.size(); ++i) {
+    const LfCamera& camera = light_field.cameras[i];
+    const double least_share = FalloffRangeOf(light_field.intrinsics[camera.intrinsics_index]).min;
+    const auto& gains = camera.gain.of_channels;
+    const double brightest = white * *std::max_element(gains.begin(), gains.end()) / least_share;
+    if (brightest > most && DefaultMaxRadiance({&light_field.image_names[i], 1}) == 1)
+      most = brightest;
   }
   constexpr double kSteps = 100;
-  light_field->encoding.max_radiance =
-      std::max(light_field->encoding.max_radiance, std::ceil(most * kSteps) / kSteps);
+  return std::ceil(most * kSteps) / kSteps;
+}
+
+void MakeRoomForGains(LightField* light_field) {
+  if (DefaultMaxRadiance(light_field->image_names) > 1) return;
+  light_field->encoding.max_radiance = std::max(
+      light_field->encoding.max_radiance, BrightestWhite(*light_field, light_field->encoding));
 }
 
 size_t ApplyBrackets(LightField* light_field) {

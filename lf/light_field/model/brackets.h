@@ -29,6 +29,11 @@ double ExposureOf(const LfCamera& camera);
 // Exposures that differ by less than this factor count as equal.
 inline constexpr double kOneExposure = 1.1;
 
+// Returns the largest radiance that white of integer files becomes by the gains and falloffs of the
+// LF images, rounded up to hundredths; at least 1. White is the stored value of the white level.
+//   encoding  of the LF images; that of the light field is not used
+double BrightestWhite(const LightField& light_field, const RadianceEncoding& encoding);
+
 // Raises RadianceEncoding::max_radiance so that no gain or falloff clips light that integer files
 // recorded. Does nothing if an image is a float file.
 void MakeRoomForGains(LightField* light_field);

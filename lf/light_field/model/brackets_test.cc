@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "lf/camera/vignetting.h"
+
 namespace lf {
 namespace {
 
@@ -109,6 +111,24 @@ TEST(Brackets, TheExposureIsTheMeanOfTheChannels) {
   LfCamera camera;
   camera.gain = {4, 1, 2};
   EXPECT_NEAR(ExposureOf(camera), 0.5, 1e-6);
+}
+
+TEST(Brackets, TheBrightestWhiteHasTheLargestGainAndTheLeastFalloff) {
+  LightField field = Poses(1, {1, 4, 0.25F});
+  RadianceEncoding encoding;
+  EXPECT_EQ(BrightestWhite(field, encoding), 4);
+  field.intrinsics[0].vignetting.v = {-0.5, 0, 0};
+  const double least_share = FalloffRangeOf(field.intrinsics[0]).min;
+  EXPECT_NEAR(BrightestWhite(field, encoding), 4 / least_share, 0.01);
+  EXPECT_GE(BrightestWhite(field, encoding), 4 / least_share);
+  field.intrinsics[0].vignetting = {};
+  encoding.transfer = Transfer::kResponse;
+  encoding.response = {0, 1.5};
+  EXPECT_EQ(BrightestWhite(field, encoding), 6);
+  field.image_names[1] = "1.exr";
+  EXPECT_EQ(BrightestWhite(field, encoding), 1.5);
+  for (LfCamera& camera : field.cameras) camera.gain = 0.25F;
+  EXPECT_EQ(BrightestWhite(field, encoding), 1);
 }
 
 TEST(Brackets, ThereIsRoomForTheLargestGain) {

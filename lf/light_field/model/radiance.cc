@@ -58,7 +58,7 @@ void MakeRoomForUndershoot(RadianceEncoding* encoding) {
 void MakeRoomBesideEdges(std::span<const std::string> image_names, RadianceEncoding* encoding) {
   encoding->pedestal = std::max(encoding->pedestal, kRoomPedestal);
   const bool has_room_above = DefaultMaxRadiance(image_names) > 1 && encoding->max_radiance >= 4;
-  if (!has_room_above) encoding->max_radiance *= 2;
+  if (!has_room_above) encoding->overshoot_room = 2;
 }
 
 const char* NameOf(BayerPattern bayer) { return kBayerNames[static_cast<int>(bayer)]; }
@@ -111,7 +111,7 @@ double DefaultMaxRadiance(std::span<const std::string> image_names) {
     for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     return extension == ".exr" || extension == ".hdr";
   };
-  return std::any_of(image_names.begin(), image_names.end(), is_float_file) ? 16 : 1;
+  return std::any_of(image_names.begin(), image_names.end(), is_float_file) ? kFloatMaxRadiance : 1;
 }
 
 bool LevelsFit(const RadianceEncoding& encoding, int bits) {
@@ -147,7 +147,8 @@ std::vector<uint16_t> RadianceTable(const RadianceEncoding& encoding, int bits, 
 
 uint16_t QuantizeRadiance(const RadianceEncoding& encoding, double radiance, double gain) {
   const double light = std::isnan(radiance) ? 0 : radiance;
-  const double v = std::round(light * gain * encoding.Scale()) + encoding.pedestal;
+  const double kept = std::min(light * gain, encoding.max_radiance);
+  const double v = std::round(kept * encoding.Scale()) + encoding.pedestal;
   return static_cast<uint16_t>(std::clamp(v, 0.0, 65535.0));
 }
 

@@ -2,11 +2,15 @@
 // Converts stored numbers to light, as the table "What is added" of doc/ray.md says.
 //
 // Radiance is linear light, 1 = display white. Collection kernels add it as a 16-bit integer
-//   v = clip(round(radiance * gain * scale) + pedestal, 0, 65535)
+//   v = clip(round(min(radiance * gain, max_radiance) * scale) + pedestal, 0, 65535)
 // `gain` is lf_gain of the channel, divided by the falloff of the lens at the pixel's centre if the
 // camera has lf_vignetting (camera/vignetting.h). One scale and one pedestal hold for the whole
 // light field, so that sums of different images can be added. Values below black are noise that
 // must average to black; the pedestal preserves them.
+//
+// This is the only place where recorded light is clipped. Filters and programs that need more room
+// in the 16 bits, because they overshoot, change the scale and the pedestal but not max_radiance:
+// all of them keep the same light.
 #pragma once
 
 #include <array>
@@ -52,7 +56,8 @@ struct RadianceEncoding {
   std::vector<double> response;
   double black_level = 0;             // stored value of no light
   std::optional<double> white_level;  // stored value of radiance 1; default: the largest storable
-  double max_radiance = 1;            // radiance (after gain) of the 16-bit value v = 65535
+  double max_radiance = 1;            // brighter light (after gain) is clipped at it
+  double overshoot_room = 1;          // v = 65535 is the radiance max_radiance * overshoot_room
   double pedestal = 0;  // 16-bit value v of no light; if above 0, values below black are kept
   std::optional<AlphaMeaning> alpha;  // meaning of the alpha channel; default: kMask
   // Radiance of R, G and B behind LF pixels that alpha does not cover completely; default: black.
@@ -68,7 +73,7 @@ struct RadianceEncoding {
   Mat3 linear_srgb_from_camera = Mat3::Identity();  // maps white balanced camera RGB to linear sRGB
 
   // Returns the number of steps of the 16-bit value v per unit of radiance.
-  double Scale() const { return (65535 - pedestal) / max_radiance; }
+  double Scale() const { return (65535 - pedestal) / (max_radiance * overshoot_room); }
   // Returns true if alpha is an opacity, so that LF pixels are composed with the background
   // (storage/load/opacities.h).
   bool AlphaIsLight() const { return alpha.value_or(AlphaMeaning::kMask) != AlphaMeaning::kMask; }
@@ -88,8 +93,8 @@ void MakeRoomForUndershoot(RadianceEncoding* encoding);
 
 // Makes more room than MakeRoomForUndershoot(), also above white, because prefilters undershoot and
 // overshoot more than bicubic interpolation. Raises a lower pedestal to kRoomPedestal, a quarter of
-// the range. Doubles max_radiance, unless LF images are float files with a max_radiance of at least
-// 4, because these hardly have values near max_radiance.
+// the range. Sets overshoot_room to 2, unless LF images are float files with a max_radiance of at
+// least 4, because these hardly have values near max_radiance.
 inline constexpr double kRoomPedestal = 16384;
 void MakeRoomBesideEdges(std::span<const std::string> image_names, RadianceEncoding* encoding);
 
@@ -121,9 +126,10 @@ std::string TextOfAlpha(AlphaMeaning alpha, const std::array<double, 3>& backgro
 double LinearFromSrgb(double srgb);
 double SrgbFromLinear(double linear);
 
-// Returns max_radiance for a light field that does not state it. 16 if an image is a float file
+// Returns max_radiance for LF images with the gain 1 and no falloff. 16 if an image is a float file
 // (its name ends in .exr or .hdr): highlights up to 16 times display white are kept, and black to
-// white still has 4096 steps. Otherwise 1, which integer files cannot exceed.
+// white still has 4096 steps. Otherwise 1, which white of integer files is.
+inline constexpr double kFloatMaxRadiance = 16;
 double DefaultMaxRadiance(std::span<const std::string> image_names);
 
 // Returns true if files with `bits` bits can hold the levels: black < white <= the largest storable

@@ -176,7 +176,7 @@ TEST(RadianceTable, HasRoomBelowBlackAndAboveWhite) {
   RadianceEncoding encoding;
   MakeRoomBesideEdges(integers, &encoding);
   EXPECT_EQ(QuantizeRadiance(encoding, 0, 1), kRoomPedestal);
-  EXPECT_EQ(QuantizeRadiance(encoding, 2, 1), 65535);
+  EXPECT_EQ(65535 - kRoomPedestal, 2 * encoding.Scale());
   EXPECT_GT(QuantizeRadiance(encoding, -0.66, 1), 0);
   encoding.pedestal = 20000;
   encoding.max_radiance = 16;
@@ -185,7 +185,25 @@ TEST(RadianceTable, HasRoomBelowBlackAndAboveWhite) {
   EXPECT_EQ(encoding.max_radiance, 16);
   encoding.max_radiance = 1;
   MakeRoomBesideEdges(floats, &encoding);
-  EXPECT_EQ(encoding.max_radiance, 2);
+  EXPECT_EQ(encoding.overshoot_room, 2);
+}
+
+TEST(Radiance, RoomForOvershootKeepsNoBrighterLight) {
+  const std::vector<std::string> integers = {"a.png"};
+  for (const double most : {1.0, 3.0, 5.46}) {
+    RadianceEncoding encoding;
+    encoding.max_radiance = most;
+    const auto kept = [&](double radiance) {
+      return (QuantizeRadiance(encoding, radiance, 1) - encoding.pedestal) / encoding.Scale();
+    };
+    EXPECT_EQ(QuantizeRadiance(encoding, most, 1), 65535);
+    MakeRoomForUndershoot(&encoding);
+    EXPECT_EQ(QuantizeRadiance(encoding, most, 1), 65535);
+    MakeRoomBesideEdges(integers, &encoding);
+    EXPECT_NEAR(kept(most), most, 0.51 / encoding.Scale());
+    EXPECT_EQ(kept(1.5 * most), kept(most));
+    EXPECT_EQ(QuantizeRadiance(encoding, 1, 2 * most), QuantizeRadiance(encoding, most, 1));
+  }
 }
 
 TEST(PixelFootprint, NamesAreThoseOfTheKey) {

@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lf/core/log.h"
+#include "lf/light_field/model/brackets.h"
+
 namespace lf {
 namespace {
 
@@ -18,8 +21,9 @@ constexpr NumberRule kMatrixEntry = {"within +-1000", [](double x) { return std:
 constexpr NumberRule kRadiance = {"within +-1e6", [](double x) { return std::abs(x) <= 1e6; }};
 constexpr NumberRule kLight = {"radiances from 0 to 1e6",
                                [](double x) { return x >= 0 && x <= 1e6; }};
+constexpr double kMostMaxRadiance = 1e6;
 constexpr NumberRule kMaxRadiance = {"a radiance from 1e-6 to 1e6",
-                                     [](double x) { return x >= 1e-6 && x <= 1e6; }};
+                                     [](double x) { return x >= 1e-6 && x <= kMostMaxRadiance; }};
 constexpr NumberRule kPedestal = {"a whole number from 0 to 32767", [](double x) {
                                     return x >= 0 && x <= kMostPedestal && x == std::floor(x);
                                   }};
@@ -140,6 +144,21 @@ Result<RadianceEncoding> DefaultEncoding(const JsonFields& top, const LightField
   return EncodingOfRaw(*facts);
 }
 
+// Returns max_radiance for a file that does not state it. Warns if it clips recorded light.
+double DefaultMaxRadianceOf(const JsonFields& top, const LightField& light_field,
+                            const RadianceEncoding& encoding) {
+  const double white = std::min(BrightestWhite(light_field, encoding), kMostMaxRadiance);
+  if (white > kFloatMaxRadiance)
+    LogWarning(
+        "{}",
+        top.Fault(fmt::format("gains (lf_gain, lf_vignetting) make white as bright as {}, but "
+                              "light above {} is clipped, because \"lf_max_radiance\" is missing: "
+                              "add \"lf_max_radiance\": {} to keep all light, or another limit",
+                              white, kFloatMaxRadiance, white))
+            .message);
+  return std::max(DefaultMaxRadiance(light_field.image_names), std::min(white, kFloatMaxRadiance));
+}
+
 }  // namespace
 
 Result<RadianceEncoding> ReadEncoding(const JsonFields& top, const LightField& light_field,
@@ -155,7 +174,8 @@ Result<RadianceEncoding> ReadEncoding(const JsonFields& top, const LightField& l
   LF_ASSIGN_OR_RETURN(const std::optional<double> max_radiance,
                       top.Number("lf_max_radiance", kMaxRadiance));
   LF_ASSIGN_OR_RETURN(const std::optional<double> pedestal, top.Number("lf_pedestal", kPedestal));
-  encoding.max_radiance = max_radiance.value_or(DefaultMaxRadiance(light_field.image_names));
+  encoding.max_radiance =
+      max_radiance ? *max_radiance : DefaultMaxRadianceOf(top, light_field, encoding);
   encoding.pedestal = pedestal.value_or(encoding.black_level > 0 ? kRawPedestal : 0);
   return encoding;
 }

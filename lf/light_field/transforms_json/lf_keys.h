@@ -50,8 +50,10 @@ inline constexpr const char* kFrameLfKeys[] = {
 // lf_camera_to_srgb is missing and the first image is a camera raw file, `raw_facts` reads the
 // missing values from this image, unless `raw_facts` is empty; the default transfer is then linear.
 // Other defaults: sRGB without a Bayer pattern, linear with a pattern; pedestal 1024 if the black
-// level is above 0, otherwise 0; max_radiance from DefaultMaxRadiance().
-//   light_field  only its image names and folder are used
+// level is above 0, otherwise 0; max_radiance from DefaultMaxRadiance() or BrightestWhite(), which
+// is larger, but at most kFloatMaxRadiance: no gain clips light, and black to white still has 4096
+// steps. If more would be needed, a warning tells what to state.
+//   light_field  its encoding is not used
 Result<RadianceEncoding> ReadEncoding(const JsonFields& top, const LightField& light_field,
                                       const RawFactsSource& raw_facts);
 

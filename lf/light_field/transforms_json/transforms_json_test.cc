@@ -405,6 +405,25 @@ TEST(TransformsJson, EncodingHasTheDocumentedDefaults) {
   EXPECT_EQ(Parsed(exr).encoding.max_radiance, 16);
 }
 
+TEST(TransformsJson, GainsClipNoLightByDefault) {
+  const auto max_radiance = [](const std::string& top, const std::string& of_frame) {
+    return Parsed(OneFrame(kIntrinsics + top, of_frame)).encoding.max_radiance;
+  };
+  EXPECT_EQ(max_radiance("", R"("lf_gain": 3, )"), 3);
+  EXPECT_EQ(max_radiance("", R"("lf_gain": [0.25, 1, 2.5], )"), 2.5);
+  EXPECT_EQ(max_radiance("", R"("lf_gain": 0.5, )"), 1);
+  EXPECT_EQ(max_radiance(R"("lf_max_radiance": 1, )", R"("lf_gain": 3, )"), 1);
+  EXPECT_EQ(max_radiance(R"("lf_response": [0, 0.5, 2], )", R"("lf_gain": 3, )"), 6);
+  EXPECT_GT(max_radiance(R"("lf_vignetting": [-0.3, 0, 0], )", ""), 1.1);
+}
+
+TEST(TransformsJson, GainsThatWouldNeedCoarseStepsWarn) {
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(Parsed(OneFrame(kIntrinsics, R"("lf_gain": 40, )")).encoding.max_radiance, 16);
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find(R"(add "lf_max_radiance": 40)"), std::string::npos) << said;
+}
+
 TEST(TransformsJson, AResponseCurveReplacesTheTransferFunction) {
   const RadianceEncoding encoding =
       Parsed(OneFrame(kIntrinsics + R"("lf_response": [0, 0.25, 1], )")).encoding;

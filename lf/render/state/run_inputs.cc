@@ -23,6 +23,7 @@ std::string EncodingText(const RadianceEncoding& encoding) {
   hasher.Add(encoding.black_level);
   hasher.Add(encoding.white_level.value_or(-1));
   hasher.Add(encoding.max_radiance);
+  if (encoding.overshoot_room != 1) hasher.Add(encoding.overshoot_room);
   hasher.Add(encoding.pedestal);
   std::string alpha;
   if (encoding.AlphaIsLight()) {

@@ -69,6 +69,7 @@ void ComposeWithBackground(const Image<uint16_t>& opacities, const PixelRect& op
   std::array<uint32_t, 3> background;
   for (size_t c = 0; c < 3; ++c)
     background[c] = QuantizeRadiance(encoding, encoding.Background()[c], 1);
+  const uint64_t most = QuantizeRadiance(encoding, encoding.max_radiance, 1);
   const bool has_opacity = encoding.HasOpacity();
   if (has_opacity) pixels->opacity.Resize(rect.width(), rect.height(), LfPixels::kRgbLanes);
   for (int y = 0; y < rect.height(); ++y) {
@@ -89,8 +90,8 @@ void ComposeWithBackground(const Image<uint16_t>& opacities, const PixelRect& op
             is_straight ? uint64_t{lanes[c]} * a : uint64_t{lanes[c]} * kMostOpacity;
         const uint64_t behind =
             uint64_t{is_straight ? background[c] : background[c] - pedestal} * (kMostOpacity - a);
-        lanes[c] = static_cast<uint16_t>(
-            std::min<uint64_t>((own + behind + kMostOpacity / 2) / kMostOpacity, 65535));
+        lanes[c] =
+            static_cast<uint16_t>(std::min((own + behind + kMostOpacity / 2) / kMostOpacity, most));
       }
     }
   }

@@ -32,8 +32,8 @@ Result<Image<uint16_t>> ReadOpacities(const LightField& light_field, LfImageId i
 // background b becomes
 //   straight       a v + (1 - a) b
 //   premultiplied  v + (1 - a) (b - pedestal)
-// in integers, rounded to nearest and clipped at 65535. Masks the pixels of kMaskedOpacity. Fills
-// pixels->opacity, rounded to nearest, if encoding.HasOpacity(). `pixels` must be RGB.
+// in integers, rounded to nearest and clipped at max_radiance. Masks the pixels of kMaskedOpacity.
+// Fills pixels->opacity, rounded to nearest, if encoding.HasOpacity(). `pixels` must be RGB.
 //   opacities_rect  pixels of the LF image that `opacities` holds; contains pixels->rect
 void ComposeWithBackground(const Image<uint16_t>& opacities, const PixelRect& opacities_rect,
                            const RadianceEncoding& encoding, LfPixels* pixels);

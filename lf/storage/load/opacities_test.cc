@@ -187,5 +187,20 @@ TEST_F(OpacitiesTest, FloatsOutsideOfTheirRangeAreClippedAndNanIsTransparent) {
   EXPECT_EQ(pixels.radiance.at(2, 0, 1), 32768);
 }
 
+TEST_F(OpacitiesTest, ComposedLightIsClippedBelowTheRoomForOvershoot) {
+  field_.image_names = {"a.exr"};
+  field_.encoding.alpha = AlphaMeaning::kPremultiplied;
+  field_.encoding.background = {1, 1, 1};
+  field_.encoding.max_radiance = 2;
+  field_.encoding.overshoot_room = 2;
+  Image<float> image(kSide, kSide, 4);
+  for (int c = 0; c < 3; ++c) image.at(0, 0, c) = 1.8F;
+  image.at(0, 0, 3) = 0.1F;
+  ASSERT_TRUE(WriteImage(folder_ / "a.exr", image.view(), {"R", "G", "B", "A"}, PixelType::kFloat));
+  const LfPixels pixels = Loaded();
+  EXPECT_EQ(pixels.radiance.at(0, 0, 1), 32768);  // 2, not 1.8 + 0.9
+  EXPECT_EQ(pixels.radiance.at(1, 0, 1), 16384);
+}
+
 }  // namespace
 }  // namespace lf

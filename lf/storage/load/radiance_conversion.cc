@@ -86,10 +86,10 @@ void ConvertByLanes(const Image<uint8_t>& stored, const PixelRect& stored_rect,
 class Quantizer {
  public:
   explicit Quantizer(const RadianceEncoding& encoding)
-      : scale_(encoding.Scale()), pedestal_(encoding.pedestal) {}
+      : most_(encoding.max_radiance), scale_(encoding.Scale()), pedestal_(encoding.pedestal) {}
 
   uint16_t operator()(double light, double gain) const {
-    const double v = std::clamp(light * gain * scale_, -kFarOut, kFarOut);
+    const double v = std::clamp(std::min(light * gain, most_) * scale_, -kFarOut, kFarOut);
     const auto whole = static_cast<int32_t>(v);  // rounded towards 0, so that the rest is exact
     const double rest = v - whole;
     const int32_t rounded = whole + (rest >= 0.5) - (rest <= -0.5);
@@ -99,7 +99,7 @@ class Quantizer {
 
  private:
   static constexpr double kFarOut = 200000;  // beyond all 16-bit values and pedestals
-  double scale_, pedestal_;
+  double most_, scale_, pedestal_;
 };
 
 // Computes the falloff of each pixel of a row, bit-identical to

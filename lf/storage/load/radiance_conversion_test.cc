@@ -111,6 +111,15 @@ TEST(ConvertRadiance, RadianceIsDividedByTheFalloffAtThePixelsCentre) {
   ExpectFormulaForAllFiles(world);
 }
 
+TEST(ConvertRadiance, LightIsClippedBelowTheRoomForOvershoot) {
+  World world = MakeWorld();
+  world.encoding.overshoot_room = 2;
+  world.camera.gain = {0.5f, 3, 40};
+  ExpectFormulaForAllFiles(world);
+  world.k.vignetting.v = {-0.3, 0.05, -0.15};
+  ExpectFormulaForAllFiles(world);
+}
+
 TEST(ConvertRadiance, AFalloffOfOneHalfDoublesTheLight) {
   World world = MakeWorld();
   world.encoding.transfer = Transfer::kLinear;
