@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses focus distance and aperture of an example path. Internal to example_path.cc.
+// Chooses the focus distance of an example path. Internal to example_path.cc.
 #pragma once
 
 #include <string>
@@ -31,16 +31,5 @@ struct ExampleFocus {
 //   spacing_w  distance between neighbouring LF cameras
 Result<ExampleFocus> ChooseFocus(const LightField& light_field, const LfImageStore& store,
                                  const ExampleOptions& options, double spacing_w, ThreadPool& pool);
-
-// Diameter, as a multiple of the spacing of the LF cameras, of the smallest aperture that blurs.
-inline constexpr double kLeastSpacings = 2.5;
-
-struct ExampleAperture {
-  double spacings = 0;  // diameter of the aperture, as a multiple of the spacing of the LF cameras
-  std::string reason;
-  std::string copies = {};  // if the aperture holds one LF camera: what a wider one would show
-};
-
-ExampleAperture ChooseAperture(const ExampleFocus& focus, double fx_px, double spacing_w);
 
 }  // namespace lf

@@ -11,6 +11,7 @@
 #include "lf/camera/ray_through.h"
 #include "lf/core/folder_names.h"
 #include "lf/core/log.h"
+#include "lf/focus/example_aperture.h"
 #include "lf/focus/example_focus.h"
 #include "lf/focus/orbit_coverage.h"
 #include "lf/light_field/model/capture_geometry.h"
