@@ -91,6 +91,7 @@ def make_world(folder: pathlib.Path, shell: Shell):
     (folder / "shutter.yaml").write_text(text.replace("lens:", "shutter: {angle_deg: 180, samples: 2}\nlens:"))
     (folder / "pinhole.yaml").write_text(text.replace("aperture_diameter: 0.045", "aperture_diameter: 0"))
     with_alpha(folder / "capture", folder / "alpha")
+    with_one_outline(folder / "capture", folder / "outline")
     changed(folder / "capture", folder / "twice", lambda frames: frames.append(dict(frames[3], file_path="again.png")))
     shutil.copy(folder / "capture" / "image_03.png", folder / "twice" / "again.png")
     changed(folder / "capture", folder / "turned", lambda frames: frames[3].update(transform_matrix=[
@@ -134,6 +135,16 @@ def with_alpha(source, folder):
         alpha[:10, :10] = 0
         alpha[10:14, :10] = 128
         Image.fromarray(np.concatenate([pixels, alpha], axis=2)).save(file)
+
+
+def with_one_outline(source, folder):
+    """Copies a light field; all its LF images show nothing but their middle."""
+    shutil.copytree(source, folder)
+    for file in folder.glob("*.png"):
+        pixels = np.zeros((48, 64, 4), np.uint8)
+        pixels[16:32, 20:44, :3] = np.asarray(Image.open(file))[16:32, 20:44]
+        pixels[16:32, 20:44, 3] = 255
+        Image.fromarray(pixels).save(file)
 
 
 def folded(source, folder):

@@ -248,11 +248,16 @@ Result<void> CompleteAlpha(const OpenOptions& options, const fs::path& path,
     if (const std::optional<AlphaEvidence> found = FindAlphaEvidence(*light_field)) {
       encoding.alpha = found->meaning;
       if (encoding.AlphaIsLight() && !encoding.background) encoding.background = found->background;
-      LogInfo(
-          "{}: alpha is taken as {}, because of the pixels of {} (--image-alpha overrides this)",
-          path.string(),
-          TextOfAlpha(*encoding.alpha, encoding.Background(), encoding.keeps_opacity),
-          found->image_name);
+      const std::string meaning =
+          TextOfAlpha(*encoding.alpha, encoding.Background(), encoding.keeps_opacity);
+      if (found->is_sure)
+        LogInfo("{}: alpha is taken as {}, because {} (--image-alpha overrides this)",
+                path.string(), meaning, found->reason);
+      else
+        LogWarning(
+            "{}: the program is not sure what alpha means: {}. Alpha is taken as {}. If edges or "
+            "surroundings look wrong, add --image-alpha mask, straight or premultiplied",
+            path.string(), found->reason, meaning);
     }
   }
   if (!encoding.background) return {};

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lf/light_field/model/alpha_evidence.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
-#include <type_traits>
 #include <utility>
-#include <variant>
 #include <vector>
 
+#include "lf/light_field/model/alpha_facts.h"
 #include "lf/light_field/model/channel_use.h"
 #include "lf/pixels/files/image_file.h"
 
@@ -20,66 +21,32 @@ constexpr size_t kLookedAt = 3;  // number of LF images whose pixels are examine
 // successive LF images.
 constexpr size_t kAskedFrom = 5;
 
-// Two images count as having the same transparent pixels if at most this share of these pixels is
-// transparent in only one image.
-constexpr double kSameShare = 0.02;
+// Thresholds, chosen on the first half of the drawn captures of doc/judgements.md.
+constexpr double kOneColour = 0.97;     // least AlphaFacts::one_colour_share of an object alone
+constexpr double kPicture = 0.85;       // largest one_colour_share of a picture that is masked
+constexpr double kPictureDetail = 0.2;  // least detail_share of such a picture
+constexpr double kSamePixels = 0.98;    // least share of pixels that are transparent in all images
+// Least number of half-transparent pixels that tell straight from premultiplied, and the shares of
+// them up to which colours are straight, and from which they are premultiplied.
+constexpr size_t kLeastEdge = 30;
+constexpr double kStraight = 0.3, kMultiplied = 0.7;
 
-// Facts about one LF image that tell the meaning of its alpha.
-struct ImageEvidence {
-  std::string image_name;
-  int width = 0;
-  std::vector<bool> is_transparent;  // true for each pixel with alpha 0, row by row
-  size_t transparent_count = 0;
-  bool is_one_colour = true;  // all transparent pixels have one colour
-  bool is_float = false;
-  std::array<double, 3> background = {};  // radiance of that colour; valid if is_one_colour
-};
-
-// Returns the radiance, from 0 to max_radiance, of a value that an image file stores; 0 if the file
-// has too few bits for the levels of `encoding`.
-template <class T>
-double RadianceOfStored(const RadianceEncoding& encoding, T value) {
-  if constexpr (std::is_floating_point_v<T>) {
-    return value > 0 ? std::min<double>(value, encoding.max_radiance) : 0;  // NaN becomes 0
-  } else {
-    const int bits = int{8 * sizeof(T)};
-    if (!LevelsFit(encoding, bits)) return 0;
-    const double v = RadianceTable(encoding, bits, 1)[value];
-    return std::max(0.0, (v - encoding.pedestal) / encoding.Scale());
-  }
-}
-
-template <class T>
-ImageEvidence EvidenceOf(const RadianceEncoding& encoding, const Image<T>& stored,
-                         const ChannelUse& use) {
-  ImageEvidence evidence;
-  evidence.width = stored.width();
-  evidence.is_float = std::is_floating_point_v<T>;
-  evidence.is_transparent.reserve(static_cast<size_t>(stored.width()) * stored.height());
-  std::array<T, 3> beneath{};
-  for (int y = 0; y < stored.height(); ++y) {
-    const T* pixel = stored.row(y);
-    for (int x = 0; x < stored.width(); ++x, pixel += stored.channels()) {
-      const bool is_opaque = pixel[*use.alpha] > 0;
-      evidence.is_transparent.push_back(!is_opaque);
-      if (is_opaque) continue;
-      std::array<T, 3> colour;
-      for (size_t c = 0; c < 3; ++c) colour[c] = pixel[use.colours == 3 ? c : 0];
-      if (evidence.transparent_count++ > 0 && colour != beneath) evidence.is_one_colour = false;
-      beneath = colour;
-    }
-  }
-  for (size_t c = 0; c < 3; ++c) evidence.background[c] = RadianceOfStored(encoding, beneath[c]);
-  return evidence;
-}
-
-bool HaveSameTransparentPixels(const ImageEvidence& a, const ImageEvidence& b) {
-  if (a.width != b.width || a.is_transparent.size() != b.is_transparent.size()) return false;
-  size_t differing_count = 0;
+// Returns the number of pixels that are transparent in both images, as a share of those that are
+// transparent in at least one.
+double SharedTransparency(const AlphaFacts& a, const AlphaFacts& b) {
+  if (a.width != b.width || a.is_transparent.size() != b.is_transparent.size()) return 0;
+  size_t both_count = 0;
   for (size_t i = 0; i < a.is_transparent.size(); ++i)
-    differing_count += a.is_transparent[i] != b.is_transparent[i];
-  return static_cast<double>(differing_count) <=
-         kSameShare * static_cast<double>(std::max(a.transparent_count, b.transparent_count));
+    both_count += a.is_transparent[i] && b.is_transparent[i];
+  return static_cast<double>(both_count) /
+         static_cast<double>(a.transparent_count + b.transparent_count - both_count);
+}
+
+// Returns a share in per cent that is 100 or 0 only if the share is 1 or 0.
+std::string Percent(double share) {
+  if (share > 0.99 && share < 1) return fmt::format("{:.2f} %", std::min(99.99, 100 * share));
+  if (share > 0 && share < 0.01) return fmt::format("{:.2f} %", std::max(0.01, 100 * share));
+  return fmt::format("{:.0f} %", 100 * share);
 }
 
 // Returns the first LF image with a readable header among the kAskedFrom images from `first` on.
@@ -97,13 +64,13 @@ std::optional<LfImageId> ReadableFrom(const LightField& light_field, size_t firs
   return std::nullopt;
 }
 
-// Returns the evidence of those examined LF images that have transparent pixels.
-std::vector<ImageEvidence> EvidenceOfSome(const LightField& light_field) {
+// Measures those examined LF images that have transparent pixels.
+std::vector<AlphaFacts> MeasureSome(const LightField& light_field) {
   std::vector<size_t> firsts;
   for (size_t i = 0; i < kLookedAt; ++i)
     firsts.push_back(i * (light_field.size() - 1) / (kLookedAt - 1));
   firsts.erase(std::unique(firsts.begin(), firsts.end()), firsts.end());
-  std::vector<ImageEvidence> images;
+  std::vector<AlphaFacts> images;
   std::optional<LfImageId> last;
   for (const size_t first : firsts) {
     ImageFileInfo info;
@@ -112,31 +79,68 @@ std::vector<ImageEvidence> EvidenceOfSome(const LightField& light_field) {
     last = id;
     const Result<StoredImage> image = ReadImage(light_field.ImagePath(*id));
     if (!image) continue;
-    ImageEvidence evidence = std::visit(
-        [&](const auto& stored) { return EvidenceOf(light_field.encoding, stored, UseOf(info)); },
-        *image);
-    evidence.image_name = light_field.image_names[id->value];
-    if (evidence.transparent_count > 0) images.push_back(std::move(evidence));
+    AlphaFacts facts = MeasureAlpha(light_field.encoding, *image, UseOf(info));
+    facts.image_name = light_field.image_names[id->value];
+    if (facts.transparent_count > 0) images.push_back(std::move(facts));
   }
   return images;
+}
+
+// Judges whether colours are multiplied by alpha, for images of an object alone. Float files over
+// black are premultiplied unless their pixels deny it, because renderers write them so.
+void JudgeColours(const AlphaFacts& facts, AlphaEvidence* evidence) {
+  const bool is_black = facts.background == std::array<double, 3>{};
+  const bool is_rendered = facts.is_float && is_black;
+  evidence->meaning = is_rendered ? AlphaMeaning::kPremultiplied : AlphaMeaning::kStraight;
+  if (facts.edge_count < kLeastEdge) return;
+  evidence->reason += fmt::format(
+      "; the light of {} of {} half-transparent pixels beside opaque ones is multiplied by alpha",
+      Percent(facts.multiplied_share), facts.edge_count);
+  if (facts.multiplied_share <= kStraight || !is_black)
+    evidence->meaning = AlphaMeaning::kStraight;
+  else if (facts.multiplied_share >= kMultiplied)
+    evidence->meaning = AlphaMeaning::kPremultiplied;
+  else
+    evidence->is_sure = false;
 }
 
 }  // namespace
 
 std::optional<AlphaEvidence> FindAlphaEvidence(const LightField& light_field) {
-  const std::vector<ImageEvidence> images = EvidenceOfSome(light_field);
+  const std::vector<AlphaFacts> images = MeasureSome(light_field);
   if (images.empty()) return std::nullopt;
-  for (const ImageEvidence& evidence : images)
-    if (!evidence.is_one_colour) return AlphaEvidence{AlphaMeaning::kMask, {}, evidence.image_name};
-  const ImageEvidence& first = images[0];
-  if (images.size() > 1 &&
-      std::all_of(images.begin() + 1, images.end(), [&](const ImageEvidence& evidence) {
-        return HaveSameTransparentPixels(first, evidence);
-      }))
-    return AlphaEvidence{AlphaMeaning::kMask, {}, first.image_name};
-  const bool is_rendered = first.is_float && first.background == std::array<double, 3>{};
-  return AlphaEvidence{is_rendered ? AlphaMeaning::kPremultiplied : AlphaMeaning::kStraight,
-                       first.background, first.image_name};
+  const AlphaFacts& facts =
+      *std::min_element(images.begin(), images.end(), [](const AlphaFacts& a, const AlphaFacts& b) {
+        return a.one_colour_share < b.one_colour_share;
+      });
+  AlphaEvidence evidence;
+  evidence.image_name = facts.image_name;
+  const bool is_picture = facts.one_colour_share < kPicture;
+  evidence.reason =
+      fmt::format("{}{} of the {} transparent pixels{} of {} have about one colour",
+                  is_picture ? "only " : "", Percent(facts.one_colour_share), facts.inner_count,
+                  facts.has_inner ? " away from outlines" : "", facts.image_name);
+  if (is_picture) {
+    evidence.is_sure = facts.has_inner && facts.detail_share >= kPictureDetail;
+    evidence.reason +=
+        fmt::format(", and {} differ from the pixel beside them", Percent(facts.detail_share));
+    return evidence;
+  }
+  double shared = 1;
+  for (const AlphaFacts& image : images)
+    shared = std::min(shared, SharedTransparency(facts, image));
+  if (images.size() > 1 && shared >= kSamePixels) {
+    evidence.reason = fmt::format("{} of the transparent pixels are the same in {} LF images",
+                                  Percent(shared), images.size());
+    if (facts.opaque_spans_image) return evidence;
+    evidence.reason += ", but opaque pixels do not reach from side to side";
+    evidence.is_sure = false;
+  } else if (facts.one_colour_share < kOneColour) {
+    evidence.is_sure = false;
+  }
+  evidence.background = images[0].background;
+  JudgeColours(images[0], &evidence);
+  return evidence;
 }
 
 }  // namespace lf

@@ -77,6 +77,62 @@ TEST_F(AlphaEvidenceTest, AMaskedPhotographDecidesForAll) {
   EXPECT_EQ(found->image_name, "1.png");
 }
 
+TEST_F(AlphaEvidenceTest, OtherColoursNearOutlinesDoNotMatter) {
+  const int begins[] = {9, 7, 11};
+  for (const int i : {0, 1, 2}) {
+    Image<uint8_t> image = NoiseImage<uint8_t>(kSide, kSide, 4);
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) {
+        image.at(x, y, 3) = x < begins[i] ? 0 : 255;
+        for (int c = 0; c < 3 && x < begins[i] - 2; ++c) image.at(x, y, c) = 255;
+      }
+    ASSERT_TRUE(WriteImage(folder_ / field_.image_names[static_cast<size_t>(i)], image.view()));
+  }
+  const auto found = FindAlphaEvidence(field_);
+  EXPECT_EQ(found->meaning, AlphaMeaning::kStraight);
+  EXPECT_TRUE(found->is_sure);
+  EXPECT_EQ(found->background, (std::array<double, 3>{1, 1, 1}));
+}
+
+TEST_F(AlphaEvidenceTest, ColoursThatFallWithAlphaArePremultiplied) {
+  for (const bool is_multiplied : {true, false}) {
+    Image<uint8_t> image(kSide, kSide, 4);
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 6; x < kSide; ++x) {
+        image.at(x, y, 3) = x < 8 ? 100 : 255;
+        for (int c = 0; c < 3; ++c) image.at(x, y, c) = x < 8 && is_multiplied ? 80 : 200;
+      }
+    ASSERT_TRUE(WriteImage(folder_ / "0.png", image.view()));
+    EXPECT_EQ(FindAlphaEvidence(field_)->meaning,
+              is_multiplied ? AlphaMeaning::kPremultiplied : AlphaMeaning::kStraight);
+  }
+}
+
+TEST_F(AlphaEvidenceTest, AHiddenPictureWithoutDetailIsDoubted) {
+  Image<uint8_t> image = NoiseImage<uint8_t>(kSide, kSide, 4);
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      image.at(x, y, 3) = x < 15 ? 0 : 255;
+      for (int c = 0; c < 3 && x < 15; ++c) image.at(x, y, c) = static_cast<uint8_t>(10 * y);
+    }
+  ASSERT_TRUE(WriteImage(folder_ / "0.png", image.view()));
+  const auto found = FindAlphaEvidence(field_);
+  EXPECT_EQ(found->meaning, AlphaMeaning::kMask);
+  EXPECT_FALSE(found->is_sure);
+}
+
+TEST_F(AlphaEvidenceTest, AnObjectWithTheSameOutlineInAllImagesIsDoubted) {
+  Image<uint8_t> image(kSide, kSide, 4);
+  for (int y = 5; y < 15; ++y)
+    for (int x = 5; x < 15; ++x)
+      for (int c = 0; c < 4; ++c) image.at(x, y, c) = 255;
+  for (const std::string& name : field_.image_names)
+    ASSERT_TRUE(WriteImage(folder_ / name, image.view()));
+  const auto found = FindAlphaEvidence(field_);
+  EXPECT_EQ(found->meaning, AlphaMeaning::kStraight);
+  EXPECT_FALSE(found->is_sure);
+}
+
 TEST_F(AlphaEvidenceTest, ABorderThatAllHaveIsAMask) {
   for (const int i : {0, 1, 2}) Write(i, 5, 0);
   EXPECT_EQ(FindAlphaEvidence(field_)->meaning, AlphaMeaning::kMask);
