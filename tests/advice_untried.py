@@ -46,7 +46,7 @@ UNTRIED = {
     "display_view: this program was built without OpenColorIO": "depends on how the programs were built",
     "page_server: or use --text": "depends on how the programs were built",
     "page_port: or --serve 0 for any free port": "serves until it is interrupted; tests/lfvisualizer_test.py does it",
-    "example_path: or let the camera stand (--move focus-pull)": CAPTURE + "a bent one; tests/lfexample_test.py has it",
+    "orbit: or let the camera stand (--move focus-pull)": CAPTURE + "a bent one; tests/lfexample_test.py has it",
     "example_path: (lfdensify, or lfrenderer --densify), or record more": CAPTURE + "a sparse one of a deep scene",
     "view_grid: LF cameras look up to {:.0f} degrees": CAPTURE + "cameras around a subject; tests/focus_views_test.py",
     "camera_plane: densify each side by itself": CAPTURE + "cameras around a subject; tests/lfdensify_test.py has it",

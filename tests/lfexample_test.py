@@ -60,8 +60,9 @@ class ExampleTest(unittest.TestCase):
         small_field.SIDE = 15
         self.field = write_field(self.folder / "large", wall)
         path, words = self.example("--move", "orbit", "--focus", 0.04)
-        self.assertRegex(words, r"the orbit is 0\.0\d+ wide and 0\.0\d+ high in world units, \d+ % of what")
-        self.assertRegex(words, r"its frames are \d+ % as wide as a standing camera's, because LF cameras have not "
+        self.assertRegex(words, r"the orbit is 0\.0\d+ wide and 0\.0\d+ high in world units, \d+(\.\d+)? degrees as seen "
+                                r"from the subject, \d+ % of what")
+        self.assertRegex(words, r"its frames are \d+ % as wide as a standing camera's: LF cameras have not "
                                 r"recorded \d+ % of a frame of the larger orbit")
         self.assertNotIn("warning", words)
         self.assertNotIn("without rays", self.film(path, "orbit", "1-50x7"))
@@ -78,11 +79,12 @@ class ExampleTest(unittest.TestCase):
             frame["transform_matrix"] = matrix.tolist()
         self.field.write_text(json.dumps(calibration))
         path, words = self.example("--move", "orbit", "--focus", 0.5)
-        self.assertRegex(words, r"(warning: )?the orbit is \S+ wide and \S+ high in world units, \d+ %")
+        self.assertRegex(words, r"the orbit is \S+ wide and \S+ high in world units, \S+ degrees as seen from the "
+                                r"subject, \d+ %")
         position = [list(map(float, match.split(","))) for match in
                     re.findall(r"time: [^}]*value: \[(.*)\]", path.read_text())]
-        # All of the orbit is near its first camera; the positions alone would allow an orbit through the subject.
-        self.assertLess(np.linalg.norm(np.ptp(position, axis=0)), 0.3)
+        # The orbit stays within a spacing of the circle; the positions alone would allow one through the subject.
+        self.assertLess(np.abs(np.linalg.norm(position, axis=1) - 0.5).max(), 0.125)
 
     def test_moves_that_a_sparse_capture_cannot_show_are_warned_of(self):
         random = np.random.default_rng(2)
@@ -244,7 +246,9 @@ class ExampleTest(unittest.TestCase):
         self.field.write_text(json.dumps(calibration))
         path, _ = self.example("--move", "static", "--focus", "0.9")
         width, height = map(int, re.search(r"resolution: \[(\d+), (\d+)\]", path.read_text()).groups())
-        self.assertEqual((width, height), (WIDTH // 2, HEIGHT // 2))
+        self.assertEqual((width, height), (WIDTH, HEIGHT))
+        # The middle of the image is a quarter of the sensor's 36 mm to the right of the optical axis.
+        self.assertIn("shift_mm: {horizontal: 9, vertical: 0}", path.read_text())
         result = self.run_tool(RENDERER, self.field, path, "-o", self.folder / "frames", "--fill", "off")
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertNotIn("warning", result.stderr)

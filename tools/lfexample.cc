@@ -101,7 +101,7 @@ void WarnOfDoubt(const lf::ExamplePath& example, const std::string& light_field,
 int main(int argc, char** argv) {
   lf::Program program("lfexample", kHelp);
   lf::LightFieldArgument input;
-  std::string output, move = "focus-pull", camera = "-1";
+  std::string output, move = "auto", camera = "-1";
   double focus = 0;
   bool overwrite = false;
   CLI::App& app = program.app();
@@ -112,12 +112,15 @@ int main(int argc, char** argv) {
                        "Replace PATH.yaml if it exists and is another path");
   picture.Add(
       "--camera NUMBER|NAME", camera,
-      "LF camera at which the path begins (near the middle)\n"
+      "LF camera at which the path begins, which it passes, or moves around (near the middle)\n"
       "NUMBER counts from 0; NAME is the name of the camera's image. -1: among the LF cameras that "
       "are level and whose image can be read, the one nearest to the middle of the capture.");
-  picture.AddChoice("--move", move, {"static", "orbit", "dolly", "focus-pull"},
+  picture.AddChoice("--move", move, {"auto", "static", "along", "orbit", "dolly", "focus-pull"},
                     "Movement of the camera\n"
+                    "auto: along if the LF images are a dense track, such as a hand-held video, "
+                    "otherwise focus-pull\n"
                     "static: the camera stands still; the path has one frame\n"
+                    "along: the camera moves along the recorded track, without its shaking\n"
                     "orbit: the camera moves once around an ellipse between the LF cameras\n"
                     "dolly: the camera moves straight ahead\n"
                     "focus-pull: the camera stands still, and the focus moves from near to far");
@@ -153,10 +156,10 @@ int main(int argc, char** argv) {
       WarnOfDoubt(example, input.path, input.Words(), output, move, camera);
     if (!example.move_warning.empty()) lf::LogWarning("{}", example.move_warning);
     if (!example.move_note.empty()) lf::LogInfo("{}", example.move_note);
-    lf::LogInfo("{}: starts at LF camera {} ({}), focus at {:.4g} ({}), aperture {:.4g} ({})",
-                output, options.camera.value, light_field.image_names[options.camera.value],
-                example.focus_distance_w, example.focus_reason, example.aperture_diameter_w,
-                example.aperture_reason);
+    lf::LogInfo("{}: {} LF camera {} ({}), focus at {:.4g} ({}), aperture {:.4g} ({})", output,
+                lf::StartWords(example.move), options.camera.value,
+                light_field.image_names[options.camera.value], example.focus_distance_w,
+                example.focus_reason, example.aperture_diameter_w, example.aperture_reason);
     return {};
   });
 }

@@ -8,82 +8,57 @@
 #include <utility>
 #include <vector>
 
-#include "lf/camera/ray_through.h"
 #include "lf/core/folder_names.h"
 #include "lf/core/log.h"
 #include "lf/focus/example_aperture.h"
 #include "lf/focus/example_focus.h"
-#include "lf/focus/orbit_coverage.h"
+#include "lf/focus/moves/along.h"
+#include "lf/focus/moves/dolly.h"
+#include "lf/focus/moves/example_frame.h"
+#include "lf/focus/moves/orbit.h"
+#include "lf/focus/moves/recorded_track.h"
+#include "lf/focus/moves/shot.h"
 #include "lf/light_field/model/capture_geometry.h"
 #include "lf/storage/packed/packed_store_file.h"
 
 namespace lf {
 namespace {
 
-constexpr double kMostRoll_deg = 30;
-constexpr int kFrameCount = 50;
 constexpr int kFps = 25;
-constexpr double kDuration_s = static_cast<double>(kFrameCount - 1) / kFps;
 constexpr double kNominalSensorWidth_mm = 36;
 
+// Returns the numbers with as many digits as are needed to read back the same values. Georeferenced
+// positions have seven digits before the point.
 std::string Text(const Vec3& v) {
-  return fmt::format("[{:.9g}, {:.9g}, {:.9g}]", v.x(), v.y(), v.z());
+  const Vec3 positive = v + Vec3::Zero();  // -0 + 0 is 0
+  return fmt::format("[{}, {}, {}]", positive.x(), positive.y(), positive.z());
 }
 
-// Returns the up direction of a camera that looks in the same direction as `camera`, with a level
-// horizon. Returns the up direction of `camera` itself if the LF cameras have no mean up direction,
-// or if `camera` is rolled by more than kMostRoll_deg against that direction.
-Vec3 LevelUp(const LightField& light_field, const PinholeCamera& camera) {
-  const Vec3 up = MeanUpWorld(light_field);
-  const double roll_rad = RollOf(camera, up);
-  if (up == Vec3::Zero() || roll_rad > RadiansFromDegrees(kMostRoll_deg)) return camera.UpWorld();
-  const Vec3 forward = camera.ForwardWorld();
-  const Vec3 across = up - forward * forward.dot(up);
-  return roll_rad == 0 ? camera.UpWorld() : Vec3(across.normalized());
+// Returns the point with fewer digits: rounded to a multiple of a power of ten up to `step`.
+Vec3 Rounded(const Vec3& v, double step) {
+  const double power = std::floor(std::log10(step));
+  const double scale = std::pow(10, std::abs(power));
+  const auto rounded = [&](double x) {
+    return power < 0 ? std::round(x * scale) / scale : std::round(x / scale) * scale;
+  };
+  return {rounded(v.x()), rounded(v.y()), rounded(v.z())};
 }
 
-// Returns the largest even size that is not above `size`, but at least 2, because video needs even
-// sizes.
-int Even(int size) { return std::max(2, size - size % 2); }
-
-// Returns the largest frame within the LF camera's view, at most as wide as the LF image and at
-// least a quarter as wide. The frame has the proportions of the LF image. Its elements are as large
-// as the LF pixels in the middle of the LF image.
-Intrinsics InscribedFrame(const PinholeCamera& camera, const Vec3& up_world) {
-  const Intrinsics& k = camera.intrinsics;
-  const RayThrough rays(camera, camera.ForwardWorld());
-  const std::optional<RigidTransform> pose =
-      LookAlong(camera.CentreWorld(), camera.ForwardWorld(), up_world);
-  const auto frame_of = [&](double share) {
-    const int width = Even(static_cast<int>(std::lround(share * k.width_px)));
-    const int height = Even(static_cast<int>(std::lround(share * k.height_px)));
-    return Intrinsics{k.fx_px, k.fx_px, width / 2.0, height / 2.0, 0, width, height};
-  };
-  const auto is_seen = [&](const Intrinsics& frame) {
-    constexpr int kPoints = 16;  // number of steps between the tested points of each side
-    constexpr double kTolerance_px = 0.5;
-    const PinholeCamera pinhole{frame, *pose};
-    for (int i = 0; i <= kPoints; ++i) {
-      const double x = frame.width_px * static_cast<double>(i) / kPoints;
-      const double y = frame.height_px * static_cast<double>(i) / kPoints;
-      const double w = frame.width_px, h = frame.height_px;
-      for (const Vec2& at : {Vec2(x, 0), Vec2(x, h), Vec2(0, y), Vec2(w, y)}) {
-        const auto place = rays.RecordedAt(RayOfPixel(pinhole, at.x(), at.y()).direction);
-        if (!place || place->x() < -kTolerance_px || place->y() < -kTolerance_px ||
-            place->x() > k.width_px + kTolerance_px || place->y() > k.height_px + kTolerance_px)
-          return false;
-      }
-    }
-    return true;
-  };
-  if (!pose || is_seen(frame_of(1))) return frame_of(1);
-  constexpr double kLeastShare = 0.25;
-  double seen = kLeastShare, unseen = 1;
-  for (int i = 0; i < 20; ++i) {
-    const double middle = (seen + unseen) / 2;
-    (is_seen(frame_of(middle)) ? seen : unseen) = middle;
+// Returns a comment of the path, in lines of a readable length.
+std::string Comment(std::string_view text) {
+  constexpr size_t kWidth = 96;
+  std::string lines;
+  while (!text.empty()) {
+    size_t end = text.size() <= kWidth ? text.size() : text.rfind(' ', kWidth);
+    if (end == std::string_view::npos) end = std::min(text.find(' '), text.size());
+    lines += fmt::format("  # {}\n", text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
   }
-  return frame_of(seen);
+  return lines;
+}
+
+bool MovesCamera(ExampleMove move) {
+  return move == ExampleMove::kOrbit || move == ExampleMove::kDolly || move == ExampleMove::kAlong;
 }
 
 // Returns the first and the last focus distance of a focus pull. It ends at the depths of the scene
@@ -96,83 +71,61 @@ std::pair<double, double> PullOf(const ExampleFocus& focus) {
           std::clamp(focus.far_w, 1.1 * focus.distance_w, far_w)};
 }
 
-// The keyframes of the path. At time 0, they have the values that the sections above them in the
-// file state.
+// The parts of the path that depend on the move. At time 0, keyframes have the values that the
+// sections above them in the file state.
 struct Movement {
+  Vec3 first_position_world = Vec3::Zero();
+  std::string focus;  // the key for the focus, with its value
   std::string keyframes;
-  double first_focus_distance_w = 0;
+  int frame_count = 1;
 };
 
-Movement MakeMovement(ExampleMove move, const PinholeCamera& camera, const Reach& reach,
-                      const ExampleFocus& focus, double aperture_diameter_w, const OrbitWish& wish,
-                      const Orbit& orbit) {
-  const double focus_distance_w = focus.distance_w;
-  const Vec3 centre = camera.CentreWorld();
-  Movement movement{"keyframes:\n", focus_distance_w};
+Movement StandingMovement(ExampleMove move, const Shot& shot, const ExampleFocus& focus,
+                          ExamplePath* example) {
+  const Vec3 position = shot.start.CentreWorld();
   if (move == ExampleMove::kStatic)
-    return {"# Nothing moves. Add accelerations: or keyframes: to change that.\n",
-            focus_distance_w};
-  if (move == ExampleMove::kFocusPull) {
-    const auto [from_w, to_w] = PullOf(focus);
-    movement.first_focus_distance_w = from_w;
+    return {position,
+            fmt::format("focus_distance: {:.6g}         # {}", focus.distance_w, focus.reason),
+            "# Nothing moves. Add accelerations: or keyframes: to change that.\n"};
+  constexpr int kPullFrames = 50;
+  constexpr double kDuration_s = static_cast<double>(kPullFrames - 1) / kFps;
+  const auto [from_w, to_w] = PullOf(focus);
+  example->move_note = fmt::format(
+      "the focus moves from {:.4g} to {:.4g} in world units, {}", from_w, to_w,
+      focus.near_w > 0 ? "over the depths found in the scene, at most from 0.7 to 1.6 times the "
+                         "focus distance"
+                       : "0.7 to 1.6 times the focus distance, because the depths of the scene "
+                         "are not known");
+  return {position,
+          fmt::format("focus_distance: {:.6g}         # at time 0; see keyframes", from_w),
+          fmt::format("keyframes:\n"
+                      "  # From near to far; lens quantities never overshoot between keys.\n"
+                      "  focus_distance: [{{time: 0, value: {:.6g}}}, {{time: {:.6g}, value: "
+                      "{:.6g}}}, {{time: {:.6g}, value: {:.6g}}}]\n",
+                      from_w, kDuration_s / 2, focus.distance_w, kDuration_s, to_w),
+          kPullFrames};
+}
+
+Movement CameraMovement(const Shot& shot, const CameraMove& move, const ExampleFocus& focus) {
+  constexpr double kOfSpacing = 1e-5;
+  const auto key = [&](size_t i) {
+    const Vec3& position = move.keys_world[i];
+    // The LF camera's own position is written exactly.
+    return position == shot.start.CentreWorld() ? position
+                                                : Rounded(position, kOfSpacing * shot.spacing_w);
+  };
+  Movement movement{key(0),
+                    fmt::format("focus_point: *subject         # {}, {:.6g} from the LF camera",
+                                focus.reason, focus.distance_w),
+                    fmt::format("keyframes:\n{}  position:\n", Comment(OneLine(move.limit))),
+                    static_cast<int>(std::lround(move.duration_s * kFps)) + 1};
+  const double duration_s = static_cast<double>(movement.frame_count - 1) / kFps;
+  for (size_t i = 0; i < move.keys_world.size(); ++i)
     movement.keyframes += fmt::format(
-        "  # From near to far; lens quantities never overshoot between keys.\n"
-        "  focus_distance: [{{time: 0, value: {:.6g}}}, {{time: {:.6g}, value: {:.6g}}}, "
-        "{{time: {:.6g}, value: {:.6g}}}]\n",
-        from_w, kDuration_s / 2, focus_distance_w, kDuration_s, to_w);
-    return movement;
-  }
-  if (move == ExampleMove::kDolly) {
-    // Distance that the lens can move ahead. Farther ahead, the rays of the picture's borders,
-    // which diverge, no longer come through the captured positions.
-    const Intrinsics& k = camera.intrinsics;
-    const double room_w =
-        std::min((reach.right_w - aperture_diameter_w / 2) * 2 * k.fx_px / k.width_px,
-                 (reach.up_w - aperture_diameter_w / 2) * 2 * k.fy_px / k.height_px);
-    const double step_w = std::clamp(room_w, 0.0, 0.05 * focus_distance_w);
-    movement.keyframes += fmt::format(
-        "  # Straight ahead, by up to 5 % of the focus distance, as far as the captured positions "
-        "fill the picture.\n"
-        "  position: [{{time: 0, value: {}}}, {{time: {:.6g}, value: {}}}]\n",
-        Text(centre), kDuration_s, Text(centre + step_w * camera.ForwardWorld()));
-    return movement;
-  }
-  movement.keyframes +=
-      "  # Once around an ellipse, as far as LF cameras have recorded the frames.\n  position:\n";
-  for (int i = 0; i <= kOrbitKeys; ++i) {
-    const double turn = i / double{kOrbitKeys};
-    movement.keyframes += fmt::format("    - {{time: {:.6g}, value: {}}}\n", kDuration_s * turn,
-                                      Text(OrbitPosition(wish, orbit.scale, turn)));
-  }
+        "    - {{time: {:.6g}, value: {}}}\n",
+        duration_s * static_cast<double>(i) / static_cast<double>(move.keys_world.size() - 1),
+        Text(key(i)));
   return movement;
-}
-
-// Returns the frame around the middle of `frame` that has this share of its width and height.
-Intrinsics Cropped(const Intrinsics& frame, double share) {
-  if (share == 1) return frame;
-  const int width = Even(static_cast<int>(std::lround(share * frame.width_px)));
-  const int height = Even(static_cast<int>(std::lround(share * frame.height_px)));
-  return {frame.fx_px, frame.fy_px, width / 2.0, height / 2.0, 0, width, height};
-}
-
-// Tells how far the orbit is from the one that the positions of the LF cameras would allow.
-void TellOrbit(const OrbitWish& wish, const Orbit& orbit, ExamplePath* example) {
-  constexpr double kFewUnseen = 0.01;
-  if (orbit.scale == 1 && orbit.crop == 1 && orbit.unseen <= kFewUnseen) return;
-  const std::string size = fmt::format(
-      "the orbit is {:.3g} wide and {:.3g} high in world units, {:.0f} % of what the positions of "
-      "the LF cameras would allow, and its frames are {:.0f} % as wide as a standing camera's, "
-      "because LF cameras have not recorded {:.0f} % of a frame of the larger orbit",
-      2 * orbit.scale * wish.right_w, 2 * orbit.scale * wish.up_w, 100 * orbit.scale,
-      100 * orbit.crop, 100 * orbit.unseen_of_largest);
-  if (orbit.unseen <= kFewUnseen)
-    example->move_note = size;
-  else
-    example->move_warning = fmt::format(
-        "{}. Even in this orbit they have not recorded {:.0f} % of a frame, which will be black: "
-        "begin at an LF camera that has neighbours on all sides (--camera), or let the camera "
-        "stand (--move focus-pull)",
-        size, 100 * orbit.unseen);
 }
 
 // Warns of moves that a sparse capture cannot show. `copies` is the reason of its small aperture.
@@ -194,14 +147,158 @@ void TellSparse(ExampleMove move, double spacing_w, const std::string& copies,
         copies);
 }
 
+// Returns the line of the shift of a frame whose middle is not on the optical axis.
+std::string ShiftLine(const Intrinsics& frame) {
+  const double mm_per_px = kNominalSensorWidth_mm / frame.width_px;
+  const double right_mm = (frame.width_px / 2.0 - frame.cx_px) * mm_per_px;
+  const double up_mm = (frame.cy_px - frame.height_px / 2.0) * mm_per_px;
+  constexpr double kNone_mm = 1e-6;
+  if (std::abs(right_mm) < kNone_mm && std::abs(up_mm) < kNone_mm) return "";
+  return fmt::format(
+      "  shift_mm: {{horizontal: {:.7g}, vertical: {:.7g}}}  # the middle of the LF image is "
+      "beside "
+      "its optical axis\n",
+      right_mm, up_mm);
+}
+
+std::string YamlOf(const LightField& light_field, LfImageId id, const Shot& shot,
+                   const Intrinsics& frame, const Movement& movement, const ExamplePath& example) {
+  const double field_of_view_deg =
+      DegreesFromRadians(2 * std::atan(frame.width_px / (2 * frame.fx_px)));
+  const double focal_length_mm = kNominalSensorWidth_mm * frame.fx_px / frame.width_px;
+  const bool moves = MovesCamera(example.move);
+  constexpr double kOfDistance = 1e-9;  // changes no direction visibly
+  return fmt::format(
+      "# A camera path for lfrenderer; every key is explained in doc/formats/path.md.\n"
+      "# It {} LF camera {} ({}).\n"
+      "format: lfpath 1\n"
+      "fps: {}\n"
+      "frames: {}\n"
+      "resolution: [{}, {}]            # pixels; the frame lies within the LF image\n"
+      "camera:\n"
+      "  field_of_view_deg: {:.7g}     # horizontal, at most that of the LF camera\n"
+      "  focal_length_mm: {:.5g}         # if the sensor is {} mm wide; f-numbers refer to this "
+      "length\n"
+      "{}"
+      "  position: {}\n"
+      "  look_at: {}{}\n"
+      "  up: {}\n"
+      "  follow: {}\n"
+      "lens:\n"
+      "  aperture_diameter: {:.6g}      # world units; LF cameras are {:.4g} apart\n"
+      "  {}\n"
+      "  blades: 0                     # 5 makes highlights pentagons\n"
+      "  focus_tilt_deg: {{horizontal: 0, vertical: 0}}\n"
+      "{}",
+      StartWords(example.move), id.value, OneLine(light_field.image_names[id.value]), kFps,
+      movement.frame_count, frame.width_px, frame.height_px, field_of_view_deg, focal_length_mm,
+      kNominalSensorWidth_mm, ShiftLine(frame), Text(movement.first_position_world),
+      moves ? "&subject " : "",
+      Text(Rounded(shot.SubjectWorld(), kOfDistance * shot.focus_distance_w)),
+      Text(Rounded(shot.up_world, kOfDistance)),
+      moves ? "look_at                # keeps looking at the subject" : "direction",
+      example.aperture_diameter_w, shot.spacing_w, movement.focus, movement.keyframes);
+}
+
+// Returns the lens and the frame of a path at an LF camera.
+Shot ShotOf(const LightField& light_field, LfImageId id, const ExampleFocus& focus,
+            double spacing_w, const ExampleAperture& aperture, ExampleMove move,
+            ExamplePath* example) {
+  Shot shot;
+  shot.start = light_field.Camera(id);
+  shot.reach = CaptureReach(light_field, shot.start, 400);
+  shot.focus_distance_w = focus.distance_w;
+  shot.spacing_w = spacing_w;
+  shot.up_world = LevelUpWorld(light_field, shot.start);
+  shot.frame = InscribedFrame(shot.start, shot.up_world);
+  // Diameter, as a multiple of the spacing of the LF cameras, that a standing lens may have even if
+  // the capture is narrower.
+  constexpr double kLeastOfBand = 2.2;
+  const double reach_w = std::max(shot.reach.right_w, shot.reach.up_w);
+  // A moving camera leaves at least half of the reach to the movement.
+  const double most_w =
+      MovesCamera(move) ? reach_w : std::max(kLeastOfBand * spacing_w, 2 * reach_w);
+  const double wish_w = aperture.spacings * spacing_w;
+  example->aperture_diameter_w = std::min(wish_w, most_w);
+  example->aperture_reason =
+      wish_w <= most_w ? aperture.reason
+                       : fmt::format("{:.2g} spacings of LF cameras, {} as wide as they reach",
+                                     most_w / spacing_w, MovesCamera(move) ? "half" : "about");
+  shot.lens_radius_w = example->aperture_diameter_w / 2;
+  return shot;
+}
+
+// Returns how the camera moves. kInput: it cannot, or the movement would be invisible.
+Result<CameraMove> MoveCamera(const LightField& light_field, LfImageId id, const Shot& shot,
+                              ExampleMove move) {
+  CameraMove moved;
+  if (move == ExampleMove::kOrbit) {
+    moved = MakeOrbit(light_field, shot);
+  } else if (move == ExampleMove::kDolly) {
+    moved = MakeDolly(light_field, shot);
+  } else {
+    LF_ASSIGN_OR_RETURN(const RecordedTrack track, FindTrack(light_field, id));
+    moved = MakeAlong(light_field, track, shot);
+  }
+  constexpr double kVisible_px = 1, kClear_px = 3, kClear = 0.01;
+  const double visible_px = VisibleMovement(shot, moved);
+  if (!(visible_px >= kVisible_px))
+    return InputError(fmt::format(
+        "at LF camera {} the camera has no room for a visible movement: {}. Begin at another LF "
+        "camera (--camera), or let the camera stand (--move focus-pull)",
+        id.value, moved.limit));
+  if (visible_px < std::max(kClear_px, kClear * shot.frame.width_px) && moved.warning.empty())
+    moved.warning = fmt::format(
+        "the movement will hardly be visible, because it changes the picture by {:.2g} of {} "
+        "elements: record from positions farther apart, or let the camera stand (--move "
+        "focus-pull)",
+        visible_px, shot.frame.width_px);
+  return moved;
+}
+
+Result<ExamplePath> PathOfMove(const LightField& light_field, LfImageId id,
+                               const ExampleFocus& focus, double spacing_w, ExampleMove move) {
+  ExamplePath example;
+  example.move = move;
+  example.focus_distance_w = focus.distance_w;
+  example.focus_reason = focus.reason;
+  example.doubt = focus.doubt;
+  example.candidates_w = focus.candidates_w;
+  const ExampleAperture aperture =
+      ChooseAperture(focus, light_field.Camera(id).intrinsics.fx_px, spacing_w);
+  const Shot shot = ShotOf(light_field, id, focus, spacing_w, aperture, move, &example);
+  Intrinsics frame = shot.frame;
+  Movement movement;
+  if (MovesCamera(move)) {
+    LF_ASSIGN_OR_RETURN(const CameraMove moved, MoveCamera(light_field, id, shot, move));
+    frame = CroppedFrame(frame, moved.crop);
+    example.move_note = moved.limit;
+    example.move_warning = moved.warning;
+    movement = CameraMovement(shot, moved, focus);
+  } else {
+    movement = StandingMovement(move, shot, focus, &example);
+  }
+  if (aperture.spacings < kLeastSpacings && focus.doubt.empty())
+    TellSparse(move, spacing_w, aperture.copies, &example);
+  example.yaml = YamlOf(light_field, id, shot, frame, movement, example);
+  return example;
+}
+
 }  // namespace
 
 std::optional<ExampleMove> ParseExampleMove(std::string_view name) {
+  if (name == "auto") return ExampleMove::kAuto;
   if (name == "static") return ExampleMove::kStatic;
+  if (name == "along") return ExampleMove::kAlong;
   if (name == "orbit") return ExampleMove::kOrbit;
   if (name == "dolly") return ExampleMove::kDolly;
   if (name == "focus-pull") return ExampleMove::kFocusPull;
   return std::nullopt;
+}
+
+const char* StartWords(ExampleMove move) {
+  if (move == ExampleMove::kOrbit) return "moves around";
+  return move == ExampleMove::kStatic || move == ExampleMove::kFocusPull ? "starts at" : "passes";
 }
 
 Result<LfImageId> FirstCamera(const LightField& light_field, const LfImageStore& store) {
@@ -246,86 +343,24 @@ Result<ExamplePath> MakeExamplePath(const LightField& light_field, const LfImage
   if (options.camera.value >= light_field.size())
     return InputError(fmt::format("LF camera {} does not exist: expected a number from 0 to {}",
                                   options.camera.value, light_field.size() - 1));
-  const PinholeCamera camera = light_field.Camera(options.camera);
   const double spacing_w = MedianSpacing(light_field);
   if (!(spacing_w > 0))
     return InputError(fmt::format(
         "most of the {} LF cameras have the same position as another one: were the images listed "
         "twice, or are the positions missing? Run lfimport to list these LF cameras",
         light_field.size()));
-  const Reach reach = CaptureReach(light_field, camera, 400);
   LF_ASSIGN_OR_RETURN(const ExampleFocus focus,
                       ChooseFocus(light_field, store, options, spacing_w, pool));
-  ExamplePath example;
-  example.focus_distance_w = focus.distance_w;
-  example.focus_reason = focus.reason;
-  example.doubt = focus.doubt;
-  example.candidates_w = focus.candidates_w;
-  const ExampleAperture aperture = ChooseAperture(focus, camera.intrinsics.fx_px, spacing_w);
-  example.aperture_reason = aperture.reason;
-  const double largest_w = 2 * std::max(reach.right_w, reach.up_w);
-  // Diameter, as a multiple of the spacing of the LF cameras, that the lens may have even if the
-  // capture is narrower.
-  constexpr double kLeastOfBand = 2.2;
-  example.aperture_diameter_w =
-      std::min(aperture.spacings * spacing_w, std::max(kLeastOfBand * spacing_w, largest_w));
-
-  const Vec3 up = LevelUp(light_field, camera);
-  Intrinsics frame = InscribedFrame(camera, up);
-  // The ellipse is at most half as wide as the captured positions would allow.
-  const double radius_w = example.aperture_diameter_w / 2;
-  const OrbitWish wish = {camera,
-                          frame,
-                          up,
-                          focus.distance_w,
-                          radius_w,
-                          spacing_w,
-                          std::max(0.0, reach.right_w - radius_w) / 2,
-                          std::max(0.0, reach.up_w - radius_w) / 2};
-  Orbit orbit;
-  if (options.move == ExampleMove::kOrbit) {
-    orbit = ChooseOrbit(light_field, wish);
-    frame = Cropped(frame, orbit.crop);
-    TellOrbit(wish, orbit, &example);
+  if (options.move != ExampleMove::kAuto)
+    return PathOfMove(light_field, options.camera, focus, spacing_w, options.move);
+  const Result<RecordedTrack> track = FindTrack(light_field, options.camera);
+  if (track && focus.doubt.empty() && IsDenseTrack(light_field, *track, focus.distance_w)) {
+    Result<ExamplePath> along =
+        PathOfMove(light_field, options.camera, focus, spacing_w, ExampleMove::kAlong);
+    if (along) return along;
+    LogInfo("{}; the focus moves instead", along.error().message);
   }
-  if (aperture.spacings < kLeastSpacings && focus.doubt.empty())
-    TellSparse(options.move, spacing_w, aperture.copies, &example);
-  const Movement movement =
-      MakeMovement(options.move, camera, reach, focus, example.aperture_diameter_w, wish, orbit);
-  const double field_of_view_deg =
-      DegreesFromRadians(2 * std::atan(frame.width_px / (2 * frame.fx_px)));
-  const double focal_length_mm = kNominalSensorWidth_mm * frame.fx_px / frame.width_px;
-  const bool is_still = options.move == ExampleMove::kStatic;
-  example.yaml = fmt::format(
-      "# A camera path for lfrenderer; every key is explained in doc/formats/path.md.\n"
-      "# It starts at LF camera {} ({}).\n"
-      "format: lfpath 1\n"
-      "fps: {}\n"
-      "frames: {}\n"
-      "resolution: [{}, {}]            # pixels; the frame lies within the LF image\n"
-      "camera:\n"
-      "  field_of_view_deg: {:.7g}     # horizontal, at most that of the LF camera\n"
-      "  focal_length_mm: {:.5g}         # if the sensor is {} mm wide; f-numbers refer to this "
-      "length\n"
-      "  position: {}\n"
-      "  look_at: {}\n"
-      "  up: {}\n"
-      "  follow: {}\n"
-      "lens:\n"
-      "  aperture_diameter: {:.6g}      # world units; LF cameras are {:.4g} apart\n"
-      "  focus_distance: {:.6g}         # {}\n"
-      "  blades: 0                     # 5 makes highlights pentagons\n"
-      "  focus_tilt_deg: {{horizontal: 0, vertical: 0}}\n",
-      options.camera.value, OneLine(light_field.image_names[options.camera.value]), kFps,
-      is_still ? 1 : kFrameCount, frame.width_px, frame.height_px, field_of_view_deg,
-      focal_length_mm, kNominalSensorWidth_mm, Text(camera.CentreWorld()),
-      Text(camera.CentreWorld() + focus.distance_w * camera.ForwardWorld()), Text(up),
-      options.move == ExampleMove::kOrbit ? "look_at                # keeps looking at the focus"
-                                          : "direction",
-      example.aperture_diameter_w, spacing_w, movement.first_focus_distance_w,
-      options.move == ExampleMove::kFocusPull ? "at time 0; see keyframes" : focus.reason);
-  example.yaml += movement.keyframes;
-  return example;
+  return PathOfMove(light_field, options.camera, focus, spacing_w, ExampleMove::kFocusPull);
 }
 
 }  // namespace lf

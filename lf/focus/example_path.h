@@ -17,14 +17,21 @@
 
 namespace lf {
 
-enum class ExampleMove { kStatic, kOrbit, kDolly, kFocusPull };
+// kAuto is kAlong if the LF images are a dense recorded track (IsDenseTrack() in
+// focus/moves/recorded_track.h), otherwise kFocusPull.
+enum class ExampleMove { kAuto, kStatic, kAlong, kOrbit, kDolly, kFocusPull };
 
-// Parses "static", "orbit", "dolly" or "focus-pull"; returns nullopt for any other text.
+// Parses "auto", "static", "along", "orbit", "dolly" or "focus-pull"; returns nullopt for any other
+// text.
 std::optional<ExampleMove> ParseExampleMove(std::string_view name);
 
+// Returns what a path does at its LF camera, to be followed by the camera's name: "starts at",
+// "moves around" or "passes".
+const char* StartWords(ExampleMove move);
+
 struct ExampleOptions {
-  LfImageId camera;  // LF image at whose LF camera the path starts
-  ExampleMove move = ExampleMove::kFocusPull;
+  LfImageId camera;  // LF image whose LF camera the path starts at, passes or moves around
+  ExampleMove move = ExampleMove::kAuto;
   std::optional<double> focus_distance_w;  // unset: MakeExamplePath() finds it
   // Returns points of the scene that the LF image shows, in world coordinates. May be left empty if
   // the light field has no points. Called only if focus_distance_w is unset.
@@ -33,12 +40,13 @@ struct ExampleOptions {
 
 struct ExamplePath {
   std::string yaml;
+  ExampleMove move = ExampleMove::kStatic;  // the chosen one if kAuto was asked for
   double focus_distance_w = 0;
   std::string focus_reason;  // how the focus distance was found, for people
   double aperture_diameter_w = 0;
   std::string aperture_reason;  // reason of the diameter, to be printed after "DIAMETER, "
-  // How the move differs from the one that was asked for, and why the film may disappoint; empty if
-  // there is nothing to say.
+  // A sentence that says how far the camera or the focus moves and what limits that (empty if
+  // nothing moves), and why the film may disappoint (empty if there is nothing to say).
   std::string move_note;
   std::string move_warning;
   // The reason why the focus may be wrong; empty if the focus is sure. If there is a doubt,
@@ -53,7 +61,8 @@ struct ExamplePath {
 // machine lacks memory or open files. The light field must have a camera.
 Result<LfImageId> FirstCamera(const LightField& light_field, const LfImageStore& store);
 
-// Returns a path that shows something of the scene: one frame if nothing moves, otherwise 50.
+// Returns a path that shows something of the scene: one frame if nothing moves, otherwise 50 (along
+// a track, up to 101).
 // - Focus: at options.focus_distance_w if it is set, otherwise on the subject
 //   (focus/find_subject.h). If the subject is not sure, or the points of a reconstruction
 //   contradict it, the focus is at the depth of most points (focus/point_subject.h). If that depth
@@ -66,15 +75,18 @@ Result<LfImageId> FirstCamera(const LightField& light_field, const LfImageStore&
 //   lens is almost a pinhole, and the first frame is the view of one LF camera.
 // - Focus pull: through the depths found in the scene, from at least 0.7 to at most 1.6 times the
 //   focus distance.
-// - Orbit: at most half as wide and high as the positions of the nearest 400 LF cameras. If LF
-//   cameras have not recorded 1 % of a frame, the orbit is smaller, and the frames are cropped to
-//   as little as 70 % of their width; move_note tells so, or move_warning if that is not enough.
+// - A moving camera: the lens is at most half as wide as the LF cameras reach, so that the rest is
+//   left to the movement (focus/moves/). It keeps looking at the subject, which stays in focus. Its
+//   frames may be cropped to as little as 70 % of their width, so that LF cameras have recorded
+//   them; move_warning tells if that is not enough.
 // - Picture: the largest rectangle within the view of the LF camera, in the proportions of the LF
-//   image. Its horizon is level if the LF camera is rolled by at most 30 degrees against the mean
-//   up direction of all LF cameras.
+//   image, at most 1920 elements wide. Its horizon is level if the LF camera is rolled by at most
+//   30 degrees. It is shifted on the plate (camera.shift) if the principal point of the LF camera
+//   is off-centre.
 // kInput: the light field has fewer than two LF cameras, or most of them share their position with
-// another; the LF image options.camera does not exist. If the focus has to be found, also errors of
-// options.points_world() and FindSubject().
+// another; the LF image options.camera does not exist; the camera has no room for a visible
+// movement, or there is no recorded track (FindTrack()). If the focus has to be found, also errors
+// of options.points_world() and FindSubject().
 Result<ExamplePath> MakeExamplePath(const LightField& light_field, const LfImageStore& store,
                                     const ExampleOptions& options, ThreadPool& pool);
 

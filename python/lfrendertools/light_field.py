@@ -328,16 +328,18 @@ class LightField:
             out[places[i]] = np.nan
         return out
 
-    def path(self, move: str = "focus-pull", *, start: Optional[int] = None,
+    def path(self, move: str = "auto", *, start: Optional[int] = None,
              focus_distance: Optional[float] = None) -> CameraPath:
         """Return the camera path that `lfexample` writes, as a path to start from.
 
         Parameters
         ----------
-        move : {"static", "orbit", "dolly", "focus-pull"}
-            Movement of the camera. A static path has one frame, others have 50.
+        move : {"auto", "static", "along", "orbit", "dolly", "focus-pull"}
+            Movement of the camera. A static path has one frame, others have 50, or up to 101 along a recorded track.
+            "auto" is "along" if the LF images are a dense track, such as a hand-held video, otherwise "focus-pull".
         start : int, optional
-            Number of the LF camera at which the path begins; by default the one in the middle of the capture.
+            Number of the LF camera at which the path begins, which it passes or moves around; by default the one in
+            the middle of the capture.
         focus_distance : float, optional
             Distance of the subject in world units. By default it is found by comparing LF images, which takes seconds.
 
@@ -349,6 +351,11 @@ class LightField:
         -----
         UncertainFocusWarning
             The distance of the subject is not sure: state `focus_distance`.
+
+        Raises
+        ------
+        InputError
+            The camera has no room for a visible movement, or the LF images are no recorded track ("along").
         """
         path, doubt = self._example(move, start, focus_distance)
         self._warn_of_focus(doubt)

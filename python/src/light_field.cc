@@ -262,8 +262,8 @@ py::tuple ExampleOf(const OpenedField& field, const std::string& path, const std
                     std::optional<py::ssize_t> camera, std::optional<double> focus_distance_w) {
   const std::optional<ExampleMove> known = ParseExampleMove(move);
   if (!known)
-    throw Failure(
-        UsageError(fmt::format("move=\"{}\": expected static, orbit, dolly or focus-pull", move)));
+    throw Failure(UsageError(fmt::format(
+        "move=\"{}\": expected auto, static, along, orbit, dolly or focus-pull", move)));
   const std::optional<LfImageId> start =
       camera ? std::optional(IdOf(field, *camera)) : std::nullopt;
   ThreadPool& pool = PoolOf(0);

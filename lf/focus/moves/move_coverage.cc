@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lf/focus/moves/move_coverage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+namespace lf {
+
+double VisibleMovement(const Shot& shot, const CameraMove& move) {
+  const Vec3 to_subject = shot.SubjectWorld() - move.keys_world.front();
+  const double distance_w = to_subject.norm();
+  double most_px = 0;
+  for (const Vec3& key : move.keys_world) {
+    const Vec3 step = key - move.keys_world.front();
+    const double ahead_w = step.dot(to_subject) / distance_w;
+    const double aside_w = std::sqrt(std::max(0.0, step.squaredNorm() - ahead_w * ahead_w));
+    most_px = std::max(
+        most_px,
+        (shot.frame.fx_px * aside_w + shot.frame.width_px / 2.0 * std::abs(ahead_w)) / distance_w);
+  }
+  return most_px;
+}
+
+std::vector<LfImageId> NearestCameras(const LightField& light_field, const Vec3& point_world) {
+  std::vector<LfImageId> ids;
+  for (uint32_t i = 0; i < light_field.size(); ++i) ids.push_back({i});
+  const auto distance = [&](LfImageId id) {
+    return (light_field.Camera(id).CentreWorld() - point_world).squaredNorm();
+  };
+  const size_t count = std::min(kMostCoverageCameras, ids.size());
+  std::partial_sort(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count), ids.end(),
+                    [&](LfImageId a, LfImageId b) { return distance(a) < distance(b); });
+  ids.resize(count);
+  return ids;
+}
+
+MoveCoverage::MoveCoverage(const LightField& light_field, std::span<const LfImageId> cameras,
+                           const Shot& shot, double radius_w)
+    : shot_(shot), subject_world_(shot.SubjectWorld()), radius_w_(radius_w) {
+  for (const LfImageId id : cameras) {
+    const PinholeCamera camera = light_field.Camera(id);
+    cameras_.emplace_back(camera, camera.ForwardWorld());
+  }
+}
+
+double MoveCoverage::Unseen(const Vec3& position_world, double crop) const {
+  constexpr int kSteps = 8;  // between tested elements, across and down
+  const std::optional<RigidTransform> pose =
+      LookAlong(position_world, subject_world_ - position_world, shot_.up_world);
+  if (!pose) return 1;
+  const PinholeCamera frame{shot_.frame, *pose};
+  int unseen = 0;
+  for (int j = 0; j <= kSteps; ++j)
+    for (int i = 0; i <= kSteps; ++i) {
+      const double x = (0.5 + crop * (i / double{kSteps} - 0.5)) * shot_.frame.width_px;
+      const double y = (0.5 + crop * (j / double{kSteps} - 0.5)) * shot_.frame.height_px;
+      unseen += IsSeen(frame, RayOfPixel(frame, x, y)) ? 0 : 1;
+    }
+  return unseen / double{(kSteps + 1) * (kSteps + 1)};
+}
+
+// Returns true if an LF camera has recorded the ray of an element, or one that passes near it
+// through the lens.
+bool MoveCoverage::IsSeen(const PinholeCamera& frame, const Ray& ray) const {
+  const Vec3 forward = frame.ForwardWorld(), lens = frame.CentreWorld();
+  const double focus_w = forward.dot(subject_world_ - lens);
+  const Vec3 point = lens + ray.direction * (focus_w / forward.dot(ray.direction));
+  return std::any_of(cameras_.begin(), cameras_.end(), [&](const RayThrough& camera) {
+    const Vec3 to_camera = camera.centre_world() - point;
+    const double back_w = -forward.dot(to_camera);
+    if (!(back_w > 0)) return false;  // the LF camera stands behind the focus plane
+    const Vec3 in_lens = point + to_camera * (focus_w / back_w);
+    if ((in_lens - lens).squaredNorm() > radius_w_ * radius_w_) return false;
+    constexpr double kTolerance_px = 0.5;
+    const auto at = camera.RecordedAt(Vec3(-to_camera));
+    return at && at->x() >= -kTolerance_px && at->y() >= -kTolerance_px &&
+           at->x() <= camera.intrinsics().width_px + kTolerance_px &&
+           at->y() <= camera.intrinsics().height_px + kTolerance_px;
+  });
+}
+
+}  // namespace lf
