@@ -38,14 +38,14 @@ class ExampleTest(unittest.TestCase):
         return path, result.stderr
 
     def test_every_move_renders(self):
-        for move in ("static", "orbit", "dolly", "focus-pull"):
+        for move, fewest in (("static", 1), ("along", 50), ("orbit", 50), ("dolly", 50), ("focus-pull", 50)):
             path, _ = self.example("--move", move)
-            last = 1 if move == "static" else 50
+            last = int(re.search(r"\nframes: (\d+)\n", path.read_text()).group(1))
+            self.assertTrue(fewest <= last <= (1 if move == "static" else 101), last)
             result = self.run_tool(RENDERER, self.field, path, "-o", self.folder / move, "--frames",
                                    f"1,{last}")
             self.assertEqual(result.returncode, 0, result.stderr)
             self.assertTrue((self.folder / move / f"frame_{last:04d}.exr").exists())
-            self.assertIn(f"\nframes: {last}\n", path.read_text())
 
     def film(self, path, name, frames):
         """Films without filling, and returns what the renderer says."""
@@ -59,7 +59,7 @@ class ExampleTest(unittest.TestCase):
         self.addCleanup(setattr, small_field, "SIDE", SIDE)
         small_field.SIDE = 15
         self.field = write_field(self.folder / "large", wall)
-        path, words = self.example("--move", "orbit", "--focus", 0.04)
+        path, words = self.example("--move", "orbit", "--focus", DEPTH)
         self.assertRegex(words, r"the orbit is 0\.0\d+ wide and 0\.0\d+ high in world units, \d+(\.\d+)? degrees as seen "
                                 r"from the subject, \d+ % of what")
         self.assertRegex(words, r"its frames are \d+ % as wide as a standing camera's: LF cameras have not "
@@ -80,7 +80,7 @@ class ExampleTest(unittest.TestCase):
         self.field.write_text(json.dumps(calibration))
         path, words = self.example("--move", "orbit", "--focus", 0.5)
         self.assertRegex(words, r"the orbit is \S+ wide and \S+ high in world units, \S+ degrees as seen from the "
-                                r"subject, \d+ %")
+                                r"subject[,:]")
         position = [list(map(float, match.split(","))) for match in
                     re.findall(r"time: [^}]*value: \[(.*)\]", path.read_text())]
         # The orbit stays within a spacing of the circle; the positions alone would allow one through the subject.

@@ -26,6 +26,8 @@ namespace {
 
 constexpr int kFps = 25;
 constexpr double kNominalSensorWidth_mm = 36;
+// Neighbouring LF cameras that are farther apart, as seen from the subject, show it differently.
+constexpr double kFarApart_rad = RadiansFromDegrees(3);
 
 // Returns the numbers with as many digits as are needed to read back the same values. Georeferenced
 // positions have seven digits before the point.
@@ -240,7 +242,7 @@ Result<CameraMove> MoveCamera(const LightField& light_field, LfImageId id, const
     LF_ASSIGN_OR_RETURN(const RecordedTrack track, FindTrack(light_field, id));
     moved = MakeAlong(light_field, track, shot);
   }
-  constexpr double kVisible_px = 1, kClear_px = 3, kClear = 0.01;
+  constexpr double kVisible_px = 1, kClear_px = 3, kClear = 0.005;
   const double visible_px = VisibleMovement(shot, moved);
   if (!(visible_px >= kVisible_px))
     return InputError(fmt::format(
@@ -280,6 +282,12 @@ Result<ExamplePath> PathOfMove(const LightField& light_field, LfImageId id,
   }
   if (aperture.spacings < kLeastSpacings && focus.doubt.empty())
     TellSparse(move, spacing_w, aperture.copies, &example);
+  else if (aperture.spacings < kLeastSpacings && MovesCamera(move) &&
+           spacing_w > kFarApart_rad * focus.distance_w)
+    TellSparse(move, spacing_w,
+               fmt::format("neighbours by {:.2g} degrees as seen from the subject",
+                           DegreesFromRadians(spacing_w / focus.distance_w)),
+               &example);
   example.yaml = YamlOf(light_field, id, shot, frame, movement, example);
   return example;
 }

@@ -61,8 +61,8 @@ struct ExamplePath {
 // machine lacks memory or open files. The light field must have a camera.
 Result<LfImageId> FirstCamera(const LightField& light_field, const LfImageStore& store);
 
-// Returns a path that shows something of the scene: one frame if nothing moves, otherwise 50 (along
-// a track, up to 101).
+// Returns a path that shows something of the scene: one frame if nothing moves, otherwise 50 (an
+// orbit, or along a track, up to 101).
 // - Focus: at options.focus_distance_w if it is set, otherwise on the subject
 //   (focus/find_subject.h). If the subject is not sure, or the points of a reconstruction
 //   contradict it, the focus is at the depth of most points (focus/point_subject.h). If that depth

@@ -13,7 +13,10 @@ namespace lf {
 namespace {
 
 constexpr int kOrbitKeys = 8;  // after the first
-constexpr double kOrbitDuration_s = 49 / 25.0;
+// A calm film is no wider and no faster than this, as seen from the subject.
+constexpr double kMostOrbit_rad = RadiansFromDegrees(8);
+constexpr double kOrbitPerSecond_rad = RadiansFromDegrees(6);
+constexpr double kLeastOrbit_s = 49 / 25.0, kMostOrbit_s = 4;
 
 struct Orbit {
   // Where the middle of the ellipse is: 0: at the LF camera; -1, 1: to the left, to the right of
@@ -33,8 +36,8 @@ class OrbitSearch {
       : shot_(shot),
         coverage_(light_field, NearestCameras(light_field, shot.start.CentreWorld()), shot,
                   std::max(shot.lens_radius_w, shot.spacing_w)),
-        right_w_(std::max(0.0, shot.reach.right_w - shot.lens_radius_w)),
-        up_w_(std::max(0.0, shot.reach.up_w - shot.lens_radius_w)) {}
+        right_w_(SemiAxis(shot.reach.right_w)),
+        up_w_(SemiAxis(shot.reach.up_w)) {}
 
   double WidthOf(const Orbit& orbit) const { return 2 * orbit.size() * right_w_; }
   double HeightOf(const Orbit& orbit) const { return 2 * orbit.size() * up_w_; }
@@ -69,6 +72,11 @@ class OrbitSearch {
   }
 
  private:
+  double SemiAxis(double reach_w) const {
+    return std::clamp(reach_w - shot_.lens_radius_w, 0.0,
+                      kMostOrbit_rad * shot_.focus_distance_w / 2);
+  }
+
   Orbit Measured(Orbit orbit) const {
     constexpr int kPositions = 2 * kOrbitKeys;
     for (int i = 0; i < kPositions; ++i)
@@ -79,7 +87,7 @@ class OrbitSearch {
 
   const Shot& shot_;
   MoveCoverage coverage_;
-  double right_w_, up_w_;  // the semi-axes of the largest ellipse that the positions allow
+  double right_w_, up_w_;  // the semi-axes of the largest ellipse
 };
 
 // Tells how large the orbit is, and what keeps it from being larger.
@@ -90,16 +98,20 @@ std::string LimitOf(const Shot& shot, const OrbitSearch& search, const Orbit& or
       "subject",
       width_w, height_w,
       DegreesFromRadians(2 * std::atan(std::max(width_w, height_w) / 2 / shot.focus_distance_w)));
+  const double wider_w = std::max(shot.reach.right_w, shot.reach.up_w) - shot.lens_radius_w;
+  const bool is_calm = wider_w > kMostOrbit_rad * shot.focus_distance_w / 2;
+  if (orbit.size() == 1 && orbit.crop == 1 && is_calm)
+    return size + ": a calm film goes no farther";
   if (orbit.size() == 1 && orbit.crop == 1)
     return fmt::format(
         "{}: in a larger one the lens, {:.3g} wide, would reach beyond the LF cameras, which "
         "extend {:.3g} to the sides and {:.3g} up and down",
         size, 2 * shot.lens_radius_w, shot.reach.right_w, shot.reach.up_w);
   return fmt::format(
-      "{}, {:.0f} % of what the positions of the LF cameras would allow, and its frames are "
-      "{:.0f} % as wide as a standing camera's: LF cameras have not recorded {:.0f} % of a frame "
-      "of the larger orbit",
-      size, 100 * orbit.size(), 100 * orbit.crop, 100 * search.Largest().unseen);
+      "{}, {:.0f} % of what {} would allow, and its frames are {:.0f} % as wide as a standing "
+      "camera's: LF cameras have not recorded {:.0f} % of a frame of the larger orbit",
+      size, 100 * orbit.size(), is_calm ? "a calm film" : "the positions of the LF cameras",
+      100 * orbit.crop, 100 * search.Largest().unseen);
 }
 
 }  // namespace
@@ -110,7 +122,11 @@ CameraMove MakeOrbit(const LightField& light_field, const Shot& shot) {
   CameraMove move;
   for (int i = 0; i <= kOrbitKeys; ++i)
     move.keys_world.push_back(search.Position(orbit, i / double{kOrbitKeys}));
-  move.duration_s = kOrbitDuration_s;
+  double length_w = 0;
+  for (size_t i = 1; i < move.keys_world.size(); ++i)
+    length_w += (move.keys_world[i] - move.keys_world[i - 1]).norm();
+  move.duration_s = std::clamp(length_w / shot.focus_distance_w / kOrbitPerSecond_rad,
+                               kLeastOrbit_s, kMostOrbit_s);
   move.crop = orbit.crop;
   move.limit = LimitOf(shot, search, orbit);
   if (orbit.unseen > kMostUnseen)
