@@ -208,7 +208,6 @@ Shot ShotOf(const LightField& light_field, LfImageId id, const ExampleFocus& foc
             ExamplePath* example) {
   Shot shot;
   shot.start = light_field.Camera(id);
-  shot.reach = CaptureReach(light_field, shot.start, 400);
   shot.focus_distance_w = focus.distance_w;
   shot.spacing_w = spacing_w;
   shot.up_world = LevelUpWorld(light_field, shot.start);
@@ -216,11 +215,19 @@ Shot ShotOf(const LightField& light_field, LfImageId id, const ExampleFocus& foc
   // Diameter, as a multiple of the spacing of the LF cameras, that a standing lens may have even if
   // the capture is narrower.
   constexpr double kLeastOfBand = 2.2;
+  shot.reach = CaptureReach(light_field, shot.start, 400);
+  const double wish_w = aperture.spacings * spacing_w;
+  if (MovesCamera(move)) {
+    // LF cameras on the far side of a ring are of no use to a movement on the near side.
+    constexpr double kNear_rad = RadiansFromDegrees(6);
+    const Reach near =
+        ReachNear(light_field, shot.start, kNear_rad * focus.distance_w + wish_w + spacing_w);
+    shot.reach = {std::min(shot.reach.right_w, near.right_w), std::min(shot.reach.up_w, near.up_w)};
+  }
   const double reach_w = std::max(shot.reach.right_w, shot.reach.up_w);
   // A moving camera leaves at least half of the reach to the movement.
   const double most_w =
       MovesCamera(move) ? reach_w : std::max(kLeastOfBand * spacing_w, 2 * reach_w);
-  const double wish_w = aperture.spacings * spacing_w;
   example->aperture_diameter_w = std::min(wish_w, most_w);
   example->aperture_reason =
       wish_w <= most_w ? aperture.reason
@@ -239,8 +246,11 @@ Result<CameraMove> MoveCamera(const LightField& light_field, LfImageId id, const
   } else if (move == ExampleMove::kDolly) {
     moved = MakeDolly(light_field, shot);
   } else {
-    LF_ASSIGN_OR_RETURN(const RecordedTrack track, FindTrack(light_field, id));
-    moved = MakeAlong(light_field, track, shot);
+    const Result<RecordedTrack> track = FindTrack(light_field, id);
+    if (!track)
+      return InputError(fmt::format("{}: let the camera move in another way (--move orbit)",
+                                    track.error().message));
+    moved = MakeAlong(light_field, *track, shot);
   }
   constexpr double kVisible_px = 1, kClear_px = 3, kClear = 0.005;
   const double visible_px = VisibleMovement(shot, moved);

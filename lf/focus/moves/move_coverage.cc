@@ -8,21 +8,6 @@
 
 namespace lf {
 
-double VisibleMovement(const Shot& shot, const CameraMove& move) {
-  const Vec3 to_subject = shot.SubjectWorld() - move.keys_world.front();
-  const double distance_w = to_subject.norm();
-  double most_px = 0;
-  for (const Vec3& key : move.keys_world) {
-    const Vec3 step = key - move.keys_world.front();
-    const double ahead_w = step.dot(to_subject) / distance_w;
-    const double aside_w = std::sqrt(std::max(0.0, step.squaredNorm() - ahead_w * ahead_w));
-    most_px = std::max(
-        most_px,
-        (shot.frame.fx_px * aside_w + shot.frame.width_px / 2.0 * std::abs(ahead_w)) / distance_w);
-  }
-  return most_px;
-}
-
 std::vector<LfImageId> NearestCameras(const LightField& light_field, const Vec3& point_world) {
   std::vector<LfImageId> ids;
   for (uint32_t i = 0; i < light_field.size(); ++i) ids.push_back({i});

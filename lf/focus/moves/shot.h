@@ -8,6 +8,7 @@
 #include "lf/camera/pinhole.h"
 #include "lf/core/geometry.h"
 #include "lf/light_field/model/capture_geometry.h"
+#include "lf/light_field/model/light_field.h"
 
 namespace lf {
 
@@ -44,5 +45,11 @@ struct CameraMove {
 // Returns by how many elements the movement changes the picture of a frame: the largest
 // displacement of very distant objects against the subject, or of the border of the picture.
 double VisibleMovement(const Shot& shot, const CameraMove& move);
+
+// Returns how far LF cameras extend beside a camera: for each axis of `camera`, the 95th percentile
+// of the distances along this axis to the LF cameras within `radius_w` of it. Unlike
+// CaptureReach(), it is flat for the near part of a ring. `camera` must be an LF camera of the
+// light field.
+Reach ReachNear(const LightField& light_field, const PinholeCamera& camera, double radius_w);
 
 }  // namespace lf

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lf/focus/moves/shot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace lf {
+
+double VisibleMovement(const Shot& shot, const CameraMove& move) {
+  const Vec3 to_subject = shot.SubjectWorld() - move.keys_world.front();
+  const double distance_w = to_subject.norm();
+  double most_px = 0;
+  for (const Vec3& key : move.keys_world) {
+    const Vec3 step = key - move.keys_world.front();
+    const double ahead_w = step.dot(to_subject) / distance_w;
+    const double aside_w = std::sqrt(std::max(0.0, step.squaredNorm() - ahead_w * ahead_w));
+    most_px = std::max(
+        most_px,
+        (shot.frame.fx_px * aside_w + shot.frame.width_px / 2.0 * std::abs(ahead_w)) / distance_w);
+  }
+  return most_px;
+}
+
+Reach ReachNear(const LightField& light_field, const PinholeCamera& camera, double radius_w) {
+  std::vector<double> right_w, up_w;
+  for (const LfCamera& other : light_field.cameras) {
+    const Vec3 offset = other.cam_from_world.Inverse().translation - camera.CentreWorld();
+    if (offset.norm() > radius_w) continue;
+    right_w.push_back(std::abs(camera.RightWorld().dot(offset)));
+    up_w.push_back(std::abs(camera.UpWorld().dot(offset)));
+  }
+  const auto most = [](std::vector<double>* values) {
+    constexpr double kShare = 0.95;  // without single LF cameras that stand apart
+    const auto at = values->begin() +
+                    static_cast<std::ptrdiff_t>(kShare * static_cast<double>(values->size() - 1));
+    std::nth_element(values->begin(), at, values->end());
+    return *at;
+  };
+  return {most(&right_w), most(&up_w)};
+}
+
+}  // namespace lf
