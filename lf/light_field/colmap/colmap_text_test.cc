@@ -43,6 +43,19 @@ TEST(ColmapText, TakesCommentsBlankLinesAndDosLineEnds) {
   EXPECT_EQ(light_field->depth_range, std::nullopt);
 }
 
+TEST(ColmapText, TakesAByteOrderMarkAndCommasBehindWords) {
+  const Result<LightField> light_field =
+      ParseColmap(false, "\xef\xbb\xbf# cameras\n1, PINHOLE, 8, 6, 10, 11, 4, 3\n",
+                  "\xef\xbb\xbf"
+                  "2, 1, 0, 0, 0, 1e-3, -2.5, 3, 1, b, with a comma,\n"
+                  "1.5, 2.5, -1, 3, 4, 7\n");
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  EXPECT_EQ(light_field->image_names, (std::vector<std::string>{"b, with a comma,"}));
+  EXPECT_EQ(light_field->cameras[0].cam_from_world.translation, Vec3(1e-3, -2.5, 3));
+  EXPECT_EQ(light_field->intrinsics, (std::vector<Intrinsics>{{10, 11, 4, 3, 0, 8, 6}}));
+  EXPECT_HAS(ErrorOfCameras("1 PINHOLE 8 6 10,5 11 4 3"), "PARAMS[0] of 4 PINHOLE is \"10,5\"");
+}
+
 // This is the example of doc/formats/colmap.md.
 TEST(ColmapText, TheExampleOfThePageIsTrue) {
   const Result<LightField> light_field =

@@ -27,10 +27,10 @@ std::string Shown(std::string_view word) {
 }
 
 // True for each character that a line of numbers may contain: digits, signs, the decimal point,
-// exponents, and the letters of nan and inf.
+// exponents, the letters of nan and inf, and commas between numbers.
 constexpr std::array<bool, 256> kNumberCharacters = [] {
   std::array<bool, 256> table = {};
-  for (const char c : std::string_view("0123456789+-.eEnaifNAIF"))
+  for (const char c : std::string_view("0123456789+-.,eEnaifNAIF"))
     table[static_cast<unsigned char>(c)] = true;
   return table;
 }();
@@ -47,6 +47,9 @@ bool TextWords::NextLine() {
       if (end != std::string_view::npos) break;
     }
   }
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (line_number_ == 0 && stream_->Window().starts_with(kByteOrderMark))
+    stream_->Skip(kByteOrderMark.size());
   if (stream_->Window().empty()) return false;
   ++line_number_;
   return true;
@@ -93,7 +96,10 @@ std::string_view TextWords::Word() {
     if (!is_whole || !word_.empty())
       word_.append(part.substr(0, kMaxWordSize - std::min(word_.size(), kMaxWordSize)));
     stream_->Skip(part.size());
-    if (is_whole) return word_.empty() ? part.substr(0, kMaxWordSize) : std::string_view(word_);
+    if (!is_whole) continue;
+    std::string_view word = word_.empty() ? part.substr(0, kMaxWordSize) : std::string_view(word_);
+    if (word.ends_with(',')) word.remove_suffix(1);
+    return word;
   }
 }
 

@@ -13,7 +13,9 @@
 
 namespace lf {
 
-// Blanks, tabs and carriage returns separate words; a line feed ends a line.
+// Blanks, tabs and carriage returns separate words, of which each may end in a comma (kapture
+// writes "1, 0.5, 2"); a line feed ends a line. A UTF-8 byte order mark at the start of the file,
+// as Windows programs write it, is skipped.
 class TextWords {
  public:
   static constexpr size_t kMaxWordSize = 1024;  // most bytes that Word() returns
@@ -35,9 +37,10 @@ class TextWords {
     SkipBlanks();
     return !Peek();
   }
-  // Returns the next word of this line, or "" if there is none. If the word is longer than
-  // kMaxWordSize, which no word of a model is, only its beginning is read and returned, and the
-  // next call continues within the word. Valid until another function of this object is called.
+  // Returns the next word of this line without a comma at its end, or "" if there is none. If the
+  // word is longer than kMaxWordSize, which no word of a model is, only its beginning is read and
+  // returned, and the next call continues within the word. Valid until another function of this
+  // object is called.
   std::string_view Word();
   // Returns the rest of this line without surrounding blanks. If it is longer than max_size,
   // returns its first max_size + 1 bytes.

@@ -63,6 +63,31 @@ Error IsNotJson(const std::filesystem::path& file, std::string_view what) {
   return InputError(fmt::format("{}: is not JSON: {}{}", file.string(), what, advice));
 }
 
+std::string WithQuotedNan(std::string_view text) {
+  constexpr std::string_view kWords[] = {"NaN", "Infinity", "-Infinity"};
+  std::string quoted;
+  bool in_string = false;
+  while (!text.empty()) {
+    size_t size = 1;
+    std::string_view mark;
+    if (in_string) {
+      size = std::min(text.size(), size_t{text[0] == '\\' ? 2u : 1u});  // an escape hides a quote
+    } else {
+      for (const std::string_view word : kWords)
+        if (text.starts_with(word)) {
+          mark = "\"";
+          size = word.size();
+        }
+    }
+    if (text[0] == '"') in_string = !in_string;
+    quoted += mark;
+    quoted += text.substr(0, size);
+    quoted += mark;
+    text.remove_prefix(size);
+  }
+  return quoted;
+}
+
 Error JsonSyntaxError(ByteStream* stream) {
   std::optional<Error> error;
   try {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "lf/core/byte_stream.h"
@@ -14,6 +15,12 @@ namespace lf {
 // Returns the error "a/transforms.json: is not JSON: MESSAGE", with the message `what` of
 // nlohmann's parser and, for the usual mistakes, advice.
 Error IsNotJson(const std::filesystem::path& file, std::string_view what);
+
+// Returns the text with quotation marks around each word NaN and Infinity, and its sign, outside of
+// strings. Python's json module writes these words, which are not JSON, for numbers that a program
+// could not compute. As strings they do no harm under keys that nobody reads, and every reader of a
+// number refuses them.
+std::string WithQuotedNan(std::string_view text);
 
 // Parses the stream again, after a parser found that it is not JSON. Returns kInput with the line
 // and column of the first syntax error; with the reason why the stream cannot be read; or, if it is

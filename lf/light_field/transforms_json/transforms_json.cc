@@ -48,7 +48,7 @@ class Reader {
   // Reads one frame. Returns false if its text is not JSON. An error in its keys is kept for
   // TakeRest().
   bool TakeFrame(const std::string& text) {
-    if (!frame_.Parse(text)) return false;
+    if (!frame_.Parse(text) && !frame_.Parse(WithQuotedNan(text))) return false;
     if (error_) return true;  // after an error, text is parsed only to see if the file is JSON
     if (Result<void> result = AddFrame(); !result) error_ = result.error();
     return true;
@@ -60,7 +60,7 @@ class Reader {
     std::optional<Error> first_error;
     std::string top_text;
     try {
-      top_text = TopLevel(text, &first_error).dump();
+      top_text = TopLevel(json::accept(text) ? text : WithQuotedNan(text), &first_error).dump();
     } catch (const json::exception&) {
       return std::nullopt;
     }
