@@ -2,10 +2,13 @@
 #include "tools/render_summary.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "tools/common/next_step.h"
 #include "tools/common/program.h"
@@ -85,18 +88,26 @@ void TellLensWeights(const RenderReport& report, bool is_chosen) {
     ++(share == 0 ? cells : share == 1 ? hats : both);
   }
   if (cells + hats + both == 0) return;
-  if (cells + both == 0)
-    LogInfo("lens weights: hat (interpolation between LF images){}",
-            is_chosen ? ", because the lenses are small" : "");
-  else if (hats + both == 0)
+  constexpr const char* kHat = "hat (interpolation between LF images)";
+  if (cells + both == 0) {
+    LogInfo("lens weights: {}{}", kHat, is_chosen ? ", because the lenses are small" : "");
+  } else if (hats + both == 0) {
     LogInfo(
         "lens weights: area (each LF image has the area of the lens that is nearest to its camera "
         "as weight)");
-  else
-    LogInfo(
-        "lens weights: area in {} frames, hat (interpolation between LF images) in {}, a mix of "
-        "both in {}",
-        cells, hats, both);
+  } else if (cells + hats == 0) {
+    LogInfo("lens weights: a mix of area and {}{}", kHat,
+            is_chosen ? ", because the lenses are neither large nor small" : "");
+  } else {
+    std::vector<std::string> kinds;
+    const auto add = [&kinds](const char* kind, size_t count) {
+      if (count > 0) kinds.push_back(fmt::format("{} in {} frames", kind, count));
+    };
+    add("area", cells);
+    add(kHat, hats);
+    add("a mix of both", both);
+    LogInfo("lens weights: {}", fmt::join(kinds, ", "));
+  }
 }
 
 // Reports how many frames reached the requested noise, and with how many LF images.

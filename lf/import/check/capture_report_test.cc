@@ -198,6 +198,29 @@ TEST(CaptureReport, ImagesUpsideDownBesideTheOthersAreNamed) {
   }
 }
 
+TEST(CaptureReport, ASurveyFlownToAndFroHasNoUpsideDown) {
+  for (const int lines : {2, 3, 8}) {  // a half or a third of the images is turned
+    LightField field;
+    for (int i = 0; i < 10 * lines; ++i) {
+      const bool returns = i / 10 % 2 == 1;
+      const double along = returns ? 9 - i % 10 : i % 10;
+      // Half a degree of sway, as drones have it.
+      const Vec3 down(0.01 * std::sin(i), 0.01 * std::cos(2 * i), -1);
+      Add(*LookAlong({along, i / 10 * 1.5, 20}, down.normalized(), {returns ? -1.0 : 1.0, 0, 0}),
+          &field);
+    }
+    EXPECT_EQ(Kinds(ReportOf(field, {.distance_w = 1e6})), Words{}) << lines;
+    // A single image that is turned in its line is still named.
+    if (lines != 8) continue;
+    LightField one_way;
+    for (int i = 0; i < 10; ++i) one_way.cameras.push_back(field.cameras[i]);
+    one_way.intrinsics = field.intrinsics;
+    one_way.image_names.assign(field.image_names.begin(), field.image_names.begin() + 10);
+    TurnOver(&one_way.cameras[4].cam_from_world);
+    EXPECT_EQ(Kinds(ReportOf(one_way, {.distance_w = 1e6})), Words{"upside-down"});
+  }
+}
+
 TEST(CaptureReport, ADomeHasNoUpsideDown) {
   LightField field;
   for (int i = 0; i < 200; ++i) {

@@ -71,8 +71,11 @@ std::vector<CaptureWarning> WarnOfDirections(const LightField& light_field) {
 std::vector<CaptureWarning> WarnOfUpsideDown(const LightField& light_field) {
   std::vector<Vec3> ups;
   Mat3 spread = Mat3::Zero();
+  Vec3 forward = Vec3::Zero();  // mean of the optical axes
   for (size_t i = 0; i < light_field.size(); ++i) {
-    ups.push_back(light_field.Camera(IdOf(i)).UpWorld());
+    const PinholeCamera camera = light_field.Camera(IdOf(i));
+    forward += camera.ForwardWorld() / static_cast<double>(light_field.size());
+    ups.push_back(camera.UpWorld());
     spread += ups.back() * ups.back().transpose() / static_cast<double>(light_field.size());
   }
   // The eigenvector of the largest eigenvalue of `spread` is the axis along which most up vectors
@@ -89,7 +92,13 @@ std::vector<CaptureWarning> WarnOfUpsideDown(const LightField& light_field) {
   std::vector<LfImageId> down;
   for (size_t i = 0; i < ups.size(); ++i)
     if (ups[i].dot(axis) < -0.5) down.push_back(IdOf(i));
-  if (down.empty()) return {};
+  // Cameras that look in one direction, such as those of a drone that looks down, need no common up
+  // direction: a flight in lines to and fro turns a third of the images, or more, by 180 degrees.
+  constexpr double kOneDirection = 0.8, kMostFaulty = 0.25;
+  const bool flies_to_and_fro =
+      forward.norm() > kOneDirection &&
+      static_cast<double>(down.size()) > kMostFaulty * static_cast<double>(ups.size());
+  if (down.empty() || flies_to_and_fro) return {};
   return {WarningAbout(
       light_field, "upside-down",
       fmt::format("{} of {} images are upside down compared with the others. This is right if the "
