@@ -18,7 +18,7 @@ target_sources(lf_installed PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_D
 # name, so that their user needs no CMake packages of them.
 target_link_libraries(lf_installed PUBLIC Eigen3::Eigen fmt::fmt TBB::tbb Threads::Threads yaml-cpp
                                           hwy::hwy OpenEXR::OpenEXR OpenEXR::OpenEXRCore png tiff z raw_r jpeg
-                                          simdjson zstd xxhash sqlite3 ${LF_OCIO_NAME})
+                                          simdjson zstd xxhash sqlite3 icuuc ${LF_OCIO_NAME})
 install(TARGETS lf_installed EXPORT lfrendertoolsTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
         FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})

@@ -30,6 +30,7 @@ OWNERS = {
     "nanoflann": {"rebinning"},
     "zstd": {"pixels/codec", "film/plate"},
     "xxhash": {"core"},
+    "unicode/": {"light_field/model"},
     "sqlite3": {"storage/sqlite"},
     "CLI/": set(),
     "microhttpd": set(),

@@ -283,9 +283,9 @@ class ImportTest(unittest.TestCase):
         for program, *rest in ((RENDERER, path, "-o", self.folder / "f"),
                                (EXAMPLE, "-o", self.folder / "p.yaml"), (IMPORT,)):
             last = self.run_tool(program, grid, *rest, code=3).stderr.strip().splitlines()[-1]
-            command = f"lfimport '{grid}' -o '{grid}' --pitch 1 --focal-px 32"
+            command = f"lfimport '{grid}' -o '{grid}' --pitch 1 --focal-px 32 --plane-distance 100"
             if program == IMPORT:  # repeats the call
-                command = f"lfimport '{grid}' --pitch 1 --focal-px 32 -o '{grid}'"
+                command = f"lfimport '{grid}' --pitch 1 --focal-px 32 --plane-distance 100 -o '{grid}'"
             self.assertTrue(last.endswith(command), last)
         # The suggested command works.
         shell = command.replace("lfimport", str(IMPORT), 1)
@@ -298,7 +298,11 @@ class ImportTest(unittest.TestCase):
         again = self.run_tool(IMPORT, grid, "-o", grid, "--pitch", 2, "--focal-px", 32)
         self.assertIn("is read instead", again.stderr)
         np.testing.assert_allclose(poses(grid / "transforms.json")["out_02_03.png"][:3, 3], [3, 2, 0])
-        # Without -o, and for another folder, lfimport reads the file, as other programs do.
+        # Neither the report nor another folder needs -o of before; only the options of the names are given again.
+        self.assertAlmostEqual(self.report(grid, "--pitch", 3, "--focal-px", 32)["spacing_w"]["median"], 3)
+        self.run_tool(IMPORT, grid, "-o", self.folder / "other", "--pitch", 4, "--focal-px", 32, "--plane-distance", 90)
+        self.assertAlmostEqual(self.report(self.folder / "other")["spacing_w"]["median"], 4)
+        # Without these options, lfimport reads the file, as other programs do.
         self.assertAlmostEqual(self.report(grid)["spacing_w"]["median"], 2)
         self.run_tool(IMPORT, grid, "-o", self.folder / "copy")
         np.testing.assert_allclose(

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tools/common/allow_missing.h"
@@ -24,8 +25,10 @@
 #include "lf/import/check/exclude_images.h"
 #include "lf/import/check/native_folder.h"
 #include "lf/import/check/similarity.h"
+#include "lf/import/check/unused_masks.h"
 #include "lf/storage/load/measure_footprint.h"
 #include "lf/storage/load/open_store.h"
+#include "lf/storage/packed/packed_store_file.h"
 
 namespace {
 
@@ -35,7 +38,7 @@ constexpr lf::HelpTexts kHelp = {
     .examples =
         R"(  lfimport capture/                                   # only the report: is it complete?
   lfimport capture/ -o native --exclude 'IMG_01*,IMG_0377.jpg' --scale 0.0213
-  lfimport capture/ -o native --exclude @bad.txt --transform upright.txt
+  lfimport capture/ -o native --exclude missing --transform upright.txt
   lfimport cards/ -o cards --pitch 1 --focal-px 768 --plane-distance 100
   lfimport capture/ -o native --match-exposure --vignetting
   lfimport brackets/ -o hdr --gain-from-exif --mask-clipped
@@ -54,7 +57,7 @@ doc/formats/import_report.md describes the report.)",
 
 struct Arguments {
   lf::LightFieldArgument light_field;
-  std::string output, pitch, transform, bayer, check = "headers";
+  std::string output, pitch, transform, bayer, masks, check = "headers";
   double plane_distance = 0, scale = 1, unit_m = 0, distance = 0;
   bool flip_x = false, flip_y = false, force = false;
   std::vector<std::string> exclude;
@@ -70,9 +73,15 @@ void AddInput(CLI::App& app, Arguments& a) {
       .Add("--exclude NAMES", a.exclude,
            "LF images to leave out: 'IMG_01*,x.jpg' or @FILE\n"
            "NAMES: names of LF images, or patterns (* ? [a-z]), separated by commas; or @FILE, a "
-           "file with one name or pattern per line. The option may be repeated.")
+           "file with one name or pattern per line. The word missing stands for all LF images "
+           "whose files are missing or broken (--check). The option may be repeated.")
       ->expected(1)
       ->take_all();
+  input.Add("--masks DIR", a.masks,
+            "Folder of masks of the LF images (as recorded)\n"
+            "Pixels that are black in a mask send no ray. The mask of IMAGE.jpg is IMAGE.jpg.png, "
+            "IMAGE.png or IMAGE.jpg in DIR, or in a folder below it that the name of the image "
+            "contains. LF images without a mask there are used whole.");
   input.AddChoice("--bayer", a.bayer, {"RGGB", "BGGR", "GRBG", "GBRG"},
                   "The images are mosaics with this Bayer pattern\n"
                   "The letters are the colours of the upper left 2x2 pixels, row by row. The "
@@ -175,18 +184,32 @@ lf::Result<lf::OpenOptions> MakeOpenOptions(const Arguments& a) {
   options.flip_y = a.flip_y;
   options.passes_over_own = WritesAgain(a);
   options.bayer = lf::BayerPatternOf(a.bayer);
+  if (!a.masks.empty()) options.masks_folder = a.masks;
   options.import_again = [&a](const std::vector<std::string>& added) {
     return ImportAgain(a, added, a.light_field.path);
   };
   return options;
 }
 
-// Opens the light field and applies --exclude, --transform, --scale and --unit-m. Sets the number
-// of excluded LF images.
-lf::Result<lf::LightField> OpenChanged(const Arguments& a, size_t* excluded_count) {
+// Returns the patterns of --exclude but for the word that stands for missing LF images, and whether
+// it is among them.
+lf::Result<std::pair<std::vector<std::string>, bool>> ReadExcluded(const Arguments& a) {
+  LF_ASSIGN_OR_RETURN(std::vector<std::string> patterns, lf::ReadPatterns(a.exclude));
+  const bool excludes_missing = std::erase(patterns, lf::kMissingPattern) > 0;
+  if (excludes_missing && a.check == "none")
+    return lf::UsageError(
+        fmt::format("--exclude {} cannot be used with --check none, which does not look for the "
+                    "files: leave one of the two out",
+                    lf::kMissingPattern));
+  return std::pair(std::move(patterns), excludes_missing);
+}
+
+// Opens the light field and applies --transform, --scale, --unit-m and the patterns of --exclude.
+// Sets the number of excluded LF images.
+lf::Result<lf::LightField> OpenChanged(const Arguments& a, const std::vector<std::string>& patterns,
+                                       size_t* excluded_count) {
   LF_ASSIGN_OR_RETURN(const lf::OpenOptions options, MakeOpenOptions(a));
   LF_ASSIGN_OR_RETURN(lf::LightField light_field, lf::OpenLightField(a.light_field.path, options));
-  LF_ASSIGN_OR_RETURN(const std::vector<std::string> patterns, lf::ReadPatterns(a.exclude));
   LF_ASSIGN_OR_RETURN(*excluded_count, lf::ExcludeImages(patterns, &light_field));
   LF_ASSIGN_OR_RETURN(const lf::Similarity similarity, lf::ReadSimilarity(a.transform, a.scale));
   if (!a.transform.empty() || a.scale != 1)
@@ -211,6 +234,36 @@ lf::Result<lf::FootprintFacts> FindFootprint(lf::LightField* light_field) {
   return lf::FootprintFacts{found, is_stated};
 }
 
+lf::Result<lf::ImageFaults> CheckFiles(const Arguments& a, const lf::CommonOptions& common,
+                                       const lf::LightField& light_field,
+                                       const std::atomic<bool>& interrupted, lf::ThreadPool& pool) {
+  lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "images");
+  lf::CheckOptions check;
+  check.check = a.check == "pixels" ? lf::ImageCheck::kPixels : lf::ImageCheck::kHeaders;
+  check.interrupted = &interrupted;
+  check.progress = [&](size_t done, size_t total) { meter.Update(done, total, "checking"); };
+  return lf::CheckImages(light_field, check, pool);
+}
+
+void WarnOfMasks(const Arguments& a, const lf::LightField& light_field, lf::ImportReport* report) {
+  if (!a.masks.empty()) return;
+  const auto again = [&a](const std::vector<std::string>& added) {
+    return ImportAgain(a, added, "masked");
+  };
+  if (std::optional<lf::CaptureWarning> warning = lf::WarnOfUnusedMasks(light_field, again))
+    report->capture.warnings.push_back(*std::move(warning));
+}
+
+// Returns the advice of a call that found missing or broken LF images.
+std::string AdviceOnFaults(const Arguments& a, const lf::LightField& light_field) {
+  if (lf::HoldsPackedStore(light_field))
+    return "renders leave them out, too; --exclude removes them from the light field";
+  return "renders leave them out, too, and end with the same exit code; to write a calibration "
+         "without them: " +
+         ImportAgain(a, {fmt::format("--exclude={}", lf::kMissingPattern)},
+                     lf::FreeName("complete", ""));
+}
+
 lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
   const std::atomic<bool>& interrupted = lf::CatchInterrupts();
   LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, a.allow_missing.Limit());
@@ -219,10 +272,21 @@ lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
         lf::CheckMayWrite(WritesAgain(a) ? "" : a.light_field.path, a.output, a.force));
   lf::ImportReport report;
   report.light_field = a.light_field.path;
-  LF_ASSIGN_OR_RETURN(lf::LightField light_field, OpenChanged(a, &report.excluded_count));
+  LF_ASSIGN_OR_RETURN(const auto excluded, ReadExcluded(a));
+  const auto& [patterns, excludes_missing] = excluded;
+  LF_ASSIGN_OR_RETURN(lf::LightField light_field, OpenChanged(a, patterns, &report.excluded_count));
   if (!a.output.empty()) LF_RETURN_IF_ERROR(lf::CheckNames(a.output, light_field));
-  report.first_image = light_field.ImagePath({0}).lexically_normal().string();
   lf::ThreadPool pool(common.threads);
+  if (a.check != "none") {
+    LF_ASSIGN_OR_RETURN(report.faults, CheckFiles(a, common, light_field, interrupted, pool));
+    if (excludes_missing) {
+      LF_ASSIGN_OR_RETURN(const size_t count, lf::ExcludeFaulty(*report.faults, &light_field));
+      report.excluded_count += count;
+      report.faults->missing.clear();
+      report.faults->broken.clear();
+    }
+  }
+  report.first_image = light_field.ImagePath({0}).lexically_normal().string();
   lf::CaptureReportOptions options;
   if (a.distance > 0) options.distance_w = a.distance;
   options.import_again = [&a](const std::vector<std::string>& added) {
@@ -231,14 +295,9 @@ lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
   LF_ASSIGN_OR_RETURN(report.exif_gains,
                       lf::StateBrackets(a.exposure, pool, &light_field, &options.lights));
   report.capture = lf::ReportCapture(light_field, options, pool);
+  WarnOfMasks(a, light_field, &report);
   size_t fault_count = 0;
-  if (a.check != "none") {
-    lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "images");
-    lf::CheckOptions check;
-    check.check = a.check == "pixels" ? lf::ImageCheck::kPixels : lf::ImageCheck::kHeaders;
-    check.interrupted = &interrupted;
-    check.progress = [&](size_t done, size_t total) { meter.Update(done, total, "checking"); };
-    LF_ASSIGN_OR_RETURN(report.faults, lf::CheckImages(light_field, check, pool));
+  if (report.faults) {
     lf::WarnOfFaults(light_field, &report);
     fault_count = report.faults->missing.size() + report.faults->broken.size();
   }
@@ -263,10 +322,8 @@ lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
       fmt::format("{} of {} images are missing, {} broken", report.faults->missing.size(),
                   light_field.size(), report.faults->broken.size());
   if (refuses) return lf::InputError(what + "; nothing was written");
-  return lf::EndWithMissing(
-      {fault_count, light_field.size(), what,
-       "renders leave them out, too; --exclude removes them from the light field"},
-      limit);
+  return lf::EndWithMissing({fault_count, light_field.size(), what, AdviceOnFaults(a, light_field)},
+                            limit);
 }
 
 }  // namespace

@@ -10,8 +10,8 @@ namespace lf {
 namespace {
 
 constexpr const char* kAdvice =
-    "the report names them; once they are mended, render again without --resume, which would keep "
-    "the finished frames";
+    "the report names them; once they are mended, or left out of the calibration (lfimport "
+    "--exclude missing), render again without --resume, which would keep the finished frames";
 
 // Returns the number of LF images that were to be read, recorded and virtual ones, because both may
 // be missing. `Report` is a RenderReport or a PackageReport.

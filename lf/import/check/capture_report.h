@@ -59,6 +59,8 @@ struct CaptureWarning {
   std::string message;             // the fault and its remedy
   size_t image_count = 0;          // number of affected LF images; 0: the capture as a whole
   std::vector<std::string> names;  // names of the first 5 affected LF images
+
+  friend bool operator==(const CaptureWarning&, const CaptureWarning&) = default;
 };
 
 struct CaptureReport {
@@ -93,7 +95,10 @@ struct CaptureReportOptions {
 // counted, unless there are no others: the report is about the capture. The kinds of warnings are:
 //   facing-away         cameras that look away from the common point or direction of most cameras
 //   diverging-axes      most cameras look away from the point where their axes meet
-//   upside-down         cameras whose up axis is more than 120 degrees away from the common up axis
+//   upside-down         cameras whose up axis is more than 120 degrees away from the common up
+//   axis;
+//                       not if all look in about one direction and more than a quarter of them are
+//                       turned, as in a survey that is flown in lines to and fro
 //   repeated-positions  cameras at the position of another camera, unless they are brackets
 //   brackets            poses with several exposures that are not merged yet
 //   sparse              ghosts at 0.75 z that are more than 1 % of the image width apart

@@ -71,7 +71,33 @@ class PatternSet {
   std::vector<bool> used_;
 };
 
+// Keeps these LF images alone. Returns the number of those that are removed.
+size_t Keep(const std::vector<size_t>& kept, LightField* light_field) {
+  const size_t removed = light_field->size() - kept.size();
+  KeepImages(kept, light_field);
+  // If only one exposure of the brackets is left, the light field has no brackets any more.
+  RadianceEncoding& encoding = light_field->encoding;
+  if (encoding.masks_clipped && ApplyBrackets(light_field) == 0) encoding.masks_clipped = false;
+  return removed;
+}
+
 }  // namespace
+
+Result<size_t> ExcludeFaulty(const ImageFaults& faults, LightField* light_field) {
+  std::vector<bool> is_faulty(light_field->size());
+  for (const auto* const list : {&faults.missing, &faults.broken})
+    for (const ImageFault& fault : *list) is_faulty[fault.id.value] = true;
+  std::vector<size_t> kept;
+  for (size_t i = 0; i < is_faulty.size(); ++i)
+    if (!is_faulty[i]) kept.push_back(i);
+  if (kept.empty()) {
+    const auto& first = faults.missing.empty() ? faults.broken : faults.missing;
+    return InputError(
+        fmt::format("--exclude {}: all {} images are missing or broken; the first: {}",
+                    kMissingPattern, light_field->size(), first[0].reason));
+  }
+  return Keep(kept, light_field);
+}
 
 Result<std::vector<std::string>> ReadPatterns(std::span<const std::string> options) {
   std::vector<std::string> patterns;
@@ -101,12 +127,7 @@ Result<size_t> ExcludeImages(std::span<const std::string> patterns, LightField* 
         fmt::format("--exclude: the names and patterns match all {} images: exclude fewer, because "
                     "a light field needs at least one",
                     light_field->size()));
-  const size_t removed = light_field->size() - kept.size();
-  KeepImages(kept, light_field);
-  // If only one exposure of the brackets is left, the light field has no brackets any more.
-  RadianceEncoding& encoding = light_field->encoding;
-  if (encoding.masks_clipped && ApplyBrackets(light_field) == 0) encoding.masks_clipped = false;
-  return removed;
+  return Keep(kept, light_field);
 }
 
 }  // namespace lf

@@ -69,6 +69,22 @@ TEST(ExcludeImages, APatternThatNamesNothingIsAnError) {
   EXPECT_NE(ErrorOf({"*"}).find("match all 4 images"), std::string::npos);
 }
 
+TEST(ExcludeImages, FaultyImagesAreLeftOut) {
+  LightField light_field = FieldOf(kNames);
+  ImageFaults faults;
+  faults.broken = {{LfImageId{0}, "left/01.png: is cut off"}};
+  faults.missing = {{LfImageId{2}, "right/01.png: no such file"}};
+  EXPECT_EQ(*ExcludeFaulty(faults, &light_field), 2u);
+  EXPECT_EQ(light_field.image_names, (Names{"left/02.png", "right/[x].png"}));
+  EXPECT_EQ(*ExcludeFaulty({}, &light_field), 0u);
+  faults.broken.push_back({LfImageId{1}, "right/[x].png: is cut off"});
+  faults.missing.clear();
+  const Result<size_t> all = ExcludeFaulty(faults, &light_field);
+  ASSERT_FALSE(all);
+  EXPECT_NE(all.error().message.find("all 2 images are missing or broken; the first: left/01.png"),
+            std::string::npos);
+}
+
 class PatternFileTest : public FolderTest {};
 
 TEST_F(PatternFileTest, PatternsComeFromListsAndFiles) {

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -16,12 +17,14 @@
 #include "lf/import/formats/read_hci.h"
 #include "lf/import/formats/read_llff.h"
 #include "lf/import/formats/read_middlebury.h"
+#include "lf/import/formats/read_splits.h"
 #include "lf/import/formats/read_stanford.h"
 #include "lf/light_field/colmap/points_seen.h"
 #include "lf/light_field/colmap/read_colmap.h"
 #include "lf/light_field/model/alpha_evidence.h"
 #include "lf/light_field/model/brackets.h"
 #include "lf/light_field/model/image_files.h"
+#include "lf/light_field/model/masks_beside.h"
 #include "lf/light_field/model/raw_encoding.h"
 #include "lf/light_field/transforms_json/transforms_json.h"
 #include "lf/storage/packed/packed_store_file.h"
@@ -63,10 +66,11 @@ std::string_view StanfordOptionOf(const OpenOptions& options) {
 Result<void> CheckNoStanfordOptions(const fs::path& path, const OpenOptions& options) {
   const std::string_view option = StanfordOptionOf(options);
   if (option.empty()) return {};
-  return UsageError(
-      fmt::format("{} is only for folders of images with Stanford names, which lack a part of the "
-                  "calibration, but {} is a complete calibration: leave the option out",
-                  option, path.string()));
+  return UsageError(fmt::format(
+      "{} is only for folders of images with Stanford names, which lack a part of the "
+      "calibration, but {} is a complete calibration: leave the option out, or give the "
+      "folder of the images",
+      option, path.string()));
 }
 
 Result<void> CheckNoFov(const fs::path& path, const OpenOptions& options) {
@@ -96,6 +100,11 @@ Result<LightField> OpenPackedStore(const fs::path& path, const OpenOptions& opti
   LF_RETURN_IF_ERROR(CheckNoStanfordOptions(path, options));
   LF_RETURN_IF_ERROR(CheckNoFov(path, options));
   LF_RETURN_IF_ERROR(CheckNoImagesFolder(path, options));
+  if (options.masks_folder)
+    return UsageError(
+        fmt::format("--masks cannot be used with the packed store {}, which contains its masks: "
+                    "leave the option out",
+                    path.string()));
   if (options.bayer)
     return UsageError(fmt::format(
         "--bayer cannot be used with the packed store {}, whose pixels are already encoded: import "
@@ -121,20 +130,35 @@ Result<LightField> OpenPackedStore(const fs::path& path, const OpenOptions& opti
 std::optional<Result<LightField>> OpenFile(const fs::path& path, const OpenOptions& options) {
   if (path.extension() == ".json" && IsAosFile(path)) return OpenAos(path, options);
   if (path.extension() == kStoreExtension) return OpenPackedStore(path, options);
-  Result<LightField> (*read)(const fs::path&) = nullptr;
-  if (path.extension() == ".json") read = ReadTransformsJson;
-  if (path.extension() == ".npy") read = ReadLlff;
-  if (path.extension() == ".cfg") read = ReadHci;
-  if (IsMiddleburyName(path.filename().string())) read = ReadMiddlebury;
-  if (!read) return std::nullopt;
-  if (Result<void> result = CheckNoStanfordOptions(path, options); !result) return result.error();
-  if (Result<void> result = CheckNoFov(path, options); !result) return result.error();
-  LogDebug("{}: opened as {}", path.string(),
-           read == ReadLlff             ? "LLFF poses"
-           : read == ReadHci            ? "parameters of the 4D Light Field Benchmark"
-           : read == ReadTransformsJson ? "transforms.json"
-                                        : "Middlebury parameters");
-  return read(path);
+  const std::optional<fs::path>& images = options.images_folder;
+  const struct {
+    bool fits;
+    const char* name;
+    std::function<Result<LightField>()> read;
+  } kinds[] = {
+      {path.extension() == ".json", "transforms.json",
+       [&] { return ReadTransformsJson(path, images); }},
+      {path.extension() == ".npy", "LLFF poses", [&] { return ReadLlff(path, images); }},
+      {path.extension() == ".cfg", "parameters of the 4D Light Field Benchmark",
+       [&] { return ReadHci(path); }},
+      {IsMiddleburyName(path.filename().string()), "Middlebury parameters",
+       [&] { return ReadMiddlebury(path, images); }},
+  };
+  for (const auto& kind : kinds) {
+    if (!kind.fits) continue;
+    if (Result<void> result = CheckNoStanfordOptions(path, options); !result) return result.error();
+    if (Result<void> result = CheckNoFov(path, options); !result) return result.error();
+    LogDebug("{}: opened as {}", path.string(), kind.name);
+    return kind.read();
+  }
+  return std::nullopt;
+}
+
+Result<LightField> OpenSplits(const std::vector<fs::path>& files, const OpenOptions& options) {
+  LF_RETURN_IF_ERROR(CheckNoStanfordOptions(files[0], options));
+  LF_RETURN_IF_ERROR(CheckNoFov(files[0], options));
+  LogDebug("{}: opened as the parts of a split data set", files[0].parent_path().string());
+  return ReadSplits(files, options.images_folder);
 }
 
 // Returns the calibration file in a folder: NAME_par.txt, or the poses_bounds.npy, parameters.cfg
@@ -224,6 +248,19 @@ Result<void> FindImages(const OpenOptions& options, const fs::path& path, LightF
         "instead of {} x {}: the intrinsics are scaled accordingly (see --image-scale)",
         path.string(), factor, light_field->intrinsics[0].width_px,
         light_field->intrinsics[0].height_px, before.width_px, before.height_px);
+  return {};
+}
+
+Result<void> FindMasks(const OpenOptions& options, LightField* light_field) {
+  if (!options.masks_folder) return {};
+  std::vector<std::string> masks = MasksIn(fs::absolute(*options.masks_folder), *light_field);
+  if (masks.empty())
+    return InputError(fmt::format(
+        "--masks {}: holds no mask of an image, such as {}.png for {}: give the folder of the "
+        "masks",
+        options.masks_folder->string(), fs::path(light_field->image_names[0]).filename().string(),
+        light_field->image_names[0]));
+  light_field->mask_names = std::move(masks);
   return {};
 }
 
@@ -322,6 +359,11 @@ std::string LightFieldsBelow(const fs::path& folder) {
   return fmt::format("; but there is a light field in {}/", fmt::join(names, "/, "));
 }
 
+bool HoldsGrid(const fs::path& folder) {
+  return FindStanfordNames(folder) == StanfordNames::kGrid ||
+         FindStanfordNames(folder / kImagesName) == StanfordNames::kGrid;
+}
+
 Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& options) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
@@ -339,20 +381,38 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
                     "of images",
                     path.string()));
   }
-  const bool passes_over = options.passes_over_own && HoldsOwnAndItsSource(path);
+  // Options that only names need ask for the names.
+  const bool passes_over =
+      (options.passes_over_own || !StanfordOptionOf(options).empty()) && HoldsOwnAndItsSource(path);
   if (passes_over)
     LogInfo("{}: was written by lfimport: the calibration from which it was made is read instead",
             (path / kCalibrationName).string());
+  std::optional<Error> broken_model;
   // COLMAP comes before poses_bounds.npy, which is made from such a model and drops the distortion.
   if (passes_over || !fs::exists(path / kCalibrationName, error)) {
-    LF_ASSIGN_OR_RETURN(const std::optional<fs::path> model, FindColmapModel(path));
-    if (model) return OpenColmap(*model, options);
+    const Result<std::optional<fs::path>> model = FindColmapModel(path);
+    if (model && *model) return OpenColmap(**model, options);
+    if (!model) broken_model = model.error();
   }
   LF_ASSIGN_OR_RETURN(const std::optional<fs::path> calibration,
                       passes_over ? OtherCalibrationIn(path) : CalibrationIn(path));
+  if (broken_model && !calibration) return *broken_model;
+  if (broken_model)
+    LogWarning("{}; {} is read instead", broken_model->message, calibration->string());
   if (calibration) return *OpenFile(*calibration, options);
-  for (const fs::path& folder : {path, path / kImagesName})
-    if (HoldsStanfordNames(folder)) return OpenStanford(folder, options, path);
+  if (const std::vector<fs::path> splits = SplitsIn(path); !splits.empty())
+    return OpenSplits(splits, options);
+  std::string series;
+  for (const fs::path& folder : {path, path / kImagesName}) {
+    const StanfordNames names = FindStanfordNames(folder);
+    if (names == StanfordNames::kGrid || (names == StanfordNames::kSeries && options.pitch_w))
+      return OpenStanford(folder, options, path);
+    if (names == StanfordNames::kSeries)
+      series = fmt::format(
+          "; the names in {} end in two numbers, but not in those of a grid of cameras: if they "
+          "are rows and columns, give their distance to lfimport (--pitch)",
+          folder.string());
+  }
   const std::vector<fs::path> stores = PackedStoresIn(path);
   if (stores.size() == 1) return OpenPackedStore(stores[0], options);
   if (stores.size() > 1)
@@ -362,9 +422,26 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
   return InputError(fmt::format(
       "{}: holds no light field: looked for {}, a COLMAP model in it or in sparse/0, NAME_par.txt, "
       "{}, {}, {} (AOS), one packed store NAME.lfs, and for images named "
-      "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext or NAME_ROW_COL.ext in it and in {}/{}{}{}",
+      "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext or NAME_ROW_COL.ext in it and in {}/{}{}{}{}",
       path.string(), kCalibrationName, kLlffName, kHciName, kAosName, kImagesName,
-      OtherCalibrations(path), LightFieldsBelow(path), PhotographsIn(path)));
+      OtherCalibrations(path), LightFieldsBelow(path), PhotographsIn(path), series));
+}
+
+// Warns if none of the image files is there, and the folder also holds a COLMAP model or another
+// calibration, which may be the one that belongs to the images.
+void WarnOfOtherCalibration(const fs::path& path, const LightField& light_field) {
+  std::error_code error;
+  if (HasSomeImageFiles(light_field) || !fs::is_directory(path, error) ||
+      !fs::exists(path / kCalibrationName, error))
+    return;
+  const Result<std::optional<fs::path>> model = FindColmapModel(path, /*warns=*/false);
+  const Result<std::optional<fs::path>> other = OtherCalibrationIn(path);
+  const auto& found = model && *model ? model : other;
+  if (!found || !*found) return;
+  LogWarning(
+      "{}: none of the image files that it names is there, such as {}; {} may belong to the images "
+      "instead: give its path to read it",
+      (path / kCalibrationName).string(), light_field.ImagePath({0}).string(), (*found)->string());
 }
 
 }  // namespace
@@ -375,8 +452,8 @@ bool HoldsLightField(const fs::path& folder) {
   const Result<std::optional<fs::path>> model = FindColmapModel(folder);
   if (model && *model) return true;
   const Result<std::optional<fs::path>> calibration = CalibrationIn(folder);
-  return !calibration || *calibration || HoldsStanfordNames(folder) ||
-         HoldsStanfordNames(folder / kImagesName) || !PackedStoresIn(folder).empty();
+  return !calibration || *calibration || !SplitsIn(folder).empty() || HoldsGrid(folder) ||
+         !PackedStoresIn(folder).empty();
 }
 
 bool HoldsOwnAndItsSource(const fs::path& folder) {
@@ -387,8 +464,7 @@ bool HoldsOwnAndItsSource(const fs::path& folder) {
   const Result<std::optional<fs::path>> model = FindColmapModel(folder);
   if (model && *model) return true;
   const Result<std::optional<fs::path>> other = OtherCalibrationIn(folder);
-  return (other && *other) || HoldsStanfordNames(folder) ||
-         HoldsStanfordNames(folder / kImagesName);
+  return (other && *other) || !SplitsIn(folder).empty() || HoldsGrid(folder);
 }
 
 Result<std::vector<Vec3>> PointsSeenBy(const fs::path& path, const LightField& light_field,
@@ -396,15 +472,17 @@ Result<std::vector<Vec3>> PointsSeenBy(const fs::path& path, const LightField& l
   std::error_code error;
   if (!fs::is_directory(path, error) || fs::exists(path / kCalibrationName, error))
     return std::vector<Vec3>();
-  LF_ASSIGN_OR_RETURN(const std::optional<fs::path> model, FindColmapModel(path, /*warns=*/false));
-  if (!model) return std::vector<Vec3>();
-  return ReadColmapPointsSeen(*model, id.value, light_field.Camera(id));
+  const Result<std::optional<fs::path>> model = FindColmapModel(path, /*warns=*/false);
+  if (!model || !*model) return std::vector<Vec3>();  // another calibration was read
+  return ReadColmapPointsSeen(**model, id.value, light_field.Camera(id));
 }
 
 Result<LightField> OpenLightField(const fs::path& path, const OpenOptions& options) {
   LF_ASSIGN_OR_RETURN(LightField light_field, OpenCalibration(path, options));
   if (!HoldsPackedStore(light_field)) {
     LF_RETURN_IF_ERROR(FindImages(options, path, &light_field));
+    LF_RETURN_IF_ERROR(FindMasks(options, &light_field));
+    WarnOfOtherCalibration(path, light_field);
     LF_RETURN_IF_ERROR(CompleteEncoding(options, path, &light_field));
   }
   LF_RETURN_IF_ERROR(CompleteAlpha(options, path, &light_field));

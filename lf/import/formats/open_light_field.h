@@ -31,6 +31,10 @@ struct OpenOptions {
   // Folder in which image files are searched by name (light_field/model/find_images.h). kUsage for
   // packed stores and folders with Stanford names.
   std::optional<std::filesystem::path> images_folder = {};
+  // Folder of masks, which are found by the names of the images (light_field/model/masks_beside.h)
+  // and replace those that the calibration names. Only lfimport offers it. kUsage for packed
+  // stores.
+  std::optional<std::filesystem::path> masks_folder = {};
   // How much the size of image files may differ from the calibrated size.
   ImageScale image_scale = {};
   // alpha, background and keeps_opacity state the meaning of alpha and the background, and override
@@ -61,15 +65,21 @@ bool HoldsOwnAndItsSource(const std::filesystem::path& folder);
 // Opens a calibration file, or the first of these that it finds in a folder:
 // - transforms.json, or any .json file without M3x4 matrices:
 //   light_field/transforms_json/transforms_json.h
-// - a COLMAP model, in the folder or in its sparse/0: light_field/colmap/read_colmap.h
+// - a COLMAP model, in the folder, its sparse/0 or elsewhere below:
+// light_field/colmap/read_colmap.h
 // - NAME_par.txt: import/formats/read_middlebury.h
 // - poses_bounds.npy, or any .npy file: import/formats/read_llff.h
 // - parameters.cfg, or any .cfg file: import/formats/read_hci.h
 // - poses.json, or any .json file with M3x4 matrices: import/formats/read_aos.h
+// - transforms_train.json, transforms_val.json and transforms_test.json, or some of them: their
+// union
 // - images with Stanford names, in the folder or its images/: import/formats/read_stanford.h
 // - STORE.lfs: storage/packed/packed_store_file.h
 // A file of a kind named after "or any" is opened only if `path` is the file itself. If the first
-// kind that is found in a folder is NAME_par.txt or STORE.lfs, two such files are an error.
+// kind that is found in a folder is NAME_par.txt or STORE.lfs, two such files are an error. An
+// incomplete COLMAP model is an error unless another calibration file is there, which is then taken
+// with a warning. If no image file of a transforms.json is there, a warning names another
+// calibration in its folder.
 //
 // If image files are not where the calibration says, they are searched by name in its folder or in
 // OpenOptions::images_folder; not every file is checked for existence. If the headers of up to 64
@@ -79,8 +89,8 @@ bool HoldsOwnAndItsSource(const std::filesystem::path& folder);
 // and logged. For camera raw files, pattern, levels and colours that the calibration does not state
 // are read from the first file; a warning names what this file does not state either. kInput: there
 // is no light field (the message lists what was searched for); an error of the reader;
-// images_folder has none of the images; camera raw files with an unknown Bayer pattern. kUsage: an
-// option that the calibration does not allow.
+// images_folder has none of the images; masks_folder has none of the masks; camera raw files with
+// an unknown Bayer pattern. kUsage: an option that the calibration does not allow.
 Result<LightField> OpenLightField(const std::filesystem::path& path,
                                   const OpenOptions& options = {});
 

@@ -177,8 +177,8 @@ TEST_F(OpenLightFieldTest, SaysWhatItLookedFor) {
   EXPECT_NE(error(folder_).find("poses_bounds.npy"), std::string::npos);
   EXPECT_NE(error(folder_).find("poses.json (AOS)"), std::string::npos);
   EXPECT_NE(error(folder_).find("NAME_ROW_COL_Y_X"), std::string::npos);
-  ASSERT_TRUE(WriteFileAtomically(folder_ / "transforms_train.json", kCalibration));
-  EXPECT_NE(error(folder_).find("it holds transforms_train.json"), std::string::npos);
+  ASSERT_TRUE(WriteFileAtomically(folder_ / "transforms_old.json", kCalibration));
+  EXPECT_NE(error(folder_).find("it holds transforms_old.json"), std::string::npos);
   ASSERT_TRUE(WriteFileAtomically(folder_ / "a.blend", ""));
   EXPECT_NE(error(folder_ / "a.blend").find("a.blend: is not a light field"), std::string::npos);
 }
@@ -250,8 +250,8 @@ TEST_F(RealLightFieldTest, TheCardsAreARectifiedSlab) {
   const fs::path folder = TestData() / "data/stanford-cards-9x9";
   const Result<LightField> without = OpenLightField(folder);
   ASSERT_FALSE(without);
-  EXPECT_TRUE(without.error().message.ends_with(
-      fmt::format("lfimport {0} -o {0} --pitch 1 --focal-px 768", folder.string())))
+  EXPECT_TRUE(without.error().message.ends_with(fmt::format(
+      "lfimport {0} -o {0} --pitch 1 --focal-px 768 --plane-distance 100", folder.string())))
       << without.error().message;
   const Result<LightField> light_field =
       OpenLightField(folder, {.focal_px = 768, .pitch_w = Vec2(1, 1), .plane_distance_w = 100});

@@ -6,11 +6,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <system_error>
+#include <utility>
+#include <vector>
 
 #include "lf/core/file.h"
+#include "lf/core/parse_number.h"
 #include "lf/import/formats/import_limits.h"
 #include "lf/import/formats/npy.h"
 #include "lf/light_field/model/distinct_intrinsics.h"
+#include "lf/light_field/model/find_images.h"
 #include "lf/light_field/model/rotation.h"
 
 namespace lf {
@@ -89,7 +94,8 @@ Result<RowValues> ParseRow(const double* numbers) {
   return values;
 }
 
-Result<void> CheckShape(const NpyArray& array, size_t image_count, const fs::path& path) {
+Result<void> CheckShape(const NpyArray& array, size_t image_count, const fs::path& images_folder,
+                        const fs::path& path) {
   const std::vector<size_t>& shape = array.shape;
   if (shape.size() != 2 || shape[1] != kRowSize || shape[0] > kMaxImageCount)
     return InputError(
@@ -100,15 +106,15 @@ Result<void> CheckShape(const NpyArray& array, size_t image_count, const fs::pat
     return InputError(fmt::format(
         "{}: holds {} poses, but {} holds {} image files: expected one image file for each pose, "
         "in the same order; remove or add images",
-        path.string(), shape[0], (path.parent_path() / kImagesName).string(), image_count));
+        path.string(), shape[0], (path.parent_path() / images_folder).string(), image_count));
   return {};
 }
 
-// Returns kInput if the image does not have the size that the file states. Sizes differ if the
-// images are LLFF's downsampled copies (images_4, images_8) instead of those that LLFF was run on.
+// Returns kInput if the image has neither the size that the file states nor that of a copy that was
+// made smaller by a whole factor. Of such copies, the caller of the reader scales the intrinsics.
 Result<void> CheckSize(const Intrinsics& k, const std::array<int, 2>& size, const fs::path& image,
                        const fs::path& path) {
-  if (k.width_px == size[0] && k.height_px == size[1]) return {};
+  if (IsWholeFraction(k, size)) return {};
   return InputError(
       fmt::format("{}: is for images of {} x {} pixels, but {} has {} x {}: put the images of the "
                   "stated size into {}, or scale height, width and focal length (columns 4, 9 and "
@@ -117,14 +123,42 @@ Result<void> CheckSize(const Intrinsics& k, const std::array<int, 2>& size, cons
                   image.parent_path().string()));
 }
 
+// Returns the folders in and including `root` that may hold the images, relative to it, in the
+// order in which ReadLlff() tries them.
+std::vector<fs::path> FoldersOfPhotographs(const fs::path& root) {
+  const std::string copies = fmt::format("{}_", kImagesName);
+  std::vector<std::pair<uint32_t, fs::path>> numbered;  // the copies, with their factors
+  std::vector<fs::path> others;
+  std::error_code error;
+  for (fs::directory_iterator it(root, error), end; !error && it != end; it.increment(error)) {
+    std::error_code ignored;
+    const std::string name = it->path().filename().string();
+    if (!it->is_directory(ignored) || name.starts_with('.') || name == kImagesName) continue;
+    const auto factor = name.starts_with(copies)
+                            ? ParseWhole<uint32_t>(std::string_view(name).substr(copies.size()))
+                            : std::nullopt;
+    if (factor)
+      numbered.emplace_back(*factor, name);
+    else if (!NamesSomethingElse(name))
+      others.emplace_back(name);
+  }
+  std::sort(numbered.begin(), numbered.end());
+  std::sort(others.begin(), others.end());
+  std::vector<fs::path> folders = {kImagesName};
+  for (auto& [factor, name] : numbered) folders.push_back(std::move(name));
+  folders.insert(folders.end(), others.begin(), others.end());
+  folders.emplace_back(".");
+  return folders;
+}
+
 }  // namespace
 
 Result<LightField> ParseLlff(std::string_view bytes, const fs::path& path,
                              std::span<const std::string> image_names,
-                             const ImageSizeSource& image_size) {
+                             const ImageSizeSource& image_size, const fs::path& images_folder) {
   const Result<NpyArray> array = ParseNpy(bytes);
   if (!array) return InputError(fmt::format("{}: {}", path.string(), array.error().message));
-  LF_RETURN_IF_ERROR(CheckShape(*array, image_names.size(), path));
+  LF_RETURN_IF_ERROR(CheckShape(*array, image_names.size(), images_folder, path));
 
   LightField light_field;
   light_field.folder = path.parent_path();
@@ -135,7 +169,7 @@ Result<LightField> ParseLlff(std::string_view bytes, const fs::path& path,
       return InputError(fmt::format("{}: row {} ({}): {}", path.string(), i, image_names[i],
                                     row.error().message));
     light_field.cameras.push_back({row->cam_from_world, distinct.IndexOf(row->intrinsics), 1});
-    light_field.image_names.push_back(fmt::format("{}/{}", kImagesName, image_names[i]));
+    light_field.image_names.push_back((images_folder / image_names[i]).lexically_normal().string());
     DepthRange& range = light_field.depth_range ? *light_field.depth_range
                                                 : light_field.depth_range.emplace(row->depths);
     range = {std::min(range.near_w, row->depths.near_w), std::max(range.far_w, row->depths.far_w)};
@@ -150,12 +184,25 @@ Result<LightField> ParseLlff(std::string_view bytes, const fs::path& path,
   return light_field;
 }
 
-Result<LightField> ReadLlff(const fs::path& path) {
+Result<LightField> ReadLlff(const fs::path& path, const std::optional<fs::path>& images_folder) {
   constexpr size_t kLimit = kMaxImageCount * kRowSize * sizeof(double) + (size_t{1} << 17);
   LF_ASSIGN_OR_RETURN(const std::string bytes, ReadFile(path, kLimit));
+  const fs::path beside = path.parent_path();
+  const fs::path root = images_folder ? fs::absolute(*images_folder) : fs::path();
+  fs::path folder = images_folder ? "." : kImagesName;
+  if (const Result<NpyArray> array = ParseNpy(bytes); array && !array->shape.empty()) {
+    std::vector<fs::path> folders = FoldersOfPhotographs(beside / root);
+    if (images_folder) folders.insert(folders.begin(), ".");
+    const auto fits = [&](const fs::path& candidate) {
+      const auto names = SortedImageNames(beside / root / candidate);
+      return names && names->size() == array->shape[0];
+    };
+    const auto found = std::find_if(folders.begin(), folders.end(), fits);
+    if (found != folders.end()) folder = *found;
+  }
   LF_ASSIGN_OR_RETURN(const std::vector<std::string> names,
-                      SortedImageNames(path.parent_path() / kImagesName));
-  return ParseLlff(bytes, path, names, ImageSizeInHeader);
+                      SortedImageNames(beside / root / folder));
+  return ParseLlff(bytes, path, names, ImageSizeInHeader, root / folder);
 }
 
 }  // namespace lf

@@ -100,12 +100,12 @@ TEST(Llff, CountsMustAgreeWithTheImages) {
 }
 
 TEST(Llff, ImagesOfAnotherSizeAreAnErrorThatNamesBoth) {
-  const auto eighth = [](const fs::path&) -> Result<std::array<int, 2>> {
-    return std::array{80, 60};
+  const auto other = [](const fs::path&) -> Result<std::array<int, 2>> {
+    return std::array{80, 70};
   };
   const std::vector<std::string> names = {"0.png"};
-  ExpectLlffError(ParseLlff(NpyOfRows({kUnturned}), "data/poses_bounds.npy", names, eighth),
-                  {"640 x 480", "data/images/0.png has 80 x 60", "columns 4, 9 and 14"});
+  ExpectLlffError(ParseLlff(NpyOfRows({kUnturned}), "data/poses_bounds.npy", names, other),
+                  {"640 x 480", "data/images/0.png has 80 x 70", "columns 4, 9 and 14"});
 }
 
 TEST(Llff, BrokenRowsAreErrorsThatNameTheRow) {
@@ -148,6 +148,35 @@ TEST_F(LlffFolderTest, TakesTheSortedImagesBeside) {
   EXPECT_EQ(light_field->image_names, (std::vector<std::string>{"images/a.png", "images/b.JPG"}));
   EXPECT_EQ(light_field->Camera({1}).CentreWorld(), Vec3(7, 2, 3));
   EXPECT_TRUE(fs::exists(light_field->ImagePath({1})));
+}
+
+TEST_F(LlffFolderTest, FindsTheFolderThatHoldsAnImageForEachRow) {
+  const fs::path path = folder_ / "poses_bounds.npy";
+  ASSERT_TRUE(WriteFileAtomically(path, NpyOfRows({kUnturned, kUnturned})));
+  const auto add = [&](const char* name, int width, int height) {
+    fs::create_directories((folder_ / name).parent_path());
+    ASSERT_TRUE(WriteImage(folder_ / name, Image<uint8_t>(width, height, 3).view()));
+  };
+  const auto first = [&](const std::optional<fs::path>& images_folder = {}) {
+    const Result<LightField> light_field = ReadLlff(path, images_folder);
+    return light_field ? light_field->ImagePath({0}).string() : light_field.error().message;
+  };
+  add("masks/a.png", 640, 480);
+  add("masks/b.png", 640, 480);
+  EXPECT_NE(first().find("images: cannot be listed"), std::string::npos);
+  add("rgb/a.png", 160, 120);
+  add("rgb/b.png", 160, 120);
+  EXPECT_EQ(first(), folder_ / "rgb/a.png");
+  add("images_16/a.png", 40, 30);
+  add("images_16/b.png", 40, 30);
+  EXPECT_EQ(first(), folder_ / "images_16/a.png");
+  add("images_4/a.png", 160, 120);
+  add("images_4/b.png", 160, 120);
+  add("images/a.png", 640, 480);  // one image of two
+  EXPECT_EQ(first(), folder_ / "images_4/a.png");
+  add("images/b.png", 640, 480);
+  EXPECT_EQ(first(), folder_ / "images/a.png");
+  EXPECT_EQ(first(folder_ / "images_16"), folder_ / "images_16/a.png");
 }
 
 }  // namespace

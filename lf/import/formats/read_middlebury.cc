@@ -147,12 +147,13 @@ Result<size_t> ParseCount(std::optional<std::string_view> line, const Lines& lin
 
 // Returns width and height of an image file that may have been moved or renamed since it was
 // calibrated.
-Result<std::array<int, 2>> SizeWherever(const fs::path& image, const fs::path& folder) {
+Result<std::array<int, 2>> SizeWherever(const fs::path& image, const fs::path& folder,
+                                        const std::optional<fs::path>& images_folder) {
   LightField one;
   one.folder = folder;
   one.image_names = {image.lexically_relative(folder).string()};
   one.cameras.resize(1);
-  LF_RETURN_IF_ERROR(FindImageFiles({}, &one));
+  LF_RETURN_IF_ERROR(FindImageFiles(images_folder, &one));
   return ImageSizeInHeader(one.ImagePath(LfImageId{0}));
 }
 
@@ -206,10 +207,12 @@ Result<LightField> ParseMiddlebury(std::string_view text, const fs::path& path,
   return light_field;
 }
 
-Result<LightField> ReadMiddlebury(const fs::path& path) {
+Result<LightField> ReadMiddlebury(const fs::path& path,
+                                  const std::optional<fs::path>& images_folder) {
   LF_ASSIGN_OR_RETURN(const std::string text, ReadFile(path, kMostFileBytes));
-  return ParseMiddlebury(
-      text, path, [&](const fs::path& image) { return SizeWherever(image, path.parent_path()); });
+  return ParseMiddlebury(text, path, [&](const fs::path& image) {
+    return SizeWherever(image, path.parent_path(), images_folder);
+  });
 }
 
 bool IsMiddleburyName(std::string_view file_name) { return file_name.ends_with("_par.txt"); }

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -27,9 +28,11 @@ Result<LightField> ParseMiddlebury(std::string_view text, const std::filesystem:
                                    const ImageSizeSource& image_size);
 
 // Reads a file as ParseMiddlebury() does. The size of the images is read from the header of the
-// first image, which is searched by name if it is not beside the file. kInput if the file is larger
-// than 256 MiB.
-Result<LightField> ReadMiddlebury(const std::filesystem::path& path);
+// first image, which is searched by FindImageFiles() (light_field/model/find_images.h) with the
+// given folder of images. kInput if the file is larger than 256 MiB.
+Result<LightField> ReadMiddlebury(
+    const std::filesystem::path& path,
+    const std::optional<std::filesystem::path>& images_folder = std::nullopt);
 
 bool IsMiddleburyName(std::string_view file_name);  // true if the name ends in _par.txt
 

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <set>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -40,6 +42,30 @@ struct Listing {
   std::vector<std::string> others;
 };
 
+// Moves images that are numbered row by row from the other files to the images, if they fill a
+// square grid.
+void TakeNumberedGrid(Listing* listing) {
+  std::vector<StanfordImage> images;
+  std::vector<std::string> others;
+  for (std::string& file_name : listing->others) {
+    if (const std::optional<int> number = NumberOfHciName(file_name))
+      images.push_back({file_name, {*number, 0, std::nullopt, std::nullopt}});
+    else
+      others.push_back(file_name);
+  }
+  const auto side = static_cast<int>(std::lround(std::sqrt(images.size())));
+  const auto is_outside = [&](const StanfordImage& image) { return image.name.row >= side * side; };
+  if (images.empty() || static_cast<size_t>(side) * static_cast<size_t>(side) != images.size() ||
+      std::any_of(images.begin(), images.end(), is_outside))
+    return;
+  for (StanfordImage& image : images) {
+    image.name.column = image.name.row % side;
+    image.name.row /= side;
+  }
+  listing->images = std::move(images);
+  listing->others = std::move(others);
+}
+
 Result<Listing> ListFolder(const fs::path& folder) {
   Listing listing;
   std::error_code error;
@@ -54,6 +80,7 @@ Result<Listing> ListFolder(const fs::path& folder) {
   }
   if (error)
     return InputError(fmt::format("{}: cannot be listed: {}", folder.string(), error.message()));
+  if (listing.images.empty()) TakeNumberedGrid(&listing);
   const auto has_position = [](const StanfordImage& image) { return !!image.name.position; };
   const auto others = std::partition(listing.images.begin(), listing.images.end(), has_position);
   if (others != listing.images.begin()) {
@@ -82,10 +109,20 @@ void WarnOfOthers(const fs::path& folder, const Listing& listing) {
              others.size() > kShown ? ", ..." : "");
 }
 
+// Returns the distance between two neighbouring cameras, in world units.
+double SpacingOf(const std::vector<StanfordImage>& images, const StanfordOptions& options) {
+  if (options.pitch_w) return options.pitch_w->x();
+  if (images.size() < 2 || !images[0].name.position) return 1;
+  const StanfordName::Position &a = *images[0].name.position, &b = *images[1].name.position;
+  const double spacing_w = std::hypot(b.x_mm - a.x_mm, b.y_mm - a.y_mm) / 1000;
+  return spacing_w > 0 ? spacing_w : 1;
+}
+
 // Returns the lfimport command that adds the values that the names lack. Its numbers are examples,
-// which the user has to replace.
-std::string ImportCommand(const fs::path& folder, const StanfordOptions& options, bool needs_pitch,
-                          int width_px) {
+// with which a film shows the same as with the true ones: a plane without parallax 100 cameras away
+// keeps everything before the cameras, even if the images were not rectified.
+std::string ImportCommand(const fs::path& folder, const std::vector<StanfordImage>& images,
+                          const StanfordOptions& options, bool needs_pitch, int width_px) {
   std::vector<std::string> missing;
   if (needs_pitch && !(options.pitch_w && options.import_again)) {
     const Vec2 pitch_w = options.pitch_w.value_or(Vec2(1, 1));
@@ -95,6 +132,9 @@ std::string ImportCommand(const fs::path& folder, const StanfordOptions& options
   if (!options.focal_px || !options.import_again)
     missing.insert(missing.end(),
                    {"--focal-px", fmt::format("{}", options.focal_px.value_or(width_px))});
+  if (!options.plane_distance_w)
+    missing.insert(missing.end(),
+                   {"--plane-distance", fmt::format("{:.3g}", 100 * SpacingOf(images, options))});
   if (options.import_again) return options.import_again(missing);
   const std::string name = FileArgument(options.asked_for.empty() ? folder : options.asked_for);
   std::vector<std::string> words = {"lfimport", name, "-o", name};
@@ -137,9 +177,10 @@ Result<void> CheckComplete(const fs::path& folder, const std::vector<StanfordIma
   if (!options.pitch_w && !images[0].name.position)
     return InputError(fmt::format(
         "{}: the names contain row and column, but neither positions nor the focal length ({}): "
-        "state the pitch and the focal length, and --plane-distance if the images are rectified to "
-        "one plane, for instance by: {}",
-        folder.string(), images[0].file_name, ImportCommand(folder, options, true, width_px)));
+        "state the pitch and the focal length, and --plane-distance if the images may be rectified "
+        "to one plane, for instance by: {}",
+        folder.string(), images[0].file_name,
+        ImportCommand(folder, images, options, true, width_px)));
   if (options.focal_px) return {};
   const auto lacks_lens = [](const StanfordImage& image) { return !image.name.lens; };
   const auto without = std::find_if(images.begin(), images.end(), lacks_lens);
@@ -153,9 +194,9 @@ Result<void> CheckComplete(const fs::path& folder, const std::vector<StanfordIma
   return InputError(
       fmt::format("{}: the names lack the focal length: {} has no _FOCALMM_SENSORMM at its end; "
                   "give it in pixels (--focal-px), or state it once, and --plane-distance if the "
-                  "images are rectified to one plane, for instance by: {}",
+                  "images may be rectified to one plane, for instance by: {}",
                   folder.string(), without->file_name,
-                  ImportCommand(folder, options, !images[0].name.position, width_px)));
+                  ImportCommand(folder, images, options, !images[0].name.position, width_px)));
 }
 
 // Returns the positions of the cameras in their common plane, in world units.
@@ -208,11 +249,22 @@ Result<Intrinsics> IntrinsicsOf(const StanfordName& name, const ImageFileInfo& i
 
 }  // namespace
 
-bool HoldsStanfordNames(const fs::path& folder) {
-  std::error_code error;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
-    if (ParseStanfordName(it->path().filename().string())) return true;
-  return false;
+StanfordNames FindStanfordNames(const fs::path& folder) {
+  const Result<Listing> listing = ListFolder(folder);
+  if (!listing || listing->images.empty()) return StanfordNames::kNone;
+  const std::vector<StanfordImage>& images = listing->images;
+  if (images[0].name.position) return StanfordNames::kGrid;
+  std::set<int> rows, columns;
+  for (const StanfordImage& image : images) {
+    rows.insert(image.name.row);
+    columns.insert(image.name.column);
+  }
+  const auto is_counted = [](const std::set<int>& numbers) {
+    return numbers.size() > 1 || *numbers.begin() <= 1;
+  };
+  return is_counted(rows) && is_counted(columns) && 2 * images.size() > rows.size() * columns.size()
+             ? StanfordNames::kGrid
+             : StanfordNames::kSeries;
 }
 
 Result<LightField> ReadStanfordFolder(const fs::path& folder, const StanfordOptions& options) {

@@ -2,8 +2,10 @@
 // Reads folders whose file names state where the cameras stood, as in the Stanford Light Field
 // Archive (doc/formats/stanford.md):
 //
-//   NAME_ROW_COL_Y_X[_FOCALMM_SENSORMM].ext      positions in millimetres
-//   NAME_ROW_COL.ext                             a grid, placed by StanfordOptions::pitch_w
+//   [NAME_]ROW_COL_Y_X[_FOCALMM_SENSORMM].ext    positions in millimetres
+//   [NAME_]ROW_COL.ext                           a grid, placed by StanfordOptions::pitch_w
+//   input_CamNNN.ext                             the same: the cameras of a square grid, numbered
+//                                                row by row
 //
 // The cameras look straight ahead (their rotation is the identity) in a world with x right, y down
 // and z into the scene. The camera centres are (X, Y, 0) / 1000 world units, which are then metres.
@@ -20,8 +22,17 @@
 
 namespace lf {
 
-// Returns true if the folder contains a file whose name ParseStanfordName() accepts.
-bool HoldsStanfordNames(const std::filesystem::path& folder);
+// How the names of the images in a folder may be read.
+enum class StanfordNames {
+  kNone,    // no name states a place
+  kSeries,  // the names look like rows and columns, but make no grid: they are those of photographs
+            // of one day or burst, such as IMG_4831_0.jpg
+  kGrid,    // the names state positions, or rows and columns of a grid
+};
+
+// Looks at the names of a folder. Rows and columns without positions make a grid if images are at
+// more than half of its places; the number of a single row or column must be 0 or 1.
+StanfordNames FindStanfordNames(const std::filesystem::path& folder);
 
 // Values that the file names may lack. Only lfimport offers all of them as options.
 // ReadStanfordFolder() returns kUsage if a pitch or plane_distance_w is outside (0, 1e9].
@@ -46,7 +57,8 @@ struct StanfordOptions {
   CallAgain import_again = {};
 };
 
-// Reads all images whose names ParseStanfordName() accepts, sorted by row and column. All images
+// Reads all images whose names ParseStanfordName() accepts or, if there are none, those that
+// NumberOfHciName() accepts, sorted by row and column. All images
 // get the size that the header of the first one states; the focal length is FOCALMM / SENSORMM *
 // width pixels. Other files, and images whose names state no position if others state one, are left
 // out with a warning that states their number and the names of the first three. kInput: no such

@@ -78,7 +78,8 @@ TEST_F(StanfordFolderTest, WithoutAFocalLengthSaysWhatIsMissing) {
   const Result<LightField> light_field = ReadStanfordFolder(folder_, {.focal_px = 100});
   ASSERT_TRUE(light_field);
   EXPECT_EQ(light_field->intrinsics[0], (Intrinsics{100, 100, 18, 10, 0, 36, 20}));
-  EXPECT_NE(Error().find(" -o " + folder_.string() + " --focal-px 36"), std::string::npos);
+  EXPECT_NE(Error().find(" -o " + folder_.string() + " --focal-px 36 --plane-distance 100"),
+            std::string::npos);
   AddImage("s_01_11_-5.0_-25.0_30_36.png");
   EXPECT_NE(Error().find("rename all files"), std::string::npos);
 }
@@ -126,16 +127,50 @@ TEST_F(StanfordFolderTest, ARectifiedPlaneHasNoDisparity) {
 
 TEST_F(StanfordFolderTest, WithoutPositionsNamesTheCallThatAddsThem) {
   AddImage("out_02_04.png");
-  const std::string call =
-      fmt::format("lfimport {0} -o {0} --pitch 1 --focal-px 36", folder_.string());
+  const std::string call = fmt::format(
+      "lfimport {0} -o {0} --pitch 1 --focal-px 36 --plane-distance 100", folder_.string());
   EXPECT_TRUE(Error().ends_with(call)) << Error();
   const Result<LightField> asked = ReadStanfordFolder(folder_, {.asked_for = "my field's"});
   EXPECT_TRUE(asked.error().message.ends_with(
-      R"(lfimport 'my field'\''s' -o 'my field'\''s' --pitch 1 --focal-px 36)"))
+      R"(lfimport 'my field'\''s' -o 'my field'\''s' --pitch 1 --focal-px 36 --plane-distance 100)"))
       << asked.error().message;
   const Result<LightField> no_lens = ReadStanfordFolder(folder_, {.pitch_w = Vec2(1, 1)});
   EXPECT_NE(no_lens.error().message.find("lack the focal length"), std::string::npos);
   EXPECT_TRUE(no_lens.error().message.ends_with(call)) << no_lens.error().message;
+}
+
+TEST_F(StanfordFolderTest, RowsAndColumnsOfAGridAreToldFromNumbersOfASeries) {
+  EXPECT_EQ(FindStanfordNames(folder_ / "none"), StanfordNames::kNone);
+  AddImage("IMG_4831_0.png");
+  AddImage("IMG_4831_1.png");
+  EXPECT_EQ(FindStanfordNames(folder_), StanfordNames::kSeries);
+  AddImage("IMG_4832_2.png");
+  AddImage("IMG_4832_3.png");
+  EXPECT_EQ(FindStanfordNames(folder_), StanfordNames::kSeries);  // half of 2 x 4 places
+  AddImage("IMG_4832_1.png");
+  EXPECT_EQ(FindStanfordNames(folder_), StanfordNames::kGrid);  // with one hole, and counted anyhow
+}
+
+TEST_F(StanfordFolderTest, ASingleRowIsCountedFromItsBeginning) {
+  for (const char* name : {"00_00.png", "00_01.png", "00_02.png"}) AddImage(name);
+  EXPECT_EQ(FindStanfordNames(folder_), StanfordNames::kGrid);
+  const Result<LightField> light_field =
+      ReadStanfordFolder(folder_, {.focal_px = 90, .pitch_w = Vec2(1, 1)});
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  EXPECT_EQ(light_field->Camera({2}).CentreWorld(), Vec3(1, 0, 0));
+}
+
+TEST_F(StanfordFolderTest, NumberedCamerasOfTheBenchmarkFillASquare) {
+  for (int i = 0; i < 9; ++i) AddImage(fmt::format("input_Cam{:03}.png", i));
+  EXPECT_EQ(FindStanfordNames(folder_), StanfordNames::kGrid);
+  const Result<LightField> light_field =
+      ReadStanfordFolder(folder_, {.focal_px = 90, .pitch_w = Vec2(1, 1)});
+  ASSERT_TRUE(light_field) << light_field.error().message;
+  ASSERT_EQ(light_field->size(), 9u);
+  EXPECT_EQ(light_field->Camera({5}).CentreWorld(), Vec3(1, 0, 0));
+  EXPECT_EQ(light_field->Camera({6}).CentreWorld(), Vec3(-1, 1, 0));
+  fs::remove(folder_ / "input_Cam004.png");
+  EXPECT_EQ(FindStanfordNames(folder_), StanfordNames::kNone);
 }
 
 TEST_F(StanfordFolderTest, BesidePositionsRowAndColumnAreNoCamera) {

@@ -15,6 +15,7 @@ constexpr double kLargest_mm = 1e12;
 
 std::optional<int> ParseIndex(std::string_view text) {
   int value = 0;
+  if (text.empty()) return std::nullopt;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || text[0] == '-')
     return std::nullopt;
@@ -55,15 +56,14 @@ std::optional<StanfordName> ParseStanfordName(std::string_view file_name) {
   if (!IsImageName(file_name)) return std::nullopt;
   std::string_view stem = file_name.substr(0, file_name.rfind('.'));
   if (stem.ends_with('_')) stem.remove_suffix(1);
-  // Splits off at most the last six fields, each of which follows a '_'. The rest is NAME, which
-  // may be empty.
+  // Splits off at most the last six fields. The rest is NAME, which may be empty or missing.
   std::array<std::string_view, 6> fields;
   size_t count = 0;
-  for (; count < fields.size(); ++count) {
+  for (bool is_split = true; is_split && count < fields.size(); ++count) {
     const size_t underscore = stem.rfind('_');
-    if (underscore == std::string_view::npos) break;
-    fields[fields.size() - 1 - count] = stem.substr(underscore + 1);
-    stem.remove_suffix(stem.size() - underscore);
+    is_split = underscore != std::string_view::npos;
+    fields[fields.size() - 1 - count] = is_split ? stem.substr(underscore + 1) : stem;
+    if (is_split) stem.remove_suffix(stem.size() - underscore);
   }
   if (count == 6) {
     std::optional<StanfordName> name = ParsePosition(&fields[0]);
@@ -77,6 +77,13 @@ std::optional<StanfordName> ParseStanfordName(std::string_view file_name) {
   if (count >= 4)
     if (const std::optional<StanfordName> name = ParsePosition(&fields[2])) return name;
   return count >= 2 ? ParseGridPlace(&fields[4]) : std::nullopt;
+}
+
+std::optional<int> NumberOfHciName(std::string_view file_name) {
+  constexpr std::string_view kBegin = "input_Cam";
+  if (!file_name.starts_with(kBegin) || !IsImageName(file_name)) return std::nullopt;
+  const std::string_view stem = file_name.substr(0, file_name.rfind('.'));
+  return stem.size() > kBegin.size() ? ParseIndex(stem.substr(kBegin.size())) : std::nullopt;
 }
 
 }  // namespace lf

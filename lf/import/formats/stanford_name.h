@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Parses file names that state the position of a camera (doc/formats/stanford.md):
 //
-//   NAME_ROW_COL.ext
-//   NAME_ROW_COL_Y_X.ext                         positions in millimetres
-//   NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext
+//   [NAME_]ROW_COL.ext
+//   [NAME_]ROW_COL_Y_X.ext                       positions in millimetres
+//   [NAME_]ROW_COL_Y_X_FOCALMM_SENSORMM.ext
+//   input_CamNNN.ext                             number of a camera of the 4D Light Field Benchmark
 #pragma once
 
 #include <optional>
@@ -31,5 +32,9 @@ struct StanfordName {
 // NAME itself ends in numbers, the fitting form with the most fields is used. A '_' before the
 // extension is skipped, because names in the Stanford Light Field Archive end in it.
 std::optional<StanfordName> ParseStanfordName(std::string_view file_name);
+
+// Returns NNN of the name input_CamNNN.ext, under which the 4D Light Field Benchmark numbers the
+// cameras of a grid row by row; nullopt for other names.
+std::optional<int> NumberOfHciName(std::string_view file_name);
 
 }  // namespace lf

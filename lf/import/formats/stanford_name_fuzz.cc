@@ -11,6 +11,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
   const std::string_view file_name(reinterpret_cast<const char*>(bytes), size_bytes);
+  LF_CHECK(lf::NumberOfHciName(file_name).value_or(0) >= 0);
   const auto name = lf::ParseStanfordName(file_name);
   if (!name) return 0;
   LF_CHECK(name->row >= 0 && name->column >= 0);

@@ -48,6 +48,27 @@ TEST(StanfordName, MayTellRowAndColumnAlone) {
   }
 }
 
+TEST(StanfordName, MayLackTheNameBeforeTheNumbers) {
+  for (const char* file_name : {"007_012.png", "07_12_.png", "7_12_2.5_3.0.png", "_7_12.png"}) {
+    const auto name = ParseStanfordName(file_name);
+    ASSERT_TRUE(name) << file_name;
+    EXPECT_EQ(name->row, 7);
+    EXPECT_EQ(name->column, 12);
+  }
+  const auto with_lens = ParseStanfordName("07_12_2.5_3.0_30_36.png");
+  ASSERT_TRUE(with_lens && with_lens->lens);
+  EXPECT_EQ(with_lens->row, 7);
+}
+
+TEST(StanfordName, TheBenchmarkNumbersItsCameras) {
+  EXPECT_EQ(NumberOfHciName("input_Cam000.png"), 0);
+  EXPECT_EQ(NumberOfHciName("input_Cam123.jpg"), 123);
+  for (const char* name :
+       {"input_Cam.png", "input_Cam000.txt", "input_Cam-01.png", "input_Cam0x1.png", "Cam000.png",
+        "input_Cam99999999999.png", "input_Cam"})
+    EXPECT_EQ(NumberOfHciName(name), std::nullopt) << name;
+}
+
 TEST(StanfordName, OtherNamesHaveNone) {
   for (const char* name : {"",
                            ".",
@@ -55,12 +76,12 @@ TEST(StanfordName, OtherNamesHaveNone) {
                            "____.png",
                            ".png",
                            "a.png",
-                           "00_01.png",
                            "out_00.png",
                            "out_00_1.0.png",
                            "out_00_-1.png",
                            "out_99999999999_01.png",
-                           "00_01_2.0_3.0.png",
+                           "_01.png",
+                           "01.png",
                            "out_00_01_2.0_3.0",
                            "out_00_01_2.0_3.0.txt",
                            "out_-1_01_2.0_3.0.png",

@@ -17,6 +17,7 @@
 #include "lf/light_field/colmap/colmap_scene.h"
 #include "lf/light_field/colmap/colmap_text.h"
 #include "lf/light_field/model/find_images.h"
+#include "lf/light_field/model/masks_beside.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -80,27 +81,49 @@ std::vector<fs::path> NumberedFolders(const fs::path& folder) {
   return folders;
 }
 
-// Among the models in subfolders 0, 1, ..., returns the one with most images; nullopt if there is
-// none.
-Result<std::optional<fs::path>> LargestModel(const fs::path& folder, bool warns) {
+// Looks for complete models, and remembers the first incomplete one, which is an error only if no
+// complete one is found.
+class ModelSearch {
+ public:
+  // Returns the extension of the model's files in a folder; nullopt if it holds no complete model.
+  std::optional<std::string> Extension(const fs::path& folder) {
+    const Result<std::optional<std::string>> extension = ModelExtension(folder);
+    if (extension) return *extension;
+    if (!incomplete_) incomplete_ = extension.error();
+    return std::nullopt;
+  }
+  const std::optional<Error>& incomplete() const { return incomplete_; }
+
+ private:
+  std::optional<Error> incomplete_;
+};
+
+// Among the models in the subfolders 0, 1, ... and in folders `sparse` and `text` in these, returns
+// the one with most images; nullopt if there is none.
+Result<std::optional<fs::path>> LargestModel(const fs::path& folder, bool warns,
+                                             ModelSearch* search) {
   std::optional<fs::path> largest;
   uint64_t largest_count = 0, all_count = 0;
   size_t model_count = 0;
-  for (const fs::path& candidate : NumberedFolders(folder)) {
-    LF_ASSIGN_OR_RETURN(const std::optional<std::string> extension, ModelExtension(candidate));
-    if (!extension) continue;
-    LF_ASSIGN_OR_RETURN(const uint64_t count, CountImages(candidate, *extension));
-    ++model_count;
-    all_count += count;
-    if (largest && count <= largest_count) continue;
-    largest = candidate;
-    largest_count = count;
-  }
+  for (const fs::path& numbered : NumberedFolders(folder))
+    for (const fs::path& candidate : {numbered, numbered / "sparse", numbered / "text"}) {
+      const std::optional<std::string> extension = search->Extension(candidate);
+      if (!extension) continue;
+      LF_ASSIGN_OR_RETURN(const uint64_t count, CountImages(candidate, *extension));
+      ++model_count;
+      all_count += count;
+      if (!largest || count > largest_count) {
+        largest = candidate;
+        largest_count = count;
+      }
+      break;  // the others are forms of the same model
+    }
   if (warns && model_count > 1)
     LogWarning(
         "{}: holds {} COLMAP models: using {}, with {} of {} images; to use another model, give "
         "its folder",
-        folder.string(), model_count, largest->filename().string(), largest_count, all_count);
+        folder.string(), model_count, largest->lexically_relative(folder).string(), largest_count,
+        all_count);
   return largest;
 }
 
@@ -162,19 +185,23 @@ Result<fs::path> FindImages(const fs::path& model_folder, std::span<const std::s
       model_folder.string(), names.front(), tried, NearbyIn(model_folder, names.front())));
 }
 
-// Returns the folder of the project: `model_folder` after a numbered folder, `sparse` and `colmap`,
-// if it has them, are removed from the end of its path.
+// Returns the folder of the project: `model_folder` after numbered folders, `sparse`, `text`,
+// `dense` and `colmap` are removed from the end of its path, at most five of them.
 fs::path ProjectFolder(const fs::path& model_folder) {
   const auto name_of = [](const fs::path& folder) {
     const fs::path clean = folder.lexically_normal();
     return (clean.has_filename() ? clean : clean.parent_path()).filename().string();
   };
+  constexpr int kMostRemoved = 5;
   fs::path folder = model_folder;
-  const std::string name = name_of(folder);
-  if (!name.empty() && name.find_first_not_of("0123456789") == std::string::npos)
+  for (int i = 0; i < kMostRemoved; ++i) {
+    const std::string name = name_of(folder);
+    const bool is_number =
+        !name.empty() && name.find_first_not_of("0123456789") == std::string::npos;
+    if (!is_number && name != "sparse" && name != "text" && name != "dense" && name != "colmap")
+      break;
     folder = Above(folder);
-  for (const char* const usual : {"sparse", "colmap"})
-    if (name_of(folder) == usual) folder = Above(folder);
+  }
   return folder;
 }
 
@@ -190,35 +217,25 @@ std::optional<fs::path> FindMasks(const fs::path& images_folder) {
   return fs::absolute(masks, error);
 }
 
-void AddMasks(LightField* light_field) {
-  const std::optional<fs::path> masks = FindMasks(light_field->folder);
-  if (!masks) return;
-  std::vector<std::string> mask_names(light_field->size());
-  bool has_any = false;
-  for (size_t i = 0; i < light_field->size(); ++i) {
-    const fs::path name = *masks / (light_field->image_names[i] + ".png");
-    if (!IsFile(light_field->folder / name)) continue;
-    mask_names[i] = name.string();
-    has_any = true;
-  }
-  if (has_any) light_field->mask_names = std::move(mask_names);
-}
-
 }  // namespace
 
 Result<std::optional<fs::path>> FindColmapModel(const fs::path& path, bool warns) {
-  for (const fs::path& folder : {path, path / "sparse", path / "colmap" / "sparse"}) {
-    const Result<std::optional<std::string>> extension = ModelExtension(folder);
-    // A cameras.txt or images.txt alone may belong to another program, unless it is in sparse.
-    const bool may_be_another = folder == path && !HoldsBinaryFiles(folder);
-    if (!extension && !may_be_another) return extension.error();
-    if (extension && *extension) return std::optional<fs::path>(folder);
-    // The numbered subfolders are not listed without need: `path` may be a folder of a million
-    // images.
-    if (folder == path && !IsFolder(path / "0")) continue;
-    LF_ASSIGN_OR_RETURN(std::optional<fs::path> largest, LargestModel(folder, warns));
-    if (largest) return largest;
-  }
+  ModelSearch search;
+  for (const fs::path& folder : {path, path / "sparse", path / "colmap" / "sparse", path / "dense",
+                                 path / "dense" / "sparse"})
+    for (const fs::path& candidate : {folder, folder / "text"}) {
+      // A cameras.txt or images.txt alone may belong to another program, unless it is in sparse.
+      ModelSearch ignored;
+      const bool may_be_another = folder == path && !HoldsBinaryFiles(candidate);
+      if ((may_be_another ? ignored : search).Extension(candidate))
+        return std::optional<fs::path>(candidate);
+      // The numbered subfolders are not listed without need: `path` may be a folder of a million
+      // images.
+      if (candidate != folder || (folder == path && !IsFolder(path / "0"))) continue;
+      LF_ASSIGN_OR_RETURN(std::optional<fs::path> largest, LargestModel(folder, warns, &search));
+      if (largest) return largest;
+    }
+  if (search.incomplete()) return *search.incomplete();
   return std::optional<fs::path>();
 }
 
@@ -273,7 +290,8 @@ Result<LightField> ReadColmapModel(const fs::path& model_folder,
     LF_ASSIGN_OR_RETURN(const size_t found_count, FindImageFiles({}, &light_field));
     if (found_count == 0) return folder.error();
   }
-  AddMasks(&light_field);
+  if (const std::optional<fs::path> masks = FindMasks(light_field.folder))
+    light_field.mask_names = MasksIn(*masks, light_field);
   return light_field;
 }
 

@@ -12,12 +12,14 @@
 
 namespace lf {
 
-// Finds the model of a folder. Searches `path`, path/sparse and path/colmap/sparse, each of them
-// first directly and then in its numbered subfolders 0, 1, ... (those of `path` only if path/0
-// exists). If several numbered subfolders hold models, logs a warning and returns the one with most
-// images (the first if several have equally many). nullopt if there is no model. kInput: a cameras
-// file without an images file beside it, or the reverse (except for text files in `path` itself,
-// because they may belong to another program); an images file whose images cannot be counted.
+// Finds the model of a folder. Searches `path`, path/sparse, path/colmap/sparse, path/dense and
+// path/dense/sparse, each of them first directly, then in its numbered subfolders 0, 1, ... (those
+// of `path` only if path/0 exists) and in folders `sparse` and `text` in these, then in its folder
+// `text`. If several numbered subfolders hold models, logs a warning and returns the one with most
+// images (the first if several have equally many). nullopt if there is no model. kInput: there are
+// only models that are incomplete, with a cameras file without an images file beside it, or the
+// reverse (text files in `path` itself do not count, because they may belong to another program);
+// an images file whose images cannot be counted.
 //   warns  false: logs no warning, because the caller already did
 Result<std::optional<std::filesystem::path>> FindColmapModel(const std::filesystem::path& path,
                                                              bool warns = true);
@@ -30,10 +32,11 @@ Result<std::optional<std::filesystem::path>> FindColmapModel(const std::filesyst
 // If images_folder is not given, it is the first of these folders that contains one of the first 64
 // images: `images` in the model folder and in the three folders above it, then these four folders
 // themselves. If none of them does, images are searched by name below the project folder
-// (light_field/model/find_images.h): the model folder after a numbered folder, `sparse` and
-// `colmap` are removed from the end of its path.
+// (light_field/model/find_images.h): the model folder after numbered folders, `sparse`, `text`,
+// `dense` and `colmap` are removed from the end of its path.
 //
-// mask_names are the existing files masks/NAME.png beside the folder of images. depth_range is
+// mask_names are MasksIn() (light_field/model/masks_beside.h) the folder masks beside the folder of
+// images. depth_range is
 // computed from the points: the 1st and 99th percentile of their depths along the optical axes of
 // the cameras that see them.
 // kInput: broken files, unsupported camera models, unknown ids, no images, or no image file found

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -16,6 +15,7 @@
 
 #include "lf/core/log.h"
 #include "lf/core/parse_number.h"
+#include "lf/light_field/model/folded_name.h"
 #include "lf/light_field/model/image_files.h"
 
 namespace lf {
@@ -27,26 +27,21 @@ constexpr int kMostDepth = 4;  // levels of folders that are searched, counting 
 constexpr size_t kMostFiles = 2000000;  // largest number of image files that are listed
 constexpr int kMostDivisor = 16;  // largest factor by which files may be smaller than calibrated
 
-std::string Lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
+// Returns the path with slashes where Windows writes backslashes.
+std::string WithSlashes(std::string path) {
+  std::replace(path.begin(), path.end(), '\\', '/');
+  return path;
 }
 
 // Returns the base name without its suffix, then the folders of the path from the last to the
-// first, all in lower case. Both slashes and backslashes separate folders.
-std::vector<std::string> WordsOf(std::string path) {
-  std::replace(path.begin(), path.end(), '\\', '/');
+// first, each as FoldedName() returns it. Both slashes and backslashes separate folders.
+std::vector<std::string> WordsOf(const std::string& path) {
   std::vector<std::string> words;
-  for (const fs::path& part : fs::path(Lower(path)).lexically_normal()) words.push_back(part);
+  for (const fs::path& part : fs::path(FoldedName(WithSlashes(path))).lexically_normal())
+    words.push_back(part);
   if (!words.empty()) words.back() = fs::path(words.back()).stem().string();
   std::reverse(words.begin(), words.end());
   return words;
-}
-
-bool NamesSomethingElse(const std::string& folder) {
-  constexpr const char* kOthers[] = {"mask", "depth", "normal", "semantic", "segment", "alpha"};
-  return std::any_of(std::begin(kOthers), std::end(kOthers),
-                     [&](const char* other) { return folder.find(other) != std::string::npos; });
 }
 
 bool HoldsSomethingElse(const std::vector<std::string>& words) {
@@ -68,6 +63,66 @@ bool IsThere(const fs::path& path) {
   return fs::is_regular_file(path, error);
 }
 
+// Returns the path without its first `count` parts, whose slashes are those of Linux.
+fs::path WithoutFirst(size_t count, const std::string& path) {
+  const fs::path whole(WithSlashes(path));
+  fs::path rest;
+  for (const fs::path& part : whole)
+    if (count > 0)
+      --count;
+    else
+      rest /= part;
+  return rest;
+}
+
+// A way from the names of a calibration to the files: the folder, and the number of parts that each
+// name loses at its beginning.
+struct WayToFiles {
+  fs::path folder;
+  size_t lost_count = 0;
+};
+
+// Searches the end of a path in the folder of the calibration and the two above it: the longest end
+// first. At least the base name and its folder must agree.
+std::optional<WayToFiles> FindEnd(const std::string& name, const fs::path& folder) {
+  const fs::path path(WithSlashes(name));
+  const auto part_count = static_cast<size_t>(std::distance(path.begin(), path.end()));
+  for (size_t lost = 0; lost == 0 || lost + 2 <= part_count; ++lost) {
+    const fs::path end = WithoutFirst(lost, name);
+    if (end.is_absolute()) continue;
+    for (const char* const above : {"", "..", "../.."}) {
+      const fs::path root = *above == '\0' ? folder : (folder / above).lexically_normal();
+      if (IsThere(root / end)) return WayToFiles{root, lost};
+    }
+  }
+  return std::nullopt;
+}
+
+// Finds files whose paths end like the names: paths of Windows, and those of another place on a
+// disk. Returns the number of LF images with a file, 0 if nothing is changed.
+size_t FindByEnds(const std::vector<size_t>& asked, LightField* light_field) {
+  std::optional<WayToFiles> way;
+  for (size_t i = 0; i < asked.size() && !way; ++i)
+    way = FindEnd(light_field->image_names[asked[i]], light_field->folder);
+  if (!way) return 0;
+  const std::string before = light_field->image_names[0];
+  size_t found_count = 0;
+  for (std::string& name : light_field->image_names) {
+    const fs::path end = WithoutFirst(way->lost_count, name);
+    if (end.empty()) continue;
+    name = end.string();
+    found_count += IsThere(way->folder / end) ? 1 : 0;
+  }
+  for (std::string& mask : light_field->mask_names)
+    if (const fs::path end = WithoutFirst(way->lost_count, mask); IsThere(way->folder / end))
+      mask = end.string();
+  light_field->folder = way->folder;
+  if (light_field->size() > 1)
+    LogInfo("{} of {} LF images were found where their paths end, such as {} for {}", found_count,
+            light_field->size(), light_field->ImagePath({0}).string(), before);
+  return found_count;
+}
+
 // Image files in a folder and its subfolders, indexed by their base names.
 class FilesBelow {
  public:
@@ -85,9 +140,9 @@ class FilesBelow {
       if (name.starts_with('.') || !IsImageName(name)) continue;
       if (files_.size() == kMostFiles) break;
       const std::string relative = it->path().lexically_relative(folder).string();
-      by_stem_[Lower(fs::path(name).stem().string())].push_back(files_.size());
       files_.push_back({relative, WordsOf(relative)});
     }
+    for (size_t i = 0; i < files_.size(); ++i) by_stem_[files_[i].words[0]].push_back(i);
   }
 
   struct Match {
@@ -101,8 +156,14 @@ class FilesBelow {
   Match Find(const std::string& name, size_t least_common, bool any_folder) {
     const std::vector<std::string> words = WordsOf(name);
     if (words.empty()) return {};
-    const auto found = by_stem_.find(words[0]);
-    if (found == by_stem_.end()) return {};
+    auto found = by_stem_.find(words[0]);
+    if (found == by_stem_.end()) {
+      if (by_undated_.empty())
+        for (size_t i = 0; i < files_.size(); ++i)
+          by_undated_[WithoutDate(files_[i].words[0])].push_back(i);
+      found = by_undated_.find(WithoutDate(words[0]));
+      if (found == by_undated_.end()) return {};
+    }
     const bool is_other = any_folder || HoldsSomethingElse(words);
     Match match;
     Score best;
@@ -133,8 +194,9 @@ class FilesBelow {
   };
 
   Score ScoreOf(const File& file, const std::vector<std::string>& words, bool has_rivals) {
+    // The base names agree, perhaps but for a date.
     const auto end =
-        std::mismatch(file.words.begin(), file.words.end(), words.begin(), words.end());
+        std::mismatch(file.words.begin() + 1, file.words.end(), words.begin() + 1, words.end());
     Score score;
     score.common = static_cast<size_t>(end.first - file.words.begin());
     if (has_rivals) score.pixels = PixelsIn(fs::path(file.name).parent_path());
@@ -155,8 +217,9 @@ class FilesBelow {
 
   fs::path folder_;
   std::vector<File> files_;
-  // Indices into files_, by the base name without extension, in lower case.
-  std::unordered_map<std::string, std::vector<size_t>> by_stem_;
+  // Indices into files_, by the folded base name without extension. by_undated_, by the name
+  // without a date, is empty until a name is not found.
+  std::unordered_map<std::string, std::vector<size_t>> by_stem_, by_undated_;
   std::unordered_map<std::string, int64_t> pixels_;  // results of PixelsIn(), by folder
 };
 
@@ -215,14 +278,34 @@ void Scale(const std::array<int, 2>& size, Intrinsics* k) {
 
 }  // namespace
 
+bool NamesSomethingElse(const std::string& folder_name) {
+  constexpr const char* kOthers[] = {"mask", "depth", "normal", "semantic", "segment", "alpha"};
+  return std::any_of(std::begin(kOthers), std::end(kOthers), [&](const char* other) {
+    return folder_name.find(other) != std::string::npos;
+  });
+}
+
+bool IsWholeFraction(const Intrinsics& k, const std::array<int, 2>& size) {
+  for (int divisor = 1; divisor <= kMostDivisor; ++divisor)
+    if (IsScaled(k, size, divisor)) return true;
+  return false;
+}
+
+bool HasSomeImageFiles(const LightField& light_field) {
+  const std::vector<size_t> asked = SpreadOver(light_field.size());
+  return std::any_of(asked.begin(), asked.end(), [&](size_t i) {
+    return IsThere(light_field.ImagePath(LfImageId{static_cast<uint32_t>(i)}));
+  });
+}
+
 Result<size_t> FindImageFiles(const std::optional<fs::path>& images_folder,
                               LightField* light_field) {
   const std::vector<size_t> asked = SpreadOver(light_field->size());
-  const bool is_there = std::any_of(asked.begin(), asked.end(), [&](size_t i) {
-    return IsThere(light_field->ImagePath(LfImageId{static_cast<uint32_t>(i)}));
-  });
+  const bool is_there = HasSomeImageFiles(*light_field);
   const fs::path folder = images_folder ? *images_folder : light_field->folder;
   if (is_there && folder == light_field->folder) return 0;
+  if (!images_folder)
+    if (const size_t count = FindByEnds(asked, light_field); count > 0) return count;
   size_t found_count = 0, ambiguous_count = 0;
   std::string example, looked_for;
   FilesBelow files(folder);

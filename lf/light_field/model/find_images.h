@@ -3,6 +3,7 @@
 // because the photographs were moved, renamed or downscaled after they were calibrated.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -12,15 +13,27 @@
 
 namespace lf {
 
-// Searches for image files if none of up to 64 evenly spread LF images has a file at the path that
-// its name states, or if `images_folder` is given and is not light_field->folder.
+// Returns true if a folder of this name holds something other than photographs: masks, depths or
+// normals.
+bool NamesSomethingElse(const std::string& folder_name);
+
+// Returns true if at least one of up to 64 evenly spread LF images has a file at the path that its
+// name states.
+bool HasSomeImageFiles(const LightField& light_field);
+
+// Searches for image files if HasSomeImageFiles() is false, or if `images_folder` is given and is
+// not light_field->folder. All formats search by this function.
 //
-// A file fits an LF image if both have the same base name; extension, upper and lower case and
-// folders may differ. If several files fit, the best is the one whose path shares most trailing
-// folders with the name; then the one with most pixels (each folder is judged by its first image);
-// then the one nested in the fewest folders. A file in a folder for something other than
-// photographs (masks, depth, normals) fits only if the LF image's name contains such a folder. A
-// file fits a mask only if it also lies in a folder with the name of the mask's folder.
+// Without `images_folder`, files are searched first where the ends of the names lead, in
+// light_field->folder and the two folders above it: "..\\images\\1.jpg" and "C:\\a\\images\\1.jpg"
+// are found as images/1.jpg. Otherwise, a file fits an LF image if both have the same base name.
+// Extension, upper and lower case, folders, and the normal form of Unicode (NFC or NFD) may differ,
+// as may a date before one of the names, if no file has the name itself (folded_name.h). If several
+// files fit, the best is the one whose path shares most trailing folders with the name; then the
+// one with most pixels (each folder is judged by its first image); then the one nested in the
+// fewest folders. A file in a folder for something other than photographs (masks, depth, normals)
+// fits only if the LF image's name contains such a folder. A file fits a mask only if it also lies
+// in a folder with the name of the mask's folder.
 //
 // Changes the names to paths relative to the searched folder, which becomes light_field->folder. LF
 // images without a file keep their names. Returns the number of LF images with a file, and logs it
@@ -45,6 +58,10 @@ struct ImageScale {
 
 // Reads "auto", "off", or a factor above 0 and up to 100, such as 0.25. kUsage for any other text.
 Result<ImageScale> ParseImageScale(const std::string& text);
+
+// Returns true if an image of this [width, height] may be a copy of an image of the calibrated size
+// that was made smaller by a whole factor from 1 to 16, as ImageScale says.
+bool IsWholeFraction(const Intrinsics& calibrated, const std::array<int, 2>& size);
 
 // Scales the intrinsics to the size of the files. Returns the size of the files divided by the
 // calibrated size; 1 if nothing changed. Lens distortion is defined on directions and needs no

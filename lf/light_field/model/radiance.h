@@ -80,6 +80,8 @@ struct RadianceEncoding {
   // Returns true if LF images have opacities to be collected (LfPixels::opacity).
   bool HasOpacity() const { return AlphaIsLight() && keeps_opacity; }
   std::array<double, 3> Background() const { return background.value_or(std::array{0., 0., 0.}); }
+
+  friend bool operator==(const RadianceEncoding&, const RadianceEncoding&) = default;
 };
 
 // Largest allowed pedestal. It leaves at least half of the 16-bit range to light.

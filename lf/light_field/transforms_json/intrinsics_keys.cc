@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "lf/light_field/model/distinct_intrinsics.h"
 
@@ -42,6 +43,35 @@ std::optional<double> Focal(const IntrinsicsKeys& frame, const IntrinsicsKeys& t
     if (keys->*angle) return 0.5 * size_px / std::tan(0.5 * *(keys->*angle));
   }
   return std::nullopt;
+}
+
+// Reads a calibration matrix
+//
+//   [[fl_x, lf_skew, cx], [0, fl_y, cy], [0, 0, 1]]
+//
+// or its nine numbers in one list, under one of the names that other programs give it. Keys that
+// state one of its numbers by itself take precedence.
+Result<void> ReadMatrix(const JsonFields& fields, IntrinsicsKeys* keys) {
+  for (const char* const name : {"K", "intrinsic_matrix"}) {
+    if (!fields.Has(name)) continue;
+    const bool is_flat = fields.ListSize(name).value_or(0) == 9;
+    const auto matrix =
+        is_flat ? fields.Numbers(name, 9, 9, kPrincipal) : fields.Matrix(name, 3, 3, 3, kPrincipal);
+    if (!matrix) return matrix.error();
+    const std::vector<double> k = matrix->value_or(std::vector<double>(9));
+    if (k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1 || !kFocal.holds(k[0]) ||
+        !kFocal.holds(k[4]))
+      return fields.Wrong(name, "[[fx, skew, cx], [0, fy, cy], [0, 0, 1]], in pixels");
+    const std::pair<Key, double> values[] = {{&IntrinsicsKeys::fl_x, k[0]},
+                                             {&IntrinsicsKeys::fl_y, k[4]},
+                                             {&IntrinsicsKeys::cx, k[2]},
+                                             {&IntrinsicsKeys::cy, k[5]}};
+    for (const auto& [key, value] : values)
+      if (!(keys->*key)) keys->*key = value;
+    if (!keys->lf_skew && k[1] != 0) keys->lf_skew = k[1];
+    return {};
+  }
+  return {};
 }
 
 }  // namespace
@@ -86,6 +116,7 @@ Result<IntrinsicsKeys> ReadIntrinsicsKeys(const JsonFields& fields) {
   for (const auto& row : table) {
     LF_ASSIGN_OR_RETURN(keys.*row.key, fields.Number(row.name, row.rule));
   }
+  LF_RETURN_IF_ERROR(ReadMatrix(fields, &keys));
   LF_ASSIGN_OR_RETURN(const std::optional<std::vector<double>> vignetting,
                       fields.Numbers("lf_vignetting", 3, 3, kVignetting));
   if (vignetting) {

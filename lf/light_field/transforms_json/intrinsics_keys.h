@@ -31,7 +31,8 @@ struct IntrinsicsKeys {
 // Returns equal hashes for equal keys.
 uint64_t HashOfIntrinsicsKeys(const IntrinsicsKeys& keys);
 
-// Reads the keys. kInput if a value has another type or is out of its range.
+// Reads the keys. Focal lengths, principal point and skew may be stated by a 3x3 matrix "K" or
+// "intrinsic_matrix" instead. kInput if a value has another type or is out of its range.
 Result<IntrinsicsKeys> ReadIntrinsicsKeys(const JsonFields& fields);
 
 // Returns the intrinsics of a frame. Takes each key from the frame, or from the top level if the

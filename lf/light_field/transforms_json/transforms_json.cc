@@ -11,6 +11,7 @@
 
 #include "lf/core/byte_stream.h"
 #include "lf/light_field/model/distinct_intrinsics.h"
+#include "lf/light_field/model/find_images.h"
 #include "lf/light_field/transforms_json/frame_cutter.h"
 #include "lf/light_field/transforms_json/intrinsics_keys.h"
 #include "lf/light_field/transforms_json/json_fields.h"
@@ -40,8 +41,15 @@ constexpr NumberRule kUnit = {"metres per world unit, from 1e-9 to 1e9",
 // because the keys that all frames share may come after the frames.
 class Reader {
  public:
-  Reader(const fs::path& path, const ImageSizeSource& image_size, const RawFactsSource& raw_facts)
-      : path_(path), image_size_(image_size), raw_facts_(raw_facts) {
+  // Sources of what the file does not state; all of them may be empty.
+  struct Sources {
+    ImageSizeSource image_size = {};
+    RawFactsSource raw_facts = {};
+    // Finds the image files before their size is asked for.
+    std::function<Result<size_t>(LightField*)> find_images = {};
+  };
+
+  Reader(const fs::path& path, const Sources& sources) : path_(path), sources_(sources) {
     light_field_.folder = path.parent_path();
   }
 
@@ -111,7 +119,7 @@ class Reader {
           "\"frames\" is empty: expected at least one frame, because a light field needs images");
     LF_RETURN_IF_ERROR(top.CheckLfKeys(kTopLevelLfKeys, kFrameLfKeys, "into each frame"));
     LF_RETURN_IF_ERROR(ResolveAllIntrinsics(top));
-    LF_ASSIGN_OR_RETURN(light_field_.encoding, ReadEncoding(top, light_field_, raw_facts_));
+    LF_ASSIGN_OR_RETURN(light_field_.encoding, ReadEncoding(top, light_field_, sources_.raw_facts));
     LF_ASSIGN_OR_RETURN(const std::optional<double> unit_m, top.Number("lf_unit_m", kUnit));
     light_field_.unit_m = unit_m.value_or(1);
     LF_RETURN_IF_ERROR(ReadDepthRange(top));
@@ -217,9 +225,10 @@ class Reader {
     constexpr const char* kAdvice =
         "add \"w\" and \"h\", in pixels, at the top level (e.g. \"w\": 800, \"h\": 800)";
     if (!default_size_) {
-      if (!image_size_)
+      if (!sources_.image_size)
         return InputError(
             fmt::format("{}: the image size is missing: {}", path_.string(), kAdvice));
+      if (sources_.find_images) LF_RETURN_IF_ERROR(sources_.find_images(&light_field_));
       LF_ASSIGN_OR_RETURN(default_size_, SizeOfMost(kAdvice));
     }
     return *default_size_;
@@ -232,7 +241,7 @@ class Reader {
     std::optional<Error> fault;  // error of the first image that cannot be read
     for (size_t i = 0; i < count; ++i) {
       const auto index = static_cast<uint32_t>(i * light_field_.size() / count);
-      const auto size = image_size_(light_field_.ImagePath(LfImageId{index}));
+      const auto size = sources_.image_size(light_field_.ImagePath(LfImageId{index}));
       if (size)
         sizes.push_back(*size);
       else if (!fault)
@@ -274,8 +283,7 @@ class Reader {
   }
 
   const fs::path& path_;
-  const ImageSizeSource& image_size_;
-  const RawFactsSource& raw_facts_;
+  const Sources& sources_;
   std::optional<std::array<int, 2>> default_size_;
   // Until Finish(), LfCamera::intrinsics_index is an index into distinct_keys_.
   LightField light_field_;
@@ -294,8 +302,8 @@ Error SyntaxError(const StreamSource& open) {
 }
 
 Result<LightField> Read(const fs::path& path, const StreamSource& open,
-                        const ImageSizeSource& image_size, const RawFactsSource& raw_facts) {
-  Reader reader(path, image_size, raw_facts);
+                        const Reader::Sources& sources) {
+  Reader reader(path, sources);
   bool is_json = true;
   FrameCutter cutter("frames",
                      [&](const std::string& frame) { is_json &= reader.TakeFrame(frame); });
@@ -312,13 +320,16 @@ Result<LightField> Read(const fs::path& path, const StreamSource& open,
 Result<LightField> ParseTransformsJson(std::string_view text, const fs::path& path,
                                        const ImageSizeSource& image_size,
                                        const RawFactsSource& raw_facts) {
-  return Read(
-      path, [&] { return ByteStream(text, path); }, image_size, raw_facts);
+  return Read(path, [&] { return ByteStream(text, path); }, {image_size, raw_facts});
 }
 
-Result<LightField> ReadTransformsJson(const fs::path& path) {
-  return Read(
-      path, [&] { return ByteStream::Open(path); }, ImageSizeInHeader, RawFactsOfFirstImage);
+Result<LightField> ReadTransformsJson(const fs::path& path,
+                                      const std::optional<fs::path>& images_folder) {
+  const auto find_images = [&](LightField* light_field) {
+    return FindImageFiles(images_folder, light_field);
+  };
+  return Read(path, [&] { return ByteStream::Open(path); },
+              {ImageSizeInHeader, RawFactsOfFirstImage, find_images});
 }
 
 }  // namespace lf

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string_view>
 
 #include "lf/core/result.h"
@@ -30,8 +31,11 @@ Result<LightField> ParseTransformsJson(std::string_view text, const std::filesys
 // Reads a file as ParseTransformsJson() does, but in pieces, so that memory holds the light field
 // and not the whole text. A text that cannot be JSON is refused at the first byte that shows it,
 // and no more than kMostHeldBytes (frame_cutter.h) of text are held. Missing sizes and missing
-// facts of camera raw files are read from image files.
-Result<LightField> ReadTransformsJson(const std::filesystem::path& path);
+// facts of camera raw files are read from image files. If sizes are missing, the files are found by
+// FindImageFiles() first, with the given folder of images, and the result has their names.
+Result<LightField> ReadTransformsJson(
+    const std::filesystem::path& path,
+    const std::optional<std::filesystem::path>& images_folder = std::nullopt);
 
 // Writes `light_field` such that reading the file returns bit-identical cameras, except that
 // distortion models whose parameters bend no ray may be read as kNone. Image names are written

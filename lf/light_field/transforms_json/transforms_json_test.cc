@@ -218,16 +218,6 @@ TEST(TransformsJson, MissingSizeAndFocalLengthSayWhatToAdd) {
   ExpectError(OneFrame(kSize), {"add \"fl_x\"", "camera_angle_x"});
 }
 
-TEST(TransformsJson, NanHarmsOnlyTheKeysThatAreRead) {
-  const Result<LightField> light_field = ParseTransformsJson(
-      OneFrame(kIntrinsics + R"("a": [NaN, -Infinity], "NaN \" NaN": Infinity, )"), "a.json");
-  ASSERT_TRUE(light_field) << light_field.error().message;
-  ExpectError(OneFrame(R"("fl_x": NaN, )" + kSize), {"\"fl_x\" is \"NaN\""});
-  ExpectError(R"({"fl_x": 5, "w": 8, "h": 6, "frames": [{"file_path": "a.png", "sharpness": NaN,
-                 "transform_matrix": [[1,0,0,-Infinity],[0,1,0,0],[0,0,1,0]]}]})",
-              {"frames[0] (a.png): \"transform_matrix\"", "-Infinity"});
-}
-
 TEST(TransformsJson, WhatIsNoTransformsJsonIsAnError) {
   ExpectError("", {"is not JSON"});
   ExpectError("{\"frames\": [", {"is not JSON", "line 1"});
