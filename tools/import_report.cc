@@ -103,6 +103,24 @@ std::string PixelsText(const FootprintFacts& pixels) {
 Json JsonOf(const FootprintFacts& pixels) {
   return {{"show", NameOf(pixels.footprint)}, {"from", pixels.is_stated ? "lf_pixels" : "images"}};
 }
+Json JsonOf(const Agreement& agreement) {
+  const auto json_of = [](const Fit& fit) {
+    return Json{{"error_px", fit.error_px}, {"share", fit.share}};
+  };
+  Json json = {{"verdict", NameOf(agreement.verdict)}};
+  json.update(json_of(agreement.fit));
+  json.update({{"places", agreement.place_count},
+               {"pairs", agreement.pair_count},
+               {"images", agreement.image_count},
+               {"reason", agreement.reason},
+               {"tells_intrinsics", agreement.tells_intrinsics},
+               {"repair", nullptr}});
+  if (agreement.repair) {
+    json["repair"] = {{"words", NameOf(*agreement.repair)}, {"supposes", agreement.clause}};
+    json["repair"].update(json_of(agreement.repaired));
+  }
+  return json;
+}
 Json JsonOf(const Spread& spread) {
   return {{"min", spread.min}, {"median", spread.median}, {"max", spread.max}};
 }
@@ -157,6 +175,7 @@ std::string ReportText(const ImportReport& report) {
   AddLine("first image", report.first_image, &lines);
   AddLine("images", ImagesText(report), &lines);
   if (report.pixels) AddLine("pixels", PixelsText(*report.pixels), &lines);
+  if (report.agreement) AddLine("agreement", TextOf(*report.agreement), &lines);
   AddCameras(capture.groups, &lines);
   AddLine("positions",
           fmt::format("from {} to {}", Brief(capture.box_min_w), Brief(capture.box_max_w)), &lines);
@@ -215,6 +234,7 @@ std::string ReportJson(const ImportReport& report) {
     if (report.faults->left_out_count > 0) json["not_stored"] = report.faults->left_out_count;
   }
   json["pixels"] = OrNull(report.pixels);
+  json["agreement"] = OrNull(report.agreement);
   json["cameras"] = Json::array();
   if (capture.virtual_count > 0) json["virtual"] = capture.virtual_count;
   for (const CameraGroup& group : capture.groups) json["cameras"].push_back(JsonOf(group));

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "lf/import/agreement/agreement.h"
 #include "lf/import/check/capture_report.h"
 #include "lf/import/check/check_images.h"
 #include "lf/import/check/exif_gains.h"
@@ -27,6 +28,7 @@ struct ImportReport {
   size_t excluded_count = 0;          // number of LF images that --exclude removed
   // nullopt: the files were not checked, or faults of the files forbid that anything is written
   std::optional<FootprintFacts> pixels;
+  std::optional<Agreement> agreement;       // nullopt as `pixels`
   std::optional<ExifGains> exif_gains;      // nullopt without --gain-from-exif
   std::optional<MatchedExposure> exposure;  // nullopt: exposures were not matched
   std::string written;                      // path of the transforms.json; "": nothing was written

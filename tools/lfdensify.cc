@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <memory>
 #include <string>
 
 #include "tools/common/allow_missing.h"
@@ -17,9 +18,12 @@
 #include "tools/common/validators.h"
 #include "tools/densify_report.h"
 
+#include "lf/core/log.h"
 #include "lf/core/shell_word.h"
 #include "lf/densify/densify.h"
+#include "lf/import/agreement/agreement.h"
 #include "lf/import/paths/open_path.h"
+#include "lf/storage/load/open_store.h"
 #include "lf/storage/packed/packed_store_file.h"
 
 namespace {
@@ -109,8 +113,9 @@ void AddQuality(CLI::App& app, Arguments& a) {
       ->check(CLI::Range(1, 16));
   quality.AddFlag("--force", a.choices.force,
                   "Densify even if figures speak against it\n"
-                  "Refused otherwise: LF images too far from one another, LF cameras that are "
-                  "dense enough already, and LF images that cannot be made from their neighbours.");
+                  "Refused otherwise: LF images that do not agree with their poses, LF images too "
+                  "far from one another, LF cameras that are dense enough already, and LF images "
+                  "that cannot be made from their neighbours.");
 }
 
 void AddRunning(CLI::App& app, Arguments& a) {
@@ -159,6 +164,21 @@ lf::Result<lf::DensifyOptions> MakeOptions(const Arguments& a, const lf::LightFi
   return options;
 }
 
+// Refuses LF images that do not belong to their poses, unless --force is given: no depth would be
+// right.
+lf::Result<void> CheckAgreement(const Arguments& a, const lf::LightField& light_field,
+                                lf::ThreadPool& pool) {
+  LF_ASSIGN_OR_RETURN(const std::unique_ptr<lf::LfImageStore> store,
+                      lf::OpenStore(light_field, lf::Mosaics::kToRgb));
+  LF_ASSIGN_OR_RETURN(const std::string text,
+                      lf::DisagreementOf(light_field, *store, a.light_field.path, pool));
+  if (text.empty()) return {};
+  if (!a.choices.force)
+    return lf::InputError(fmt::format("{}. --force densifies nevertheless", text));
+  lf::LogWarning("{}", text);
+  return {};
+}
+
 lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   const auto begin = std::chrono::steady_clock::now();
   const std::atomic<bool>& interrupted = lf::CatchInterrupts();
@@ -168,6 +188,7 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   options.strict = common.strict;
   options.interrupted = &interrupted;
   lf::ThreadPool pool(common.threads);
+  if (!options.resume) LF_RETURN_IF_ERROR(CheckAgreement(a, light_field, pool));
   lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "LF images");
   LF_ASSIGN_OR_RETURN(const lf::DensifyReport report,
                       lf::Densify(light_field, options, pool, [&](const lf::DensifyProgress& now) {

@@ -17,6 +17,7 @@
 #include "lf/core/parse_number.h"
 #include "lf/core/shell_word.h"
 #include "lf/focus/example_path.h"
+#include "lf/import/agreement/agreement.h"
 #include "lf/import/paths/write_path.h"
 #include "lf/light_field/model/keep_images.h"
 #include "lf/storage/load/open_store.h"
@@ -145,6 +146,7 @@ int main(int argc, char** argv) {
     lf::ThreadPool pool(program.common().threads);
     LF_ASSIGN_OR_RETURN(const std::unique_ptr<lf::LfImageStore> store,
                         lf::OpenStore(light_field, lf::Mosaics::kToRgb));
+    LF_ASSIGN_OR_RETURN(options.doubt, lf::DisagreementOf(light_field, *store, input.path, pool));
     LF_ASSIGN_OR_RETURN(options.camera, FindCamera(light_field, *store, camera));
     LF_ASSIGN_OR_RETURN(const lf::ExamplePath example,
                         lf::MakeExamplePath(light_field, *store, options, pool));

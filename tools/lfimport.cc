@@ -22,6 +22,7 @@
 #include "lf/core/log.h"
 #include "lf/core/parse_number.h"
 #include "lf/core/shell_word.h"
+#include "lf/import/agreement/agreement.h"
 #include "lf/import/check/exclude_images.h"
 #include "lf/import/check/native_folder.h"
 #include "lf/import/check/similarity.h"
@@ -60,6 +61,7 @@ struct Arguments {
   std::string output, pitch, transform, bayer, masks, check = "headers";
   double plane_distance = 0, scale = 1, unit_m = 0, distance = 0;
   bool flip_x = false, flip_y = false, force = false;
+  std::string repair;
   std::vector<std::string> exclude;
   lf::AllowMissing allow_missing;
   lf::ExposureArguments exposure;
@@ -82,6 +84,27 @@ void AddInput(CLI::App& app, Arguments& a) {
             "Pixels that are black in a mask send no ray. The mask of IMAGE.jpg is IMAGE.jpg.png, "
             "IMAGE.png or IMAGE.jpg in DIR, or in a folder below it that the name of the image "
             "contains. LF images without a mask there are used whole.");
+  input.Add(
+      "--repair WORDS", a.repair,
+      "Undo a mistake in poses, focal lengths or names\n"
+      "The report names the words if images and poses do not agree. WORDS, separated by "
+      "commas:\n"
+      "inverse: the matrices were inverted\n"
+      "transpose, transpose-opengl, transpose-rotation: the rotations were transposed; with "
+      "the positions of the cameras, with those in OpenGL's axes, or with the translations "
+      "kept\n"
+      "centre, translation: one was written for the other\n"
+      "axes:x-y-z: right, down and forward axis of the cameras, in terms of the recorded "
+      "axes\n"
+      "positions:xz-y: x, y and z of the positions, in terms of the recorded axes\n"
+      "mirror-x, mirror-y: the images, or an axis of the world or of a grid, were mirrored; "
+      "frames show the scene like the images\n"
+      "focal:X or focal:XxY: focal lengths are X times (and Y times, along y) as long\n"
+      "swap-principal-point: cx and cy were exchanged\n"
+      "names+1, names-1: each image gets the pose recorded for the next name, or for the name "
+      "before; the image that gets none is left out\n"
+      "names-reversed, names-from-text, names-to-text: images were sorted backwards, as text "
+      "(1, 10, 2) or by number (1, 2, 10)");
   input.AddChoice("--bayer", a.bayer, {"RGGB", "BGGR", "GRBG", "GBRG"},
                   "The images are mosaics with this Bayer pattern\n"
                   "The letters are the colours of the upper left 2x2 pixels, row by row. The "
@@ -204,13 +227,16 @@ lf::Result<std::pair<std::vector<std::string>, bool>> ReadExcluded(const Argumen
   return std::pair(std::move(patterns), excludes_missing);
 }
 
-// Opens the light field and applies --transform, --scale, --unit-m and the patterns of --exclude.
-// Sets the number of excluded LF images.
+// Opens the light field and applies --repair, the patterns of --exclude, --transform, --scale and
+// --unit-m. Sets the number of LF images that --repair leaves without a pose or --exclude names.
 lf::Result<lf::LightField> OpenChanged(const Arguments& a, const std::vector<std::string>& patterns,
                                        size_t* excluded_count) {
   LF_ASSIGN_OR_RETURN(const lf::OpenOptions options, MakeOpenOptions(a));
+  LF_ASSIGN_OR_RETURN(const lf::Repair repair, lf::ParseRepair(a.repair));
   LF_ASSIGN_OR_RETURN(lf::LightField light_field, lf::OpenLightField(a.light_field.path, options));
-  LF_ASSIGN_OR_RETURN(*excluded_count, lf::ExcludeImages(patterns, &light_field));
+  *excluded_count = lf::ApplyRepair(repair, &light_field);
+  LF_ASSIGN_OR_RETURN(const size_t excluded, lf::ExcludeImages(patterns, &light_field));
+  *excluded_count += excluded;
   LF_ASSIGN_OR_RETURN(const lf::Similarity similarity, lf::ReadSimilarity(a.transform, a.scale));
   if (!a.transform.empty() || a.scale != 1)
     LF_RETURN_IF_ERROR(lf::Transform(similarity, &light_field));
@@ -220,6 +246,25 @@ lf::Result<lf::LightField> OpenChanged(const Arguments& a, const std::vector<std
         fmt::format("--unit-m {}: expected metres per world unit from 1e-9 to 1e9", a.unit_m));
   if (a.unit_m > 0) light_field.unit_m = a.unit_m;
   return light_field;
+}
+
+// Returns the agreement of images and poses. Adds a warning to the report if they disagree, with
+// the call that repairs the poses.
+lf::Result<lf::Agreement> FindAgreement(const Arguments& a, const lf::LightField& light_field,
+                                        lf::ThreadPool& pool, lf::CaptureReport* capture) {
+  LF_ASSIGN_OR_RETURN(const std::unique_ptr<lf::LfImageStore> store,
+                      lf::OpenStore(light_field, lf::Mosaics::kToRgb));
+  LF_ASSIGN_OR_RETURN(lf::Agreement agreement, lf::JudgeAgreement(light_field, *store, pool));
+  if (agreement.verdict != lf::Verdict::kDisagree) return agreement;
+  std::string message = lf::TextOf(agreement);
+  // A repair of poses that were repaired before cannot be added to that call, and a packed store
+  // keeps the poses that it was made with.
+  if (agreement.repair && a.repair.empty() && !lf::HoldsPackedStore(light_field))
+    message += fmt::format(". Repair the poses: {}",
+                           ImportAgain(a, {"--repair", lf::NameOf(*agreement.repair)}, "repaired"));
+  capture->warnings.push_back(
+      {.kind = "poses-disagree", .message = std::move(message), .image_count = 0, .names = {}});
+  return agreement;
 }
 
 // Returns the footprint of LF pixels: as the calibration states it, otherwise as measured. If it is
@@ -310,6 +355,7 @@ lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
   }
   lf::WarnOfBracketOptions(a.exposure, report.exif_gains, &light_field, &report.capture);
   if (report.faults && !refuses) {
+    LF_ASSIGN_OR_RETURN(report.agreement, FindAgreement(a, light_field, pool, &report.capture));
     LF_ASSIGN_OR_RETURN(report.pixels, FindFootprint(&light_field));
   }
   if (!a.output.empty() && !refuses) {

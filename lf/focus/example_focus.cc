@@ -85,7 +85,7 @@ Result<ExampleFocus> ChooseFocus(const LightField& light_field, const LfImageSto
                      depth.distance_w > range->far_w * kMargin);
   };
   const auto is_sure = [&](const Subject& one) {
-    return one.is_sure && !is_outside(one.depths[0]);
+    return options.doubt.empty() && one.is_sure && !is_outside(one.depths[0]);
   };
   const PinholeCamera camera = light_field.Camera(options.camera);
   Subject points;
@@ -98,7 +98,9 @@ Result<ExampleFocus> ChooseFocus(const LightField& light_field, const LfImageSto
   }
   if (is_sure(subject) && !is_contradicted) return FocusOf(subject, "places of the image");
   std::string why = WhyNotSure(subject, is_sure(points) ? Subject() : points);
-  if (is_contradicted)
+  if (!options.doubt.empty())
+    why = options.doubt;
+  else if (is_contradicted)
     why = fmt::format(
         "the LF images agree on the distance {:.4g}, but almost none of the {} reconstructed "
         "points that the LF image at the start of the path shows lie there",

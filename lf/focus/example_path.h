@@ -36,6 +36,9 @@ struct ExampleOptions {
   // Returns points of the scene that the LF image shows, in world coordinates. May be left empty if
   // the light field has no points. Called only if focus_distance_w is unset.
   std::function<Result<std::vector<Vec3>>()> points_world = {};
+  // Not empty: a reason to doubt every depth that is found, such as poses that do not belong to the
+  // images. The focus is then not sure.
+  std::string doubt = {};
 };
 
 struct ExamplePath {

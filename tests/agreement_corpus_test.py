@@ -1,0 +1,166 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""A corpus of captures, right ones and ones with a usual mistake, of which lfimport must judge whether images and poses
+belong together. An answer may be "not sure", but none may be wrong. The repairs that lfimport prints are applied, and
+must make images and poses agree. The table is that of doc/judgements.md.
+
+usage: agreement_corpus_test.py PROGRAMS TEST_DATA
+"""
+import collections
+import json
+import pathlib
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import pose_mistakes
+
+PROGRAMS = DATA = None
+
+# Drawn captures: options of lfsynth. The thresholds of the verdict were chosen with those of the first half.
+CHOSEN = {
+    "grid": "still-life --count 25",
+    "arc": "still-life --capture band --count 24",
+}
+REPORTED = {
+    "dense grid": "still-life --count 81",
+    "jittered grid": "chart --count 25 --jitter 0.3",
+    "dome": "still-life --capture hemisphere --count 60",
+}
+# Captures with hardly any texture, of which nothing can be told.
+PLAIN = {"lights": "lights --count 25"}
+PARALLEL = ("grid", "dense grid")
+# Mistakes that leave a grid as it is: rotations that are their own inverses, and, with parallel cameras, the same shift
+# of all principal points.
+HARMLESS_ON_GRIDS = {"rotation-transposed", "colmap-rotation-transposed"}
+INTRINSICS = {"focal-in-mm", "focal-of-width", "all-normalised", "focal-half", "focal-twice", "principal-point-swapped"}
+
+
+def judged(folder, *options):
+    """Returns the report of lfimport about a light field."""
+    done = subprocess.run([PROGRAMS / "lfimport", folder, "--json", *options], capture_output=True, text=True)
+    if done.returncode:
+        raise AssertionError(f"lfimport {folder}: {done.stderr}")
+    return json.loads(done.stdout)
+
+
+def answer_to(agreement, is_right, mistake):
+    """Returns "right", "not sure" or "wrong"."""
+    verdict = agreement["verdict"]
+    if verdict == "not-sure":
+        return "not sure"
+    if verdict == "agree" and mistake in INTRINSICS and not agreement["tells_intrinsics"]:
+        return "not sure"  # the line says so
+    return "right" if (verdict == "agree") == is_right else "wrong"
+
+
+class AgreementCorpusTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(temporary.cleanup)
+        cls.folder = pathlib.Path(temporary.name)
+        cls.table = collections.defaultdict(collections.Counter)
+        cls.repairs = collections.Counter()
+
+    @classmethod
+    def tearDownClass(cls):
+        for capture, counts in cls.table.items():
+            print(f"| {capture} | {counts['right']} | {counts['not sure']} | {counts['wrong']} |")
+        print(f"repairs: {cls.repairs['applied']} applied, {cls.repairs['agree']} agree afterwards")
+
+    def draw(self, name, options):
+        folder = self.folder / name.replace(" ", "-")
+        subprocess.run([PROGRAMS / "lfsynth", *options.split(), "-o", folder, "--format", "png", "--size", "320x240",
+                        "-q"], check=True)
+        return folder
+
+    def repair(self, report, folder, name):
+        """Makes the call that a warning prints, and checks that images and poses agree afterwards."""
+        warning = next(one for one in report["warnings"] if one["kind"] == "poses-disagree")
+        words = shlex.split(warning["message"].rpartition("Repair the poses: ")[2])
+        self.assertEqual(words[0], "lfimport", warning["message"])
+        place = self.folder / "repaired"
+        place.mkdir()
+        words[words.index("-o") + 1] = place / "native"
+        done = subprocess.run([PROGRAMS / words[0], *words[1:]], capture_output=True, text=True, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        after = judged(place / "native")["agreement"]
+        shutil.rmtree(place)
+        self.repairs["applied"] += 1
+        self.repairs["agree"] += after["verdict"] == "agree"
+        self.assertNotEqual(after["verdict"], "disagree", f"{name}: {after}")
+        self.assertLess(after["error_px"], report["agreement"]["error_px"], name)
+
+    def try_all(self, capture, source, mistakes=None):
+        for mistake in mistakes or pose_mistakes.MISTAKES:
+            with self.subTest(capture=capture, mistake=mistake):
+                place = pose_mistakes.write_mistake(mistake, source, self.folder / "wrong")
+                try:
+                    report = judged(place)
+                    is_right = mistake == "none" or capture in PARALLEL and mistake in HARMLESS_ON_GRIDS
+                    answer = answer_to(report["agreement"], is_right, mistake)
+                    self.table[capture][answer] += 1
+                    self.assertNotEqual(answer, "wrong", report["agreement"])
+                    if mistake == "none":
+                        self.assertEqual(answer, "right", report["agreement"])
+                    if report["agreement"]["repair"]:
+                        self.repair(report, place, f"{capture}, {mistake}")
+                finally:
+                    shutil.rmtree(place)
+
+    def real(self, name):
+        """Returns a real capture as a transforms.json; skips the test without it."""
+        source = DATA / "data" / name
+        if not source.exists():
+            self.skipTest(f"{source} is not here")
+        folder = self.folder / pathlib.Path(name).name
+        subprocess.run([PROGRAMS / "lfimport", source, "-o", folder, "-q"], check=True, capture_output=True)
+        return folder
+
+    def test_drawn_captures_that_thresholds_were_chosen_with(self):
+        for capture, options in CHOSEN.items():
+            self.try_all(capture, self.draw(capture, options))
+
+    def test_other_drawn_captures(self):
+        for capture, options in REPORTED.items():
+            self.try_all(capture, self.draw(capture, options))
+
+    def test_plain_captures_are_not_judged(self):
+        for capture, options in PLAIN.items():
+            source = self.draw(capture, options)
+            for mistake in ("none", "opencv-axes", "mirrored", "names-reversed"):
+                place = pose_mistakes.write_mistake(mistake, source, self.folder / "wrong")
+                answer = answer_to(judged(place)["agreement"], mistake == "none", mistake)
+                shutil.rmtree(place)
+                self.table[capture][answer] += 1
+                self.assertNotEqual(answer, "wrong", mistake)
+
+    def test_a_ring_of_a_gantry(self):
+        self.try_all("templeRing", self.real("middlebury-templeRing/templeRing"))
+
+    def test_each_mistake_in_a_colmap_capture_is_named_and_repaired(self):
+        source = self.real("beer-colmap")
+        self.try_all("beer", source)
+        self.assertEqual(self.table["beer"], {"right": len(pose_mistakes.MISTAKES)})
+
+    def test_flipped_axes_of_a_grid_are_named_and_repaired(self):
+        source = DATA / "data" / "stanford-cards-9x9"
+        if not source.exists():
+            self.skipTest(f"{source} is not here")
+        geometry = ("--pitch", "1", "--focal-px", "768", "--plane-distance", "100")
+        self.assertEqual(judged(source, *geometry)["agreement"]["verdict"], "agree")
+        for flip, words in (("--flip-x", "mirror-x"), ("--flip-y", "mirror-y")):
+            flipped = judged(source, *geometry, flip)["agreement"]
+            self.assertEqual(flipped["verdict"], "disagree", flipped)
+            self.assertEqual(flipped["repair"]["words"], words)
+            again = judged(source, *geometry, flip, "--repair", words)["agreement"]
+            self.assertEqual(again["verdict"], "agree", again)
+
+
+if __name__ == "__main__":
+    PROGRAMS, DATA = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
+    unittest.main(argv=sys.argv[:1])
