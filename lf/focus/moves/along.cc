@@ -188,15 +188,12 @@ CameraMove MakeAlong(const LightField& light_field, const RecordedTrack& track, 
     const LfImageId id = track.images[static_cast<size_t>(at - track.places_w.begin())];
     return light_field.image_names[id.value];
   };
+  const std::string first = nearest(part.first_w), last = nearest(part.last_w);
   move.limit = fmt::format(
-      "the camera moves {:.3g} in world units along the recorded track, smoothed, from {} to {}, "
-      "{:.2g} "
-      "degrees as seen from the subject{}: {}",
-      length_w, nearest(part.first_w), nearest(part.last_w), DegreesFromRadians(part.travel_rad),
-      part.crop < 1
-          ? fmt::format(", in frames {:.0f} % as wide as a standing camera's", 100 * part.crop)
-          : "",
-      WhyNoFarther(part));
+      "the camera moves {:.3g} in world units along the recorded track, smoothed, {}, {:.2g} "
+      "degrees as seen from the subject: {}{}",
+      length_w, first == last ? "around " + first : fmt::format("from {} to {}", first, last),
+      DegreesFromRadians(part.travel_rad), WhyNoFarther(part), CropWords(part.crop));
   return move;
 }
 

@@ -98,20 +98,23 @@ std::string LimitOf(const Shot& shot, const OrbitSearch& search, const Orbit& or
       "subject",
       width_w, height_w,
       DegreesFromRadians(2 * std::atan(std::max(width_w, height_w) / 2 / shot.focus_distance_w)));
-  const double wider_w = std::max(shot.reach.right_w, shot.reach.up_w) - shot.lens_radius_w;
-  const bool is_calm = wider_w > kMostOrbit_rad * shot.focus_distance_w / 2;
-  if (orbit.size() == 1 && orbit.crop == 1 && is_calm)
-    return size + ": a calm film goes no farther";
-  if (orbit.size() == 1 && orbit.crop == 1)
-    return fmt::format(
-        "{}: in a larger one the lens, {:.3g} wide, would reach beyond the LF cameras, which "
-        "extend {:.3g} to the sides and {:.3g} up and down",
-        size, 2 * shot.lens_radius_w, shot.reach.right_w, shot.reach.up_w);
-  return fmt::format(
-      "{}, {:.0f} % of what {} would allow, and its frames are {:.0f} % as wide as a standing "
-      "camera's: LF cameras have not recorded {:.0f} % of a frame of the larger orbit",
-      size, 100 * orbit.size(), is_calm ? "a calm film" : "the positions of the LF cameras",
-      100 * orbit.crop, 100 * search.Largest().unseen);
+  const bool is_calm = std::max(shot.reach.right_w, shot.reach.up_w) - shot.lens_radius_w >
+                       kMostOrbit_rad * shot.focus_distance_w / 2;
+  std::string limit;
+  if (orbit.size() < 1)
+    limit = fmt::format(
+        ", {:.0f} % of what {} would allow: LF cameras have not recorded {:.0f} % of a frame of a "
+        "larger one",
+        100 * orbit.size(), is_calm ? "a calm film" : "the positions of the LF cameras",
+        100 * search.Largest().unseen);
+  else if (is_calm)
+    limit = ": a calm film goes no farther";
+  else
+    limit = fmt::format(
+        ": in a larger one the lens, {:.3g} wide, would reach beyond the LF cameras, which extend "
+        "{:.3g} to the sides and {:.3g} up and down",
+        2 * shot.lens_radius_w, shot.reach.right_w, shot.reach.up_w);
+  return size + limit + CropWords(orbit.crop);
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lf/focus/moves/shot.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -20,6 +22,14 @@ double VisibleMovement(const Shot& shot, const CameraMove& move) {
         (shot.frame.fx_px * aside_w + shot.frame.width_px / 2.0 * std::abs(ahead_w)) / distance_w);
   }
   return most_px;
+}
+
+std::string CropWords(double crop) {
+  if (crop == 1) return "";
+  return fmt::format(
+      "; the frames are {:.0f} % as wide as a standing camera's, because LF cameras have not "
+      "recorded wider ones",
+      100 * crop);
 }
 
 Reach ReachNear(const LightField& light_field, const PinholeCamera& camera, double radius_w) {

@@ -46,6 +46,10 @@ struct CameraMove {
 // displacement of very distant objects against the subject, or of the border of the picture.
 double VisibleMovement(const Shot& shot, const CameraMove& move);
 
+// Returns the end of CameraMove::limit that tells how far the frames are cropped; empty if they are
+// not.
+std::string CropWords(double crop);
+
 // Returns how far LF cameras extend beside a camera: for each axis of `camera`, the 95th percentile
 // of the distances along this axis to the LF cameras within `radius_w` of it. Unlike
 // CaptureReach(), it is flat for the near part of a ring. `camera` must be an LF camera of the
