@@ -60,9 +60,9 @@ class ExampleTest(unittest.TestCase):
         small_field.SIDE = 15
         self.field = write_field(self.folder / "large", wall)
         path, words = self.example("--move", "orbit", "--focus", DEPTH)
-        self.assertRegex(words, r"the orbit is 0\.0\d+ wide and 0\.0\d+ high in world units, \d+(\.\d+)? degrees as seen "
-                                r"from the subject[:,].*; the frames are \d+ % as wide as a standing camera's, because LF "
-                                r"cameras have not recorded wider ones")
+        self.assertRegex(words, r"the orbit is 0\.0\d+ wide and 0\.0\d+ high in world units, \d+(\.\d+)? degrees as "
+                                r"seen from the subject[:,].*; the frames are \d+ % as wide as a standing camera's, "
+                                r"because LF cameras have not recorded wider ones")
         self.assertNotIn("warning", words)
         self.assertNotIn("without rays", self.film(path, "orbit", "1-50x7"))
 

@@ -19,7 +19,7 @@ constexpr double kOrbitPerSecond_rad = RadiansFromDegrees(6);
 constexpr double kLeastOrbit_s = 49 / 25.0, kMostOrbit_s = 4;
 
 struct Orbit {
-  // Where the middle of the ellipse is: 0: at the LF camera; -1, 1: to the left, to the right of
+  // Place of the middle of the ellipse. 0: at the LF camera; -1, 1: to the left, to the right of
   // it, so that the LF camera is at the end of an ellipse half as large.
   double side = 0;
   double scale = 1;  // of both semi-axes
