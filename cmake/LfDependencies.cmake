@@ -50,6 +50,13 @@ add_library(lf_libraw INTERFACE)
 target_include_directories(lf_libraw SYSTEM INTERFACE ${LF_LIBRAW_INCLUDE})
 target_link_libraries(lf_libraw INTERFACE ${LF_LIBRAW_LIBRARY})
 
+# Little CMS converts the colour profiles of photographs.
+find_path(LF_LCMS_INCLUDE lcms2.h REQUIRED)
+find_library(LF_LCMS_LIBRARY lcms2 REQUIRED)
+add_library(lf_lcms INTERFACE)
+target_include_directories(lf_lcms SYSTEM INTERFACE ${LF_LCMS_INCLUDE})
+target_link_libraries(lf_lcms INTERFACE ${LF_LCMS_LIBRARY})
+
 # Optional: display views of frames (--view).
 find_path(LF_OCIO_INCLUDE OpenColorIO/OpenColorIO.h)
 find_library(LF_OCIO_LIBRARY OpenColorIO)

@@ -21,6 +21,7 @@ OWNERS = {
     "tiff": {"pixels/files"},
     "jpeglib.h": {"pixels/files"},
     "jerror.h": {"pixels/files"},
+    "lcms2.h": {"pixels/files"},
     "yaml-cpp/": {"camera/path"},
     "nlohmann/": {"import/formats", "light_field/transforms_json", "render/state"},
     "simdjson": {"light_field/transforms_json"},

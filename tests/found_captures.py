@@ -6,6 +6,7 @@ images are in `source`) and a folder to fill, and returns LIGHTFIELD, if it is n
 import json
 import pathlib
 import shutil
+import struct
 import unicodedata
 
 import numpy as np
@@ -167,6 +168,55 @@ def row_and_column(field, source, folder):
 
 def numbered_grid(field, source, folder):
     grid_names(field, source, folder, lambda row, column, place: f"input_Cam{place:03d}.png")
+
+
+# Linear sRGB of linear Display P3 (both have the white point D65), and the colorants of Display P3 for D50.
+SRGB_OF_P3 = np.array([[1.2249402, -0.2249402, 0], [-0.0420570, 1.0420570, 0], [-0.0196376, -0.0786361, 1.0982736]])
+P3_COLORANTS = {b"rXYZ": (0.5151, 0.2412, -0.0011), b"gXYZ": (0.2920, 0.6922, 0.0419),
+                b"bXYZ": (0.1571, 0.0666, 0.7841)}
+
+
+def linear(values):
+    return np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
+
+
+def encoded(light):
+    light = np.clip(light, 0, 1)
+    return np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+
+
+def display_p3_profile():
+    """Returns an ICC profile of version 2 with the primaries of Display P3 and the curve of sRGB."""
+    def xyz(values):
+        return b"XYZ \0\0\0\0" + struct.pack(">3i", *(round(value * 65536) for value in values))
+    name = b"Display P3\0"
+    curve = (linear(np.arange(1024) / 1023) * 65535).round().astype(">u2")
+    curve = b"curv\0\0\0\0" + struct.pack(">I", len(curve)) + curve.tobytes()
+    tags = {b"desc": b"desc\0\0\0\0" + struct.pack(">I", len(name)) + name + bytes(78),
+            b"cprt": b"text\0\0\0\0none\0", b"wtpt": xyz((0.9642, 1, 0.8249)),
+            **{tag: xyz(values) for tag, values in P3_COLORANTS.items()},
+            b"rTRC": curve, b"gTRC": curve, b"bTRC": curve}
+    table, body = b"", b""
+    begin = 128 + 4 + 12 * len(tags)
+    for tag, data in tags.items():
+        data += bytes(-len(data) % 4)
+        table += tag + struct.pack(">2I", begin + len(body), len(data))
+        body += data
+    header = struct.pack(">I4sI4s4s4s12x4s4sIIIQI3i", begin + len(body), b"none", 0x02100000, b"mntr", b"RGB ", b"XYZ ",
+                         b"acsp", b"none", 0, 0, 0, 0, 0, 63190, 65536, 54061)
+    return header.ljust(128, b"\0") + struct.pack(">I", len(tags)) + table + body
+
+
+def display_p3(field, source, folder, suffix):
+    """Writes the images as a phone does: the same colours by the numbers of Display P3."""
+    (folder / "images").mkdir(parents=True)
+    for file in sorted((source / "images").iterdir()):
+        light = linear(np.asarray(Image.open(file).convert("RGB")) / 255)
+        numbers = encoded(light @ np.linalg.inv(SRGB_OF_P3).T)
+        Image.fromarray((255 * numbers).round().astype(np.uint8)).save(
+            (folder / "images" / file.name).with_suffix(suffix), icc_profile=display_p3_profile(), quality=97,
+            subsampling=0)
+    transforms(field, folder, lambda index, name: "images/" + name.replace(".png", suffix))
 
 
 # Folders that every program opens as they are. All of them show the same light field.

@@ -3,7 +3,7 @@
 """Tests the folders that people have: whatever their images and calibrations are called and wherever they lie, all
 images are found, and the commands that are printed lead to a first picture.
 
-usage: found_captures_test.py LFIMPORT LFEXAMPLE LFRENDERER LFSYNTH DATA [CONTACT_SHEET.png]
+usage: found_captures_test.py LFIMPORT LFEXAMPLE LFRENDERER LFSYNTH LFCOMPRESSOR DATA [CONTACT_SHEET.png]
 """
 import json
 import os
@@ -167,6 +167,23 @@ class FoundCapturesTest(ProgramTestCase):
                     self.line("rm -r masked")
                 self.assertEqual(len(ended.commands()), int(place != "images/dynamic_mask_"), ended.text)
 
+    def test_colour_profiles_are_converted(self):
+        expected = self.first_picture("native", self.native)
+        for suffix, limit in ((".png", 0.7), (".tif", 0.7), (".jpg", 1.5)):
+            with self.subTest(suffix):
+                folder = self.folder / f"phone{suffix}"
+                found_captures.display_p3(self.field, self.native, folder, suffix)
+                profile = self.report(folder)["colour_profile"]
+                self.assertEqual(profile, {"name": "Display P3", "images": 15, "examined": 15, "converted": True})
+                picture = self.first_picture("Display P3 " + suffix, folder)
+                self.assertLess(np.abs(picture - expected).mean(), limit)
+                self.line(f"lfcompressor '{folder}' -o phone.lfs -q && lfimport phone.lfs")
+                self.line("rm phone.lfs")
+                # A calibration that says what the numbers mean is right, whatever the files state.
+                calibration = json.loads((folder / "transforms.json").read_text())
+                (folder / "transforms.json").write_text(json.dumps({**calibration, "lf_transfer": "linear"}))
+                self.assertFalse(self.report(folder)["colour_profile"]["converted"])
+
     def test_another_calibration_is_mentioned(self):
         write_formats.colmap_text(self.field, self.native, self.folder / "capture")
         found_captures.transforms(self.field, self.folder / "capture", lambda index, name: f"old/frame{index}.png")
@@ -196,9 +213,10 @@ class FoundCapturesTest(ProgramTestCase):
 
 
 if __name__ == "__main__":
-    IMPORT, EXAMPLE, RENDERER, SYNTH, DATA = sys.argv[1:6]
+    IMPORT, EXAMPLE, RENDERER, SYNTH = sys.argv[1:5]
+    DATA = sys.argv[6]
     PROGRAMS = pathlib.Path(IMPORT).resolve().parent
     result = unittest.main(argv=sys.argv[:1], verbosity=2, exit=False).result
-    if len(sys.argv) > 6:
-        write_sheet(sys.argv[6], PICTURES, 5)
+    if len(sys.argv) > 7:
+        write_sheet(sys.argv[7], PICTURES, 5)
     sys.exit(not result.wasSuccessful())

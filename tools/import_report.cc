@@ -121,6 +121,12 @@ Json JsonOf(const Agreement& agreement) {
   }
   return json;
 }
+Json JsonOf(const FoundProfile& profile) {
+  return {{"name", profile.name},
+          {"images", profile.image_count},
+          {"examined", profile.asked_count},
+          {"converted", profile.is_converted}};
+}
 Json JsonOf(const Spread& spread) {
   return {{"min", spread.min}, {"median", spread.median}, {"max", spread.max}};
 }
@@ -176,6 +182,7 @@ std::string ReportText(const ImportReport& report) {
   AddLine("images", ImagesText(report), &lines);
   if (report.pixels) AddLine("pixels", PixelsText(*report.pixels), &lines);
   if (report.agreement) AddLine("agreement", TextOf(*report.agreement), &lines);
+  if (report.profile) AddLine("colours", TextOf(*report.profile), &lines);
   AddCameras(capture.groups, &lines);
   AddLine("positions",
           fmt::format("from {} to {}", Brief(capture.box_min_w), Brief(capture.box_max_w)), &lines);
@@ -235,6 +242,7 @@ std::string ReportJson(const ImportReport& report) {
   }
   json["pixels"] = OrNull(report.pixels);
   json["agreement"] = OrNull(report.agreement);
+  json["colour_profile"] = OrNull(report.profile);
   json["cameras"] = Json::array();
   if (capture.virtual_count > 0) json["virtual"] = capture.virtual_count;
   for (const CameraGroup& group : capture.groups) json["cameras"].push_back(JsonOf(group));

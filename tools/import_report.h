@@ -9,6 +9,7 @@
 #include "lf/import/check/capture_report.h"
 #include "lf/import/check/check_images.h"
 #include "lf/import/check/exif_gains.h"
+#include "lf/import/check/find_profiles.h"
 #include "lf/import/exposure/match_exposure.h"
 #include "lf/light_field/model/radiance.h"
 
@@ -29,6 +30,7 @@ struct ImportReport {
   // nullopt: the files were not checked, or faults of the files forbid that anything is written
   std::optional<FootprintFacts> pixels;
   std::optional<Agreement> agreement;       // nullopt as `pixels`
+  std::optional<FoundProfile> profile;      // nullopt: the files were not checked, or have none
   std::optional<ExifGains> exif_gains;      // nullopt without --gain-from-exif
   std::optional<MatchedExposure> exposure;  // nullopt: exposures were not matched
   std::string written;                      // path of the transforms.json; "": nothing was written

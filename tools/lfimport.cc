@@ -354,6 +354,7 @@ lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
                                                            &light_field, &report.capture));
   }
   lf::WarnOfBracketOptions(a.exposure, report.exif_gains, &light_field, &report.capture);
+  if (report.faults) report.profile = lf::FindProfile(light_field);
   if (report.faults && !refuses) {
     LF_ASSIGN_OR_RETURN(report.agreement, FindAgreement(a, light_field, pool, &report.capture));
     LF_ASSIGN_OR_RETURN(report.pixels, FindFootprint(&light_field));

@@ -64,6 +64,7 @@ std::string Report(const OpenedField& field, const std::string& name, const std:
         options.progress = work.Progress();
         report.faults = Take(CheckImages(light_field, options, pool));
         WarnOfFaults(light_field, &report);
+        report.profile = FindProfile(light_field);
         if (report.faults->missing.size() + report.faults->broken.size() < light_field.size())
           report.pixels = FootprintFacts{Take(FootprintOf(light_field, *field.store)),
                                          light_field.encoding.footprint.has_value()};

@@ -89,6 +89,8 @@ struct ImagePart {
   StoredImage image;
   PixelRect rect;
   ImageFileInfo info;
+  // The colour profile that a PNG, JPEG or TIFF file states (colour_profile.h); "" if none.
+  std::string icc_profile = {};
 };
 
 // Called after the header is read; returns the pixels that are needed. If it returns an error,

@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "lf/pixels/files/colour_profile.h"
 #include "lf/pixels/files/exposure_facts.h"
 #include "lf/pixels/files/file_bytes.h"
 #include "lf/pixels/files/geo_tags.h"
@@ -36,16 +37,21 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size_bytes) {
   if (info->raw)
     LF_CHECK(info->raw->black_level.value_or(0) < info->raw->white_level.value_or(65536));
   if (int64_t{info->width} * info->height > 1'000'000 / info->channels) return 0;
-  const auto image = lf::ReadImageBytes(file, "fuzz");
-  if (!image) {
-    LF_CHECK(image.error().message.starts_with("fuzz: "));
+  lf::ImagePart part;
+  const auto all = [](const lf::ImageFileInfo& of) -> lf::Result<lf::PixelRect> {
+    return lf::PixelRect{0, 0, of.width, of.height};
+  };
+  if (const auto read = lf::ReadImagePartBytes(file, "fuzz", all, &part); !read) {
+    LF_CHECK(read.error().message.starts_with("fuzz: "));
     return 0;
   }
+  LF_CHECK(lf::NameOfProfile(part.icc_profile).size() <= 80);
+  lf::ConvertToSrgb(part.icc_profile, &part.image);
   std::visit(
       [&](const auto& pixels) {
         LF_CHECK(pixels.width() == info->width && pixels.height() == info->height);
         LF_CHECK(pixels.channels() == info->channels);
       },
-      *image);
+      part.image);
   return 0;
 }

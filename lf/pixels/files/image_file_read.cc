@@ -9,6 +9,7 @@
 
 #include "lf/core/file.h"
 #include "lf/core/files_nearby.h"
+#include "lf/pixels/files/colour_profile.h"
 #include "lf/pixels/files/exif_exposure.h"
 #include "lf/pixels/files/exposure_facts.h"
 #include "lf/pixels/files/file_bytes.h"
@@ -84,6 +85,17 @@ Result<std::string> TextFrom(const FileBytes& file, const char* key) {
   return picture->Text(key);
 }
 
+Result<std::string> ProfileFrom(const FileBytes& file) {
+  LF_ASSIGN_OR_RETURN(const ImageFormat format, ProbeImage(file.read, file.name));
+  if (format == ImageFormat::kRaw) return std::string();
+  if (format == ImageFormat::kJpeg) {
+    LF_ASSIGN_OR_RETURN(JpegReader jpeg, JpegReader::Open(file.read, file.name));
+    return jpeg.IccProfile();
+  }
+  LF_ASSIGN_OR_RETURN(const std::unique_ptr<PictureDecoder> picture, Open(file, format));
+  return picture->IccProfile();
+}
+
 Result<ExposureFacts> ExposureFrom(const FileBytes& file) {
   LF_ASSIGN_OR_RETURN(const ImageFormat format, ProbeImage(file.read, file.name));
   if (format != ImageFormat::kRaw) return ExposureOfExif(file.read, format);
@@ -94,6 +106,7 @@ Result<ExposureFacts> ExposureFrom(const FileBytes& file) {
 Result<void> PartOfJpeg(const FileBytes& file, const WantedPixels& wanted, ImagePart* part) {
   LF_ASSIGN_OR_RETURN(JpegReader jpeg, JpegReader::Open(file.read, file.name));
   part->info = jpeg.info();
+  part->icc_profile = jpeg.IccProfile();
   LF_ASSIGN_OR_RETURN(const PixelRect rect, wanted(part->info));
   if (!std::holds_alternative<Image<uint8_t>>(part->image)) part->image.emplace<Image<uint8_t>>();
   LF_ASSIGN_OR_RETURN(part->rect, jpeg.Read(rect, &std::get<Image<uint8_t>>(part->image)));
@@ -105,6 +118,7 @@ Result<int> ReducedFrom(const FileBytes& file, const WantedReduction& wanted, Im
   if (format != ImageFormat::kJpeg) return 1;
   LF_ASSIGN_OR_RETURN(JpegReader jpeg, JpegReader::Open(file.read, file.name));
   part->info = jpeg.info();
+  part->icc_profile = jpeg.IccProfile();
   LF_ASSIGN_OR_RETURN(const int reduction, wanted(part->info));
   if (reduction == 1) return 1;
   if (!std::holds_alternative<Image<uint8_t>>(part->image)) part->image.emplace<Image<uint8_t>>();
@@ -120,6 +134,7 @@ Result<void> PartOfRaw(const FileBytes& file, const WantedPixels& wanted, ImageP
   if (!std::holds_alternative<Image<uint16_t>>(part->image)) part->image.emplace<Image<uint16_t>>();
   LF_RETURN_IF_ERROR(raw.Read(&std::get<Image<uint16_t>>(part->image)));
   part->info = raw.info();
+  part->icc_profile.clear();
   part->rect = {0, 0, part->info.width, part->info.height};
   return {};
 }
@@ -131,6 +146,7 @@ Result<void> PartFrom(const FileBytes& file, const WantedPixels& wanted, ImagePa
   if (format == ImageFormat::kPng) LF_RETURN_IF_ERROR(CheckPngIsComplete(file.read, file.name));
   LF_ASSIGN_OR_RETURN(const std::unique_ptr<PictureDecoder> picture, OpenSingle(file, format));
   part->info = picture->info();
+  part->icc_profile = picture->IccProfile();
   if (const auto rect = wanted(part->info); !rect) return rect.error();
   part->rect = {0, 0, part->info.width, part->info.height};
   return picture->Read(&part->image);
@@ -194,6 +210,10 @@ Result<PictureHeader> ReadPictureHeaderBytes(std::string_view bytes, const std::
 
 Result<std::string> ReadStatedText(const fs::path& path, const char* key) {
   return FromFile(path, [key](const FileBytes& file) { return TextFrom(file, key); });
+}
+
+Result<std::string> ReadIccProfile(const fs::path& path) {
+  return FromFile(path, [](const FileBytes& file) { return ProfileFrom(file); });
 }
 
 Result<ExposureFacts> ReadExposureFacts(const fs::path& path) {

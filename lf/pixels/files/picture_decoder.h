@@ -30,6 +30,8 @@ class PictureDecoder {
   virtual const ImageFileInfo& info() const = 0;
   virtual ColourFacts colours() const { return {TypeOfValues(info())}; }
   virtual StatedProjection projection() const { return {}; }
+  // Returns the colour profile (ICC) that the header states; "" if there is none.
+  virtual std::string IccProfile() const { return ""; }
   // Number of parts that hold colours. Only the first part is decoded.
   virtual int picture_count() const { return 1; }
   // Returns the text that the header states under this key; "" if there is none.

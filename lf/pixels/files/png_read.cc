@@ -141,6 +141,14 @@ class PngDecoder : public PictureDecoder {
   std::string Text(const char* key) const override {
     return TextBeforePixels(png_, png_info_, key);
   }
+  std::string IccProfile() const override {
+    png_charp name = nullptr;
+    int compression = 0;
+    png_bytep bytes = nullptr;
+    png_uint_32 size = 0;
+    if (png_get_iCCP(png_, png_info_, &name, &compression, &bytes, &size) == 0) return "";
+    return {reinterpret_cast<const char*>(bytes), size};
+  }
   Result<void> Open();
   Result<void> Read(StoredImage* image) override;
 
@@ -201,8 +209,8 @@ Result<void> PngDecoder::Open() {
     png_set_chunk_malloc_max(png_, kMostTextBytes);
     png_set_chunk_cache_max(png_, kMostTexts);
     png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
-    constexpr png_byte kRead[] = "eXIf\0sRGB\0tEXt\0zTXt";
-    png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_AS_DEFAULT, kRead, 4);
+    constexpr png_byte kRead[] = "eXIf\0iCCP\0sRGB\0tEXt\0zTXt";
+    png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_AS_DEFAULT, kRead, 5);
     png_read_info(png_, png_info_);
   }));
   ReadHeader();

@@ -8,6 +8,7 @@
 #include <csetjmp>
 #include <cstddef>
 #include <cstdio>
+#include <cstdlib>
 // Must come after jpeglib.h.
 #include <jerror.h>
 
@@ -75,8 +76,10 @@ struct JpegReader::State {
     errors.error_exit = [](j_common_ptr common) { Of(common).JumpOut(); };
     errors.emit_message = [](j_common_ptr common, int level) {
       // After a warning, libjpeg continues with guessed pixels, so warnings are errors. The only
-      // harmless warning is about fill bytes between segments, which some cameras write.
-      if (level < 0 && common->err->msg_code != JWRN_EXTRANEOUS_DATA) Of(common).JumpOut();
+      // harmless warnings are about fill bytes between segments, which some cameras write, and
+      // about parts of a colour profile.
+      const int code = common->err->msg_code;
+      if (level < 0 && code != JWRN_EXTRANEOUS_DATA && code != JWRN_BOGUS_ICC) Of(common).JumpOut();
     };
     source.bytes = &bytes;
     source.init_source = [](j_decompress_ptr) {};
@@ -128,6 +131,16 @@ JpegReader::JpegReader(JpegReader&&) noexcept = default;
 JpegReader::~JpegReader() = default;
 const ImageFileInfo& JpegReader::info() const { return state_->info; }
 
+std::string JpegReader::IccProfile() {
+  JOCTET* bytes = nullptr;
+  unsigned int size = 0;
+  boolean is_there = FALSE;
+  const auto read = [&] { is_there = jpeg_read_icc_profile(&state_->decompress, &bytes, &size); };
+  if (!state_->Run(read) || is_there == FALSE) return "";
+  const std::unique_ptr<JOCTET, decltype(&std::free)> owner(bytes, std::free);
+  return {reinterpret_cast<const char*>(bytes), size};
+}
+
 Result<JpegReader> JpegReader::Open(const ByteSource& source, const std::string& name) {
   auto state = std::make_unique<State>(source, name);
   jpeg_decompress_struct& decompress = state->decompress;
@@ -136,6 +149,7 @@ Result<JpegReader> JpegReader::Open(const ByteSource& source, const std::string&
     decompress.src = &state->source;
     decompress.progress = &state->progress;
     jpeg_save_markers(&decompress, JPEG_APP0 + 1, 0xffff);
+    jpeg_save_markers(&decompress, JPEG_APP0 + 2, 0xffff);  // parts of a colour profile
     jpeg_read_header(&decompress, TRUE);
   }));
   const int channels = decompress.num_components;

@@ -26,6 +26,9 @@ class JpegReader {
   ~JpegReader();
 
   const ImageFileInfo& info() const;
+  // Returns the colour profile (ICC) that the file states; "" if there is none, or a part of it is
+  // missing.
+  std::string IccProfile();
 
   // Decodes at least the pixels of `wanted`, which must contain a pixel of the picture. If it saves
   // time, only these pixels and some around them are decoded, otherwise all. Returns the decoded

@@ -52,6 +52,12 @@ class TiffDecoder : public PictureDecoder {
              bits == 32,    layout_.channel_names, layout_.orientation, {}};
   }
   const ImageFileInfo& info() const override { return info_; }
+  std::string IccProfile() const override {
+    uint32_t size = 0;
+    const void* bytes = nullptr;
+    if (TIFFGetField(handle_->tiff(), TIFFTAG_ICCPROFILE, &size, &bytes) != 1) return "";
+    return {static_cast<const char*>(bytes), size};
+  }
   Result<void> Read(StoredImage* image) override {
     LF_RETURN_IF_ERROR(CheckBlocksLieInFile());
     const auto resized = [&]<class T>(T) -> Image<T>& {

@@ -69,6 +69,7 @@ Result<int> FolderStore::LoadReducedBy(Loading* loading, LfImageId id, int divis
   LF_ASSIGN_OR_RETURN(const int reduction, ReadReducedJpeg(path, wanted, &part));
   if (reduction == 1) return 1;
   LF_RETURN_IF_ERROR(CheckLevels(encoding, part.info.bits, path.string()));
+  ConvertColours(encoding, &part);
   const Intrinsics reduced = WithLargerPixels(k, reduction);
   pixels->Reset({0, 0, reduced.width_px, reduced.height_px}, BayerPattern::kNone);
   ConvertRadiance(part, UseOf(part.info).colours, tables_, encoding, camera, reduced, pixels);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "lf/light_field/model/image_fit.h"
+#include "lf/pixels/files/colour_profile.h"
 #include "lf/pixels/files/upright.h"
 
 namespace lf {
@@ -86,6 +87,7 @@ Result<ChannelUse> ReadStoredPixels(const LightField& light_field, LfImageId id,
   LF_RETURN_IF_ERROR(ReadFitting(path, encoding.bayer != BayerPattern::kNone,
                                  IntrinsicsOf(light_field, id), wanted, part));
   LF_RETURN_IF_ERROR(CheckEncoding(*part, encoding, path));
+  ConvertColours(encoding, part);
   return UseOf(part->info);
 }
 
@@ -122,6 +124,11 @@ void ForEachSeenBrighter(const LightField& light_field, LfImageId id, const Pixe
   for (int y = rect.y_begin; y < rect.y_end; ++y)
     for (int x = rect.x_begin; x < rect.x_end; ++x)
       if (is_left.at(x - rect.x_begin, y - rect.y_begin) == 0) mask(x, y);
+}
+
+void ConvertColours(const RadianceEncoding& encoding, ImagePart* part) {
+  if (encoding.transfer == Transfer::kSrgb && encoding.bayer == BayerPattern::kNone)
+    ConvertToSrgb(part->icc_profile, &part->image);
 }
 
 Result<void> CheckLevels(const RadianceEncoding& encoding, int bits, const std::string& path) {

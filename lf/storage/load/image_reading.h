@@ -20,13 +20,18 @@
 
 namespace lf {
 
-// Reads at least the pixels `wanted` of an LF image from its file, and returns what the channels of
-// the file hold. The file may be rotated against the picture that the calibration describes;
-// `wanted` and part->rect, the rectangle that was read, count pixels of that picture. `wanted` must
-// contain a pixel of the picture. kInput, naming the file: it cannot be read, or does not fit the
-// calibration or the encoding.
+// Reads at least the pixels `wanted` of an LF image from its file, converts their colours, and
+// returns what the channels of the file hold. The file may be rotated against the picture that the
+// calibration describes; `wanted` and part->rect, the rectangle that was read, count pixels of that
+// picture. `wanted` must contain a pixel of the picture. kInput, naming the file: it cannot be
+// read, or does not fit the calibration or the encoding.
 Result<ChannelUse> ReadStoredPixels(const LightField& light_field, LfImageId id,
                                     const PixelRect& wanted, ImagePart* part);
+
+// Converts pixels as stored from the colour profile of their file to sRGB (ConvertToSrgb() of
+// pixels/files/colour_profile.h), unless the encoding says that they are mosaics or no sRGB values.
+// ReadStoredPixels() has done so.
+void ConvertColours(const RadianceEncoding& encoding, ImagePart* part);
 
 // Reads at least the pixels `wanted` of the image's mask file, as ReadStoredPixels() reads the
 // picture. Returns false if the image has no mask file.
