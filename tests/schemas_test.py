@@ -20,6 +20,7 @@ import jsonschema
 import numpy as np
 from PIL import Image
 
+import found_captures
 import schema_files
 import small_field
 from common_options import OFFERED
@@ -275,6 +276,10 @@ class SchemasTest(ProgramTestCase):
             field = small_field.write_field(self.folder / "alpha", lambda index: np.full((48, 64, 4), index, np.uint8),
                                             lf_background=background, **alpha)
             self.prints("import_report", "lfimport", field)
+        phone = small_field.write_field(self.folder / "phone").parent
+        for file in phone.glob("*.png"):
+            Image.open(file).save(file, icc_profile=found_captures.display_p3_profile())
+        self.prints("import_report", "lfimport", phone)
         brackets = self.bracketed()
         self.prints("import_report", "lfimport", brackets, "--gain-from-exif", "-o", self.folder / "gains")
         self.valid_file("transforms", self.folder / "gains/transforms.json")

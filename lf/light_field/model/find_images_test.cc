@@ -50,6 +50,41 @@ TEST_F(FindImagesTest, StalePathsAndSuffixesAreFoundByBaseName) {
   EXPECT_EQ(field.folder, folder_);
 }
 
+TEST_F(FindImagesTest, TheEndsOfPathsLeadToFilesBesideTheCalibration) {
+  WriteImages({"images/1.png", "images/2.png", "masks/1.png", "3.png"});
+  for (const char* const begin : {"..\\", "C:\\scans\\", "/home/someone/scans/"}) {
+    LightField field =
+        FieldOf({std::string(begin) + "images\\1.png", std::string(begin) + "images\\2.png",
+                 std::string(begin) + "images\\4.png"});
+    field.folder = folder_ / "calibration";
+    fs::create_directories(field.folder);
+    field.mask_names = {std::string(begin) + "masks\\1.png", "", ""};
+    EXPECT_EQ(*FindImageFiles({}, &field), 2u) << begin;
+    EXPECT_TRUE(fs::exists(field.ImagePath({0}))) << field.ImagePath({0});
+    EXPECT_TRUE(fs::exists(field.folder / field.mask_names[0])) << field.mask_names[0];
+    EXPECT_EQ(fs::path(field.image_names[2]).filename(), "4.png");
+  }
+  LightField other = FieldOf({"/home/someone/3.png"});  // a base name alone says too little
+  other.folder = folder_ / "calibration";
+  EXPECT_EQ(*FindImageFiles({}, &other), 0u);
+}
+
+TEST_F(FindImagesTest, NamesThatLookAlikeAreFound) {
+  WriteImages({"photos/Ku\u0308che 1.png", "photos/\u00c4 2.PNG"});
+  LightField field = FieldOf({"images/K\u00fcche 1.png", "images/A\u0308 2.jpg"});
+  EXPECT_EQ(*FindImageFiles({}, &field), 2u);
+  EXPECT_EQ(field.image_names,
+            (std::vector<std::string>{"photos/Ku\u0308che 1.png", "photos/\u00c4 2.PNG"}));
+}
+
+TEST_F(FindImagesTest, DatesBeforeNamesMatterOnlyIfNoFileHasTheName) {
+  WriteImages({"p/2021-05-04_img1.png", "p/img2.png", "p/2021-05-04_img2.png", "p/img3.png"});
+  LightField field = FieldOf({"i/img1.png", "i/img2.png", "i/20210504_123001-img3.png"});
+  EXPECT_EQ(*FindImageFiles({}, &field), 3u);
+  EXPECT_EQ(field.image_names,
+            (std::vector<std::string>{"p/2021-05-04_img1.png", "p/img2.png", "p/img3.png"}));
+}
+
 TEST_F(FindImagesTest, FoldersInCommonDecide) {
   WriteImages({"left/1.png", "right/1.png"});
   LightField field = FieldOf({"/gone/rig/right/1.png", "/gone/rig/left/1.png"});
