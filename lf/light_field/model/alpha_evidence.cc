@@ -115,6 +115,15 @@ std::optional<AlphaEvidence> FindAlphaEvidence(const LightField& light_field) {
       });
   AlphaEvidence evidence;
   evidence.image_name = facts.image_name;
+  double shared = images.size() > 1 ? 1 : 0;
+  for (const AlphaFacts& image : images)
+    shared = std::min(shared, SharedTransparency(facts, image));
+  const bool is_same = shared >= kSamePixels;
+  if (is_same && facts.opaque_spans_image) {
+    evidence.reason = fmt::format("{} of the transparent pixels are the same in {} LF images",
+                                  Percent(shared), images.size());
+    return evidence;
+  }
   const bool is_picture = facts.one_colour_share < kPicture;
   evidence.reason =
       fmt::format("{}{} of the {} transparent pixels{} of {} have about one colour",
@@ -126,18 +135,10 @@ std::optional<AlphaEvidence> FindAlphaEvidence(const LightField& light_field) {
         fmt::format(", and {} differ from the pixel beside them", Percent(facts.detail_share));
     return evidence;
   }
-  double shared = 1;
-  for (const AlphaFacts& image : images)
-    shared = std::min(shared, SharedTransparency(facts, image));
-  if (images.size() > 1 && shared >= kSamePixels) {
-    evidence.reason = fmt::format("{} of the transparent pixels are the same in {} LF images",
-                                  Percent(shared), images.size());
-    if (facts.opaque_spans_image) return evidence;
-    evidence.reason += ", but opaque pixels do not reach from side to side";
-    evidence.is_sure = false;
-  } else if (facts.one_colour_share < kOneColour) {
-    evidence.is_sure = false;
-  }
+  evidence.is_sure = !is_same && facts.one_colour_share >= kOneColour;
+  if (is_same)
+    evidence.reason += fmt::format(", but {} of them are the same in {} LF images", Percent(shared),
+                                   images.size());
   evidence.background = images[0].background;
   JudgeColours(images[0], &evidence);
   return evidence;

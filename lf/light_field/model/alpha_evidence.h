@@ -24,10 +24,10 @@ struct AlphaEvidence {
 // judgement rests on shares of the pixels (alpha_facts.h), because resampling, renderers and lossy
 // files change some colours.
 //
-// Alpha is a mask if, in one image, less than 85 % of the inner transparent pixels have about one
-// colour, because a picture lies beneath them; or if two or more images have the same transparent
-// pixels (98 %) and their opaque pixels reach from side to side, like the borders of undistorted
-// photographs.
+// Alpha is a mask if two or more images have the same transparent pixels (98 %) and their opaque
+// pixels reach from side to side, like the borders of undistorted photographs; or if, in one image,
+// less than 85 % of the inner transparent pixels have about one colour, because a picture lies
+// beneath them.
 //
 // Otherwise alpha is an opacity, because the images show an object alone. The background is the
 // colour of the transparent pixels of the first image. Over black, alpha is premultiplied if
