@@ -49,10 +49,13 @@ class SafeOutputsTest(ProgramTestCase):
         picture = next(self.field.rglob("*.png"))
         self.keeps(picture, 2, ["is not a camera path"], "lfexample", self.field, "-o", picture)
         again = [self.field, "-o", self.path, "--move", "static", "--focus"]
-        self.succeeds(PROGRAMS / "lfexample", *again, "3", "-q")  # the same text
-        self.keeps(self.path, 2, ["path.yaml", "exists already", "--overwrite"], "lfexample", *again, "4")
-        self.path.write_text(self.path.read_text() + "# edited\n")
-        self.keeps(self.path, 2, ["path.yaml", "exists already", "--overwrite"], "lfexample", *again, "3")
+        self.succeeds(PROGRAMS / "lfexample", *again, "3", "--overwrite", "-q")
+        self.succeeds(PROGRAMS / "lfexample", *again, "4", "-q")  # over what lfexample wrote
+        written = self.path.read_text()
+        for edited in (written + "# edited\n", written.replace("fps: 25", "fps: 24"), "# mine\n" + written):
+            self.assertNotEqual(edited, written)
+            self.path.write_text(edited)
+            self.keeps(self.path, 2, ["path.yaml", "exists already", "--overwrite"], "lfexample", *again, "4")
         self.succeeds(PROGRAMS / "lfexample", *again, "4", "--overwrite", "-q")
         self.assertNotIn("# edited", self.path.read_text())
 

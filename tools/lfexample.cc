@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -13,6 +14,7 @@
 
 #include "lf/camera/path/path_yaml.h"
 #include "lf/core/file.h"
+#include "lf/core/hash.h"
 #include "lf/core/log.h"
 #include "lf/core/parse_number.h"
 #include "lf/core/shell_word.h"
@@ -62,15 +64,29 @@ lf::Result<lf::LfImageId> FindCamera(const lf::LightField& light_field,
       text, light_field.image_names[0]));
 }
 
-// Refuses to replace a path that a person may have edited. An empty file holds none.
-lf::Result<void> CheckKeepsPath(const std::string& output, const std::string& yaml) {
+// Begins the last line of a path, which has the hash of all lines before it.
+constexpr std::string_view kStamp = "# Not edited since lfexample wrote it: ";
+
+std::string Stamped(const std::string& yaml) {
+  return fmt::format("{}{}{:016x}\n", yaml, kStamp, lf::HashBytes(yaml));
+}
+
+bool IsAsWritten(const std::string& text) {
+  const size_t stamp = text.rfind(kStamp);
+  return stamp != std::string::npos && text == Stamped(text.substr(0, stamp));
+}
+
+// Refuses to replace a path that a person has edited. An empty file holds none.
+lf::Result<void> CheckKeepsEdits(const std::string& output) {
   std::error_code error;
   if (!std::filesystem::exists(output, error) || std::filesystem::is_empty(output, error))
     return {};
   LF_ASSIGN_OR_RETURN(const std::string before, lf::ReadFile(output));
-  if (before == yaml) return {};
-  return lf::UsageError(
-      fmt::format("{}: exists already: give another name, or replace it with --overwrite", output));
+  if (IsAsWritten(before)) return {};
+  return lf::UsageError(fmt::format(
+      "{}: exists already, and lfexample has not written it, or it was edited since: give another "
+      "name, or replace it with --overwrite",
+      output));
 }
 
 // Warns that the focus is uncertain: states where it is, why it is uncertain, and how to choose
@@ -86,8 +102,7 @@ void WarnOfDoubt(const lf::ExamplePath& example, const std::string& light_field,
   command.insert(command.end(), words.begin(), words.end());
   command.insert(command.end(), {"-o", lf::FileArgument(output), "--move", move});
   if (camera != "-1") command.insert(command.end(), {"--camera", camera});
-  command.insert(command.end(), {"--focus", fmt::format("{:.4g}", example.candidates_w.front()),
-                                 "--overwrite"});  // the path was written just now
+  command.insert(command.end(), {"--focus", fmt::format("{:.4g}", example.candidates_w.front())});
   lf::LogWarning(
       "the program is not sure what to focus on ({}). It chose the focus distance {:.4g}, {}, and "
       "the aperture {:.4g}, {} (in world units). The best focus distance{} found: {}. To get a "
@@ -110,7 +125,7 @@ int main(int argc, char** argv) {
   lf::OptionGroup output_group(app, lf::kOutputGroup), picture(app, lf::kPictureGroup);
   output_group.Add("-o,--output PATH.yaml", output, "Camera path to write")->required();
   output_group.AddFlag("--overwrite", overwrite,
-                       "Replace PATH.yaml if it exists and is another path");
+                       "Replace PATH.yaml even if it was edited since lfexample\nwrote it");
   picture.Add(
       "--camera NUMBER|NAME", camera,
       "LF camera at which the path begins, which it passes, or moves around (near the middle)\n"
@@ -152,8 +167,8 @@ int main(int argc, char** argv) {
                         lf::MakeExamplePath(light_field, *store, options, pool));
     // A path that cannot be parsed is a bug of ours, and is reported here instead of by lfrenderer.
     LF_RETURN_IF_ERROR(lf::ParsePathYaml(example.yaml, output, light_field.unit_m));
-    if (!overwrite) LF_RETURN_IF_ERROR(CheckKeepsPath(output, example.yaml));
-    LF_RETURN_IF_ERROR(lf::WriteFileAtomically(output, example.yaml));
+    if (!overwrite) LF_RETURN_IF_ERROR(CheckKeepsEdits(output));
+    LF_RETURN_IF_ERROR(lf::WriteFileAtomically(output, Stamped(example.yaml)));
     if (!example.doubt.empty())
       WarnOfDoubt(example, input.path, input.Words(), output, move, camera);
     if (!example.move_warning.empty()) lf::LogWarning("{}", example.move_warning);
