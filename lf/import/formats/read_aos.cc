@@ -15,6 +15,7 @@
 #include "lf/core/log.h"
 #include "lf/core/parse_number.h"
 #include "lf/import/formats/import_limits.h"
+#include "lf/light_field/model/find_images.h"
 #include "lf/light_field/model/image_files.h"
 #include "lf/light_field/model/rotation.h"
 #include "lf/light_field/transforms_json/json_syntax.h"
@@ -130,6 +131,8 @@ Result<void> FindImages(const AosOptions& options, const fs::path& path, LightFi
       for (std::string& name : light_field->image_names) name = AsPng(name);
     return {};
   }
+  LF_ASSIGN_OR_RETURN(const size_t found_count, FindImageFiles(options.images_folder, light_field));
+  if (found_count > 0) return {};
   std::vector<std::string> tried;
   for (const fs::path& folder : folders) tried.push_back(folder.string());
   return InputError(

@@ -21,7 +21,8 @@ struct AosOptions {
   // images. kInput if it is missing.
   std::optional<double> fov_deg = {};
   // Folder of the image files. Unset: the first of these folders that contains the first image: the
-  // folder of the JSON file; images/ in it; images/ or images_ldr/ in its parent folder.
+  // folder of the JSON file; images/ in it; images/ or images_ldr/ in its parent folder. If none of
+  // them does, images are searched by FindImageFiles() (light_field/model/find_images.h).
   std::optional<std::filesystem::path> images_folder = {};
 };
 

@@ -164,6 +164,18 @@ TEST_F(AosFolderTest, ImagesAreSearchedBesideAndMayBePngInsteadOfTiff) {
   EXPECT_EQ(elsewhere->image_names[1], "b.tiff");
 }
 
+TEST_F(AosFolderTest, MovedImagesAreFoundByTheirNames) {
+  WriteImageFile(folder_ / "poses" / "thermal" / "A.png", 8, 8);
+  WriteImageFile(folder_ / "poses" / "thermal" / "b.tif", 8, 8);
+  for (const std::optional<fs::path>& images_folder :
+       {std::optional<fs::path>(), std::optional(folder_)}) {
+    const Result<LightField> light_field =
+        ReadAos(path_, {.fov_deg = 50, .images_folder = images_folder});
+    ASSERT_TRUE(light_field) << light_field.error().message;
+    for (uint32_t i = 0; i < 2; ++i) EXPECT_TRUE(fs::exists(light_field->ImagePath({i}))) << i;
+  }
+}
+
 TEST_F(AosFolderTest, WithoutAFieldOfViewItAsksForIt) {
   WriteImageFile(folder_ / "images" / "a.tiff", 8, 8);
   EXPECT_NE(ErrorOf({}).find("(--fov-deg"), std::string::npos);
