@@ -92,7 +92,7 @@ class MovesTest(ProgramTestCase):
             self.assertGreaterEqual(np.linalg.norm(np.ptp(keys_of(path), axis=0)), expected, words)
 
     def test_a_movement_that_nobody_would_see_is_refused(self):
-        field = self.synth("--count", 9, "--spacing", 0.0001)
+        field = self.synth("--count", 9, "--spacing", 0.000005)
         for move in MOVES:
             self.fails(3, ["no room for a visible movement", "--move focus-pull"], EXAMPLE, field, "-o",
                        self.folder / "no.yaml", "--move", move, "--focus", DISTANCE)

@@ -252,7 +252,7 @@ Result<CameraMove> MoveCamera(const LightField& light_field, LfImageId id, const
                                     track.error().message));
     moved = MakeAlong(light_field, *track, shot);
   }
-  constexpr double kVisible_px = 0.1, kClear_px = 3, kClear = 0.005;
+  constexpr double kVisible_px = 0.01, kClear_px = 3, kClear = 0.005;
   const double visible_px = VisibleMovement(shot, moved);
   if (!(visible_px >= kVisible_px))
     return InputError(fmt::format(
