@@ -128,7 +128,7 @@ int main(int argc, char** argv) {
                        "Replace PATH.yaml even if it was edited since lfexample\nwrote it");
   picture.Add(
       "--camera NUMBER|NAME", camera,
-      "LF camera at which the path begins, which it passes, or moves around (near the middle)\n"
+      "LF camera that the path passes or begins at (near the middle)\n"
       "NUMBER counts from 0; NAME is the name of the camera's image. -1: among the LF cameras that "
       "are level and whose image can be read, the one nearest to the middle of the capture.");
   picture.AddChoice("--move", move, {"auto", "static", "along", "orbit", "dolly", "focus-pull"},
