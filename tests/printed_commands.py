@@ -13,6 +13,7 @@ import subprocess
 import numpy as np
 from PIL import Image
 
+import pose_mistakes
 from small_field import wall, write_field, write_path
 from source_messages import PROGRAMS
 
@@ -107,6 +108,7 @@ def make_world(folder: pathlib.Path, shell: Shell):
     for line in SETUP:
         shell.must(line, folder)
     folded(folder / "sparse", folder / "folded")
+    pose_mistakes.write_mistake("position-y-negated", folder / "sparse", folder / "mistaken")
 
 
 SETUP = [

@@ -21,6 +21,7 @@ import numpy as np
 from PIL import Image
 
 import found_captures
+import pose_mistakes
 import schema_files
 import small_field
 from common_options import OFFERED
@@ -280,6 +281,8 @@ class SchemasTest(ProgramTestCase):
         for file in phone.glob("*.png"):
             Image.open(file).save(file, icc_profile=found_captures.display_p3_profile())
         self.prints("import_report", "lfimport", phone)
+        mistaken = pose_mistakes.write_mistake("opencv-axes", self.still_life, self.folder / "mistaken")
+        self.prints("import_report", "lfimport", mistaken)
         brackets = self.bracketed()
         self.prints("import_report", "lfimport", brackets, "--gain-from-exif", "-o", self.folder / "gains")
         self.valid_file("transforms", self.folder / "gains/transforms.json")

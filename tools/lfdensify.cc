@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <memory>
 #include <string>
 
 #include "tools/common/allow_missing.h"
 #include "tools/common/byte_size.h"
+#include "tools/common/check_agreement.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
 #include "tools/common/next_step.h"
@@ -21,9 +21,7 @@
 #include "lf/core/log.h"
 #include "lf/core/shell_word.h"
 #include "lf/densify/densify.h"
-#include "lf/import/agreement/agreement.h"
 #include "lf/import/paths/open_path.h"
-#include "lf/storage/load/open_store.h"
 #include "lf/storage/packed/packed_store_file.h"
 
 namespace {
@@ -164,18 +162,17 @@ lf::Result<lf::DensifyOptions> MakeOptions(const Arguments& a, const lf::LightFi
   return options;
 }
 
-// Refuses LF images that do not belong to their poses, unless --force is given: no depth would be
-// right.
+// Refuses LF images that do not belong to their poses, because no depth would be right. Only warns
+// with --force.
 lf::Result<void> CheckAgreement(const Arguments& a, const lf::LightField& light_field,
-                                lf::ThreadPool& pool) {
-  LF_ASSIGN_OR_RETURN(const std::unique_ptr<lf::LfImageStore> store,
-                      lf::OpenStore(light_field, lf::Mosaics::kToRgb));
-  LF_ASSIGN_OR_RETURN(const std::string text,
-                      lf::DisagreementOf(light_field, *store, a.light_field.path, pool));
-  if (text.empty()) return {};
+                                lf::ThreadPool& pool, const std::atomic<bool>& interrupted) {
+  LF_ASSIGN_OR_RETURN(const lf::Disagreement found,
+                      lf::FindDisagreement(light_field, a.light_field, pool, &interrupted));
+  if (found.text.empty()) return {};
   if (!a.choices.force)
-    return lf::InputError(fmt::format("{}. --force densifies nevertheless", text));
-  lf::LogWarning("{}", text);
+    return lf::InputError(
+        fmt::format("{}; with --force, densifies nevertheless. {}", found.text, found.advice));
+  lf::LogWarning("{}. {}", found.text, found.advice);
   return {};
 }
 
@@ -188,7 +185,7 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   options.strict = common.strict;
   options.interrupted = &interrupted;
   lf::ThreadPool pool(common.threads);
-  if (!options.resume) LF_RETURN_IF_ERROR(CheckAgreement(a, light_field, pool));
+  if (!options.resume) LF_RETURN_IF_ERROR(CheckAgreement(a, light_field, pool, interrupted));
   lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "LF images");
   LF_ASSIGN_OR_RETURN(const lf::DensifyReport report,
                       lf::Densify(light_field, options, pool, [&](const lf::DensifyProgress& now) {

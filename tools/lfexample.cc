@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "tools/common/check_agreement.h"
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
 #include "tools/common/programs.h"
@@ -19,7 +20,6 @@
 #include "lf/core/parse_number.h"
 #include "lf/core/shell_word.h"
 #include "lf/focus/example_path.h"
-#include "lf/import/agreement/agreement.h"
 #include "lf/import/paths/write_path.h"
 #include "lf/light_field/model/keep_images.h"
 #include "lf/storage/load/open_store.h"
@@ -161,7 +161,9 @@ int main(int argc, char** argv) {
     lf::ThreadPool pool(program.common().threads);
     LF_ASSIGN_OR_RETURN(const std::unique_ptr<lf::LfImageStore> store,
                         lf::OpenStore(light_field, lf::Mosaics::kToRgb));
-    LF_ASSIGN_OR_RETURN(options.doubt, lf::DisagreementOf(light_field, *store, input.path, pool));
+    LF_ASSIGN_OR_RETURN(const lf::Disagreement disagreement,
+                        lf::FindDisagreement(light_field, input, pool));
+    if (!disagreement.text.empty()) options.doubt = "images and poses do not agree";
     LF_ASSIGN_OR_RETURN(options.camera, FindCamera(light_field, *store, camera));
     LF_ASSIGN_OR_RETURN(const lf::ExamplePath example,
                         lf::MakeExamplePath(light_field, *store, options, pool));
@@ -169,6 +171,8 @@ int main(int argc, char** argv) {
     LF_RETURN_IF_ERROR(lf::ParsePathYaml(example.yaml, output, light_field.unit_m));
     if (!overwrite) LF_RETURN_IF_ERROR(CheckKeepsEdits(output));
     LF_RETURN_IF_ERROR(lf::WriteFileAtomically(output, Stamped(example.yaml)));
+    if (!disagreement.text.empty())
+      lf::LogWarning("{}. {}", disagreement.text, disagreement.advice);
     if (!example.doubt.empty())
       WarnOfDoubt(example, input.path, input.Words(), output, move, camera);
     if (!example.move_warning.empty()) lf::LogWarning("{}", example.move_warning);

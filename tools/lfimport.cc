@@ -251,15 +251,17 @@ lf::Result<lf::LightField> OpenChanged(const Arguments& a, const std::vector<std
 // Returns the agreement of images and poses. Adds a warning to the report if they disagree, with
 // the call that repairs the poses.
 lf::Result<lf::Agreement> FindAgreement(const Arguments& a, const lf::LightField& light_field,
-                                        lf::ThreadPool& pool, lf::CaptureReport* capture) {
+                                        lf::ThreadPool& pool, const std::atomic<bool>& interrupted,
+                                        lf::CaptureReport* capture) {
   LF_ASSIGN_OR_RETURN(const std::unique_ptr<lf::LfImageStore> store,
                       lf::OpenStore(light_field, lf::Mosaics::kToRgb));
-  LF_ASSIGN_OR_RETURN(lf::Agreement agreement, lf::JudgeAgreement(light_field, *store, pool));
+  LF_ASSIGN_OR_RETURN(lf::Agreement agreement,
+                      lf::JudgeAgreement(light_field, *store, pool, &interrupted));
   if (agreement.verdict != lf::Verdict::kDisagree) return agreement;
   std::string message = lf::TextOf(agreement);
   // A repair of poses that were repaired before cannot be added to that call, and a packed store
   // keeps the poses that it was made with.
-  if (agreement.repair && a.repair.empty() && !lf::HoldsPackedStore(light_field))
+  if (a.repair.empty() && !lf::HoldsPackedStore(light_field))
     message += fmt::format(". Repair the poses: {}",
                            ImportAgain(a, {"--repair", lf::NameOf(*agreement.repair)}, "repaired"));
   capture->warnings.push_back(
@@ -356,7 +358,8 @@ lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
   lf::WarnOfBracketOptions(a.exposure, report.exif_gains, &light_field, &report.capture);
   if (report.faults) report.profile = lf::FindProfile(light_field);
   if (report.faults && !refuses) {
-    LF_ASSIGN_OR_RETURN(report.agreement, FindAgreement(a, light_field, pool, &report.capture));
+    LF_ASSIGN_OR_RETURN(report.agreement,
+                        FindAgreement(a, light_field, pool, interrupted, &report.capture));
     LF_ASSIGN_OR_RETURN(report.pixels, FindFootprint(&light_field));
   }
   if (!a.output.empty() && !refuses) {

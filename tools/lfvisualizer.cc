@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "tools/common/allow_missing.h"
 #include "tools/common/byte_size.h"
+#include "tools/common/check_agreement.h"
 #include "tools/common/frame_options.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
@@ -175,6 +177,16 @@ lf::Result<void> PrintText(const Arguments& a, const lf::CommonOptions& common) 
                             lf::PrintReport);
 }
 
+// Warns if images and poses do not belong together. Runs while the page is already open, because it
+// reads dozens of LF images. Errors are those of LF images, which the page shows.
+void WarnOfDisagreement(const Arguments& a, const lf::LightField& light_field,
+                        const std::atomic<bool>& interrupted) {
+  lf::ThreadPool pool(1);
+  const lf::Result<lf::Disagreement> found =
+      lf::FindDisagreement(light_field, a.light_field, pool, &interrupted);
+  if (found && !found->text.empty()) lf::LogWarning("{}. {}", found->text, found->advice);
+}
+
 lf::MissingImages MissingOf(const lf::ExportFacts& facts) {
   return {facts.missing_count, facts.image_count,
           fmt::format("{} of {} LF images are not in the export, because they are missing or "
@@ -226,6 +238,7 @@ lf::Result<void> Run(Arguments& a, const lf::CommonOptions& common) {
   LF_ASSIGN_OR_RETURN(const auto server, lf::PageServer::Open(*scene, a.port));
   LF_RETURN_IF_ERROR(lf::PrintReport(server->address() + "\n"));
   lf::LogInfo("open this address in a browser; Ctrl-C ends lfvisualizer");
+  const std::jthread check([&] { WarnOfDisagreement(a, scene->light_field(), interrupted); });
   return server->ServeUntil(interrupted);
 }
 

@@ -14,7 +14,6 @@
 
 #include "lf/core/log.h"
 #include "lf/core/median.h"
-#include "lf/core/shell_word.h"
 #include "lf/import/agreement/find_places.h"
 #include "lf/import/agreement/place_errors.h"
 
@@ -32,9 +31,9 @@ constexpr double kSureShare = 0.85;     // no repair is tried, except of the ord
 constexpr double kMostGain = 0.08;      // of a repair, if images and poses agree as they are
 constexpr double kWins = 0.1;           // places that a repair explains better, see IsBetter()
 constexpr double kOrderWins = 0.04;     // the same for the order of names
-constexpr double kFarError = 6;         // median error of poses that do not agree, reduced pixels
 
-constexpr size_t kFocalSteps = 76;  // focal lengths that are tried, each 4 % longer
+constexpr size_t kPlacesForOrder = 200;  // fewer may not tell one order of names from another
+constexpr size_t kFocalSteps = 76;       // focal lengths that are tried, each 4 % longer
 
 struct Judged {
   Repair repair;
@@ -86,7 +85,9 @@ bool IsOfScan(const Repair& repair, const std::vector<Repair>& repairs) {
 }
 
 // Returns the fault that a repair undoes, as a clause. Names the unit of focal lengths.
-std::string ClauseFor(const Repair& repair, const Intrinsics& k) {
+std::string ClauseFor(const Repair& repair, const LightField& light_field) {
+  const Intrinsics k = light_field.Camera({0}).intrinsics;
+  const bool is_rectified = IsRectified(light_field);
   const double factor = repair.focal_factors[0];
   const auto is = [&](double other) { return std::abs(factor / other - 1) < 1e-6; };
   if (factor != 1 && k.fx_px < 0.1 * k.width_px) {
@@ -102,7 +103,10 @@ std::string ClauseFor(const Repair& repair, const Intrinsics& k) {
   for (const auto& [size, text] :
        {std::pair{2., "half"}, {4., "a quarter of"}, {0.5, "twice"}, {0.25, "four times"}})
     if (is(size)) return fmt::format("the focal lengths belonged to images of {} the size", text);
-  return ClauseOf(repair);
+  std::string clause = ClauseOf(repair);
+  if (is_rectified && repair == Repair{.mirror_y = true})
+    clause += " (or mirror-x, if near things are then blurred like far ones)";
+  return clause;
 }
 
 // Counts the places at which a repair explains the images well and clearly better than the poses as
@@ -190,21 +194,31 @@ bool IsBetter(const std::vector<PlaceError>& repaired, const std::vector<PlaceEr
          static_cast<double>(duel.wins) >= least_wins * static_cast<double>(recorded.size());
 }
 
-// Returns an order of the names that is better than the recorded one; none if there is none. Names
-// shifted by one leave most neighbours in a grid beside one another, and turn a ring as a whole, so
-// that most places agree nevertheless: few wins suffice.
-std::optional<Judged> BetterOrder(const std::vector<Repair>& repairs, const PlaceErrors& errors,
-                                  const std::vector<PlaceError>& recorded, int divisor) {
-  std::optional<Judged> best;
+// How other orders of the names explain the images.
+struct Orders {
+  std::optional<Judged> better;  // better than the recorded order
+  bool are_equal = false;        // true if another one explains the images no worse
+};
+
+// Tries other orders of the names. Names shifted by one leave most neighbours in a grid beside one
+// another, and turn a ring as a whole, so that most places agree nevertheless: few wins suffice.
+Orders TryOrders(const std::vector<Repair>& repairs, const PlaceErrors& errors,
+                 const std::vector<PlaceError>& recorded, double share, int divisor) {
+  Orders orders;
   for (const Repair& order : repairs) {
     if (order.names == NameOrder::kAsRecorded) continue;
     const std::vector<PlaceError> repaired = errors.Of(order);
     const Fit fit = FitOf(repaired, divisor);
-    if (fit.share >= kRepairedShare && (!best || fit.share > best->fit.share) &&
+    if (fit.share >= kRepairedShare && (!orders.better || fit.share > orders.better->fit.share) &&
         IsBetter(repaired, recorded, kOrderWins))
-      best = Judged{order, fit};
+      orders.better = Judged{order, fit};
+    const bool is_same = std::equal(repaired.begin(), repaired.end(), recorded.begin(),
+                                    [](const PlaceError& a, const PlaceError& b) {
+                                      return std::abs(a.reduced_px - b.reduced_px) < 1e-6;
+                                    });
+    if (!is_same && fit.share > share - kMostGain) orders.are_equal = true;
   }
-  return best;
+  return orders;
 }
 
 // Returns the repair of a focal length that no lens without distortion has, because it is not in
@@ -262,10 +276,11 @@ void Judge(const LightField& light_field, const FoundPlaces& found, ThreadPool& 
   double gain = 0;
   if (const std::optional<Judged> unit =
           PlausibleFocal(light_field, errors, agreement->fit, found.divisor)) {
-    SetRepair(*unit, ClauseFor(unit->repair, k), agreement);
+    SetRepair(*unit, ClauseFor(unit->repair, light_field), agreement);
     return;
   }
-  const std::optional<Judged> order = BetterOrder(usual, errors, recorded, found.divisor);
+  const Orders orders = TryOrders(usual, errors, recorded, agreement->fit.share, found.divisor);
+  const std::optional<Judged>& order = orders.better;
   if (order || agreement->fit.share < kSureShare) {
     std::vector<Repair> repairs = usual;
     const std::vector<Repair> focal = FocalRepairs(light_field);
@@ -275,7 +290,7 @@ void Judge(const LightField& light_field, const FoundPlaces& found, ThreadPool& 
     if (best.fit.share >= kRepairedShare &&
         (gain >= kContrast ||
          (!IsOfScan(best.repair, repairs) && IsBetter(errors.Of(best.repair), recorded, kWins)))) {
-      SetRepair(best, ClauseFor(best.repair, k), agreement);
+      SetRepair(best, ClauseFor(best.repair, light_field), agreement);
       return;
     }
     if (order) {
@@ -284,26 +299,26 @@ void Judge(const LightField& light_field, const FoundPlaces& found, ThreadPool& 
     }
   }
   if (agreement->fit.share >= kAgreeShare && gain < kMostGain) {
-    if (can_tell) {
+    if (recorded.size() < kPlacesForOrder && orders.are_equal) {
+      agreement->reason = "so few places do not tell whether names are shifted";
+    } else if (can_tell) {
       agreement->verdict = Verdict::kAgree;
       agreement->tells_intrinsics = TellsIntrinsics(errors, agreement->fit, k, found.divisor);
     } else {
       agreement->reason = "wrong poses would explain the LF images as well";
     }
-  } else if (agreement->fit.share < kContrast &&
-             agreement->fit.error_px > kFarError * found.divisor) {
-    agreement->verdict = Verdict::kDisagree;
   } else {
     agreement->reason =
-        fmt::format("only {:.0f} % of the places agree", std::floor(100 * agreement->fit.share));
+        fmt::format("only {:.0f} % of the places agree, and no usual mistake explains it",
+                    std::floor(100 * agreement->fit.share));
   }
 }
 
 }  // namespace
 
 Result<Agreement> JudgeAgreement(const LightField& light_field, const LfImageStore& store,
-                                 ThreadPool& pool) {
-  LF_ASSIGN_OR_RETURN(FoundPlaces found, FindPlaces(light_field, store, pool));
+                                 ThreadPool& pool, const std::atomic<bool>* interrupted) {
+  LF_ASSIGN_OR_RETURN(FoundPlaces found, FindPlaces(light_field, store, pool, interrupted));
   // A place in two LF images tells only the distance from the epipolar line.
   const auto is_pair = [](const SeenPlace& place) { return place.others.size() == 1; };
   const auto pairs = std::count_if(found.places.begin(), found.places.end(), is_pair);
@@ -360,19 +375,9 @@ std::string TextOf(const Agreement& agreement) {
     case Verdict::kDisagree:
       break;
   }
-  std::string text = "images and poses do not agree: " + where;
-  if (agreement.repair)
-    text += fmt::format("; they would ({}, {:.0f} %) if {}", measured(agreement.repaired),
-                        100 * agreement.repaired.share, agreement.clause);
-  return text;
-}
-
-Result<std::string> DisagreementOf(const LightField& light_field, const LfImageStore& store,
-                                   const std::string& light_field_path, ThreadPool& pool) {
-  LF_ASSIGN_OR_RETURN(const Agreement agreement, JudgeAgreement(light_field, store, pool));
-  if (agreement.verdict != Verdict::kDisagree) return std::string();
-  return fmt::format("{}; the report of lfimport {} tells how to repair it", TextOf(agreement),
-                     ShellWord(FileArgument(light_field_path)));
+  return fmt::format("images and poses do not agree: {}; they would ({}, {:.0f} %) if {}", where,
+                     measured(agreement.repaired), 100 * agreement.repaired.share,
+                     agreement.clause);
 }
 
 }  // namespace lf

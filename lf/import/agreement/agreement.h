@@ -3,6 +3,7 @@
 // finds what would make them agree if they do not.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -36,8 +37,8 @@ struct Agreement {
   // If the verdict is kAgree: false if wrong focal lengths or principal points would agree, too.
   // The scene of parallel cameras, for example, then only becomes longer or shorter.
   bool tells_intrinsics = false;
-  // If the verdict is kDisagree: the repair with which images and poses agree; none if none of
-  // those that are known does.
+  // Set if the verdict is kDisagree: the repair with which images and poses agree. Without one, the
+  // verdict is kNotSure, because repeated patterns are also matched wrongly.
   std::optional<Repair> repair;
   Fit repaired;        // fit of the repair
   std::string clause;  // what the repair supposes: "the matrices were inverted"
@@ -46,10 +47,11 @@ struct Agreement {
 // Returns the agreement of images and poses. It compares corners of at most 150 reduced LF images,
 // however many there are (find_places.h). The verdict is kNotSure if there is too little texture or
 // parallax to tell, or if the answer is neither clearly yes nor clearly no.
-// kOutput: the machine lacks memory or open files.
-//   store  a store with Mosaics::kToRgb
+// kOutput: the machine lacks memory or open files. kInterrupted: `interrupted` is true.
+//   store        a store with Mosaics::kToRgb
+//   interrupted  true ends the comparison early; null: never
 Result<Agreement> JudgeAgreement(const LightField& light_field, const LfImageStore& store,
-                                 ThreadPool& pool);
+                                 ThreadPool& pool, const std::atomic<bool>* interrupted = nullptr);
 
 // Returns the word of a verdict for programs: agree, not-sure, disagree.
 const char* NameOf(Verdict verdict);
@@ -57,11 +59,5 @@ const char* NameOf(Verdict verdict);
 // Returns the agreement as a sentence: "images agree with the poses: 0.41 px at 153 places of 40
 // pairs (97 %)".
 std::string TextOf(const Agreement& agreement);
-
-// Returns "" unless images and poses disagree; otherwise TextOf(), and where to read more: the
-// report of lfimport names the call that repairs the poses. Errors as for JudgeAgreement().
-//   light_field_path  the argument LIGHTFIELD of the program
-Result<std::string> DisagreementOf(const LightField& light_field, const LfImageStore& store,
-                                   const std::string& light_field_path, ThreadPool& pool);
 
 }  // namespace lf

@@ -2,10 +2,10 @@
 #include "lf/import/agreement/find_places.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -33,7 +33,9 @@ int DivisorOf(const Intrinsics& k) {
 // The corners of LF images, each of which is read once.
 class FeatureCache {
  public:
-  FeatureCache(const LightField& field, const LfImageStore& store) : field_(field), store_(store) {}
+  FeatureCache(const LightField& field, const LfImageStore& store,
+               const std::atomic<bool>* interrupted)
+      : field_(field), store_(store), interrupted_(interrupted) {}
 
   // Reads those of the LF images that were not read before.
   Result<void> Read(const std::vector<uint32_t>& images, ThreadPool& pool) {
@@ -45,6 +47,7 @@ class FeatureCache {
     std::vector<ImageFeatures> read(unread.size());
     MachineFailure failure;
     pool.ForEach(unread.size(), [&](size_t i) {
+      if (interrupted_ && *interrupted_) return;
       const LfImageId id{unread[i]};
       const Intrinsics& k = field_.intrinsics[field_.cameras[id.value].intrinsics_index];
       const int divisor = DivisorOf(k);
@@ -57,6 +60,8 @@ class FeatureCache {
       read[i] = FindFeatures(image, kMostFeatures);
     });
     LF_RETURN_IF_ERROR(failure.Check());
+    if (interrupted_ && *interrupted_)
+      return Error{ErrorKind::kInterrupted, "interrupted while images and poses were compared"};
     for (size_t i = 0; i < unread.size(); ++i) features_[unread[i]] = std::move(read[i]);
     return {};
   }
@@ -71,6 +76,7 @@ class FeatureCache {
  private:
   const LightField& field_;
   const LfImageStore& store_;
+  const std::atomic<bool>* interrupted_;
   std::map<uint32_t, ImageFeatures> features_;
 };
 
@@ -81,29 +87,49 @@ std::vector<uint32_t> RecordedByName(const LightField& field) {
   return order;
 }
 
-// Returns the LF cameras of one ring around an LF camera: those nearest to four positions at the
-// radius, that look in about the same direction.
+// Returns up to four LF cameras in a ring around an LF camera, in directions as different as there
+// are, because cameras in one line do not tell signs and scales of the other axis. The axes of the
+// cameras do not count, because they may be wrong. All look in about the same direction.
 std::vector<uint32_t> RingAround(const LightField& field, const std::vector<uint32_t>& images,
                                  const std::vector<Vec3>& centres, uint32_t anchor,
                                  double radius_w) {
-  const PinholeCamera camera = field.Camera({anchor});
-  const Vec3 middle = centres[anchor], forward = camera.ForwardWorld();
-  std::array<std::pair<double, uint32_t>, 4> nearest;
-  nearest.fill({0.7 * radius_w, LfCamera::kNone});
+  constexpr size_t kMostOfRing = 4;
+  constexpr double kMostCosine = 0.8;  // between the directions of two LF cameras of a ring
+  const Vec3 forward = field.Camera({anchor}).ForwardWorld();
+  struct Candidate {
+    uint32_t image;
+    Vec3 direction;
+    double cosine;  // largest one with the direction of a chosen LF camera
+  };
+  std::vector<Candidate> candidates;
+  std::optional<size_t> next;
+  double nearest_w = radius_w;
   for (const uint32_t i : images) {
-    if (i == anchor || !((centres[i] - middle).norm() > 1e-6 * radius_w)) continue;
+    const Vec3 step = centres[i] - centres[anchor];
+    const double length_w = step.norm();
+    if (length_w < 0.6 * radius_w || length_w > 1.5 * radius_w) continue;
     if (field.cameras[i].cam_from_world.rotation.row(2).dot(forward) < 0.8) continue;
-    for (size_t side = 0; side < 4; ++side) {
-      const Vec3 axis = side % 2 == 0 ? camera.RightWorld() : camera.UpWorld();
-      const Vec3 target = middle + (side < 2 ? radius_w : -radius_w) * axis;
-      const double distance_w = (centres[i] - target).norm();
-      if (distance_w < nearest[side].first) nearest[side] = {distance_w, i};
+    candidates.push_back({i, step / length_w, -1});
+    if (std::abs(length_w - radius_w) < nearest_w) {
+      nearest_w = std::abs(length_w - radius_w);
+      next = candidates.size() - 1;
     }
   }
   std::vector<uint32_t> ring;
-  for (const auto& [distance_w, i] : nearest)
-    if (i != LfCamera::kNone && std::find(ring.begin(), ring.end(), i) == ring.end())
-      ring.push_back(i);
+  while (next && ring.size() < kMostOfRing) {
+    ring.push_back(candidates[*next].image);
+    const Vec3 direction = candidates[*next].direction;
+    next.reset();
+    double least = kMostCosine;
+    for (size_t i = 0; i < candidates.size(); ++i) {
+      double& cosine = candidates[i].cosine;
+      cosine = std::max(cosine, candidates[i].direction.dot(direction));
+      if (cosine < least) {
+        least = cosine;
+        next = i;
+      }
+    }
+  }
   return ring;
 }
 
@@ -174,7 +200,7 @@ double LongestMove(const SeenPlace& place) {
 }
 
 Result<FoundPlaces> FindPlaces(const LightField& light_field, const LfImageStore& store,
-                               ThreadPool& pool) {
+                               ThreadPool& pool, const std::atomic<bool>* interrupted) {
   FoundPlaces found;
   const std::vector<uint32_t> images = RecordedByName(light_field);
   if (images.size() < 2) return found;
@@ -184,7 +210,7 @@ Result<FoundPlaces> FindPlaces(const LightField& light_field, const LfImageStore
   const double spacing_w = MedianSpacing(light_field);
   const size_t anchor_count = std::min(kMostAnchors, images.size());
   found.divisor = DivisorOf(light_field.Camera({images[0]}).intrinsics);
-  FeatureCache cache(light_field, store);
+  FeatureCache cache(light_field, store, interrupted);
   std::vector<Anchor> anchors;
   std::vector<uint32_t> first, all;
   std::vector<std::vector<uint32_t>> by_name;

@@ -3,6 +3,7 @@
 // these images. Internal to this folder.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <vector>
 
@@ -43,9 +44,10 @@ struct FoundPlaces {
 // around it by their poses, in growing rings, and neighbours by name. Both are needed, because
 // poses or names may be wrong. Places that stand still in all LF images are left out, like
 // watermarks and the background of a turntable. LF images that cannot be read are left out.
-// kOutput: the machine lacks memory or open files.
-//   store  a store with Mosaics::kToRgb
+// kOutput: the machine lacks memory or open files. kInterrupted: `interrupted` is true.
+//   store        a store with Mosaics::kToRgb
+//   interrupted  true ends the search early; null: never
 Result<FoundPlaces> FindPlaces(const LightField& light_field, const LfImageStore& store,
-                               ThreadPool& pool);
+                               ThreadPool& pool, const std::atomic<bool>* interrupted);
 
 }  // namespace lf

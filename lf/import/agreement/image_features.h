@@ -35,7 +35,7 @@ struct FeatureMatch {
 
 // Returns the pairs of corners that are most like each other, and clearly less like any other, and
 // that lie on the epipolar lines of one fundamental matrix, which RANSAC finds from the matches
-// alone: poses and intrinsics do not count. Empty if fewer than 16 pairs or a third of them do.
+// alone: poses and intrinsics do not count. Empty if fewer than 16 pairs or half of them do.
 //   tolerance_px  largest distance from the epipolar line
 std::vector<FeatureMatch> MatchFeatures(const ImageFeatures& a, const ImageFeatures& b,
                                         double tolerance_px);

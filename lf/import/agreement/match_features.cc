@@ -13,7 +13,7 @@ namespace lf {
 namespace {
 
 constexpr size_t kLeastMatches = 16;
-constexpr double kLeastShare = 0.33;  // of the matches, that lie on epipolar lines
+constexpr double kLeastShare = 0.5;  // of the matches, that lie on epipolar lines
 
 // Returns the pairs of corners that are each other's nearest, by the angle between descriptors. The
 // second nearest must be clearly farther away.

@@ -165,7 +165,7 @@ void MultiplyFocalLengths(const std::array<double, 2>& factors, Intrinsics* k) {
   if (k->cx_px > 0.1 * k->width_px && k->cy_px > 0.1 * k->height_px) return;
   const auto moved = [](double position, double factor, int size) {
     const double result = position * factor;
-    return result > 0.3 * size && result < 0.7 * size ? result : size / 2.0;
+    return result > 0.4 * size && result < 0.6 * size ? result : size / 2.0;
   };
   k->cx_px = moved(k->cx_px, factors[0], k->width_px);
   k->cy_px = moved(k->cy_px, factors[1], k->height_px);
@@ -360,8 +360,8 @@ std::vector<Repair> UsualRepairs(bool are_parallel) {
   std::vector<Repair> all;
   const auto add = [&](const Repair& repair) { all.push_back(repair); };
   const auto add_mirrors = [&] {
-    add({.mirror_x = true});
     add({.mirror_y = true});
+    add({.mirror_x = true});
     if (are_parallel) add({.mirror_x = true, .mirror_y = true});
   };
   if (are_parallel) {
