@@ -21,6 +21,7 @@ from first_picture_case import FirstPictureCase, detail, expose, grey, write_she
 
 DATA = None
 TILES = 12  # number of tiles of a picture along each axis
+NEARLY = 0.7  # least share of sharp tiles of a changed capture, relative to the unchanged one
 SUFFIXES = (".jpg", ".jpeg", ".png", ".PNG")
 SHOP = range(9, 18)  # the rows, and the columns, in the middle of 27
 
@@ -166,13 +167,12 @@ class CapturedPicturesTest(FirstPictureCase):
         print(f"{name}: focus {focus:.4g}, {100 * share:.0f} % sharp", file=sys.stderr)
         return focus, share
 
-    def all_pictures(self, write, changes, focus, sharp, is_sure=True, keeps_points=True, is_matched=True):
+    def all_pictures(self, write, changes, focus, sharp, is_sure=True, is_matched=True):
         """Every changed capture must be focused at the distance of the unchanged one, and be nearly as sharp.
 
         focus         distances between which the subject lies
         sharp         least share of the capture's textured tiles that are sharp
         is_sure       False: the images are too far apart to find a focus from pixels
-        keeps_points  False: the focus comes from points, which a written transforms.json no longer has
         is_matched    False: the light moves over the subject, so that --match-exposure refuses
         """
         folder = DATA / {"shop": "blender-shop", "cards": "stanford-cards-9x9", "beer": "beer-colmap",
@@ -188,17 +188,16 @@ class CapturedPicturesTest(FirstPictureCase):
                 its, sharp_of_it = self.one_picture(write, change, is_sure=is_sure)
                 # At half the size, objects slightly out of focus look sharp.
                 self.assertAlmostEqual(its, plain, delta=(0.06 if change is smaller else 0.03) * plain)
-                self.assertGreater(sharp_of_it, 0.8 * share)
+                self.assertGreater(sharp_of_it, NEARLY * share)
         with self.subTest("matched"):
             if not is_matched:
                 self.refuses_to_match(write)
                 return
             its, sharp_of_it = self.one_picture(
-                write, uneven_and_dark_corners, name="matched", is_sure=is_sure and keeps_points,
+                write, uneven_and_dark_corners, name="matched", is_sure=is_sure,
                 options=["--match-exposure", "--vignetting", "-o", self.folder / "matched"])
-            if keeps_points:
-                self.assertAlmostEqual(its, plain, delta=0.03 * plain)
-            self.assertGreater(sharp_of_it, 0.8 * share)
+            self.assertAlmostEqual(its, plain, delta=0.03 * plain)
+            self.assertGreater(sharp_of_it, NEARLY * share)
 
     def refuses_to_match(self, write):
         for change in (as_it_is, uneven_and_dark_corners):
@@ -215,16 +214,15 @@ class CapturedPicturesTest(FirstPictureCase):
         self.all_pictures(shop, (uneven, dark_corners, smaller, renamed, of_another_machine), (6, 14), 0.2)
 
     def test_cards(self):
-        self.all_pictures(cards, (uneven, dark_corners, smaller, renamed, of_another_machine), (50, 200),
-                          0.2)
+        # The subject is a ball of glass, before the cards that fill the picture.
+        self.all_pictures(cards, (uneven, dark_corners, smaller, renamed, of_another_machine), (80, 100),
+                          0.1)
 
     def test_temple(self):
-        self.all_pictures(temple, (uneven, dark_corners, renamed), (0.5, 0.6), 0.8,
-                          is_sure=False, is_matched=False)
+        self.all_pictures(temple, (uneven, dark_corners, renamed), (0.5, 0.6), 0.8, is_matched=False)
 
     def test_beer(self):
-        self.all_pictures(beer, (uneven, dark_corners, smaller, renamed), (4, 5.5), 0.8,
-                          keeps_points=False)
+        self.all_pictures(beer, (uneven, dark_corners, smaller, renamed), (4, 5.5), 0.8)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,9 @@ import sys
 import unittest
 
 os.environ["OPENCV_IO_ENABLE_OPENEXR"] = "1"  # must be set before cv2 is imported
-from judgements import alpha
+import numpy as np
+
+from judgements import alpha, focus, scenes
 from judgements.captures import RIGHT, WRONG, Answer, halves, table
 from program_test_case import ProgramTestCase
 
@@ -40,6 +42,22 @@ class JudgementsTest(ProgramTestCase):
             verdict = alpha.judge(json.loads(called.stdout), called.stderr, answers)
             ANSWERS.append(Answer("alpha", name, half, verdict, called.stderr.strip()))
         self.expect("alpha", 0.85)
+
+    def test_focus_and_aperture(self):
+        for name, half, seed, kind in halves((kind.__name__.replace("_", " "), kind) for kind in focus.KINDS):
+            folder, path = self.folder / f"{seed}", self.folder / f"{seed}.yaml"
+            cameras, quads, depths = kind(np.random.default_rng(seed))
+            scenes.draw(folder, cameras, quads, seed, grain=6 if kind is focus.grainy else 1)
+            called = self.call(EXAMPLE, folder, "-o", path)
+            self.assertEqual(called.returncode, 0, called.stderr)
+            said = focus.Said.of(path.read_text(), called.stderr)
+            words = f"{called.stderr.strip()} (subject: {depths})"
+            ANSWERS.append(Answer("focus", name, half, focus.judge_focus(said, depths), words))
+            verdict, why = focus.judge_aperture(said, cameras, quads)
+            ANSWERS.append(Answer("aperture", name, half, verdict, f"{why}: {words}"))
+        for question in ("focus", "aperture"):
+            with self.subTest(question):
+                self.expect(question, 0.8)
 
 
 if __name__ == "__main__":

@@ -109,8 +109,9 @@ class ExampleTest(unittest.TestCase):
             keys = path.read_text().partition("keyframes:")[2]
             distances = [float(value) for value in re.findall(r"value: ([0-9.]+)\}", keys)]
             self.assertEqual(len(distances), 3, keys)
-            self.assertAlmostEqual(distances[0] / distances[1], near, places=2)
-            self.assertAlmostEqual(distances[2] / distances[1], far, places=2)
+            # Half a pixel of the largest disparity is 9 % of the depth.
+            self.assertAlmostEqual(distances[0] / distances[1], near, delta=0.02)
+            self.assertAlmostEqual(distances[2] / distances[1], far, delta=0.02)
 
     def test_takes_the_focus_and_the_camera_it_is_given(self):
         path, _ = self.example("--move", "static", "--focus", "0.9", "--camera", "0")
@@ -193,8 +194,8 @@ class ExampleTest(unittest.TestCase):
         path, words = self.example("--move", "static")
         focus = float(re.search(r"focus_distance: (\S+)", path.read_text()).group(1))
         self.assertAlmostEqual(focus, 0.8, delta=0.02 * 0.8)
-        self.assertRegex(words, r"focused at 0\.\d+ by the points of the reconstruction, because the "
-                                "neighbouring LF images agree")
+        self.assertRegex(words, r"focused at 0\.\d+ by the points of the reconstruction, because the LF image has no "
+                                "texture")
         self.assertNotIn("not sure", words)
         result = self.run_tool(RENDERER, self.field, path, "-o", self.folder / "frames")
         self.assertEqual(result.returncode, 0, result.stderr)

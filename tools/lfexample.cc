@@ -33,9 +33,10 @@ constexpr lf::HelpTexts kHelp = {
   lfexample capture/transforms.json -o orbit.yaml --move orbit --camera 364
   lfexample capture/ -o path.yaml --focus 8.12)",
     .details =
-        R"(The path starts at an LF camera and focuses on the depth that most of its image shows. The program
-finds this depth by comparing the image with the images around it; if that fails, from the points of
-a COLMAP model. A warning says when the depth is uncertain, and what to try. Render the path with:
+        R"(The path starts at an LF camera and focuses on the nearest depth that much of its image shows. The
+program finds this depth by comparing the image with the images around it; if that fails, from the
+points of a COLMAP model. A warning says when the depth is uncertain, and what to try. Render the
+path with:
   lfrenderer LIGHTFIELD PATH -o DIR)",
 };
 

@@ -44,18 +44,28 @@ SubjectDepth BestDepth(std::span<const FoundDepth> found, double total_weight) {
 
 }  // namespace
 
-std::vector<SubjectDepth> BestDepths(std::vector<FoundDepth> found) {
+std::vector<SubjectDepth> BestDepths(std::vector<FoundDepth> found, size_t most) {
   double total_weight = 0;
   for (const FoundDepth& one : found) total_weight += one.weight;
   std::vector<SubjectDepth> depths;
-  constexpr size_t kMostDepths = 3;
-  while (depths.size() < kMostDepths && !found.empty()) {
+  while (depths.size() < most && !found.empty()) {
     depths.push_back(BestDepth(found, total_weight));
     std::erase_if(found, [&](const FoundDepth& one) {
       return std::abs(std::log(one.distance_w / depths.back().distance_w)) < 3 * WidthOf(one);
     });
   }
   return depths;
+}
+
+void PutSubjectFirst(std::vector<SubjectDepth>* depths) {
+  constexpr double kBefore = 0.8, kLargeWeight = 0.25;
+  auto subject = depths->begin();
+  for (auto depth = depths->begin(); depth != depths->end(); ++depth)
+    if (depth->distance_w < kBefore * depths->front().distance_w &&
+        depth->share >= std::max(kLeastSubjectShare, kLargeWeight * depths->front().share) &&
+        depth->place_count >= kLeastSubjectPlaces && depth->distance_w < subject->distance_w)
+      subject = depth;
+  if (subject != depths->end()) std::rotate(depths->begin(), subject, subject + 1);
 }
 
 }  // namespace lf

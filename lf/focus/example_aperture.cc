@@ -4,50 +4,135 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "lf/camera/ray_through.h"
+#include "lf/light_field/model/capture_geometry.h"
 
 namespace lf {
 namespace {
 
-constexpr double kMostSpacings = 8;  // limit, as kLeastSpacings
+constexpr double kMostSpacings = 8;
+constexpr double kGoodCopies_px = 3, kMostCopies_px = 16;
 // An aperture of this diameter contains only the LF camera at its middle. A wider one could contain
 // others, because in captures shaped like rings the hat weights of other LF cameras reach far into
 // the lens.
 constexpr double kSharpSpacings = 0.001;
+constexpr double kShare = 0.75;      // share of the places whose copies are near enough
+constexpr size_t kFewestPlaces = 8;  // fewer textured places tell nothing
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Returns the diameter of the smallest aperture that contains kFewestCameras LF cameras which see
+// the focus. An LF camera counts where the line from it to the focus passes the plane of the lens.
+double SmallestBlurringLens(const LightField& light_field, const PinholeCamera& camera,
+                            double focus_distance_w) {
+  const Vec3 forward = camera.ForwardWorld();
+  const Vec3 focus_world = camera.CentreWorld() + focus_distance_w * forward;
+  std::vector<std::pair<double, uint32_t>> radii_w;
+  for (uint32_t i = 0; i < light_field.size(); ++i) {
+    const Vec3 offset = light_field.Camera(LfImageId{i}).CentreWorld() - focus_world;
+    const double depth_w = -offset.dot(forward);
+    if (!(depth_w > 0)) continue;
+    const Vec3 across = offset + depth_w * forward;
+    radii_w.emplace_back(across.norm() * focus_distance_w / depth_w, i);
+  }
+  std::sort(radii_w.begin(), radii_w.end());
+  size_t count = 0;
+  for (const auto& [radius_w, i] : radii_w) {
+    const PinholeCamera other = light_field.Camera(LfImageId{i});
+    const RayThrough rays(other, other.ForwardWorld());
+    const auto at = rays.RecordedAt(focus_world - rays.centre_world());
+    const bool is_seen = at && at->x() >= 0 && at->y() >= 0 &&
+                         at->x() <= other.intrinsics.width_px &&
+                         at->y() <= other.intrinsics.height_px;
+    constexpr double kMargin = 1.02;  // so that the last LF camera is within the aperture
+    if (is_seen && ++count == kFewestCameras) return 2 * kMargin * radius_w;
+  }
+  return kInfinity;
+}
+
+// Returns the distance between copies that kShare of the seen depths do not exceed; infinity if too
+// many of them are unknown.
+double CopiesOf(const SeenDepths& seen, double fx_px, double spacing_w, double focus_w) {
+  std::vector<double> copies_px;
+  for (const double per_w : seen.per_w)
+    copies_px.push_back(
+        CopiesApart_px(fx_px, spacing_w, focus_w, per_w > 0 ? 1 / per_w : kInfinity));
+  const auto at = static_cast<size_t>(kShare * static_cast<double>(seen.count - 1));
+  if (at >= copies_px.size()) return kInfinity;
+  std::nth_element(copies_px.begin(), copies_px.begin() + static_cast<ptrdiff_t>(at),
+                   copies_px.end());
+  return copies_px[at];
+}
+
+// Returns the reason why a lens would show copies this far apart.
+std::string WhyCopies(const ExampleFocus& focus, double copies_px) {
+  if (focus.places.count < kFewestPlaces)
+    return fmt::format(
+        "objects a quarter of the focus distance before it would appear as copies {:.0f} px apart",
+        copies_px);
+  if (std::isinf(copies_px))
+    return fmt::format(
+        "neighbouring LF images agree on a depth at only {} of {} textured places, and the others "
+        "would appear as copies, far apart",
+        focus.places.per_w.size(), focus.places.count);
+  return fmt::format("a quarter of what is seen would appear as copies {:.0f} px apart or more",
+                     copies_px);
+}
+
+// Returns an aperture that holds one LF camera.
+ExampleAperture Sharp(const std::string& why, const std::string& copies, double least_spacings) {
+  return {kSharpSpacings, "which holds one LF camera, " + why, copies, least_spacings};
+}
 
 }  // namespace
 
-// Returns the aperture for a focus. A point away from the focus plane appears as several ghosts
-// instead of as a blur. The distance between two ghosts is the point's displacement between
-// neighbouring LF cameras. Ghosts up to kGoodCopies_px apart are invisible. If they are farther
-// apart, the lens is made narrower, so that there are fewer of them. If they are more than
-// kMostCopies_px apart, or if the focus may be wrong, only a lens that contains a single LF camera
-// gives a clear picture.
-ExampleAperture ChooseAperture(const ExampleFocus& focus, double fx_px, double spacing_w) {
-  constexpr double kGoodCopies_px = 3, kMostCopies_px = 16;
+ExampleAperture ChooseAperture(const LightField& light_field, const PinholeCamera& camera,
+                               const ExampleFocus& focus, double spacing_w) {
+  const double fx_px = camera.intrinsics.fx_px;
+  const double least = SmallestBlurringLens(light_field, camera, focus.distance_w) / spacing_w;
   if (!focus.doubt.empty())
-    return {kSharpSpacings,
-            "which holds one LF camera, so that the first frame is sharp at any distance"};
-  // If the depths are unknown, the nearest point is assumed to be at
-  // focus.distance_w / (1 + kUnknownRange).
-  constexpr double kUnknownRange = 0.25;
-  double range_per_w = kUnknownRange / focus.distance_w;
-  if (focus.near_w < focus.far_w)
-    range_per_w = std::max(1 / std::min(focus.near_w, focus.distance_w) - 1 / focus.distance_w,
-                           1 / focus.distance_w - 1 / std::max(focus.far_w, focus.distance_w));
-  const double copies_px = fx_px * spacing_w * range_per_w;
-  if (copies_px > kMostCopies_px)
-    return {kSharpSpacings,
-            fmt::format("which holds one LF camera, because out-of-focus objects would otherwise "
-                        "appear as copies up to {:.0f} px apart",
-                        copies_px),
-            fmt::format("objects out of focus are displaced by up to {:.0f} px from one to the "
-                        "next",
-                        copies_px)};
-  const double spacings = std::clamp(kMostSpacings * kGoodCopies_px / std::max(copies_px, 1e-9),
-                                     kLeastSpacings, kMostSpacings);
-  return {spacings, fmt::format("{:.2g} spacings of LF cameras, for which copies of out-of-focus "
-                                "objects are up to {:.2g} px apart",
-                                spacings, copies_px)};
+    return Sharp("so that the first frame is sharp at any distance", "", least);
+  constexpr double kAssumedNear = 0.75;
+  const bool are_known = focus.places.count >= kFewestPlaces;
+  double copies_px = are_known ? CopiesOf(focus.places, fx_px, spacing_w, focus.distance_w)
+                               : CopiesApart_px(fx_px, spacing_w, focus.distance_w,
+                                                kAssumedNear * focus.distance_w);
+  if (focus.points.count >= kFewestPlaces)
+    copies_px = std::max(copies_px, CopiesOf(focus.points, fx_px, spacing_w, focus.distance_w));
+  if (copies_px > kMostCopies_px) {
+    const std::string why = WhyCopies(focus, copies_px);
+    return Sharp("because " + why, why, least);
+  }
+  const double widest = kWidestLens * focus.distance_w / spacing_w;
+  if (std::isinf(least))
+    return Sharp(fmt::format("because fewer than {} LF cameras see the focus, which would show "
+                             "copies instead of a blur",
+                             kFewestCameras),
+                 "too few of them see the focus", least);
+  if (least > widest)
+    return Sharp(
+        fmt::format("because the {} LF cameras that a blur needs lie {:.2g} of the focus distance "
+                    "apart, and a lens wider than {:.2g} of it looks around objects",
+                    kFewestCameras, least * spacing_w / focus.distance_w, kWidestLens),
+        "a lens that holds enough of them to blur would look around objects", least);
+  const double wished = std::clamp(kMostSpacings * kGoodCopies_px / std::max(copies_px, 1e-9),
+                                   least, std::max(least, kMostSpacings));
+  const double spacings = std::min(wished, widest);
+  std::string reason = fmt::format(
+      "{:.2g} spacings of LF cameras; {} of what is out of focus appears as copies at most {:.2g} "
+      "px "
+      "apart",
+      spacings, are_known ? "three quarters" : "much", copies_px);
+  if (wished > widest)
+    reason += fmt::format(
+        "; it is limited to {:.2g} of the focus distance, because a wider lens looks around "
+        "objects",
+        kWidestLens);
+  return {spacings, reason, "", least};
 }
 
 }  // namespace lf

@@ -212,9 +212,6 @@ Shot ShotOf(const LightField& light_field, LfImageId id, const ExampleFocus& foc
   shot.spacing_w = spacing_w;
   shot.up_world = LevelUpWorld(light_field, shot.start);
   shot.frame = InscribedFrame(shot.start, shot.up_world);
-  // Diameter, as a multiple of the spacing of the LF cameras, that a standing lens may have even if
-  // the capture is narrower.
-  constexpr double kLeastOfBand = 2.2;
   shot.reach = CaptureReach(light_field, shot.start, 400);
   const double wish_w = aperture.spacings * spacing_w;
   if (MovesCamera(move)) {
@@ -225,9 +222,11 @@ Shot ShotOf(const LightField& light_field, LfImageId id, const ExampleFocus& foc
     shot.reach = {std::min(shot.reach.right_w, near.right_w), std::min(shot.reach.up_w, near.up_w)};
   }
   const double reach_w = std::max(shot.reach.right_w, shot.reach.up_w);
-  // A moving camera leaves at least half of the reach to the movement.
-  const double most_w =
-      MovesCamera(move) ? reach_w : std::max(kLeastOfBand * spacing_w, 2 * reach_w);
+  // A moving camera leaves at least half of the reach to the movement. A narrow capture limits a
+  // standing lens, but not below the smallest lens that blurs.
+  const double most_w = MovesCamera(move)
+                            ? reach_w
+                            : std::max(aperture.least_spacings * spacing_w, 2 * reach_w);
   example->aperture_diameter_w = std::min(wish_w, most_w);
   example->aperture_reason =
       wish_w <= most_w ? aperture.reason
@@ -277,7 +276,7 @@ Result<ExamplePath> PathOfMove(const LightField& light_field, LfImageId id,
   example.doubt = focus.doubt;
   example.candidates_w = focus.candidates_w;
   const ExampleAperture aperture =
-      ChooseAperture(focus, light_field.Camera(id).intrinsics.fx_px, spacing_w);
+      ChooseAperture(light_field, light_field.Camera(id), focus, spacing_w);
   const Shot shot = ShotOf(light_field, id, focus, spacing_w, aperture, move, &example);
   Intrinsics frame = shot.frame;
   Movement movement;

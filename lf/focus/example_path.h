@@ -69,13 +69,16 @@ Result<LfImageId> FirstCamera(const LightField& light_field, const LfImageStore&
 // - Focus: at options.focus_distance_w if it is set, otherwise on the subject
 //   (focus/find_subject.h). If the subject is not sure, or the points of a reconstruction
 //   contradict it, the focus is at the depth of most points (focus/point_subject.h). If that depth
-//   is not sure either, `doubt` is set, and the focus is the first of these that is known: the
-//   point where the optical axes meet, the middle of the depth range, the best depth found, the
-//   depth at which the disparity of neighbouring LF images is one pixel.
-// - Lens: its diameter is eight spacings of the LF cameras, or less, down to 2.5 spacings, if
-//   ghosts would otherwise be visible. It is never wider than the capture or 2.2 spacings,
-//   whichever is larger. If the ghosts are more than 16 pixels apart, or the focus is not sure, the
-//   lens is almost a pinhole, and the first frame is the view of one LF camera.
+//   is not sure either, `doubt` is set, and the focus is the first of these that is known: the best
+//   depth found, if LF images agree on one at 40 % of the textured places; the depth of most
+//   points; the middle of the depth range; the point where the optical axes meet; the best depth
+//   that some LF images agree on; the depth at which the disparity of neighbouring LF images is one
+//   pixel.
+// - Lens: its diameter is eight spacings of the LF cameras, or less if ghosts would otherwise be
+//   visible (focus/example_aperture.h). It is never wider than the capture or a quarter of the
+//   focus distance, and holds six LF cameras or more. If that is impossible, if the ghosts are more
+//   than 16 pixels apart, or if the focus is not sure, the lens is almost a pinhole, and the first
+//   frame is the view of one LF camera.
 // - Focus pull: through the depths found in the scene, from at least 0.7 to at most 1.6 times the
 //   focus distance.
 // - A moving camera: the lens is at most half as wide as the LF cameras reach, so that the rest is

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lf/focus/find_subject.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -51,6 +53,33 @@ Result<void> LoadRings(const LightField& field, const LfImageStore& store, Threa
   return {};
 }
 
+constexpr double kClearlyBefore = 0.85;  // a smaller share of a depth is clearly nearer
+
+// Sets near_w and far_w by the depths, in ascending order, that are about as precise as half of
+// them.
+void SetRange(const std::vector<FoundDepth>& found, Subject* subject) {
+  std::vector<double> errors;
+  for (const FoundDepth& one : found) errors.push_back(one.error);
+  const auto middle = errors.begin() + static_cast<ptrdiff_t>(errors.size() / 2);
+  std::nth_element(errors.begin(), middle, errors.end());
+  constexpr double kAsPrecise = 1.5;
+  std::vector<double> depths_w;
+  for (const FoundDepth& one : found)
+    if (one.error <= kAsPrecise * *middle) depths_w.push_back(one.distance_w);
+  subject->near_w = depths_w[depths_w.size() / 10];
+  subject->far_w = depths_w[depths_w.size() - 1 - depths_w.size() / 10];
+}
+
+// Returns the share of all weight that lies clearly before a depth.
+double ShareBefore(const std::vector<FoundDepth>& found, double distance_w) {
+  double before = 0, all = 0;
+  for (const FoundDepth& one : found) {
+    all += one.weight;
+    if (one.distance_w < kClearlyBefore * distance_w) before += one.weight;
+  }
+  return before / all;
+}
+
 }  // namespace
 
 Result<Subject> FindSubject(const LightField& light_field, const LfImageStore& store,
@@ -64,8 +93,17 @@ Result<Subject> FindSubject(const LightField& light_field, const LfImageStore& s
   if (rings.empty()) return subject;
   const Intrinsics k = light_field.Camera(camera).intrinsics;
   std::vector<std::optional<FoundDepth>> depths(places.size());
-  pool.ForEach(places.size(),
-               [&](size_t i) { depths[i] = DepthOf(rings, places[i], k, image.divisor); });
+  std::vector<NoDepth> whys(places.size());
+  pool.ForEach(places.size(), [&](size_t i) {
+    depths[i] = DepthOf(rings, places[i], k, image.divisor, 0, &whys[i]);
+  });
+  for (size_t i = 0; i < places.size(); ++i) {
+    if (depths[i] || whys[i] == NoDepth::kFar)
+      subject.per_w.push_back(depths[i] ? 1 / depths[i]->distance_w : 0);
+    else
+      subject.disagreeing_count += whys[i] == NoDepth::kDisagreement;
+  }
+  std::sort(subject.per_w.begin(), subject.per_w.end());
   std::vector<FoundDepth> found;
   for (const std::optional<FoundDepth>& depth : depths)
     if (depth && depth->weight > 0) found.push_back(*depth);
@@ -73,17 +111,34 @@ Result<Subject> FindSubject(const LightField& light_field, const LfImageStore& s
   if (found.empty()) return subject;
   std::sort(found.begin(), found.end(),
             [](const FoundDepth& a, const FoundDepth& b) { return a.distance_w < b.distance_w; });
-  subject.near_w = found[found.size() / 10].distance_w;
-  subject.far_w = found[found.size() - 1 - found.size() / 10].distance_w;
-  subject.depths = BestDepths(std::move(found));
-  constexpr size_t kLeastPlaces = 8;
-  constexpr double kLeastShare = 0.1;
-  subject.is_sure = subject.depths[0].place_count >= kLeastPlaces &&
-                    subject.depths[0].share >= kLeastShare &&
-                    4 * subject.place_count >= subject.textured_count;
-  LogDebug("LF camera {}: {} of {} textured places have a depth, {:.4g} to {:.4g}, from {} rings",
+  SetRange(found, &subject);
+  constexpr size_t kCompared = 6, kKept = 3;
+  subject.depths = BestDepths(found, kCompared);
+  PutSubjectFirst(&subject.depths);
+  subject.share_before = ShareBefore(found, subject.depths[0].distance_w);
+  constexpr double kLeastFound = 0.4, kLeastOfTextured = 0.125;
+  const auto textured_count = static_cast<double>(subject.textured_count);
+  const SubjectDepth& best = subject.depths[0];
+  subject.is_sure = best.place_count >= kLeastSubjectPlaces && best.share >= kLeastSubjectShare &&
+                    static_cast<double>(best.place_count) >= kLeastOfTextured * textured_count &&
+                    subject.share_before <= kMostBefore &&
+                    static_cast<double>(subject.place_count) >= kLeastFound * textured_count;
+  std::string clusters;
+  for (const SubjectDepth& depth : subject.depths)
+    clusters += fmt::format("; {} near {:.4g}, {:.0f} % of the weight", depth.place_count,
+                            depth.distance_w, 100 * depth.share);
+  // If most of the picture stands before the best depth, the best one of these is the better guess.
+  const auto is_before = [&](const SubjectDepth& depth) {
+    return depth.distance_w < kClearlyBefore * subject.depths[0].distance_w;
+  };
+  if (subject.share_before > kMostBefore)
+    if (const auto first = std::find_if(subject.depths.begin(), subject.depths.end(), is_before);
+        first != subject.depths.end())
+      std::rotate(subject.depths.begin(), first, first + 1);
+  if (subject.depths.size() > kKept) subject.depths.resize(kKept);
+  LogDebug("LF camera {}: {} of {} textured places have a depth, {:.4g} to {:.4g}, from {} rings{}",
            camera.value, subject.place_count, subject.textured_count, subject.near_w, subject.far_w,
-           rings.size());
+           rings.size(), clusters);
   return subject;
 }
 

@@ -211,7 +211,7 @@ TEST(FindSubject, LeavesOutImagesThatCannotBeLoaded) {
   const LightField field = Grid(9, 9, 0.02);
   DrawnStore store(field, Wall(1));
   const LfImageId middle = MiddleOf(field);
-  store.broken = {middle.value + 2};
+  store.broken = {middle.value + 1};
   EXPECT_TRUE(FindSubject(field, store, middle, pool)->is_sure);
   store.broken = middle;
   EXPECT_FALSE(FindSubject(field, store, middle, pool));
@@ -221,7 +221,7 @@ TEST(FindSubject, LeavesOutNoImageThatTheMachineCannotLoad) {
   ThreadPool pool(2);
   const LightField field = Grid(9, 9, 0.02);
   DrawnStore store(field, Wall(1));
-  store.broken = {MiddleOf(field).value + 2};
+  store.broken = {MiddleOf(field).value + 1};
   store.failure = OutputError("drawn.png: no memory to load it");
   const Result<Subject> subject = FindSubject(field, store, MiddleOf(field), pool);
   ASSERT_FALSE(subject);

@@ -15,6 +15,8 @@ namespace {
 
 constexpr int kColumns = 16, kRows = 11;  // cells of the image; each has at most one place
 constexpr double kLeastTexture = 0.006;   // least TextureAt() of a place
+// Least Smoothness() of a place: neighbouring pixels of noise do not correlate.
+constexpr double kLeastSmoothness = 0.25;
 // Smaller standard deviations of a patch count as this one, so that mere noise does not correlate.
 constexpr double kLeastDeviation = 0.002;
 constexpr double kLeastAgreement = 0.65;  // least Peak::score of a depth that is found
@@ -25,11 +27,16 @@ constexpr size_t kLeastViews = 2;
 constexpr double kStep_px = 0.5;
 constexpr double kMostDisplaced = 0.45;  // largest disparity tested, in widths of the image
 constexpr double kLeastMove_px = 1;      // in reduced pixels; places that move less are not used
-constexpr double kStill = 0.9;           // least StillAgreement() of a place that does not move
-constexpr size_t kMostRings = 5;
+constexpr double kStill = 0.9;           // least agreement of views on a place that does not move
+// Displacement, in reduced pixels, from which a view tells whether a place moves: less hardly
+// changes the pixels of a patch.
+constexpr double kStillMove_px = 2;
+constexpr size_t kMostRings = 6;
 constexpr int kViewsPerRing = 6;
-constexpr double kInnerRing = 2;   // radius of the innermost ring, in spacings of LF cameras
-constexpr double kRingFactor = 4;  // radius of a ring, relative to the next smaller ring
+// Radii of the two innermost rings, in spacings of LF cameras. Sparse captures need the first,
+// because LF images farther apart differ.
+constexpr double kInnerRing = 1, kSecondRing = 2;
+constexpr double kRingFactor = 4;  // radius of the other rings, relative to the next smaller ring
 // Least cosine of the angle between the optical axes of compared LF cameras.
 constexpr double kLeastCosine = 0.8;
 
@@ -148,12 +155,15 @@ double AgreementAt(std::span<const View> views, const Place& place, double depth
   return Agreement(&correlations);
 }
 
-// Returns the agreement of the views at the pixel position that the place has in its own image. A
-// watermark is at the same pixel position in every image.
-double StillAgreement(const Rings& rings, const Place& place, int divisor) {
+// Returns true if the place is a watermark, which is at the same pixel position in every image: the
+// views in which a place at this depth is clearly displaced show it where it is in its own image.
+// Objects where the axes of the cameras meet hardly move, and tell nothing.
+bool IsStill(const Rings& rings, const Place& place, double depth_w, int divisor) {
   std::vector<double> correlations;
   for (const std::vector<View>& ring : rings)
     for (const View& view : ring) {
+      const auto at = view.rays.RecordedAt(place.At(depth_w, 0, 0) - view.rays.centre_world());
+      if (!at || (*at - place.at_px).norm() < kStillMove_px * divisor) continue;
       Patch patch;
       for (int i = 0; i < kPatchSize; ++i)
         patch[static_cast<size_t>(i)] = view.image->At(
@@ -161,18 +171,7 @@ double StillAgreement(const Rings& rings, const Place& place, int divisor) {
       const double correlation = Correlation(place, &patch);
       if (correlation > -1) correlations.push_back(correlation);
     }
-  return Agreement(&correlations);
-}
-
-// Returns the largest displacement, in reduced pixels, of the place in any view from the position
-// of the place in its own image.
-double LargestMove(const Rings& rings, const Place& place, double depth_w, int divisor) {
-  double largest = 0;
-  for (const std::vector<View>& ring : rings)
-    for (const View& view : ring)
-      if (const auto at = view.rays.RecordedAt(place.At(depth_w, 0, 0) - view.rays.centre_world()))
-        largest = std::max(largest, (*at - place.at_px).norm() / divisor);
-  return largest;
+  return Agreement(&correlations) >= kStill;
 }
 
 // Returns the largest disparity between the place's image and a view, in reduced pixels, at the
@@ -217,7 +216,11 @@ Peak FindPeak(const DepthSweep& sweep, std::span<const View> views, const Place&
 }  // namespace
 
 std::optional<FoundDepth> DepthOf(const Rings& rings, const Place& place, const Intrinsics& k,
-                                  int divisor, double nearest_w) {
+                                  int divisor, double nearest_w, NoDepth* why) {
+  const auto none = [&](NoDepth reason) {
+    if (why) *why = reason;
+    return std::nullopt;
+  };
   double px_per_w = PixelsPerW(rings[0], k, divisor);
   DepthSweep sweep;
   sweep.from_per_w = kMostDisplaced * k.width_px / divisor / px_per_w;
@@ -225,12 +228,12 @@ std::optional<FoundDepth> DepthOf(const Rings& rings, const Place& place, const 
   sweep.step_per_w = kStep_px / px_per_w;
   sweep.count = static_cast<size_t>(sweep.from_per_w / sweep.step_per_w) + 1;
   Peak peak = FindPeak(sweep, rings[0], place);
-  if (peak.score < kLeastAgreement) return std::nullopt;
+  if (peak.score < kLeastAgreement) return none(NoDepth::kDisagreement);
   // Rejects a place if the agreement is almost as good elsewhere: LF images of a repeated pattern
   // agree at several depths.
   constexpr double kClear = 0.1, kLeastClear = 0.3;
   const double clear = std::min(1.0, (peak.score - peak.rival) / kClear);
-  if (clear < kLeastClear) return std::nullopt;
+  if (clear < kLeastClear) return none(NoDepth::kAmbiguous);
   double score = peak.score;
   for (size_t ring = 1; ring < rings.size(); ++ring) {
     const double finer_px_per_w = PixelsPerW(rings[ring], k, divisor);
@@ -245,11 +248,9 @@ std::optional<FoundDepth> DepthOf(const Rings& rings, const Place& place, const 
     score = std::max(score, found.score);
   }
   const double moves_px = peak.per_w * px_per_w;
-  if (moves_px < kLeastMove_px) return std::nullopt;
+  if (moves_px < kLeastMove_px) return none(NoDepth::kFar);
   const double distance_w = 1 / peak.per_w;
-  if (StillAgreement(rings, place, divisor) >= kStill &&
-      LargestMove(rings, place, distance_w, divisor) >= kLeastMove_px)
-    return std::nullopt;
+  if (IsStill(rings, place, distance_w, divisor)) return none(NoDepth::kAmbiguous);
   const double agreement = std::clamp((score - kLeastAgreement) / (0.95 - kLeastAgreement), 0., 1.);
   return FoundDepth{distance_w, place.weight * clear * agreement, 0.25 / moves_px};
 }
@@ -274,8 +275,23 @@ double TextureAt(const Image<float>& light, int x, int y) {
   return std::sqrt(std::max(0.0, least) / kPatchSize) / 2;  // NaN becomes 0
 }
 
+// Returns the correlation between the pixels of a patch with mean 0 and the pixels beside and below
+// them.
+double Smoothness(const Patch& patch) {
+  double product = 0, squares = 0;
+  for (size_t y = 0; y + 1 < kPatchSide; ++y)
+    for (size_t x = 0; x + 1 < kPatchSide; ++x) {
+      const double here = patch[y * kPatchSide + x];
+      const double beside = patch[y * kPatchSide + x + 1];
+      const double below = patch[(y + 1) * kPatchSide + x];
+      product += here * (beside + below);
+      squares += here * here + (beside * beside + below * below) / 2;
+    }
+  return squares > 0 ? product / squares : 0;
+}
+
 // Returns the place with the most texture in one cell of the image; none if its texture is too weak
-// or the image too small.
+// or mere noise, or the image too small.
 std::optional<Place> PlaceIn(const LightField& field, LfImageId camera, const ReducedImage& image,
                              int column, int row) {
   const int border = kHalfPatch + 1, width = image.light.width() - 2 * border,
@@ -313,6 +329,7 @@ std::optional<Place> PlaceIn(const LightField& field, LfImageId camera, const Re
     place.patch[static_cast<size_t>(i)] =
         image.light.at(best_x + i % kPatchSide - kHalfPatch, best_y + i / kPatchSide - kHalfPatch);
   place.deviation = Centre(&place.patch);
+  if (Smoothness(place.patch) < kLeastSmoothness) return std::nullopt;
   const Intrinsics& k = pinhole.intrinsics;
   const Vec2 off = (place.at_px - Vec2(k.width_px, k.height_px) / 2) / (0.5 * k.width_px);
   constexpr double kMiddle = 0.5;  // standard deviation of the weight, as a share of half the width
@@ -353,7 +370,7 @@ Rings ChooseRings(const LightField& field, LfImageId camera) {
   Rings rings;
   double radius_w = kInnerRing * MedianSpacing(field);
   for (size_t ring = 0; ring < kMostRings && (ring == 0 || radius_w <= 1.2 * reach_w);
-       ++ring, radius_w *= kRingFactor) {
+       ++ring, radius_w *= ring == 1 ? kSecondRing / kInnerRing : kRingFactor) {
     std::vector<View> views;
     for (int i = 0; i < kViewsPerRing; ++i) {
       const double angle = 2 * kPi * (i + 0.5 * static_cast<double>(ring % 2)) / kViewsPerRing;

@@ -34,9 +34,10 @@ struct View {
 using Rings = std::vector<std::vector<View>>;   // the innermost ring first
 inline constexpr size_t kLeastViewsOfRing = 2;  // least number of views of a ring that is used
 
-// Returns LF cameras around `camera` in up to five rings; each ring is four times as wide as the
-// one before. A ring contains the LF cameras nearest to six evenly spread positions. Other rings
-// than the innermost have at least two views. Images are not loaded.
+// Returns LF cameras around `camera` in up to six rings: at one and two spacings of the LF cameras,
+// then each four times as wide as the one before. A ring contains the LF cameras nearest to six
+// evenly spread positions. Other rings than the innermost have at least two views. Images are not
+// loaded.
 Rings ChooseRings(const LightField& field, LfImageId camera);
 
 // A place in the image of one LF camera (the camera of the place): the ray of the place, the
@@ -56,7 +57,8 @@ struct Place {
   }
 };
 
-// Returns up to 176 places with texture, evenly spread over the image of `camera`.
+// Returns up to 176 places with texture, evenly spread over the image of `camera`. Mere noise, as
+// in dark surroundings of an object, is no texture.
 //   image  the reduced image of `camera`
 std::vector<Place> TexturedPlaces(const LightField& field, LfImageId camera,
                                   const ReducedImage& image);
@@ -85,6 +87,13 @@ struct FoundDepth {
   double error = 0;  // standard deviation of the depth, relative to distance_w
 };
 
+// Why a place has no depth.
+enum class NoDepth {
+  kDisagreement,  // the views agree on no depth
+  kAmbiguous,     // they agree on several, or the place is a watermark
+  kFar,           // it is so far away that it does not move
+};
+
 // Returns the depth on which most views agree. None if they agree on no depth, or almost as well on
 // another one; if the place does not move from view to view, like a watermark; or if it is so far
 // away that it moves by less than a reduced pixel.
@@ -94,7 +103,8 @@ struct FoundDepth {
 //   divisor    divisor of the reduced images (ReducedImage::divisor)
 //   nearest_w  no nearer depth is tested; 0: tests from the least depth that the images of the
 //              innermost ring can show
+//   why        receives the reason if there is no depth; may be null
 std::optional<FoundDepth> DepthOf(const Rings& rings, const Place& place, const Intrinsics& k,
-                                  int divisor, double nearest_w = 0);
+                                  int divisor, double nearest_w = 0, NoDepth* why = nullptr);
 
 }  // namespace lf

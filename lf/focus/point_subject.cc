@@ -48,6 +48,8 @@ Subject FindPointSubject(const PinholeCamera& camera, std::span<const Vec3> poin
   });
   subject.near_w = found[found.size() / 10].distance_w;
   subject.far_w = found[found.size() - 1 - found.size() / 10].distance_w;
+  for (auto one = found.rbegin(); one != found.rend(); ++one)
+    subject.per_w.push_back(1 / one->distance_w);
   subject.depths = BestDepths(std::move(found));
   constexpr double kLeastShare = 0.25, kClear = 1.5;
   const double rival = subject.depths.size() > 1 ? subject.depths[1].share : 0;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -120,10 +121,13 @@ std::optional<Density> DensityOf(const CaptureReport& report, const std::vector<
   }
   if (!(density.distance_w > 0)) return std::nullopt;
   density.spacing_rad = 2 * std::atan(report.spacing_w->median / 2 / density.distance_w);
-  density.disparity_px =
-      report.groups[0].fx_px.median * report.spacing_w->median / density.distance_w;
-  density.near_ghost_px = density.disparity_px / 3;
-  density.far_ghost_px = density.disparity_px / 5;
+  const double z = density.distance_w;
+  const auto copies_px = [&](double depth_w) {
+    return CopiesApart_px(report.groups[0].fx_px.median, report.spacing_w->median, z, depth_w);
+  };
+  density.disparity_px = copies_px(std::numeric_limits<double>::infinity());
+  density.near_ghost_px = copies_px(0.75 * z);
+  density.far_ghost_px = copies_px(1.25 * z);
   return density;
 }
 

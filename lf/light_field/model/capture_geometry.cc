@@ -94,6 +94,10 @@ double MedianSpacing(const LightField& light_field) {
   return Percentile(std::move(nearest), 0.5);
 }
 
+double CopiesApart_px(double fx_px, double spacing_w, double focus_w, double depth_w) {
+  return fx_px * spacing_w * std::abs(1 / focus_w - 1 / depth_w);
+}
+
 LfImageId MiddleCamera(const LightField& light_field,
                        const std::function<bool(LfImageId)>& is_wanted) {
   LF_CHECK(light_field.size() > 0);

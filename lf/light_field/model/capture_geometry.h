@@ -17,6 +17,12 @@ namespace lf {
 // (brackets).
 double MedianSpacing(const LightField& light_field);
 
+// Returns how many pixels of an LF image apart the copies are as which a frame, focused at focus_w,
+// shows a point at the depth depth_w: F b |1/focus_w - 1/depth_w|, where F is the focal length in
+// pixels and b the distance between neighbouring LF cameras. Copies more than about a pixel apart
+// are visible. depth_w may be infinite.
+double CopiesApart_px(double fx_px, double spacing_w, double focus_w, double depth_w);
+
 // Among the LF cameras for which `is_wanted` returns true, returns the one nearest to the mean
 // position of all LF cameras. Returns the nearest of all cameras if `is_wanted` is not given or
 // true for none. `is_wanted` is called in order of distance, nearest camera first. The light field
