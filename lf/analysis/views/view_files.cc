@@ -254,16 +254,22 @@ Result<WrittenViews> WriteViewFolder(const LightField& light_field, const ViewGr
     if (!error) return {};
     return OutputError(fmt::format("{}: cannot be removed: {}", file.string(), error.message()));
   };
-  for (const fs::path& file : OtherViews(grid, folder, light_field.unit_m, values))
-    LF_RETURN_IF_ERROR(remove(file));
   const LightField views = FieldOfViews(light_field, encoding, grid, values, written.gain);
-  LF_RETURN_IF_ERROR(WriteTransformsJson(views, folder / kUnfinishedList, kViewsProgram));
-  // Until the views are complete, the folder is no light field: an older list would mix old and new
-  // views.
-  LF_RETURN_IF_ERROR(remove(folder / kList));
+  // Called when the first view is there: if `make` fails before, the folder stays as it is.
+  const auto begin = [&]() -> Result<void> {
+    for (const fs::path& file : OtherViews(grid, folder, light_field.unit_m, values))
+      LF_RETURN_IF_ERROR(remove(file));
+    LF_RETURN_IF_ERROR(WriteTransformsJson(views, folder / kUnfinishedList, kViewsProgram));
+    // Until the views are complete, the folder is no light field: an older list would mix old and
+    // new views.
+    return remove(folder / kList);
+  };
   PixelCounts counts;
+  bool is_begun = false;
   LF_ASSIGN_OR_RETURN(
-      written.views, make([&](size_t view, const Image<float>& light) {
+      written.views, make([&](size_t view, const Image<float>& light) -> Result<void> {
+        if (!is_begun) LF_RETURN_IF_ERROR(begin());
+        is_begun = true;
         counts.Add(light, values == ViewValues::kLinear ? encoding.max_radiance : written.gain);
         return WriteViewImage(folder / ViewName(grid, view, light_field.unit_m, values), light,
                               values, written.gain);
