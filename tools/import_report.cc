@@ -114,6 +114,7 @@ Json JsonOf(const Agreement& agreement) {
                {"images", agreement.image_count},
                {"reason", agreement.reason},
                {"tells_intrinsics", agreement.tells_intrinsics},
+               {"tells_order", agreement.tells_order},
                {"repair", nullptr}});
   if (agreement.repair) {
     json["repair"] = {{"words", NameOf(*agreement.repair)}, {"supposes", agreement.clause}};

@@ -304,6 +304,7 @@ void Judge(const LightField& light_field, const FoundPlaces& found, ThreadPool& 
     } else if (can_tell) {
       agreement->verdict = Verdict::kAgree;
       agreement->tells_intrinsics = TellsIntrinsics(errors, agreement->fit, k, found.divisor);
+      agreement->tells_order = !orders.are_equal;
     } else {
       agreement->reason = "wrong poses would explain the LF images as well";
     }
@@ -368,7 +369,8 @@ std::string TextOf(const Agreement& agreement) {
       return "images agree with the poses: " + where +
              (agreement.tells_intrinsics
                   ? ""
-                  : ", and would with other focal lengths or principal points");
+                  : ", and would with other focal lengths or principal points") +
+             (agreement.tells_order ? "" : ", and would with shifted names");
     case Verdict::kNotSure:
       return fmt::format("not sure that images and poses belong together: {}{}", agreement.reason,
                          agreement.fit.share > 0 ? ", " + where : "");
