@@ -123,7 +123,7 @@ class RebinningTest(ProgramTestCase):
             was_cut = False
             for attempt in range(30):
                 out = f"{mode}-{attempt}"
-                pictures = self.interrupted(out, 0.02 * attempt, *options)
+                pictures = self.interrupted(out, 0.001 * attempt, *options)
                 unfinished = sorted(set(pictures) - set(digests(self.folder / out)))
                 if not unfinished:
                     continue
