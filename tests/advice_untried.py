@@ -26,6 +26,7 @@ UNTRIED = {
     "farm_files: # Made by lfsubmit": SCRIPT,
     "slurm: # Slurm may requeue": SCRIPT,
     "slurm: # Made by lfsubmit": SCRIPT,
+    "agreement: px at {:.1f} % with --repair {}": "is a line of --verbose about the repairs that were tried",
     "focus_depth: The camera is that of one frame": HELP,
     "lffocus: lffocus {}": HELP,
     "focus_depth: , by --near and --far": "is the end of a line that tells what was found",

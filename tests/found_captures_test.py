@@ -57,6 +57,10 @@ class FoundCapturesTest(ProgramTestCase):
     def first_picture(self, name, capture):
         """Films a light field with no option. Returns the first frame."""
         self.line(f"lfexample '{capture}' -o path.yaml --move static")
+        return self.picture_of(name, capture)
+
+    def picture_of(self, name, capture):
+        """Films a light field along the path of the last first_picture(). Returns the first frame."""
         self.line(f"lfrenderer '{capture}' path.yaml -o frames --frames 1 --format png --no-contact-sheet --overwrite")
         picture = Image.open(self.folder / "frames" / "frame_0001.png").convert("RGB")
         self.assertGreater(np.asarray(picture, float).std(), 5, name)
@@ -175,7 +179,7 @@ class FoundCapturesTest(ProgramTestCase):
                 found_captures.display_p3(self.field, self.native, folder, suffix)
                 profile = self.report(folder)["colour_profile"]
                 self.assertEqual(profile, {"name": "Display P3", "images": 15, "examined": 15, "converted": True})
-                picture = self.first_picture("Display P3 " + suffix, folder)
+                picture = self.picture_of("Display P3 " + suffix, folder)
                 self.assertLess(np.abs(picture - expected).mean(), limit)
                 self.line(f"lfcompressor '{folder}' -o phone.lfs -q && lfimport phone.lfs")
                 self.line("rm phone.lfs")

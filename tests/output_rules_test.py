@@ -120,7 +120,8 @@ class OutputRulesTest(WritersCase):
         """Renders frames of the way "a", then some frames of another way into the same folder."""
         packages = sorted((self.world / "packages_a").glob("*.lfp"))
         path = self.folder / "path.yaml"
-        path.write_text(self.path.read_text().replace("focus_distance: 3", "focus_distance: 2.5"))
+        path.write_text(re.sub("aperture_diameter: [^ ]+", "aperture_diameter: 0.5", self.path.read_text()))
+        self.assertNotEqual(path.read_text(), self.path.read_text())
         whole = [self.field, self.path]
         first = {"a film": whole, "packages": packages, "a film in two calls": whole}
         self.made("lfsynth", "chart", "-o", self.folder / "moved", *TINY, "--jitter", 0.1)

@@ -9,6 +9,7 @@
 
 #include "lf/camera/distortion_name.h"
 #include "lf/core/log.h"
+#include "lf/storage/load/open_store.h"
 
 namespace lf {
 namespace {
@@ -173,6 +174,23 @@ void WarnOfFaults(const LightField& light_field, ImportReport* report) {
   };
   warn("missing-images", "missing", report->faults->missing);
   warn("broken-images", "broken", report->faults->broken);
+}
+
+Result<void> JudgePoses(const LightField& light_field, ThreadPool& pool,
+                        const std::atomic<bool>& interrupted,
+                        const std::function<std::string(const std::string& words)>& repair_call,
+                        ImportReport* report) {
+  LF_ASSIGN_OR_RETURN(const std::unique_ptr<LfImageStore> store,
+                      OpenStore(light_field, Mosaics::kToRgb));
+  LF_ASSIGN_OR_RETURN(report->agreement, JudgeAgreement(light_field, *store, pool, &interrupted));
+  const Agreement& agreement = *report->agreement;
+  if (agreement.verdict != Verdict::kDisagree) return {};
+  std::string message = TextOf(agreement);
+  const std::string call = repair_call(NameOf(*agreement.repair));
+  if (!call.empty()) message += ". Repair the poses: " + call;
+  report->capture.warnings.push_back(
+      {.kind = "poses-disagree", .message = std::move(message), .image_count = 0, .names = {}});
+  return {};
 }
 
 std::string ReportText(const ImportReport& report) {

@@ -2,9 +2,13 @@
 // The report of lfimport (doc/formats/import_report.md).
 #pragma once
 
+#include <atomic>
+#include <functional>
 #include <optional>
 #include <string>
 
+#include "lf/core/parallel.h"
+#include "lf/core/result.h"
 #include "lf/import/agreement/agreement.h"
 #include "lf/import/check/capture_report.h"
 #include "lf/import/check/check_images.h"
@@ -39,6 +43,15 @@ struct ImportReport {
 // Adds the warnings missing-images and broken-images if report->faults, which must be set, contains
 // such LF images.
 void WarnOfFaults(const LightField& light_field, ImportReport* report);
+
+// Judges whether images and poses belong together, sets report->agreement, and adds the warning
+// poses-disagree if they do not.
+//   repair_call  returns the call of lfimport that applies the words of a repair; "": there is none
+// Errors are those of JudgeAgreement().
+Result<void> JudgePoses(const LightField& light_field, ThreadPool& pool,
+                        const std::atomic<bool>& interrupted,
+                        const std::function<std::string(const std::string& words)>& repair_call,
+                        ImportReport* report);
 
 // Returns the report as text: one line per fact, then the warnings.
 std::string ReportText(const ImportReport& report);

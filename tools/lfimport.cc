@@ -22,7 +22,7 @@
 #include "lf/core/log.h"
 #include "lf/core/parse_number.h"
 #include "lf/core/shell_word.h"
-#include "lf/import/agreement/agreement.h"
+#include "lf/import/agreement/pose_repair.h"
 #include "lf/import/check/exclude_images.h"
 #include "lf/import/check/native_folder.h"
 #include "lf/import/check/similarity.h"
@@ -248,27 +248,6 @@ lf::Result<lf::LightField> OpenChanged(const Arguments& a, const std::vector<std
   return light_field;
 }
 
-// Returns the agreement of images and poses. Adds a warning to the report if they disagree, with
-// the call that repairs the poses.
-lf::Result<lf::Agreement> FindAgreement(const Arguments& a, const lf::LightField& light_field,
-                                        lf::ThreadPool& pool, const std::atomic<bool>& interrupted,
-                                        lf::CaptureReport* capture) {
-  LF_ASSIGN_OR_RETURN(const std::unique_ptr<lf::LfImageStore> store,
-                      lf::OpenStore(light_field, lf::Mosaics::kToRgb));
-  LF_ASSIGN_OR_RETURN(lf::Agreement agreement,
-                      lf::JudgeAgreement(light_field, *store, pool, &interrupted));
-  if (agreement.verdict != lf::Verdict::kDisagree) return agreement;
-  std::string message = lf::TextOf(agreement);
-  // A repair of poses that were repaired before cannot be added to that call, and a packed store
-  // keeps the poses that it was made with.
-  if (a.repair.empty() && !lf::HoldsPackedStore(light_field))
-    message += fmt::format(". Repair the poses: {}",
-                           ImportAgain(a, {"--repair", lf::NameOf(*agreement.repair)}, "repaired"));
-  capture->warnings.push_back(
-      {.kind = "poses-disagree", .message = std::move(message), .image_count = 0, .names = {}});
-  return agreement;
-}
-
 // Returns the footprint of LF pixels: as the calibration states it, otherwise as measured. If it is
 // points, sets encoding.footprint, so that the written transforms.json states it. Measured areas
 // are not stated; programs measure them again.
@@ -358,8 +337,13 @@ lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
   lf::WarnOfBracketOptions(a.exposure, report.exif_gains, &light_field, &report.capture);
   if (report.faults) report.profile = lf::FindProfile(light_field);
   if (report.faults && !refuses) {
-    LF_ASSIGN_OR_RETURN(report.agreement,
-                        FindAgreement(a, light_field, pool, interrupted, &report.capture));
+    const auto repair_call = [&](const std::string& words) -> std::string {
+      // A repair of poses that were repaired before cannot be added to that call, and a packed
+      // store keeps the poses that it was made with.
+      if (!a.repair.empty() || lf::HoldsPackedStore(light_field)) return "";
+      return ImportAgain(a, {"--repair", words}, "repaired");
+    };
+    LF_RETURN_IF_ERROR(lf::JudgePoses(light_field, pool, interrupted, repair_call, &report));
     LF_ASSIGN_OR_RETURN(report.pixels, FindFootprint(&light_field));
   }
   if (!a.output.empty() && !refuses) {

@@ -224,9 +224,8 @@ Shot ShotOf(const LightField& light_field, LfImageId id, const ExampleFocus& foc
   const double reach_w = std::max(shot.reach.right_w, shot.reach.up_w);
   // A moving camera leaves at least half of the reach to the movement. A narrow capture limits a
   // standing lens, but not below the smallest lens that blurs.
-  const double most_w = MovesCamera(move)
-                            ? reach_w
-                            : std::max(aperture.least_spacings * spacing_w, 2 * reach_w);
+  const double most_w =
+      MovesCamera(move) ? reach_w : std::max(aperture.least_spacings * spacing_w, 2 * reach_w);
   example->aperture_diameter_w = std::min(wish_w, most_w);
   example->aperture_reason =
       wish_w <= most_w ? aperture.reason

@@ -114,12 +114,17 @@ Result<Subject> FindSubject(const LightField& light_field, const LfImageStore& s
   SetRange(found, &subject);
   constexpr size_t kCompared = 6, kKept = 3;
   subject.depths = BestDepths(found, kCompared);
+  const auto is_large = [](const SubjectDepth& depth) {
+    return depth.place_count >= kLeastSubjectPlaces && depth.share >= kLeastSubjectShare;
+  };
+  subject.is_range_sure = std::any_of(subject.depths.begin(), subject.depths.end(), is_large) &&
+                          4 * subject.place_count >= subject.textured_count;
   PutSubjectFirst(&subject.depths);
   subject.share_before = ShareBefore(found, subject.depths[0].distance_w);
   constexpr double kLeastFound = 0.4, kLeastOfTextured = 0.125;
   const auto textured_count = static_cast<double>(subject.textured_count);
   const SubjectDepth& best = subject.depths[0];
-  subject.is_sure = best.place_count >= kLeastSubjectPlaces && best.share >= kLeastSubjectShare &&
+  subject.is_sure = is_large(best) &&
                     static_cast<double>(best.place_count) >= kLeastOfTextured * textured_count &&
                     subject.share_before <= kMostBefore &&
                     static_cast<double>(subject.place_count) >= kLeastFound * textured_count;

@@ -39,6 +39,9 @@ struct Subject {
   // far_w. near_w and far_w are 0 if no depth was found.
   double near_w = 0;
   double far_w = 0;
+  // True if near_w and far_w are sure, even if the subject is not: depths were found for at least a
+  // quarter of the textured places, and eight of them, with a tenth of all weight, share one.
+  bool is_range_sure = false;
   double share_before = 0;  // share of the weight that lies more than 15 % before the first depth
   // Reasons why LF images could not be loaded; each names its file.
   std::vector<std::string> missing;

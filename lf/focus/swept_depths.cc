@@ -32,7 +32,7 @@ std::optional<DepthRange> SweptDepths(const LightField& light_field, const LfIma
     return std::nullopt;
   }
   constexpr double kMargin = 1.05;
-  if (!subject->is_sure) {
+  if (!subject->is_range_sure) {
     const size_t count = subject->missing.size();
     if (why != nullptr && count > 0)
       *why = fmt::format("{} LF image{} could not be loaded: {}", count, count == 1 ? "" : "s",

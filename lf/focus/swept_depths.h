@@ -19,7 +19,7 @@ LfImageId NearestCamera(const LightField& light_field, const Vec3& position_worl
 
 // Runs FindSubject() for the LF camera nearest to a position. Returns the range of depths, along
 // the camera's optical axis, that contains four fifths of the depths found in its image, widened by
-// 5 % at either end. None if the subject is not sure, if FindSubject() fails, or if there are fewer
+// 5 % at either end. None if this range is not sure, if FindSubject() fails, or if there are fewer
 // than three LF images.
 //   store  a store with Mosaics::kToRgb
 //   why    receives, if there is no range, which LF images could not be loaded: "" if all could;

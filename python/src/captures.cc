@@ -25,6 +25,7 @@
 #include "tools/known_depths.h"
 #include "tools/synthetic_field.h"
 
+#include "lf/core/shell_word.h"
 #include "lf/storage/load/measure_footprint.h"
 #include "lf/storage/packed/packed_store_file.h"
 
@@ -65,9 +66,15 @@ std::string Report(const OpenedField& field, const std::string& name, const std:
         report.faults = Take(CheckImages(light_field, options, pool));
         WarnOfFaults(light_field, &report);
         report.profile = FindProfile(light_field);
-        if (report.faults->missing.size() + report.faults->broken.size() < light_field.size())
+        if (report.faults->missing.size() + report.faults->broken.size() < light_field.size()) {
+          const auto repair_call = [&](const std::string& words) {
+            return ShellCommand(
+                {"lfimport", FileArgument(name), "-o", "repaired", "--repair", words});
+          };
+          Take(JudgePoses(light_field, pool, work.signals.interrupted, repair_call, &report));
           report.pixels = FootprintFacts{Take(FootprintOf(light_field, *field.store)),
                                          light_field.encoding.footprint.has_value()};
+        }
         return ReportJson(report);
       },
       &work.signals);
