@@ -130,7 +130,7 @@ SITUATIONS = [
     Situation(("folded_poses: . Poses are wrong",), "lfdensify folded -o new.lfs --depths 0.35 20 --image-scale 1",
               "lfimport folded --image-scale 1 -o group_1 --exclude ", code=3,
               promise="lfimport group_1 | grep '8, 0 missing' && lfimport group_2 | grep '8, 0 missing'"),
-    Situation(("lfimport: . Repair the poses",), "lfimport mistaken --unit-m 0.5",
+    Situation(("import_report: . Repair the poses",), "lfimport mistaken --unit-m 0.5",
               "lfimport mistaken --unit-m 0.5 --repair mirror-y -o repaired",
               promise="lfimport repaired | grep 'images agree with the poses' && lfimport repaired | grep '0.5 m'"),
     Situation(("check_agreement: The report names the repair",), "lfexample mistaken -o new.yaml --image-scale 1",

@@ -21,7 +21,7 @@ from first_picture_case import FirstPictureCase, detail, expose, grey, write_she
 
 DATA = None
 TILES = 12  # number of tiles of a picture along each axis
-NEARLY = 0.7  # least share of sharp tiles of a changed capture, relative to the unchanged one
+NEARLY = 0.7  # as `nearly` of all_pictures()
 SUFFIXES = (".jpg", ".jpeg", ".png", ".PNG")
 SHOP = range(9, 18)  # the rows, and the columns, in the middle of 27
 
@@ -167,13 +167,14 @@ class CapturedPicturesTest(FirstPictureCase):
         print(f"{name}: focus {focus:.4g}, {100 * share:.0f} % sharp", file=sys.stderr)
         return focus, share
 
-    def all_pictures(self, write, changes, focus, sharp, is_sure=True, is_matched=True):
+    def all_pictures(self, write, changes, focus, sharp, is_sure=True, is_matched=True, nearly=NEARLY):
         """Every changed capture must be focused at the distance of the unchanged one, and be nearly as sharp.
 
         focus         distances between which the subject lies
         sharp         least share of the capture's textured tiles that are sharp
         is_sure       False: the images are too far apart to find a focus from pixels
         is_matched    False: the light moves over the subject, so that --match-exposure refuses
+        nearly        least share of sharp tiles of a changed capture, relative to the unchanged one
         """
         folder = DATA / {"shop": "blender-shop", "cards": "stanford-cards-9x9", "beer": "beer-colmap",
                          "temple": "middlebury-templeRing"}[write.__name__]
@@ -188,7 +189,7 @@ class CapturedPicturesTest(FirstPictureCase):
                 its, sharp_of_it = self.one_picture(write, change, is_sure=is_sure)
                 # At half the size, objects slightly out of focus look sharp.
                 self.assertAlmostEqual(its, plain, delta=(0.06 if change is smaller else 0.03) * plain)
-                self.assertGreater(sharp_of_it, NEARLY * share)
+                self.assertGreater(sharp_of_it, nearly * share)
         with self.subTest("matched"):
             if not is_matched:
                 self.refuses_to_match(write)
@@ -197,7 +198,7 @@ class CapturedPicturesTest(FirstPictureCase):
                 write, uneven_and_dark_corners, name="matched", is_sure=is_sure,
                 options=["--match-exposure", "--vignetting", "-o", self.folder / "matched"])
             self.assertAlmostEqual(its, plain, delta=0.03 * plain)
-            self.assertGreater(sharp_of_it, NEARLY * share)
+            self.assertGreater(sharp_of_it, nearly * share)
 
     def refuses_to_match(self, write):
         for change in (as_it_is, uneven_and_dark_corners):
@@ -222,7 +223,9 @@ class CapturedPicturesTest(FirstPictureCase):
         self.all_pictures(temple, (uneven, dark_corners, renamed), (0.5, 0.6), 0.8, is_matched=False)
 
     def test_beer(self):
-        self.all_pictures(beer, (uneven, dark_corners, smaller, renamed), (4, 5.5), 0.8)
+        # The camera is rolled. Tiles of its levelled frame show other places than those of the LF image, and only four
+        # or five of them have texture.
+        self.all_pictures(beer, (uneven, dark_corners, smaller, renamed), (4, 5.5), 0.8, nearly=0.5)
 
 
 if __name__ == "__main__":
