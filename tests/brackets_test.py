@@ -105,7 +105,7 @@ class BracketsTest(ProgramTestCase):
     def test_brackets_give_the_light_of_floats(self):
         capture = Capture(self)
         path = self.folder / "path.yaml"
-        self.succeeds(EXAMPLE, capture.true, "-o", path, "--move", "static")
+        self.succeeds(EXAMPLE, capture.true, "-o", path, "--move", "static", "--focus", 2.34)
         brackets = self.merged(capture.write("brackets", STOPS))
         middle = capture.write("middle", [0])
         text = json.loads((brackets / "transforms.json").read_text())

@@ -97,7 +97,8 @@ class FormatsTest(unittest.TestCase):
         """Returns the path and the picture of the native form."""
         if native not in self.rendered:
             path = native.with_name(native.name + ".yaml")
-            run(EXAMPLE, native, "-o", path, "--move", "static")
+            focus = [] if native == self.parallel else ["--focus", 0.69]
+            run(EXAMPLE, native, "-o", path, "--move", "static", *focus)
             out = native.with_name(native.name + "-frames")
             run(RENDERER, native, path, "-o", out, "--frames", 1, "--format", "exr-float",
                 "--estimator", "bilinear")

@@ -48,7 +48,7 @@ class JudgementsTest(ProgramTestCase):
             folder, path = self.folder / f"{seed}", self.folder / f"{seed}.yaml"
             cameras, quads, depths = kind(np.random.default_rng(seed))
             scenes.draw(folder, cameras, quads, seed, grain=6 if kind is focus.grainy else 1)
-            called = self.call(EXAMPLE, folder, "-o", path)
+            called = self.call(EXAMPLE, folder, "-o", path, "--move", "static")
             self.assertEqual(called.returncode, 0, called.stderr)
             said = focus.Said.of(path.read_text(), called.stderr)
             words = f"{called.stderr.strip()} (subject: {depths})"

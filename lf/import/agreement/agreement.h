@@ -37,8 +37,8 @@ struct Agreement {
   // If the verdict is kAgree: false if wrong focal lengths or principal points would agree, too.
   // The scene of parallel cameras, for example, then only becomes longer or shorter.
   bool tells_intrinsics = false;
-  // If the verdict is kAgree: false if another order of the names would agree, too. Rings of cameras
-  // at equal steps, for example, turn as a whole if names are shifted by one.
+  // If the verdict is kAgree: false if another order of the names would agree, too. Rings of
+  // cameras at equal steps, for example, turn as a whole if names are shifted by one.
   bool tells_order = false;
   // Set if the verdict is kDisagree: the repair with which images and poses agree. Without one, the
   // verdict is kNotSure, because repeated patterns are also matched wrongly.

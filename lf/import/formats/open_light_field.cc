@@ -36,21 +36,6 @@ namespace {
 constexpr const char* kCalibrationName = "transforms.json";
 constexpr const char* kAosName = "poses.json";
 
-// For a folder without transforms.json, returns a hint that names the calibrations in it that are
-// called differently, such as Blender's transforms_train.json; "" if there is none.
-std::string OtherCalibrations(const fs::path& folder) {
-  std::vector<std::string> names;
-  std::error_code error;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    const std::string name = it->path().filename().string();
-    if (name.starts_with("transforms") && name.ends_with(".json")) names.push_back(name);
-  }
-  if (names.empty()) return "";
-  std::sort(names.begin(), names.end());
-  return fmt::format("; it holds {}: give the path of such a file to read it",
-                     fmt::join(names, ", "));
-}
-
 // Returns the first option in `options` that only folders with Stanford names accept, as messages
 // name it; "" if there is none.
 std::string_view StanfordOptionOf(const OpenOptions& options) {

@@ -95,6 +95,19 @@ class Union {
 
 }  // namespace
 
+std::string OtherCalibrations(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    if (name.starts_with("transforms") && name.ends_with(".json")) names.push_back(name);
+  }
+  if (names.empty()) return "";
+  std::sort(names.begin(), names.end());
+  return fmt::format("; it holds {}: give the path of such a file to read it",
+                     fmt::join(names, ", "));
+}
+
 std::vector<fs::path> SplitsIn(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const char* const part : {"train", "val", "test"}) {

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "lf/core/result.h"
@@ -16,6 +17,10 @@ namespace lf {
 // Returns the existing files of transforms_train.json, transforms_val.json and transforms_test.json
 // in a folder, in this order.
 std::vector<std::filesystem::path> SplitsIn(const std::filesystem::path& folder);
+
+// For a folder without transforms.json, returns a hint that names the calibrations in it that are
+// called differently, such as transforms_train.json; "" if there is none.
+std::string OtherCalibrations(const std::filesystem::path& folder);
 
 // Reads the files, of which there must be at least one, as ReadTransformsJson() does, and returns
 // their LF images one after the other. An LF image with the pose and intrinsics of one of an

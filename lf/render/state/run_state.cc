@@ -374,24 +374,21 @@ Result<FrameProgress> RunState::LoadPlate(FrameId frame, SensorPlate* plate,
   LF_RETURN_IF_ERROR(get("progress.rays_accepted", &progress.rays.accepted_count));
   if (FindEntry(reader.entries(), kVirtual) != nullptr)
     LF_RETURN_IF_ERROR(get(kVirtual, &progress.rays.virtual_count));
+  const auto fault = [&](const std::string& what) {
+    return WithAdvice(InputError(fmt::format("{}: {}", path.string(), what)), kPlateAdvice);
+  };
   if (reader.width() != plate->width() || reader.height() != plate->height())
-    return WithAdvice(
-        InputError(fmt::format("{}: has {} x {} elements, expected {} x {}", path.string(),
-                               reader.width(), reader.height(), plate->width(), plate->height())),
-        kPlateAdvice);
+    return fault(fmt::format("has {} x {} elements, expected {} x {}", reader.width(),
+                             reader.height(), plate->width(), plate->height()));
   if (reader.kind() != plate->kind())
-    return WithAdvice(InputError(fmt::format("{}: has {} channels, expected {}", path.string(),
-                                             static_cast<int>(reader.kind()), plate->channels())),
-                      kPlateAdvice);
+    return fault(fmt::format("has {} channels, expected {}", static_cast<int>(reader.kind()),
+                             plate->channels()));
   if (const Result<void> added = reader.AddTo(plate); !added)
     return WithAdvice(added.error(), kPlateAdvice);
   const std::string* const noise = FindEntry(reader.entries(), kNoise);
   if (moments == nullptr || noise == nullptr) return progress;
   Result<NoiseMoments> read = NoiseMoments::Read(*noise, *plate);
-  if (!read)
-    return WithAdvice(InputError(fmt::format("{}: its entry {} is damaged: {}", path.string(),
-                                             kNoise, read.error().message)),
-                      kPlateAdvice);
+  if (!read) return fault(fmt::format("its entry {} is damaged: {}", kNoise, read.error().message));
   *moments = *std::move(read);
   return progress;
 }
@@ -399,8 +396,8 @@ Result<FrameProgress> RunState::LoadPlate(FrameId frame, SensorPlate* plate,
 Result<void> RunState::SavePlate(FrameId frame, const FrameProgress& progress,
                                  const SensorPlate& plate, ThreadPool& pool,
                                  const NoiseMoments* moments) {
-  LF_RETURN_IF_ERROR(
-      WritePlate(PlatePath(frame), PlateText(frame, progress, moments), plate, pool));
+  const PlateEntries text = PlateText(frame, progress, moments);
+  LF_RETURN_IF_ERROR(WritePlate(PlatePath(frame), text, plate, pool));
   const std::lock_guard lock(plates_mutex_);
   plates_.insert(frame);
   return {};
