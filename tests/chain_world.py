@@ -200,7 +200,8 @@ class World:
 
     def example(self, field):
         """Returns the path of lfexample, shortened to two small frames."""
-        file = self.make("lfexample", self.field(field), "--move", "focus-pull", "--focus", 2 if field == "synth" else 0.25,
+        focus = 2 if field == "synth" else 0.25
+        file = self.make("lfexample", self.field(field), "--move", "focus-pull", "--focus", focus,
                          to=self.new_folder("path.yaml"))
         text = re.sub(r"(?m)^frames:.*$", "frames: 2", file.read_text())
         file.write_text(re.sub(r"(?m)^resolution:.*$", "resolution: [40, 30]", text))

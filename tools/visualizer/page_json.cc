@@ -16,8 +16,7 @@
 namespace lf {
 namespace {
 
-// 0.0 is added because -0 and 0 are the same direction.
-Json OfVector(const Vec3& v) { return {v.x() + 0.0, v.y() + 0.0, v.z() + 0.0}; }
+Json OfVector(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 Json OfPackages(const PageScene& scene) {
   Json packages = Json::array();

@@ -274,6 +274,7 @@ void Judge(const LightField& light_field, const FoundPlaces& found, ThreadPool& 
   }
   const bool can_tell = agreement->fit.share - least_share >= kContrast;
   double gain = 0;
+  bool is_doubted = false;  // true if a repair explains a few places better, and hardly any worse
   if (const std::optional<Judged> unit =
           PlausibleFocal(light_field, errors, agreement->fit, found.divisor)) {
     SetRepair(*unit, ClauseFor(unit->repair, light_field), agreement);
@@ -287,6 +288,7 @@ void Judge(const LightField& light_field, const FoundPlaces& found, ThreadPool& 
     repairs.insert(repairs.end(), focal.begin(), focal.end());
     const Judged best = BestRepair(repairs, errors, recorded.size(), found.divisor, pool);
     gain = best.fit.share - agreement->fit.share;
+    is_doubted = !IsOfScan(best.repair, repairs) && IsBetter(errors.Of(best.repair), recorded, 0);
     if (best.fit.share >= kRepairedShare &&
         (gain >= kContrast ||
          (!IsOfScan(best.repair, repairs) && IsBetter(errors.Of(best.repair), recorded, kWins)))) {
@@ -299,7 +301,9 @@ void Judge(const LightField& light_field, const FoundPlaces& found, ThreadPool& 
     }
   }
   if (agreement->fit.share >= kAgreeShare && gain < kMostGain) {
-    if (recorded.size() < kPlacesForOrder && orders.are_equal) {
+    if (is_doubted) {
+      agreement->reason = "a usual mistake would explain the LF images slightly better";
+    } else if (recorded.size() < kPlacesForOrder && orders.are_equal) {
       agreement->reason = "so few places do not tell whether names are shifted";
     } else if (can_tell) {
       agreement->verdict = Verdict::kAgree;

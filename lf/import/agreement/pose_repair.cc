@@ -333,6 +333,7 @@ std::vector<uint32_t> CamerasOfImages(NameOrder order, const std::vector<std::st
 }
 
 size_t ApplyRepair(const Repair& repair, LightField* light_field) {
+  if (repair.is_none()) return 0;  // products with ones would change the last bits, and signs of 0
   const bool is_rectified = IsRectified(*light_field);
   const std::vector<uint32_t> camera_of = CamerasOfImages(repair.names, light_field->image_names);
   const std::vector<LfCamera> recorded = light_field->cameras;
