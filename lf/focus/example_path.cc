@@ -231,6 +231,10 @@ Shot ShotOf(const LightField& light_field, LfImageId id, const ExampleFocus& foc
       wish_w <= most_w ? aperture.reason
                        : fmt::format("{:.2g} spacings of LF cameras, {} as wide as they reach",
                                      most_w / spacing_w, MovesCamera(move) ? "half" : "about");
+  if (wish_w > most_w && most_w < aperture.least_spacings * spacing_w)
+    example->aperture_reason += fmt::format(
+        "; it holds fewer than {} LF cameras, so that copies may be seen instead of a blur",
+        kFewestCameras);
   shot.lens_radius_w = example->aperture_diameter_w / 2;
   return shot;
 }

@@ -82,7 +82,8 @@ Result<LfImageId> FirstCamera(const LightField& light_field, const LfImageStore&
 // - Focus pull: through the depths found in the scene, from at least 0.7 to at most 1.6 times the
 //   focus distance.
 // - A moving camera: the lens is at most half as wide as the LF cameras reach, so that the rest is
-//   left to the movement (focus/moves/). It keeps looking at the subject, which stays in focus. Its
+//   left to the movement (focus/moves/), even if fewer than six LF cameras are in it then;
+//   aperture_reason tells that. It keeps looking at the subject, which stays in focus. Its
 //   frames may be cropped to as little as 70 % of their width, so that LF cameras have recorded
 //   them; move_warning tells if that is not enough.
 // - Picture: the largest rectangle within the view of the LF camera, in the proportions of the LF
