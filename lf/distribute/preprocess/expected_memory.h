@@ -19,8 +19,9 @@ struct ReadImages {
   uint64_t pixel_count = 0;  // number of pixels that are read, of all LF images together
 };
 
-// Returns the memory of a render, in bytes. It is the memory of the plan with three changes:
-// - Two batches hold LF images of the mean size, and no more of them than are read.
+// Returns the memory of a render, in bytes. It is the memory of the plan with these changes:
+// - Two batches hold LF images of the mean size, and no more of them than are read. While rays are
+//   collected, five eighths of this are in memory at once.
 // - The plans of rays take an eighth of their share.
 // - Rebinned rays take what they fill. Frames are interpolated when the LF images are no longer
 //   needed, so that the larger of both counts.

@@ -25,11 +25,11 @@ class ExpectedMemoryTest : public ::testing::Test {
 TEST_F(ExpectedMemoryTest, LfImagesCountWithThePixelsThatAreRead) {
   // Ten LF images are less than a batch, and half of their pixels are read.
   EXPECT_EQ(ExpectedBytes(memory_, field_, {10, 5000}, true, false, nullptr),
-            1000u + 10 * 4000 + 4000 / 8);
+            1000u + 10 * 4000 * 5 / 8 + 4000 / 8);
   EXPECT_EQ(ExpectedBytes(memory_, field_, {10, 5000}, true, true, nullptr),
-            1000u + 10 * 4000 + 10 * 4000 / 2 + 4000 / 8);
+            1000u + (10 * 4000 + 10 * 4000 / 2) * 5 / 8 + 4000 / 8);
   EXPECT_EQ(ExpectedBytes(memory_, field_, {500, 500000}, true, true, nullptr),
-            1000u + 32 * 8000 + 16 * 8000 / 2 + 4000 / 8);
+            1000u + (32 * 8000 + 16 * 8000 / 2) * 5 / 8 + 4000 / 8);
   EXPECT_LE(ExpectedBytes(memory_, field_, {500, 500000}, true, true, nullptr),
             memory_.plan.total_bytes);
 }
