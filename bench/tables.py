@@ -71,6 +71,8 @@ TABLES = {
        for group in ("planar", "band", "scenes", "shop", "cards", "spoiled", "flicker")},
     "image_orders": ("performance", "bench/image_orders.py {build}", "--density 0.002"),
     "forecast_table": ("cluster", "bench/forecast_table.py {build}", "--count 400 --packages 1,2"),
+    "forecasts": ("formats/forecast", "bench/forecasts.py {build} {data}/data",
+                  "--runs 1 --frames 2 --scale 0.2 --only shop --modes collect"),
     "ray_usage": ("quality", "bench/ray_usage.py {build}", "--density 0.001"),
     "selection_table": ("performance", "bench/selection_table.py {build}", ""),
     "rebinning_peers": ("rebinning", "bench/rebinning_peers.py {build}", "--runs 2"),
