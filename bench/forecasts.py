@@ -71,7 +71,7 @@ def film_of(name, arguments, folder):
 
 def measure(name, mode, field, path, arguments, folder):
     programs = arguments.build.resolve() / "bin"
-    options = ["--mode", mode, *(["--lens-weights", "none"] if mode == "rebin" else [])]
+    options = ["--mode", mode, "--lens-weights", "none" if mode == "rebin" else "auto"]
     row = {"film": name, "mode": mode, "forecast_cpu_s": [], "cpu_s": [], "forecast_bytes": [], "bytes": [],
            "plan_cpu_s": [], "stages": []}
     for _ in range(arguments.runs):
@@ -83,7 +83,7 @@ def measure(name, mode, field, path, arguments, folder):
         row["forecast_bytes"].append(package["memory_bytes"])
         row["stages"].append(package.get("cpu_s_of"))
         used = results.timed([programs / "lfrenderer", field, path, "-o", folder / "out", "--overwrite", "-q",
-                              "--no-contact-sheet", *options])
+                              "--no-contact-sheet", "--estimator", "auto", *options])
         row["cpu_s"].append(used["cpu_s"])
         row["bytes"].append(used["peak_bytes"])
     row["lf_images"] = package["lf_images"]
