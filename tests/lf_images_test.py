@@ -253,7 +253,7 @@ class LfImagesTest(unittest.TestCase):
             return f"{index}l.png"
         expected = self.digest(self.field("grey", plain, self.mask_as_png))
         self.assertEqual(self.digest(self.field("palette", palette, lf_alpha="mask")), expected)
-        self.assertNotEqual(self.digest(self.field("palette_light", palette)), expected)
+        self.assertNotEqual(self.digest(self.field("palette_light", palette, lf_alpha="straight")), expected)
         self.assertEqual(self.digest(self.field("grey_alpha", grey_alpha)), expected)
 
     # Orientation

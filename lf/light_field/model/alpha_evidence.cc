@@ -26,6 +26,7 @@ constexpr double kOneColour = 0.97;     // least AlphaFacts::one_colour_share of
 constexpr double kPicture = 0.85;       // largest one_colour_share of a picture that is masked
 constexpr double kPictureDetail = 0.2;  // least detail_share of such a picture
 constexpr double kSamePixels = 0.98;    // least share of pixels that are transparent in all images
+constexpr double kFilled = 0.6;         // least opaque share of images that an object may not fill
 // Least number of half-transparent pixels that tell straight from premultiplied, and the shares of
 // them up to which colours are straight, and from which they are premultiplied.
 constexpr size_t kLeastEdge = 30;
@@ -92,7 +93,15 @@ void JudgeColours(const AlphaFacts& facts, AlphaEvidence* evidence) {
   const bool is_black = facts.background == std::array<double, 3>{};
   const bool is_rendered = facts.is_float && is_black;
   evidence->meaning = is_rendered ? AlphaMeaning::kPremultiplied : AlphaMeaning::kStraight;
-  if (facts.edge_count < kLeastEdge) return;
+  if (facts.edge_count < kLeastEdge) {
+    if (facts.half_count < kLeastEdge || facts.is_float) return;
+    evidence->is_sure = false;
+    evidence->reason += fmt::format(
+        "; but {} pixels are half transparent, and too few of them lie beside opaque ones to tell "
+        "whether colours are multiplied by alpha",
+        facts.half_count);
+    return;
+  }
   evidence->reason += fmt::format(
       "; the light of {} of {} half-transparent pixels beside opaque ones is multiplied by alpha",
       Percent(facts.multiplied_share), facts.edge_count);
@@ -115,11 +124,13 @@ std::optional<AlphaEvidence> FindAlphaEvidence(const LightField& light_field) {
       });
   AlphaEvidence evidence;
   evidence.image_name = facts.image_name;
-  double shared = images.size() > 1 ? 1 : 0;
-  for (const AlphaFacts& image : images)
+  double shared = images.size() > 1 ? 1 : 0, opaque = 1;
+  for (const AlphaFacts& image : images) {
     shared = std::min(shared, SharedTransparency(facts, image));
-  const bool is_same = shared >= kSamePixels;
-  if (is_same && facts.opaque_spans_image) {
+    opaque = std::min(opaque, image.opaque_share);
+  }
+  const bool is_same = shared >= kSamePixels, is_filled = opaque >= kFilled;
+  if (is_same && (facts.opaque_spans_image || is_filled)) {
     evidence.reason = fmt::format("{} of the transparent pixels are the same in {} LF images",
                                   Percent(shared), images.size());
     return evidence;
@@ -135,7 +146,15 @@ std::optional<AlphaEvidence> FindAlphaEvidence(const LightField& light_field) {
         fmt::format(", and {} differ from the pixel beside them", Percent(facts.detail_share));
     return evidence;
   }
-  evidence.is_sure = !is_same && facts.one_colour_share >= kOneColour;
+  if (is_filled)
+    evidence.reason += fmt::format(
+        ", but {} of the pixels or more are opaque, as in photographs of which parts are masked",
+        Percent(opaque));
+  if (is_filled && !facts.is_float) {  // cameras write no floating-point files with alpha
+    evidence.is_sure = false;
+    return evidence;
+  }
+  evidence.is_sure = !is_same && !is_filled && facts.one_colour_share >= kOneColour;
   if (is_same)
     evidence.reason += fmt::format(", but {} of them are the same in {} LF images", Percent(shared),
                                    images.size());

@@ -25,9 +25,9 @@ struct AlphaEvidence {
 // files change some colours.
 //
 // Alpha is a mask if two or more images have the same transparent pixels (98 %) and their opaque
-// pixels reach from side to side, like the borders of undistorted photographs; or if, in one image,
-// less than 85 % of the inner transparent pixels have about one colour, because a picture lies
-// beneath them.
+// pixels reach from side to side or cover 60 %, like the borders of undistorted photographs; or if,
+// in one image, less than 85 % of the inner transparent pixels have about one colour, because a
+// picture lies beneath them.
 //
 // Otherwise alpha is an opacity, because the images show an object alone. The background is the
 // colour of the transparent pixels of the first image. Over black, alpha is premultiplied if
@@ -36,8 +36,11 @@ struct AlphaEvidence {
 // write them, and straight for others. Over another colour it is straight.
 //
 // The judgement is not sure if a share lies between these limits, if the picture beneath has no
-// detail or is seen near outlines alone, or if all images have the same transparent pixels and
-// their opaque pixels do not reach from side to side.
+// detail or is seen near outlines alone, if all images have the same transparent pixels and their
+// opaque pixels do not reach from side to side, or if half-transparent pixels lie beside too few
+// opaque ones. It is not sure, and takes a mask unless the files hold floats, if at least 60 % of
+// each image are opaque: such an image is either a photograph of which parts are masked, or an
+// object that fills it.
 //
 // Returns nullopt if no examined image has an alpha channel and a transparent pixel. If the header
 // of a file cannot be read, the next LF image with a readable header is examined instead, if it is

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <filesystem>
 #include <limits>
 #include <optional>
 
@@ -98,9 +99,9 @@ TEST_F(AlphaEvidenceTest, ColoursThatFallWithAlphaArePremultiplied) {
   for (const bool is_multiplied : {true, false}) {
     Image<uint8_t> image(kSide, kSide, 4);
     for (int y = 0; y < kSide; ++y)
-      for (int x = 6; x < kSide; ++x) {
-        image.at(x, y, 3) = x < 8 ? 100 : 255;
-        for (int c = 0; c < 3; ++c) image.at(x, y, c) = x < 8 && is_multiplied ? 80 : 200;
+      for (int x = 8; x < kSide; ++x) {
+        image.at(x, y, 3) = x < 10 ? 100 : 255;
+        for (int c = 0; c < 3; ++c) image.at(x, y, c) = x < 10 && is_multiplied ? 80 : 200;
       }
     ASSERT_TRUE(WriteImage(folder_ / "0.png", image.view()));
     EXPECT_EQ(FindAlphaEvidence(field_)->meaning,
@@ -136,6 +137,41 @@ TEST_F(AlphaEvidenceTest, AnObjectWithTheSameOutlineInAllImagesIsDoubted) {
 TEST_F(AlphaEvidenceTest, ABorderThatAllHaveIsAMask) {
   for (const int i : {0, 1, 2}) Write(i, 5, 0);
   EXPECT_EQ(FindAlphaEvidence(field_)->meaning, AlphaMeaning::kMask);
+}
+
+TEST_F(AlphaEvidenceTest, ImagesThatAreMostlyOpaqueAreDoubted) {
+  Write(0, 3, 0);
+  Write(1, 5, 0);
+  const auto found = FindAlphaEvidence(field_);
+  EXPECT_EQ(found->meaning, AlphaMeaning::kMask);
+  EXPECT_FALSE(found->is_sure);
+  Write(2, 10, 0);  // half of this one is transparent
+  EXPECT_EQ(FindAlphaEvidence(field_)->meaning, AlphaMeaning::kStraight);
+}
+
+// Writes an image whose columns 0 to 7 are transparent, 8 to 11 half transparent, and then opaque.
+void WriteSoft(const std::filesystem::path& file, uint8_t half, uint8_t alpha, uint8_t opaque) {
+  Image<uint8_t> image(kSide, kSide, 4);
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 8; x < kSide; ++x) {
+      for (int c = 0; c < 3; ++c) image.at(x, y, c) = x < 12 ? half : 200;
+      image.at(x, y, 3) = x < 12 ? alpha : opaque;
+    }
+  ASSERT_TRUE(WriteImage(file, image.view()));
+}
+
+TEST_F(AlphaEvidenceTest, BlackShadowsTellNothing) {
+  WriteSoft(folder_ / "0.png", 0, 100, 255);
+  const auto found = FindAlphaEvidence(field_);
+  EXPECT_EQ(found->meaning, AlphaMeaning::kStraight);
+  EXPECT_FALSE(found->is_sure);
+}
+
+TEST_F(AlphaEvidenceTest, WithoutOpaquePixelsColoursAreDoubted) {
+  WriteSoft(folder_ / "0.png", 90, 100, 150);
+  const auto found = FindAlphaEvidence(field_);
+  EXPECT_EQ(found->meaning, AlphaMeaning::kStraight);
+  EXPECT_FALSE(found->is_sure);
 }
 
 TEST_F(AlphaEvidenceTest, FloatsOverBlackArePremultiplied) {

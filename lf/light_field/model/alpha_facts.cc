@@ -137,13 +137,15 @@ void MeasureInner(const AlphaImage<T>& image, const std::vector<bool>& is_inner,
 
 template <class T>
 void MeasureEdges(const AlphaImage<T>& image, AlphaFacts* facts) {
-  constexpr int kNear = 2;              // pixels; distance of the opaque pixels
-  constexpr double kLeastLight = 0.02;  // sum of three channels; darker pixels tell nothing
+  constexpr int kNear = 2;                // pixels; distance of the opaque pixels
+  constexpr double kLeastLight = 0.02;    // sum of three channels; darker pixels tell nothing
+  constexpr double kOtherSurface = 0.25;  // of the light of multiplied colours; less is a shadow
   size_t multiplied_count = 0;
   for (int y = kNear; y < image.height() - kNear; ++y)
     for (int x = kNear; x < image.width() - kNear; ++x) {
       const double alpha = image.Alpha(x, y);
       if (alpha < 0.15 || alpha > 0.7) continue;
+      ++facts->half_count;
       double light = 0;
       int count = 0;
       for (int j = y - kNear; j <= y + kNear; ++j)
@@ -153,9 +155,11 @@ void MeasureEdges(const AlphaImage<T>& image, AlphaFacts* facts) {
             ++count;
           }
       if (count == 0 || light < kLeastLight * count) continue;
+      light /= count;
+      const double here = image.LightAt(x, y);
+      if (here < kOtherSurface * alpha * light) continue;
       ++facts->edge_count;
-      // The geometric mean of the two lights parts them.
-      multiplied_count += image.LightAt(x, y) < std::sqrt(alpha) * light / count;
+      multiplied_count += here < std::sqrt(alpha) * light;  // their geometric mean parts the two
     }
   if (facts->edge_count > 0)
     facts->multiplied_share =
@@ -171,6 +175,7 @@ AlphaFacts Measure(const RadianceEncoding& encoding, const Image<T>& stored,
   facts.is_float = std::is_floating_point_v<T>;
   facts.is_transparent.reserve(static_cast<size_t>(image.width()) *
                                static_cast<size_t>(image.height()));
+  size_t opaque_count = 0;
   int left = image.width(), right = -1, top = image.height(), bottom = -1;  // of opaque pixels
   for (int y = 0; y < image.height(); ++y)
     for (int x = 0; x < image.width(); ++x) {
@@ -178,6 +183,7 @@ AlphaFacts Measure(const RadianceEncoding& encoding, const Image<T>& stored,
       facts.is_transparent.push_back(alpha <= kTransparent);
       facts.transparent_count += facts.is_transparent.back();
       if (alpha < kOpaque) continue;
+      ++opaque_count;
       left = std::min(left, x);
       right = std::max(right, x);
       top = std::min(top, y);
@@ -187,6 +193,8 @@ AlphaFacts Measure(const RadianceEncoding& encoding, const Image<T>& stored,
   const int margin_x = image.width() / 50, margin_y = image.height() / 50;
   facts.opaque_spans_image = (left <= margin_x && right >= image.width() - 1 - margin_x) ||
                              (top <= margin_y && bottom >= image.height() - 1 - margin_y);
+  facts.opaque_share =
+      static_cast<double>(opaque_count) / static_cast<double>(facts.is_transparent.size());
   const int radius = std::clamp(image.width() / 128, 2, 8);
   const std::vector<bool> rows =
       Eroded(facts.is_transparent, image.height(), image.width(), image.width(), 1, radius);

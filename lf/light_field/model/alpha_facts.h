@@ -24,6 +24,7 @@ struct AlphaFacts {
   std::vector<bool> is_transparent;  // row by row
   size_t transparent_count = 0;
   bool opaque_spans_image = false;  // opaque pixels reach two opposite sides of the image
+  double opaque_share = 0;          // share of all pixels
 
   bool has_inner = true;   // false: all transparent pixels stand for the inner ones
   size_t inner_count = 0;  // number of inner pixels
@@ -36,9 +37,12 @@ struct AlphaFacts {
   std::array<double, 3> background = {};  // radiance of the median colour
 
   bool is_float = false;
-  // Number of pixels with an alpha between 0.15 and 0.7 that have opaque pixels near them, and the
-  // share of them whose light is nearer to alpha times the light of these than to this light
-  // itself.
+  // Number of pixels with an alpha between 0.15 and 0.7.
+  size_t half_count = 0;
+  // Number of them that have opaque pixels near them, and the share of these pixels whose light is
+  // nearer to alpha times the light of the opaque ones than to this light itself. Pixels that are
+  // much darker than either do not count: they show another surface, such as a shadow, and black
+  // remains black if it is multiplied.
   size_t edge_count = 0;
   double multiplied_share = 0;
 };
