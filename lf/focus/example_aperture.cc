@@ -26,7 +26,8 @@ constexpr size_t kFewestPlaces = 8;  // fewer textured places tell nothing
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Returns the diameter of the smallest aperture that contains kFewestCameras LF cameras which see
-// the focus. An LF camera counts where the line from it to the focus passes the plane of the lens.
+// the focus, at as many positions. An LF camera counts where the line from it to the focus passes
+// the plane of the lens.
 double SmallestBlurringLens(const LightField& light_field, const PinholeCamera& camera,
                             double focus_distance_w) {
   const Vec3 forward = camera.ForwardWorld();
@@ -40,47 +41,62 @@ double SmallestBlurringLens(const LightField& light_field, const PinholeCamera& 
     radii_w.emplace_back(across.norm() * focus_distance_w / depth_w, i);
   }
   std::sort(radii_w.begin(), radii_w.end());
-  size_t count = 0;
+  constexpr double kSamePosition = 1e-6;  // as a share of the focus distance
+  std::vector<Vec3> centres;              // of those that count
   for (const auto& [radius_w, i] : radii_w) {
     const PinholeCamera other = light_field.Camera(LfImageId{i});
+    const bool is_counted = std::any_of(centres.begin(), centres.end(), [&](const Vec3& centre) {
+      return (centre - other.CentreWorld()).norm() < kSamePosition * focus_distance_w;
+    });
+    if (is_counted) continue;
     const RayThrough rays(other, other.ForwardWorld());
     const auto at = rays.RecordedAt(focus_world - rays.centre_world());
     const bool is_seen = at && at->x() >= 0 && at->y() >= 0 &&
                          at->x() <= other.intrinsics.width_px &&
                          at->y() <= other.intrinsics.height_px;
     constexpr double kMargin = 1.02;  // so that the last LF camera is within the aperture
-    if (is_seen && ++count == kFewestCameras) return 2 * kMargin * radius_w;
+    if (is_seen) centres.push_back(other.CentreWorld());
+    if (centres.size() == kFewestCameras) return 2 * kMargin * radius_w;
   }
   return kInfinity;
 }
 
-// Returns the distance between copies that kShare of the seen depths do not exceed; infinity if too
-// many of them are unknown.
-double CopiesOf(const SeenDepths& seen, double fx_px, double spacing_w, double focus_w) {
+// Returns the distance between copies that kShare of `count` seen depths do not exceed; infinity if
+// too many of them are unknown.
+double CopiesOf(const SeenDepths& seen, size_t count, double fx_px, double spacing_w,
+                double focus_w) {
   std::vector<double> copies_px;
   for (const double per_w : seen.per_w)
     copies_px.push_back(
         CopiesApart_px(fx_px, spacing_w, focus_w, per_w > 0 ? 1 / per_w : kInfinity));
-  const auto at = static_cast<size_t>(kShare * static_cast<double>(seen.count - 1));
+  const auto at = static_cast<size_t>(kShare * static_cast<double>(count - 1));
   if (at >= copies_px.size()) return kInfinity;
   std::nth_element(copies_px.begin(), copies_px.begin() + static_cast<ptrdiff_t>(at),
                    copies_px.end());
   return copies_px[at];
 }
 
-// Returns the reason why a lens would show copies this far apart.
-std::string WhyCopies(const ExampleFocus& focus, double copies_px) {
-  if (focus.places.count < kFewestPlaces)
+// How far apart a lens would show copies; 0 if nothing is known.
+struct Copies {
+  double places_px = 0;     // of the textured places of the LF image
+  double known_px = 0;      // of those alone whose depths are known
+  double points_px = 0;     // of reconstructed points
+  bool is_assumed = false;  // true: places_px is that of a point at an assumed depth
+};
+
+// Returns the reason why the copies are too far apart.
+std::string WhyCopies(const Copies& copies, const SeenDepths& places) {
+  if (copies.places_px > kMostCopies_px && copies.is_assumed)
     return fmt::format(
         "objects a quarter of the focus distance before it would appear as copies {:.0f} px apart",
-        copies_px);
-  if (std::isinf(copies_px))
+        copies.places_px);
+  if (std::max(copies.known_px, copies.points_px) <= kMostCopies_px)
     return fmt::format(
-        "neighbouring LF images agree on a depth at only {} of {} textured places, and the others "
-        "would appear as copies, far apart",
-        focus.places.per_w.size(), focus.places.count);
+        "neighbouring LF images agree on a depth at only {} of {} textured places: it is not sure "
+        "how wide the lens may be, because the others may appear as copies, far apart",
+        places.per_w.size(), places.count);
   return fmt::format("a quarter of what is seen would appear as copies {:.0f} px apart or more",
-                     copies_px);
+                     std::max(copies.known_px, copies.points_px));
 }
 
 // Returns an aperture that holds one LF camera.
@@ -96,15 +112,21 @@ ExampleAperture ChooseAperture(const LightField& light_field, const PinholeCamer
   const double least = SmallestBlurringLens(light_field, camera, focus.distance_w) / spacing_w;
   if (!focus.doubt.empty())
     return Sharp("so that the first frame is sharp at any distance", "", least);
+  const auto copies_of = [&](const SeenDepths& seen, size_t count) {
+    return count == 0 ? 0 : CopiesOf(seen, count, fx_px, spacing_w, focus.distance_w);
+  };
   constexpr double kAssumedNear = 0.75;
-  const bool are_known = focus.places.count >= kFewestPlaces;
-  double copies_px = are_known ? CopiesOf(focus.places, fx_px, spacing_w, focus.distance_w)
-                               : CopiesApart_px(fx_px, spacing_w, focus.distance_w,
-                                                kAssumedNear * focus.distance_w);
+  Copies copies;
+  copies.is_assumed = focus.places.count < kFewestPlaces;
+  copies.places_px = copies.is_assumed ? CopiesApart_px(fx_px, spacing_w, focus.distance_w,
+                                                        kAssumedNear * focus.distance_w)
+                                       : copies_of(focus.places, focus.places.count);
+  copies.known_px = copies_of(focus.places, focus.places.per_w.size());
   if (focus.points.count >= kFewestPlaces)
-    copies_px = std::max(copies_px, CopiesOf(focus.points, fx_px, spacing_w, focus.distance_w));
+    copies.points_px = copies_of(focus.points, focus.points.count);
+  const double copies_px = std::max(copies.places_px, copies.points_px);
   if (copies_px > kMostCopies_px) {
-    const std::string why = WhyCopies(focus, copies_px);
+    const std::string why = WhyCopies(copies, focus.places);
     return Sharp("because " + why, why, least);
   }
   const double widest = kWidestLens * focus.distance_w / spacing_w;
@@ -124,9 +146,8 @@ ExampleAperture ChooseAperture(const LightField& light_field, const PinholeCamer
   const double spacings = std::min(wished, widest);
   std::string reason = fmt::format(
       "{:.2g} spacings of LF cameras; {} of what is out of focus appears as copies at most {:.2g} "
-      "px "
-      "apart",
-      spacings, are_known ? "three quarters" : "much", copies_px);
+      "px apart",
+      spacings, copies.is_assumed ? "much" : "three quarters", copies_px);
   if (wished > widest)
     reason += fmt::format(
         "; it is limited to {:.2g} of the focus distance, because a wider lens looks around "

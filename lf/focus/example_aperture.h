@@ -18,8 +18,8 @@ struct ExampleAperture {
   double spacings = 0;  // diameter of the aperture, as a multiple of the spacing of the LF cameras
   std::string reason;
   std::string copies = {};  // if the aperture holds one LF camera: what a wider one would show
-  // Diameter of the smallest aperture that blurs: the smallest with kFewestCameras LF cameras that
-  // see the focus. Infinite if there are fewer.
+  // Diameter of the smallest aperture that blurs: the smallest with LF cameras at kFewestCameras
+  // positions that see the focus. Infinite if there are fewer.
   double least_spacings = 0;
 };
 

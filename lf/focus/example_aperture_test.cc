@@ -53,8 +53,12 @@ TEST(ChooseAperture, PlacesWithoutAgreementCountAsFarApart) {
   EXPECT_GT(ApertureOf(field, PlacesAt(80, 1)).spacings, 6);
   const ExampleAperture sharp = ApertureOf(field, PlacesAt(70, 1));
   EXPECT_LT(sharp.spacings, 0.01);
-  EXPECT_NE(sharp.reason.find("only 70 of 100 textured places"), std::string::npos);
+  EXPECT_NE(sharp.reason.find("only 70 of 100 textured places: it is not sure"), std::string::npos);
   EXPECT_FALSE(sharp.copies.empty());
+  std::vector<double> some_wrong = PlacesAt(70, 1);
+  some_wrong.resize(76, 0.05);  // false matches do not make it sure
+  EXPECT_NE(ApertureOf(field, some_wrong).reason.find("it is not sure"), std::string::npos);
+  EXPECT_EQ(ApertureOf(field, PlacesAt(90, 0.1)).reason.find("not sure"), std::string::npos);
 }
 
 TEST(ChooseAperture, NoLensIsWiderThanAQuarterOfTheFocusDistance) {
@@ -72,6 +76,19 @@ TEST(ChooseAperture, AnOpenLensHoldsSixCameras) {
   const ExampleAperture sharp = ApertureOf(GridAhead(2, 0.01), PlacesAt(100, 1));
   EXPECT_LT(sharp.spacings, 0.01);
   EXPECT_NE(sharp.reason.find("fewer than 6 LF cameras"), std::string::npos);
+}
+
+TEST(ChooseAperture, SixCamerasStandAtSixPositions) {
+  LightField twice = GridAhead(9, 0.045);
+  const LightField once = twice;
+  for (const LfCamera& camera : once.cameras) twice.cameras.push_back(camera);
+  twice.image_names.resize(twice.cameras.size());
+  ExampleFocus focus{1, "as a test says"};
+  focus.places.per_w.assign(100, 0);
+  focus.places.count = 100;
+  const PinholeCamera middle = once.Camera({40});
+  EXPECT_NEAR(ChooseAperture(twice, middle, focus, 0.045).spacings,
+              ChooseAperture(once, middle, focus, 0.045).spacings, 1e-9);
 }
 
 TEST(ChooseAperture, WithoutTextureACopyIsAssumedBeforeTheFocus) {

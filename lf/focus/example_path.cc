@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -365,10 +367,18 @@ Result<ExamplePath> MakeExamplePath(const LightField& light_field, const LfImage
                                   options.camera.value, light_field.size() - 1));
   const double spacing_w = MedianSpacing(light_field);
   if (!(spacing_w > 0))
+    return InputError(
+        fmt::format("all {} LF cameras have the same position: expected two positions or more. Are "
+                    "the positions "
+                    "missing in the calibration?",
+                    light_field.size()));
+  const size_t image_count =
+      std::set<std::string>(light_field.image_names.begin(), light_field.image_names.end()).size();
+  if (2 * image_count <= light_field.size())
     return InputError(fmt::format(
-        "most of the {} LF cameras have the same position as another one: were the images listed "
-        "twice, or are the positions missing? Run lfimport to list these LF cameras",
-        light_field.size()));
+        "the {} LF cameras have only {} LF images: were the images listed twice? Run lfimport to "
+        "list these LF cameras",
+        light_field.size(), image_count));
   LF_ASSIGN_OR_RETURN(const ExampleFocus focus,
                       ChooseFocus(light_field, store, options, spacing_w, pool));
   if (options.move != ExampleMove::kAuto)

@@ -16,6 +16,9 @@ namespace {
 // Numbers of cameras that are sampled, spread over the light field. Rounding may double them.
 constexpr size_t kSpacingSamples = 500;
 constexpr size_t kAxisSamples = 20000;
+// Cameras nearer together than this share of the distance to the farthest camera have one position:
+// tracks that cross, and bursts, repeat positions but for the last digits.
+constexpr double kSamePosition = 1e-6;
 
 std::vector<Vec3> Centres(const LightField& light_field) {
   std::vector<Vec3> centres;
@@ -81,15 +84,18 @@ double MedianSpacing(const LightField& light_field) {
   if (light_field.size() < 2) return 0;
   const std::vector<Vec3> centres = Centres(light_field);
   const size_t step = std::max<size_t>(1, centres.size() / kSpacingSamples);
-  // True if several LF images may have one pose.
-  const bool are_brackets = light_field.encoding.masks_clipped;
   std::vector<double> nearest;
   for (size_t i = 0; i < centres.size(); i += step) {
-    double least = std::numeric_limits<double>::infinity();
-    for (size_t k = 0; k < centres.size(); ++k)
-      if (k != i && !(are_brackets && centres[k] == centres[i]))
-        least = std::min(least, (centres[k] - centres[i]).squaredNorm());
-    nearest.push_back(std::isfinite(least) ? std::sqrt(least) : 0);
+    std::vector<double> squares;
+    double most = 0;
+    for (const Vec3& centre : centres) {
+      squares.push_back((centre - centres[i]).squaredNorm());
+      most = std::max(most, squares.back());
+    }
+    double least = most;
+    for (const double square : squares)
+      if (square > kSamePosition * kSamePosition * most) least = std::min(least, square);
+    nearest.push_back(std::sqrt(least));
   }
   return Percentile(std::move(nearest), 0.5);
 }

@@ -11,10 +11,10 @@
 
 namespace lf {
 
-// Returns the median distance from an LF camera to its nearest neighbour, in world units; 0 for
-// fewer than two cameras. It is measured at fewer than 1,000 cameras spread over the light field.
-// Cameras at exactly the same position do not count as neighbours if encoding.masks_clipped is true
-// (brackets).
+// Returns the median distance from an LF camera to its nearest neighbour, in world units; 0 if all
+// cameras have one position. It is measured at fewer than 1,000 cameras spread over the light
+// field. Cameras at the same position are no neighbours: brackets, bursts and tracks that cross
+// repeat positions.
 double MedianSpacing(const LightField& light_field);
 
 // Returns how many pixels of an LF image apart the copies are as which a frame, focused at focus_w,
