@@ -26,6 +26,7 @@ constexpr double kLeastMove = 3;  // median way of a place between LF images, in
 // Thresholds of the verdict, as shares of the places. doc/judgements.md says how they were chosen.
 constexpr double kAgreeShare = 0.6;     // images and poses agree if no fewer places do
 constexpr double kRepairedShare = 0.6;  // a repair is named if it makes as many places agree
+constexpr double kCertainShare = 0.75;  // the same if it explains only a few places better
 constexpr double kContrast = 0.25;      // between right and wrong poses
 constexpr double kSureShare = 0.85;     // no repair is tried, except of the order of names
 constexpr double kMostGain = 0.08;      // of a repair, if images and poses agree as they are
@@ -34,6 +35,9 @@ constexpr double kOrderWins = 0.04;     // the same for the order of names
 
 constexpr size_t kPlacesForOrder = 200;  // fewer may not tell one order of names from another
 constexpr size_t kFocalSteps = 76;       // focal lengths that are tried, each 4 % longer
+// Focal lengths of lenses without much distortion, as multiples of the image width.
+constexpr double kLeastFocal = 0.2, kMostFocal = 12;
+constexpr double kEqual = 0.03;  // shares that differ by less are equal
 
 struct Judged {
   Repair repair;
@@ -60,12 +64,16 @@ bool AreParallel(const LightField& light_field) {
 }
 
 // Returns repairs of focal lengths: those of usual units and sizes first, then all factors for
-// which the focal length is from 0.3 to 6 widths, in steps of 4 %.
+// which the focal length is from 0.3 to 6 widths, in steps of 4 %. None leads to a focal length
+// that no lens has.
 std::vector<Repair> FocalRepairs(const LightField& light_field) {
   std::vector<Repair> all;
   const Intrinsics& k = light_field.Camera({0}).intrinsics;
   const double w = k.width_px, h = k.height_px;
-  const auto add = [&](double fx, double fy) { all.push_back({.focal_factors = {fx, fy}}); };
+  const auto add = [&](double fx, double fy) {
+    const double widths = k.fx_px * fx / w;
+    if (widths >= kLeastFocal && widths <= kMostFocal) all.push_back({.focal_factors = {fx, fy}});
+  };
   for (const double factor : {w, h, w / 36, h / 36, std::hypot(w, h) / 43.27, 2., 0.5, 4., 0.25})
     add(factor, factor);
   add(w, h);
@@ -156,7 +164,6 @@ Judged WithRefinedFocal(const Judged& judged, const PlaceErrors& errors, int div
 Judged BestRepair(const std::vector<Repair>& repairs, const PlaceErrors& errors, size_t count,
                   int divisor, ThreadPool& pool) {
   constexpr size_t kSampled = 400;  // places at which all repairs are tried
-  constexpr double kEqual = 0.03;   // difference of shares
   std::vector<Fit> fits(repairs.size());
   const size_t step = std::max<size_t>(1, count / kSampled);
   pool.ForEach(repairs.size(),
@@ -223,20 +230,20 @@ Orders TryOrders(const std::vector<Repair>& repairs, const PlaceErrors& errors,
 
 // Returns the repair of a focal length that no lens without distortion has, because it is not in
 // pixels, if images and poses agree with it no less; none if there is no such fault. Parallel
-// cameras agree with any focal length: the scene is then longer or shorter.
+// cameras agree with any focal length: the scene is then longer or shorter. Among repairs that
+// explain the images about equally well, the most usual one is taken.
 std::optional<Judged> PlausibleFocal(const LightField& light_field, const PlaceErrors& errors,
                                      const Fit& recorded, int divisor) {
-  constexpr double kLeast = 0.1, kMost = 12;  // focal length, as a multiple of the image width
   const Intrinsics& k = light_field.Camera({0}).intrinsics;
-  if (k.has_distortion() || k.fx_px >= kLeast * k.width_px) return std::nullopt;
+  if (k.has_distortion() || k.fx_px >= kLeastFocal / 2 * k.width_px) return std::nullopt;
+  std::optional<Judged> best;
   for (const Repair& repair : FocalRepairs(light_field)) {
-    const double widths = k.fx_px * repair.focal_factors[0] / k.width_px;
-    if (widths < 2 * kLeast || widths > kMost) continue;
     const Fit fit = FitOf(errors.Of(repair), divisor);
-    if (fit.share >= kRepairedShare && fit.share >= recorded.share - kMostGain)
-      return Judged{repair, fit};
+    if (fit.share >= kRepairedShare && fit.share >= recorded.share - kMostGain &&
+        (!best || fit.share > best->fit.share + kEqual))
+      best = Judged{repair, fit};
   }
-  return std::nullopt;
+  return best;
 }
 
 // Returns true if other intrinsics, which must be wrong, explain the images clearly less well.
@@ -288,14 +295,15 @@ void Judge(const LightField& light_field, const FoundPlaces& found, ThreadPool& 
     repairs.insert(repairs.end(), focal.begin(), focal.end());
     const Judged best = BestRepair(repairs, errors, recorded.size(), found.divisor, pool);
     gain = best.fit.share - agreement->fit.share;
-    is_doubted = !IsOfScan(best.repair, repairs) && IsBetter(errors.Of(best.repair), recorded, 0);
+    is_doubted =
+        order || (!IsOfScan(best.repair, repairs) && IsBetter(errors.Of(best.repair), recorded, 0));
     if (best.fit.share >= kRepairedShare &&
-        (gain >= kContrast ||
-         (!IsOfScan(best.repair, repairs) && IsBetter(errors.Of(best.repair), recorded, kWins)))) {
+        (gain >= kContrast || (best.fit.share >= kCertainShare && !IsOfScan(best.repair, repairs) &&
+                               IsBetter(errors.Of(best.repair), recorded, kWins)))) {
       SetRepair(best, ClauseFor(best.repair, light_field), agreement);
       return;
     }
-    if (order) {
+    if (order && order->fit.share >= kCertainShare) {
       SetRepair(*order, ClauseOf(order->repair), agreement);
       return;
     }

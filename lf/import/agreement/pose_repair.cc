@@ -154,15 +154,20 @@ std::vector<uint32_t> SortedBy(const std::vector<std::string>& names, const Less
   return order;
 }
 
-// Multiplies focal lengths. A focal length as a share of the width, or in millimetres, comes with a
-// principal point in the same unit or in pixels. A principal point in the same unit is multiplied,
-// if that brings it near the middle of the image, otherwise replaced by the middle.
-void MultiplyFocalLengths(const std::array<double, 2>& factors, Intrinsics* k) {
+// Multiplies focal lengths. A focal length as a share of the width, in millimetres, or of images of
+// another size comes with a principal point in the same unit or in pixels. One that lies beside the
+// image, or nearly so, is multiplied if that brings it near the middle, otherwise replaced by the
+// middle. Rectified slabs have such principal points by right.
+void MultiplyFocalLengths(const std::array<double, 2>& factors, bool is_rectified, Intrinsics* k) {
   if (factors == std::array<double, 2>{1, 1}) return;
   k->fx_px *= factors[0];
   k->fy_px *= factors[1];
   k->skew_px *= factors[0];
-  if (k->cx_px > 0.1 * k->width_px && k->cy_px > 0.1 * k->height_px) return;
+  const auto is_beside = [](double position, int size) {
+    return position <= 0.1 * size || position >= 0.9 * size;
+  };
+  if (is_rectified || !(is_beside(k->cx_px, k->width_px) || is_beside(k->cy_px, k->height_px)))
+    return;
   const auto moved = [](double position, double factor, int size) {
     const double result = position * factor;
     return result > 0.4 * size && result < 0.6 * size ? result : size / 2.0;
@@ -281,7 +286,7 @@ PinholeCamera RepairedCamera(const Repair& repair, PinholeCamera camera, bool is
       k.cy_px = moved.y();
     }
   }
-  MultiplyFocalLengths(repair.focal_factors, &k);
+  MultiplyFocalLengths(repair.focal_factors, is_rectified, &k);
   if (repair.swap_principal_point) std::swap(k.cx_px, k.cy_px);
   for (const int axis : {0, 1}) {
     if (!(axis == 0 ? repair.mirror_x : repair.mirror_y)) continue;
@@ -297,13 +302,14 @@ PinholeCamera RepairedCamera(const Repair& repair, PinholeCamera camera, bool is
 }
 
 bool IsRectified(const LightField& light_field) {
-  double least = 0, most = 0;
-  for (const Intrinsics& k : light_field.intrinsics) {
-    const double offset = k.cx_px / std::max(1, k.width_px) - 0.5;
-    least = std::min(least, offset);
-    most = std::max(most, offset);
-  }
-  return light_field.intrinsics.size() > 2 && most - least > 0.01;
+  if (light_field.intrinsics.size() < 3) return false;
+  const auto [least, most] = std::minmax_element(
+      light_field.intrinsics.begin(), light_field.intrinsics.end(),
+      [](const Intrinsics& a, const Intrinsics& b) {
+        return a.cx_px / std::max(1, a.width_px) < b.cx_px / std::max(1, b.width_px);
+      });
+  return most->cx_px / std::max(1, most->width_px) - least->cx_px / std::max(1, least->width_px) >
+         0.01;
 }
 
 std::vector<uint32_t> NaturalOrder(const std::vector<std::string>& names) {

@@ -78,6 +78,17 @@ TEST(PoseRepair, NormalisedPrincipalPointsComeAlongWithTheFocalLength) {
   EXPECT_NEAR(repaired.cy_px, right.cy_px, 1e-9);
 }
 
+TEST(PoseRepair, PrincipalPointsOfLargerImagesComeAlongWithTheFocalLength) {
+  PinholeCamera camera = SomeCamera();  // images were reduced to half, the calibration was not
+  Intrinsics& k = camera.intrinsics;
+  const Intrinsics right = k;
+  k.fx_px *= 2, k.cx_px *= 2, k.fy_px *= 2, k.cy_px *= 2;
+  const Repair half{.focal_factors = {0.5, 0.5}};
+  EXPECT_NEAR(RepairedCamera(half, camera, false).intrinsics.cx_px, right.cx_px, 1e-9);
+  EXPECT_NEAR(RepairedCamera(half, camera, false).intrinsics.cy_px, right.cy_px, 1e-9);
+  EXPECT_EQ(RepairedCamera(half, camera, true).intrinsics.cx_px, k.cx_px) << "of a slab";
+}
+
 TEST(PoseRepair, NamesAreSortedByTheirNumbers) {
   const std::vector<std::string> names = {"a10.png", "a1.png", "a2.png", "a02b.png"};
   EXPECT_EQ(NaturalOrder(names), (std::vector<uint32_t>{1, 2, 3, 0}));
