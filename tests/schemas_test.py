@@ -331,7 +331,14 @@ class SchemasTest(ProgramTestCase):
         for path in sorted((SOURCE / "fuzz/corpus/transforms_json").glob("good_*.json")):
             self.assertEqual(self.schemas.faults("transforms", json.loads(path.read_text()), is_closed=False), [], path)
         good = json.loads(self.field.read_text())
-        for key, value in (("lf_blak_level", 1), ("lf_bayer", "RGBG"), ("w", 0), ("frames", []), ("lf_gain", 1)):
+        for matrix in [500, 0, 160, 0, 500, 120, 0, 0, 1], [[500, 0, 160], [0, 500, 120], [0, 0, 1]]:
+            right = self.folder / "transforms.json"
+            for key in "K", "intrinsic_matrix":
+                right.write_text(json.dumps(good | {key: matrix}))
+                self.succeeds(PROGRAMS / "lfimport", right, "--check", "none")
+                self.assertEqual(self.schemas.faults("transforms", json.loads(right.read_text()), is_closed=False), [])
+        for key, value in (("K", [[500, 0], [0, 500]]), ("lf_blak_level", 1), ("lf_bayer", "RGBG"), ("w", 0),
+                           ("frames", []), ("lf_gain", 1)):
             wrong = self.folder / "transforms.json"
             wrong.write_text(json.dumps(good | {key: value}))
             self.fails(3, [key], PROGRAMS / "lfimport", wrong, "--check", "none")
