@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Captures whose subject, and whose depths, are known: for the questions where to focus and how wide the lens may be.
 
-A kind is a function of a random generator. It returns (cameras, quads, the depths between which the subject lies or
-None if no depth can be found).
+A kind is a function of a random generator. It returns (cameras, quads, the depths between which the subject lies, a
+function of the LF camera at which the path starts that returns them, or None if no depth can be found).
 """
 import dataclasses
 import re
@@ -10,18 +10,14 @@ import re
 import numpy as np
 
 from judgements.captures import NOT_SURE, RIGHT, WRONG
-from judgements.scenes import FOCAL_PX, HEIGHT, WIDTH, arc, card, dome, grid, survey, track, wall
+from judgements.scenes import Capture, arc, capture_of, card, dome, grid, hits, survey, track, wall
 
 TOLERANCE = 0.04  # of the focus distance
 SUBJECT = 11  # Quad.seed of rectangles that are the subject
 
 
-class Miscalibrated(list):
-    """The cameras that a calibration states; `drawn` are those that photographed."""
-
-    def __init__(self, stated, drawn):
-        super().__init__(stated)
-        self.drawn = drawn
+class Hidden(list):
+    """Depths that no program needs to find: a sure focus must lie there, but an unsure one may be anywhere."""
 
 
 def between(*depths):
@@ -176,13 +172,13 @@ def wrong_poses(generator):
     """The images belong to other poses: no depth can be found."""
     cameras = grid(7, 0.05)
     order = generator.permutation(len(cameras))
-    return Miscalibrated(cameras, [cameras[k] for k in order]), [wall(near(generator, 1.2))], None
+    return Capture(cameras, drawn=[cameras[k] for k in order]), [wall(near(generator, 1.2))], None
 
 
 def grainy(generator):
     depth = near(generator, 1.4)
-    return grid(7, 0.02), [card(0, 0, depth, 0.6 * depth, 0.55 * depth, contrast=0.4), wall(3, contrast=0.4)], \
-        between(depth)
+    return Capture(grid(7, 0.02), grain=6), \
+        [card(0, 0, depth, 0.6 * depth, 0.55 * depth, contrast=0.4), wall(3, contrast=0.4)], between(depth)
 
 
 # Arcs and domes
@@ -264,6 +260,7 @@ class Said:
     aperture: float
     is_sure: bool
     candidates: list
+    is_lens_sure: bool
 
     @classmethod
     def of(cls, path_yaml, stderr):
@@ -272,53 +269,47 @@ class Said:
         listed = re.search(r"best focus distances? found: ([^:]*?)\. To", stderr)
         return cls(int(number(r"starts at LF camera (\d+)", path_yaml)), number(r"focus at ([\d.e+-]+)", stderr),
                    number(r"aperture_diameter: (\S+)", path_yaml), "not sure what to focus on" not in stderr,
-                   [float(one) for one in listed[1].split(", ")] if listed else [])
+                   [float(one) for one in listed[1].split(", ")] if listed else [],
+                   "not sure how wide" not in stderr)
 
 
 def is_within(distance, depths):
     return any(low <= distance <= high for low, high in depths)
 
 
-def is_sharp(said, depths):
+def is_sharp(said, depths, focal_px):
     """Returns true if the chosen lens blurs the nearest or farthest point of one of the subjects by less than a
     pixel: nearer together than that, depths cannot be told by pixels, and need not be."""
-    return any(FOCAL_PX * said.aperture * abs(1 / said.focus - 1 / edge) < 1
+    return any(focal_px * said.aperture * abs(1 / said.focus - 1 / edge) < 1
                for low, high in depths for edge in (low / (1 - TOLERANCE), high / (1 + TOLERANCE)))
 
 
-def judge_focus(said, depths):
+def judge_focus(said, depths, cameras):
     """A sure focus must lie on the subject. In doubt, a depth of the subject must be among the candidates, if there is
     one that can be found."""
     if depths is None:
         return WRONG if said.is_sure else RIGHT
     if said.is_sure:
         is_open = said.aperture > 0.005 * said.focus
-        return RIGHT if is_within(said.focus, depths) or is_open and is_sharp(said, depths) else WRONG
-    return NOT_SURE if any(is_within(one, depths) for one in said.candidates) else WRONG
+        is_near = is_open and is_sharp(said, depths, capture_of(cameras).lens.focal_px)
+        return RIGHT if is_within(said.focus, depths) or is_near else WRONG
+    return NOT_SURE if isinstance(depths, Hidden) or any(is_within(one, depths) for one in said.candidates) else WRONG
 
 
-def depths_seen(camera, quads):
+def depths_seen(camera, quads, lens):
     """Returns the depths that a camera sees where there is texture, along its axis, at every fourth pixel."""
     position, rotation = camera
-    u, v = np.meshgrid((np.arange(2, WIDTH, 4) + 0.5 - WIDTH / 2) / FOCAL_PX,
-                       -(np.arange(2, HEIGHT, 4) + 0.5 - HEIGHT / 2) / FOCAL_PX)
-    rays = np.stack([u, v, -np.ones_like(u)], -1) @ np.asarray(rotation, float).T
-    nearest, is_textured = np.full(u.shape, np.inf), np.zeros(u.shape, bool)
-    for quad in quads:
-        x_axis, y_axis = (np.asarray(axis, float) for axis in quad.axes)
-        normal, offset = np.cross(x_axis, y_axis), np.subtract(quad.middle, position)
-        t = (offset @ normal) / (rays @ normal)
-        across, up = t * (rays @ x_axis) - offset @ x_axis, t * (rays @ y_axis) - offset @ y_axis
-        hit = (t > 0) & (t < nearest) & (np.abs(across) < quad.half[0]) & (np.abs(up) < quad.half[1])
-        nearest = np.where(hit, t, nearest)
-        is_textured = np.where(hit, quad.contrast > 0.05, is_textured)
-    return nearest[is_textured]
+    rays = lens.rays(*np.meshgrid(np.arange(2, lens.width, 4) + 0.5, np.arange(2, lens.height, 4) + 0.5))
+    nearest, number, _ = hits(position, rays @ np.asarray(rotation, float).T, quads)
+    textured = [index for index, quad in enumerate(quads) if quad.contrast > 0.05]
+    return nearest[np.isin(number, textured)]
 
 
 def judge_aperture(said, cameras, quads):
     """Returns the verdict about the aperture, and the reason."""
     positions = np.array([position for position, _ in cameras])
     position, rotation = cameras[said.start]
+    positions = np.unique(positions.round(9), axis=0)
     spacing = np.median([np.sort(np.linalg.norm(positions - one, axis=1))[1] for one in positions])
     # Each LF camera, seen from the focus, in the plane of the lens.
     focus = np.asarray(position) - said.focus * rotation[:, 2]
@@ -327,18 +318,19 @@ def judge_aperture(said, cameras, quads):
     radii = np.sort(np.linalg.norm(in_lens, axis=1))
     count = np.count_nonzero(radii <= said.aperture / 2)
     may_open = len(radii) >= 6 and 2 * radii[5] < 0.24 * said.focus
-    is_open = said.aperture > 0.5 * spacing
+    is_open = said.aperture > 0.5 * spacing or count >= 6
     if is_open and count < 6:
         return WRONG, f"a lens of {count} LF cameras"
     if is_open and said.aperture > 0.26 * said.focus:
         return WRONG, f"a lens {said.aperture / said.focus:.2f} as wide as the focus is far"
-    depths = depths_seen(cameras[said.start], quads)
+    lens = capture_of(cameras).lens
+    depths = depths_seen(cameras[said.start], quads, lens)
     if len(depths) == 0:
         return (WRONG if is_open else RIGHT), "nothing to see"
-    copies = np.quantile(FOCAL_PX * spacing * np.abs(1 / depths - 1 / said.focus), 0.8)
+    copies = np.quantile(lens.focal_px * spacing * np.abs(1 / depths - 1 / said.focus), 0.8)
     words = f"{'open' if is_open else 'closed'}, {count} LF cameras, copies {copies:.1f} px apart"
     if is_open:
         return (WRONG if copies > 20 else RIGHT), words
-    if not said.is_sure:
+    if not (said.is_sure and said.is_lens_sure):
         return NOT_SURE, words
     return (WRONG if copies < 6 and may_open else RIGHT), words
