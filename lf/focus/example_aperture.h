@@ -37,8 +37,9 @@ inline constexpr double kWidestLens = 0.25;
 // (light_field/model/capture_geometry.h), which lfimport forecasts for the capture. Here it is the
 // distance that three quarters of the textured places of the LF image do not exceed. Places where
 // neighbouring LF images agree on no depth count as infinitely far apart, because places with large
-// disparities are those that do not agree. If the image has hardly any texture, a point at 3/4 of
-// the focus distance is assumed, as lfimport does.
+// disparities are those that do not agree; if they alone close the lens, the reason says that it is
+// not sure. If the image has hardly any texture, a point at 3/4 of the focus distance is assumed,
+// as lfimport does.
 //
 // Copies up to 3 px apart are invisible: the lens spans eight LF cameras. If they are farther
 // apart, the lens is narrower, so that there are fewer of them. The lens holds a single LF camera
