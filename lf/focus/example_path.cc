@@ -214,15 +214,12 @@ Shot ShotOf(const LightField& light_field, LfImageId id, const ExampleFocus& foc
   shot.spacing_w = spacing_w;
   shot.up_world = LevelUpWorld(light_field, shot.start);
   shot.frame = InscribedFrame(shot.start, shot.up_world);
-  shot.reach = CaptureReach(light_field, shot.start, 400);
   const double wish_w = aperture.spacings * spacing_w;
-  if (MovesCamera(move)) {
-    // LF cameras on the far side of a ring are of no use to a movement on the near side.
-    constexpr double kNear_rad = RadiansFromDegrees(6);
-    const Reach near =
-        ReachNear(light_field, shot.start, kNear_rad * focus.distance_w + wish_w + spacing_w);
-    shot.reach = {std::min(shot.reach.right_w, near.right_w), std::min(shot.reach.up_w, near.up_w)};
-  }
+  // LF cameras on the far side of a ring are of no use to a movement on the near side.
+  constexpr double kNear_rad = RadiansFromDegrees(6);
+  shot.reach = MovesCamera(move) ? ReachNear(light_field, shot.start,
+                                             kNear_rad * focus.distance_w + wish_w + spacing_w)
+                                 : CaptureReach(light_field, shot.start, 400);
   const double reach_w = std::max(shot.reach.right_w, shot.reach.up_w);
   // A moving camera leaves at least half of the reach to the movement. A narrow capture limits a
   // standing lens, but not below the smallest lens that blurs.
@@ -238,6 +235,9 @@ Shot ShotOf(const LightField& light_field, LfImageId id, const ExampleFocus& foc
         "; it holds fewer than {} LF cameras, so that copies may be seen instead of a blur",
         kFewestCameras);
   shot.lens_radius_w = example->aperture_diameter_w / 2;
+  if (StandInARow(light_field, shot.start, shot.lens_radius_w))
+    example->aperture_reason +=
+        "; the LF cameras in it stand in a row, so that it blurs in one direction only";
   return shot;
 }
 

@@ -5,33 +5,18 @@
 
 #include <algorithm>
 
-#include "lf/focus/moves/example_frame.h"
 #include "lf/focus/moves/test_tracks.h"
 
 namespace lf {
 namespace {
 
+// Returns a shot with a lens that is four spacings of LF cameras wide.
 Shot ShotAt(const LightField& field, LfImageId id, double focus_distance_w) {
-  Shot shot;
-  shot.start = field.Camera(id);
-  shot.up_world = LevelUpWorld(field, shot.start);
-  shot.frame = InscribedFrame(shot.start, shot.up_world);
-  shot.focus_distance_w = focus_distance_w;
-  shot.spacing_w = MedianSpacing(field);
-  shot.lens_radius_w = 2 * shot.spacing_w;
-  shot.reach = CaptureReach(field, shot.start, 400);
-  return shot;
+  return ShotAt(field, id, focus_distance_w, 2 * MedianSpacing(field));
 }
 
 CameraMove Along(const LightField& field, LfImageId id, const Shot& shot) {
   return MakeAlong(field, *FindTrack(field, id), shot);
-}
-
-double LengthOf(const CameraMove& move) {
-  double length_w = 0;
-  for (size_t i = 1; i < move.keys_world.size(); ++i)
-    length_w += (move.keys_world[i] - move.keys_world[i - 1]).norm();
-  return length_w;
 }
 
 TEST(Along, ACalmPartOfALongTrackIsTwelveDegreesInFourSeconds) {

@@ -13,11 +13,16 @@ namespace {
 constexpr double kDollyDuration_s = 49 / 25.0;
 constexpr double kMostOfFocus = 0.1;
 
-// Returns the distance that the lens can move ahead, or back, within the captured positions.
+// Returns the distance that the lens can move ahead, or back, so that the rays of the picture's
+// borders come through LF cameras. At these rays, LF cameras are seen beside the middle of the
+// lens. All of the lens must be among them. If they extend less far than the lens, as those of a
+// track do upwards, they must stay within the inner half of it, where a row of them is still long.
 double RoomAhead(const Shot& shot) {
   const Intrinsics& k = shot.frame;
   const auto ahead = [&](double reach_w, double f_px, double size_px) {
-    return (reach_w - shot.lens_radius_w) * 2 * f_px / size_px;
+    const double beside_w =
+        std::max(reach_w - shot.lens_radius_w, shot.lens_radius_w / 2 - reach_w);
+    return beside_w * 2 * f_px / size_px;
   };
   return std::max(0.0, std::min(ahead(shot.reach.right_w, k.fx_px, k.width_px),
                                 ahead(shot.reach.up_w, k.fy_px, k.height_px)));
@@ -27,8 +32,8 @@ double RoomAhead(const Shot& shot) {
 
 CameraMove MakeDolly(const LightField& light_field, const Shot& shot) {
   const Vec3 centre = shot.start.CentreWorld(), forward = shot.start.ForwardWorld();
-  const MoveCoverage coverage(light_field, NearestCameras(light_field, centre), shot,
-                              std::max(shot.lens_radius_w, shot.spacing_w));
+  const MoveCoverage coverage =
+      CoverageNear(light_field, shot, kMostOfFocus * shot.focus_distance_w);
   const auto unseen = [&](double ahead_w) {
     return coverage.Unseen(centre + ahead_w * forward, 1);
   };
@@ -49,10 +54,10 @@ CameraMove MakeDolly(const LightField& light_field, const Shot& shot) {
           ? fmt::format("LF cameras have not recorded {:.0f} % of a frame of the longer movement",
                         100 * std::max(unseen(wish_w), unseen(-wish_w)))
           : fmt::format(
-                "farther on, the rays of the picture's borders would not come through the "
-                "LF cameras, which extend {:.3g} to the sides and {:.3g} up and down, of "
-                "which the lens takes {:.3g}",
-                shot.reach.right_w, shot.reach.up_w, shot.lens_radius_w);
+                "farther on, the rays of the picture's borders would come through too few LF "
+                "cameras, which extend {:.3g} to the sides and {:.3g} up and down, while the "
+                "lens is {:.3g} wide",
+                shot.reach.right_w, shot.reach.up_w, 2 * shot.lens_radius_w);
   CameraMove move;
   move.keys_world = {centre - back_w * forward, centre + ahead_w * forward};
   move.duration_s = kDollyDuration_s;

@@ -8,19 +8,6 @@
 
 namespace lf {
 
-std::vector<LfImageId> NearestCameras(const LightField& light_field, const Vec3& point_world) {
-  std::vector<LfImageId> ids;
-  for (uint32_t i = 0; i < light_field.size(); ++i) ids.push_back({i});
-  const auto distance = [&](LfImageId id) {
-    return (light_field.Camera(id).CentreWorld() - point_world).squaredNorm();
-  };
-  const size_t count = std::min(kMostCoverageCameras, ids.size());
-  std::partial_sort(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count), ids.end(),
-                    [&](LfImageId a, LfImageId b) { return distance(a) < distance(b); });
-  ids.resize(count);
-  return ids;
-}
-
 MoveCoverage::MoveCoverage(const LightField& light_field, std::span<const LfImageId> cameras,
                            const Shot& shot, double radius_w)
     : shot_(shot), subject_world_(shot.SubjectWorld()), radius_w_(radius_w) {
@@ -64,6 +51,26 @@ bool MoveCoverage::IsSeen(const PinholeCamera& frame, const Ray& ray) const {
            at->x() <= camera.intrinsics().width_px + kTolerance_px &&
            at->y() <= camera.intrinsics().height_px + kTolerance_px;
   });
+}
+
+MoveCoverage CoverageNear(const LightField& light_field, const Shot& shot, double way_w) {
+  const Vec3 start = shot.start.CentreWorld();
+  double radius_w = std::max(shot.lens_radius_w, shot.spacing_w);
+  std::vector<LfImageId> cameras;
+  for (uint32_t i = 0; i < light_field.size(); ++i)
+    if ((light_field.Camera({i}).CentreWorld() - start).norm() <= way_w + 2 * radius_w)
+      cameras.push_back({i});
+  const double share = double{kMostCoverageCameras} / static_cast<double>(cameras.size());
+  if (share >= 1) return {light_field, cameras, shot, radius_w};
+  // Every n-th LF camera would be one column of a grid. The multiples of the golden ratio are
+  // spread evenly.
+  constexpr double kGoldenRatio = 1.618033988749895, kMostGap = 2;
+  std::erase_if(cameras, [&](LfImageId id) {
+    const double multiple = kGoldenRatio * id.value;
+    return multiple - std::floor(multiple) >= share;
+  });
+  radius_w = std::max(radius_w, kMostGap * shot.spacing_w / std::sqrt(share));
+  return {light_field, cameras, shot, radius_w};
 }
 
 }  // namespace lf

@@ -17,9 +17,6 @@ namespace lf {
 // The largest number of LF cameras that a coverage considers.
 inline constexpr size_t kMostCoverageCameras = 400;
 
-// Returns the kMostCoverageCameras LF cameras nearest to a point, or all if there are fewer.
-std::vector<LfImageId> NearestCameras(const LightField& light_field, const Vec3& point_world);
-
 class MoveCoverage {
  public:
   //   cameras   LF cameras whose images count
@@ -42,5 +39,11 @@ class MoveCoverage {
   double radius_w_;
   std::vector<RayThrough> cameras_;
 };
+
+// Returns the coverage of a camera that moves up to `way_w` away from Shot::start. LF cameras count
+// through the lens, or within the distance to the next LF camera if that is more. In dense captures
+// only kMostCoverageCameras of them are considered, spread over all; the distance to the next one
+// grows accordingly. Refers to `shot`, which must live longer.
+MoveCoverage CoverageNear(const LightField& light_field, const Shot& shot, double way_w);
 
 }  // namespace lf

@@ -34,8 +34,7 @@ class OrbitSearch {
  public:
   OrbitSearch(const LightField& light_field, const Shot& shot)
       : shot_(shot),
-        coverage_(light_field, NearestCameras(light_field, shot.start.CentreWorld()), shot,
-                  std::max(shot.lens_radius_w, shot.spacing_w)),
+        coverage_(CoverageNear(light_field, shot, kMostOrbit_rad * shot.focus_distance_w)),
         right_w_(SemiAxis(shot.reach.right_w)),
         up_w_(SemiAxis(shot.reach.up_w)) {}
 

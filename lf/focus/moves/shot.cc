@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -48,6 +49,27 @@ Reach ReachNear(const LightField& light_field, const PinholeCamera& camera, doub
     return *at;
   };
   return {most(&right_w), most(&up_w)};
+}
+
+bool StandInARow(const LightField& light_field, const PinholeCamera& camera, double radius_w) {
+  constexpr int kFewest = 3;
+  constexpr double kMostAcross = 0.2;  // spread across the row, as a share of that along it
+  int count = 0;
+  Vec2 sum = Vec2::Zero();
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  for (const LfCamera& other : light_field.cameras) {
+    const Vec3 offset = other.cam_from_world.Inverse().translation - camera.CentreWorld();
+    if (offset.norm() > radius_w) continue;
+    const Vec2 at(camera.RightWorld().dot(offset), camera.UpWorld().dot(offset));
+    ++count;
+    sum += at;
+    squares += at * at.transpose();
+  }
+  if (count < kFewest) return false;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(squares -
+                                                             sum * sum.transpose() / count);
+  const Vec2 spread = eigen.eigenvalues();
+  return spread[0] <= kMostAcross * kMostAcross * spread[1];
 }
 
 }  // namespace lf

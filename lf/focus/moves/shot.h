@@ -56,4 +56,8 @@ std::string CropWords(double crop);
 // light field.
 Reach ReachNear(const LightField& light_field, const PinholeCamera& camera, double radius_w);
 
+// Returns true if the LF cameras within `radius_w` of a camera stand nearly in a row, as seen by
+// it: a lens of this radius blurs along the row alone. False if there are fewer than three.
+bool StandInARow(const LightField& light_field, const PinholeCamera& camera, double radius_w);
+
 }  // namespace lf

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light fields for tests of moves.
+// Light fields and shots for tests of moves.
 #pragma once
 
 #include <cmath>
@@ -7,6 +7,8 @@
 #include <string>
 
 #include "lf/camera/pinhole.h"
+#include "lf/focus/moves/example_frame.h"
+#include "lf/focus/moves/shot.h"
 #include "lf/light_field/model/light_field.h"
 
 namespace lf {
@@ -50,6 +52,27 @@ inline LightField NumberedGrid(uint32_t side, bool is_serpentine) {
   };
   return TrackOf(side * side, position,
                  [=](uint32_t i) { return Vec3(position(i) + Vec3(0, 0, 100)); });
+}
+
+// Returns the shot that begins at an LF camera.
+inline Shot ShotAt(const LightField& field, LfImageId id, double focus_distance_w,
+                   double lens_radius_w) {
+  Shot shot;
+  shot.start = field.Camera(id);
+  shot.up_world = LevelUpWorld(field, shot.start);
+  shot.frame = InscribedFrame(shot.start, shot.up_world);
+  shot.focus_distance_w = focus_distance_w;
+  shot.spacing_w = MedianSpacing(field);
+  shot.lens_radius_w = lens_radius_w;
+  shot.reach = CaptureReach(field, shot.start, 400);
+  return shot;
+}
+
+inline double LengthOf(const CameraMove& move) {
+  double length_w = 0;
+  for (size_t i = 1; i < move.keys_world.size(); ++i)
+    length_w += (move.keys_world[i] - move.keys_world[i - 1]).norm();
+  return length_w;
 }
 
 }  // namespace lf
