@@ -93,7 +93,7 @@ class FoundCapturesTest(ProgramTestCase):
         for write in found_captures.PRINT_A_CALL:
             with self.subTest(write.__name__):
                 write(self.field, self.native, self.folder / write.__name__)
-                call, = self.line(f"lfimport {write.__name__}", code=3).commands()
+                call, = self.line(f"lfimport {write.__name__}", code=3).commands("lfimport")
                 self.line(call)
                 self.expect_whole(self.report(self.folder / write.__name__))
                 self.first_picture(write.__name__, write.__name__)
@@ -106,7 +106,7 @@ class FoundCapturesTest(ProgramTestCase):
         found_captures.images_into(self.native, self.folder / "burst", lambda index, name: f"IMG_4831_{index}.png")
         ended = self.line("lfimport burst", code=3)
         self.assertIn("holds 25 images, such as IMG_4831_0.png, but no file with the poses", ended.text)
-        self.assertEqual(ended.commands(), [])
+        self.assertEqual(ended.commands("lfimport"), [])
         self.line("lfimport burst --pitch 1 --focal-px 96")  # it is a row after all
 
     def test_a_calibration_without_missing_images(self):
@@ -114,7 +114,7 @@ class FoundCapturesTest(ProgramTestCase):
         for index in (0, 3, 7, 19, 24):
             (self.folder / "capture" / self.field["frames"][index]["file_path"]).unlink()
         (self.folder / "capture" / self.field["frames"][5]["file_path"]).write_text("no image")
-        call, = self.line("lfimport capture", code=6).commands()
+        call, = self.line("lfimport capture", code=6).commands("lfimport")
         self.line(call)
         self.expect_whole(self.report(self.folder / "complete"), COUNT - 6)
         self.first_picture("six missing", "complete")
@@ -165,11 +165,11 @@ class FoundCapturesTest(ProgramTestCase):
                 report = self.report(folder)
                 self.assertEqual((report["masks"], self.kinds(report).count("unused-masks")), (0, 1))
                 ended = self.line(f"lfimport '{folder}'")
-                for call in ended.commands():
+                for call in ended.commands("lfimport"):
                     self.line(call)
                     self.assertEqual(self.report(self.folder / "masked")["masks"], COUNT)
                     self.line("rm -r masked")
-                self.assertEqual(len(ended.commands()), int(place != "images/dynamic_mask_"), ended.text)
+                self.assertEqual(len(ended.commands("lfimport")), int(place != "images/dynamic_mask_"), ended.text)
 
     def test_colour_profiles_are_converted(self):
         expected = self.first_picture("native", self.native)
@@ -208,7 +208,7 @@ class FoundCapturesTest(ProgramTestCase):
                     self.assertIn("reconstruct the poses first", self.line(f"lfimport {number}", code=3).text)
                     continue
                 ended = self.line(f"lfimport {number}", code=3 if number in ("02", "17") else 0)
-                for call in ended.commands():
+                for call in ended.commands("lfimport"):
                     self.line(call)
                 report = self.report(self.folder / number)
                 self.expect_whole(report, sum(1 for file in case.rglob("*") if file.suffix.lower() in (".png", ".jpg")))

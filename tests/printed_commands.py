@@ -42,9 +42,10 @@ class Ended:
         self.code, self.out, self.err = code, out, err
         self.text = out + err
 
-    def commands(self):
-        """Returns the commands that were printed."""
-        return COMMAND.findall(self.text) + TRY.findall(self.text)
+    def commands(self, program="lf"):
+        """Returns the commands that were printed, or those of one program."""
+        printed = COMMAND.findall(self.text) + TRY.findall(self.text)
+        return [command for command in printed if command.startswith(program)]
 
 
 class Shell:

@@ -242,6 +242,7 @@ std::string ReportText(const ImportReport& report) {
                            warning.names.size() < warning.image_count ? ", ..." : "");
   }
   if (!report.written.empty()) lines += fmt::format("\nwritten: {}\n", report.written);
+  if (!report.next.empty()) lines += "\n" + report.next;
   return lines;
 }
 

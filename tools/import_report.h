@@ -38,6 +38,7 @@ struct ImportReport {
   std::optional<ExifGains> exif_gains;      // nullopt without --gain-from-exif
   std::optional<MatchedExposure> exposure;  // nullopt: exposures were not matched
   std::string written;                      // path of the transforms.json; "": nothing was written
+  std::string next;  // line with the command of the next step; "": the report ends with warnings
 };
 
 // Adds the warnings missing-images and broken-images if report->faults, which must be set, contains

@@ -10,6 +10,7 @@
 
 #include "tools/common/check_agreement.h"
 #include "tools/common/light_field_argument.h"
+#include "tools/common/next_step.h"
 #include "tools/common/program.h"
 #include "tools/common/programs.h"
 
@@ -113,6 +114,18 @@ void WarnOfDoubt(const lf::ExamplePath& example, const std::string& light_field,
       lf::ShellCommand(command));
 }
 
+// Returns the line that advises how to film the path.
+std::string NextOf(const lf::LightFieldArgument& input, const std::string& output,
+                   lf::ExampleMove move) {
+  std::vector<std::string> options = input.Words();
+  if (move != lf::ExampleMove::kStatic)
+    options.insert(options.end(), {"--video", lf::FreeName("film", ".mp4")});
+  std::string line = lf::NextRender(
+      lf::ShellCommand({lf::FileArgument(input.path), lf::FileArgument(output)}), options);
+  line.pop_back();  // the end of the line, which LogInfo() adds
+  return line;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -182,6 +195,7 @@ int main(int argc, char** argv) {
                 lf::StartWords(example.move), options.camera.value,
                 light_field.image_names[options.camera.value], example.focus_distance_w,
                 example.focus_reason, example.aperture_diameter_w, example.aperture_reason);
+    lf::LogInfo("{}", NextOf(input, output, example.move));
     return {};
   });
 }

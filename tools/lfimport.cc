@@ -290,6 +290,33 @@ std::string AdviceOnFaults(const Arguments& a, const lf::LightField& light_field
                      lf::FreeName("complete", ""));
 }
 
+// Returns true if the call only reports, so that other programs see the light field as it does.
+bool OnlyReports(const Arguments& a) {
+  return a.output.empty() && a.pitch.empty() && a.plane_distance == 0 && !a.flip_x && !a.flip_y &&
+         a.transform.empty() && a.scale == 1 && a.unit_m == 0 && a.bayer.empty() &&
+         a.masks.empty() && a.repair.empty() && a.exclude.empty() && !a.exposure.match &&
+         !a.exposure.gain_from_exif && !a.exposure.mask_clipped;
+}
+
+// Returns the line that advises to make a path; "" if images and poses do not agree, if a path
+// needs more positions, or if no file holds what is reported.
+std::string NextOf(const Arguments& a, const lf::ImportReport& report) {
+  if (!report.capture.spacing_w || !(report.capture.spacing_w->median > 0)) return "";
+  for (const lf::CaptureWarning& warning : report.capture.warnings)
+    if (warning.kind == "poses-disagree") return "";
+  std::vector<std::string> words = {"lfexample"};
+  if (!report.written.empty()) {
+    words.push_back(lf::FileArgument(a.output));
+  } else if (OnlyReports(a)) {
+    words.push_back(lf::FileArgument(a.light_field.path));
+    for (const std::string& word : a.light_field.Words()) words.push_back(word);
+  } else {
+    return "";
+  }
+  words.insert(words.end(), {"-o", lf::FreeName("path", ".yaml")});
+  return fmt::format("next: {}\n", lf::ShellCommand(words));
+}
+
 lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
   const std::atomic<bool>& interrupted = lf::CatchInterrupts();
   LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, a.allow_missing.Limit());
@@ -349,6 +376,7 @@ lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
   if (!a.output.empty() && !refuses) {
     LF_ASSIGN_OR_RETURN(report.written, lf::WriteNativeFolder(a.output, &light_field));
   }
+  if (!refuses) report.next = NextOf(a, report);
   LF_RETURN_IF_ERROR(
       lf::PrintReport(common.json ? lf::ReportJson(report) : lf::ReportText(report)));
   if (fault_count == 0) return {};

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "lf/core/log.h"
+#include "lf/core/shell_word.h"
 #include "lf/import/formats/import_limits.h"
 #include "lf/import/formats/read_aos.h"
 #include "lf/import/formats/read_hci.h"
@@ -329,7 +330,8 @@ std::string PhotographsIn(const fs::path& path) {
   return "";
 }
 
-// Returns a hint that names up to five subfolders that hold a light field; "" if there are none.
+// Returns a hint that names up to five subfolders that hold a light field, and ends with the
+// command for the first of them; "" if there are none.
 std::string LightFieldsBelow(const fs::path& folder) {
   constexpr size_t kMostNames = 5;
   std::vector<std::string> names;
@@ -341,7 +343,8 @@ std::string LightFieldsBelow(const fs::path& folder) {
   }
   if (names.empty()) return "";
   std::sort(names.begin(), names.end());
-  return fmt::format("; but there is a light field in {}/", fmt::join(names, "/, "));
+  return fmt::format("; but there is a light field in {}/: {}", fmt::join(names, "/, "),
+                     ShellCommand({"lfimport", FileArgument(folder / names[0])}));
 }
 
 bool HoldsGrid(const fs::path& folder) {
@@ -404,12 +407,13 @@ Result<LightField> OpenCalibration(const fs::path& path, const OpenOptions& opti
     return InputError(fmt::format(
         "{}: holds several packed stores, such as {} and {}: give the path of one of them",
         path.string(), stores[0].filename().string(), stores[1].filename().string()));
+  const std::string below = LightFieldsBelow(path);
   return InputError(fmt::format(
       "{}: holds no light field: looked for {}, a COLMAP model in it or in sparse/0, NAME_par.txt, "
       "{}, {}, {} (AOS), one packed store NAME.lfs, and for images named "
-      "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext or NAME_ROW_COL.ext in it and in {}/{}{}{}{}",
+      "NAME_ROW_COL_Y_X_FOCALMM_SENSORMM.ext or NAME_ROW_COL.ext in it and in {}/{}{}",
       path.string(), kCalibrationName, kLlffName, kHciName, kAosName, kImagesName,
-      OtherCalibrations(path), LightFieldsBelow(path), PhotographsIn(path), series));
+      OtherCalibrations(path), below.empty() ? PhotographsIn(path) + series : below));
 }
 
 // Warns if none of the image files is there, and the folder also holds a COLMAP model or another

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "lf/core/file.h"
+#include "lf/core/shell_word.h"
 #include "lf/pixels/files/image_file.h"
 #include "lf/pixels/files/test_folder.h"
 
@@ -189,9 +190,10 @@ TEST_F(OpenLightFieldTest, PointsToAFolderBelow) {
   ASSERT_TRUE(WriteFileAtomically(folder_ / "inner" / "transforms.json", kCalibration));
   const Result<LightField> light_field = OpenLightField(folder_);
   ASSERT_FALSE(light_field);
-  EXPECT_NE(light_field.error().message.find("; but there is a light field in inner/"),
-            std::string::npos)
-      << light_field.error().message;
+  const std::string& message = light_field.error().message;
+  const std::string advice = "; but there is a light field in inner/: " +
+                             ShellCommand({"lfimport", (folder_ / "inner").string()});
+  EXPECT_TRUE(message.ends_with(advice)) << message;
 }
 
 // Tests with real light fields. They are skipped if the light fields are not on this machine.
