@@ -94,6 +94,14 @@ class ExampleTest(unittest.TestCase):
             self.assertEqual("warning" in words, expected is not None, words)
             self.assertIn(expected or "", words)
 
+    def test_a_pull_that_nobody_sees_advises_a_move_that_works(self):
+        calibration = json.loads(self.field.read_text())
+        calibration["frames"] = calibration["frames"][10:15]  # a row of five
+        self.field.write_text(json.dumps(calibration))
+        _, words = self.example("--move", "focus-pull", "--focus", DEPTH)
+        move, = re.findall(r"--move (\S+) moves the camera instead", words)
+        self.example("--move", move, "--focus", DEPTH)
+
     def test_focuses_on_the_wall(self):
         path, words = self.example("--move", "static")
         focus = float(re.search(r"focus_distance: (\S+)", path.read_text()).group(1))

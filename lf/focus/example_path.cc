@@ -132,17 +132,18 @@ Movement CameraMovement(const Shot& shot, const CameraMove& move, const ExampleF
   return movement;
 }
 
-// Warns of moves that a sparse capture cannot show. `copies` is the reason of its small aperture.
+// Warns of moves that a sparse capture cannot show.
+//   copies  the reason of its small aperture
+//   other   the end of the warning of a focus pull: a move that the capture can show, or nothing
 void TellSparse(ExampleMove move, double spacing_w, const std::string& copies,
-                ExamplePath* example) {
+                const std::string& other, ExamplePath* example) {
   if (!example->move_warning.empty()) return;
   if (move == ExampleMove::kFocusPull)
     example->move_warning = fmt::format(
         "the focus pull will hardly be visible, because the aperture holds one LF camera, and such "
         "a picture is sharp everywhere. For blur, put virtual LF images between the recorded ones "
-        "(lfdensify), or set aperture_diameter to {:.3g}, which shows copies; --move dolly moves "
-        "the camera instead",
-        kLeastSpacings * spacing_w);
+        "(lfdensify), or set aperture_diameter to {:.3g}, which shows copies{}",
+        kLeastSpacings * spacing_w, other);
   else if (move != ExampleMove::kStatic)
     example->move_warning = fmt::format(
         "the LF cameras are far apart ({}): where the camera passes between them, the film shows "
@@ -272,6 +273,20 @@ Result<CameraMove> MoveCamera(const LightField& light_field, LfImageId id, const
   return moved;
 }
 
+// Returns words that advise a move of the camera which is clearly visible; "" if there is none.
+std::string OtherMove(const LightField& light_field, LfImageId id, const ExampleFocus& focus,
+                      double spacing_w, const ExampleAperture& aperture) {
+  for (const auto& [move, name] :
+       {std::pair(ExampleMove::kDolly, "dolly"), std::pair(ExampleMove::kOrbit, "orbit")}) {
+    ExamplePath ignored;
+    const Shot shot = ShotOf(light_field, id, focus, spacing_w, aperture, move, &ignored);
+    const Result<CameraMove> moved = MoveCamera(light_field, id, shot, move);
+    if (moved && moved->warning.empty())
+      return fmt::format("; --move {} moves the camera instead", name);
+  }
+  return "";
+}
+
 Result<ExamplePath> PathOfMove(const LightField& light_field, LfImageId id,
                                const ExampleFocus& focus, double spacing_w, ExampleMove move) {
   ExamplePath example;
@@ -295,13 +310,17 @@ Result<ExamplePath> PathOfMove(const LightField& light_field, LfImageId id,
     movement = StandingMovement(move, shot, focus, &example);
   }
   if (aperture.spacings < kLeastSpacings && focus.doubt.empty())
-    TellSparse(move, spacing_w, aperture.copies, &example);
+    TellSparse(move, spacing_w, aperture.copies,
+               move == ExampleMove::kFocusPull
+                   ? OtherMove(light_field, id, focus, spacing_w, aperture)
+                   : "",
+               &example);
   else if (aperture.spacings < kLeastSpacings && MovesCamera(move) &&
            spacing_w > kFarApart_rad * focus.distance_w)
     TellSparse(move, spacing_w,
                fmt::format("neighbours by {:.2g} degrees as seen from the subject",
                            DegreesFromRadians(spacing_w / focus.distance_w)),
-               &example);
+               "", &example);
   example.yaml = YamlOf(light_field, id, shot, frame, movement, example);
   return example;
 }
