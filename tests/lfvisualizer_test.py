@@ -20,6 +20,8 @@ import cv2
 import numpy
 
 import small_field
+from judgements import scenes
+from judgements.focus import Miscalibrated
 from program_test_case import ProgramTestCase
 
 VISUALIZER = RENDERER = PAGELESS = None
@@ -86,6 +88,33 @@ class VisualizerTest(ProgramTestCase):
             self.fails(4, [f"--serve {port}"], VISUALIZER, self.field, self.path, "--serve", port)
             server.send_signal(signal.SIGINT)
             self.assertEqual(server.wait(), 0)
+
+    @unittest.skipIf("pageless" in sys.argv, "it has no page")
+    def test_a_page_says_that_images_and_poses_do_not_agree(self):
+        field = self.folder / "upside down"
+        cameras = scenes.grid(5, 0.05)
+        shown = [((x, -y, z), rotation) for (x, y, z), rotation in cameras]
+        scenes.draw(field, Miscalibrated(cameras, shown), [scenes.wall(2), scenes.card(0, 0, 1.2, 0.5, 0.4)])
+        server = subprocess.Popen([VISUALIZER, field, self.path, "-q"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                  text=True)
+        self.addCleanup(server.stdout.close)
+        self.addCleanup(server.stderr.close)
+        self.addCleanup(server.kill)
+        address = urllib.parse.urlsplit(server.stdout.readline().strip())
+        connection = http.client.HTTPConnection("127.0.0.1", address.port, timeout=60)
+        self.addCleanup(connection.close)
+        connection.request("GET", address.path + "events", headers={"Host": address.netloc})
+        news = connection.getresponse()
+        for _ in range(60):  # without news, a line comes each second
+            if news.readline() == b"event: poses\n":
+                break
+        else:
+            self.fail("the page is not told")
+        warning = json.loads(news.readline().partition(b":")[2])["warning"]
+        self.assertIn("images and poses do not agree", warning)
+        self.assertIn("lfimport", warning)
+        server.send_signal(signal.SIGINT)
+        self.assertEqual(server.wait(), 0)
 
     # Another page in the same browser can send requests to the server, but does not know the token. After DNS
     # rebinding, its requests also have another Host header. The server must refuse either.

@@ -21,6 +21,7 @@
 
 #include "lf/core/log.h"
 #include "lf/import/paths/open_path.h"
+#include "lf/render/state/record_fields.h"
 #include "lf/view/scene_text.h"
 
 namespace {
@@ -177,14 +178,18 @@ lf::Result<void> PrintText(const Arguments& a, const lf::CommonOptions& common) 
                             lf::PrintReport);
 }
 
-// Warns if images and poses do not belong together. Runs while the page is already open, because it
-// reads dozens of LF images. Errors are those of LF images, which the page shows.
-void WarnOfDisagreement(const Arguments& a, const lf::LightField& light_field,
-                        const std::atomic<bool>& interrupted) {
+// Warns on stderr and on the page if images and poses do not belong together. Runs while the page
+// is already open, because it reads dozens of LF images. Errors are those of LF images, which the
+// page shows.
+void WarnOfDisagreement(const Arguments& a, const std::atomic<bool>& interrupted,
+                        lf::PageScene* scene) {
   lf::ThreadPool pool(1);
   const lf::Result<lf::Disagreement> found =
-      lf::FindDisagreement(light_field, a.light_field, pool, &interrupted);
-  if (found && !found->text.empty()) lf::LogWarning("{}. {}", found->text, found->advice);
+      lf::FindDisagreement(scene->light_field(), a.light_field, pool, &interrupted);
+  if (!found || found->text.empty()) return;
+  const std::string warning = fmt::format("{}. {}", found->text, found->advice);
+  lf::LogWarning("{}", warning);
+  scene->events().Post("poses", lf::RecordLine({{"warning", warning}}));
 }
 
 lf::MissingImages MissingOf(const lf::ExportFacts& facts) {
@@ -238,7 +243,7 @@ lf::Result<void> Run(Arguments& a, const lf::CommonOptions& common) {
   LF_ASSIGN_OR_RETURN(const auto server, lf::PageServer::Open(*scene, a.port));
   LF_RETURN_IF_ERROR(lf::PrintReport(server->address() + "\n"));
   lf::LogInfo("open this address in a browser; Ctrl-C ends lfvisualizer");
-  const std::jthread check([&] { WarnOfDisagreement(a, scene->light_field(), interrupted); });
+  const std::jthread check([&] { WarnOfDisagreement(a, interrupted, scene.get()); });
   return server->ServeUntil(interrupted);
 }
 

@@ -16,7 +16,7 @@ namespace lf {
 class EventBoard {
  public:
   // Posts an event, which replaces the one of the same kind.
-  //   kind  film, watch, preview or path (doc/formats/page_data.md)
+  //   kind  film, watch, preview, live, path or poses (doc/formats/page_data.md)
   //   data  one line of JSON
   void Post(const std::string& kind, const std::string& data);
 

@@ -314,6 +314,7 @@ function wireNews(state: State): void {
         if ((JSON.parse(data) as { path: string }).path === state.path.id) void state.askFilm();
       },
       path: (data) => void state.fileHasChanged(JSON.parse(data) as PathNews),
+      poses: (data) => state.say((JSON.parse(data) as { warning: string }).warning, true),
     },
     (isThere) => {
       link.textContent = isThere ? "" : "lfvisualizer has been ended";
