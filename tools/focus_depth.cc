@@ -17,7 +17,6 @@
 #include <vector>
 
 #include "tools/common/allow_missing.h"
-#include "tools/common/byte_size.h"
 #include "tools/common/frame_options.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
@@ -31,6 +30,8 @@
 #include "lf/analysis/focus_stack/focus_planes.h"
 #include "lf/core/log.h"
 #include "lf/core/output_files.h"
+#include "lf/core/quantities.h"
+#include "lf/core/version.h"
 #include "lf/film/develop/frame_file.h"
 #include "lf/import/paths/open_path.h"
 #include "lf/render/pipeline/check_outputs.h"
@@ -193,7 +194,7 @@ Result<Made> Make(const DepthArguments& a, const CommonOptions& common, ThreadPo
   LF_ASSIGN_OR_RETURN(made.locks, LockOutputs({a.outputs.begin(), a.outputs.end()}));
   LF_RETURN_IF_ERROR(CheckOutputs(a, light_field));  // another call may have ended just now
   LF_ASSIGN_OR_RETURN(const CameraPath path,
-                      a.frame.Open(light_field, a.light_field.path, PathOptions::Surface::kName));
+                      a.frame.Open(light_field, PathOptions::Surface::kName));
   const RenderCamera& camera = path.Camera(a.frame.id());
   LF_ASSIGN_OR_RETURN(made.range, RangeOf(a, light_field, camera, pool));
   options.range = made.range;

@@ -26,6 +26,7 @@
 #include "lf/analysis/focus_stack/focus_planes.h"
 #include "lf/core/log.h"
 #include "lf/core/output_files.h"
+#include "lf/core/version.h"
 #include "lf/light_field/model/capture_geometry.h"
 #include "lf/light_field/model/radiance.h"
 #include "lf/pixels/files/image_file.h"

@@ -17,9 +17,9 @@ void FrameArgument::AddTo(OptionGroup& input) {
       ->check(CLI::Range(1, kMostFrames));
 }
 
-Result<CameraPath> FrameArgument::Open(const LightField& light_field, const std::string& source,
+Result<CameraPath> FrameArgument::Open(const LightField& light_field,
                                        PathOptions::Surface surface) const {
-  PathOptions options = PathOptionsFor(light_field, source);
+  PathOptions options = PathOptionsFor(light_field);
   options.surface = surface;
   LF_ASSIGN_OR_RETURN(CameraPath opened, OpenPath(path, options));
   if (frame > opened.frame_count())

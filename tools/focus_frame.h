@@ -22,10 +22,10 @@ struct FrameArgument {
   FrameId id() const { return FrameId{frame}; }
   // Adds the positional argument PATH, and --frame N.
   void AddTo(OptionGroup& input);
-  // Opens the path for a light field that was opened from `source`. kUsage: the path has no such
-  // frame. Other errors are those of OpenPath().
+  // Opens the path for a light field. kUsage: the path has no such frame. Other errors are those of
+  // OpenPath().
   //   surface  use of a focal surface that the path may have
-  Result<CameraPath> Open(const LightField& light_field, const std::string& source,
+  Result<CameraPath> Open(const LightField& light_field,
                           PathOptions::Surface surface = PathOptions::Surface::kRefuse) const;
 };
 

@@ -207,7 +207,7 @@ Result<std::vector<double>> DistancesOf(const Arguments& a, const LightField& li
 }
 
 Result<CameraPath> OpenStack(const Arguments& a, const LightField& light_field, ThreadPool& pool) {
-  LF_ASSIGN_OR_RETURN(CameraPath path, a.frame.Open(light_field, a.render.light_field.path));
+  LF_ASSIGN_OR_RETURN(CameraPath path, a.frame.Open(light_field));
   if (a.fps) path.fps = *a.fps;
   LF_ASSIGN_OR_RETURN(const std::vector<double> distances_w,
                       DistancesOf(a, light_field, path.Camera(a.frame.id()), pool));
@@ -238,11 +238,7 @@ Result<Rendered> RenderStack(const Arguments& a, const CommonOptions& common, Th
   options.render.folder.inputs = FilesOfPath(a.frame.path);
   options.render.folder.inputs.emplace_back(a.render.light_field.path);
   options.render.folder.output_folder = StackFolder(options.output);
-  std::optional<double> max_angle_rad;
-  if (a.render.max_angle_deg > 0) max_angle_rad = RadiansFromDegrees(a.render.max_angle_deg);
-  LF_ASSIGN_OR_RETURN(options.inputs,
-                      StackInputs(light_field, stack, options, *ImageOrderOf(a.render.order),
-                                  common.seed, max_angle_rad, a.render.densify));
+  LF_ASSIGN_OR_RETURN(options.inputs, StackInputs(light_field, stack, options, a.render.densify));
   // The lock outlasts FILE.partial, which is removed when the file is complete.
   std::optional<FileLock> lock;
   if (FormOfStack(options.output) != FocusStackForm::kFolder) {
@@ -260,9 +256,8 @@ Result<Rendered> RenderStack(const Arguments& a, const CommonOptions& common, Th
     light_field = std::move(densified->light_field);
     missing = std::move(densified->missing);
   }
-  Package package = PackageOfAll(std::move(light_field), stack, common.seed);
-  if (max_angle_rad) package.choices.max_angle_rad = max_angle_rad;
-  LF_RETURN_IF_ERROR(PutInOrder(*ImageOrderOf(a.render.order), options.render, pool, &package));
+  LF_ASSIGN_OR_RETURN(Package package,
+                      PackageOfFilm(std::move(light_field), stack, options.render, pool));
   return Rendered{RenderFocusStack(std::move(package), options, pool, progress), options,
                   std::move(stack), std::move(missing)};
 }

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "tools/common/allow_missing.h"
-#include "tools/common/byte_size.h"
 #include "tools/common/frame_options.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
@@ -30,7 +29,9 @@
 #include "lf/core/geometry.h"
 #include "lf/core/log.h"
 #include "lf/core/output_files.h"
+#include "lf/core/quantities.h"
 #include "lf/core/value_named.h"
+#include "lf/core/version.h"
 #include "lf/film/develop/frame_file.h"
 #include "lf/import/paths/open_path.h"
 #include "lf/render/pipeline/check_outputs.h"
@@ -275,8 +276,7 @@ Result<Opened> Open(const Arguments& a, bool has_folder, const std::atomic<bool>
   Opened opened;
   LF_ASSIGN_OR_RETURN(opened.light_field, a.light_field.Open());
   if (!has_folder) LF_RETURN_IF_ERROR(CheckOutputs(a, opened.light_field));
-  LF_ASSIGN_OR_RETURN(opened.path, a.frame.Open(opened.light_field, a.light_field.path,
-                                                PathOptions::Surface::kName));
+  LF_ASSIGN_OR_RETURN(opened.path, a.frame.Open(opened.light_field, PathOptions::Surface::kName));
   if (opened.path.shutter.exists())
     return UsageError(fmt::format(
         "{}: the path has a shutter, whose blur has no share in an order of rays: leave the "

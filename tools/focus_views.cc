@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "tools/common/allow_missing.h"
-#include "tools/common/byte_size.h"
 #include "tools/common/help.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
@@ -28,6 +27,7 @@
 #include "lf/analysis/views/view_grid.h"
 #include "lf/core/log.h"
 #include "lf/core/output_files.h"
+#include "lf/core/quantities.h"
 #include "lf/render/pipeline/check_outputs.h"
 #include "lf/render/state/record_fields.h"
 

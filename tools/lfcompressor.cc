@@ -10,7 +10,6 @@
 
 #include "tools/codec_words.h"
 #include "tools/common/allow_missing.h"
-#include "tools/common/byte_size.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
 #include "tools/common/next_step.h"
@@ -21,7 +20,9 @@
 #include "tools/common/validators.h"
 #include "tools/compress_report.h"
 
+#include "lf/core/quantities.h"
 #include "lf/core/shell_word.h"
+#include "lf/core/version.h"
 #include "lf/distribute/compress/compress.h"
 #include "lf/render/package/package_file.h"
 #include "lf/render/pipeline/render_packages.h"

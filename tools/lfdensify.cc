@@ -6,7 +6,6 @@
 #include <string>
 
 #include "tools/common/allow_missing.h"
-#include "tools/common/byte_size.h"
 #include "tools/common/check_agreement.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
@@ -19,7 +18,9 @@
 #include "tools/densify_report.h"
 
 #include "lf/core/log.h"
+#include "lf/core/quantities.h"
 #include "lf/core/shell_word.h"
+#include "lf/core/version.h"
 #include "lf/densify/densify.h"
 #include "lf/import/paths/open_path.h"
 #include "lf/storage/packed/packed_store_file.h"
@@ -150,7 +151,7 @@ lf::Result<lf::DensifyOptions> MakeOptions(const Arguments& a, const lf::LightFi
   }
   if (!a.path.empty()) {
     LF_ASSIGN_OR_RETURN(const lf::CameraPath path,
-                        lf::OpenPath(a.path, lf::PathOptionsFor(light_field, a.light_field.path)));
+                        lf::OpenPath(a.path, lf::PathOptionsFor(light_field)));
     options.choices.frames.assign(path.AllInstants().begin(), path.AllInstants().end());
   }
   LF_ASSIGN_OR_RETURN(options.memory_bytes, lf::ParseByteSize(a.memory, "--memory"));

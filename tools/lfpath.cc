@@ -249,7 +249,7 @@ lf::Result<lf::PathOptions> OptionsOf(const Arguments& a) {
     LF_ASSIGN_OR_RETURN(const lf::LightField light_field, lf::OpenLightField(a.light_field));
     for (std::filesystem::path& file : lf::FilesOfLightField(light_field, a.light_field))
       inputs.push_back(std::move(file));
-    options = lf::PathOptionsFor(light_field, a.light_field);
+    options = lf::PathOptionsFor(light_field);
   }
   LF_RETURN_IF_ERROR(CheckOutput(a, inputs));
   if (a.unit_m) options.light_field_unit_m = a.unit_m;

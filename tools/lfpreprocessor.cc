@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "tools/common/allow_missing.h"
-#include "tools/common/byte_size.h"
 #include "tools/common/frame_options.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
@@ -20,6 +19,8 @@
 #include "tools/forecast_report.h"
 #include "tools/known_depths.h"
 
+#include "lf/core/quantities.h"
+#include "lf/core/version.h"
 #include "lf/distribute/preprocess/preprocess.h"
 #include "lf/import/paths/open_path.h"
 
@@ -234,9 +235,8 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   LF_ASSIGN_OR_RETURN(const lf::LightField light_field, a.light_field.Open());
   const double read_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  LF_ASSIGN_OR_RETURN(
-      lf::CameraPath path,
-      lf::OpenPath(a.path, lf::PathOptionsToRender(light_field, a.light_field.path)));
+  LF_ASSIGN_OR_RETURN(lf::CameraPath path,
+                      lf::OpenPath(a.path, lf::PathOptionsToRender(light_field)));
   LF_ASSIGN_OR_RETURN(lf::PreprocessOptions options,
                       MakeOptions(a, common, path, light_field.encoding));
   if (a.frames.IsNone(options.frames)) return ReportNoFrames(a, common, light_field, path);

@@ -80,9 +80,8 @@ lf::Result<Rendered> RenderLightField(const lf::RenderArguments& arguments,
   lf::LightFieldArgument argument = arguments.light_field;
   argument.path = arguments.inputs[0];
   LF_ASSIGN_OR_RETURN(lf::LightField light_field, argument.Open());
-  LF_ASSIGN_OR_RETURN(
-      lf::CameraPath path,
-      lf::OpenPath(arguments.inputs[1], lf::PathOptionsToRender(light_field, arguments.inputs[0])));
+  LF_ASSIGN_OR_RETURN(lf::CameraPath path,
+                      lf::OpenPath(arguments.inputs[1], lf::PathOptionsToRender(light_field)));
   LF_ASSIGN_OR_RETURN(lf::RenderOptions options, arguments.MakeOptions(common, path.frame_count()));
   if (arguments.HasNoFrame(options)) return NoFrames(arguments, std::move(options));
   options.signals = signals;
@@ -104,10 +103,8 @@ lf::Result<Rendered> RenderLightField(const lf::RenderArguments& arguments,
     light_field = std::move(densified->light_field);
     missing = std::move(densified->missing);
   }
-  lf::Package package = lf::PackageOfAll(std::move(light_field), std::move(path), common.seed);
-  if (arguments.max_angle_deg > 0)
-    package.choices.max_angle_rad = lf::RadiansFromDegrees(arguments.max_angle_deg);
-  LF_RETURN_IF_ERROR(lf::PutInOrder(*lf::ImageOrderOf(arguments.order), options, pool, &package));
+  LF_ASSIGN_OR_RETURN(lf::Package package,
+                      lf::PackageOfFilm(std::move(light_field), std::move(path), options, pool));
   return Rendered{lf::Render(std::move(package), options, pool, progress), options, missing};
 }
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "tools/common/allow_missing.h"
-#include "tools/common/byte_size.h"
 #include "tools/common/check_agreement.h"
 #include "tools/common/frame_options.h"
 #include "tools/common/interrupt.h"
@@ -20,6 +19,7 @@
 #include "tools/visualizer/page_server.h"
 
 #include "lf/core/log.h"
+#include "lf/core/quantities.h"
 #include "lf/import/paths/open_path.h"
 #include "lf/render/state/record_fields.h"
 #include "lf/view/scene_text.h"
@@ -163,9 +163,8 @@ lf::NeedsOptions Needs(const Arguments& a) {
 
 lf::Result<void> PrintText(const Arguments& a, const lf::CommonOptions& common) {
   LF_ASSIGN_OR_RETURN(const lf::LightField light_field, a.light_field.Open());
-  LF_ASSIGN_OR_RETURN(
-      lf::CameraPath path,
-      lf::OpenPath(a.path, lf::PathOptionsToRender(light_field, a.light_field.path)));
+  LF_ASSIGN_OR_RETURN(lf::CameraPath path,
+                      lf::OpenPath(a.path, lf::PathOptionsToRender(light_field)));
   LF_ASSIGN_OR_RETURN(std::vector<lf::FrameId> frames, a.frames.Of(path.frame_count()));
   if (a.frames.IsNone(frames))
     a.frames.TellNone();

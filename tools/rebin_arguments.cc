@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include "tools/common/count.h"
 #include "tools/common/help.h"
 #include "tools/common/program.h"
 #include "tools/common/validators.h"
 
+#include "lf/core/quantities.h"
 #include "lf/core/value_named.h"
 
 namespace lf {
@@ -175,8 +175,8 @@ void RebinArguments::AddTo(CLI::App& app) {
       ->check(CLI::Range(4, 1024));
 }
 
-Result<RebinPassOptions> RebinArguments::Make(uint64_t seed) const {
-  RebinPassOptions made;
+Result<RebinSettings> RebinArguments::Make() const {
+  RebinSettings made;
   made.rebin = options.rebin;
   made.query = options.query;
   made.nearest = static_cast<size_t>(nearest);
@@ -193,7 +193,6 @@ Result<RebinPassOptions> RebinArguments::Make(uint64_t seed) const {
         "--reparameterise off cannot be used with --lens-sets above 1: leave one of them out");
   made.previews = ValueNamed(preview, {Previews::kOn, Previews::kOff}).value_or(Previews::kAuto);
   made.rebin.averages_others = average_others == "on";
-  made.rebin.seed = made.query.seed = seed;
   if (r_st_w > 0) made.slab.r_st_w = r_st_w;
   if (r_uv_w > 0) made.slab.r_uv_w = r_uv_w;
   if (slab_distance_w > 0) made.slab.uv_distance_w = slab_distance_w;

@@ -15,7 +15,7 @@ namespace lf {
 struct RebinArguments {
   int nearest = 0;
   std::string kept = "auto", preview = "auto", average_others = "off", reparameterise = "on";
-  RebinPassOptions options;  // the options that are parsed directly; Make() sets the others
+  RebinSettings options;  // the options that are parsed directly; Make() sets the others
   std::string max_rays = "0";
   double r_st_w = 0, r_uv_w = 0, slab_distance_w = 0;
   std::vector<double> slab_position_w, slab_forward;
@@ -23,7 +23,7 @@ struct RebinArguments {
   void AddTo(CLI::App& app);
   // Converts the arguments to options. kUsage if a value is impossible, or if values contradict
   // each other.
-  Result<RebinPassOptions> Make(uint64_t seed) const;
+  Result<RebinSettings> Make() const;
 };
 
 }  // namespace lf

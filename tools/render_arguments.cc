@@ -5,16 +5,17 @@
 
 #include <algorithm>
 
-#include "tools/common/byte_size.h"
-#include "tools/common/duration.h"
 #include "tools/common/help.h"
 #include "tools/common/next_step.h"
 #include "tools/common/validators.h"
 
+#include "lf/core/geometry.h"
 #include "lf/core/log.h"
 #include "lf/core/parse_number.h"
+#include "lf/core/quantities.h"
 #include "lf/core/shell_word.h"
 #include "lf/core/value_named.h"
+#include "lf/core/version.h"
 #include "lf/film/develop/develop.h"
 #include "lf/render/collect/noise_rule.h"
 #include "lf/render/package/package_file.h"
@@ -339,8 +340,11 @@ Result<void> RenderArguments::Check(bool seed_given) const {
   return {};
 }
 
-Result<FilmOptions> RenderArguments::MakeFilm(uint64_t seed) const {
-  FilmOptions film;
+Result<FilmSettings> RenderArguments::MakeFilm(uint64_t seed) const {
+  FilmSettings film;
+  film.order = *ImageOrderOf(order);
+  film.seed = seed;
+  if (max_angle_deg > 0) film.max_angle_rad = RadiansFromDegrees(max_angle_deg);
   if (max_images > 0) film.max_image_count = static_cast<size_t>(max_images);
   film.smooth_below = smooth_below;
   LF_ASSIGN_OR_RETURN(film.fill_radius_px, ParseFill(fill));
@@ -354,7 +358,7 @@ Result<FilmOptions> RenderArguments::MakeFilm(uint64_t seed) const {
   film.mode = *RenderModeOf(mode);
   film.guard = !no_guard;
   film.adds_opacity = picture.alpha;
-  LF_ASSIGN_OR_RETURN(film.rebin, rebin.Make(seed));
+  LF_ASSIGN_OR_RETURN(film.rebin, rebin.Make());
   if (back_end == "reference") film.back_end = CollectBackEnd::kReference;
   LF_RETURN_IF_ERROR(
       ReadRule(stop_when, "--stop-when", &film.stop_at_samples, &film.stop_at_noise));

@@ -61,7 +61,7 @@ struct RenderArguments {
   bool HasNoFrame(const RenderOptions& options) const { return frames.IsNone(options.frames); }
 
  private:
-  Result<FilmOptions> MakeFilm(uint64_t seed) const;
+  Result<FilmSettings> MakeFilm(uint64_t seed) const;
   Result<FolderOptions> MakeFolder(size_t frame_count) const;
 };
 

@@ -259,7 +259,7 @@ Result<void> CheckRequiredNoise(const RenderReport& report, std::optional<double
                   *noise, count, report.frames.size(), frames, count > kNamed ? ", ..." : "")};
 }
 
-Result<void> OutcomeOf(const RenderReport& report, const FilmOptions& film,
+Result<void> OutcomeOf(const RenderReport& report, const FilmSettings& film,
                        const AllowMissing& allow_missing, const MissingImages& densify) {
   Result<void> required = CheckRequired(report, film.require_samples);
   if (required) required = CheckRequiredNoise(report, film.require_noise);

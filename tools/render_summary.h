@@ -9,7 +9,7 @@
 #include "tools/common/allow_missing.h"
 
 #include "lf/core/result.h"
-#include "lf/render/pipeline/film_options.h"
+#include "lf/render/settings/film_settings.h"
 #include "lf/render/state/report.h"
 
 namespace lf {
@@ -41,7 +41,7 @@ Result<void> CheckRequiredNoise(const RenderReport& report, std::optional<double
 // quality than the options require, or if more LF images were left out than --allow-missing
 // accepts.
 //   densify  LF images that --densify left out
-Result<void> OutcomeOf(const RenderReport& report, const FilmOptions& film,
+Result<void> OutcomeOf(const RenderReport& report, const FilmSettings& film,
                        const AllowMissing& allow_missing, const MissingImages& densify);
 
 }  // namespace lf

@@ -9,8 +9,6 @@
 #include <string_view>
 #include <thread>
 
-#include "tools/common/byte_size.h"
-#include "tools/common/duration.h"
 #include "tools/common/frame_options.h"
 #include "tools/common/help.h"
 #include "tools/common/parse_errors.h"
@@ -18,6 +16,7 @@
 #include "tools/render_arguments.h"
 
 #include "lf/core/log.h"
+#include "lf/core/quantities.h"
 #include "lf/core/shell_word.h"
 #include "lf/distribute/cluster/farm_files.h"
 #include "lf/distribute/cluster/slurm.h"

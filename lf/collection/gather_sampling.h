@@ -38,7 +38,7 @@ const char* NameOf(PixelFilter filter);
 
 // Returns the filter that `filter` stands for, which is never kAuto. kAuto is
 //   kMosaic      for mosaics, unless an option needs the number of rays of elements (counts_rays,
-//                FilmOptions::CountsRays()), which kMosaic does not tell
+//                FilmSettings::CountsRays()), which kMosaic does not tell
 //   kBicubic     for brackets, because each of their LF images has the pixels of only some regions,
 //                at whose borders a prefilter lacks pixels
 //   kPrefiltered otherwise

@@ -18,11 +18,11 @@
 #include "python/src/gil.h"
 #include "python/src/light_field.h"
 #include "python/src/work.h"
-#include "tools/common/byte_size.h"
 
 #include "lf/analysis/epi/epipolar_picture.h"
 #include "lf/analysis/focus_stack/focus_planes.h"
 #include "lf/analysis/views/render_views.h"
+#include "lf/core/quantities.h"
 #include "lf/light_field/model/capture_geometry.h"
 
 namespace lf::python {

@@ -18,14 +18,15 @@
 #include "python/src/light_field.h"
 #include "python/src/work.h"
 #include "tools/codec_words.h"
-#include "tools/common/byte_size.h"
 #include "tools/compress_report.h"
 #include "tools/forecast_report.h"
 #include "tools/import_report.h"
 #include "tools/known_depths.h"
 #include "tools/synthetic_field.h"
 
+#include "lf/core/quantities.h"
 #include "lf/core/shell_word.h"
+#include "lf/core/version.h"
 #include "lf/storage/load/measure_footprint.h"
 #include "lf/storage/packed/packed_store_file.h"
 
@@ -91,15 +92,14 @@ struct PackageWords {
 
 PreprocessOptions PreprocessOptionsOf(const PackageWords& words, const FilmWords& film_words,
                                       const RadianceEncoding& encoding) {
-  const FilmOptions film = Take(FilmOptionsOf(film_words));
+  const FilmSettings film = Take(FilmSettingsOf(film_words));
   PreprocessOptions options;
   if (!words.output.empty()) options.output_folder = words.output;
   options.overwrite = words.overwrite;
-  options.order = Take(OrderOf(film_words));
-  options.seed = film_words.seed;
-  options.max_image_count = film_words.max_images;
-  if (film_words.max_angle_deg)
-    options.max_angle_rad = RadiansFromDegrees(*film_words.max_angle_deg);
+  options.order = film.order;
+  options.seed = film.seed;
+  options.max_image_count = film.max_image_count;
+  options.max_angle_rad = film.max_angle_rad;
   options.reading.estimator = film.reading.estimator;
   options.reading.filter = FilterOf(film.reading.filter, encoding, false);
   options.mode = film.mode;
@@ -114,7 +114,7 @@ PreprocessOptions PreprocessOptionsOf(const PackageWords& words, const FilmWords
   options.balance = words.balance == "frames" ? PackageBalance::kFrames : PackageBalance::kRays;
   if (words.depths) options.depths = DepthRange{words.depths->first, words.depths->second};
   options.strict = words.strict;
-  options.version = LF_VERSION;
+  options.version = Version();
   return options;
 }
 
@@ -172,7 +172,7 @@ std::string CompressField(const OpenedField& field, const std::string& name,
   options.verify = words.verify;
   options.strict = words.strict;
   options.source_name = name;
-  options.version = LF_VERSION;
+  options.version = Version();
   options.interrupted = &work.signals.interrupted;
   return CallWithoutGil(
       [&] {

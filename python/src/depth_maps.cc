@@ -15,9 +15,9 @@
 #include "python/src/errors.h"
 #include "python/src/light_field.h"
 #include "python/src/work.h"
-#include "tools/common/byte_size.h"
 
 #include "lf/analysis/depth/depth_map.h"
+#include "lf/core/quantities.h"
 #include "lf/render/pipeline/develop_frame.h"
 #include "lf/selection/image_index.h"
 

@@ -18,8 +18,9 @@
 #include "python/src/frames.h"
 #include "python/src/light_field.h"
 #include "python/src/work.h"
-#include "tools/common/byte_size.h"
 
+#include "lf/core/quantities.h"
+#include "lf/core/version.h"
 #include "lf/pixels/files/write_png.h"
 #include "lf/render/pipeline/film_renderer.h"
 #include "lf/render/pipeline/film_setup.h"
@@ -39,23 +40,18 @@ class Film {
        const std::string& memory, bool strict, int threads)
       : pool_(PoolOf(threads)) {
     RenderOptions options;
-    options.film = Take(FilmOptionsOf(words));
+    options.film = Take(FilmSettingsOf(words));
     options.work.memory_bytes = Take(ParseByteSize(memory, "memory"));
     options.work.strict = strict;
     options.work.interrupted = &signals_.interrupted;
     options.work.stop = &signals_.stop;
-    const ImageOrder order = Take(OrderOf(words));
     std::vector<FrameId> ids;
     for (const uint32_t frame : frames) ids.push_back(FrameId{frame});
     Run([&] {
-      Package package = PackageOfAll(
+      Package package = Take(PackageOfFilm(
           field.light_field,
-          PathOf(std::move(cameras), fps, field.light_field.unit_m, std::move(shutter)),
-          words.seed);
-      if (words.max_angle_deg)
-        package.choices.max_angle_rad = RadiansFromDegrees(*words.max_angle_deg);
-      Take(CheckRenderOptions(package, options));
-      Take(PutInOrder(order, options, pool_, &package));
+          PathOf(std::move(cameras), fps, field.light_field.unit_m, std::move(shutter)), options,
+          pool_));
       setup_ = Take(FilmSetup::Make(std::move(package), options.film, options.work, ids, pool_));
       Take(setup_->PlanSlabs());
       inputs_ = Take(InputsOfRays(*setup_));
@@ -107,7 +103,7 @@ class Film {
           const auto is_interrupted = [&] { return signals_.stop.load(); };
           RenderedFrame rendered = renderer().Develop(f, completion, true, is_interrupted);
           PlateNotes notes = renderer().NotesOf(f);
-          notes.version = LF_VERSION;
+          notes.version = Version();
           const bool keeps_opacity = setup_->film().Collects() && renderer().plate(f).has_opacity();
           return MakeFrame(std::move(rendered.picture), std::move(notes), keeps_opacity);
         },
@@ -121,7 +117,7 @@ class Film {
     auto plate = std::make_unique<Plate>();
     plate->sums = CopyOf(renderer().plate(f));
     plate->notes = renderer().NotesOf(f);
-    plate->notes.version = LF_VERSION;
+    plate->notes.version = Version();
     plate->inputs = inputs_;
     for (auto& entry : InputsOfFrame(setup_->path(), plate->notes.frame))
       plate->inputs.push_back(std::move(entry));

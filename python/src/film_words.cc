@@ -3,10 +3,11 @@
 
 #include <fmt/format.h>
 
+#include "lf/core/geometry.h"
 #include "lf/core/value_named.h"
 #include "lf/render/collect/noise_rule.h"
 #include "lf/render/collect/sample_rule.h"
-#include "lf/render/hybrid/render_mode.h"
+#include "lf/render/settings/render_mode.h"
 
 namespace lf::python {
 namespace {
@@ -26,8 +27,8 @@ std::optional<Estimator> EstimatorOf(const std::string& word) {
 
 }  // namespace
 
-Result<FilmOptions> FilmOptionsOf(const FilmWords& words) {
-  FilmOptions film;
+Result<FilmSettings> FilmSettingsOf(const FilmWords& words) {
+  FilmSettings film;
   LF_ASSIGN_OR_RETURN(
       film.mode, Known(RenderModeOf(words.mode), "mode", words.mode, "collect, rebin, hybrid"));
   LF_ASSIGN_OR_RETURN(film.reading.estimator, Known(EstimatorOf(words.estimator), "estimator",
@@ -55,17 +56,16 @@ Result<FilmOptions> FilmOptionsOf(const FilmWords& words) {
   film.fill_radius_px = words.fill;
   film.guard = words.guard;
   film.adds_opacity = true;  // for Frame.save(), which may give files alpha
-  film.rebin.rebin.seed = words.seed;
+  LF_ASSIGN_OR_RETURN(film.order, Known(ImageOrderOf(words.order), "order", words.order,
+                                        "shuffle, round-robin, area"));
+  film.seed = words.seed;
+  if (words.max_angle_deg) film.max_angle_rad = RadiansFromDegrees(*words.max_angle_deg);
   if (IsNoiseRule(words.stop_when)) {
     LF_ASSIGN_OR_RETURN(film.stop_at_noise, ParseNoiseRule(words.stop_when, "stop_when"));
   } else if (!words.stop_when.empty()) {
     LF_ASSIGN_OR_RETURN(film.stop_at_samples, ParseSampleRule(words.stop_when, "stop_when"));
   }
   return film;
-}
-
-Result<ImageOrder> OrderOf(const FilmWords& words) {
-  return Known(ImageOrderOf(words.order), "order", words.order, "shuffle, round-robin, area");
 }
 
 }  // namespace lf::python

@@ -7,8 +7,7 @@
 #include <string>
 
 #include "lf/core/result.h"
-#include "lf/render/pipeline/film_options.h"
-#include "lf/selection/image_order.h"
+#include "lf/render/settings/film_settings.h"
 
 namespace lf::python {
 
@@ -25,9 +24,8 @@ struct FilmWords {
   bool guard = true;
 };
 
-// Return the options of the film, and the order in which frames take LF images. kUsage: a word is
-// not one of those that exist, or a number is out of range.
-Result<FilmOptions> FilmOptionsOf(const FilmWords& words);
-Result<ImageOrder> OrderOf(const FilmWords& words);
+// Returns the settings of the film. kUsage: a word is not one of those that exist, or a number is
+// out of range.
+Result<FilmSettings> FilmSettingsOf(const FilmWords& words);
 
 }  // namespace lf::python

@@ -15,11 +15,12 @@
 #include "python/src/frames.h"
 #include "python/src/light_field.h"
 #include "python/src/work.h"
-#include "tools/common/byte_size.h"
 
 #include "lf/analysis/lens_statistics/lens_statistics.h"
 #include "lf/core/geometry.h"
+#include "lf/core/quantities.h"
 #include "lf/core/value_named.h"
+#include "lf/core/version.h"
 
 namespace lf::python {
 namespace {
@@ -64,7 +65,7 @@ py::tuple Through(const OpenedField& field, uint32_t frame, const RenderCamera& 
       },
       &signals);
   made.notes.fps = fps;
-  made.notes.version = LF_VERSION;
+  made.notes.version = Version();
   std::vector<std::pair<std::string, std::string>> skipped;
   for (const SkippedImage& image : made.skipped) skipped.emplace_back(image.name, image.reason);
   Frame result = MakeFrame(std::move(made.picture), std::move(made.notes), made.keeps_opacity);

@@ -17,6 +17,8 @@
 #include "python/src/light_field.h"
 #include "python/src/messages.h"
 
+#include "lf/core/version.h"
+
 PYBIND11_MODULE(_core, module) {
   lf::python::WatchForEndOfPython();
   lf::python::TranslateFailures();
@@ -30,5 +32,5 @@ PYBIND11_MODULE(_core, module) {
   lf::python::AddLensStatistics(module);
   lf::python::AddCaptures(module);
   lf::python::AddComparisons(module);
-  module.attr("version") = LF_VERSION;
+  module.attr("version") = lf::Version();
 }

@@ -27,7 +27,7 @@ struct WorkProgress {
 class WorkSignals {
  public:
   // Requests that end work soon. Work that can be interrupted reads them
-  // (WorkOptions::interrupted, WorkOptions::stop).
+  // (WorkSettings::interrupted, WorkSettings::stop).
   std::atomic<bool> interrupted = false;
   std::atomic<bool> stop = false;
 

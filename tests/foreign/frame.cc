@@ -16,7 +16,7 @@ lf::Result<lf::Image<float>> FirstFrame(const char* calibration, const char* pat
   constexpr uint64_t kSeed = 0;  // seed of the order of the LF images
   lf::Package film = lf::PackageOfAll(std::move(light_field), std::move(path), kSeed);
   LF_ASSIGN_OR_RETURN(const auto renderer,
-                      lf::FilmRenderer::Open(std::move(film), lf::FilmOptions(), lf::WorkOptions(),
+                      lf::FilmRenderer::Open(std::move(film), lf::FilmSettings(), lf::WorkSettings(),
                                              {lf::FrameId{1}}, pool));
   for (bool is_going_on = true; is_going_on;) {
     LF_ASSIGN_OR_RETURN(is_going_on, renderer->Step());

@@ -10,6 +10,8 @@
 #include "tools/common/option_facts.h"
 #include "tools/common/program.h"
 
+#include "lf/core/version.h"
+
 namespace lf {
 namespace {
 

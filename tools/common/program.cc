@@ -16,6 +16,7 @@
 #include "tools/common/validators.h"
 
 #include "lf/core/log.h"
+#include "lf/core/version.h"
 
 namespace lf {
 
@@ -39,8 +40,6 @@ Result<void> PrintReport(const std::string& text) {
       "the report cannot be written to the standard output: is the disk full, or was the "
       "pipe closed?");
 }
-
-const char* Version() { return LF_VERSION; }
 
 Program::Program(std::string name, const HelpTexts& texts)
     : app_(texts.summary, std::move(name)), texts_(texts) {

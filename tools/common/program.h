@@ -77,7 +77,4 @@ class Program {
 // Prints a whole report to stdout. kOutput if that fails.
 Result<void> PrintReport(const std::string& text);
 
-// Returns the version of the programs and the library, such as "0.1.0".
-const char* Version();
-
 }  // namespace lf

@@ -7,6 +7,7 @@
 #include "tools/common/program.h"
 #include "tools/visualizer/page_answers.h"
 
+#include "lf/core/version.h"
 #include "lf/distribute/preprocess/frame_density.h"
 #include "lf/render/state/record_fields.h"
 #include "lf/view/overlap_outline.h"

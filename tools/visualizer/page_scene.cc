@@ -59,8 +59,7 @@ Result<void> PageScene::OpenFirstDraft() {
           path.string());
     return {};
   }
-  LF_ASSIGN_OR_RETURN(CameraPath opened,
-                      OpenPath(path, PathOptionsFor(light_field_, arguments_.light_field)));
+  LF_ASSIGN_OR_RETURN(CameraPath opened, OpenPath(path, PathOptionsFor(light_field_)));
   LF_ASSIGN_OR_RETURN(const PathYaml yaml, PathYamlOf(opened));
   for (const std::string& lost : yaml.lost)
     LogWarning("{}: the page, which edits YAML, does not show {}", path.string(), lost);

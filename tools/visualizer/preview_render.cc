@@ -13,6 +13,7 @@
 #include "lf/import/paths/open_path.h"
 #include "lf/light_field/model/keep_images.h"
 #include "lf/render/package/package.h"
+#include "lf/render/pipeline/render.h"
 #include "lf/view/scene_bytes.h"
 
 namespace lf {
@@ -29,12 +30,14 @@ constexpr milliseconds kBetweenPictures(250);
 constexpr int kPictureTimes = 3;
 
 //   encoding  of the light field; the frames of mosaics and those with alpha cannot be guarded
-FilmOptions OptionsOf(const PageArguments& arguments, const RadianceEncoding& encoding) {
-  FilmOptions film;
+FilmSettings SettingsOf(const PageArguments& arguments, const RadianceEncoding& encoding) {
+  FilmSettings film;
   film.reading.estimator =
       arguments.estimator == "nearest" ? Estimator::kNearest : Estimator::kBilinear;
   film.lens_weights = arguments.needs.lens_weights;
   film.max_image_count = arguments.needs.max_image_count;
+  film.seed = arguments.seed;
+  film.max_angle_rad = arguments.needs.select.max_angle_rad;
   film.guard = encoding.bayer == BayerPattern::kNone && !encoding.HasOpacity();
   return film;
 }
@@ -106,23 +109,25 @@ Result<std::string> PreviewRender::RenderFrame(const Wish& wish) {
   const PageArguments& arguments = scene_.arguments();
   LightField light_field = scene_.light_field();
   if (wish.recorded_only) light_field = RecordedPart(std::move(light_field));
-  FilmOptions options = OptionsOf(arguments, light_field.encoding);
+  FilmSettings film = SettingsOf(arguments, light_field.encoding);
   // The frame is rendered as a film of its own.
   LF_ASSIGN_OR_RETURN(CameraPath path, wish.path->Some(wish.frame, 1));
   constexpr FrameId kAlone{1};
   if (path.focal_surface) {
     path.focal_surface->file = FileOfFrame(*path.focal_surface, wish.frame.value);
-    options.guard = false;  // frames with a focal surface cannot be guarded
+    film.guard = false;  // frames with a focal surface cannot be guarded
   }
   LF_RETURN_IF_ERROR(
       AddFocalSurfaces(arguments.path, light_field, {{kAlone}, &pool_, &interrupted_}, &path));
-  Package film = PackageOfAll(std::move(light_field), std::move(path), arguments.seed);
-  film.choices.max_angle_rad = arguments.needs.select.max_angle_rad;
-  WorkOptions work;
-  work.memory_bytes = kMemory_bytes;
-  work.interrupted = work.stop = &interrupted_;
-  LF_ASSIGN_OR_RETURN(const std::unique_ptr<FilmRenderer> renderer,
-                      FilmRenderer::Open(std::move(film), options, work, {kAlone}, pool_));
+  RenderOptions options;
+  options.film = std::move(film);
+  options.work.memory_bytes = kMemory_bytes;
+  options.work.interrupted = options.work.stop = &interrupted_;
+  LF_ASSIGN_OR_RETURN(Package package,
+                      PackageOfFilm(std::move(light_field), std::move(path), options, pool_));
+  LF_ASSIGN_OR_RETURN(
+      const std::unique_ptr<FilmRenderer> renderer,
+      FilmRenderer::Open(std::move(package), options.film, options.work, {kAlone}, pool_));
   LF_RETURN_IF_ERROR(renderer->CheckAnyContributes());
   Clock::time_point next_picture = Clock::now();  // the first picture is made at once
   for (bool is_going_on = true; is_going_on;) {

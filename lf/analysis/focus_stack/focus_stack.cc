@@ -190,24 +190,12 @@ Result<bool> IsFinishedStack(const CameraPath& stack, const FocusStackOptions& o
 }
 
 Result<RunInputs> StackInputs(const LightField& light_field, const CameraPath& stack,
-                              const FocusStackOptions& options, ImageOrder order, uint64_t seed,
-                              std::optional<double> max_angle_rad, bool densifies) {
-  const FilmOptions& film = options.render.film;
+                              const FocusStackOptions& options, bool densifies) {
+  const FilmSettings& film = options.render.film;
   RunChoices choices;
   LF_ASSIGN_OR_RETURN(choices.pixels, PixelsOf(light_field));
-  choices.reading = film.reading;
-  choices.back_end = film.back_end;
-  choices.order = order;
-  choices.seed = seed;
-  choices.lens_weights = film.lens_weights;
-  choices.max_image_count = film.max_image_count;
-  choices.max_angle_rad = max_angle_rad;
-  choices.stop_at_samples = film.stop_at_samples;
-  choices.stop_at_noise = film.stop_at_noise;
+  choices.film = film;
   choices.format = NameOf(options.render.folder.format);
-  choices.smooth_below = film.smooth_below;
-  choices.fill_radius_px = film.fill_radius_px;
-  choices.adds_opacity = film.adds_opacity;
   choices.look = options.render.folder.picture;
   const std::string cameras = HashOfCameras(stack);
   RunInputs inputs = InputsOfRays(IdentityOf(light_field), light_field.encoding, choices);

@@ -66,11 +66,10 @@ Result<void> CheckFocusStack(const LightField& light_field, const FocusStackOpti
 //   light_field  as opened, before it is densified
 //   stack        path of FocusStackPath()
 //   options      options.render.film and options.render.folder are used
-//   order, seed, max_angle_rad, densifies  choices of the package
+//   densifies    true: the stack is rendered from the densified light field
 // kInput: the packed store of the light field cannot be read.
 Result<RunInputs> StackInputs(const LightField& light_field, const CameraPath& stack,
-                              const FocusStackOptions& options, ImageOrder order, uint64_t seed,
-                              std::optional<double> max_angle_rad, bool densifies);
+                              const FocusStackOptions& options, bool densifies);
 
 // Returns true if `resume` is set, the output is a file that exists, and no render of it is
 // unfinished: there is nothing left to do. kUsage: it is an EXR file with other planes than the

@@ -91,10 +91,11 @@ class FilmMaker {
     const LightField& light_field = renderer_->light_field();
     RunChoices choices;
     choices.pixels = pixels;
-    choices.reading = renderer_->reading();
-    choices.max_angle_rad = options_.statistic.max_angle_rad;
+    choices.film.reading = renderer_->reading();
+    choices.film.lens_weights = LensWeights::kNone;
+    choices.film.max_angle_rad = options_.statistic.max_angle_rad;
     choices.format = NameOf(folder_.format);
-    choices.adds_opacity = options_.statistic.adds_opacity;
+    choices.film.adds_opacity = options_.statistic.adds_opacity;
     choices.look = folder_.picture;
     RunInputs rays = InputsOfRays(identity, light_field.encoding, choices);
     for (auto& input : InputsOfStatistic(options_.statistic)) rays.push_back(std::move(input));

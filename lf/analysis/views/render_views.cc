@@ -136,17 +136,14 @@ class ViewMaker {
     for (const size_t view : views)
       path.cameras.push_back(
           FilmCamera(grid_.Camera(view), *report_.focus_distance_w, light_field_.unit_m));
-    FilmOptions film;
-    film.reading.estimator = Estimator::kBilinear;
-    film.lens_weights = LensWeights::kAuto;
-    WorkOptions work;
+    WorkSettings work;
     work.memory_bytes = options_.memory_bytes;
     work.strict = options_.strict;
     work.stop = options_.stop;
     work.interrupted = options_.interrupted;
-    LF_ASSIGN_OR_RETURN(
-        const std::unique_ptr<FilmSetup> setup,
-        FilmSetup::Make(PackageOfAll(light_field_, std::move(path), 0), film, work, {}, pool_));
+    LF_ASSIGN_OR_RETURN(const std::unique_ptr<FilmSetup> setup,
+                        FilmSetup::Make(PackageOfAll(light_field_, std::move(path), 0),
+                                        FilmSettings(), work, {}, pool_));
     const std::vector<FrameId>& frames = setup->frames();
     const size_t per_pass = setup->plan().frames_per_pass;
     for (size_t begin = 0; begin < frames.size(); begin += per_pass) {

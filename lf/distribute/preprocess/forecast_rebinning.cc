@@ -19,7 +19,7 @@ Result<RebinCost> ForecastRebinning(const ImageIndex& index, const LfImageStore&
   std::vector<SampledFrame> sampled;
   for (uint32_t n = 1; n <= path.frame_count(); ++n)
     sampled.push_back({path.Camera(FrameId{n}), SamplingOf(surroundings[n - 1])});
-  RebinPassOptions options = needs.rebin;
+  RebinSettings options = needs.rebin;
   options.max_cells = max_cells;
   const FilmSlabs slabs(sampled, options.query, options.slab);
   double lens_s = 0;  // part of RenderRate::finish_s

@@ -20,8 +20,8 @@
 #include "lf/distribute/preprocess/render_rate.h"
 #include "lf/light_field/model/light_field.h"
 #include "lf/render/collect/collect_batch.h"
-#include "lf/render/hybrid/render_mode.h"
 #include "lf/render/package/package.h"
+#include "lf/render/settings/render_mode.h"
 #include "lf/selection/lens_weights/frame_weights.h"
 
 namespace lf {
@@ -51,7 +51,7 @@ struct PreprocessOptions {
   // rendered in any mode, except for packages for LensWeights::kNone and kCollect.
   RenderMode mode = RenderMode::kCollect;
 
-  // True: the renders that follow guard frames of a densified light field (FilmOptions::guard).
+  // True: the renders that follow guard frames of a densified light field (FilmSettings::guard).
   bool guard = true;
 
   // Number of packages: package_count if it is set; otherwise, if frames_per_package is set, as

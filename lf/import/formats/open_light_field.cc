@@ -468,6 +468,7 @@ Result<std::vector<Vec3>> PointsSeenBy(const fs::path& path, const LightField& l
 
 Result<LightField> OpenLightField(const fs::path& path, const OpenOptions& options) {
   LF_ASSIGN_OR_RETURN(LightField light_field, OpenCalibration(path, options));
+  light_field.source = path;
   if (!HoldsPackedStore(light_field)) {
     LF_RETURN_IF_ERROR(FindImages(options, path, &light_field));
     LF_RETURN_IF_ERROR(FindMasks(options, &light_field));

@@ -58,16 +58,16 @@ Result<void> CheckOptions(PathKind kind, const fs::path& path, const PathOptions
 
 }  // namespace
 
-PathOptions PathOptionsFor(const LightField& light_field, const fs::path& path) {
+PathOptions PathOptionsFor(const LightField& light_field) {
   PathOptions options;
   options.light_field_unit_m = light_field.unit_m;
   options.depth_range = light_field.depth_range;
-  options.light_field = path;
+  options.light_field = light_field.source;
   return options;
 }
 
-PathOptions PathOptionsToRender(const LightField& light_field, const fs::path& path) {
-  PathOptions options = PathOptionsFor(light_field, path);
+PathOptions PathOptionsToRender(const LightField& light_field) {
+  PathOptions options = PathOptionsFor(light_field);
   options.surface = PathOptions::Surface::kName;
   return options;
 }

@@ -64,12 +64,12 @@ struct PathOptions {
   std::optional<Vec3> ngp_offset = {};
 };
 
-// Returns the options of a path for a light field that was opened from the file or folder `path`.
-PathOptions PathOptionsFor(const LightField& light_field, const std::filesystem::path& path);
+// Returns the options of a path for a light field.
+PathOptions PathOptionsFor(const LightField& light_field);
 
 // Returns PathOptionsFor() with Surface::kName, for a path that is rendered or shown. To be focused
 // on its surface, it must be given to AddFocalSurfaces().
-PathOptions PathOptionsToRender(const LightField& light_field, const std::filesystem::path& path);
+PathOptions PathOptionsToRender(const LightField& light_field);
 
 // Gives the cameras of a path, which was opened from `path` with Surface::kName, the focal surfaces
 // that its file describes, for frames of the light field. Does nothing if it describes none.

@@ -60,6 +60,8 @@ struct LightField {
   // The folder of the image files, or the file of a packed store that holds them
   // (storage/load/open_store.h).
   std::filesystem::path folder;
+  // The file or folder that OpenLightField() was given; empty: the light field was made in memory.
+  std::filesystem::path source;
 
   RadianceEncoding encoding;
   double unit_m = 1;                      // metres per world unit

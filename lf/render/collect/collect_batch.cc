@@ -39,15 +39,6 @@ void Count(uint64_t tested, uint64_t accepted, bool is_virtual, FrameRays* rays)
 
 }  // namespace
 
-const char* NameOf(Estimator estimator) {
-  return estimator == Estimator::kBilinear ? "bilinear" : "nearest";
-}
-
-PixelReach ReachOf(const RayReading& reading) {
-  if (reading.estimator == Estimator::kNearest) return PixelReach::kOwn;
-  return reading.Prefilters() ? PixelReach::kElement : PixelReach::kNeighbours;
-}
-
 size_t PlanBytes(Estimator estimator, bool has_distortion, int image_width, int image_height,
                  int plate_width, int plate_height, const FocalSurface* surface) {
   const bool is_nearest = estimator == Estimator::kNearest;

@@ -27,42 +27,11 @@
 #include "lf/render/collect/collected_frame.h"
 #include "lf/render/collect/defocus.h"
 #include "lf/render/collect/shared_ideal_pixels.h"
+#include "lf/render/settings/ray_reading.h"
 #include "lf/selection/overlap.h"
 #include "lf/selection/select.h"
 
 namespace lf {
-
-// How rays are found (doc/ray.md, "What is added"). kNearest: the ray of every LF pixel is added to
-// the element that it hits. kBilinear: every element samples each LF image at the position that it
-// sees there. For kBilinear, the LF images must be RGB.
-enum class Estimator { kNearest, kBilinear };
-
-// Returns "nearest" or "bilinear".
-const char* NameOf(Estimator estimator);
-
-// Says how rays are made from the pixels of LF images.
-struct RayReading : PixelReading {  // its member `filter` is used only by kBilinear
-  Estimator estimator = Estimator::kNearest;
-
-  RayReading() = default;
-  RayReading(Estimator the_estimator) : estimator(the_estimator) {}  // NOLINT: implicit on purpose
-
-  // Returns true if LF images may be filtered (Prefilter) before rays are read from them.
-  bool Prefilters() const {
-    return estimator == Estimator::kBilinear &&
-           (filter == PixelFilter::kPrefiltered || filter == PixelFilter::kMosaic ||
-            filter == PixelFilter::kAuto);
-  }
-};
-
-// Returns which pixels of an LF image decide the value of one ray: the pixel of the ray itself, its
-// neighbours, or the pixels that a prefilter reads. Selection must use this as
-// SelectOptions::reach.
-PixelReach ReachOf(const RayReading& reading);
-
-// kReference applies the ray model literally to every pixel, on one thread. It is about 50 times
-// slower than kFast; tests compare kFast with it.
-enum class CollectBackEnd { kFast, kReference };
 
 struct BatchImage {
   LfImageId id;

@@ -5,17 +5,6 @@
 
 namespace lf {
 
-const char* NameOf(Previews previews) {
-  switch (previews) {
-    case Previews::kOn:
-      return "on";
-    case Previews::kOff:
-      return "off";
-    default:
-      return "auto";
-  }
-}
-
 uint32_t PhaseOf(uint32_t place) {
   if (place < kDecisionPlaces) return 0;
   uint32_t phase = kDecisionPlaces;

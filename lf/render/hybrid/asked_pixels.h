@@ -11,22 +11,12 @@
 #include "lf/core/ids.h"
 #include "lf/light_field/model/light_field.h"
 #include "lf/render/hybrid/lens_gaps.h"
+#include "lf/render/settings/rebin_settings.h"
 #include "lf/selection/overlap.h"
 #include "lf/selection/select.h"
 
 namespace lf {
 
-// Says which frames have previews. A preview is a picture of an unfinished frame. Rebinned rays are
-// kept for it, in addition to those that the finished frame needs. Only a frame that also collects
-// rays can have previews.
-enum class Previews {
-  kAuto,  // a frame has previews if it collects more than kPreviewedFrom LF images
-  kOn,
-  kOff,
-};
-// Returns "auto", "on" or "off".
-const char* NameOf(Previews previews);
-inline constexpr size_t kPreviewedFrom = 256;
 // For the previews of a frame, rebinned rays are kept only from the LF images up to the
 // kPreviewImages-th one that the frame collects, in the order in which LF images are taken. With
 // ImageOrder::kShuffle, these LF images are spread over the whole lens (thesis 4.2.1).

@@ -13,6 +13,7 @@
 #include "lf/core/ids.h"
 #include "lf/core/parallel.h"
 #include "lf/rebinning/frame_queries.h"
+#include "lf/render/settings/rebin_settings.h"
 #include "lf/selection/image_index.h"
 #include "lf/selection/select.h"
 
@@ -60,19 +61,6 @@ FrameSampling SamplingOf(const ImageIndex& index, const RenderCamera& frame,
 // Value of SelectOptions::reach that selects the LF images that have rays for at least one
 // estimator.
 inline constexpr PixelReach kWidestReach = PixelReach::kNeighbours;
-
-struct QueryOptions {
-  // Least sigma of the kernels (rebinning/ray_query.h) in the lens plane, in distances between LF
-  // cameras.
-  double sigma_st = 0.5;
-  // Sigma of the kernels on the plate, in elements, or in LF pixels if these are larger; at most 8
-  // elements are used.
-  double sigma_uv = 0.35;
-  // Number of lens points in a set; 0: 8 to 256, chosen so that their kernels overlap.
-  int lens_point_count = 0;
-  int lens_sets = 1;  // k of LensPointSets (rebinning/lens_points.h): there are k x k sets
-  uint64_t seed = 0;  // seed of the positions of the lens points
-};
 
 // Returns the queries of a frame: the rays through all of its lens points.
 // sampling.lf.camera_distance_w must be above 0.

@@ -67,8 +67,8 @@ RebinCost CostOf(const RebinSample& sample, std::span<const RebinSection> sectio
 Result<RebinCost> MeasureRebinning(const ImageIndex& index, const LfImageStore& store,
                                    const FilmSlabs& slabs, std::vector<RebinnedFrame> frames,
                                    bool collects, const SelectOptions& select,
-                                   RebinPassOptions options, const RayReading& reading,
-                                   double begin_s, size_t most, ThreadPool& pool) {
+                                   RebinSettings options, const RayReading& reading, double begin_s,
+                                   size_t most, ThreadPool& pool) {
   const double start_s = ProcessCpuSeconds();
   std::vector<size_t> asking;  // the frames that need rebinned rays when they are finished
   for (size_t f = 0; f < frames.size(); ++f)

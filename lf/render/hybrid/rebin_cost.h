@@ -70,7 +70,7 @@ RebinCost CostOf(const RebinSample& sample, std::span<const RebinSection> sectio
 Result<RebinCost> MeasureRebinning(const ImageIndex& index, const LfImageStore& store,
                                    const FilmSlabs& slabs, std::vector<RebinnedFrame> frames,
                                    bool collects, const SelectOptions& select,
-                                   RebinPassOptions options, const RayReading& reading,
-                                   double begin_s, size_t most, ThreadPool& pool);
+                                   RebinSettings options, const RayReading& reading, double begin_s,
+                                   size_t most, ThreadPool& pool);
 
 }  // namespace lf

@@ -36,17 +36,6 @@ bool Covers(const CoverageMap& map, const Slab& slab, CellKey cell) {
 
 }  // namespace
 
-const char* NameOf(KeptRays kept) {
-  switch (kept) {
-    case KeptRays::kAll:
-      return "all";
-    case KeptRays::kEdges:
-      return "edges";
-    default:
-      return "auto";
-  }
-}
-
 // Consecutive frames of asking_ that share a slab, and their rays.
 struct RebinnedRays::Section {
   SlabSection plan;        // begin and end are indices of asking_
@@ -62,7 +51,7 @@ struct RebinnedRays::Section {
 
 RebinnedRays::RebinnedRays(const ImageIndex& index, const FilmSlabs& slabs,
                            std::vector<RebinnedFrame> frames, bool collects,
-                           const SelectOptions& select, const RebinPassOptions& options,
+                           const SelectOptions& select, const RebinSettings& options,
                            ThreadPool& pool)
     : light_field_(index.light_field()),
       frames_(std::move(frames)),

@@ -35,37 +35,6 @@
 
 namespace lf {
 
-// Says which of the rays that finished frames need are kept.
-enum class KeptRays {
-  kAuto,   // kAll if, by an estimate, these rays fit in max_cells; otherwise kEdges
-  kAll,    // all rays that finished frames need
-  kEdges,  // rays at edges in the LF images, by thesis Eq. 4.4
-};
-// Returns "auto", "all" or "edges".
-const char* NameOf(KeptRays kept);
-
-struct RebinPassOptions {
-  RebinOptions rebin;
-  KeptRays kept = KeptRays::kAuto;
-  Previews previews = Previews::kAuto;
-  QueryOptions query;
-  // If true, distances between rays are measured on each frame's lens plane and focus plane. If
-  // false, they are measured on the planes of the slab; query.lens_sets must then be 1.
-  bool reparameterise = true;
-  // If true, the slower SplatReference() (rebinning/splat.h) interpolates the rays. If `nearest` is
-  // not 0, it interpolates between this number of nearest rays, instead of the rays within reach.
-  bool is_reference = false;
-  size_t nearest = 0;
-  SlabChoices slab;
-  CoverageOptions coverage;
-  // Largest number of cells in the maps of all sections together; 0 only before PlanRenderMemory()
-  // has chosen a number.
-  size_t max_cells = 0;
-  // True: memory for the expected cells is allocated at once. False: memory grows with the cells,
-  // because only a few LF images are taken (rebin_cost.h).
-  bool allocates = true;
-};
-
 // A frame that may be completed by rebinned rays. Rebinned rays are made from LF images at all
 // places of the order, even if the frame collects rays from fewer.
 struct RebinnedFrame {
@@ -80,7 +49,7 @@ class RebinnedRays : public ImageConsumer {
   //   frames    the frames of the pass, by ascending ids
   //   collects  true if the frames also collect rays
   RebinnedRays(const ImageIndex& index, const FilmSlabs& slabs, std::vector<RebinnedFrame> frames,
-               bool collects, const SelectOptions& select, const RebinPassOptions& options,
+               bool collects, const SelectOptions& select, const RebinSettings& options,
                ThreadPool& pool);
   ~RebinnedRays() override;
 
@@ -166,7 +135,7 @@ class RebinnedRays : public ImageConsumer {
   const LightField& light_field_;
   const std::vector<RebinnedFrame> frames_;
   const SelectOptions select_;
-  const RebinPassOptions options_;
+  const RebinSettings options_;
   ThreadPool& pool_;
   const std::vector<uint16_t> stored_values_;
   std::vector<AskingFrame> asking_;  // by ascending ids

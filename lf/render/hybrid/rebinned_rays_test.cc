@@ -18,7 +18,7 @@ struct Fixture {
   ImageIndex index{field, 5};
   std::vector<RenderCamera> frames = testing::NoiseFrames();
   SelectOptions select;
-  RebinPassOptions options;
+  RebinSettings options;
   bool collects = true;
 
   Fixture() {

@@ -9,7 +9,7 @@
 #include "lf/light_field/model/light_field.h"
 #include "lf/render/collect/collect_batch.h"
 #include "lf/render/collect/memory_plan.h"
-#include "lf/render/hybrid/render_mode.h"
+#include "lf/render/settings/render_mode.h"
 
 namespace lf {
 
@@ -20,7 +20,7 @@ struct RenderMemory {
 };
 
 // Plans the memory of a render.
-//   max_cells       RebinPassOptions::max_cells; 0: as many as fit in half of the memory (kRebin),
+//   max_cells       RebinSettings::max_cells; 0: as many as fit in half of the memory (kRebin),
 //                   or in a quarter of it (kHybrid)
 //   frame_count     number of frames to render. With kRebin, all of them are in one pass.
 //   measured_bytes  memory of the noise moments of one frame (collect/noise_moments.h), in addition

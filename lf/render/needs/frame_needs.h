@@ -19,8 +19,8 @@
 #include "lf/core/result.h"
 #include "lf/render/hybrid/frame_sampling.h"
 #include "lf/render/hybrid/rebinned_rays.h"
-#include "lf/render/hybrid/render_mode.h"
 #include "lf/render/package/package.h"
+#include "lf/render/settings/render_mode.h"
 #include "lf/selection/image_index.h"
 #include "lf/selection/lens_weights/frame_weights.h"
 #include "lf/selection/select.h"
@@ -37,7 +37,7 @@ struct NeedsOptions {
   std::optional<size_t> max_image_count;
   RenderMode mode = RenderMode::kCollect;
   // Only its members query, previews and rebin are used; none if the mode is kCollect.
-  RebinPassOptions rebin;
+  RebinSettings rebin;
 
   // True if the plates of frames are guarded (FilmSetup::is_guarded()): the light field must be
   // densified, and the mode kCollect.

@@ -54,8 +54,8 @@ struct PackageChoices {
   // made from their LF images.
   bool has_neighbours = true;
   // Render mode for which `rect`, `frame_count` and `ray_count` of each PackageImage are computed:
-  // "collect", "rebin" or "hybrid" (render/hybrid/render_mode.h). A package with neighbours can be
-  // rendered in any mode, unless a packed store lacks the pixels that another mode needs.
+  // "collect", "rebin" or "hybrid" (render/settings/render_mode.h). A package with neighbours can
+  // be rendered in any mode, unless a packed store lacks the pixels that another mode needs.
   std::string mode = "collect";
 };
 

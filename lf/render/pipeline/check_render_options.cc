@@ -1,22 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 // The functions of render.h that run before a render starts: they check its options, and put the LF
 // images in order.
+#include <utility>
+
 #include "lf/render/needs/film_order.h"
-#include "lf/render/pipeline/check_film_options.h"
+#include "lf/render/pipeline/check_film_settings.h"
 #include "lf/render/pipeline/check_outputs.h"
 #include "lf/render/pipeline/render.h"
+#include "lf/render/pipeline/resolved_settings.h"
 
 namespace lf {
 
 Result<void> CheckRenderOptions(const Package& package, const RenderOptions& options) {
-  const FilmOptions& film = options.film;
+  const FilmSettings& film = options.film;
   const FolderOptions& folder = options.folder;
   if (film.mode == RenderMode::kRebin && folder.keep_plates)
     return UsageError(
         "--keep-plates cannot be used with --mode rebin, which collects no rays and therefore has "
         "no plates: leave it out, or use --mode hybrid");
   LF_RETURN_IF_ERROR(CheckOutputs(package, options));
-  LF_RETURN_IF_ERROR(CheckFilmOptions(package, film, options.frames));
+  LF_RETURN_IF_ERROR(CheckFilmSettings(package, film, options.frames));
   if (!folder.finish_early.empty() && (film.shard || !folder.resume))
     return UsageError(
         "--finish finishes frames with the rays of an unfinished render: add --resume, and leave "
@@ -33,17 +36,19 @@ Result<void> CheckRenderOptions(const Package& package, const RenderOptions& opt
   return {};
 }
 
-Result<void> PutInOrder(ImageOrder order, const RenderOptions& options, ThreadPool& pool,
-                        Package* package) {
-  LF_RETURN_IF_ERROR(CheckRenderOptions(*package, options));
-  WorkOptions work = options.work;
+Result<Package> PackageOfFilm(LightField light_field, CameraPath path, const RenderOptions& options,
+                              ThreadPool& pool) {
+  const FilmSettings& film = options.film;
+  Package package = PackageOfAll(std::move(light_field), std::move(path), film.seed);
+  package.choices.order = film.order;
+  package.choices.max_angle_rad = film.max_angle_rad;
+  LF_RETURN_IF_ERROR(CheckRenderOptions(package, options));
+  WorkSettings work = options.work;
   if (options.signals != nullptr) work.stop = &options.signals->stop;
-  const NeedsOptions needs = NeedsOfFilm(*package, Resolved(options.film, *package), work);
-  LF_ASSIGN_OR_RETURN(
-      package->places,
-      PlacesOfFilm(order, package->choices.seed, package->light_field, package->path, needs, pool));
-  package->choices.order = order;
-  return {};
+  const NeedsOptions needs = NeedsOfFilm(package, Resolved(film, package), work);
+  LF_ASSIGN_OR_RETURN(package.places, PlacesOfFilm(film.order, film.seed, package.light_field,
+                                                   package.path, needs, pool));
+  return package;
 }
 
 }  // namespace lf

@@ -14,8 +14,8 @@
 
 namespace lf {
 
-Result<std::unique_ptr<FilmRenderer>> FilmRenderer::Open(Package package, const FilmOptions& film,
-                                                         const WorkOptions& work,
+Result<std::unique_ptr<FilmRenderer>> FilmRenderer::Open(Package package, const FilmSettings& film,
+                                                         const WorkSettings& work,
                                                          std::vector<FrameId> frames,
                                                          ThreadPool& pool) {
   LF_ASSIGN_OR_RETURN(std::unique_ptr<FilmSetup> setup,
@@ -109,7 +109,7 @@ ImageWeights FilmRenderer::WeightsIn(const FrameLens& lens) const {
 }
 
 CollectOptions FilmRenderer::OptionsOfCollector() const {
-  const WorkOptions& work = setup_.work();
+  const WorkSettings& work = setup_.work();
   CollectOptions collect;
   collect.reading = film_.reading;
   collect.back_end = film_.back_end;
@@ -252,7 +252,7 @@ Result<void> FilmRenderer::PrepareRebinning(const EarlierRun* earlier) {
     LF_RETURN_IF_ERROR(CheckReach(gaps, frame.id));
     rebinned.push_back({frame.id, std::move(gaps)});
   }
-  RebinPassOptions options = film_.rebin;
+  RebinSettings options = film_.rebin;
   options.max_cells = setup_.max_cells();
   options.is_reference = film_.back_end == CollectBackEnd::kReference;
   rebinned_ = std::make_unique<RebinnedRays>(setup_.index(), setup_.slabs(), std::move(rebinned),

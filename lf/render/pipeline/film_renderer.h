@@ -69,8 +69,8 @@ class FilmRenderer {
   //   frames  ascending; empty: all frames of the package
   // kOutput: the memory does not suffice for all of the frames at the same time; the message names
   // the number that fits. Other errors are those of FilmSetup::Make(), PlanSlabs() and Begin().
-  static Result<std::unique_ptr<FilmRenderer>> Open(Package package, const FilmOptions& film,
-                                                    const WorkOptions& work,
+  static Result<std::unique_ptr<FilmRenderer>> Open(Package package, const FilmSettings& film,
+                                                    const WorkSettings& work,
                                                     std::vector<FrameId> frames, ThreadPool& pool);
 
   // FilmSetup::PlanSlabs() must have been called. The setup must outlive the renderer.
@@ -81,7 +81,7 @@ class FilmRenderer {
   // Selects the LF images that are still to be collected. Must be called once, before the functions
   // below.
   //   earlier  null: nothing was collected before; only used during the call
-  // kInterrupted: WorkOptions::stop is set. kUsage: the package lacks LF cameras from whose LF
+  // kInterrupted: WorkSettings::stop is set. kUsage: the package lacks LF cameras from whose LF
   // images rebinned rays must be made. Other errors are those of `earlier`.
   Result<void> Begin(const EarlierRun* earlier = nullptr);
 
@@ -95,7 +95,7 @@ class FilmRenderer {
   // Returns the frame's progress. It counts all rays in the plate, including those of the earlier
   // run.
   FrameProgress Progress(size_t f) const;
-  // Must be called only if FilmOptions::HasPlates() is true.
+  // Must be called only if FilmSettings::HasPlates() is true.
   const SensorPlate& plate(size_t f) const { return frames_[f].plate; }
   // Returns the noise moments of the plate; null if noise is not measured, or if the moments lack
   // LF images whose rays are in the plate.
@@ -131,7 +131,7 @@ class FilmRenderer {
                         const std::function<bool()>& is_interrupted) const;
   // Measures samples and noise if the options have a rule for them, stop_at_... or require_..., and
   // adds them to the report; leaves out the noise if moments(f) is null. Several threads may call
-  // it at the same time, for different frames. kInterrupted: WorkOptions::stop is set.
+  // it at the same time, for different frames. kInterrupted: WorkSettings::stop is set.
   Result<void> Measure(size_t f, FrameReport* report);
   // Returns the facts that are needed to develop the frame's plate. The caller adds the skipped LF
   // images and the program's version.
@@ -171,7 +171,7 @@ class FilmRenderer {
     // already has the rays of the LF images at places before places.begin.
     PlaceRange places;
     FrameRays earlier_rays;  // rays in the plate when this run began
-    // FilmOptions::stop_at_samples is applied at places that are multiples of this number.
+    // FilmSettings::stop_at_samples is applied at places that are multiples of this number.
     uint32_t decision_places = 0;
     uint32_t next_decision = 0;  // next place at which the stop rule is applied
     bool is_released = false;
@@ -213,7 +213,7 @@ class FilmRenderer {
 
   std::unique_ptr<FilmSetup> own_setup_;  // setup of a renderer made by Open(); otherwise null
   const FilmSetup& setup_;
-  const FilmOptions& film_;  // options of the setup
+  const FilmSettings& film_;  // options of the setup
   const SelectOptions select_;
   std::vector<Frame> frames_;
   std::vector<SelectedImage> images_;

@@ -37,6 +37,9 @@ class FilmRendererTest : public FolderTest {
     CameraPath path;
     path.cameras = testing::NoiseFrames();
     film_ = PackageOfAll(std::move(field), std::move(path), 3);
+    // Most tests compare counts of rays.
+    options_.reading.estimator = Estimator::kNearest;
+    options_.lens_weights = LensWeights::kNone;
     work_.memory_bytes = size_t{1} << 30;
   }
   std::unique_ptr<FilmRenderer> Open(std::vector<FrameId> frames = {}) {
@@ -72,8 +75,8 @@ class FilmRendererTest : public FolderTest {
   }
 
   Package film_;
-  FilmOptions options_;
-  WorkOptions work_;
+  FilmSettings options_;
+  WorkSettings work_;
   ThreadPool pool_{2};
 
  private:

@@ -9,7 +9,8 @@
 #include "lf/render/collect/noise_moments.h"
 #include "lf/render/hybrid/frame_sampling.h"
 #include "lf/render/hybrid/render_memory.h"
-#include "lf/render/pipeline/check_film_options.h"
+#include "lf/render/pipeline/check_film_settings.h"
+#include "lf/render/pipeline/resolved_settings.h"
 #include "lf/storage/load/measure_footprint.h"
 #include "lf/storage/load/open_store.h"
 
@@ -38,7 +39,7 @@ const FocalSurface* LargestSurface(const CameraPath& path, std::span<const Frame
 
 }  // namespace
 
-FilmSetup::FilmSetup(Package package, const FilmOptions& film, const WorkOptions& work,
+FilmSetup::FilmSetup(Package package, const FilmSettings& film, const WorkSettings& work,
                      std::vector<FrameId> frames, ThreadPool& pool)
     : package_(WithRoomBesideEdges(std::move(package), film.reading)),
       film_(film),
@@ -47,11 +48,11 @@ FilmSetup::FilmSetup(Package package, const FilmOptions& film, const WorkOptions
       pool_(pool),
       index_(package_.light_field, package_.places) {}
 
-Result<std::unique_ptr<FilmSetup>> FilmSetup::Make(Package package, const FilmOptions& film,
-                                                   const WorkOptions& work,
+Result<std::unique_ptr<FilmSetup>> FilmSetup::Make(Package package, const FilmSettings& film,
+                                                   const WorkSettings& work,
                                                    std::vector<FrameId> frames, ThreadPool& pool) {
-  const FilmOptions resolved = Resolved(film, package);
-  LF_RETURN_IF_ERROR(CheckFilmOptions(package, resolved, frames));
+  const FilmSettings resolved = Resolved(film, package);
+  LF_RETURN_IF_ERROR(CheckFilmSettings(package, resolved, frames));
   std::unique_ptr<FilmSetup> setup(
       new FilmSetup(std::move(package), resolved, work, std::move(frames), pool));
   const bool is_guarded = resolved.guard && setup->package().whole_virtual_count > 0;

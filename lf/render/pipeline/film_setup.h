@@ -15,7 +15,7 @@
 #include "lf/render/hybrid/film_slabs.h"
 #include "lf/render/needs/frame_needs.h"
 #include "lf/render/package/package.h"
-#include "lf/render/pipeline/film_options.h"
+#include "lf/render/settings/film_settings.h"
 #include "lf/selection/image_index.h"
 #include "lf/selection/select.h"
 #include "lf/storage/load/lf_image_store.h"
@@ -34,21 +34,21 @@ class FilmSetup {
   // render/needs/frame_needs.h).
   // kOutput: memory_bytes does not suffice (PlanRenderMemory()), or MeasureFootprint() could not
   // read an LF image because the machine lacks something.
-  static Result<std::unique_ptr<FilmSetup>> Make(Package package, const FilmOptions& film,
-                                                 const WorkOptions& work,
+  static Result<std::unique_ptr<FilmSetup>> Make(Package package, const FilmSettings& film,
+                                                 const WorkSettings& work,
                                                  std::vector<FrameId> frames, ThreadPool& pool);
 
   const Package& package() const { return package_; }
   const LightField& light_field() const { return package_.light_field; }
   const CameraPath& path() const { return package_.path; }
-  const FilmOptions& film() const { return film_; }
-  const WorkOptions& work() const { return work_; }
+  const FilmSettings& film() const { return film_; }
+  const WorkSettings& work() const { return work_; }
   const std::vector<FrameId>& frames() const { return frames_; }
   ThreadPool& pool() const { return pool_; }
   const ImageIndex& index() const { return index_; }
   const LfImageStore& store() const { return *store_; }
   const MemoryPlan& plan() const { return plan_; }
-  // True if the plates are guarded: FilmOptions::guard is set, and the light field is that of a
+  // True if the plates are guarded: FilmSettings::guard is set, and the light field is that of a
   // densified store.
   bool is_guarded() const { return store_->LoadsDepths(); }
   // The largest number of cells of rebinned rays; 0 if the mode has none.
@@ -59,21 +59,21 @@ class FilmSetup {
 
   // Plans the slabs of the whole film, so that a frame has the same slab in any package and in any
   // part of the film. Does nothing if the mode has no rebinned rays, or if the slabs are planned
-  // already. kInterrupted: WorkOptions::stop is set.
+  // already. kInterrupted: WorkSettings::stop is set.
   Result<void> PlanSlabs();
   // Must be called only after PlanSlabs(), in a mode with rebinned rays.
   const FilmSlabs& slabs() const { return *slabs_; }
 
  private:
-  FilmSetup(Package package, const FilmOptions& film, const WorkOptions& work,
+  FilmSetup(Package package, const FilmSettings& film, const WorkSettings& work,
             std::vector<FrameId> frames, ThreadPool& pool);
   Result<void> CheckStore() const;
   Result<void> FindFootprint();
   Result<void> PlanMemory();
 
   const Package package_;
-  FilmOptions film_;
-  const WorkOptions work_;
+  FilmSettings film_;
+  const WorkSettings work_;
   const std::vector<FrameId> frames_;
   ThreadPool& pool_;
   const ImageIndex index_;

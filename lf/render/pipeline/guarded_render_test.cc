@@ -103,8 +103,8 @@ class GuardedRenderTest : public FolderTest {
 
   LightField field_;
   CameraPath film_;
-  FilmOptions options_;
-  WorkOptions work_;
+  FilmSettings options_;
+  WorkSettings work_;
   ThreadPool pool_{2};
 };
 

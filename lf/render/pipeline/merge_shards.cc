@@ -381,9 +381,9 @@ class Merger {
         inputs.push_back(entry);
     RunChoices picture;
     picture.format = NameOf(options_.format);
-    picture.smooth_below = first.notes.develop.smooth_below;
-    picture.fill_radius_px = first.notes.develop.fill_radius_px;
-    picture.adds_opacity = options_.adds_opacity;
+    picture.film.smooth_below = first.notes.develop.smooth_below;
+    picture.film.fill_radius_px = first.notes.develop.fill_radius_px;
+    picture.film.adds_opacity = options_.adds_opacity;
     picture.look = options_.picture;
     for (auto& entry : InputsOfPicture(picture)) inputs.push_back(std::move(entry));
     return inputs;

@@ -21,7 +21,7 @@ struct MergeOptions {
   std::vector<std::filesystem::path> kept_files;  // files that no output may replace
   FrameFormat format = FrameFormat::kExrHalf;
   PictureOptions picture;
-  bool adds_opacity = false;                   // value of FilmOptions::adds_opacity
+  bool adds_opacity = false;                   // value of FilmSettings::adds_opacity
   std::optional<std::filesystem::path> video;  // path of an mp4 of the frames to write
   bool contact_sheet = true;
   bool resume = false;     // true: keeps frames of an earlier merge (MergeShards())

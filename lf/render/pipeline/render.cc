@@ -31,10 +31,8 @@ namespace {
 RunStateOptions StateOptions(const FilmSetup& setup, const FolderOptions& folder, RunInputs rays) {
   const Package& package = setup.package();
   RunChoices choices;
+  choices.film = setup.film();
   choices.format = NameOf(folder.format);
-  choices.smooth_below = setup.film().smooth_below;
-  choices.fill_radius_px = setup.film().fill_radius_px;
-  choices.adds_opacity = setup.film().adds_opacity;
   choices.look = folder.picture;
   RunInputs picture = InputsOfPicture(choices);
   if (!package.name.empty()) picture.emplace_back(kFilmOfPackage, HashOfCameras(package.path));
@@ -43,7 +41,7 @@ RunStateOptions StateOptions(const FilmSetup& setup, const FolderOptions& folder
           setup.film().shard,   setup.frames()};
 }
 
-WorkOptions WithFlags(WorkOptions work, const RenderSignals* signals) {
+WorkSettings WithFlags(WorkSettings work, const RenderSignals* signals) {
   work.interrupted = signals == nullptr ? nullptr : &signals->attention;
   work.stop = signals == nullptr ? nullptr : &signals->stop;
   return work;
@@ -152,7 +150,7 @@ Result<void> Renderer::OpenState() {
 
 // Logs the plan of the render, for debugging.
 void Renderer::TellPlan() const {
-  const FilmOptions& film = setup_->film();
+  const FilmSettings& film = setup_->film();
   const MemoryPlan& plan = setup_->plan();
   LogDebug(
       "rays: mode {}, estimator {}, filter {}, lens weights {}, back end {}; instruction set {}, "

@@ -16,9 +16,8 @@
 #include "lf/core/result.h"
 #include "lf/film/develop/frame_file.h"
 #include "lf/render/package/package.h"
-#include "lf/render/pipeline/film_options.h"
+#include "lf/render/settings/film_settings.h"
 #include "lf/render/state/report.h"
-#include "lf/selection/image_order.h"
 
 namespace lf {
 
@@ -63,12 +62,12 @@ struct FolderOptions {
   std::function<Result<void>()> complete = {};
 };
 
-// If FilmOptions::shard is set, the render writes plates for MergeShards() instead of frames and a
+// If FilmSettings::shard is set, the render writes plates for MergeShards() instead of frames and a
 // contact sheet.
 struct RenderOptions {
   std::vector<FrameId> frames;       // some frames of the package, ascending; empty: all
-  FilmOptions film;                  // what the frames are made of
-  WorkOptions work;                  // how the work is done; `signals` replaces its flags
+  FilmSettings film;                 // what the frames are made of
+  WorkSettings work;                 // how the work is done; `signals` replaces its flags
   FolderOptions folder;              // where the frames are written
   RenderSignals* signals = nullptr;  // requests to this render, read often; may be null
 };
@@ -83,24 +82,25 @@ struct RenderProgress {
   size_t image_total = 0;
 };
 
-// Checks the options of the film (CheckFilmOptions()) and of the folder. Render() calls this before
-// it starts; a program may call it before a job waits in a queue.
-// kUsage: the options are not compatible; an output would replace a file that the render reads; the
-// lens of a frame is a pinhole, but lens weights by area need its area.
+// Checks the options of the film (CheckFilmSettings()) and of the folder. Render() calls this
+// before it starts; a program may call it before a job waits in a queue. kUsage: the options are
+// not compatible; an output would replace a file that the render reads; the lens of a frame is a
+// pinhole, but lens weights by area need its area.
 Result<void> CheckRenderOptions(const Package& package, const RenderOptions& options);
 
-// Puts the LF images of a whole light field (a package without surroundings) in `order`, computed
-// for the film and the options: sets package->places and package->choices.order.
-// kUsage: the options are not compatible. kInterrupted: RenderSignals::stop is set.
-Result<void> PutInOrder(ImageOrder order, const RenderOptions& options, ThreadPool& pool,
-                        Package* package);
+// Returns a whole light field and a path as one package for these options: with the order, the seed
+// and the largest angle of FilmSettings.
+// kUsage: the options are not compatible (CheckRenderOptions()). kInterrupted: RenderSignals::stop
+// or WorkSettings::stop is set.
+Result<Package> PackageOfFilm(LightField light_field, CameraPath path, const RenderOptions& options,
+                              ThreadPool& pool);
 
 // Renders the frames into output_folder: frame_0001.exr ..., contact_sheet.png, report.json, and
 // the video. A package with a name has the report report-NAME.json and its own state, so that
 // several packages may be rendered into one folder at the same time. A file appears under its final
 // name only when it is whole. The bits of the frames depend neither on the number of threads, nor
-// on the memory (with one exception, see WorkOptions), nor on how often the render was interrupted,
-// killed and resumed. A kill loses at most the work since the last checkpoint.
+// on the memory (with one exception, see WorkSettings), nor on how often the render was
+// interrupted, killed and resumed. A kill loses at most the work since the last checkpoint.
 //   kUsage        the options are not compatible; the folder has an unfinished render, and neither
 //                 FolderOptions::resume nor overwrite is set; resume is set, but the state has
 //                 other inputs; a report of another package or shard there has other inputs

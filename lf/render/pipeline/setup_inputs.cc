@@ -11,9 +11,10 @@
 
 namespace lf {
 
-RunInputs InputsOfRebinning(const FilmOptions& options, size_t max_cells, const std::string& film) {
+RunInputs InputsOfRebinning(const FilmSettings& options, size_t max_cells,
+                            const std::string& film) {
   if (!options.Rebins()) return {};
-  const RebinPassOptions& rebin = options.rebin;
+  const RebinSettings& rebin = options.rebin;
   const ProbabilityOptions& edges = rebin.rebin.probability;
   const auto width = [](const std::optional<double>& value) {
     return value ? fmt::format("{}", *value) : std::string("auto");
@@ -45,18 +46,10 @@ RunInputs InputsOfRebinning(const FilmOptions& options, size_t max_cells, const 
 
 Result<RunInputs> InputsOfRays(const FilmSetup& setup) {
   const Package& package = setup.package();
-  const FilmOptions& film = setup.film();
+  const FilmSettings& film = setup.film();
   RunChoices choices;
   LF_ASSIGN_OR_RETURN(choices.pixels, PixelsOf(setup.light_field()));
-  choices.reading = film.reading;
-  choices.lens_weights = film.lens_weights;
-  choices.back_end = film.back_end;
-  choices.order = package.choices.order;
-  choices.seed = package.choices.seed;
-  choices.max_image_count = film.max_image_count;
-  choices.max_angle_rad = package.choices.max_angle_rad;
-  choices.stop_at_samples = film.stop_at_samples;
-  choices.stop_at_noise = film.stop_at_noise;
+  choices.film = film;
   RunInputs rays = InputsOfRays(package.whole, setup.light_field().encoding, choices);
   if (setup.is_guarded()) rays.emplace_back("guard", "on");
   for (auto& input : InputsOfRebinning(film, setup.max_cells(), HashOfCameras(package.path)))

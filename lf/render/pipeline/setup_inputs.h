@@ -14,7 +14,7 @@ namespace lf {
 
 // Returns the inputs that only rebinned rays depend on; no inputs if the mode is kCollect.
 //   film  hash of all render cameras of the film, because the slabs depend on all of them
-RunInputs InputsOfRebinning(const FilmOptions& options, size_t max_cells, const std::string& film);
+RunInputs InputsOfRebinning(const FilmSettings& options, size_t max_cells, const std::string& film);
 
 // Returns the inputs of the rays of all frames, those of rebinned rays included. kInput: the packed
 // store of the light field cannot be read.

@@ -10,7 +10,7 @@
 
 #include "lf/render/collect/collect.h"
 #include "lf/render/collect/frame_lens.h"
-#include "lf/render/state/shard.h"
+#include "lf/render/settings/shard.h"
 #include "lf/selection/select.h"
 
 namespace lf {

@@ -15,8 +15,8 @@
 #include "lf/film/develop/develop.h"
 #include "lf/film/plate/plate_file.h"
 #include "lf/render/collect/collect.h"
+#include "lf/render/settings/shard.h"
 #include "lf/render/state/run_inputs.h"
-#include "lf/render/state/shard.h"
 #include "lf/selection/lens_weights/lens_coverage.h"
 
 namespace lf {

@@ -59,9 +59,9 @@ std::string ColoursText(const RadianceEncoding& encoding) {
                      encoding.white_balance[1], encoding.white_balance[2], hasher.Text());
 }
 
-std::string StopText(const RunChoices& choices) {
-  if (choices.stop_at_noise) return TextOfNoiseRule(*choices.stop_at_noise);
-  return choices.stop_at_samples ? fmt::format("samples>={}", *choices.stop_at_samples) : "never";
+std::string StopText(const FilmSettings& film) {
+  if (film.stop_at_noise) return TextOfNoiseRule(*film.stop_at_noise);
+  return film.stop_at_samples ? fmt::format("samples>={}", *film.stop_at_samples) : "never";
 }
 
 std::string Text(const Vec3& v) { return fmt::format("{} {} {}", v.x(), v.y(), v.z()); }
@@ -90,35 +90,33 @@ std::string CameraHash(const RenderCamera& camera) {
 
 RunInputs InputsOfRays(const LightFieldIdentity& light_field, const RadianceEncoding& encoding,
                        const RunChoices& choices) {
+  const FilmSettings& film = choices.film;
   RunInputs inputs = {
       {"law", fmt::format("{}", kRayModelVersion)},
       {"law.distortion", fmt::format("{}", kDistortedPositionsVersion)},
-      {"estimator", NameOf(choices.reading.estimator)},
+      {"estimator", NameOf(film.reading.estimator)},
       {"filter",
-       choices.reading.estimator == Estimator::kBilinear ? NameOf(choices.reading.filter) : "none"},
-      {"lf_pixels", choices.reading.footprint ? NameOf(*choices.reading.footprint) : "any"},
-      {"lens_weights", NameOf(choices.lens_weights)},
-      {"lens_weights.law", choices.lens_weights == LensWeights::kNone
-                               ? "none"
-                               : fmt::format("{}", kLensWeightsVersion)},
-      {"back_end", choices.back_end == CollectBackEnd::kFast ? "fast" : "reference"},
-      {"order", NameOf(choices.order)},
-      {"seed", fmt::format("{}", choices.seed)},
-      {"max_images", choices.max_image_count ? fmt::format("{}", *choices.max_image_count) : "all"},
-      {"max_angle_deg", choices.max_angle_rad
-                            ? fmt::format("{}", DegreesFromRadians(*choices.max_angle_rad))
-                            : "any"},
-      {"stop_when", StopText(choices)},
+       film.reading.estimator == Estimator::kBilinear ? NameOf(film.reading.filter) : "none"},
+      {"lf_pixels", film.reading.footprint ? NameOf(*film.reading.footprint) : "any"},
+      {"lens_weights", NameOf(film.lens_weights)},
+      {"lens_weights.law",
+       film.lens_weights == LensWeights::kNone ? "none" : fmt::format("{}", kLensWeightsVersion)},
+      {"back_end", film.back_end == CollectBackEnd::kFast ? "fast" : "reference"},
+      {"order", NameOf(film.order)},
+      {"seed", fmt::format("{}", film.seed)},
+      {"max_images", film.max_image_count ? fmt::format("{}", *film.max_image_count) : "all"},
+      {"max_angle_deg",
+       film.max_angle_rad ? fmt::format("{}", DegreesFromRadians(*film.max_angle_rad)) : "any"},
+      {"stop_when", StopText(film)},
       {"light_field.images", fmt::format("{}", light_field.image_count)},
       {"light_field.names", light_field.names},
       {"light_field.calibration", light_field.calibration},
       {"light_field.pixels", choices.pixels},
       {"light_field.encoding", EncodingText(encoding)},
       {"light_field.colours", ColoursText(encoding)}};
-  if (choices.reading.estimator == Estimator::kBilinear)
+  if (film.reading.estimator == Estimator::kBilinear)
     inputs.push_back({"law.bilinear", fmt::format("{}", kBilinearPositionsVersion)});
-  if (choices.reading.estimator == Estimator::kBilinear &&
-      choices.reading.filter == PixelFilter::kMosaic)
+  if (film.reading.estimator == Estimator::kBilinear && film.reading.filter == PixelFilter::kMosaic)
     inputs.push_back({"law.mosaic", fmt::format("{}", kMosaicReadingVersion)});
   return inputs;
 }
@@ -161,9 +159,9 @@ RunInputs InputsOfCamera(FrameId frame, const RenderCamera& camera,
 
 RunInputs InputsOfPicture(const RunChoices& choices) {
   RunInputs inputs = {{"picture.format", choices.format},
-                      {"picture.smooth_below", fmt::format("{}", choices.smooth_below)},
-                      {"picture.fill_radius", fmt::format("{}", choices.fill_radius_px)}};
-  if (choices.adds_opacity) inputs.emplace_back("picture.alpha", "on");
+                      {"picture.smooth_below", fmt::format("{}", choices.film.smooth_below)},
+                      {"picture.fill_radius", fmt::format("{}", choices.film.fill_radius_px)}};
+  if (choices.film.adds_opacity) inputs.emplace_back("picture.alpha", "on");
   if (choices.look.colours != ColourSpace::kRec709)
     inputs.emplace_back("picture.colour_space", NameOf(choices.look.colours));
   if (choices.look.has_focus_depth) inputs.emplace_back("picture.z", "on");

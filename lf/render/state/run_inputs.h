@@ -15,9 +15,7 @@
 #include "lf/film/develop/frame_file.h"
 #include "lf/light_field/model/light_field_identity.h"
 #include "lf/light_field/model/radiance.h"
-#include "lf/render/collect/collect_batch.h"
-#include "lf/selection/image_order.h"
-#include "lf/selection/lens_weights/frame_weights.h"
+#include "lf/render/settings/film_settings.h"
 
 namespace lf {
 
@@ -25,24 +23,13 @@ namespace lf {
 // film/plate/plate_file.h describes.
 using RunInputs = std::vector<std::pair<std::string, std::string>>;
 
-// The options that decide the rays of a frame. The last ones, from `format` on, decide only how its
-// picture is made from the rays.
+// The choices that decide the rays and the pictures of frames, besides cameras and calibration.
 struct RunChoices {
-  RayReading reading;
-  CollectBackEnd back_end = CollectBackEnd::kFast;
-  ImageOrder order = ImageOrder::kShuffle;
-  uint64_t seed = 0;
-  LensWeights lens_weights = LensWeights::kNone;
-  std::optional<size_t> max_image_count;
-  std::optional<double> max_angle_rad;
-  std::optional<uint32_t> stop_at_samples;  // unset if stop_at_noise is set
-  std::optional<double> stop_at_noise;
+  FilmSettings film;  // completed (Resolved() in render/pipeline/resolved_settings.h)
   // "as recorded", or the settings of the lossy codec that changed the pixels of the LF images.
   std::string pixels = "as recorded";
+  // The members below decide only how a picture is made from the rays.
   std::string format = "exr";
-  uint32_t smooth_below = 0;
-  int fill_radius_px = kFillRadius_px;
-  bool adds_opacity = false;
   PictureOptions look;
 };
 

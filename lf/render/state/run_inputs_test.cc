@@ -44,7 +44,7 @@ TEST(RunInputs, AnotherShutterIsAnotherInput) {
 
 TEST(RunInputs, EveryInputMakesADifferenceAndItsKeyNamesIt) {
   struct Inputs {
-    Inputs() { choices.reading.estimator = Estimator::kBilinear; }
+    Inputs() { choices.film.reading.estimator = Estimator::kBilinear; }
     LightField field = testing::NoiseField();
     RunChoices choices;
     RenderCamera camera = testing::NoiseFrames()[0];
@@ -54,19 +54,19 @@ TEST(RunInputs, EveryInputMakesADifferenceAndItsKeyNamesIt) {
   EXPECT_EQ(FirstDifference(recorded, AllInputs(base.field, base.choices, base.camera)),
             std::nullopt);
   const std::vector<std::pair<std::string, std::function<void(Inputs&)>>> changes = {
-      {"seed", [](Inputs& i) { i.choices.seed = 1; }},
-      {"estimator", [](Inputs& i) { i.choices.reading.estimator = Estimator::kNearest; }},
-      {"filter", [](Inputs& i) { i.choices.reading.filter = PixelFilter::kBicubic; }},
-      {"back_end", [](Inputs& i) { i.choices.back_end = CollectBackEnd::kReference; }},
-      {"lens_weights", [](Inputs& i) { i.choices.lens_weights = LensWeights::kHat; }},
-      {"order", [](Inputs& i) { i.choices.order = ImageOrder::kArea; }},
-      {"max_angle_deg", [](Inputs& i) { i.choices.max_angle_rad = 1; }},
-      {"max_images", [](Inputs& i) { i.choices.max_image_count = 9; }},
-      {"stop_when", [](Inputs& i) { i.choices.stop_at_samples = 9; }},
-      {"stop_when", [](Inputs& i) { i.choices.stop_at_noise = 0.002; }},
+      {"seed", [](Inputs& i) { i.choices.film.seed = 1; }},
+      {"estimator", [](Inputs& i) { i.choices.film.reading.estimator = Estimator::kNearest; }},
+      {"filter", [](Inputs& i) { i.choices.film.reading.filter = PixelFilter::kBicubic; }},
+      {"back_end", [](Inputs& i) { i.choices.film.back_end = CollectBackEnd::kReference; }},
+      {"lens_weights", [](Inputs& i) { i.choices.film.lens_weights = LensWeights::kHat; }},
+      {"order", [](Inputs& i) { i.choices.film.order = ImageOrder::kArea; }},
+      {"max_angle_deg", [](Inputs& i) { i.choices.film.max_angle_rad = 1; }},
+      {"max_images", [](Inputs& i) { i.choices.film.max_image_count = 9; }},
+      {"stop_when", [](Inputs& i) { i.choices.film.stop_at_samples = 9; }},
+      {"stop_when", [](Inputs& i) { i.choices.film.stop_at_noise = 0.002; }},
       {"picture.format", [](Inputs& i) { i.choices.format = "png"; }},
-      {"picture.smooth_below", [](Inputs& i) { i.choices.smooth_below = 2; }},
-      {"picture.fill_radius", [](Inputs& i) { i.choices.fill_radius_px = 32; }},
+      {"picture.smooth_below", [](Inputs& i) { i.choices.film.smooth_below = 2; }},
+      {"picture.fill_radius", [](Inputs& i) { i.choices.film.fill_radius_px = 32; }},
       {"light_field.images", [](Inputs& i) { i.field.cameras.pop_back(); }},
       {"light_field.names", [](Inputs& i) { i.field.image_names[3] += "x"; }},
       {"light_field.names", [](Inputs& i) { i.field.mask_names.assign(49, "m.png"); }},
@@ -117,8 +117,8 @@ TEST(RunInputs, OnlyStatesThatDependOnAReadingHaveItsVersion) {
   const LightField field = testing::NoiseField();
   const auto has = [&](const std::string& key, Estimator estimator, PixelFilter filter) {
     RunChoices choices;
-    choices.reading.estimator = estimator;
-    choices.reading.filter = filter;
+    choices.film.reading.estimator = estimator;
+    choices.film.reading.filter = filter;
     const RunInputs inputs = InputsOfRays(IdentityOf(field), field.encoding, choices);
     return std::count_if(inputs.begin(), inputs.end(),
                          [&](const auto& input) { return input.first == key; }) == 1;

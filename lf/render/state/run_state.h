@@ -34,9 +34,9 @@
 #include "lf/rebinning/ray_map.h"
 #include "lf/render/collect/collect.h"
 #include "lf/render/collect/noise_moments.h"
+#include "lf/render/settings/shard.h"
 #include "lf/render/state/report.h"
 #include "lf/render/state/run_inputs.h"
-#include "lf/render/state/shard.h"
 
 namespace lf {
 

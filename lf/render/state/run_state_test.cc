@@ -32,7 +32,7 @@ class RunStateTest : public ::testing::Test {
 
   Result<std::unique_ptr<RunState>> Open(bool resume, bool overwrite = false, uint64_t seed = 0) {
     RunChoices choices;
-    choices.seed = seed;
+    choices.film.seed = seed;
     std::vector<FrameId> frames;
     for (uint32_t n = 1; n <= path_.frame_count(); ++n) frames.push_back(FrameId{n});
     return RunState::Open(
@@ -160,7 +160,7 @@ TEST_F(RunStateTest, OtherInputsAreNamed) {
 TEST_F(RunStateTest, FramesOfAnotherFilmAreNotLeftBesideNewOnes) {
   const auto open = [this](std::vector<FrameId> written, uint64_t seed, bool overwrite = false) {
     RunChoices choices;
-    choices.seed = seed;
+    choices.film.seed = seed;
     RunStateOptions options = {folder_,
                                "",
                                {},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The options of a film that is rendered in memory: what its frames are made of, and how the work
-// is done. render.h adds the folder that the frames are written into.
+// All that is said of a film besides its light field and its path: what its frames are made of, and
+// how the work is done. The defaults are those of all programs. render/pipeline/render.h adds the
+// folder that frames are written into.
 #pragma once
 
 #include <atomic>
@@ -9,35 +10,41 @@
 #include <optional>
 
 #include "lf/film/develop/develop.h"
-#include "lf/light_field/model/radiance.h"
-#include "lf/render/collect/collect_batch.h"
-#include "lf/render/hybrid/rebinned_rays.h"
-#include "lf/render/hybrid/render_mode.h"
-#include "lf/render/needs/frame_needs.h"
-#include "lf/render/package/package.h"
-#include "lf/render/state/shard.h"
+#include "lf/render/settings/ray_reading.h"
+#include "lf/render/settings/rebin_settings.h"
+#include "lf/render/settings/render_mode.h"
+#include "lf/render/settings/shard.h"
+#include "lf/selection/image_order.h"
 #include "lf/selection/lens_weights/frame_weights.h"
 
 namespace lf {
 
-// These options and the package decide every bit of a frame.
-struct FilmOptions {
+// These settings, the light field and the path decide every bit of a frame.
+struct FilmSettings {
   RenderMode mode = RenderMode::kCollect;
   // Unused if the mode is kCollect. If rebin.max_cells is 0, there are as many cells as fit in half
-  // of the memory (kRebin), or in a quarter of it (kHybrid).
-  RebinPassOptions rebin;
+  // of the memory (kRebin), or in a quarter of it (kHybrid). Its seeds are replaced by `seed`.
+  RebinSettings rebin;
   // The filter must not be kMosaic if the estimator is kBilinear and CountsRays() is true, because
   // the filter counts a ray up to 8 times.
-  RayReading reading;
+  RayReading reading = Estimator::kBilinear;
   // If CountsRays() is true, must be kNone or kAuto (which Resolved() then replaces by kNone),
   // because weighted counts are not ray counts. Otherwise, must be kNone if the package has no
   // neighbours.
-  LensWeights lens_weights = LensWeights::kNone;
+  LensWeights lens_weights = LensWeights::kAuto;
   CollectBackEnd back_end = CollectBackEnd::kFast;
   // True: frames of a densified light field have guarded plates (FilmSetup::is_guarded()), so that
   // they are never worse than frames of its recorded LF images alone (doc/densify.md). Changes
   // nothing for other light fields.
   bool guard = true;
+
+  // The next three settings select the LF images of a whole light field (PackageOfFilm() in
+  // render/pipeline/film_package.h). They are unused if packages are rendered, because a package
+  // states them itself (PackageChoices).
+  ImageOrder order = ImageOrder::kShuffle;  // in which frames take LF images
+  uint64_t seed = 0;                        // of the order kShuffle and of rebinned rays
+  // If set, the largest angle between the axes of LF camera and frame, above 0.
+  std::optional<double> max_angle_rad;
 
   // If set, a frame takes at most this number of LF images: the first ones in the order that
   // contribute to it. Must be above 0, and must not exceed the limit that the package was made
@@ -55,10 +62,11 @@ struct FilmOptions {
   // If set, the report of each frame states the share of its reachable elements that have at least
   // this number of rays in every channel.
   std::optional<uint32_t> require_samples;
-  // If set, a frame is finished when its noise is at most this (noise_rule.h), in linear radiance
-  // where the light field's white is 1. The rule is applied at the places that NoiseDecisionAfter()
-  // gives. It can be combined with every mode, estimator, filter and weights: with kRebin, frames
-  // collect rays only to measure the noise, and their pictures do not use these rays.
+  // If set, a frame is finished when its noise is at most this (render/collect/noise_rule.h), in
+  // linear radiance where the light field's white is 1. The rule is applied at the places that
+  // NoiseDecisionAfter() gives. It can be combined with every mode, estimator, filter and weights:
+  // with kRebin, frames collect rays only to measure the noise, and their pictures do not use these
+  // rays.
   std::optional<double> stop_at_noise;
   // If set, the report of each frame states its noise and this limit.
   std::optional<double> require_noise;
@@ -70,9 +78,9 @@ struct FilmOptions {
 
   bool Collects() const { return lf::Collects(mode); }
   bool Rebins() const { return lf::Rebins(mode); }
-  // Returns true if an option depends on how many rays each element has.
+  // Returns true if a setting depends on how many rays each element has.
   bool CountsRays() const { return stop_at_samples || require_samples || smooth_below > 0; }
-  // Returns true if an option depends on the noise, which is measured by how much the LF images
+  // Returns true if a setting depends on the noise, which is measured by how much the LF images
   // differ within an element.
   bool MeasuresNoise() const { return stop_at_noise || require_noise; }
   bool HasStopRule() const { return stop_at_samples || stop_at_noise; }
@@ -80,32 +88,24 @@ struct FilmOptions {
   bool HasPlates() const { return Collects() || MeasuresNoise(); }
 };
 
-// Returns the options, with these values replaced by what follows from the package and from other
-// options:
-//   lens_weights     kNone if the mode is kRebin, or if it was kAuto and rays are counted
-//   reading.filter   if it was kAuto: the choice of FilterOf() (collection/gather_sampling.h)
-//   max_image_count  the limit that the package was made with, if it was unset
-FilmOptions Resolved(FilmOptions options, const Package& package);
-
-// These options decide how the work is done. The frames have the same bits for any values, with one
-// exception: if rebin.max_cells is 0, the number of rebinned rays follows from memory_bytes.
-struct WorkOptions {
+// These settings decide how the work is done. The frames have the same bits for any values, with
+// one exception: if rebin.max_cells is 0, the number of rebinned rays follows from memory_bytes.
+struct WorkSettings {
   size_t memory_bytes = size_t{8} << 30;
+  // Number of threads of functions that make their own ThreadPool (api/); 0: one for each
+  // processor.
+  int threads = 0;
   bool strict = false;        // true: a broken LF image is an error; false: it is skipped
   bool whole_images = false;  // value of SelectOptions::whole_images; true is slower
   // If not null: when any thread sets it to true, a step ends soon with kInterrupted. The caller
   // then clears the flag, and may continue with the next step.
   const std::atomic<bool>* interrupted = nullptr;
-  // If not null: when any thread sets it to true, all functions that take these options end soon
+  // If not null: when any thread sets it to true, all functions that take these settings end soon
   // with kInterrupted. That thread must then set `interrupted` to true as well, because a step
   // (FilmRenderer::Step()) reads only `interrupted`.
   const std::atomic<bool>* stop = nullptr;
 
   bool IsStopped() const { return stop != nullptr && *stop; }
 };
-
-// Returns the options that decide which LF images frames of the package need
-// (render/needs/frame_needs.h).
-NeedsOptions NeedsOfFilm(const Package& package, const FilmOptions& film, const WorkOptions& work);
 
 }  // namespace lf

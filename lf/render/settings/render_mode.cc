@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lf/render/hybrid/render_mode.h"
+#include "lf/render/settings/render_mode.h"
 
 #include <fmt/format.h>
 

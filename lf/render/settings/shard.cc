@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lf/render/state/shard.h"
+#include "lf/render/settings/shard.h"
 
 #include <charconv>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lf/render/pipeline/check_film_options.h"
+#include "lf/render/pipeline/check_film_settings.h"
 
 #include <fmt/format.h>
 
@@ -9,13 +9,14 @@
 
 #include "lf/core/geometry.h"
 #include "lf/render/collect/frame_lens.h"
+#include "lf/render/pipeline/resolved_settings.h"
 
 namespace lf {
 namespace {
 
 // Checks that the viewing direction of every frame is within 60 degrees of --slab-forward, because
 // only rays in about this direction meet the st plane of the slab before the uv plane.
-Result<void> CheckSlab(const Package& package, const FilmOptions& film,
+Result<void> CheckSlab(const Package& package, const FilmSettings& film,
                        const std::vector<FrameId>& frames) {
   constexpr double kMost_deg = 60;
   if (!film.Rebins() || !film.rebin.slab.forward_world) return {};
@@ -34,7 +35,7 @@ Result<void> CheckSlab(const Package& package, const FilmOptions& film,
 }
 
 // Checks that a shard has no option that needs the rays of all shards.
-Result<void> CheckShard(const FilmOptions& film) {
+Result<void> CheckShard(const FilmSettings& film) {
   if (!film.shard) return {};
   if (film.mode == RenderMode::kCollect && !film.stop_at_samples && !film.require_samples &&
       !film.MeasuresNoise())
@@ -44,7 +45,7 @@ Result<void> CheckShard(const FilmOptions& film) {
       "and --require need all of them: leave out these options, or --shard");
 }
 
-Result<void> CheckRebinnedRays(const Package& package, const FilmOptions& film,
+Result<void> CheckRebinnedRays(const Package& package, const FilmSettings& film,
                                const std::vector<FrameId>& frames) {
   if (film.mode == RenderMode::kRebin && film.CountsRays())
     return UsageError(
@@ -74,7 +75,7 @@ Result<void> CheckRebinnedRays(const Package& package, const FilmOptions& film,
   return {};
 }
 
-Result<void> CheckLensWeights(const Package& package, const FilmOptions& film,
+Result<void> CheckLensWeights(const Package& package, const FilmSettings& film,
                               const std::vector<FrameId>& frames) {
   if (film.lens_weights == LensWeights::kNone) {
     for (const FrameId frame : frames)
@@ -106,7 +107,7 @@ Result<void> CheckLensWeights(const Package& package, const FilmOptions& film,
 }
 
 // Checks that the frames of a densified light field can be guarded.
-Result<void> CheckGuard(const Package& package, const FilmOptions& film) {
+Result<void> CheckGuard(const Package& package, const FilmSettings& film) {
   constexpr const char* kRemedy = "add --no-guard";
   for (const RenderCamera& camera : package.path.cameras)
     if (camera.surface)
@@ -139,9 +140,9 @@ Result<void> CheckGuard(const Package& package, const FilmOptions& film) {
 
 }  // namespace
 
-Result<void> CheckFilmOptions(const Package& package, const FilmOptions& options,
-                              const std::vector<FrameId>& given) {
-  const FilmOptions film = Resolved(options, package);
+Result<void> CheckFilmSettings(const Package& package, const FilmSettings& options,
+                               const std::vector<FrameId>& given) {
+  const FilmSettings film = Resolved(options, package);
   const std::vector<FrameId> frames = given.empty() ? package.FrameIds() : given;
   LF_RETURN_IF_ERROR(CheckRebinnedRays(package, film, frames));
   const std::optional<size_t>& most = package.choices.max_image_count;

@@ -8,7 +8,7 @@
 #include "lf/core/ids.h"
 #include "lf/core/result.h"
 #include "lf/render/package/package.h"
-#include "lf/render/pipeline/film_options.h"
+#include "lf/render/settings/film_settings.h"
 
 namespace lf {
 
@@ -21,7 +21,7 @@ namespace lf {
 // light field is densified but its frames cannot be guarded, because they have rebinned rays, the
 // path has a shutter, LF images have opacities or mosaics, or the package lacks the LF cameras
 // beside the lens.
-Result<void> CheckFilmOptions(const Package& package, const FilmOptions& options,
-                              const std::vector<FrameId>& frames);
+Result<void> CheckFilmSettings(const Package& package, const FilmSettings& options,
+                               const std::vector<FrameId>& frames);
 
 }  // namespace lf
