@@ -6,12 +6,13 @@ usage: install_test.py CMAKE BUILD_FOLDER SOURCE_FOLDER
 """
 import os
 import pathlib
-import re
 import shutil
 import subprocess
 import sys
 import tempfile
 import unittest
+
+import numpy as np
 
 import small_field
 
@@ -50,13 +51,33 @@ class InstallTest(unittest.TestCase):
             self.assertTrue((work / "frames" / "frame_0002.png").exists())
 
     def frame(self, program):
+        """Frames of the library have the bytes of the frames of lfrenderer."""
+        ways = {  # settings of the program tests/foreign/frame.cc, options of lfrenderer, and lines of the path
+            "default": ([], [], ""),
+            "nearest": (["nearest", "no weights"], ["--estimator", "nearest", "--lens-weights", "none"], ""),
+            "hybrid": (["hybrid"], ["--mode", "hybrid"], ""),
+            "surface": ([], [], "focus: {surface: depths.pfm, kind: depth}\n"),
+            "transmission": ([], [], 'transmission: "00ff/ff80"\n')}
         with tempfile.TemporaryDirectory() as temporary:
             work = pathlib.Path(temporary)
             field = small_field.write_field(work / "field")
-            said = self.run_tool(program, field, small_field.write_path(work, frames=1))
-            found = re.fullmatch(r"(\d+) x (\d+), red of the middle: ([0-9.e-]+)\n", said)
-            self.assertTrue(found, said)
-            self.assertGreater(float(found[3]), 0)
+            depths = np.linspace(0.6, 2, 80 * 60, dtype="<f4").reshape(60, 80)
+            (work / "depths.pfm").write_bytes(b"Pf\n80 60\n-1\n" + depths.tobytes())
+            frames = {}
+            for way, (settings, options, lines) in ways.items():
+                path = small_field.write_path(work, frames=1)
+                text = path.read_text()
+                indented = lines.startswith("transmission")
+                path.write_text(text.replace("lens:\n", f"lens:\n  {lines}") if indented else text + lines)
+                self.run_tool(program, field, path, work / f"{way}.exr", *settings)
+                self.run_tool(self.prefix / "bin" / "lfrenderer", field, path, "-o", work / way, *options)
+                frames[way] = (work / f"{way}.exr").read_bytes()
+                with self.subTest(way):
+                    self.assertEqual(frames[way], (work / way / "frame_0001.exr").read_bytes())
+            self.assertEqual(len(set(frames.values())), len(ways), "two ways give one frame")
+            refused = subprocess.run([program, field, path, work / "frame.jpg"], capture_output=True, text=True)
+            self.assertEqual(refused.returncode, 2)
+            self.assertIn("frame.jpg: expected a name that ends in .exr or .png", refused.stderr)
 
     def test_a_foreign_project_by_cmake(self):
         build = self.folder / "by-cmake"
@@ -101,6 +122,7 @@ class InstallTest(unittest.TestCase):
     def test_internal_headers_stay_behind(self):
         headers = sorted(p.name for p in (self.prefix / "include").rglob("*.h"))
         self.assertIn("render.h", headers)
+        self.assertTrue((self.prefix / "include" / "lf" / "lfrendertools.h").exists())
         self.assertNotIn("plan_on_arcs.h", headers)
         self.assertFalse([name for name in headers if name.startswith("test")])
 

@@ -47,6 +47,16 @@ def test_frames_have_the_bytes_of_lfrenderer(way, field, path, capture, path_fil
         assert (tmp_path / "one.exr").read_bytes() == (tmp_path / "frames" / "frame_0002.exr").read_bytes()
 
 
+def test_a_transmission_has_the_bytes_of_lfrenderer(field, capture, path_file, run, tmp_path):
+    text = path_file.read_text()
+    shaped = tmp_path / "path.yaml"
+    shaped.write_text(text.replace("lens:\n", "lens:\n  transmission: \"00ff/ff80\"\n"))
+    assert shaped.read_text() != text
+    run("lfrenderer", capture, shaped, "-o", tmp_path / "frames", "--frames", 1)
+    lf.render(field, lf.Path.load(shaped), frames=[1]).save(tmp_path / "frame.exr")
+    assert (tmp_path / "frame.exr").read_bytes() == (tmp_path / "frames/frame_0001.exr").read_bytes()
+
+
 @pytest.mark.parametrize("way, other", [("smooth", "nearest"), ("areas", "points")])
 def test_options_that_are_compared_with_the_program_change_the_frame(way, other, field, path):
     changed, plain = (lf.render(field, path, **WAYS[name]).rgb for name in (way, other))

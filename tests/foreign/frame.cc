@@ -1,37 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// Renders the first frame of a path into an array: frame LIGHTFIELD PATH.yaml
-#include <cstdio>
+// Renders the first frame of a path into a file: frame LIGHTFIELD PATH FRAME.exr [SETTING...]
+#include <lf/lfrendertools.h>
+
+#include <string_view>
 #include <utility>
-#include <vector>
-
-#include "lf/camera/path/path_yaml.h"
-#include "lf/import/formats/open_light_field.h"
-#include "lf/render/package/package.h"
-#include "lf/render/pipeline/film_renderer.h"
-
-lf::Result<lf::Image<float>> FirstFrame(const char* calibration, const char* path_file) {
-  LF_ASSIGN_OR_RETURN(lf::LightField light_field, lf::OpenLightField(calibration));
-  LF_ASSIGN_OR_RETURN(lf::CameraPath path, lf::ReadPathYaml(path_file, light_field.unit_m));
-  lf::ThreadPool pool(2);
-  constexpr uint64_t kSeed = 0;  // seed of the order of the LF images
-  lf::Package film = lf::PackageOfAll(std::move(light_field), std::move(path), kSeed);
-  LF_ASSIGN_OR_RETURN(const auto renderer,
-                      lf::FilmRenderer::Open(std::move(film), lf::FilmSettings(), lf::WorkSettings(),
-                                             {lf::FrameId{1}}, pool));
-  for (bool is_going_on = true; is_going_on;) {
-    LF_ASSIGN_OR_RETURN(is_going_on, renderer->Step());
-  }
-  return renderer->Develop(0).picture.rgb;
-}
 
 int main(int argc, char** argv) {
-  if (argc != 3) return 2;
-  const auto picture = FirstFrame(argv[1], argv[2]);
-  if (!picture) {
-    std::fprintf(stderr, "error: %s\n", picture.error().message.c_str());
-    return 3;
+  if (argc < 4) return 2;
+  lf::Result<lf::LightField> light_field = lf::Open(argv[1]);
+  if (!light_field) return lf::Report(light_field.error());
+  lf::Result<lf::Film> film = lf::OpenFilm(*std::move(light_field), argv[2]);
+  if (!film) return lf::Report(film.error());
+  for (const std::string_view setting : std::span(argv + 4, argv + argc)) {
+    if (setting == "hybrid") film->settings.mode = lf::RenderMode::kHybrid;
+    if (setting == "nearest") film->settings.reading = lf::Estimator::kNearest;
+    if (setting == "no weights") film->settings.lens_weights = lf::LensWeights::kNone;
   }
-  std::printf("%d x %d, red of the middle: %.9g\n", picture->width(), picture->height(),
-              picture->at(picture->width() / 2, picture->height() / 2, 0));
-  return 0;
+  const lf::Result<lf::Frame> frame = lf::RenderFrame(*film, 1);
+  if (!frame) return lf::Report(frame.error());
+  const lf::Result<void> saved = lf::SaveFrame(*frame, argv[3]);
+  return saved ? 0 : lf::Report(saved.error());
 }
