@@ -279,7 +279,7 @@ Result<void> Run(Arguments* a, const Program& program, bool has_format, int argc
   RenderSignals& signals = CatchRenderSignals();
   ThreadPool pool(common.threads);
   ProgressMeter meter(ParseProgressStyle(common.progress),
-                      a->render.estimator == "nearest" ? "rays" : "px");
+                      a->render.settings.Word("estimator") == "nearest" ? "rays" : "px");
   LF_ASSIGN_OR_RETURN(const Rendered rendered,
                       RenderStack(*a, common, pool, &signals, [&](const RenderProgress& now) {
                         meter.Update(now.ray_count, now.ray_total,
@@ -292,7 +292,7 @@ Result<void> Run(Arguments* a, const Program& program, bool has_format, int argc
   }
   const Result<RenderReport>& report = *rendered.report;
   if (!report) return WithResumeCommand(report.error(), argc, argv);
-  SummariseRender(*report, a->render.output, a->render.lens_weights == "auto");
+  SummariseRender(*report, a->render.output, a->render.settings.Word("lens_weights") == "auto");
   if (common.json) LF_RETURN_IF_ERROR(PrintReport(ReportJson(rendered)));
   return OutcomeOf(*report, rendered.options.render.film, a->render.allow_missing,
                    rendered.missing);

@@ -15,6 +15,7 @@
 #include "tools/common/program.h"
 #include "tools/common/programs.h"
 #include "tools/common/progress.h"
+#include "tools/common/setting_options.h"
 #include "tools/common/validators.h"
 #include "tools/forecast_report.h"
 #include "tools/known_depths.h"
@@ -23,6 +24,7 @@
 #include "lf/core/version.h"
 #include "lf/distribute/preprocess/preprocess.h"
 #include "lf/import/paths/open_path.h"
+#include "lf/render/settings/setting_table.h"
 
 namespace {
 
@@ -46,11 +48,9 @@ bit-identical to those of lfrenderer LIGHTFIELD PATH.)",
 struct Arguments {
   lf::LightFieldArgument light_field;
   lf::FrameRangeArguments frames;
-  std::string path, output, memory = "8G", order = "shuffle", balance = "rays";
-  std::string estimator = "auto", lens_weights = "auto", mode = "collect";
+  std::string path, output, memory = "8G", balance = "rays";
+  lf::SettingOptions settings;  // of the later render
   int64_t packages = 0, frames_per_package = 0;
-  uint64_t max_images = 0;
-  double max_angle_deg = 0;
   std::vector<double> depths;
   bool no_guard = false, plan = false, overwrite = false;
   lf::AllowMissing allow_missing;
@@ -90,21 +90,22 @@ void AddInputAndOutput(CLI::App& app, Arguments& a) {
 
 void AddRender(CLI::App& app, Arguments& a) {
   lf::OptionGroup picture(app, lf::kPictureGroup);
-  picture.AddChoice(
-      "--mode", a.mode, {"collect", "rebin", "hybrid"},
+  a.settings.AddTo(
+      picture, "mode",
       "Mode of the later render\n"
       "Give the value that lfrenderer --mode will have. It affects which LF images and pixels the "
       "packages contain, the forecast, and the pixels that lfcompressor --needed-pixels keeps.");
-  picture.AddChoice("--lens-weights", a.lens_weights, {"auto", "none", "area", "hat"},
-                    "Lens weights of the later render\n"
-                    "Give the value that lfrenderer --lens-weights will have.\n"
-                    "none, with --mode collect: packages do not contain the LF cameras beside the "
-                    "lens, and can only be rendered with --lens-weights none");
+  a.settings.AddTo(
+      picture, "lens_weights",
+      "Lens weights of the later render\n"
+      "Give the value that lfrenderer --lens-weights will have.\n"
+      "none, with --mode collect: packages do not contain the LF cameras beside the lens, and can "
+      "only be rendered with --lens-weights none");
   picture.AddFlag("--no-guard", a.no_guard,
                   "The later render will have --no-guard\n"
                   "It matters only for densified light fields.");
-  picture.AddChoice(
-      "--estimator", a.estimator, {"auto", "nearest", "bilinear"},
+  a.settings.AddTo(
+      picture, "estimator",
       "Estimator of the later render\n"
       "Give the value that lfrenderer --estimator will have. The forecast and the pixels that "
       "lfcompressor --needed-pixels keeps depend on it.");
@@ -112,21 +113,16 @@ void AddRender(CLI::App& app, Arguments& a) {
 
 void AddQuality(CLI::App& app, Arguments& a) {
   lf::OptionGroup quality(app, lf::kQualityGroup), running(app, lf::kRunningGroup);
-  quality.Add("--max-images N", a.max_images,
-              "Maximum number of LF images per frame (all)\n"
-              "A frame uses the first N of the LF images that contribute to it, in the order of "
-              "--order.");
-  quality
-      .Add("--max-angle DEGREES", a.max_angle_deg,
-           "Largest angle between LF camera and frame axes (no limit)\n"
-           "A frame uses only LF cameras whose optical axis is within DEGREES of its own optical "
-           "axis.")
-      ->check(CLI::Range(0., 180.));
-  quality.AddChoice("--order", a.order, {"shuffle", "round-robin", "area"},
-                    "Order in which frames take LF images\n"
-                    "shuffle: random, by --seed\n"
-                    "round-robin: always an LF image for the frame with the fewest rays\n"
-                    "area: LF images with the most rays first");
+  a.settings.AddTo(quality, "max_images",
+                   "Maximum number of LF images per frame (all)\n"
+                   "A frame uses the first N of the LF images that contribute to it, in the order "
+                   "of --order.");
+  a.settings.AddTo(quality, "max_angle_deg");
+  a.settings.AddTo(quality, "order",
+                   "Order in which frames take LF images\n"
+                   "shuffle: random, by --seed\n"
+                   "round-robin: always an LF image for the frame with the fewest rays\n"
+                   "area: LF images with the most rays first");
   quality
       .Add("--depths NEAR FAR", a.depths,
            "Nearest and farthest depth of the scene, for the forecast\n"
@@ -163,16 +159,17 @@ lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::Comm
   options.inputs = lf::FilesOfPath(a.path);
   options.inputs.emplace_back(a.light_field.path);
   LF_ASSIGN_OR_RETURN(options.frames, a.frames.Of(path.frame_count()));
-  options.order = *lf::ImageOrderOf(a.order);
+  lf::FilmSettings film;
+  LF_RETURN_IF_ERROR(a.settings.Set(&film));
+  options.order = film.order;
   options.seed = common.seed;
-  if (a.max_images > 0) options.max_image_count = static_cast<size_t>(a.max_images);
-  if (a.max_angle_deg > 0) options.max_angle_rad = lf::RadiansFromDegrees(a.max_angle_deg);
-  options.reading.estimator =
-      a.estimator == "nearest" ? lf::Estimator::kNearest : lf::Estimator::kBilinear;
+  options.max_image_count = film.max_image_count;
+  options.max_angle_rad = film.max_angle_rad;
+  options.reading.estimator = film.reading.estimator;
   options.reading.filter = lf::FilterOf(lf::PixelFilter::kAuto, encoding, false);
-  options.lens_weights = *lf::LensWeightsOf(a.lens_weights);
+  options.lens_weights = film.lens_weights;
   options.guard = !a.no_guard;
-  options.mode = *lf::RenderModeOf(a.mode);
+  options.mode = film.mode;
   // As in lfrenderer, auto means none with --mode rebin, which collects no rays to weight.
   if (options.mode == lf::RenderMode::kRebin && options.lens_weights == lf::LensWeights::kAuto)
     options.lens_weights = lf::LensWeights::kNone;
@@ -218,10 +215,9 @@ std::string NextOf(const Arguments& a, const lf::PreprocessReport& report) {
                           const std::string& otherwise) {
     if (value != otherwise) options.insert(options.end(), {option, value});
   };
+  for (const char* key : {"mode", "lens_weights", "estimator"})
+    repeat(lf::OptionOf(key), a.settings.Word(key), lf::FindSetting(key)->get(lf::FilmSettings()));
   const Arguments usual;
-  repeat("--mode", a.mode, usual.mode);
-  repeat("--lens-weights", a.lens_weights, usual.lens_weights);
-  repeat("--estimator", a.estimator, usual.estimator);
   repeat("--memory", a.memory, usual.memory);
   repeat("--allow-missing", a.allow_missing.text, usual.allow_missing.text);
   if (a.no_guard) options.emplace_back("--no-guard");

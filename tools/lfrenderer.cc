@@ -141,7 +141,7 @@ int main(int argc, char** argv) {
     lf::ThreadPool pool(common.threads);
     // The progress is counted in pixels of the needed rectangles, because their number is known
     // before the render. With the estimator nearest, each of these pixels is a ray to be tested.
-    const char* unit = arguments.estimator == "nearest" ? "rays" : "px";
+    const char* unit = arguments.settings.Word("estimator") == "nearest" ? "rays" : "px";
     lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), unit);
     const auto progress = [&](const lf::RenderProgress& now) {
       meter.Update(now.ray_count, now.ray_total,
@@ -162,7 +162,8 @@ int main(int argc, char** argv) {
       look_at /= arguments.HasPackages()
                      ? lf::ContactSheetName({arguments.inputs.begin(), arguments.inputs.end()})
                      : "contact_sheet.png";
-    lf::SummariseRender(report, look_at.string(), arguments.lens_weights == "auto");
+    lf::SummariseRender(report, look_at.string(),
+                        arguments.settings.Word("lens_weights") == "auto");
     if (common.json && !(std::cout << lf::ToJson(report) << std::flush))
       return lf::OutputError(
           "--json: the report cannot be written to stdout: is the disk full, or was the pipe "

@@ -14,6 +14,7 @@
 #include "tools/common/program.h"
 #include "tools/common/programs.h"
 #include "tools/common/progress.h"
+#include "tools/common/setting_options.h"
 #include "tools/common/validators.h"
 #include "tools/visualizer/export_page.h"
 #include "tools/visualizer/page_server.h"
@@ -54,7 +55,8 @@ struct Arguments {
   lf::FrameRangeArguments frames;
   std::string path, watch, export_folder, live_memory = "512M", export_live = "32M";
   int port = 0;
-  uint64_t max_images = 0, export_images = 400;
+  lf::SettingOptions settings;
+  uint64_t export_images = 400;
   bool text = false;
   lf::AllowMissing allow_missing;
 };
@@ -124,25 +126,22 @@ void AddOutput(CLI::App& app, Arguments& a) {
 
 void AddQuality(CLI::App& app, Arguments& a) {
   lf::OptionGroup picture(app, lf::kPictureGroup), quality(app, lf::kQualityGroup);
-  picture.AddChoice("--estimator", a.page.estimator, {"bilinear", "nearest"},
-                    "Estimator of the render\n"
-                    "Give the value that lfrenderer --estimator will have (its value auto is "
-                    "bilinear). Which pixels the page shows as used depends on it.");
-  picture.AddChoice("--lens-weights", a.page.lens_weights, {"auto", "none", "area", "hat"},
-                    "Lens weights of the render\n"
-                    "Give the value that lfrenderer --lens-weights will have. Which LF cameras the "
-                    "page shows as used depends on it.");
-  quality.Add(
-      "--max-images N", a.max_images,
-      "Maximum number of LF images per frame (all)\n"
-      "A frame uses the first N of the LF images that contribute to it, in a random order, as "
-      "with lfrenderer --max-images.");
-  quality
-      .Add("--max-angle DEGREES", a.page.max_angle_deg,
-           "Largest angle between LF camera and frame axes (no limit)\n"
-           "A frame uses only LF cameras whose optical axis is within DEGREES of its own optical "
-           "axis, as with lfrenderer --max-angle.")
-      ->check(CLI::Range(0.0, 180.0));
+  a.settings.AddTo(picture, "estimator",
+                   "Estimator of the render\n"
+                   "Give the value that lfrenderer --estimator will have. Which pixels the page "
+                   "shows as used depends on it.");
+  a.settings.AddTo(picture, "lens_weights",
+                   "Lens weights of the render\n"
+                   "Give the value that lfrenderer --lens-weights will have. Which LF cameras the "
+                   "page shows as used depends on it.");
+  a.settings.AddTo(quality, "max_images",
+                   "Maximum number of LF images per frame (all)\n"
+                   "A frame uses the first N of the LF images that contribute to it, in a random "
+                   "order, as with lfrenderer --max-images.");
+  a.settings.AddTo(quality, "max_angle_deg",
+                   "Largest angle between LF camera and frame axes (no limit)\n"
+                   "A frame uses only LF cameras whose optical axis is within DEGREES of its own "
+                   "optical axis, as with lfrenderer --max-angle.");
 }
 
 void AddOptions(CLI::App& app, Arguments& a) {
@@ -151,13 +150,20 @@ void AddOptions(CLI::App& app, Arguments& a) {
   AddQuality(app, a);
 }
 
-lf::NeedsOptions Needs(const Arguments& a) {
+lf::Result<lf::FilmSettings> FilmOf(const Arguments& a, const lf::CommonOptions& common) {
+  lf::FilmSettings film;
+  LF_RETURN_IF_ERROR(a.settings.Set(&film));
+  film.seed = common.seed;
+  return film;
+}
+
+lf::NeedsOptions Needs(const lf::FilmSettings& film) {
   lf::NeedsOptions needs;
-  if (a.page.estimator == "bilinear") needs.select.reach = lf::PixelReach::kElement;
-  if (a.page.max_angle_deg > 0)
-    needs.select.max_angle_rad = lf::RadiansFromDegrees(a.page.max_angle_deg);
-  needs.lens_weights = *lf::LensWeightsOf(a.page.lens_weights);
-  if (a.max_images > 0) needs.max_image_count = a.max_images;
+  if (film.reading.estimator == lf::Estimator::kBilinear)
+    needs.select.reach = lf::PixelReach::kElement;
+  needs.select.max_angle_rad = film.max_angle_rad;
+  needs.lens_weights = film.lens_weights;
+  needs.max_image_count = film.max_image_count;
   return needs;
 }
 
@@ -173,7 +179,7 @@ lf::Result<void> PrintText(const Arguments& a, const lf::CommonOptions& common) 
       frames.push_back(lf::FrameId{number});
   lf::ThreadPool pool(common.threads);
   LF_RETURN_IF_ERROR(lf::AddFocalSurfaces(a.path, light_field, {frames, &pool, nullptr}, &path));
-  return lf::WriteSceneText(light_field, path, frames, common.seed, Needs(a), pool,
+  return lf::WriteSceneText(light_field, path, frames, common.seed, Needs(a.page.film), pool,
                             lf::PrintReport);
 }
 
@@ -208,6 +214,7 @@ lf::Result<void> Run(Arguments& a, const lf::CommonOptions& common) {
     return lf::UsageError(
         "--text cannot be used with --depth: leave --depth out, or leave --text out to show the "
         "depths on the page");
+  LF_ASSIGN_OR_RETURN(a.page.film, FilmOf(a, common));
   if (a.text) return PrintText(a, common);
   LF_ASSIGN_OR_RETURN(const lf::MissingLimit limit, a.allow_missing.Limit());
   const std::atomic<bool>& interrupted = lf::CatchInterrupts();
@@ -215,8 +222,7 @@ lf::Result<void> Run(Arguments& a, const lf::CommonOptions& common) {
   a.page.light_field_options = a.light_field.Words();
   a.page.path = a.path;
   a.page.watch = a.watch;
-  a.page.needs = Needs(a);
-  a.page.seed = common.seed;
+  a.page.needs = Needs(a.page.film);
   a.page.threads = common.threads;
   a.page.interrupted = &interrupted;
   LF_ASSIGN_OR_RETURN(a.page.live_memory_bytes, lf::ParseByteSize(a.live_memory, "--live-memory"));

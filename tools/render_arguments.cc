@@ -24,15 +24,6 @@
 namespace lf {
 namespace {
 
-// Parses the value of --fill: a radius in elements, or "off", which is 0.
-Result<int> ParseFill(const std::string& text) {
-  if (text == "off") return 0;
-  const std::optional<int> radius_px = ParseWhole<int>(text);
-  if (radius_px && *radius_px >= 0 && *radius_px <= kMostFillRadius_px) return *radius_px;
-  return UsageError(fmt::format("--fill {}: expected a number of elements from 0 to {}, or off",
-                                text, kMostFillRadius_px));
-}
-
 void AddInput(CLI::App& app, RenderArguments& a) {
   OptionGroup input(app, kInputGroup);
   input
@@ -73,42 +64,7 @@ void AddOutput(CLI::App& app, RenderArguments& a) {
 
 void AddPicture(CLI::App& app, RenderArguments& a) {
   OptionGroup picture(app, kPictureGroup);
-  picture.AddChoice(
-      "--mode", a.mode, {"collect", "rebin", "hybrid"},
-      "How frames are made from recorded rays\n"
-      "collect: frames are averages of the recorded rays\n"
-      "rebin: frames are interpolated between rays that are kept in memory\n"
-      "hybrid: frames are collected; where no recorded ray passes the lens, they are interpolated");
-  picture.AddChoice(
-      "--estimator", a.estimator, {"auto", "nearest", "bilinear"},
-      "How LF pixels contribute to elements\n"
-      "An element is a pixel of the frame before it is developed.\n"
-      "auto, bilinear: every element reads each LF image at the point that it sees, interpolated "
-      "as --filter says\n"
-      "nearest: every LF pixel is added to one element; mosaics are not interpolated");
-  picture.AddChoice(
-      "--filter", a.filter, {"auto", "nearest", "bilinear", "bicubic", "mosaic", "prefiltered"},
-      "Interpolation between LF pixels\n"
-      "Used by --estimator bilinear.\n"
-      "auto: mosaic for mosaics, bicubic for brackets (LF images of one pose with different "
-      "exposures), otherwise prefiltered\n"
-      "prefiltered: each LF image is first filtered for the size of elements, then interpolated "
-      "linearly; sharper than bicubic and faster\n"
-      "mosaic: bicubic, or bilinear where an element is more than two LF pixels wide; "
-      "colours that the sensor recorded count 8 times as much as interpolated colours");
-  picture.AddChoice("--lf-pixels", a.lf_pixels, {"auto", "areas", "points"},
-                    "What LF pixels show, for --filter prefiltered\n"
-                    "areas: the mean light of their area, as in photographs\n"
-                    "points: the light of their centre, as in renders without anti-aliasing\n"
-                    "auto: as lf_pixels of the light field says, otherwise measured");
-  picture.AddChoice(
-      "--lens-weights", a.lens_weights, {"auto", "none", "area", "hat"},
-      "Weight of each LF image in a frame\n"
-      "none: all LF images have the same weight\n"
-      "area: the weight of an LF image is the area of the lens that is nearer to its LF camera "
-      "than to any other\n"
-      "hat: interpolation between the nearest LF images, for small lenses and pinholes\n"
-      "auto: area for large lenses, hat for small ones, a mix of both in between");
+  a.settings.AddTo(picture, SettingGroup::kPicture);
   picture.AddFlag(
       "--densify", a.densify,
       "Put virtual LF images between the recorded ones\n"
@@ -121,53 +77,16 @@ void AddPicture(CLI::App& app, RenderArguments& a) {
       "Show virtual LF images where a frame is in focus\n"
       "Frames of a densified light field show the rays of recorded LF images alone where they are "
       "in focus. With this option they show those of all LF images everywhere.");
-  picture
-      .Add("--fill RADIUS|off", a.fill,
-           "Radius for filling elements without rays, in elements\n"
-           "An element without rays gets the mean light of collected elements at most RADIUS "
-           "elements away, or black if there is none. Its coverage stays below 1.\n"
-           "off: elements without rays are black")
-      ->check(NotEmpty());
-  picture.Add("--smooth-below N", a.smooth_below,
-              "Smooth elements with fewer rays than this (none)\n"
-              "Such an element is averaged with its neighbours, up to 32 elements away.");
 }
 
 void AddQuality(CLI::App& app, RenderArguments& a) {
   OptionGroup quality(app, kQualityGroup);
-  quality.Add("--max-images N", a.max_images,
-              "Maximum number of LF images per frame (all)\n"
-              "A frame uses the first N of the LF images that contribute to it, in the order of "
-              "--order, which is random by default.");
-  quality
-      .Add("--max-angle DEGREES", a.max_angle_deg,
-           "Largest angle between LF camera and frame axes (no limit)\n"
-           "A frame uses only LF cameras whose optical axis is within DEGREES of its own optical "
-           "axis.")
-      ->check(CLI::Range(0., 180.));
-  quality.AddChoice("--order", a.order, {"shuffle", "round-robin", "area"},
-                    "Order in which frames take LF images\n"
-                    "The order matters if --max-images or --stop-when end a frame early.\n"
-                    "shuffle: random, by --seed\n"
-                    "round-robin: always an LF image for the frame with the fewest rays\n"
-                    "area: LF images with the most rays first");
-  quality
-      .Add("--stop-when RULE", a.stop_when,
-           "Finish a frame early: noise<=X or samples>=N\n"
-           "noise<=X: the frame is finished when at least 90 % of the elements that LF images see "
-           "have a noise of at most X. The noise of an element is the standard error of its mean, "
-           "in linear light where white is 1; 0.002 is half an 8-bit level in a mid-grey. Works "
-           "with every --mode and all --lens-weights. With --mode rebin it needs 24 bytes of "
-           "memory for each element of every frame.\n"
-           "samples>=N: the frame is finished when at least 99 % of the elements that LF images "
-           "see have N rays in every colour channel. --lens-weights auto then means none.")
-      ->check(NotEmpty());
-  quality
-      .Add("--require RULE", a.require,
-           "Exit with code 6 unless noise<=X or samples>=N\n"
-           "The rules are those of --stop-when. The exit code is 6 if a finished frame has more "
-           "noise or fewer rays than the rule says.")
-      ->check(NotEmpty());
+  a.settings.AddTo(quality, SettingGroup::kQuality);
+}
+
+void AddRebinning(CLI::App& app, RenderArguments& a) {
+  OptionGroup rebinning(app, "Rebinned rays (--mode rebin, hybrid; doc/rebinning.md)");
+  a.settings.AddTo(rebinning, SettingGroup::kRebinning);
 }
 
 void AddMemory(OptionGroup& running, RenderArguments& a) {
@@ -221,28 +140,13 @@ void AddRunning(CLI::App& app, RenderArguments& a) {
       ->check(NotEmpty());
 }
 
-// Reads "samples>=N" into *samples, or "noise<=X" into *noise; an empty text is no rule.
-Result<void> ReadRule(const std::string& text, const std::string& option,
-                      std::optional<uint32_t>* samples, std::optional<double>* noise) {
-  if (text.empty()) return {};
-  if (IsNoiseRule(text)) {
-    LF_ASSIGN_OR_RETURN(*noise, ParseNoiseRule(text, option));
-  } else {
-    LF_ASSIGN_OR_RETURN(*samples, ParseSampleRule(text, option));
-  }
-  return {};
-}
-
 void AddMeasuring(CLI::App& app, RenderArguments& a) {
   OptionGroup measuring(app, kMeasuringGroup);
   measuring.AddChoice("--rectangles", a.rectangles, {"on", "off"},
                       "Read only the needed rectangle of each LF image\n"
                       "off: all pixels of every LF image that may contribute are read, to measure "
                       "what the rectangles save. The frames are bit-identical.");
-  measuring.AddChoice("--back-end", a.back_end, {"fast", "reference"},
-                      "Implementation of the ray model\n"
-                      "fast: the quick implementation\n"
-                      "reference: the formulas applied literally, one ray at a time");
+  a.settings.AddTo(measuring, SettingGroup::kMeasuring);
 }
 
 // Returns the command of lfdensify that makes `store`.
@@ -265,7 +169,7 @@ void RenderArguments::AddTo(CLI::App& app) {
   AddPicture(app, *this);
   AddQuality(app, *this);
   AddRunning(app, *this);
-  rebin.AddTo(app);
+  AddRebinning(app, *this);
   AddMeasuring(app, *this);
 }
 
@@ -275,7 +179,7 @@ void RenderArguments::AddRenderingTo(CLI::App& app) {
   OptionGroup running(app, kRunningGroup);
   AddMemory(running, *this);
   AddDumpEvery(running, *this);
-  rebin.AddTo(app);
+  AddRebinning(app, *this);
   AddMeasuring(app, *this);
 }
 
@@ -302,11 +206,13 @@ Result<void> RenderArguments::Check(bool seed_given) const {
       return UsageError(
           "--seed cannot be used with packages, which contain the seed that lfpreprocessor was "
           "given: leave it out, or make the packages again with lfpreprocessor --seed");
-    if (order != "shuffle")
+    FilmSettings film;
+    LF_RETURN_IF_ERROR(settings.Set(&film));
+    if (film.order != ImageOrder::kShuffle)
       return UsageError(
           "--order cannot be used with packages, which contain the order that lfpreprocessor was "
           "given: leave it out, or make the packages again with lfpreprocessor --order");
-    if (max_angle_deg > 0)
+    if (film.max_angle_rad)
       return UsageError(
           "--max-angle cannot be used with packages, because lfpreprocessor has already selected "
           "their LF cameras: leave it out, or make the packages again with lfpreprocessor "
@@ -342,27 +248,10 @@ Result<void> RenderArguments::Check(bool seed_given) const {
 
 Result<FilmSettings> RenderArguments::MakeFilm(uint64_t seed) const {
   FilmSettings film;
-  film.order = *ImageOrderOf(order);
+  LF_RETURN_IF_ERROR(settings.Set(&film));
   film.seed = seed;
-  if (max_angle_deg > 0) film.max_angle_rad = RadiansFromDegrees(max_angle_deg);
-  if (max_images > 0) film.max_image_count = static_cast<size_t>(max_images);
-  film.smooth_below = smooth_below;
-  LF_ASSIGN_OR_RETURN(film.fill_radius_px, ParseFill(fill));
-  film.reading.estimator = estimator == "nearest" ? Estimator::kNearest : Estimator::kBilinear;
-  film.reading.filter =
-      ValueNamed(filter, {PixelFilter::kNearest, PixelFilter::kBilinear, PixelFilter::kBicubic,
-                          PixelFilter::kMosaic, PixelFilter::kPrefiltered})
-          .value_or(PixelFilter::kAuto);
-  film.reading.footprint = PixelFootprintOf(lf_pixels);
-  film.lens_weights = *LensWeightsOf(lens_weights);
-  film.mode = *RenderModeOf(mode);
   film.guard = !no_guard;
   film.adds_opacity = picture.alpha;
-  LF_ASSIGN_OR_RETURN(film.rebin, rebin.Make());
-  if (back_end == "reference") film.back_end = CollectBackEnd::kReference;
-  LF_RETURN_IF_ERROR(
-      ReadRule(stop_when, "--stop-when", &film.stop_at_samples, &film.stop_at_noise));
-  LF_RETURN_IF_ERROR(ReadRule(require, "--require", &film.require_samples, &film.require_noise));
   if (film.mode != RenderMode::kRebin && film.lens_weights == LensWeights::kAuto &&
       film.CountsRays())
     LogInfo(

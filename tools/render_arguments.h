@@ -13,7 +13,7 @@
 #include "tools/common/frame_options.h"
 #include "tools/common/light_field_argument.h"
 #include "tools/common/program.h"
-#include "tools/rebin_arguments.h"
+#include "tools/common/setting_options.h"
 
 #include "lf/core/result.h"
 #include "lf/render/pipeline/render.h"
@@ -23,18 +23,12 @@ namespace lf {
 struct RenderArguments {
   std::vector<std::string> inputs;  // the words LIGHTFIELD PATH, or PACKAGE...
   LightFieldArgument light_field;   // its options; its `path` is the value of --lightfield
-  std::string output, video, memory = "8G", format = "exr", mode = "collect";
-  std::string estimator = "auto", filter = "auto", lens_weights = "auto", back_end = "fast",
-              lf_pixels = "auto";
-  std::string order = "shuffle", rectangles = "on", dump_every = "30s", stop_when, require, shard,
-              finish, fill = "2";
+  std::string output, video, memory = "8G", format = "exr", rectangles = "on", dump_every = "30s",
+                             shard, finish;
+  SettingOptions settings;
   FrameRangeArguments frames;
   PictureArguments picture;
-  RebinArguments rebin;
   AllowMissing allow_missing;
-  uint64_t max_images = 0;   // 0: no limit
-  double max_angle_deg = 0;  // 0: no limit
-  uint32_t smooth_below = 0;
   bool densify = false, no_guard = false, no_contact_sheet = false, resume = false,
        overwrite = false, keep_plates = false;
 

@@ -261,8 +261,8 @@ Result<void> CheckRequiredNoise(const RenderReport& report, std::optional<double
 
 Result<void> OutcomeOf(const RenderReport& report, const FilmSettings& film,
                        const AllowMissing& allow_missing, const MissingImages& densify) {
-  Result<void> required = CheckRequired(report, film.require_samples);
-  if (required) required = CheckRequiredNoise(report, film.require_noise);
+  Result<void> required = CheckRequired(report, film.require.samples);
+  if (required) required = CheckRequiredNoise(report, film.require.noise);
   LF_ASSIGN_OR_RETURN(const MissingLimit limit, allow_missing.Limit());
   LF_RETURN_IF_ERROR(EndOfRender(report, limit, required));
   return EndWithMissing(densify, limit);

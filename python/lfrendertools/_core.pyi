@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-from typing import Callable, List, Optional, Sequence, Tuple, Union
+from typing import Callable, Dict, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -115,21 +115,9 @@ def encode_png(arg0: npt.NDArray[np.uint8]) -> bytes: ...
 def parse_path(arg0: _Bytes, arg1: _Bytes,
                arg2: Optional[float]) -> Tuple[List[RenderCamera], float, float, _Shutter, int]: ...
 
-class FilmWords:
-    mode: str
-    estimator: str
-    filter: str
-    lens_weights: str
-    lf_pixels: str
-    order: str
-    stop_when: str
-    max_images: Optional[int]
-    max_angle_deg: Optional[float]
-    seed: int
-    smooth_below: int
-    fill: int
-    guard: bool
-    def __init__(self) -> None: ...
+def settings() -> List[Tuple[str, str, bool, float, float]]: ...
+
+def texts_of_settings(arg0: Dict[str, str]) -> Dict[str, str]: ...
 
 class Frame:
     @property
@@ -175,7 +163,7 @@ class Plate:
 
 class Film:
     def __init__(self, arg0: LightField, arg1: Sequence[RenderCamera], arg2: float, arg3: _Shutter,
-                 arg4: Sequence[int], arg5: FilmWords, arg6: str, arg7: bool, arg8: int) -> None: ...
+                 arg4: Sequence[int], arg5: Dict[str, str], arg6: str, arg7: bool, arg8: int) -> None: ...
     def passes(self) -> List[List[int]]: ...
     def needs(self, arg0: int) -> Tuple[npt.NDArray[np.uint32], npt.NDArray[np.int32], npt.NDArray[np.uint64],
                                         npt.NDArray[np.uint32]]: ...
@@ -253,7 +241,7 @@ class PackageWords:
     def __init__(self) -> None: ...
 
 def preprocess(arg0: LightField, arg1: _Bytes, arg2: Sequence[RenderCamera], arg3: float, arg4: _Shutter,
-               arg5: Sequence[int], arg6: FilmWords, arg7: PackageWords, arg8: int, arg9: _Tell) -> str: ...
+               arg5: Sequence[int], arg6: Dict[str, str], arg7: PackageWords, arg8: int, arg9: _Tell) -> str: ...
 
 class CodecWords:
     profile: str

@@ -1,40 +1,56 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The options that decide the rays and pictures of frames, which several functions take."""
+"""The settings that decide the rays and pictures of frames, which several functions take.
+
+The extension has a table of them, from which the options of the programs are made as well.
+"""
 from __future__ import annotations
 
-import functools
-from typing import Any, Callable, Dict, Mapping, Optional
+import math
+from typing import Any, Dict, Mapping, NamedTuple
 
 from . import _core, arguments
 from .errors import UsageError
 
-_count = functools.partial(arguments.whole_within, least=0, most=2**32 - 1)
+
+class _Setting(NamedTuple):
+    name: str
+    kind: str  # choice, switch, whole, number, point or text
+    is_optional: bool  # None means that it is unset
+    least: float
+    most: float
+
+    def text(self, value: Any) -> str:
+        """Return the text of a value. The extension checks words and ranges that are not stated here."""
+        if self.kind == "switch":
+            return "on" if arguments.flag(self.name, value) else "off"
+        if self.kind == "point":
+            return "auto" if value is None else " ".join(map(repr, arguments.numbers(self.name, value, 3, 3)))
+        if self.is_optional and value is None:
+            return "0"
+        if self.kind == "whole":
+            least = 1 if self.is_optional else int(self.least)
+            most = int(self.most) if math.isfinite(self.most) else 2**64 - 1
+            return str(arguments.whole_within(self.name, value, least, most))
+        if self.kind == "number":
+            is_above_0 = self.is_optional or math.isinf(self.most)
+            return repr(arguments.positive(self.name, value, self.most) if is_above_0 else
+                        arguments.within(self.name, value, self.least, self.most))
+        if self.kind == "text" and not isinstance(value, str):  # such as fill=2, and "off"
+            return str(arguments.whole(self.name, value))
+        return arguments.text(self.name, value)
 
 
-def _max_images(name: str, value: Any) -> Optional[int]:
-    return None if value is None else arguments.whole_within(name, value, 1, 2**32 - 1)
+_SETTINGS: Dict[str, _Setting] = {row[0]: _Setting(*row) for row in _core.settings()}
 
 
-def _max_angle(name: str, value: Any) -> Optional[float]:
-    return None if value is None else arguments.positive(name, value, 180)
-
-
-# The library checks words, and the range of `fill`.
-_CHECKS: Dict[str, Callable[[str, Any], Any]] = {
-    "mode": arguments.text, "estimator": arguments.text, "filter": arguments.text, "lens_weights": arguments.text,
-    "lf_pixels": arguments.text, "order": arguments.text, "stop_when": arguments.text, "max_images": _max_images,
-    "max_angle_deg": _max_angle, "seed": arguments.seed, "smooth_below": _count, "fill": _count,
-    "guard": arguments.flag}
-
-
-def film_words(options: Mapping[str, Any], own: Dict[str, Any]) -> _core.FilmWords:
-    """Return the options with these names and values. Those that the caller has of its `own` replace its defaults."""
-    words = _core.FilmWords()
+def film_words(options: Mapping[str, Any], own: Dict[str, Any]) -> Dict[str, str]:
+    """Return the texts of the settings with these names. Values that the caller has of its `own` replace its defaults."""
+    words = {}
     for name, value in options.items():
         if name in own:
             own[name] = value
-        elif name in _CHECKS:
-            setattr(words, name, _CHECKS[name](name, value))
+        elif name in _SETTINGS:
+            words[name] = _SETTINGS[name].text(value)
         else:
-            raise UsageError(f"unknown option {name}: expected one of {', '.join(sorted([*own, *_CHECKS]))}")
+            raise UsageError(f"unknown option {name}: expected one of {', '.join(sorted([*own, *_SETTINGS]))}")
     return words

@@ -65,6 +65,10 @@ class Renderer:
     guard : bool
         True: where a frame of a densified light field is in focus, it shows recorded LF images alone. False: it shows
         virtual LF images there, like anywhere else. Default True.
+    kept, max_rays, average_others, preview, ... : object
+        Settings of rebinned rays, for the modes "rebin" and "hybrid": those of the options of `lfrenderer` with these
+        names (doc/rebinning.md), such as `sigma_st=0.7`. The arguments average_others and reparameterise are True or
+        False; slab_position and slab_forward are three numbers.
     memory : str
         Upper limit of the memory that is used, such as "8G" or "512M". Default "8G".
     strict : bool

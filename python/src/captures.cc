@@ -14,8 +14,8 @@
 
 #include "python/src/cameras.h"
 #include "python/src/errors.h"
-#include "python/src/film_words.h"
 #include "python/src/light_field.h"
+#include "python/src/setting_words.h"
 #include "python/src/work.h"
 #include "tools/codec_words.h"
 #include "tools/compress_report.h"
@@ -90,7 +90,7 @@ struct PackageWords {
   bool overwrite = false, strict = false;
 };
 
-PreprocessOptions PreprocessOptionsOf(const PackageWords& words, const FilmWords& film_words,
+PreprocessOptions PreprocessOptionsOf(const PackageWords& words, const SettingWords& film_words,
                                       const RadianceEncoding& encoding) {
   const FilmSettings film = Take(FilmSettingsOf(film_words));
   PreprocessOptions options;
@@ -121,7 +121,7 @@ PreprocessOptions PreprocessOptionsOf(const PackageWords& words, const FilmWords
 // Makes packages, or only forecasts their render. Returns the report of lfpreprocessor as JSON.
 std::string Preprocess(const OpenedField& field, const std::string& name,
                        std::vector<RenderCamera> cameras, double fps, ShutterWords shutter,
-                       const std::vector<uint32_t>& frames, const FilmWords& film,
+                       const std::vector<uint32_t>& frames, const SettingWords& film,
                        const PackageWords& words, int threads, const Tell& tell) {
   ThreadPool& pool = PoolOf(threads);
   ToldWork work(tell);

@@ -14,9 +14,9 @@
 
 #include "python/src/cameras.h"
 #include "python/src/errors.h"
-#include "python/src/film_words.h"
 #include "python/src/frames.h"
 #include "python/src/light_field.h"
+#include "python/src/setting_words.h"
 #include "python/src/work.h"
 
 #include "lf/core/quantities.h"
@@ -36,7 +36,7 @@ namespace py = pybind11;
 class Film {
  public:
   Film(const OpenedField& field, std::vector<RenderCamera> cameras, double fps,
-       ShutterWords shutter, const std::vector<uint32_t>& frames, const FilmWords& words,
+       ShutterWords shutter, const std::vector<uint32_t>& frames, const SettingWords& words,
        const std::string& memory, bool strict, int threads)
       : pool_(PoolOf(threads)) {
     RenderOptions options;
@@ -199,34 +199,15 @@ py::bytes PngOf(const py::array_t<uint8_t, py::array::c_style | py::array::force
   return CallWithoutGil([&] { return Take(EncodePng(view)); });
 }
 
-void AddWords(py::module_& module) {
-  py::class_<FilmWords>(module, "FilmWords")
-      .def(py::init<>())
-      .def_readwrite("mode", &FilmWords::mode)
-      .def_readwrite("estimator", &FilmWords::estimator)
-      .def_readwrite("filter", &FilmWords::filter)
-      .def_readwrite("lens_weights", &FilmWords::lens_weights)
-      .def_readwrite("lf_pixels", &FilmWords::lf_pixels)
-      .def_readwrite("order", &FilmWords::order)
-      .def_readwrite("stop_when", &FilmWords::stop_when)
-      .def_readwrite("max_images", &FilmWords::max_images)
-      .def_readwrite("max_angle_deg", &FilmWords::max_angle_deg)
-      .def_readwrite("seed", &FilmWords::seed)
-      .def_readwrite("smooth_below", &FilmWords::smooth_below)
-      .def_readwrite("fill", &FilmWords::fill)
-      .def_readwrite("guard", &FilmWords::guard);
-}
-
 }  // namespace
 
 void AddFilm(py::module_& module) {
-  AddWords(module);
   module.def("parse_frames", &ParseFrames);
   module.def("encode_png", &PngOf);
   py::class_<Film>(module, "Film")
-      .def(
-          py::init<const OpenedField&, std::vector<RenderCamera>, double, ShutterWords,
-                   const std::vector<uint32_t>&, const FilmWords&, const std::string&, bool, int>())
+      .def(py::init<const OpenedField&, std::vector<RenderCamera>, double, ShutterWords,
+                    const std::vector<uint32_t>&, const SettingWords&, const std::string&, bool,
+                    int>())
       .def("passes", &Film::Passes)
       .def("needs", &Film::Needs)
       .def("begin", &Film::Begin)

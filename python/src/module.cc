@@ -16,6 +16,7 @@
 #include "python/src/lens_statistics.h"
 #include "python/src/light_field.h"
 #include "python/src/messages.h"
+#include "python/src/setting_words.h"
 
 #include "lf/core/version.h"
 
@@ -26,6 +27,7 @@ PYBIND11_MODULE(_core, module) {
   lf::python::AddLightField(module);
   lf::python::AddCameras(module);
   lf::python::AddFrames(module);
+  lf::python::AddSettings(module);
   lf::python::AddFilm(module);
   lf::python::AddAnalysis(module);
   lf::python::AddDepthMaps(module);

@@ -179,7 +179,7 @@ def test_sequences(field, path, tmp_path):
 
 @pytest.mark.parametrize("function", [lf.render, lf.forecast, lf.select, lf.film])
 def test_options_of_films(function, field, path):
-    for name, wrong in (("max_images", "3"), ("seed", 1.5), ("seed", None), ("guard", 2), ("fill", "off"), ("order", 1),
+    for name, wrong in (("max_images", "3"), ("seed", 1.5), ("seed", None), ("guard", 2), ("fill", 1.5), ("order", 1),
                         ("max_angle_deg", "9"), ("mode", None), ("memory", 8), ("memory", 8e9)):
         if function is lf.select and name == "mode":
             continue

@@ -104,6 +104,15 @@ void OptionGroup::AddCheck(CLI::Option* option, OptionWords words) {
   if (words == OptionWords::kWholeNumbersFromZero) option->transform(WholeNumberFromZero());
 }
 
+CLI::Option* OptionGroup::AddNumber(const std::string& names_and_placeholder, std::string& word,
+                                    OptionWords words, const std::string& text) {
+  CLI::Option* const option = Add(names_and_placeholder, word, text);
+  AddCheck(option, words);
+  const std::string type = words == OptionWords::kNumbers ? "FLOAT" : "UINT";
+  return option->type_name(names_and_placeholder.substr(names_and_placeholder.find(' ') + 1) + ":" +
+                           type);
+}
+
 CLI::Option* OptionGroup::Present(CLI::Option* option, const std::string& placeholder) const {
   // The type stays beside the placeholder, for TypeOf().
   if (!placeholder.empty()) option->type_name(placeholder + ":" + TypeName(*option));

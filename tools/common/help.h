@@ -113,6 +113,10 @@ class OptionGroup {
     return Present(option, end == std::string::npos ? "" : names_and_placeholder.substr(end + 1));
   }
 
+  // Adds an option whose value must be a number, and is kept as the word that is given.
+  CLI::Option* AddNumber(const std::string& names_and_placeholder, std::string& word,
+                         OptionWords words, const std::string& text);
+
   // Adds an option whose value must be one of `words`. The help shows the words as the placeholder
   // of an option; for a positional argument, `text` must name them.
   template <typename Value>

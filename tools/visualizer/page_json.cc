@@ -7,6 +7,7 @@
 #include "tools/common/program.h"
 #include "tools/visualizer/page_answers.h"
 
+#include "lf/core/geometry.h"
 #include "lf/core/version.h"
 #include "lf/distribute/preprocess/frame_density.h"
 #include "lf/render/state/record_fields.h"
@@ -106,6 +107,7 @@ std::string SceneJson(const PageScene& scene, const PathDraft& draft,
                       const PageAbilities& abilities) {
   const LightField& field = scene.light_field();
   const PageArguments& arguments = scene.arguments();
+  const FilmSettings& film = arguments.film;
   Json json = {{"version", Version()},
                {"light_field",
                 {{"name", arguments.light_field},
@@ -116,11 +118,11 @@ std::string SceneJson(const PageScene& scene, const PathDraft& draft,
                {"path", Json::parse(PathHeadJson(draft))},
                {"path_file", arguments.path.string()},
                {"options",
-                {{"estimator", arguments.estimator},
-                 {"lens_weights", arguments.lens_weights},
-                 {"max_angle_deg", arguments.max_angle_deg},
-                 {"max_images", arguments.needs.max_image_count.value_or(0)},
-                 {"seed", arguments.seed}}},
+                {{"estimator", NameOf(film.reading.estimator)},
+                 {"lens_weights", NameOf(film.lens_weights)},
+                 {"max_angle_deg", DegreesFromRadians(film.max_angle_rad.value_or(0))},
+                 {"max_images", film.max_image_count.value_or(0)},
+                 {"seed", film.seed}}},
                {"packages", OfPackages(scene)},
                {"packages_note", scene.packages_note()},
                {"watch", arguments.watch.string()},

@@ -20,6 +20,7 @@
 #include "lf/core/result.h"
 #include "lf/light_field/model/light_field.h"
 #include "lf/render/package/package.h"
+#include "lf/render/settings/film_settings.h"
 #include "lf/selection/image_index.h"
 #include "lf/storage/load/lf_image_store.h"
 #include "lf/view/depth_points.h"
@@ -36,10 +37,8 @@ struct PageArguments {
   std::vector<std::string> packages;
   std::vector<std::string> depths;  // depth maps and point clouds (lf/view/depth_points.h)
   std::filesystem::path watch;      // folder of the watched render; empty if none is watched
-  NeedsOptions needs;
-  std::string estimator = "bilinear", lens_weights = "auto";
-  double max_angle_deg = 0;
-  uint64_t seed = 0;
+  FilmSettings film;                // of the frames that the page shows and renders
+  NeedsOptions needs;               // what these frames need
   int threads = 0;
   size_t live_memory_bytes = size_t{512} << 20;  // LiveOptions::memory_bytes
   // Once it is true, PageScene::Open() ends with kInterrupted. May be null.

@@ -31,13 +31,7 @@ constexpr int kPictureTimes = 3;
 
 //   encoding  of the light field; the frames of mosaics and those with alpha cannot be guarded
 FilmSettings SettingsOf(const PageArguments& arguments, const RadianceEncoding& encoding) {
-  FilmSettings film;
-  film.reading.estimator =
-      arguments.estimator == "nearest" ? Estimator::kNearest : Estimator::kBilinear;
-  film.lens_weights = arguments.needs.lens_weights;
-  film.max_image_count = arguments.needs.max_image_count;
-  film.seed = arguments.seed;
-  film.max_angle_rad = arguments.needs.select.max_angle_rad;
+  FilmSettings film = arguments.film;
   film.guard = encoding.bayer == BayerPattern::kNone && !encoding.HasOpacity();
   return film;
 }

@@ -1,40 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lf/render/collect/noise_rule.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <limits>
-#include <string_view>
 #include <vector>
 
-#include "lf/core/parse_number.h"
-
 namespace lf {
-namespace {
-
-constexpr std::string_view kNoiseStart = "noise";
-constexpr double kMostNoise = 1000;
-
-}  // namespace
-
-bool IsNoiseRule(const std::string& text) { return text.starts_with(kNoiseStart); }
-
-Result<double> ParseNoiseRule(const std::string& text, const std::string& option) {
-  constexpr std::string_view kWords = "noise<=";
-  const std::optional<double> noise =
-      text.starts_with(kWords) ? ParseNumber(std::string_view(text).substr(kWords.size()))
-                               : std::nullopt;
-  if (!noise || !(*noise > 0 && *noise <= kMostNoise))
-    return UsageError(
-        fmt::format("{} '{}': expected noise<=X with X above 0 and up to {}, such as noise<=0.002 "
-                    "(linear light, white is 1)",
-                    option, text, kMostNoise));
-  return *noise;
-}
-
-std::string TextOfNoiseRule(double noise) { return fmt::format("noise<={}", noise); }
 
 uint32_t NoiseDecisionAfter(uint32_t place) {
   constexpr uint32_t kFirst = 16;

@@ -10,7 +10,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 
 #include "lf/core/result.h"
 #include "lf/film/plate/sensor_plate.h"
@@ -18,15 +17,6 @@
 #include "lf/render/collect/sample_rule.h"
 
 namespace lf {
-
-// Returns X of "noise<=X", above 0 and at most 1000. kUsage if the text does not have this form;
-// the message names `option`.
-Result<double> ParseNoiseRule(const std::string& text, const std::string& option);
-// Returns true if a text begins with "noise", so that it is meant as such a rule, whether valid or
-// not.
-bool IsNoiseRule(const std::string& text);
-// Returns the rule with X = `noise` as text. ParseNoiseRule() of this text returns exactly `noise`.
-std::string TextOfNoiseRule(double noise);
 
 // One in this many of the measured reachable elements, rounded down, may be noisier than the frame.
 inline constexpr size_t kNoisierOneIn = 10;

@@ -10,23 +10,6 @@
 namespace lf {
 namespace {
 
-TEST(NoiseRule, ReadsAndRefuses) {
-  EXPECT_EQ(*ParseNoiseRule("noise<=0.002", "--stop-when"), 0.002);
-  EXPECT_EQ(*ParseNoiseRule("noise<=2e-3", "--stop-when"), 0.002);
-  EXPECT_EQ(*ParseNoiseRule("noise<=1000", "--stop-when"), 1000);
-  EXPECT_EQ(*ParseNoiseRule(TextOfNoiseRule(1.0 / 3), "--stop-when"), 1.0 / 3);
-  EXPECT_TRUE(IsNoiseRule("noise>=1"));
-  EXPECT_FALSE(IsNoiseRule("samples>=1"));
-  for (const char* text :
-       {"", "noise", "noise<=", "noise<0.1", "noise>=0.1", "noise<=0", "noise<=-1", "noise<=nan",
-        "noise<=inf", "noise<=1001", "noise<=0.1x", "noise<= 0.1", "samples>=8"}) {
-    const Result<double> noise = ParseNoiseRule(text, "--require");
-    ASSERT_FALSE(noise) << text;
-    EXPECT_EQ(noise.error().kind, ErrorKind::kUsage);
-    EXPECT_NE(noise.error().message.find("--require"), std::string::npos);
-  }
-}
-
 TEST(NoiseRule, IsAskedEightTimesForEachDoubling) {
   EXPECT_EQ(NoiseDecisionAfter(0), 16u);
   EXPECT_EQ(NoiseDecisionAfter(15), 16u);

@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lf/render/collect/sample_rule.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <map>
-#include <string_view>
 #include <utility>
 
 #include "lf/camera/distortion.h"
 #include "lf/camera/hood.h"
 #include "lf/camera/ray_through.h"
 #include "lf/core/check.h"
-#include "lf/core/parse_number.h"
 #include "lf/render/collect/collect.h"
 #include "lf/selection/ideal_cells.h"
 #include "lf/selection/overlap.h"
@@ -65,18 +61,6 @@ size_t MayLack(size_t count) {
 }
 
 }  // namespace
-
-Result<uint32_t> ParseSampleRule(const std::string& text, const std::string& option) {
-  constexpr std::string_view kSamplesStart = "samples>=";
-  if (!text.starts_with(kSamplesStart))
-    return UsageError(
-        fmt::format("{} '{}': expected a rule such as samples>=8 or noise<=0.002", option, text));
-  const auto samples = ParseWhole<uint32_t>(std::string_view(text).substr(kSamplesStart.size()));
-  if (!samples || *samples < 1 || *samples > SensorPlate::kMaxCount)
-    return UsageError(fmt::format("{} '{}': expected samples>=N with N from 1 to {}", option, text,
-                                  SensorPlate::kMaxCount));
-  return *samples;
-}
 
 ReachableElements::ReachableElements(const ImageIndex& index, const RenderCamera& camera,
                                      const PlaceRange& places, const SelectOptions& select,

@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <string>
 #include <vector>
 
 #include "lf/camera/ray_weight.h"
@@ -19,10 +18,6 @@
 #include "lf/selection/select.h"
 
 namespace lf {
-
-// Returns N of "samples>=N", from 1 to 2^24 - 1. kUsage if the text does not have this form; the
-// message names `option`.
-Result<uint32_t> ParseSampleRule(const std::string& text, const std::string& option);
 
 // The rule is met if at least this share of the reachable elements has N or more rays in every
 // channel.

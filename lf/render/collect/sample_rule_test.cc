@@ -9,18 +9,6 @@
 namespace lf {
 namespace {
 
-TEST(SampleRule, ReadsAndRefuses) {
-  EXPECT_EQ(*ParseSampleRule("samples>=8", "--require"), 8u);
-  EXPECT_EQ(*ParseSampleRule("samples>=16777215", "--require"), 16777215u);
-  for (const char* text : {"", "8", "samples>8", "samples>=0", "samples>=-1", "samples>=8x",
-                           "samples>=16777216", "samples>= 8", "rays>=8"}) {
-    const Result<uint32_t> samples = ParseSampleRule(text, "--require");
-    ASSERT_FALSE(samples) << text;
-    EXPECT_EQ(samples.error().kind, ErrorKind::kUsage);
-    EXPECT_NE(samples.error().message.find("--require"), std::string::npos);
-  }
-}
-
 TEST(SampleRule, IsAskedAboutEvery64ImagesOfAFrame) {
   EXPECT_EQ(DecisionPlaces(1000, 1000), 64u);
   EXPECT_EQ(DecisionPlaces(1000, 501), 64u);

@@ -21,6 +21,9 @@ Result<void> CheckSlab(const Package& package, const FilmSettings& film,
   constexpr double kMost_deg = 60;
   if (!film.Rebins() || !film.rebin.slab.forward_world) return {};
   const Vec3& given = *film.rebin.slab.forward_world;
+  if (!(given.norm() > 0))
+    return UsageError(
+        "--slab-forward 0 0 0: expected a direction, with at least one number other than 0");
   const Vec3 forward = given.normalized();
   for (const FrameId frame : frames) {
     const double cosine = forward.dot(package.path.Camera(frame).pinhole.ForwardWorld());
@@ -37,7 +40,7 @@ Result<void> CheckSlab(const Package& package, const FilmSettings& film,
 // Checks that a shard has no option that needs the rays of all shards.
 Result<void> CheckShard(const FilmSettings& film) {
   if (!film.shard) return {};
-  if (film.mode == RenderMode::kCollect && !film.stop_at_samples && !film.require_samples &&
+  if (film.mode == RenderMode::kCollect && !film.stop_when.samples && !film.require.samples &&
       !film.MeasuresNoise())
     return {};
   return UsageError(
@@ -68,6 +71,9 @@ Result<void> CheckRebinnedRays(const Package& package, const FilmSettings& film,
         fmt::format("--max-images cannot be used with --mode {}, in which all frames share the "
                     "rebinned rays of all LF images: leave it out, or use --mode collect",
                     NameOf(film.mode)));
+  if (!film.rebin.reparameterise && film.rebin.query.lens_sets > 1)
+    return UsageError(
+        "--reparameterise off cannot be used with --lens-sets above 1: leave one of them out");
   if (film.rebin.nearest > 0 && film.back_end != CollectBackEnd::kReference)
     return UsageError(
         "--nearest can only be used with --back-end reference, which is far slower: add --back-end "
@@ -154,7 +160,7 @@ Result<void> CheckFilmSettings(const Package& package, const FilmSettings& optio
   LF_RETURN_IF_ERROR(CheckShard(film));
   if (package.whole_virtual_count > 0 && film.guard) LF_RETURN_IF_ERROR(CheckGuard(package, film));
   if (package.whole_virtual_count > 0 && !film.guard &&
-      (film.stop_at_samples || film.require_samples))
+      (film.stop_when.samples || film.require.samples))
     return UsageError(
         "--stop-when and --require samples>=N count the rays of recorded LF images alone, but "
         "frames of a densified light field add the rays of virtual LF images to the same counts: "

@@ -171,7 +171,7 @@ class FilmRenderer {
     // already has the rays of the LF images at places before places.begin.
     PlaceRange places;
     FrameRays earlier_rays;  // rays in the plate when this run began
-    // FilmSettings::stop_at_samples is applied at places that are multiples of this number.
+    // FilmSettings::stop_when is applied at places that are multiples of this number.
     uint32_t decision_places = 0;
     uint32_t next_decision = 0;  // next place at which the stop rule is applied
     bool is_released = false;

@@ -31,13 +31,13 @@ const ReachableElements& FilmRenderer::ReachableOf(size_t f) {
 // Makes batches end at the places where the stop rule of a frame is applied, in addition to the
 // places that rebinned rays need.
 Result<void> FilmRenderer::PrepareStops(CollectOptions* collect) {
-  collect->cuts_for_noise = film_.stop_at_noise.has_value();
+  collect->cuts_for_noise = film_.stop_when.noise.has_value();
   for (size_t f = 0; f < frames_.size(); ++f) {
     Frame& frame = frames_[f];
     if (setup_.work().IsStopped()) return Error{ErrorKind::kInterrupted, "interrupted"};
     if (frame.is_released) continue;
     const ReachableElements& reachable = ReachableOf(f);
-    if (film_.stop_at_samples) {
+    if (film_.stop_when.samples) {
       // Batches end at the multiples of the smallest decision_places of all frames. The
       // decision_places of each frame is a multiple of this smallest one.
       frame.decision_places = DecisionPlaces(setup_.index().place_end(), reachable.image_count());
@@ -54,7 +54,7 @@ Result<void> FilmRenderer::PrepareStops(CollectOptions* collect) {
 // Returns the first place at or after `place` where the stop rule of the frame is applied. `place`
 // must be above 0.
 uint32_t FilmRenderer::DecisionFrom(size_t f, uint32_t place) const {
-  if (film_.stop_at_noise) return NoiseDecisionAfter(place - 1);
+  if (film_.stop_when.noise) return NoiseDecisionAfter(place - 1);
   const uint32_t step = frames_[f].decision_places;
   return (place + step - 1) / step * step;
 }
@@ -94,8 +94,8 @@ double FilmRenderer::NoiseOf(size_t f) {
 }
 
 bool FilmRenderer::IsEnough(size_t f) {
-  if (film_.stop_at_noise) return NoiseOf(f) <= *film_.stop_at_noise;
-  return HasSamples(frames_[f].plate, ReachableOf(f), *film_.stop_at_samples);
+  if (film_.stop_when.noise) return NoiseOf(f) <= *film_.stop_when.noise;
+  return HasSamples(frames_[f].plate, ReachableOf(f), *film_.stop_when.samples);
 }
 
 // Applies the stop rule to every frame that has reached its next_decision. The plate then has
@@ -132,10 +132,10 @@ std::vector<size_t> FilmRenderer::StoppedFrames() const {
 
 Result<void> FilmRenderer::Measure(size_t f, FrameReport* report) {
   const Frame& frame = frames_[f];
-  const auto samples = film_.require_samples ? film_.require_samples : film_.stop_at_samples;
+  const auto samples = film_.require.samples ? film_.require.samples : film_.stop_when.samples;
   if (samples)
     report->samples = FrameSamples{*samples, MeasureSamples(frame.plate, ReachableOf(f), *samples)};
-  const auto noise = film_.require_noise ? film_.require_noise : film_.stop_at_noise;
+  const auto noise = film_.require.noise ? film_.require.noise : film_.stop_when.noise;
   if (noise && frame.has_noise) {
     FrameNoise& measured = report->noise.emplace();
     measured.asked = *noise;

@@ -147,7 +147,7 @@ TEST_F(FilmRendererTest, RulesAndLimitsHoldForAShutter) {
   Finish(*renderer);
   for (size_t f = 0; f < 3; ++f) EXPECT_EQ(renderer->Progress(f).rays.image_count, 5u);
   options_.max_image_count.reset();
-  options_.stop_at_noise = 0.08;
+  options_.stop_when.noise = 0.08;
   renderer = Open();
   Finish(*renderer);
   FrameReport report;
@@ -156,8 +156,8 @@ TEST_F(FilmRendererTest, RulesAndLimitsHoldForAShutter) {
   EXPECT_LE(report.noise.value().reached.value(), 0.08);
   EXPECT_LT(renderer->PlaceOfEnd(1), 144u);
   ExpectSame(OfFolder(renderer->id(1)), renderer->Develop(1).picture.rgb);
-  options_.stop_at_noise.reset();
-  options_.stop_at_samples = 12;  // four at each instant
+  options_.stop_when.noise.reset();
+  options_.stop_when.samples = 12;  // four at each instant
   renderer = Open();
   Finish(*renderer);
   EXPECT_EQ(renderer->StoppedFrames(), (std::vector<size_t>{0, 1, 2}));
@@ -182,7 +182,7 @@ TEST_F(FilmRendererTest, RebinnedRaysRefuseAShutter) {
 
 TEST_F(FilmRendererTest, StopRulesAreThoseOfAFolder) {
   options_.reading.estimator = Estimator::kBilinear;
-  options_.stop_at_samples = 4;
+  options_.stop_when.samples = 4;
   // The view is so narrow that the LF images see all of it.
   for (RenderCamera& camera : film_.path.cameras)
     camera.pinhole.intrinsics.fx_px = camera.pinhole.intrinsics.fy_px = 200;

@@ -103,7 +103,7 @@ TEST_F(PackedRenderTest, ReportsOfADensifiedStoreCountRecordedImages) {
       *value *= 3;
   WriteImages<uint8_t>(3, ".png");
   options_.film.lens_weights = LensWeights::kNone;  // weights depend on all LF cameras
-  options_.film.require_noise = 1;
+  options_.film.require.noise = 1;
   options_.film.guard = false;  // a guarded plate keeps the recorded rays apart
   const RenderReport all = RenderTo("all", Packed()).value();
   for (uint32_t i = 0; i < field_.size(); i += 5) field_.cameras[i].is_virtual = true;
@@ -131,8 +131,8 @@ TEST_F(PackedRenderTest, ReportsOfADensifiedStoreCountRecordedImages) {
     EXPECT_EQ(densified.frames[f].noise->image_count, rays.image_count);
   }
   EXPECT_GT(measured, 0u);
-  options_.film.require_noise.reset();
-  options_.film.require_samples = 2;
+  options_.film.require.noise.reset();
+  options_.film.require.samples = 2;
   const Result<RenderReport> refused = RenderTo("refused", dense);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);

@@ -176,8 +176,8 @@ std::vector<FrameId> Renderer::FramesToRender() {
   for (const FrameId frame : setup_->frames()) {
     const auto finished = state_->finished().find(frame);
     if (finished != state_->finished().end()) {
-      const bool lacks_samples = setup_->film().require_samples && !finished->second.samples;
-      const bool lacks_noise = setup_->film().require_noise && !finished->second.noise;
+      const bool lacks_samples = setup_->film().require.samples && !finished->second.samples;
+      const bool lacks_noise = setup_->film().require.noise && !finished->second.noise;
       const bool lacks_plate = folder_.keep_plates && !state_->HasPlateBeside(frame);
       if (!lacks_samples && !lacks_noise && !lacks_plate) continue;
       LogInfo("frame {} is rendered again, for {}", frame.value,

@@ -14,6 +14,7 @@
 #include "lf/render/settings/rebin_settings.h"
 #include "lf/render/settings/render_mode.h"
 #include "lf/render/settings/shard.h"
+#include "lf/render/settings/stop_rules.h"
 #include "lf/selection/image_order.h"
 #include "lf/selection/lens_weights/frame_weights.h"
 
@@ -55,21 +56,21 @@ struct FilmSettings {
   // with rebinned rays.
   std::optional<Shard> shard;
 
-  // If set, a frame is finished when its elements have this number of rays (HasSamples()). The
-  // rule is applied only at places of the order that are multiples of 64 (of 128, 256, ... if a
-  // frame takes only a part of the LF images), so that the frame has the same bits in any run.
-  std::optional<uint32_t> stop_at_samples;
-  // If set, the report of each frame states the share of its reachable elements that have at least
-  // this number of rays in every channel.
-  std::optional<uint32_t> require_samples;
-  // If set, a frame is finished when its noise is at most this (render/collect/noise_rule.h), in
-  // linear radiance where the light field's white is 1. The rule is applied at the places that
-  // NoiseDecisionAfter() gives. It can be combined with every mode, estimator, filter and weights:
-  // with kRebin, frames collect rays only to measure the noise, and their pictures do not use these
-  // rays.
-  std::optional<double> stop_at_noise;
-  // If set, the report of each frame states its noise and this limit.
-  std::optional<double> require_noise;
+  // A frame is finished when this rule is met.
+  //   samples  its elements have this number of rays (HasSamples()). The rule is applied only at
+  //            places of the order that are multiples of 64 (of 128, 256, ... if a frame takes only
+  //            a part of the LF images), so that the frame has the same bits in any run.
+  //   noise    its noise is at most this (render/collect/noise_rule.h), in linear radiance where
+  //            the light field's white is 1. The rule is applied at the places that
+  //            NoiseDecisionAfter() gives. It can be combined with every mode, estimator, filter
+  //            and weights: with kRebin, frames collect rays only to measure the noise, and their
+  //            pictures do not use these rays.
+  StopRule stop_when;
+  // The report of each frame states how far it meets this rule.
+  //   samples  the share of its reachable elements that have at least this number of rays in every
+  //            channel
+  //   noise    its noise, and this limit
+  StopRule require;
   // smooth_below and fill_radius_px: see DevelopOptions in film/develop/develop.h.
   uint32_t smooth_below = 0;
   int fill_radius_px = kFillRadius_px;
@@ -79,11 +80,11 @@ struct FilmSettings {
   bool Collects() const { return lf::Collects(mode); }
   bool Rebins() const { return lf::Rebins(mode); }
   // Returns true if a setting depends on how many rays each element has.
-  bool CountsRays() const { return stop_at_samples || require_samples || smooth_below > 0; }
+  bool CountsRays() const { return stop_when.samples || require.samples || smooth_below > 0; }
   // Returns true if a setting depends on the noise, which is measured by how much the LF images
   // differ within an element.
-  bool MeasuresNoise() const { return stop_at_noise || require_noise; }
-  bool HasStopRule() const { return stop_at_samples || stop_at_noise; }
+  bool MeasuresNoise() const { return stop_when.noise || require.noise; }
+  bool HasStopRule() const { return stop_when.samples || stop_when.noise; }
   // Returns true if frames have plates. With kRebin, they have plates only to measure the noise.
   bool HasPlates() const { return Collects() || MeasuresNoise(); }
 };

@@ -61,8 +61,9 @@ struct RebinSettings {
   size_t nearest = 0;
   SlabChoices slab;
   CoverageOptions coverage;
-  // Largest number of cells in the maps of all sections together; 0 only before PlanRenderMemory()
-  // has chosen a number.
+  static constexpr size_t kLeastCells = 1000;
+  // Largest number of cells in the maps of all sections together, at least kLeastCells; 0 only
+  // before PlanRenderMemory() has chosen a number.
   size_t max_cells = 0;
   // True: memory for the expected cells is allocated at once. False: memory grows with the cells,
   // because only a few LF images are taken (render/hybrid/rebin_cost.h).

@@ -59,9 +59,9 @@ std::string ColoursText(const RadianceEncoding& encoding) {
                      encoding.white_balance[1], encoding.white_balance[2], hasher.Text());
 }
 
-std::string StopText(const FilmSettings& film) {
-  if (film.stop_at_noise) return TextOfNoiseRule(*film.stop_at_noise);
-  return film.stop_at_samples ? fmt::format("samples>={}", *film.stop_at_samples) : "never";
+std::string StopText(const StopRule& rule) {
+  const std::string text = TextOf(rule);
+  return text.empty() ? "never" : text;
 }
 
 std::string Text(const Vec3& v) { return fmt::format("{} {} {}", v.x(), v.y(), v.z()); }
@@ -107,7 +107,7 @@ RunInputs InputsOfRays(const LightFieldIdentity& light_field, const RadianceEnco
       {"max_images", film.max_image_count ? fmt::format("{}", *film.max_image_count) : "all"},
       {"max_angle_deg",
        film.max_angle_rad ? fmt::format("{}", DegreesFromRadians(*film.max_angle_rad)) : "any"},
-      {"stop_when", StopText(film)},
+      {"stop_when", StopText(film.stop_when)},
       {"light_field.images", fmt::format("{}", light_field.image_count)},
       {"light_field.names", light_field.names},
       {"light_field.calibration", light_field.calibration},

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// The settings of a film as texts: one row for each setting, from which the options of the programs
+// and the keyword arguments of Python are made. A new setting is a member of FilmSettings, a row
+// here, and its use.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lf/core/result.h"
+#include "lf/render/settings/film_settings.h"
+
+namespace lf {
+
+enum class SettingKind {
+  kChoice,  // one of some words
+  kSwitch,  // "on" or "off"
+  kWhole,   // a whole number
+  kNumber,  // a number
+  kPoint,   // three numbers, such as "0 0 1", or "auto"
+  kText,    // a text of its own form, such as "noise<=0.002"
+};
+
+// Groups in which help shows settings.
+enum class SettingGroup { kPicture, kQuality, kRebinning, kMeasuring };
+
+struct Setting {
+  std::string_view key;  // "lens_weights"
+  SettingGroup group = SettingGroup::kPicture;
+  SettingKind kind = SettingKind::kText;
+  // What a value is called: "N" in --max-images N. Empty for kChoice and kSwitch.
+  std::string_view placeholder = {};
+  std::vector<std::string_view> words = {};  // the words of kChoice and kSwitch
+  // True: a whole or other number that is unset by default, and by 0.
+  bool is_optional = false;
+  // Smallest and largest number of kWhole and kNumber.
+  double least = 0;
+  double most = std::numeric_limits<double>::infinity();
+  // The first line is a summary. The others are details; a line "word: meaning" explains a word.
+  // {mode} or {mode rebin} stands for another setting, with a value, which each door spells in its
+  // own way (Spelled()).
+  std::string_view text = {};
+
+  // Returns the value as a text that `set` accepts.
+  std::function<std::string(const FilmSettings&)> get = {};
+  // Sets the value. kUsage if the text is no such value; the message begins with {key}, states the
+  // text that was found and what was expected, and may refer to settings as `text` does.
+  std::function<Result<void>(const std::string&, FilmSettings*)> set = {};
+};
+
+// Returns the rows, group by group, in the order in which help lists them. The keys are unique.
+std::span<const Setting> SettingTable();
+
+// Returns the row with this key; null if there is none.
+const Setting* FindSetting(std::string_view key);
+
+// Returns the text with each {key} and {key value} replaced by the result of `spell`, whose second
+// argument is then empty or the value.
+std::string Spelled(
+    std::string_view text,
+    const std::function<std::string(std::string_view key, std::string_view value)>& spell);
+
+}  // namespace lf

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lf/render/settings/setting_table.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "lf/core/geometry.h"
+
+namespace lf {
+namespace {
+
+// A text of another value than the default.
+std::string AnotherOf(const Setting& setting) {
+  const std::string usual = setting.get(FilmSettings());
+  switch (setting.kind) {
+    case SettingKind::kChoice:
+    case SettingKind::kSwitch:
+      return std::string(usual == setting.words[0] ? setting.words[1] : setting.words[0]);
+    case SettingKind::kPoint:
+      return "0.25 -1 3";
+    case SettingKind::kText:
+      return setting.key == "fill" ? "5" : setting.key == "max_rays" ? "2000" : "noise<=0.25";
+    default:
+      return setting.least > 1 || usual == "1" ? "5" : "1";
+  }
+}
+
+TEST(SettingTable, EachRowSetsAMemberOfItsOwn) {
+  std::set<std::string_view> keys;
+  for (const Setting& setting : SettingTable()) {
+    EXPECT_TRUE(keys.insert(setting.key).second) << setting.key;
+    EXPECT_EQ(FindSetting(setting.key), &setting);
+    FilmSettings film;
+    const std::string another = AnotherOf(setting);
+    ASSERT_TRUE(setting.set(another, &film)) << setting.key << " " << another;
+    for (const Setting& other : SettingTable()) {
+      const bool is_changed = other.get(film) != other.get(FilmSettings());
+      EXPECT_EQ(is_changed, other.key == setting.key) << setting.key << " " << other.key;
+    }
+    for (const std::string_view word : setting.words) {
+      FilmSettings chosen;
+      ASSERT_TRUE(setting.set(std::string(word), &chosen)) << setting.key << " " << word;
+      const bool is_auto = setting.key == "estimator" && word == "bilinear";
+      EXPECT_EQ(setting.get(chosen), is_auto ? "auto" : word) << setting.key;
+    }
+    ASSERT_TRUE(setting.set(setting.get(FilmSettings()), &film)) << setting.key;
+    EXPECT_EQ(setting.get(film), setting.get(FilmSettings())) << setting.key;
+  }
+  EXPECT_EQ(FindSetting("lens weights"), nullptr);
+}
+
+TEST(SettingTable, RefusedTextsAreNamedAndChangeNothing) {
+  for (const Setting& setting : SettingTable()) {
+    std::vector<std::string> wrong = {"never heard of", "1 2"};
+    if (std::isfinite(setting.most)) wrong.push_back(std::to_string(setting.most * 2));
+    if (setting.kind != SettingKind::kText) wrong.insert(wrong.end(), {"", "nan", "-1", "0x1"});
+    for (const std::string& text : wrong) {
+      FilmSettings film;
+      const Result<void> set = setting.set(text, &film);
+      ASSERT_FALSE(set) << setting.key << " '" << text << "'";
+      EXPECT_EQ(set.error().kind, ErrorKind::kUsage);
+      EXPECT_TRUE(set.error().message.starts_with("{" + std::string(setting.key)))
+          << set.error().message;
+      EXPECT_EQ(setting.get(film), setting.get(FilmSettings())) << setting.key;
+    }
+  }
+}
+
+TEST(SettingTable, TheFirstWordIsTheDefault) {
+  for (const Setting& setting : SettingTable())
+    if (setting.kind == SettingKind::kChoice) {
+      EXPECT_EQ(setting.get(FilmSettings()), setting.words.front()) << setting.key;
+    }
+}
+
+TEST(SettingTable, AnAngleKeepsItsDegrees) {
+  for (const char* degrees : {"0.1", "30", "45", "90", "123.456", "180"}) {
+    FilmSettings film;
+    ASSERT_TRUE(FindSetting("max_angle_deg")->set(degrees, &film));
+    EXPECT_NEAR(std::stod(FindSetting("max_angle_deg")->get(film)), std::stod(degrees), 1e-12);
+    EXPECT_EQ(film.max_angle_rad, RadiansFromDegrees(std::stod(degrees)));
+  }
+}
+
+TEST(Spelled, ReplacesReferencesToSettings) {
+  const auto spell = [](std::string_view key, std::string_view value) {
+    return "<" + std::string(key) + (value.empty() ? "" : "=" + std::string(value)) + ">";
+  };
+  EXPECT_EQ(Spelled("{mode rebin} or {fill}: {open", spell), "<mode=rebin> or <fill>: {open");
+  EXPECT_EQ(Spelled("", spell), "");
+  EXPECT_EQ(Spelled("no reference", spell), "no reference");
+}
+
+}  // namespace
+}  // namespace lf

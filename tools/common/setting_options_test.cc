@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/common/setting_options.h"
+
+#include <gtest/gtest.h>
+
+#include <CLI/CLI.hpp>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "lf/render/settings/setting_table.h"
+
+namespace lf {
+namespace {
+
+// Values that are not the defaults.
+const std::map<std::string, std::string, std::less<>> kValues = {{"fill", "7"},
+                                                                 {"max_rays", "5M"},
+                                                                 {"stop_when", "noise<=0.25"},
+                                                                 {"require", "samples>=9"},
+                                                                 {"slab_position", "1 2 -3"},
+                                                                 {"slab_forward", "0 0.5 1"}};
+
+std::string ValueFor(const Setting& setting) {
+  if (const auto value = kValues.find(setting.key); value != kValues.end()) return value->second;
+  if (!setting.words.empty())
+    return std::string(setting.words[setting.get(FilmSettings()) == setting.words[0] ? 1 : 0]);
+  return setting.least > 1 || setting.get(FilmSettings()) == "1" ? "5" : "1";
+}
+
+// Returns the settings that the command line states.
+Result<FilmSettings> Parsed(const std::vector<std::string>& words) {
+  CLI::App app;
+  OptionGroup group(app, "All");
+  SettingOptions options;
+  for (const Setting& setting : SettingTable()) options.AddTo(group, setting.key);
+  std::vector<std::string> reversed(words.rbegin(), words.rend());
+  try {
+    app.parse(std::move(reversed));
+  } catch (const CLI::ParseError& error) {
+    return UsageError(error.what());
+  }
+  FilmSettings film;
+  LF_RETURN_IF_ERROR(options.Set(&film));
+  return film;
+}
+
+TEST(SettingOptions, SayWhatTheTableSays) {
+  for (const Setting& setting : SettingTable()) {
+    const std::string value = ValueFor(setting);
+    FilmSettings expected;
+    ASSERT_TRUE(setting.set(value, &expected)) << setting.key;
+    std::vector<std::string> words = {OptionOf(setting.key)};
+    if (setting.kind == SettingKind::kPoint)
+      for (const std::string& number : CLI::detail::split(value, ' ')) words.push_back(number);
+    else
+      words.push_back(value);
+    const Result<FilmSettings> film = Parsed(words);
+    ASSERT_TRUE(film) << film.error().message;
+    for (const Setting& other : SettingTable())
+      EXPECT_EQ(other.get(*film), other.get(expected)) << setting.key << " " << other.key;
+    EXPECT_NE(setting.get(*film), setting.get(FilmSettings())) << setting.key;
+  }
+  const Result<FilmSettings> none = Parsed({});
+  ASSERT_TRUE(none);
+  for (const Setting& setting : SettingTable())
+    EXPECT_EQ(setting.get(*none), setting.get(FilmSettings())) << setting.key;
+}
+
+TEST(SettingOptions, WrongValuesNameTheOption) {
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"--mode", "collected"},
+                                             {"--fill", "-1"},
+                                             {"--max-angle", "181"},
+                                             {"--alpha", "0x1"},
+                                             {"--max-rays", "12"},
+                                             {"--stop-when", "noise<0"},
+                                             {"--lens-sets", "9"},
+                                             {"--r-st", "-1"},
+                                             {"--slab-forward", "0", "x", "1"}}) {
+    const Result<FilmSettings> film = Parsed(words);
+    ASSERT_FALSE(film) << words[0];
+    EXPECT_NE(film.error().message.find(words[0]), std::string::npos) << film.error().message;
+  }
+}
+
+TEST(SettingOptions, ReferencesAreOptions) {
+  EXPECT_EQ(OptionOf("max_angle_deg"), "--max-angle");
+  EXPECT_EQ(OptionOf("lens_weights", "none"), "--lens-weights none");
+}
+
+}  // namespace
+}  // namespace lf
