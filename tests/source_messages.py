@@ -8,8 +8,9 @@ PROGRAMS = ("lfr lfsynth lfimport lfexample lfcammvminfo lfpath lfpreprocessor l
 TOKEN = re.compile(r'//[^\n]*|R"\((?P<raw>.*?)\)"|(?P<words>"(?:[^"\\\n]|\\.)*"(?:\s*"(?:[^"\\\n]|\\.)*")*)|'
                    r"'(?:[^'\\\n]|\\.)+'", re.S)
 WORD = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
-# The texts of a program's help: options, and the summary, usage, examples and details of HelpTexts.
-HELP = re.compile(r"(?:\bAdd|\bAddFlag|\bAddChoice|AddTo)\((?:[^;]|;(?=[^\n]*\"))*\Z|"
+# The texts of a program's help: options and their groups, and the summary, usage, examples and details of HelpTexts.
+HELP = re.compile(r"OptionGroup \w+\(app, \Z|"
+                  r"(?:\bAdd|\bAddFlag|\bAddChoice|AddTo)\((?:[^;]|;(?=[^\n]*\"))*\Z|"
                   r"\.(?:summary|usage|examples|details|strict|json|seed) =\s*\Z")
 OPTION = r"--[a-z][a-z-]*"
 # A remedy: a verb that tells what to do, and then an option, or "leave ... out" of a message that names an option.

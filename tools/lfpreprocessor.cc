@@ -146,8 +146,7 @@ void AddOptions(CLI::App& app, Arguments& a) {
 }
 
 lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::CommonOptions& common,
-                                              const lf::CameraPath& path,
-                                              const lf::RadianceEncoding& encoding) {
+                                              const lf::CameraPath& path) {
   lf::PreprocessOptions options;
   if (!a.plan) {
     if (a.output.empty())
@@ -159,20 +158,9 @@ lf::Result<lf::PreprocessOptions> MakeOptions(const Arguments& a, const lf::Comm
   options.inputs = lf::FilesOfPath(a.path);
   options.inputs.emplace_back(a.light_field.path);
   LF_ASSIGN_OR_RETURN(options.frames, a.frames.Of(path.frame_count()));
-  lf::FilmSettings film;
-  LF_RETURN_IF_ERROR(a.settings.Set(&film));
-  options.order = film.order;
-  options.seed = common.seed;
-  options.max_image_count = film.max_image_count;
-  options.max_angle_rad = film.max_angle_rad;
-  options.reading.estimator = film.reading.estimator;
-  options.reading.filter = lf::FilterOf(lf::PixelFilter::kAuto, encoding, false);
-  options.lens_weights = film.lens_weights;
-  options.guard = !a.no_guard;
-  options.mode = film.mode;
-  // As in lfrenderer, auto means none with --mode rebin, which collects no rays to weight.
-  if (options.mode == lf::RenderMode::kRebin && options.lens_weights == lf::LensWeights::kAuto)
-    options.lens_weights = lf::LensWeights::kNone;
+  LF_RETURN_IF_ERROR(a.settings.Set(&options.film));
+  options.film.seed = common.seed;
+  options.film.guard = !a.no_guard;
   LF_ASSIGN_OR_RETURN(options.memory_bytes, lf::ParseByteSize(a.memory, "--memory"));
   if (a.packages > 0) options.package_count = static_cast<size_t>(a.packages);
   if (a.frames_per_package > 0)
@@ -233,8 +221,7 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   LF_ASSIGN_OR_RETURN(lf::CameraPath path,
                       lf::OpenPath(a.path, lf::PathOptionsToRender(light_field)));
-  LF_ASSIGN_OR_RETURN(lf::PreprocessOptions options,
-                      MakeOptions(a, common, path, light_field.encoding));
+  LF_ASSIGN_OR_RETURN(lf::PreprocessOptions options, MakeOptions(a, common, path));
   if (a.frames.IsNone(options.frames)) return ReportNoFrames(a, common, light_field, path);
   options.interrupted = &interrupted;
   lf::ThreadPool pool(common.threads);
@@ -250,11 +237,11 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   lf::ForecastFacts facts;
   facts.light_field = a.light_field.path;
   facts.output = a.output;
-  facts.order = options.order;
-  facts.seed = options.seed;
+  facts.order = options.film.order;
+  facts.seed = options.film.seed;
   facts.thread_count = pool.thread_count();
   facts.read_s = read_s;
-  facts.rebins = lf::Rebins(options.mode);
+  facts.rebins = lf::Rebins(options.film.mode);
   facts.depths_from = depths_from;
   const lf::Result<void> end = lf::EndWithMissing(lf::MissingOf(report), limit);
   if (end && !a.output.empty()) facts.next = NextOf(a, report);

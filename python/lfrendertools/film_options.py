@@ -44,7 +44,7 @@ _SETTINGS: Dict[str, _Setting] = {row[0]: _Setting(*row) for row in _core.settin
 
 
 def film_words(options: Mapping[str, Any], own: Dict[str, Any]) -> Dict[str, str]:
-    """Return the texts of the settings with these names. Values that the caller has of its `own` replace its defaults."""
+    """Return the texts of these settings. Options that the caller has of its `own` are set there instead."""
     words = {}
     for name, value in options.items():
         if name in own:

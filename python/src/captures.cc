@@ -90,24 +90,11 @@ struct PackageWords {
   bool overwrite = false, strict = false;
 };
 
-PreprocessOptions PreprocessOptionsOf(const PackageWords& words, const SettingWords& film_words,
-                                      const RadianceEncoding& encoding) {
-  const FilmSettings film = Take(FilmSettingsOf(film_words));
+PreprocessOptions PreprocessOptionsOf(const PackageWords& words, const SettingWords& film_words) {
   PreprocessOptions options;
   if (!words.output.empty()) options.output_folder = words.output;
   options.overwrite = words.overwrite;
-  options.order = film.order;
-  options.seed = film.seed;
-  options.max_image_count = film.max_image_count;
-  options.max_angle_rad = film.max_angle_rad;
-  options.reading.estimator = film.reading.estimator;
-  options.reading.filter = FilterOf(film.reading.filter, encoding, false);
-  options.mode = film.mode;
-  // As for renders, auto means none with rebinned rays alone, which are not weighted.
-  options.lens_weights = film.mode == RenderMode::kRebin && film.lens_weights == LensWeights::kAuto
-                             ? LensWeights::kNone
-                             : film.lens_weights;
-  options.guard = film.guard;
+  options.film = Take(FilmSettingsOf(film_words));
   options.memory_bytes = Take(ParseByteSize(words.memory, "memory"));
   options.package_count = words.packages;
   options.frames_per_package = words.frames_per_package;
@@ -126,7 +113,7 @@ std::string Preprocess(const OpenedField& field, const std::string& name,
   ThreadPool& pool = PoolOf(threads);
   ToldWork work(tell);
   const LightField& light_field = field.light_field;
-  PreprocessOptions options = PreprocessOptionsOf(words, film, light_field.encoding);
+  PreprocessOptions options = PreprocessOptionsOf(words, film);
   for (const uint32_t frame : frames) options.frames.push_back(FrameId{frame});
   options.light_field_name = name;
   options.light_field_options = field.options;
@@ -138,10 +125,10 @@ std::string Preprocess(const OpenedField& field, const std::string& name,
         ForecastFacts facts;
         facts.light_field = name;
         facts.output = words.output;
-        facts.order = options.order;
-        facts.seed = options.seed;
+        facts.order = options.film.order;
+        facts.seed = options.film.seed;
         facts.thread_count = pool.thread_count();
-        facts.rebins = Rebins(options.mode);
+        facts.rebins = Rebins(options.film.mode);
         facts.depths_from = KnowDepths(light_field, path, pool, &options);
         const PreprocessReport report =
             Take(lf::Preprocess(light_field, path, options, pool, work.Progress()));

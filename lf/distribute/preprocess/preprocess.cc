@@ -12,6 +12,7 @@
 #include "lf/core/log.h"
 #include "lf/distribute/preprocess/expected_memory.h"
 #include "lf/distribute/preprocess/forecast_rebinning.h"
+#include "lf/distribute/preprocess/later_render.h"
 #include "lf/distribute/preprocess/package_folder.h"
 #include "lf/distribute/preprocess/split_film.h"
 #include "lf/render/collect/frame_lens.h"
@@ -64,25 +65,15 @@ class Preprocessor {
       : light_field_(light_field),
         path_(path),
         options_(options),
+        film_(LaterRender(options.film, light_field)),
         pool_(pool),
-        progress_(progress) {
-    // kElement is the largest reach, so that packages can be rendered with any filter.
-    needs_.select.reach =
-        options.reading.estimator == Estimator::kBilinear ? PixelReach::kElement : PixelReach::kOwn;
-    needs_.select.max_angle_rad = options.max_angle_rad;
-    needs_.select.interrupted = options.interrupted;
-    needs_.lens_weights = options.lens_weights;
-    needs_.mode = options.mode;
-    needs_.max_image_count = options.max_image_count;
-    needs_.guard =
-        options.guard && options.mode == RenderMode::kCollect && HasVirtual(light_field_);
-  }
+        progress_(progress),
+        needs_(NeedsOfLaterRender(film_, light_field, options.interrupted)) {}
 
   Result<PreprocessReport> Run();
 
  private:
   Result<void> Begin();
-  Result<void> CheckOptions() const;
   Result<void> MakeIndex();
   Result<void> ForecastFrames();
   Result<void> DescribeSurroundings(const std::map<FrameId, FrameSampling>& sampling);
@@ -121,6 +112,7 @@ class Preprocessor {
   std::optional<PixelFootprint> footprint_;
   const CameraPath& path_;
   const PreprocessOptions& options_;
+  const FilmSettings film_;  // of the later render
   ThreadPool& pool_;
   const std::function<void(size_t, size_t)>& progress_;
   NeedsOptions needs_;
@@ -158,7 +150,7 @@ Result<void> Preprocessor::Begin() {
   frames_ = options_.frames;
   if (frames_.empty())
     for (uint32_t n = 1; n <= path_.frame_count(); ++n) frames_.push_back(FrameId{n});
-  LF_RETURN_IF_ERROR(CheckOptions());
+  LF_RETURN_IF_ERROR(CheckLaterRender(light_field_, path_, frames_, film_, needs_));
   if (options_.output_folder) {
     LF_ASSIGN_OR_RETURN(
         PackageFolder folder,
@@ -168,7 +160,7 @@ Result<void> Preprocessor::Begin() {
     folder_.emplace(std::move(folder));
   }
   LF_ASSIGN_OR_RETURN(store_,
-                      OpenStore(light_field_, options_.reading.estimator == Estimator::kBilinear
+                      OpenStore(light_field_, film_.reading.estimator == Estimator::kBilinear
                                                   ? Mosaics::kToRgb
                                                   : Mosaics::kAsRecorded));
   report_.light_field_image_count = RecordedCount(light_field_);
@@ -176,30 +168,10 @@ Result<void> Preprocessor::Begin() {
   whole_ = IdentityOf(light_field_);
   footprint_ = light_field_.encoding.footprint;
   const double start_s = ProcessCpuSeconds();
-  if (options_.reading.estimator == Estimator::kBilinear) {
+  if (film_.reading.estimator == Estimator::kBilinear) {
     LF_ASSIGN_OR_RETURN(footprint_, FootprintOf(light_field_, *store_));
   }
   begin_cpu_s_ += ProcessCpuSeconds() - start_s;
-  return {};
-}
-
-Result<void> Preprocessor::CheckOptions() const {
-  LF_RETURN_IF_ERROR(CheckOpacity(light_field_.encoding, options_.mode));
-  LF_RETURN_IF_ERROR(CheckLenses(path_.cameras, options_.mode));
-  LF_RETURN_IF_ERROR(CheckShutter(path_.shutter.exists(), options_.mode, needs_.guard));
-  if (Rebins(options_.mode) && options_.max_image_count)
-    return UsageError(
-        "--max-images cannot be used with --mode rebin or hybrid, in which all frames share the "
-        "rebinned rays of all LF images: leave it out, or use --mode collect");
-  if (!Collects(options_.mode) && options_.lens_weights != LensWeights::kNone)
-    return UsageError(
-        fmt::format("--lens-weights {} cannot be used with --mode rebin, which collects no rays to "
-                    "be weighted: leave it out",
-                    NameOf(options_.lens_weights)));
-  if (options_.lens_weights == LensWeights::kArea)
-    for (const FrameId frame : frames_)
-      for (const RenderCamera& camera : path_.Instants(frame))
-        LF_RETURN_IF_ERROR(CheckHasArea(camera, frame));
   return {};
 }
 
@@ -207,15 +179,15 @@ Result<void> Preprocessor::MakeIndex() {
   const auto start = std::chrono::steady_clock::now();
   const double start_cpu_s = ProcessCpuSeconds();
   const Result<ImagePlaces> places =
-      PlacesOfFilm(options_.order, options_.seed, light_field_, path_, needs_, pool_);
+      PlacesOfFilm(film_.order, film_.seed, light_field_, path_, needs_, pool_);
   LF_RETURN_IF_ERROR(CheckInterrupted());
   if (!places) return places.error();
   places_ = *places;
   index_.emplace(light_field_, places_);
   report_.index_s = SecondsSince(start);
   begin_cpu_s_ += ProcessCpuSeconds() - start_cpu_s;
-  LogDebug("order {} of {} LF images by seed {}, and their octree: {:.2f} s",
-           NameOf(options_.order), light_field_.size(), options_.seed, report_.index_s);
+  LogDebug("order {} of {} LF images by seed {}, and their octree: {:.2f} s", NameOf(film_.order),
+           light_field_.size(), film_.seed, report_.index_s);
   return {};
 }
 
@@ -298,7 +270,7 @@ Result<void> Preprocessor::Measure() {
   });
   const FrameId frame = frames_[by_rays[by_rays.size() / 2]];
   const Result<RenderRate> rate = MeasureRate(
-      *index_, path_.Camera(frame), path_.Instants(frame).size(), needs_, options_.reading, pool_);
+      *index_, path_.Camera(frame), path_.Instants(frame).size(), needs_, film_.reading, pool_);
   if (rate)
     report_.rate = *rate;
   else
@@ -309,7 +281,7 @@ Result<void> Preprocessor::Measure() {
 Result<RenderMemory> Preprocessor::MemoryOf(const LightField& light_field,
                                             size_t frame_count) const {
   const Intrinsics& plate = path_.Camera(frames_.front()).pinhole.intrinsics;
-  return PlanRenderMemory(options_.memory_bytes, options_.mode, 0, light_field, options_.reading,
+  return PlanRenderMemory(options_.memory_bytes, film_.mode, 0, light_field, film_.reading,
                           plate.width_px, plate.height_px, frame_count, pool_.thread_count(), 0,
                           needs_.guard, static_cast<size_t>(path_.shutter.samples));
 }
@@ -389,8 +361,12 @@ Package Preprocessor::PackageOf(const Section& section, const Gathering& gatheri
   Package package;
   package.whole = whole_;
   package.whole_virtual_count = report_.light_field_virtual_count;
-  package.choices = {options_.order,         options_.seed,          options_.max_image_count,
-                     options_.max_angle_rad, needs_.HasNeighbours(), NameOf(options_.mode)};
+  package.choices = {film_.order,
+                     film_.seed,
+                     film_.max_image_count,
+                     film_.max_angle_rad,
+                     needs_.HasNeighbours(),
+                     NameOf(film_.mode)};
   package.path = path_;
   package.surroundings = surroundings_;
   package.instant_distances_w = instant_distances_w_;
@@ -467,18 +443,18 @@ Result<void> Preprocessor::Forecast(const Package& package, PackageForecast* for
   forecast->pass_count = (frame_count + per_pass - 1) / per_pass;
   RebinCost cost;
   StageTimes cpu;
-  if (Rebins(options_.mode)) {
+  if (Rebins(film_.mode)) {
     // The passes have about equal numbers of frames, and the first stands for all.
     const auto pass = std::span<const FrameId>(forecast->frames).first(per_pass);
     LF_ASSIGN_OR_RETURN(cost, ForecastRebinning(*index_, *store_, path_, surroundings_, pass,
-                                                needs_, options_.reading, memory.max_cells, pool_));
+                                                needs_, film_.reading, memory.max_cells, pool_));
     LF_RETURN_IF_ERROR(CheckInterrupted());
     const auto passes = static_cast<double>(frame_count) / static_cast<double>(per_pass);
     cpu = {passes * cost.begin_s, 0, 0, passes * cost.rebin_s, passes * cost.complete_s, 0};
   }
   forecast->memory_bytes =
-      ExpectedBytes(memory, package.light_field, read, Collects(options_.mode),
-                    options_.reading.Prefilters(), Rebins(options_.mode) ? &cost : nullptr);
+      ExpectedBytes(memory, package.light_field, read, Collects(film_.mode),
+                    film_.reading.Prefilters(), Rebins(film_.mode) ? &cost : nullptr);
   if (!report_.rate) return {};
   cpu.begin_s += begin_cpu_s_;
   cpu.load_s = report_.rate->load_s * static_cast<double>(read.count);

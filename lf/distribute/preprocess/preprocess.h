@@ -21,8 +21,7 @@
 #include "lf/light_field/model/light_field.h"
 #include "lf/render/collect/collect_batch.h"
 #include "lf/render/package/package.h"
-#include "lf/render/settings/render_mode.h"
-#include "lf/selection/lens_weights/frame_weights.h"
+#include "lf/render/settings/film_settings.h"
 
 namespace lf {
 
@@ -35,24 +34,15 @@ struct PreprocessOptions {
   // Files that are read, besides those of the light field, and that no package may replace.
   std::vector<std::filesystem::path> inputs = {};
   std::vector<FrameId> frames;  // frames to pack, ascending; empty: all frames of the path
-  ImageOrder order = ImageOrder::kShuffle;
-  uint64_t seed = 0;
-  std::optional<size_t> max_image_count;  // largest number of LF images of a frame; unset: no limit
-  std::optional<double> max_angle_rad;    // as SelectOptions::max_angle_rad
 
-  // Options of the renders that follow. Packages can be rendered with any estimator and any lens
-  // weights. Exception: packages for LensWeights::kNone and RenderMode::kCollect can only be
-  // rendered with these two, because they lack the neighbours, which lens weights and rebinned rays
-  // need.
-  RayReading reading = Estimator::kBilinear;
-  LensWeights lens_weights = LensWeights::kAuto;
-  // Mode of the renders that follow. It decides what frames need, and therefore the forecast, and
-  // which pixels lfcompressor --needed-pixels keeps. If whole LF images are kept, packages can be
-  // rendered in any mode, except for packages for LensWeights::kNone and kCollect.
-  RenderMode mode = RenderMode::kCollect;
-
-  // True: the renders that follow guard frames of a densified light field (FilmSettings::guard).
-  bool guard = true;
+  // Settings of the renders that follow. The package states order, seed, max_image_count and
+  // max_angle_rad, so that renders cannot change them. Packages can be rendered with any estimator
+  // and any lens weights. Exception: packages for LensWeights::kNone and RenderMode::kCollect can
+  // only be rendered with these two, because they lack the neighbours, which lens weights and
+  // rebinned rays need. The mode decides what frames need, and therefore the forecast, and which
+  // pixels lfcompressor --needed-pixels keeps; if whole LF images are kept, other packages can be
+  // rendered in any mode. With RenderMode::kRebin, LensWeights::kAuto means kNone.
+  FilmSettings film;
 
   // Number of packages: package_count if it is set; otherwise, if frames_per_package is set, as
   // many as that requires; otherwise as few as possible such that all plates of a package fit into

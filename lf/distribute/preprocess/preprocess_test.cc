@@ -44,7 +44,7 @@ class PreprocessTest : public ::testing::Test {
                  ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
     options_.output_folder = folder_;
     options_.package_count = 3;
-    options_.seed = 5;
+    options_.film.seed = 5;
   }
   ~PreprocessTest() override { fs::remove_all(folder_); }
 
@@ -71,7 +71,7 @@ class PreprocessTest : public ::testing::Test {
 
 void PreprocessTest::ExpectPackageIsAsGoodAsTheWhole(const Package& package,
                                                      const NeedsOptions& needs) {
-  const ImageIndex whole(field_, options_.seed), part(package.light_field, package.places);
+  const ImageIndex whole(field_, options_.film.seed), part(package.light_field, package.places);
   EXPECT_EQ(package.whole, IdentityOf(field_));
   for (size_t i = 0; i < package.images.size(); ++i)
     EXPECT_EQ(package.places.of_images[i], whole.PlaceOf(LfImageId{package.images[i].id}));
@@ -122,15 +122,15 @@ void PreprocessTest::ExpectPackageIsAsGoodAsTheWhole(const Package& package,
 TEST_F(PreprocessTest, PackagesHaveWhatTheirFramesNeed) {
   for (const LensWeights weights : {LensWeights::kAuto, LensWeights::kNone})
     for (const std::optional<size_t> most : {std::optional<size_t>(), std::optional<size_t>(9)}) {
-      options_.lens_weights = weights;
-      options_.max_image_count = most;
-      options_.max_angle_rad = most ? std::optional<double>() : 0.02;
+      options_.film.lens_weights = weights;
+      options_.film.max_image_count = most;
+      options_.film.max_angle_rad = most ? std::optional<double>() : 0.02;
       options_.overwrite = true;
       const PreprocessReport report = Run();
       ASSERT_EQ(report.packages.size(), 3u);
       NeedsOptions needs;
       needs.select.reach = PixelReach::kElement;
-      needs.select.max_angle_rad = options_.max_angle_rad;
+      needs.select.max_angle_rad = options_.film.max_angle_rad;
       needs.lens_weights = weights;
       needs.max_image_count = most;
       std::vector<FrameId> frames;
@@ -161,11 +161,11 @@ TEST_F(PreprocessTest, PackagesHaveWhatAShutterNeeds) {
       instant.aperture.radius_w += 0.0005 * k;
       film_.instants.push_back(instant);
     }
-  const ImageIndex whole(field_, options_.seed);
+  const ImageIndex whole(field_, options_.film.seed);
   for (const LensWeights weights : {LensWeights::kAuto, LensWeights::kNone})
     for (const std::optional<size_t> most : {std::optional<size_t>(), std::optional<size_t>(9)}) {
-      options_.lens_weights = weights;
-      options_.max_image_count = most;
+      options_.film.lens_weights = weights;
+      options_.film.max_image_count = most;
       options_.overwrite = true;
       NeedsOptions needs;
       needs.select.reach = PixelReach::kElement;
@@ -199,8 +199,8 @@ TEST_F(PreprocessTest, PackagesHaveWhatAShutterNeeds) {
       }
     }
   for (const RenderMode mode : {RenderMode::kRebin, RenderMode::kHybrid}) {
-    options_.mode = mode;
-    options_.max_image_count.reset();
+    options_.film.mode = mode;
+    options_.film.max_image_count.reset();
     const Result<PreprocessReport> report = Preprocess(field_, film_, options_, pool_, nullptr);
     ASSERT_FALSE(report);
     EXPECT_NE(report.error().message.find("shutter"), std::string::npos);
@@ -211,12 +211,12 @@ TEST_F(PreprocessTest, PackagesHaveWhatAShutterNeeds) {
 // have the lens weights of the whole light field with and without virtual LF images.
 TEST_F(PreprocessTest, PackagesHaveWhatTheGuardNeeds) {
   for (uint32_t i = 0; i < field_.size(); ++i) field_.cameras[i].is_virtual = i % 3 != 0;
-  const ImageIndex whole(field_, options_.seed);
+  const ImageIndex whole(field_, options_.film.seed);
   std::map<bool, uint64_t> rays;
   for (const LensWeights weights : {LensWeights::kAuto, LensWeights::kNone})
     for (const bool guard : {true, false}) {
-      options_.lens_weights = weights;
-      options_.guard = guard;
+      options_.film.lens_weights = weights;
+      options_.film.guard = guard;
       options_.overwrite = true;
       NeedsOptions needs;
       needs.select.reach = PixelReach::kElement;
@@ -249,8 +249,8 @@ TEST_F(PreprocessTest, PackagesHaveWhatTheModeNeeds) {
   for (RenderCamera& camera : film_.cameras) camera.aperture.radius_w *= 0.2;
   std::map<RenderMode, uint64_t> rays;
   for (const RenderMode mode : {RenderMode::kCollect, RenderMode::kRebin, RenderMode::kHybrid}) {
-    options_.mode = mode;
-    options_.lens_weights = LensWeights::kNone;
+    options_.film.mode = mode;
+    options_.film.lens_weights = LensWeights::kNone;
     options_.overwrite = true;
     NeedsOptions needs;
     needs.select.reach = PixelReach::kElement;
@@ -269,10 +269,11 @@ TEST_F(PreprocessTest, PackagesHaveWhatTheModeNeeds) {
 }
 
 TEST_F(PreprocessTest, WhatRebinnedRaysCannotHaveIsRefused) {
-  options_.mode = RenderMode::kRebin;
+  options_.film.mode = RenderMode::kRebin;
   for (const bool has_weights : {true, false}) {
-    options_.lens_weights = has_weights ? LensWeights::kAuto : LensWeights::kNone;
-    if (!has_weights) options_.max_image_count = 5;
+    // kAuto means none here.
+    options_.film.lens_weights = has_weights ? LensWeights::kHat : LensWeights::kAuto;
+    if (!has_weights) options_.film.max_image_count = 5;
     const Result<PreprocessReport> report = Preprocess(field_, film_, options_, pool_, nullptr);
     ASSERT_FALSE(report);
     EXPECT_EQ(report.error().kind, ErrorKind::kUsage);
@@ -320,7 +321,7 @@ TEST_F(PreprocessTest, PackagesThatAreThereAreReplacedOnRequestOnly) {
 TEST_F(PreprocessTest, AFilmThatNobodySeesIsAnError) {
   for (RenderCamera& camera : film_.cameras)
     camera.pinhole.cam_from_world = *LookAlong({50, 0, 0}, {0, 0, 1}, {0, -1, 0});
-  options_.lens_weights = LensWeights::kNone;
+  options_.film.lens_weights = LensWeights::kNone;
   const Result<PreprocessReport> report = Preprocess(field_, film_, options_, pool_, nullptr);
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error().kind, ErrorKind::kInput);
@@ -328,7 +329,7 @@ TEST_F(PreprocessTest, AFilmThatNobodySeesIsAnError) {
 
 TEST_F(PreprocessTest, OrdersAreOfTheWholeFilm) {
   for (const ImageOrder order : {ImageOrder::kRoundRobin, ImageOrder::kArea}) {
-    options_.order = order;
+    options_.film.order = order;
     options_.overwrite = true;
     const PreprocessReport report = Run();
     std::map<uint32_t, uint32_t> places;  // [LF image]

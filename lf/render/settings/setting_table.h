@@ -32,7 +32,7 @@ struct Setting {
   std::string_view key;  // "lens_weights"
   SettingGroup group = SettingGroup::kPicture;
   SettingKind kind = SettingKind::kText;
-  // What a value is called: "N" in --max-images N. Empty for kChoice and kSwitch.
+  // The word for a value in help: N in --max-images N. Empty for kChoice and kSwitch.
   std::string_view placeholder = {};
   std::vector<std::string_view> words = {};  // the words of kChoice and kSwitch
   // True: a whole or other number that is unset by default, and by 0.
