@@ -10,6 +10,11 @@ from site_pages import Site, fenced
 
 INTRODUCTION = """# The C++ library
 
+A program includes one header, `lf/lfrendertools.h`. It opens light fields and films, and renders frames in memory and
+films into folders, with the bits of `lfrenderer`. [lf/api](api.md) explains these functions. All that can be said of a
+film is in [lf/render/settings](render-settings.md), what a light field holds in
+[lf/light_field/model](light_field-model.md).
+
 Each public header is the manual of what it declares: shapes, units, errors, and the place in the thesis. These pages
 are made from the headers. [The library, room by room](rooms.md) shows how the folders work together.
 
@@ -59,7 +64,8 @@ def folder_page(root: pathlib.Path, folder: str, headers: list) -> str:
 def write_library(site: Site):
     """Writes the pages below cpp/, and notes in site.shown which header is on which page."""
     pages = []
-    for folder, words in folder_list.read_folders(site.root).items():
+    folders = folder_list.read_folders(site.root)
+    for folder, words in sorted(folders.items(), key=lambda item: item[0] != "api"):  # what is needed first comes first
         headers = public_headers(site.root, folder, words)
         if headers:
             page = f"cpp/{folder.replace('/', '-')}"
@@ -71,6 +77,6 @@ def write_library(site: Site):
     rows = "\n".join(f"| [lf/{folder}]({page}.md) | {count} |" for folder, page, count in pages)
     tree = "\n".join(page for _, page, _ in pages)
     site.write("cpp/index.md", f"{INTRODUCTION}{fenced(foreign, 'cmake')}\n"
-               f"A program that renders a frame:\n\n{fenced(example, 'cpp')}\n"
+               f"A program that renders a frame into a file:\n\n{fenced(example, 'cpp')}\n"
                f"## Folders\n\n| folder | public headers |\n| --- | --- |\n{rows}\n\n"
                f"```{{toctree}}\n:hidden:\n\nrooms\n{tree}\n```\n")
