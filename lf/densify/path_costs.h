@@ -7,8 +7,8 @@
 namespace lf {
 
 // Extends a path by a pixel: for each plane j
-//   next[j] = cost[j] + min(last[j], last[j - 1] + small, last[j + 1] + small, least + large) -
-//   least
+//   next[j] = cost[j] - least
+//             + min(last[j], last[j - 1] + small, last[j + 1] + small, least + large)
 // and adds next[j] to sums[j]. Returns the least of next.
 //   last   path costs of the pixel before; last[-1] and last[stride] are readable and large
 //   least  the least of `last`

@@ -25,10 +25,9 @@ namespace lf {
 
 // How a focus stack is written.
 //   kFolder  frames in a folder as Render() writes them, and planes.json, which lists the planes
-//   kExr     one EXR file with a part for each plane: focus_0001, focus_0002, ... Its attributes
-//   are
-//            those of the EXR file of a frame, with the focus distance in metres (focus) and in
-//            world units (lf:focus_distance_w).
+//   kExr     one EXR file with a part for each plane: focus_0001, focus_0002, ... Parts have the
+//            attributes of the EXR file of a frame, with the focus distance in metres (focus) and
+//            in world units (lf:focus_distance_w).
 //   kVideo   an mp4 in which the focus moves from the first plane to the last
 enum class FocusStackForm { kFolder, kExr, kVideo };
 

@@ -62,14 +62,13 @@ class PathFrames {
 // the plate.
 //
 // kInput, with frame, time, quantity and its position in the file, if at some frame or instant
-//   a quantity is out of its range: an aperture below 0, a focus distance of 0, a tilt of 90
-//   degrees
-//   the camera is at the point that it looks at, or looks along `up`
-//   the focus point, or the point where the focus plane meets the optical axis, is not in front of
-//   the lens
-//   the horizontal field of view is almost 0 or 180 degrees, or the aperture is wider than 1e9
-//   world units
-//   lens.breathing is true and the focus distance does not exceed the focal length
+// - a quantity is out of its range: an aperture below 0, a focus distance of 0, a tilt of 90
+// degrees;
+// - the camera is at the point that it looks at, or looks along `up`;
+// - the focus point, or the point of the focus plane on the optical axis, is not before the lens;
+// - the horizontal field of view is almost 0 or 180 degrees;
+// - the aperture is wider than 1e9 world units;
+// - lens.breathing is true and the focus distance does not exceed the focal length.
 Result<CameraPath> EvaluatePath(const PathFrames& path);
 
 }  // namespace lf

@@ -21,10 +21,9 @@ namespace lf {
 
 enum class FrameFormat {
   // "exr": an EXR file with the channels R G B count.R count.G count.B coverage. Opacities add A,
-  // by which R G B are multiplied; lens weights add the channel effective, rebinned rays the
-  // channel
-  // interpolated, guarded plates the channel densified, and focus depths the channel Z. Counts are
-  // 32-bit integers, Z is float, and all other channels are half.
+  // by which R G B are multiplied; lens weights add the channel effective, rebinned rays add
+  // interpolated, guarded plates add densified, and focus depths add Z. Counts are 32-bit integers,
+  // Z is float, and all other channels are half.
   kExrHalf,
   kExrFloat,  // "exr-float": as "exr", with float instead of half
   kPng8,      // "png": sRGB, 8 bit; opacities add alpha, by which RGB is not multiplied

@@ -12,9 +12,8 @@ namespace lf {
 // Returns a movement along the smoothed track past Shot::start, in the order of recording.
 //
 // The movement begins at the LF camera, and grows in both directions until one of these ends it:
-// - it is 12 degrees long, where a degree is a step of 1/57 of the distance to the subject,
-// sideways
-//   or towards it; it takes 3 degrees a second, but at least two seconds;
+// - it is 12 degrees long, where a degree is a step, sideways or towards the subject, of 1/57 of
+//   the distance to it; it takes 3 degrees a second, but at least two seconds;
 // - the lens would reach beyond the end of the track, or beyond a gap;
 // - the track turns away by 45 degrees from its direction at the LF camera;
 // - LF cameras of the track have not recorded 1 % of a frame. An element counts as recorded as in

@@ -65,14 +65,12 @@ bool HoldsOwnAndItsSource(const std::filesystem::path& folder);
 // Opens a calibration file, or the first of these that it finds in a folder:
 // - transforms.json, or any .json file without M3x4 matrices:
 //   light_field/transforms_json/transforms_json.h
-// - a COLMAP model, in the folder, its sparse/0 or elsewhere below:
-// light_field/colmap/read_colmap.h
+// - a COLMAP model, in the folder, its sparse/0 or below: light_field/colmap/read_colmap.h
 // - NAME_par.txt: import/formats/read_middlebury.h
 // - poses_bounds.npy, or any .npy file: import/formats/read_llff.h
 // - parameters.cfg, or any .cfg file: import/formats/read_hci.h
 // - poses.json, or any .json file with M3x4 matrices: import/formats/read_aos.h
-// - transforms_train.json, transforms_val.json and transforms_test.json, or some of them: their
-// union
+// - transforms_train.json, transforms_val.json and transforms_test.json: their union
 // - images with Stanford names, in the folder or its images/: import/formats/read_stanford.h
 // - STORE.lfs: storage/packed/packed_store_file.h
 // A file of a kind named after "or any" is opened only if `path` is the file itself. If the first

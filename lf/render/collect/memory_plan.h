@@ -38,9 +38,8 @@ struct MemoryPlan {
 // each of its LF images.
 //   bytes_per_frame  further memory for each frame, such as its moments (noise_moments.h)
 //   is_guarded       true: the plates are guarded (PlateKind::kGuarded)
-//   instants         number of lenses of each frame (CameraPath::Instants()). Each further one
-//   needs
-//                    plans of its own and its lens weights. With prefilters, there is memory for a
+//   instants         number of lenses of each frame (CameraPath::Instants()), which have plans of
+//                    their own and lens weights. With prefilters, there is memory for a
 //                    second filtered copy of each LF image, because elements may become wider than
 //                    the next step of the filters while a frame is exposed; a fast zoom needs more
 //   surface          the focal surface with the most rows of pieces; null: there is none

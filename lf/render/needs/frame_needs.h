@@ -86,9 +86,8 @@ std::optional<FrameSampling> SamplingOf(const Package& package, FrameId frame);
 // Returns the LF images, pixels and LF cameras that a frame of a path needs: those that its camera
 // needs or, with a shutter, those that any of its instants needs. CheckShutter() must accept the
 // path.
-//   package  the package whose LF cameras `index` covers, which tells samplings and distances in
-//   the
-//            whole light field; null: they are measured in `index`
+//   package  the package whose LF cameras `index` covers, which tells samplings and distances of
+//            the whole light field; null: they are measured in `index`
 FrameNeeds NeedsOf(const ImageIndex& index, const CameraPath& path, FrameId frame,
                    const NeedsOptions& options, ThreadPool& pool, const Package* package = nullptr);
 
