@@ -199,8 +199,9 @@ std::string NextOf(const Arguments& a, std::span<const lf::Package> packages) {
   if (packages.empty()) return lf::NextRender(lf::ShellCommand({store, "PATH.yaml"}));
   std::vector<std::string> options = {"--lightfield", store};
   const lf::PackageChoices& choices = packages[0].choices;
-  if (choices.mode != "collect") options.insert(options.end(), {"--mode", choices.mode});
-  if (!choices.has_neighbours && choices.mode != "rebin")
+  if (choices.mode != lf::RenderMode::kCollect)
+    options.insert(options.end(), {"--mode", NameOf(choices.mode)});
+  if (!choices.has_neighbours && choices.mode != lf::RenderMode::kRebin)
     options.insert(options.end(), {"--lens-weights", "none"});
   if (!choices.has_neighbours && packages[0].whole_virtual_count > 0)
     options.emplace_back("--no-guard");

@@ -361,12 +361,9 @@ Package Preprocessor::PackageOf(const Section& section, const Gathering& gatheri
   Package package;
   package.whole = whole_;
   package.whole_virtual_count = report_.light_field_virtual_count;
-  package.choices = {film_.order,
-                     film_.seed,
-                     film_.max_image_count,
-                     film_.max_angle_rad,
-                     needs_.HasNeighbours(),
-                     NameOf(film_.mode)};
+  package.choices = {
+      film_.order, film_.seed, film_.max_image_count, film_.max_angle_rad, needs_.HasNeighbours(),
+      film_.mode};
   package.path = path_;
   package.surroundings = surroundings_;
   package.instant_distances_w = instant_distances_w_;

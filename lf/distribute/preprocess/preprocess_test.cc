@@ -258,7 +258,7 @@ TEST_F(PreprocessTest, PackagesHaveWhatTheModeNeeds) {
     needs.mode = mode;
     for (const PackageForecast& forecast : Run().packages) {
       const Package package = Read(forecast);
-      EXPECT_EQ(package.choices.mode, NameOf(mode));
+      EXPECT_EQ(package.choices.mode, mode);
       EXPECT_EQ(package.choices.has_neighbours, Rebins(mode));
       ExpectPackageIsAsGoodAsTheWhole(package, needs);
       rays[mode] += forecast.ray_count;

@@ -18,6 +18,7 @@
 #include "lf/core/ids.h"
 #include "lf/light_field/model/light_field.h"
 #include "lf/light_field/model/light_field_identity.h"
+#include "lf/render/settings/render_mode.h"
 #include "lf/selection/image_index.h"
 #include "lf/selection/image_order.h"
 
@@ -53,10 +54,10 @@ struct PackageChoices {
   // bound the part of the lens that each LF camera gets as its lens weight, and rebinned rays are
   // made from their LF images.
   bool has_neighbours = true;
-  // Render mode for which `rect`, `frame_count` and `ray_count` of each PackageImage are computed:
-  // "collect", "rebin" or "hybrid" (render/settings/render_mode.h). A package with neighbours can
-  // be rendered in any mode, unless a packed store lacks the pixels that another mode needs.
-  std::string mode = "collect";
+  // Mode for which `rect`, `frame_count` and `ray_count` of each PackageImage are computed. A
+  // package with neighbours can be rendered in any mode, unless a packed store lacks the pixels
+  // that another mode needs.
+  RenderMode mode = RenderMode::kCollect;
 };
 
 // The part of an LF image that the frames of a package need.

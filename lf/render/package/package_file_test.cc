@@ -23,7 +23,7 @@ Package TestPackage() {
   package.number = 4;
   package.count = 8;
   package.whole = {1000, "0123456789abcdef", "fedcba9876543210"};
-  package.choices = {ImageOrder::kRoundRobin, UINT64_MAX, 17, 0.25, true, "hybrid"};
+  package.choices = {ImageOrder::kRoundRobin, UINT64_MAX, 17, 0.25, true, RenderMode::kHybrid};
   package.places.end = 1000;
   LightField& field = package.light_field;
   field.folder = "/nowhere/images";

@@ -120,7 +120,7 @@ Result<void> Reader::ReadChoices() {
   choices.has_neighbours = has_neighbours == 1;
   constexpr const char* kModes[] = {"collect", "rebin", "hybrid"};
   LF_ASSIGN_OR_RETURN(const int mode, settings_.Word("mode", kModes));
-  choices.mode = kModes[mode];
+  choices.mode = *RenderModeOf(kModes[mode]);
   return {};
 }
 

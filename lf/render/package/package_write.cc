@@ -73,7 +73,7 @@ class Writer {
         {"max_images", choices.max_image_count ? fmt::format("{}", *choices.max_image_count) : ""},
         {"max_angle_rad", choices.max_angle_rad ? fmt::format("{}", *choices.max_angle_rad) : ""},
         {"lens_neighbours", choices.has_neighbours ? "yes" : "no"},
-        {"mode", choices.mode},
+        {"mode", NameOf(choices.mode)},
         {"fps", fmt::format("{}", package_.path.fps)},
         {"path_unit_m", fmt::format("{}", package_.path.unit_m)}};
     if (package_.whole_virtual_count > 0)

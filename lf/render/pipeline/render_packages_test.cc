@@ -83,7 +83,7 @@ TEST_F(OpenPackagesTest, ReportAndProgressAddUpThePackages) {
   const auto with_images = [this](Package* package) {
     LightField& field = package->light_field;
     package->choices.has_neighbours = true;
-    package->choices.mode = "hybrid";
+    package->choices.mode = RenderMode::kHybrid;
     package->surroundings.resize(package->path.cameras.size(), {0.03, 0.01, Vec3::Zero(), 0});
     for (uint32_t i = 0; i < field.size(); ++i) {
       field.image_names[i] += ".png";
