@@ -213,7 +213,7 @@ class ProgramOptionsTest(ProgramTestCase):
         field = small_field.write_field(self.folder / "field")
         path = small_field.write_path(self.folder, frames=2)
         out = self.folder
-        yield "lfexample", [field, "-o", out / "example.yaml", "--focus", "1"], "transforms.json"
+        yield "lfexample", [field, "-o", out / "example.yaml", "--focus", "1"], "transforms.json: opened"
         yield "lfimport", [field], "transforms.json"
         yield "lfpreprocessor", [field, path, "-o", out / "packages", "--overwrite"], "octree"
         yield "lfrenderer", [field, path, "-o", out / "frames"], "instruction set"
