@@ -21,7 +21,6 @@ import numpy
 
 import small_field
 from judgements import scenes
-from judgements.focus import Miscalibrated
 from program_test_case import ProgramTestCase
 
 VISUALIZER = RENDERER = PAGELESS = None
@@ -94,7 +93,7 @@ class VisualizerTest(ProgramTestCase):
         field = self.folder / "upside down"
         cameras = scenes.grid(5, 0.05)
         shown = [((x, -y, z), rotation) for (x, y, z), rotation in cameras]
-        scenes.draw(field, Miscalibrated(cameras, shown), [scenes.wall(2), scenes.card(0, 0, 1.2, 0.5, 0.4)])
+        scenes.draw(field, scenes.Capture(cameras, drawn=shown), [scenes.wall(2), scenes.card(0, 0, 1.2, 0.5, 0.4)])
         server = subprocess.Popen([VISUALIZER, field, self.path, "-q"], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                   text=True)
         self.addCleanup(server.stdout.close)

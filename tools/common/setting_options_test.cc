@@ -4,29 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <CLI/CLI.hpp>
-#include <map>
 #include <string>
 #include <vector>
 
-#include "lf/render/settings/setting_table.h"
+#include "lf/render/settings/test_settings.h"
 
 namespace lf {
 namespace {
-
-// Values that are not the defaults.
-const std::map<std::string, std::string, std::less<>> kValues = {{"fill", "7"},
-                                                                 {"max_rays", "5M"},
-                                                                 {"stop_when", "noise<=0.25"},
-                                                                 {"require", "samples>=9"},
-                                                                 {"slab_position", "1 2 -3"},
-                                                                 {"slab_forward", "0 0.5 1"}};
-
-std::string ValueFor(const Setting& setting) {
-  if (const auto value = kValues.find(setting.key); value != kValues.end()) return value->second;
-  if (!setting.words.empty())
-    return std::string(setting.words[setting.get(FilmSettings()) == setting.words[0] ? 1 : 0]);
-  return setting.least > 1 || setting.get(FilmSettings()) == "1" ? "5" : "1";
-}
 
 // Returns the settings that the command line states.
 Result<FilmSettings> Parsed(const std::vector<std::string>& words) {
@@ -47,7 +31,7 @@ Result<FilmSettings> Parsed(const std::vector<std::string>& words) {
 
 TEST(SettingOptions, SayWhatTheTableSays) {
   for (const Setting& setting : SettingTable()) {
-    const std::string value = ValueFor(setting);
+    const std::string value = testing::AnotherOf(setting);
     FilmSettings expected;
     ASSERT_TRUE(setting.set(value, &expected)) << setting.key;
     std::vector<std::string> words = {OptionOf(setting.key)};
