@@ -4,6 +4,8 @@
 //
 //   #include <lf/lfrendertools.h>
 //
+//   #include <cstdio>
+//
 //   int main(int argc, char** argv) {
 //     if (argc != 3) return 2;
 //     lf::Result<lf::LightField> light_field = lf::Open(argv[1]);
