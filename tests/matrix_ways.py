@@ -268,19 +268,23 @@ class Matrix(World):
         return process.returncode, last_line(text)
 
     def finished_early(self, cell, out, steps):
-        """Interrupts a render when it has a state, then has all begun frames finished early."""
-        step = steps[0]
-        for attempt in range(12):
-            exit_code, last = self.interrupt([*step.words, *DUMP_OFTEN], out, 0.005 * attempt,
+        """Interrupts a render when it has a state, then has all begun frames finished early. Tries again if the begun
+        frames had all their rays already."""
+        for attempt in range(60):  # the frames of small films are complete within milliseconds
+            exit_code, last = self.interrupt([*steps[0].words, *DUMP_OFTEN], out, 0.002 * (attempt % 8),
                                              signal.SIGTERM, has_state)
             if exit_code not in (0, 5, 6):
                 return self.look_at(cell, out, exit_code, last)
             if exit_code == 5 and has_state(out):
-                break
+                rendered = self.finish_begun(cell, out, steps[0])
+                if rendered.early or rendered.exit_code not in (0, 6):
+                    return rendered
             shutil.rmtree(out)
             out.mkdir()
-        else:
-            raise Difference("could not be interrupted between begin and end")
+        raise Difference("could not be interrupted between begin and end")
+
+    def finish_begun(self, cell, out, step):
+        """Finishes the frames of an interrupted render that have begun, and renders the others."""
         pictures = {int(path.stem[6:]): pixels_of(path)
                     for path in out.glob("partial/**/frame_*.exr")}
         begun = sorted({int(path.stem[6:]) for path in out.glob("partial/**/frame_*.plate")})
