@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Errors of the face of the library. tests/install_test.py compares its frames with lfrenderer's.
+#include "lf/api/frame.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "lf/render/collect/test_noise_field.h"
+
+namespace lf {
+namespace {
+
+// A film whose LF images are in no file.
+Film FilmWithoutImages() {
+  Film film;
+  film.light_field = testing::NoiseField(2);
+  film.light_field.folder = "/nowhere";
+  film.path.cameras = testing::NoiseFrames();
+  return film;
+}
+
+void ExpectError(const Error& error, ErrorKind kind, const std::string& part) {
+  EXPECT_EQ(error.kind, kind) << error.message;
+  EXPECT_NE(error.message.find(part), std::string::npos) << error.message;
+}
+
+TEST(Face, NumbersOfFramesAreChecked) {
+  const Film film = FilmWithoutImages();
+  for (const uint32_t number : {0u, 4u, 4000000000u}) {
+    const Result<Frame> frame = RenderFrame(film, number);
+    ASSERT_FALSE(frame) << number;
+    ExpectError(frame.error(), ErrorKind::kUsage, "expected a number from 1 to 3");
+  }
+}
+
+TEST(Face, FramesWithoutLfImagesAreErrors) {
+  const Result<Frame> frame = RenderFrame(FilmWithoutImages(), 1);
+  ASSERT_FALSE(frame);
+  ExpectError(frame.error(), ErrorKind::kInput, "/nowhere");
+}
+
+TEST(Face, MissingFilesAreNamed) {
+  ExpectError(Open("/nowhere/capture").error(), ErrorKind::kInput, "/nowhere/capture");
+  const auto film = OpenFilm(testing::NoiseField(2), "/nowhere/path.yaml");
+  ASSERT_FALSE(film);
+  ExpectError(film.error(), ErrorKind::kInput, "/nowhere/path.yaml");
+}
+
+TEST(Face, NamesOfFramesTellTheirFormat) {
+  ExpectError(SaveFrame(Frame(), "frame.jpg").error(), ErrorKind::kUsage, ".exr or .png");
+  ExpectError(SaveFrame(Frame(), "frame.png", FrameFormat::kExrHalf).error(), ErrorKind::kUsage,
+              "exr");
+}
+
+}  // namespace
+}  // namespace lf
