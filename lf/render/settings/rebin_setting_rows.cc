@@ -14,9 +14,7 @@ void AddKeptRows(std::vector<Setting>& rows) {
                "edges: a random selection of these rays, more of them where the LF image changes "
                "strongly\n"
                "auto: all if there are at most {max_rays} of them, otherwise edges"},
-      LF_MEMBER(rebin.kept),
-      Words<KeptRays>{
-          {"auto", KeptRays::kAuto}, {"all", KeptRays::kAll}, {"edges", KeptRays::kEdges}}));
+      LF_MEMBER(rebin.kept), Named({KeptRays::kAuto, KeptRays::kAll, KeptRays::kEdges})));
   Setting max_rays = {
       .key = "max_rays",
       .placeholder = "N",
@@ -52,8 +50,7 @@ void AddKeptRows(std::vector<Setting>& rows) {
                "off: elements without a collected ray are interpolated only if they have none in "
                "the end\n"
                "auto: on for frames that need more than 256 LF images"},
-      LF_MEMBER(rebin.previews),
-      Words<Previews>{{"auto", Previews::kAuto}, {"on", Previews::kOn}, {"off", Previews::kOff}}));
+      LF_MEMBER(rebin.previews), Named({Previews::kAuto, Previews::kOn, Previews::kOff})));
 }
 
 void AddProbabilityRows(std::vector<Setting>& rows) {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -33,6 +34,14 @@ inline Error Refused(const Setting& setting, const std::string& found,
 
 template <class Value>
 using Words = std::vector<std::pair<std::string_view, Value>>;
+
+// Returns values with their names.
+template <class Value>
+Words<Value> Named(std::initializer_list<Value> values) {
+  Words<Value> words;
+  for (const Value value : values) words.emplace_back(NameOf(value), value);
+  return words;
+}
 
 template <class Member, class Value>
 Setting Choice(Setting row, Member member, Words<Value> words) {

@@ -22,10 +22,7 @@ void AddPictureRows(std::vector<Setting>& rows) {
                "rebin: frames are interpolated between rays that are kept in memory\n"
                "hybrid: frames are collected; where no recorded ray passes the lens, they are "
                "interpolated"},
-      LF_MEMBER(mode),
-      Words<RenderMode>{{"collect", RenderMode::kCollect},
-                        {"rebin", RenderMode::kRebin},
-                        {"hybrid", RenderMode::kHybrid}}));
+      LF_MEMBER(mode), Named({RenderMode::kCollect, RenderMode::kRebin, RenderMode::kHybrid})));
   // "auto" is bilinear, the first word with this value, and comes first for get().
   rows.push_back(
       Choice({.key = "estimator",
@@ -51,12 +48,8 @@ void AddPictureRows(std::vector<Setting>& rows) {
            "mosaic: bicubic, or bilinear where an element is more than two LF pixels wide; "
            "colours that the sensor recorded count 8 times as much as interpolated colours"},
       LF_MEMBER(reading.filter),
-      Words<PixelFilter>{{"auto", PixelFilter::kAuto},
-                         {"nearest", PixelFilter::kNearest},
-                         {"bilinear", PixelFilter::kBilinear},
-                         {"bicubic", PixelFilter::kBicubic},
-                         {"mosaic", PixelFilter::kMosaic},
-                         {"prefiltered", PixelFilter::kPrefiltered}}));
+      Named({PixelFilter::kAuto, PixelFilter::kNearest, PixelFilter::kBilinear,
+             PixelFilter::kBicubic, PixelFilter::kMosaic, PixelFilter::kPrefiltered})));
   rows.push_back(
       Choice({.key = "lf_pixels",
               .text = "What LF pixels show, for {filter prefiltered}\n"
@@ -76,10 +69,7 @@ void AddPictureRows(std::vector<Setting>& rows) {
                "hat: interpolation between the nearest LF images, for small lenses and pinholes\n"
                "auto: area for large lenses, hat for small ones, a mix of both in between"},
       LF_MEMBER(lens_weights),
-      Words<LensWeights>{{"auto", LensWeights::kAuto},
-                         {"none", LensWeights::kNone},
-                         {"area", LensWeights::kArea},
-                         {"hat", LensWeights::kHat}}));
+      Named({LensWeights::kAuto, LensWeights::kNone, LensWeights::kArea, LensWeights::kHat})));
   rows.push_back(Switch(
       {.key = "guard",
        .text = "Show recorded LF images alone where a frame is in focus\n"
@@ -129,17 +119,14 @@ void AddQualityRows(std::vector<Setting>& rows) {
                "A frame uses only LF cameras whose optical axis is within DEGREES of its own "
                "optical axis."},
       LF_MEMBER(max_angle_rad), DegreesFromRadians, RadiansFromDegrees));
-  rows.push_back(
-      Choice({.key = "order",
-              .text = "Order in which frames take LF images\n"
-                      "The order matters if {max_images} or {stop_when} end a frame early.\n"
-                      "shuffle: random, by {seed}\n"
-                      "round-robin: always an LF image for the frame with the fewest rays\n"
-                      "area: LF images with the most rays first"},
-             LF_MEMBER(order),
-             Words<ImageOrder>{{"shuffle", ImageOrder::kShuffle},
-                               {"round-robin", ImageOrder::kRoundRobin},
-                               {"area", ImageOrder::kArea}}));
+  rows.push_back(Choice(
+      {.key = "order",
+       .text = "Order in which frames take LF images\n"
+               "The order matters if {max_images} or {stop_when} end a frame early.\n"
+               "shuffle: random, by {seed}\n"
+               "round-robin: always an LF image for the frame with the fewest rays\n"
+               "area: LF images with the most rays first"},
+      LF_MEMBER(order), Named({ImageOrder::kShuffle, ImageOrder::kRoundRobin, ImageOrder::kArea})));
   rows.push_back(Plain(
       {.key = "seed", .placeholder = "N", .text = "Seed of {order shuffle} and of {kept edges}"},
       LF_MEMBER(seed)));
