@@ -143,7 +143,7 @@ def measure(build, data, size, noises, ways):
                 for number, (frame, end) in enumerate(zip(frames, ends), 1):
                     name = f"frame_{number:04d}.plate"
                     rows.append({"way": way, "focus": list(FOCUS)[number - 1], "asked": noise, **frame,
-                                 "places_in_all": end["places"], "lf_images_in_all": end["lf_images"],
+                                 "places_in_all": end["ranks"], "lf_images_in_all": end["lf_images"],
                                  "reached_by_all": end["reached"],
                                  **compare(Measured(out / name), Measured(whole / name))})
                     print(rows[-1], flush=True)

@@ -476,7 +476,7 @@ class PackagesTest(ProgramTestCase):
             self.assertEqual(db.execute("pragma integrity_check").fetchone(), ("ok",))
             frames = db.execute("select frame, rays from frames where is_rendered").fetchall()
             self.assertEqual([frame for frame, _ in frames], [4, 5, 6])
-            places = [place for place, in db.execute("select place from lf_images")]
+            places = [place for place, in db.execute("select rank from lf_images")]
             self.assertEqual(sorted(places), list(range(SIDE * SIDE)))
             for x0, y0, x1, y1, count, rays in db.execute(
                     "select x_begin, y_begin, x_end, y_end, frames, rays from lf_images where frames > 0"):

@@ -225,7 +225,7 @@ class ResumeTest(unittest.TestCase):
         options = ["--back-end", "reference", "--frames", "1-12", "--finish", f"{frame},20"]
         self.fails(2, ["--finish", "--resume"], "early", *options, "--overwrite")
         self.fails(2, ["--finish", "--shard"], "early", *options, "--resume", "--shard", "1/2")
-        self.fails(2, ["made with no mode", "hybrid"], "early", *options, "--resume", "--mode", "hybrid")
+        self.fails(2, ["made with mode collect", "hybrid"], "early", *options, "--resume", "--mode", "hybrid")
         self.fails(2, ["--finish '21'", "from 1 to 20"], "early", "--resume", "--finish", "21")
         self.begun("early again")
         finished = self.finish("early again", *options, "--resume")
@@ -236,8 +236,8 @@ class ResumeTest(unittest.TestCase):
         picture = cv2.imread(str(self.folder / "early again" / path.name), cv2.IMREAD_UNCHANGED)
         np.testing.assert_array_equal(picture, seen)
         report = json.loads((self.folder / "early again" / "report.json").read_text())
-        places = {one["frame"]: one["finished_early_before_place"] for one in report["frames"]
-                  if "finished_early_before_place" in one}
+        places = {one["frame"]: one["finished_early_before_rank"] for one in report["frames"]
+                  if "finished_early_before_rank" in one}
         self.assertEqual(list(places), [frame])
         self.assertTrue(0 < places[frame] < 169, places)
 
@@ -389,7 +389,7 @@ class ResumeTest(unittest.TestCase):
             return digests(self.folder / name)
         expected = run("passing")
         plates = [p.read_bytes() for p in (self.folder / "passing").glob("*.plate")]
-        places = {int(re.search(rb"places_done: (\d+)", plate).group(1)) for plate in plates}
+        places = {int(re.search(rb"ranks_done: (\d+)", plate).group(1)) for plate in plates}
         self.assertEqual(places, {128, 169})
         self.assertEqual(run("passing_small", *self.small_memory), expected)
         for frame in (1, 8):

@@ -417,8 +417,8 @@ class LongLocalJobTest(ClusterTestCase):
         self.assertEqual(set(got), set(expected))
         self.assertEqual([other for other in got if got[other] != expected[other]], [name])
         report = json.loads((self.film / "cluster" / "report.json").read_text())
-        early = {frame["frame"]: frame["finished_early_before_place"] for frame in report["frames"]
-                 if "finished_early_before_place" in frame}
+        early = {frame["frame"]: frame["finished_early_before_rank"] for frame in report["frames"]
+                 if "finished_early_before_rank" in frame}
         self.assertEqual(list(early), [frame])
         self.assertTrue(0 < early[frame] < self.side ** 2, early)
         images = {frame["frame"]: frame["lf_images"] for frame in report["frames"]}

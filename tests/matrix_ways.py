@@ -321,8 +321,8 @@ class Matrix(World):
             for frame in report["frames"]:
                 facts[frame["frame"]] = {key: frame[key] for key in
                                          ("lf_images", "rays_accepted") if key in frame}
-                if "finished_early_before_place" in frame:
-                    early[frame["frame"]] = frame["finished_early_before_place"]
+                if "finished_early_before_rank" in frame:
+                    early[frame["frame"]] = frame["finished_early_before_rank"]
         pixels = {frame: pixels_of(out / f"frame_{frame:04d}.exr") for frame in early}
         return Rendered(exit_code, last, digests, facts, sorted(skipped), early, pixels, seconds)
 

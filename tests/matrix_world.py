@@ -279,7 +279,7 @@ class World:
         for file in self.packages(field, "folder", "default", ()):
             with contextlib.closing(
                     sqlite3.connect(f"file:{file}?immutable=1", uri=True)) as package:
-                places.update(package.execute("select name, place from lf_images"))
+                places.update(package.execute("select name, rank from lf_images"))
         return places
 
     def input(self, field, source, mode):

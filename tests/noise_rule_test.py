@@ -95,9 +95,9 @@ class NoiseRuleTest(ProgramTestCase):
             self.assertEqual(noise["asked"], asked)
             self.assertLessEqual(noise["reached"], asked, (way, noise))
             self.assertGreater(noise["reached"], 0.85 * asked, (way, noise))
-            self.assertLess(noise["places"], 169, (way, noise))
-            self.assertLessEqual(noise["lf_images"], noise["places"])
-            ends.add(noise["places"])
+            self.assertLess(noise["ranks"], 169, (way, noise))
+            self.assertLessEqual(noise["lf_images"], noise["ranks"])
+            ends.add(noise["ranks"])
         if way != "hat":  # hat weights use no more LF images in a wider lens
             self.assertGreater(len(ends), 1, way)
         self.assertEqual(report(self.folder / tag)["inputs"]["stop_when"], f"noise<={asked}")
@@ -180,7 +180,7 @@ class NoiseRuleTest(ProgramTestCase):
             options = ["--mode", mode, "--lens-weights", "none"]
             plain = self.render(mode, *options)
             ruled = self.render(mode + "-ruled", *options, "--stop-when", "noise<=0.045")
-            early = [noise["places"] < 169 for noise in noises(self.folder / (mode + "-ruled"))]
+            early = [noise["ranks"] < 169 for noise in noises(self.folder / (mode + "-ruled"))]
             self.assertIn(True, early, mode)
             self.assertIn(False, early, mode)
             for (name, digest), stopped in zip(sorted(ruled.items()), early):
@@ -211,7 +211,7 @@ class NoiseRuleTest(ProgramTestCase):
         for way in ("auto", "hybrid", "rebin"):
             self.render(way, *WAYS[way], "--require", "noise<=0.5")
             frame = noises(self.folder / way)[1]
-            self.assertEqual((frame["asked"], frame["places"]), (0.5, 169))
+            self.assertEqual((frame["asked"], frame["ranks"]), (0.5, 169))
             self.fails(6, ["noise<=1e-05", "4 of 4 frames", f"frame 2 ({frame['reached']:.3g})"],
                        *self.arguments(way + "-6", *WAYS[way], "--require", "noise<=0.00001"))
             self.assertEqual(len(list((self.folder / (way + "-6")).glob("*.exr"))), 4)
@@ -245,7 +245,7 @@ class NoiseRuleTest(ProgramTestCase):
             self.assertEqual(ruled, plain)
             for noise in noises(self.folder / (mode + "-ruled")):
                 self.assertNotIn("reached", noise)
-                self.assertEqual((noise["places"], noise["lf_images"]), (169, 0))
+                self.assertEqual((noise["ranks"], noise["lf_images"]), (169, 0))
             self.fails(6, ["not measurable"], *self.arguments(mode + "-6", *options, "--require",
                                                               "noise<=1000"))
 
@@ -264,10 +264,10 @@ class NoiseRuleTest(ProgramTestCase):
             expected = self.render(name, *options, "--threads", "1", "--keep-plates")
             self.assertEqual(self.render(name + "-2", *options, "--threads", "3", "--keep-plates"),
                              expected)
-            self.assertTrue(any(noise["places"] < 169 for noise in noises(self.folder / name)))
+            self.assertTrue(any(noise["ranks"] < 169 for noise in noises(self.folder / name)))
             inputs = report(self.folder / name)["inputs"]
-            self.assertEqual((inputs["lens_weights"], inputs["filter"]),
-                             ("auto", "none" if "nearest" in options else "mosaic"))
+            self.assertEqual((inputs["lens_weights"], inputs.get("filter")),
+                             ("auto", None if "nearest" in options else "mosaic"))
         self.render("limit", "--allow-missing", "1", "--stop-when", "noise<=0.001", "--max-images", "20")
         for noise in noises(self.folder / "limit"):
             self.assertLessEqual(noise["lf_images"], 20)

@@ -131,7 +131,7 @@ class RebinningTest(ProgramTestCase):
                 frames = self.render(out, *options, "--resume", "--finish", str(int(early[6:10])))
                 self.assertEqual({name: bits for name, bits in frames.items() if name != early},
                                  {name: bits for name, bits in expected.items() if name != early})
-                told = {frame["frame"]: frame.get("finished_early_before_place")
+                told = {frame["frame"]: frame.get("finished_early_before_rank")
                         for frame in report(self.folder / out)["frames"]}
                 place = told.pop(int(early[6:10]))
                 self.assertEqual(set(told.values()), {None})
@@ -162,7 +162,7 @@ class RebinningTest(ProgramTestCase):
                 break
         self.assertTrue(rays)
         self.fails(2, ["--resume", "--overwrite"], *self.command(out, "--mode", "rebin"))
-        self.fails(2, ["rebin.query", "sigma_st 0.5", "sigma_st 0.7"],
+        self.fails(2, ["sigma_st 0.5, this call has 0.7"],
                    *self.command(out, "--mode", "rebin", "--resume", "--sigma-st", "0.7"))
         rays[0].write_bytes(rays[0].read_bytes()[:-5])
         self.fails(3, [rays[0].name, "remove the file"],

@@ -212,7 +212,7 @@ class SchemasTest(ProgramTestCase):
         stack = ["lffocus", "stack", self.field, self.path, "--near", 0.4, "--far", 2, "--planes", 3, "-o"]
         for name in "stack", "stack.exr":
             report = self.prints("focus_stack", *stack, self.folder / name)
-            self.assertEqual(report["format"], "lfreport 1")
+            self.assertEqual(report["format"], "lfreport 2")
         self.assertEqual(list(self.prints("focus_stack", *stack, self.folder / "stack.exr", "--resume")),
                          ["focus_stack"])
         self.valid_file("focus_planes", self.folder / "stack/planes.json")

@@ -103,7 +103,7 @@ Result<void> Finish(const std::string& folder, const std::string& frames) {
   lf::LogInfo(
       "{} unfinished frames will be finished with the rays that they have, within seconds if their "
       "packages are running; report-*.json state how far each got in the order of the LF images "
-      "(finished_early_before_place)",
+      "(finished_early_before_rank)",
       count);
   return {};
 }

@@ -129,7 +129,7 @@ void AddRunning(CLI::App& app, RenderArguments& a) {
           "rays that the unfinished render has of them, and get no more; a frame without rays is "
           "rendered as usual. The other frames are continued. For each frame that is finished in "
           "this way, the report states how far it got: it contains those of its LF images whose "
-          "rank in the order of the light field, from 0, is below finished_early_before_place.")
+          "rank in the order of the light field, from 0, is below finished_early_before_rank.")
       ->check(NotEmpty());
   AddDumpEvery(running, a);
   running

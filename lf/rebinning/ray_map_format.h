@@ -12,7 +12,7 @@
 
 namespace lf::ray_map_format {
 
-inline constexpr entry_file::Kind kKind = {"LFCELLS\n", 1, "file of rays",
+inline constexpr entry_file::Kind kKind = {"LFCELLS\n", 2, "file of rays",
                                            "the rays in it cannot be used"};
 
 // The file begins with this head. The text of the entries follows, then the hash of head and text,

@@ -102,7 +102,7 @@ Frame DevelopPlate(const Plate& plate, int threads) {
 void SetEntries(const PlateEntries& entries, const std::string& name, Plate* plate) {
   plate->notes = Take(PlateNotesOf(entries, plate->sums.width(), plate->sums.height(), name));
   for (auto& entry : SharedEntries(entries))
-    if (!entry.first.starts_with("sheet.")) plate->inputs.push_back(std::move(entry));
+    if (!entry.first.starts_with("plate.")) plate->inputs.push_back(std::move(entry));
 }
 
 PlateEntries EntriesOf(const Plate& plate) {

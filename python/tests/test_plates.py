@@ -33,7 +33,7 @@ def test_shards_add_up(field, path, shards):
 @pytest.mark.parametrize("changes, words", [
     ({"frames": (2,)}, "frame"), ({"seed": 1}, "seed 0, the other with 1"),
     ({"filter": "bicubic"}, "filter .*, the other with bicubic"),
-    ({"max_images": 9}, "max_images all, the other with 9"), ({"fill": 7}, "fill")])
+    ({"max_images": 9}, "no max_images, the other with max_images 9"), ({"fill": 7}, "fill")])
 def test_plates_of_different_renders_do_not_add_up(changes, words, field, path, shards):
     with pytest.raises(lf.UsageError, match=words):
         shards[0] + plate_of(field, path, **{"frames": (1,), **changes})

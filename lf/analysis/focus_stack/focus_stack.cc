@@ -199,12 +199,10 @@ Result<RunInputs> StackInputs(const LightField& light_field, const CameraPath& s
   choices.look = options.render.folder.picture;
   const std::string cameras = HashOfCameras(stack);
   RunInputs inputs = InputsOfRays(IdentityOf(light_field), light_field.encoding, choices);
-  for (const RunInputs& more :
-       {InputsOfRebinning(film, film.rebin.max_cells, cameras), InputsOfPicture(choices)})
+  for (const RunInputs& more : {InputsOfSlabs(film, stack), InputsOfPicture(choices)})
     inputs.insert(inputs.end(), more.begin(), more.end());
   inputs.emplace_back("cameras", cameras);
   inputs.emplace_back("densify", densifies ? "on" : "off");
-  inputs.emplace_back("guard", film.guard ? "on" : "off");
   if (FormOfStack(options.output) != FocusStackForm::kVideo) return inputs;
   inputs.emplace_back("video.fps", fmt::format("{}", stack.fps));
   inputs.emplace_back("video.back_and_forth", options.back_and_forth ? "on" : "off");

@@ -93,6 +93,7 @@ class FilmMaker {
     choices.pixels = pixels;
     choices.film.reading = renderer_->reading();
     choices.film.lens_weights = LensWeights::kNone;
+    choices.film.guard = false;
     choices.film.max_angle_rad = options_.statistic.max_angle_rad;
     choices.format = NameOf(folder_.format);
     choices.film.adds_opacity = options_.statistic.adds_opacity;

@@ -15,6 +15,7 @@
 
 #include "lf/core/check.h"
 #include "lf/core/hash.h"
+#include "lf/core/version.h"
 
 namespace lf::entry_file {
 namespace fs = std::filesystem;
@@ -124,9 +125,11 @@ Result<Front> ReadFront(Source& source, size_t head_bytes) {
                                   kind.noun, kind.magic.substr(0, kind.magic.size() - 1)));
   if (begin.version != kind.version)
     return InputError(fmt::format(
-        "{}: is a {} of version {}, but this program reads version {}: use the program that "
+        "{}: is a {} of version {}{}, but this program reads version {}: use the program that "
         "wrote it, or render again",
-        source.name(), kind.noun, begin.version, kind.version));
+        source.name(), kind.noun, begin.version,
+        begin.version < kind.version ? fmt::format(", which {} read", kBuildsOfEarlierFiles) : "",
+        kind.version));
   if (begin.text_bytes > PlateReader::kMaxTextBytes)
     return source.Damaged(fmt::format("its head states {} bytes of text, expected at most {}",
                                       begin.text_bytes, PlateReader::kMaxTextBytes));

@@ -348,8 +348,8 @@ TEST_F(PackageFileTest, CutAndForeignFilesAreErrors) {
     EXPECT_NE(Fault(whole.substr(0, size)), "") << size;
   EXPECT_NE(Fault("no package"), "");
   std::string newer = whole;
-  newer[63] = 3;  // last byte of user_version (big-endian, offset 60)
-  EXPECT_NE(Fault(newer).find("of version 3, which a newer"), std::string::npos) << Fault(newer);
+  newer[63] = 4;  // last byte of user_version (big-endian, offset 60)
+  EXPECT_NE(Fault(newer).find("of version 4, which a newer"), std::string::npos) << Fault(newer);
   std::string other = whole;
   other[71] = 'X';  // last byte of application_id (offset 68)
   EXPECT_NE(Fault(other).find("is no package"), std::string::npos);

@@ -10,11 +10,11 @@
 
 namespace lf {
 
-inline constexpr DatabaseFormat kPackageFormat = {"package", 0x4C465047 /* "LFPG" */, 2, 4096};
+inline constexpr DatabaseFormat kPackageFormat = {"package", 0x4C465047 /* "LFPG" */, 3, 4096};
 
 // Tables of a package besides settings and intrinsics (doc/formats/package.md).
 inline constexpr const char* kPackageTables = R"(
-create table lf_images (place integer primary key, id integer, name text, mask text,
+create table lf_images (rank integer primary key, id integer, name text, mask text,
   intrinsics integer, gain real, x real, y real, z real, pose blob, file_bytes integer,
   x_begin integer, y_begin integer, x_end integer, y_end integer, frames integer, rays integer);
 create table frames (frame integer primary key, time_s real, x real, y real, z real,

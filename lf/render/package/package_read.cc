@@ -77,7 +77,7 @@ Result<void> Reader::ReadSettings() {
   LF_ASSIGN_OR_RETURN(const uint64_t whole_count, settings_.Whole("light_field.images"));
   package_.whole = {whole_count, settings_.Text("light_field.names"),
                     settings_.Text("light_field.calibration")};
-  LF_ASSIGN_OR_RETURN(const double end, settings_.Number("places", 1, kMostImages));
+  LF_ASSIGN_OR_RETURN(const double end, settings_.Number("ranks", 1, kMostImages));
   package_.places.end = static_cast<uint32_t>(end);
   LF_RETURN_IF_ERROR(ReadNumber());
   LF_ASSIGN_OR_RETURN(package_.path.fps, settings_.Number("fps", 1e-3, 1e6));
@@ -148,7 +148,7 @@ PackageSource Reader::Source() const {
 Result<void> Reader::ReadImages() {
   LF_RETURN_IF_ERROR(ForEachRow(
       database_,
-      "select place, id, name, mask, intrinsics, gain, pose, file_bytes, x_begin, y_begin, x_end, "
+      "select rank, id, name, mask, intrinsics, gain, pose, file_bytes, x_begin, y_begin, x_end, "
       "y_end, frames, rays from lf_images order by id",
       [this](const Statement& row) { return ReadImage(row); }));
   LF_RETURN_IF_ERROR(ReadVirtual());
@@ -162,7 +162,7 @@ Result<void> Reader::ReadImages() {
   std::vector<uint32_t> places = package_.places.of_images;
   std::sort(places.begin(), places.end());
   if (std::adjacent_find(places.begin(), places.end()) != places.end())
-    return Damaged("two LF images have the same place in the order");
+    return Damaged("two LF images have the same rank in the order");
   return {};
 }
 

@@ -69,7 +69,7 @@ class Writer {
     const SettingList of_choices = {
         {"order", NameOf(choices.order)},
         {"seed", fmt::format("{}", choices.seed)},
-        {"places", fmt::format("{}", package_.places.end)},
+        {"ranks", fmt::format("{}", package_.places.end)},
         {"max_images", choices.max_image_count ? fmt::format("{}", *choices.max_image_count) : ""},
         {"max_angle_rad", choices.max_angle_rad ? fmt::format("{}", *choices.max_angle_rad) : ""},
         {"lens_neighbours", choices.has_neighbours ? "yes" : "no"},

@@ -55,7 +55,7 @@ Result<std::unique_ptr<FilmSetup>> FilmSetup::Make(Package package, const FilmSe
   LF_RETURN_IF_ERROR(CheckFilmSettings(package, resolved, frames));
   std::unique_ptr<FilmSetup> setup(
       new FilmSetup(std::move(package), resolved, work, std::move(frames), pool));
-  const bool is_guarded = resolved.guard && setup->package().whole_virtual_count > 0;
+  const bool is_guarded = resolved.guard;
   LF_ASSIGN_OR_RETURN(
       setup->store_,
       OpenStore(

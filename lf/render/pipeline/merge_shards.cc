@@ -377,7 +377,7 @@ class Merger {
     const ShardPlate& first = First();
     RunInputs inputs;
     for (const auto& entry : first.inputs)
-      if (!entry.first.starts_with("sheet.") && !entry.first.starts_with("frame"))
+      if (!entry.first.starts_with("plate.") && !entry.first.starts_with("frame"))
         inputs.push_back(entry);
     RunChoices picture;
     picture.format = NameOf(options_.format);

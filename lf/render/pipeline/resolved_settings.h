@@ -13,6 +13,7 @@ namespace lf {
 //   order, seed, max_angle_rad  those that the package was made with; rebin has the same seed
 //   lens_weights     kNone if the mode is kRebin, or if it was kAuto and rays are counted
 //   reading.filter   if it was kAuto: the choice of FilterOf() (collection/gather_sampling.h)
+//   guard            false unless the light field is densified
 //   max_image_count  the limit that the package was made with, if it was unset
 FilmSettings Resolved(FilmSettings settings, const Package& package);
 

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lf/render/pipeline/setup_inputs.h"
 
-#include <fmt/format.h>
-
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -11,37 +8,9 @@
 
 namespace lf {
 
-RunInputs InputsOfRebinning(const FilmSettings& options, size_t max_cells,
-                            const std::string& film) {
-  if (!options.Rebins()) return {};
-  const RebinSettings& rebin = options.rebin;
-  const ProbabilityOptions& edges = rebin.rebin.probability;
-  const auto width = [](const std::optional<double>& value) {
-    return value ? fmt::format("{}", *value) : std::string("auto");
-  };
-  const auto place = [](const std::optional<Vec3>& v) {
-    return v ? fmt::format("{} {} {}", v->x(), v->y(), v->z()) : std::string("auto");
-  };
-  return {
-      {"mode", NameOf(options.mode)},
-      {"rebin.film", film},
-      {"rebin.max_rays", fmt::format("{}", max_cells)},
-      {"rebin.kept", NameOf(rebin.kept)},
-      {"rebin.edges", fmt::format("alpha {} beta {} xi {} sigma {} then {}", edges.alpha,
-                                  edges.beta, edges.xi, edges.sigma_px, edges.second_sigma_px)},
-      {"rebin.colours", fmt::format("sigma {}", rebin.rebin.colour_sigma_px)},
-      {"rebin.others", rebin.rebin.averages_others ? "averaged" : "left out"},
-      {"rebin.seed", fmt::format("{}", rebin.rebin.seed)},
-      {"rebin.preview", NameOf(rebin.previews)},
-      {"rebin.query", fmt::format("sigma_st {} sigma_uv {} lens points {} sets {} on {} nearest {}",
-                                  rebin.query.sigma_st, rebin.query.sigma_uv,
-                                  rebin.query.lens_point_count, rebin.query.lens_sets,
-                                  rebin.reparameterise ? "focus planes" : "slabs", rebin.nearest)},
-      {"rebin.slab", fmt::format("position {} forward {} distance {} r_st {} r_uv {}",
-                                 place(rebin.slab.position_world), place(rebin.slab.forward_world),
-                                 width(rebin.slab.uv_distance_w), width(rebin.slab.r_st_w),
-                                 width(rebin.slab.r_uv_w))},
-      {"rebin.coverage", fmt::format("{} cells across", rebin.coverage.cells_across)}};
+RunInputs InputsOfSlabs(const FilmSettings& film, const CameraPath& path) {
+  if (!film.Rebins()) return {};
+  return {{"slabs.cameras", HashOfCameras(path)}};
 }
 
 Result<RunInputs> InputsOfRays(const FilmSetup& setup) {
@@ -50,10 +19,9 @@ Result<RunInputs> InputsOfRays(const FilmSetup& setup) {
   RunChoices choices;
   LF_ASSIGN_OR_RETURN(choices.pixels, PixelsOf(setup.light_field()));
   choices.film = film;
+  choices.film.rebin.max_cells = setup.max_cells();
   RunInputs rays = InputsOfRays(package.whole, setup.light_field().encoding, choices);
-  if (setup.is_guarded()) rays.emplace_back("guard", "on");
-  for (auto& input : InputsOfRebinning(film, setup.max_cells(), HashOfCameras(package.path)))
-    rays.push_back(std::move(input));
+  for (auto& input : InputsOfSlabs(film, package.path)) rays.push_back(std::move(input));
   return rays;
 }
 

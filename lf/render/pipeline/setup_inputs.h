@@ -12,12 +12,13 @@
 
 namespace lf {
 
-// Returns the inputs that only rebinned rays depend on; no inputs if the mode is kCollect.
-//   film  hash of all render cameras of the film, because the slabs depend on all of them
-RunInputs InputsOfRebinning(const FilmSettings& options, size_t max_cells, const std::string& film);
+// Returns the inputs of the slabs of rebinned rays: a hash of all cameras of the film, which all
+// slabs depend on. No inputs if the mode is kCollect.
+RunInputs InputsOfSlabs(const FilmSettings& film, const CameraPath& path);
 
-// Returns the inputs of the rays of all frames, those of rebinned rays included. kInput: the packed
-// store of the light field cannot be read.
+// Returns the inputs of the rays of all frames, those of rebinned rays included; max_rays is the
+// number of cells that the memory of the setup allows. kInput: the packed store of the light field
+// cannot be read.
 Result<RunInputs> InputsOfRays(const FilmSetup& setup);
 
 // Returns RunChoices::pixels of a light field: the settings of the lossy codec that changed the

@@ -14,6 +14,16 @@
 namespace lf {
 namespace {
 
+bool IsBilinear(const FilmSettings& film) { return film.reading.estimator == Estimator::kBilinear; }
+
+// Returns the angle in degrees, without the rounding errors of a conversion there and back: 60, not
+// 59.99999999999999.
+double DegreesOf(double angle_rad) {
+  const double degrees = DegreesFromRadians(angle_rad);
+  const double rounded = ParseNumber(fmt::format("{:.14g}", degrees)).value_or(degrees);
+  return RadiansFromDegrees(rounded) == angle_rad ? rounded : degrees;
+}
+
 void AddPictureRows(std::vector<Setting>& rows) {
   rows.push_back(Choice(
       {.key = "mode",
@@ -24,7 +34,7 @@ void AddPictureRows(std::vector<Setting>& rows) {
                "interpolated"},
       LF_MEMBER(mode), Named({RenderMode::kCollect, RenderMode::kRebin, RenderMode::kHybrid})));
   // "auto" is bilinear, the first word with this value, and comes first for get().
-  rows.push_back(
+  Setting estimator =
       Choice({.key = "estimator",
               .text = "How LF pixels contribute to elements\n"
                       "An element is a pixel of the frame before it is developed.\n"
@@ -35,9 +45,12 @@ void AddPictureRows(std::vector<Setting>& rows) {
              LF_MEMBER(reading.estimator),
              Words<Estimator>{{"auto", Estimator::kBilinear},
                               {"nearest", Estimator::kNearest},
-                              {"bilinear", Estimator::kBilinear}}));
+                              {"bilinear", Estimator::kBilinear}});
+  estimator.recorded = [](const FilmSettings& film) { return NameOf(film.reading.estimator); };
+  rows.push_back(std::move(estimator));
   rows.push_back(Choice(
       {.key = "filter",
+       .matters = IsBilinear,
        .text =
            "Interpolation between LF pixels\n"
            "Used by {estimator bilinear}.\n"
@@ -52,6 +65,7 @@ void AddPictureRows(std::vector<Setting>& rows) {
              PixelFilter::kBicubic, PixelFilter::kMosaic, PixelFilter::kPrefiltered})));
   rows.push_back(
       Choice({.key = "lf_pixels",
+              .matters = IsBilinear,
               .text = "What LF pixels show, for {filter prefiltered}\n"
                       "areas: the mean light of their area, as in photographs\n"
                       "points: the light of their centre, as in renders without anti-aliasing\n"
@@ -72,12 +86,14 @@ void AddPictureRows(std::vector<Setting>& rows) {
       Named({LensWeights::kAuto, LensWeights::kNone, LensWeights::kArea, LensWeights::kHat})));
   rows.push_back(Switch(
       {.key = "guard",
+       .matters = [](const FilmSettings& film) { return film.guard; },
        .text = "Show recorded LF images alone where a frame is in focus\n"
                "Concerns frames of densified light fields. off: they show the rays of all LF "
                "images everywhere, those of virtual ones included."},
       LF_MEMBER(guard)));
   Setting fill = {
       .key = "fill",
+      .role = SettingRole::kPicture,
       .placeholder = "RADIUS|off",
       .text =
           "Radius for filling elements without rays, in elements\n"
@@ -97,6 +113,7 @@ void AddPictureRows(std::vector<Setting>& rows) {
   rows.push_back(std::move(fill));
   rows.push_back(
       Plain({.key = "smooth_below",
+             .role = SettingRole::kPicture,
              .placeholder = "N",
              .text = "Smooth elements with fewer rays than this (none)\n"
                      "Such an element is averaged with its neighbours, up to 32 elements away."},
@@ -106,6 +123,7 @@ void AddPictureRows(std::vector<Setting>& rows) {
 void AddQualityRows(std::vector<Setting>& rows) {
   rows.push_back(ZeroIfUnset(
       {.key = "max_images",
+       .is_in_packages = true,
        .placeholder = "N",
        .text = "Maximum number of LF images per frame (all)\n"
                "A frame uses the first N of the LF images that contribute to it, in the order of "
@@ -113,23 +131,27 @@ void AddQualityRows(std::vector<Setting>& rows) {
       LF_MEMBER(max_image_count)));
   rows.push_back(ZeroIfUnset(
       {.key = "max_angle_deg",
+       .is_in_packages = true,
        .placeholder = "DEGREES",
        .most = 180,
        .text = "Largest angle between LF camera and frame axes (no limit)\n"
                "A frame uses only LF cameras whose optical axis is within DEGREES of its own "
                "optical axis."},
-      LF_MEMBER(max_angle_rad), DegreesFromRadians, RadiansFromDegrees));
+      LF_MEMBER(max_angle_rad), DegreesOf, RadiansFromDegrees));
   rows.push_back(Choice(
       {.key = "order",
+       .is_in_packages = true,
        .text = "Order in which frames take LF images\n"
                "The order matters if {max_images} or {stop_when} end a frame early.\n"
                "shuffle: random, by {seed}\n"
                "round-robin: always an LF image for the frame with the fewest rays\n"
                "area: LF images with the most rays first"},
       LF_MEMBER(order), Named({ImageOrder::kShuffle, ImageOrder::kRoundRobin, ImageOrder::kArea})));
-  rows.push_back(Plain(
-      {.key = "seed", .placeholder = "N", .text = "Seed of {order shuffle} and of {kept edges}"},
-      LF_MEMBER(seed)));
+  rows.push_back(Plain({.key = "seed",
+                        .is_in_packages = true,
+                        .placeholder = "N",
+                        .text = "Seed of {order shuffle} and of {kept edges}"},
+                       LF_MEMBER(seed)));
   rows.push_back(Rule(
       {.key = "stop_when",
        .placeholder = "RULE",
@@ -145,6 +167,7 @@ void AddQualityRows(std::vector<Setting>& rows) {
       LF_MEMBER(stop_when)));
   rows.push_back(Rule(
       {.key = "require",
+       .role = SettingRole::kMeasuring,
        .placeholder = "RULE",
        .text = "Exit with code 6 unless noise<=X or samples>=N\n"
                "The rules are those of {stop_when}. The exit code is 6 if a finished frame has "
@@ -162,6 +185,7 @@ void AddMeasuringRows(std::vector<Setting>& rows) {
                                               {"reference", CollectBackEnd::kReference}}));
   rows.push_back(
       Plain({.key = "nearest",
+             .matters = [](const FilmSettings& film) { return film.Rebins(); },
              .placeholder = "N",
              .most = 1000,
              .text = "Interpolate from the N nearest rays (all within 3 sigma)\n"
@@ -170,6 +194,7 @@ void AddMeasuringRows(std::vector<Setting>& rows) {
             LF_MEMBER(rebin.nearest)));
   rows.push_back(
       Plain({.key = "coverage_cells",
+             .matters = [](const FilmSettings& film) { return film.Rebins(); },
              .placeholder = "N",
              .least = 4,
              .most = 1024,
@@ -191,7 +216,10 @@ std::span<const Setting> SettingTable() {
     };
     add(SettingGroup::kPicture, AddPictureRows);
     add(SettingGroup::kQuality, AddQualityRows);
+    const size_t begin_of_rebinning = made.size();
     add(SettingGroup::kRebinning, AddRebinRows);
+    for (size_t i = begin_of_rebinning; i < made.size(); ++i)
+      made[i].matters = [](const FilmSettings& film) { return film.Rebins(); };
     add(SettingGroup::kMeasuring, AddMeasuringRows);
     return made;
   }();
@@ -203,6 +231,17 @@ const Setting* FindSetting(std::string_view key) {
   const auto row = std::find_if(rows.begin(), rows.end(),
                                 [key](const Setting& setting) { return setting.key == key; });
   return row == rows.end() ? nullptr : &*row;
+}
+
+SettingTexts TextsOf(const FilmSettings& film, SettingRole role) {
+  SettingTexts texts;
+  for (const Setting& setting : SettingTable()) {
+    if (setting.role != role || !setting.matters(film)) continue;
+    std::string text = setting.recorded ? setting.recorded(film) : setting.get(film);
+    const bool is_unset = text.empty() || (setting.is_optional && text == "0");
+    if (!is_unset) texts.emplace_back(setting.key, std::move(text));
+  }
+  return texts;
 }
 
 std::string Spelled(std::string_view text,

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "lf/core/result.h"
@@ -25,12 +26,25 @@ enum class SettingKind {
   kText,    // a text of its own form, such as "noise<=0.002"
 };
 
+// The part of a film that a setting decides. A render that is resumed must have the same rays and
+// pictures, and plates that are added must have the same rays.
+enum class SettingRole {
+  kRays,       // the rays of frames
+  kPicture,    // only how pictures are made from the rays
+  kMeasuring,  // only what the report of a render states
+};
+
 // Groups in which help shows settings.
 enum class SettingGroup { kPicture, kQuality, kRebinning, kMeasuring };
 
 struct Setting {
   std::string_view key;  // "lens_weights"
   SettingGroup group = SettingGroup::kPicture;
+  SettingRole role = SettingRole::kRays;
+  // True: packages hold the setting, and renders of packages take it from them.
+  bool is_in_packages = false;
+  // Returns false if no frame depends on the setting, because of the values of other settings.
+  std::function<bool(const FilmSettings&)> matters = [](const FilmSettings&) { return true; };
   SettingKind kind = SettingKind::kText;
   // The word for a value in help: N in --max-images N. Empty for kChoice and kSwitch.
   std::string_view placeholder = {};
@@ -47,6 +61,9 @@ struct Setting {
 
   // Returns the value as a text that `set` accepts.
   std::function<std::string(const FilmSettings&)> get = {};
+  // Returns the value as files record it, if `get` may return a word that another version could
+  // give another meaning; null: as get().
+  std::function<std::string(const FilmSettings&)> recorded = {};
   // Sets the value. kUsage if the text is no such value; the message begins with {key}, states the
   // text that was found and what was expected, and may refer to settings as `text` does.
   std::function<Result<void>(const std::string&, FilmSettings*)> set = {};
@@ -57,6 +74,13 @@ std::span<const Setting> SettingTable();
 
 // Returns the row with this key; null if there is none.
 const Setting* FindSetting(std::string_view key);
+
+// Keys and texts of settings, in the order of the table.
+using SettingTexts = std::vector<std::pair<std::string, std::string>>;
+
+// Returns the settings with this role that matter, as files record them. Leaves out those that are
+// unset.
+SettingTexts TextsOf(const FilmSettings& film, SettingRole role);
 
 // Returns the text with each {key} and {key value} replaced by the result of `spell`, whose second
 // argument is then empty or the value.

@@ -166,50 +166,50 @@ PlateEntries TextOf(const PlateNotes& notes) {
     return Words(std::vector<double>(numbers));
   };
   PlateEntries text = {
-      {"sheet.frame", fmt::format("{}", notes.frame.value)},
-      {"sheet.intrinsics", words({k.fx_px, k.fy_px, k.cx_px, k.cy_px, k.skew_px})},
-      {"sheet.pose", Words(of_pose)},
-      {"sheet.aperture", words({camera.aperture.radius_w, 0.0 + camera.aperture.blades,
+      {"plate.frame", fmt::format("{}", notes.frame.value)},
+      {"plate.intrinsics", words({k.fx_px, k.fy_px, k.cx_px, k.cy_px, k.skew_px})},
+      {"plate.pose", Words(of_pose)},
+      {"plate.aperture", words({camera.aperture.radius_w, 0.0 + camera.aperture.blades,
                                 camera.aperture.rotation_rad})},
-      {"sheet.focus_plane",
+      {"plate.focus_plane",
        words({focus.normal.x(), focus.normal.y(), focus.normal.z(), focus.offset_w})},
-      {"sheet.lens",
+      {"plate.lens",
        words({camera.time_s, camera.focal_length_w, camera.sensor_width_w, camera.focus_distance_w,
               camera.focus_tilt.horizontal_rad, camera.focus_tilt.vertical_rad, camera.unit_m})},
-      {"sheet.fps", words({notes.fps})},
-      {"sheet.estimator", NameOf(notes.estimator)},
-      {"sheet.version", notes.version},
-      {"sheet.develop", Words(develop)},
-      {"sheet.smooth_below", fmt::format("{}", notes.develop.smooth_below)},
-      {"sheet.fill_radius", fmt::format("{}", notes.develop.fill_radius_px)},
-      {"sheet.lf_images", fmt::format("{}", notes.rays.image_count)},
-      {"sheet.rays_tested", fmt::format("{}", notes.rays.tested_count)},
-      {"sheet.rays_accepted", fmt::format("{}", notes.rays.accepted_count)},
+      {"plate.fps", words({notes.fps})},
+      {"plate.estimator", NameOf(notes.estimator)},
+      {"plate.version", notes.version},
+      {"plate.develop", Words(develop)},
+      {"plate.smooth_below", fmt::format("{}", notes.develop.smooth_below)},
+      {"plate.fill", fmt::format("{}", notes.develop.fill_radius_px)},
+      {"plate.lf_images", fmt::format("{}", notes.rays.image_count)},
+      {"plate.rays_tested", fmt::format("{}", notes.rays.tested_count)},
+      {"plate.rays_accepted", fmt::format("{}", notes.rays.accepted_count)},
   };
   if (HasShape(camera))
-    text.emplace_back("sheet.lens_shape", words({camera.aperture.ratio, camera.aperture.roundness,
+    text.emplace_back("plate.lens_shape", words({camera.aperture.ratio, camera.aperture.roundness,
                                                  camera.hood.distance_w, camera.hood.radius_w}));
-  if (camera.transmission) text.emplace_back("sheet.transmission", camera.transmission->Text());
+  if (camera.transmission) text.emplace_back("plate.transmission", camera.transmission->Text());
   if (const std::string digest = notes.FocalSurface(); !digest.empty())
-    text.emplace_back("sheet.focal_surface", digest);
+    text.emplace_back("plate.focal_surface", digest);
   if (notes.shutter)
-    text.emplace_back("sheet.shutter",
+    text.emplace_back("plate.shutter",
                       fmt::format("{} {} {}", notes.shutter->shutter.angle_deg,
                                   notes.shutter->shutter.samples, notes.shutter->cameras));
   if (notes.rays.virtual_count > 0)
-    text.emplace_back("sheet.virtual_lf_images", fmt::format("{}", notes.rays.virtual_count));
+    text.emplace_back("plate.virtual_lf_images", fmt::format("{}", notes.rays.virtual_count));
   if (notes.places_done)
-    text.emplace_back("sheet.finished_early", fmt::format("{}", *notes.places_done));
+    text.emplace_back("plate.finished_early", fmt::format("{}", *notes.places_done));
   if (notes.skipped_count > 0) {
-    text.emplace_back("sheet.lf_images_skipped", fmt::format("{}", notes.skipped_count));
-    text.emplace_back("sheet.skipped", NamesText(notes.skipped));
+    text.emplace_back("plate.lf_images_skipped", fmt::format("{}", notes.skipped_count));
+    text.emplace_back("plate.skipped", NamesText(notes.skipped));
   }
   if (notes.weighed) {
     const auto& counts = notes.weighed->effective_counts.pixels();
-    text.emplace_back("sheet.weights",
+    text.emplace_back("plate.weights",
                       words({notes.weighed->hat_share, notes.weighed->coverage.uncovered_share,
                              notes.weighed->coverage.fitting_diameter_w}));
-    text.emplace_back("sheet.effective", fmt::format("{}", fmt::join(counts, " ")));
+    text.emplace_back("plate.effective", fmt::format("{}", fmt::join(counts, " ")));
   }
   return text;
 }
@@ -219,105 +219,106 @@ Result<PlateNotes> PlateNotesOf(const PlateEntries& entries, int width_px, int h
   NotesReader reader(entries, name);
   PlateNotes notes;
   // Another version may keep opacity, which notes do not describe, in another range of values.
-  const std::string* const law = FindEntry(entries, "law");
-  if (law != nullptr && *law != fmt::format("{}", kRayModelVersion))
+  const std::string* const ray_model = FindEntry(entries, kRayModelKey);
+  if (ray_model != nullptr && *ray_model != fmt::format("{}", kRayModelVersion))
     reader.Fault(
-        "law", fmt::format("{}, because this program has another version of the ray model: use the "
-                           "program that rendered the plate, or render it again",
-                           kRayModelVersion));
-  notes.frame.value = static_cast<uint32_t>(reader.WholeNumber("sheet.frame", UINT32_MAX));
-  const std::vector<double> k = reader.Numbers("sheet.intrinsics", 5);
+        kRayModelKey,
+        fmt::format("{}, because this program has another version of the ray model: use the "
+                    "program that rendered the plate, or render it again",
+                    kRayModelVersion));
+  notes.frame.value = static_cast<uint32_t>(reader.WholeNumber("plate.frame", UINT32_MAX));
+  const std::vector<double> k = reader.Numbers("plate.intrinsics", 5);
   Intrinsics& intrinsics = notes.camera.pinhole.intrinsics;
   intrinsics = {k[0], k[1], k[2], k[3], k[4], width_px, height_px};
   if (!(k[0] != 0 && k[1] != 0))
-    reader.Fault("sheet.intrinsics", "focal lengths other than 0 as the first two numbers");
-  const std::vector<double> pose = reader.Numbers("sheet.pose", 12);
+    reader.Fault("plate.intrinsics", "focal lengths other than 0 as the first two numbers");
+  const std::vector<double> pose = reader.Numbers("plate.pose", 12);
   notes.camera.pinhole.cam_from_world.rotation = Mat3Of(pose);
   notes.camera.pinhole.cam_from_world.translation = Vec3Of(std::span(pose).subspan(9));
-  const std::vector<double> aperture = reader.Numbers("sheet.aperture", 3);
+  const std::vector<double> aperture = reader.Numbers("plate.aperture", 3);
   if (!(aperture[0] >= 0) || !(aperture[1] == 0 || (aperture[1] >= 3 && aperture[1] <= 1000)))
-    reader.Fault("sheet.aperture",
+    reader.Fault("plate.aperture",
                  "a radius of at least 0, 0 or 3 to 1000 blades, and the rotation of the blades");
   else
     notes.camera.aperture = {aperture[0], static_cast<int>(aperture[1]), aperture[2]};
-  if (FindEntry(entries, "sheet.lens_shape") != nullptr) {
-    const std::vector<double> shape = reader.Numbers("sheet.lens_shape", 4);
+  if (FindEntry(entries, "plate.lens_shape") != nullptr) {
+    const std::vector<double> shape = reader.Numbers("plate.lens_shape", 4);
     notes.camera.aperture.ratio = shape[0];
     notes.camera.aperture.roundness = shape[1];
     notes.camera.hood = {shape[2], shape[3]};
     if (!IsShape(notes.camera))
       reader.Fault(
-          "sheet.lens_shape",
+          "plate.lens_shape",
           "a ratio from 0.1 to 10, a roundness from 0 to 1, distance and radius of a hood");
   }
-  if (const std::string* const places = FindEntry(entries, "sheet.transmission")) {
+  if (const std::string* const places = FindEntry(entries, "plate.transmission")) {
     if (const auto transmission = Transmission::FromText(*places))
       notes.camera.transmission = std::make_shared<const Transmission>(*transmission);
     else
-      reader.Fault("sheet.transmission", transmission.error().message);
+      reader.Fault("plate.transmission", transmission.error().message);
   }
-  if (const std::string* const digest = FindEntry(entries, "sheet.focal_surface")) {
+  if (const std::string* const digest = FindEntry(entries, "plate.focal_surface")) {
     const auto is_digit = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
     notes.focal_surface = *digest;
     if (digest->size() != 16 || !std::all_of(digest->begin(), digest->end(), is_digit))
-      reader.Fault("sheet.focal_surface", "16 hexadecimal digits");
+      reader.Fault("plate.focal_surface", "16 hexadecimal digits");
   }
-  const std::vector<double> focus = reader.Numbers("sheet.focus_plane", 4);
+  const std::vector<double> focus = reader.Numbers("plate.focus_plane", 4);
   notes.camera.focus_plane = {Vec3Of(focus), focus[3]};
-  const std::vector<double> lens = reader.Numbers("sheet.lens", 7);
+  const std::vector<double> lens = reader.Numbers("plate.lens", 7);
   notes.camera.time_s = lens[0];
   notes.camera.focal_length_w = lens[1];
   notes.camera.sensor_width_w = lens[2];
   notes.camera.focus_distance_w = lens[3];
   notes.camera.focus_tilt = {lens[4], lens[5]};
   notes.camera.unit_m = lens[6];
-  notes.fps = reader.Numbers("sheet.fps", 1)[0];
-  if (FindEntry(entries, "sheet.shutter") != nullptr) {
-    notes.shutter = ShutterIn(reader.Text("sheet.shutter"));
+  notes.fps = reader.Numbers("plate.fps", 1)[0];
+  if (FindEntry(entries, "plate.shutter") != nullptr) {
+    notes.shutter = ShutterIn(reader.Text("plate.shutter"));
     if (!notes.shutter)
       reader.Fault(
-          "sheet.shutter",
+          "plate.shutter",
           fmt::format("an angle from 0 to 360, 2 to {} samples, and a hash", kMostShutterSamples));
   }
   const auto estimator =
-      ValueNamed(reader.Text("sheet.estimator"), {Estimator::kNearest, Estimator::kBilinear});
-  if (!estimator) reader.Fault("sheet.estimator", "nearest or bilinear");
+      ValueNamed(reader.Text("plate.estimator"), {Estimator::kNearest, Estimator::kBilinear});
+  if (!estimator) reader.Fault("plate.estimator", "nearest or bilinear");
   notes.estimator = estimator.value_or(Estimator::kBilinear);
-  notes.version = reader.Text("sheet.version");
-  const std::vector<double> develop = reader.Numbers("sheet.develop", 14);
-  if (!(develop[1] > 0)) reader.Fault("sheet.develop", "a scale above 0 as the second number");
+  notes.version = reader.Text("plate.version");
+  const std::vector<double> develop = reader.Numbers("plate.develop", 14);
+  if (!(develop[1] > 0)) reader.Fault("plate.develop", "a scale above 0 as the second number");
   notes.develop.pedestal = develop[0];
   notes.develop.scale = develop[1];
   notes.develop.white_balance = {develop[2], develop[3], develop[4]};
   notes.develop.linear_srgb_from_camera = Mat3Of(std::span(develop).subspan(5));
   notes.develop.smooth_below =
-      static_cast<uint32_t>(reader.WholeNumber("sheet.smooth_below", UINT32_MAX));
+      static_cast<uint32_t>(reader.WholeNumber("plate.smooth_below", UINT32_MAX));
   notes.develop.fill_radius_px =
-      static_cast<int>(reader.WholeNumber("sheet.fill_radius", kMostFillRadius_px));
-  notes.rays.image_count = reader.WholeNumber("sheet.lf_images", UINT32_MAX);
-  notes.rays.tested_count = reader.WholeNumber("sheet.rays_tested", UINT64_MAX / 2);
-  notes.rays.accepted_count = reader.WholeNumber("sheet.rays_accepted", UINT64_MAX / 2);
-  if (FindEntry(entries, "sheet.virtual_lf_images") != nullptr)
-    notes.rays.virtual_count = reader.WholeNumber("sheet.virtual_lf_images", UINT32_MAX);
-  if (FindEntry(entries, "sheet.finished_early") != nullptr)
+      static_cast<int>(reader.WholeNumber("plate.fill", kMostFillRadius_px));
+  notes.rays.image_count = reader.WholeNumber("plate.lf_images", UINT32_MAX);
+  notes.rays.tested_count = reader.WholeNumber("plate.rays_tested", UINT64_MAX / 2);
+  notes.rays.accepted_count = reader.WholeNumber("plate.rays_accepted", UINT64_MAX / 2);
+  if (FindEntry(entries, "plate.virtual_lf_images") != nullptr)
+    notes.rays.virtual_count = reader.WholeNumber("plate.virtual_lf_images", UINT32_MAX);
+  if (FindEntry(entries, "plate.finished_early") != nullptr)
     notes.places_done =
-        static_cast<uint32_t>(reader.WholeNumber("sheet.finished_early", UINT32_MAX));
-  if (FindEntry(entries, "sheet.lf_images_skipped") != nullptr) {
-    notes.skipped_count = reader.WholeNumber("sheet.lf_images_skipped", UINT32_MAX);
-    notes.skipped = reader.Names("sheet.skipped");
+        static_cast<uint32_t>(reader.WholeNumber("plate.finished_early", UINT32_MAX));
+  if (FindEntry(entries, "plate.lf_images_skipped") != nullptr) {
+    notes.skipped_count = reader.WholeNumber("plate.lf_images_skipped", UINT32_MAX);
+    notes.skipped = reader.Names("plate.skipped");
     if (notes.skipped.size() > notes.skipped_count)
-      reader.Fault("sheet.skipped", fmt::format("at most {} names, as sheet.lf_images_skipped says",
+      reader.Fault("plate.skipped", fmt::format("at most {} names, as plate.lf_images_skipped says",
                                                 notes.skipped_count));
   }
-  if (FindEntry(entries, "sheet.weights") != nullptr) {
-    const std::vector<double> weights = reader.Numbers("sheet.weights", 3);
+  if (FindEntry(entries, "plate.weights") != nullptr) {
+    const std::vector<double> weights = reader.Numbers("plate.weights", 3);
     const auto [columns, rows] = EffectiveSquares(intrinsics);
     const std::vector<double> counts =
-        reader.Numbers("sheet.effective", static_cast<size_t>(columns) * rows);
+        reader.Numbers("plate.effective", static_cast<size_t>(columns) * rows);
     notes.weighed = {weights[0], {weights[1], weights[2]}, Image<float>(columns, rows)};
     for (size_t i = 0; i < counts.size(); ++i) {
       if (!(counts[i] >= 0 && counts[i] <= 1e9))
-        reader.Fault("sheet.effective", "numbers from 0 to 1e9");
+        reader.Fault("plate.effective", "numbers from 0 to 1e9");
       notes.weighed->effective_counts.pixels()[i] = static_cast<float>(counts[i]);
     }
   }
@@ -336,12 +337,12 @@ Result<Shard> ShardIn(const PlateEntries& entries, const std::string& name) {
 PlateEntries SharedEntries(const PlateEntries& entries) {
   // Entries that may differ between the shards of a frame: the shard, its rays, and its LF images.
   constexpr const char* kOwn[] = {"shard",
-                                  "sheet.lf_images",
-                                  "sheet.virtual_lf_images",
-                                  "sheet.rays_tested",
-                                  "sheet.rays_accepted",
-                                  "sheet.lf_images_skipped",
-                                  "sheet.skipped"};
+                                  "plate.lf_images",
+                                  "plate.virtual_lf_images",
+                                  "plate.rays_tested",
+                                  "plate.rays_accepted",
+                                  "plate.lf_images_skipped",
+                                  "plate.skipped"};
   PlateEntries shared;
   for (const auto& entry : entries)
     if (!entry.first.starts_with("progress.") &&

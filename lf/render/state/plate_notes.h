@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The notes in a finished plate: entries in its file that suffice to develop the plate without the
-// light field and the path (doc/formats/plate.md, keys "sheet.").
+// light field and the path (doc/formats/plate.md, keys "plate.").
 #pragma once
 
 #include <cstdint>

@@ -63,7 +63,7 @@ TEST(PlateNotes, ComesBackAsTheSameBits) {
 
 TEST(PlateNotes, TheShutterComesBack) {
   PlateNotes notes = Notes();
-  EXPECT_EQ(FindEntry(TextOf(notes), "sheet.shutter"), nullptr);
+  EXPECT_EQ(FindEntry(TextOf(notes), "plate.shutter"), nullptr);
   notes.shutter = FrameShutter{{172.8, 8}, "0123456789abcdef"};
   const Result<PlateNotes> read = PlateNotesOf(TextOf(notes), 96, 64, "p");
   ASSERT_TRUE(read) << read.error().message;
@@ -75,10 +75,10 @@ TEST(PlateNotes, TheShutterComesBack) {
         "180 1 0123456789abcdef", "180 65 0123456789abcdef", "180 8 0123456789abcdeg",
         "180 8 0123456789abcdef0", "180  8 0123456789abcdef", "nan 8 0123456789abcdef"}) {
     PlateEntries entries = TextOf(Notes());
-    entries.emplace_back("sheet.shutter", wrong);
+    entries.emplace_back("plate.shutter", wrong);
     const Result<PlateNotes> fault = PlateNotesOf(entries, 96, 64, "p");
     ASSERT_FALSE(fault) << wrong;
-    EXPECT_NE(fault.error().message.find("sheet.shutter"), std::string::npos);
+    EXPECT_NE(fault.error().message.find("plate.shutter"), std::string::npos);
   }
 }
 
@@ -100,32 +100,32 @@ TEST(PlateNotes, NamesOfLfImagesThatAreMissingComeBackInAnyBytes) {
   ASSERT_TRUE(many);
   EXPECT_EQ(many->skipped_count, 100'000u);
   EXPECT_GT(many->skipped.size(), 1000u);
-  EXPECT_LT(FindEntry(TextOf(notes), "sheet.skipped")->size(), size_t{300} << 10);
+  EXPECT_LT(FindEntry(TextOf(notes), "plate.skipped")->size(), size_t{300} << 10);
 }
 
 TEST(PlateNotes, ListsOfMissingLfImagesAreChecked) {
   const auto fault = [](const std::string& count, const std::string& names) {
     PlateEntries entries = TextOf(Notes());
-    entries.emplace_back("sheet.lf_images_skipped", count);
-    entries.emplace_back("sheet.skipped", names);
+    entries.emplace_back("plate.lf_images_skipped", count);
+    entries.emplace_back("plate.skipped", names);
     const Result<PlateNotes> read = PlateNotesOf(entries, 96, 64, "p");
     return read ? std::string() : read.error().message;
   };
   EXPECT_EQ(fault("1", "[\"a\"]"), "");
   for (const char* names : {"", "a", "[1]", "{}", "[\"a\""})
-    EXPECT_NE(fault("1", names).find("p: sheet.skipped is"), std::string::npos) << names;
+    EXPECT_NE(fault("1", names).find("p: plate.skipped is"), std::string::npos) << names;
   EXPECT_NE(fault("1", "[\"a\",\"b\"]").find("at most 1 names"), std::string::npos);
-  EXPECT_NE(fault("-1", "[]").find("p: sheet.lf_images_skipped is"), std::string::npos);
+  EXPECT_NE(fault("-1", "[]").find("p: plate.lf_images_skipped is"), std::string::npos);
 }
 
 TEST(PlateNotes, OtherVersionsOfTheRayModelAreRefused) {
   for (const int difference : {-1, 0, 1}) {
     PlateEntries entries = TextOf(Notes());
-    entries.emplace_back("law", std::to_string(kRayModelVersion + difference));
+    entries.emplace_back(kRayModelKey, std::to_string(kRayModelVersion + difference));
     const Result<PlateNotes> read = PlateNotesOf(entries, 96, 64, "p");
     EXPECT_EQ(read.has_value(), difference == 0);
-    const std::string message = read ? "p: law is \"" : read.error().message;
-    EXPECT_TRUE(message.starts_with("p: law is \"")) << message;
+    const std::string message = read ? "p: ray_model is \"" : read.error().message;
+    EXPECT_TRUE(message.starts_with("p: ray_model is \"")) << message;
   }
 }
 
@@ -142,23 +142,23 @@ TEST(PlateNotes, FaultsAreNamed) {
     return read ? std::string() : read.error().message;
   };
   for (const char* key :
-       {"sheet.frame", "sheet.intrinsics", "sheet.pose", "sheet.aperture", "sheet.focus_plane",
-        "sheet.lens", "sheet.fps", "sheet.estimator", "sheet.version", "sheet.develop",
-        "sheet.smooth_below", "sheet.fill_radius", "sheet.lf_images", "sheet.rays_tested",
-        "sheet.rays_accepted", "sheet.effective"}) {
+       {"plate.frame", "plate.intrinsics", "plate.pose", "plate.aperture", "plate.focus_plane",
+        "plate.lens", "plate.fps", "plate.estimator", "plate.version", "plate.develop",
+        "plate.smooth_below", "plate.fill", "plate.lf_images", "plate.rays_tested",
+        "plate.rays_accepted", "plate.effective"}) {
     EXPECT_NE(fault(key, {}).find(std::string("p: has no entry ") + key), std::string::npos) << key;
-    if (std::string(key) == "sheet.version") continue;
+    if (std::string(key) == "plate.version") continue;
     for (const char* value : {"", "x", "1 2 nan", "1,2", "-1e999"})
       EXPECT_NE(fault(key, value).find(std::string("p: ") + key + " is \"" + value),
                 std::string::npos)
           << key << " " << value;
   }
-  EXPECT_NE(fault("sheet.aperture", "1 2 0"), "");
-  EXPECT_NE(fault("sheet.lens_shape", "11 0 0 0"), "");
-  EXPECT_NE(fault("sheet.lens_shape", "1 0 0 -0.1"), "");
-  EXPECT_EQ(fault("sheet.lens_shape", {}), "");  // valid: a lens without a shape
-  EXPECT_NE(fault("sheet.develop", "0 0 1 1 1 1 0 0 0 1 0 0 0 1"), "");
-  EXPECT_EQ(fault("sheet.weights", {}), "");  // valid: a frame without lens weights
+  EXPECT_NE(fault("plate.aperture", "1 2 0"), "");
+  EXPECT_NE(fault("plate.lens_shape", "11 0 0 0"), "");
+  EXPECT_NE(fault("plate.lens_shape", "1 0 0 -0.1"), "");
+  EXPECT_EQ(fault("plate.lens_shape", {}), "");  // valid: a lens without a shape
+  EXPECT_NE(fault("plate.develop", "0 0 1 1 1 1 0 0 0 1 0 0 0 1"), "");
+  EXPECT_EQ(fault("plate.weights", {}), "");  // valid: a frame without lens weights
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "lf/core/version.h"
 #include "lf/render/state/run_inputs.h"
 
 namespace lf {
@@ -165,8 +166,14 @@ inline Json ParseRecord(std::string_view text, const char* format, std::string* 
     *fault = "the text is no JSON, or is cut off";
   else
     RecordFields(json, fault).Get("format", &found);
-  if (fault->empty() && found != format)
-    *fault = fmt::format("\"format\": expected \"{}\", found \"{}\"", format, found);
+  if (fault->empty() && found != format) {
+    // The formats have versions of one digit.
+    const std::string_view expected = format;
+    const bool is_earlier = found.size() == expected.size() && found < expected &&
+                            found.starts_with(expected.substr(0, expected.size() - 1));
+    *fault = fmt::format("\"format\": expected \"{}\", found \"{}\"{}", format, found,
+                         is_earlier ? fmt::format(", which {} read", kBuildsOfEarlierFiles) : "");
+  }
   return fault->empty() ? std::move(json) : Json::object();
 }
 

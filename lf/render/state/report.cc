@@ -36,14 +36,14 @@ Json FrameToJson(const FrameReport& frame) {
     json["uncovered_share"] = frame.weighed->coverage.uncovered_share;
     json["fitting_aperture_w"] = frame.weighed->coverage.fitting_diameter_w;
   }
-  if (frame.places_done) json["finished_early_before_place"] = *frame.places_done;
+  if (frame.places_done) json["finished_early_before_rank"] = *frame.places_done;
   if (frame.samples)
     json["samples"] = {{"asked", frame.samples->asked},
                        {"share", frame.samples->measured.share},
                        {"most_have", frame.samples->measured.most_have}};
   if (frame.noise) {
     Json& noise = json["noise"] = {{"asked", frame.noise->asked},
-                                   {"places", frame.noise->places},
+                                   {"ranks", frame.noise->places},
                                    {"lf_images", frame.noise->image_count}};
     if (frame.noise->reached) noise["reached"] = *frame.noise->reached;
   }
@@ -133,7 +133,7 @@ std::string ToJson(const RenderReport& report) {
     skipped.push_back({{"name", image.name}, {"reason", image.reason}});
   Json frames = Json::array();
   for (const FrameReport& frame : report.frames) frames.push_back(FrameToJson(frame));
-  Json json = {{"format", "lfreport 1"},
+  Json json = {{"format", "lfreport 2"},
                {"version", report.version},
                {"inputs", InputsToJson(report.inputs)},
                {"estimator", NameOf(report.estimator)},

@@ -33,8 +33,8 @@ FrameReport FrameFromJson(const Json& json, std::string* fault) {
     fields.Get("fitting_aperture_w", &weighed.coverage.fitting_diameter_w);
     frame.weighed = weighed;
   }
-  if (fields.Find("finished_early_before_place") != nullptr)
-    fields.Get("finished_early_before_place", &frame.places_done.emplace());
+  if (fields.Find("finished_early_before_rank") != nullptr)
+    fields.Get("finished_early_before_rank", &frame.places_done.emplace());
   if (const Json* samples = fields.Find("samples")) {
     RecordFields sample_fields(*samples, fault);
     frame.samples.emplace();
@@ -46,7 +46,7 @@ FrameReport FrameFromJson(const Json& json, std::string* fault) {
     RecordFields noise_fields(*noise, fault);
     frame.noise.emplace();
     noise_fields.Get("asked", &frame.noise->asked);
-    noise_fields.Get("places", &frame.noise->places);
+    noise_fields.Get("ranks", &frame.noise->places);
     noise_fields.Get("lf_images", &frame.noise->image_count);
     if (noise_fields.Find("reached") != nullptr)
       noise_fields.Get("reached", &frame.noise->reached.emplace());
@@ -60,7 +60,7 @@ FrameReport FrameFromJson(const Json& json, std::string* fault) {
 Result<RenderReport> ParseReport(std::string_view text, const std::string& name) {
   std::string fault;
   RenderReport report;
-  const Json json = ParseRecord(text, "lfreport 1", &fault);
+  const Json json = ParseRecord(text, "lfreport 2", &fault);
   if (fault.empty()) {
     RecordFields fields(json, &fault);
     fields.Get("version", &report.version);

@@ -117,10 +117,10 @@ TEST(Report, OtherTextsAreErrorsThatNameTheFieldAndTheFile) {
        {std::pair("", "no JSON"),
         {"{}", "format"},
         {"[]", "expected an object"},
-        {R"({"format":"lfreport 1","seconds":"x"})", "\"seconds\": expected a number"},
-        {R"({"format":"lfreport 1","frames":[{}]})", "number from 1"},
-        {R"({"format":"lfreport 1","frames":[{"frame":1,"lf_images":-1}]})", "lf_images"},
-        {R"({"format":"lfreport 1","frames":[{"frame":1,"inputs":{"a":1}}]})", "inputs"}}) {
+        {R"({"format":"lfreport 2","seconds":"x"})", "\"seconds\": expected a number"},
+        {R"({"format":"lfreport 2","frames":[{}]})", "number from 1"},
+        {R"({"format":"lfreport 2","frames":[{"frame":1,"lf_images":-1}]})", "lf_images"},
+        {R"({"format":"lfreport 2","frames":[{"frame":1,"inputs":{"a":1}}]})", "inputs"}}) {
     const Result<RenderReport> report = ParseReport(text, "some.json");
     ASSERT_FALSE(report) << text;
     EXPECT_EQ(report.error().message.find("some.json: "), 0u);

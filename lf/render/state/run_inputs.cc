@@ -7,7 +7,7 @@
 #include <array>
 
 #include "lf/light_field/model/value_hasher.h"
-#include "lf/render/collect/noise_rule.h"
+#include "lf/render/settings/setting_table.h"
 
 namespace lf {
 namespace {
@@ -59,11 +59,6 @@ std::string ColoursText(const RadianceEncoding& encoding) {
                      encoding.white_balance[1], encoding.white_balance[2], hasher.Text());
 }
 
-std::string StopText(const StopRule& rule) {
-  const std::string text = TextOf(rule);
-  return text.empty() ? "never" : text;
-}
-
 std::string Text(const Vec3& v) { return fmt::format("{} {} {}", v.x(), v.y(), v.z()); }
 
 std::string CameraHash(const RenderCamera& camera) {
@@ -91,33 +86,22 @@ std::string CameraHash(const RenderCamera& camera) {
 RunInputs InputsOfRays(const LightFieldIdentity& light_field, const RadianceEncoding& encoding,
                        const RunChoices& choices) {
   const FilmSettings& film = choices.film;
-  RunInputs inputs = {
-      {"law", fmt::format("{}", kRayModelVersion)},
-      {"law.distortion", fmt::format("{}", kDistortedPositionsVersion)},
-      {"estimator", NameOf(film.reading.estimator)},
-      {"filter",
-       film.reading.estimator == Estimator::kBilinear ? NameOf(film.reading.filter) : "none"},
-      {"lf_pixels", film.reading.footprint ? NameOf(*film.reading.footprint) : "any"},
-      {"lens_weights", NameOf(film.lens_weights)},
-      {"lens_weights.law",
-       film.lens_weights == LensWeights::kNone ? "none" : fmt::format("{}", kLensWeightsVersion)},
-      {"back_end", film.back_end == CollectBackEnd::kFast ? "fast" : "reference"},
-      {"order", NameOf(film.order)},
-      {"seed", fmt::format("{}", film.seed)},
-      {"max_images", film.max_image_count ? fmt::format("{}", *film.max_image_count) : "all"},
-      {"max_angle_deg",
-       film.max_angle_rad ? fmt::format("{}", DegreesFromRadians(*film.max_angle_rad)) : "any"},
-      {"stop_when", StopText(film.stop_when)},
-      {"light_field.images", fmt::format("{}", light_field.image_count)},
-      {"light_field.names", light_field.names},
-      {"light_field.calibration", light_field.calibration},
-      {"light_field.pixels", choices.pixels},
-      {"light_field.encoding", EncodingText(encoding)},
-      {"light_field.colours", ColoursText(encoding)}};
-  if (film.reading.estimator == Estimator::kBilinear)
-    inputs.push_back({"law.bilinear", fmt::format("{}", kBilinearPositionsVersion)});
-  if (film.reading.estimator == Estimator::kBilinear && film.reading.filter == PixelFilter::kMosaic)
-    inputs.push_back({"law.mosaic", fmt::format("{}", kMosaicReadingVersion)});
+  RunInputs inputs = {{kRayModelKey, fmt::format("{}", kRayModelVersion)},
+                      {"ray_model.distortion", fmt::format("{}", kDistortedPositionsVersion)}};
+  for (auto& setting : TextsOf(film, SettingRole::kRays)) inputs.push_back(std::move(setting));
+  if (film.lens_weights != LensWeights::kNone)
+    inputs.emplace_back("ray_model.lens_weights", fmt::format("{}", kLensWeightsVersion));
+  if (film.reading.estimator == Estimator::kBilinear) {
+    inputs.emplace_back("ray_model.bilinear", fmt::format("{}", kBilinearPositionsVersion));
+    if (film.reading.filter == PixelFilter::kMosaic)
+      inputs.emplace_back("ray_model.mosaic", fmt::format("{}", kMosaicReadingVersion));
+  }
+  inputs.insert(inputs.end(), {{"light_field.images", fmt::format("{}", light_field.image_count)},
+                               {"light_field.names", light_field.names},
+                               {"light_field.calibration", light_field.calibration},
+                               {"light_field.pixels", choices.pixels},
+                               {"light_field.encoding", EncodingText(encoding)},
+                               {"light_field.colours", ColoursText(encoding)}});
   return inputs;
 }
 
@@ -158,9 +142,9 @@ RunInputs InputsOfCamera(FrameId frame, const RenderCamera& camera,
 }
 
 RunInputs InputsOfPicture(const RunChoices& choices) {
-  RunInputs inputs = {{"picture.format", choices.format},
-                      {"picture.smooth_below", fmt::format("{}", choices.film.smooth_below)},
-                      {"picture.fill_radius", fmt::format("{}", choices.film.fill_radius_px)}};
+  RunInputs inputs = {{"picture.format", choices.format}};
+  for (auto& setting : TextsOf(choices.film, SettingRole::kPicture))
+    inputs.push_back(std::move(setting));
   if (choices.film.adds_opacity) inputs.emplace_back("picture.alpha", "on");
   if (choices.look.colours != ColourSpace::kRec709)
     inputs.emplace_back("picture.colour_space", NameOf(choices.look.colours));

@@ -20,7 +20,8 @@
 namespace lf {
 
 // Pairs (key, value) in the order in which they are written. Keys have the form that
-// film/plate/plate_file.h describes.
+// film/plate/plate_file.h describes; settings have the keys of the table of settings
+// (render/settings/setting_table.h).
 using RunInputs = std::vector<std::pair<std::string, std::string>>;
 
 // The choices that decide the rays and the pictures of frames, besides cameras and calibration.
@@ -36,6 +37,7 @@ struct RunChoices {
 // The version of the ray model (doc/ray.md). A change of the code that gives other rays for the
 // same inputs raises it.
 inline constexpr int kRayModelVersion = 4;
+inline constexpr const char* kRayModelKey = "ray_model";
 // The version of the polynomials that give positions in LF images with lens distortion. A change of
 // the code that changes them within their tolerance (SegmentMaker::kTolerance) raises it: frames of
 // such light fields then have other bits, and others do not.
@@ -48,10 +50,10 @@ inline constexpr int kBilinearPositionsVersion = 2;
 // light fields and those that the filter "mosaic" does not read do not depend on it.
 inline constexpr int kMosaicReadingVersion = 2;
 
-// Returns the inputs that decide the rays of all frames: the versions of the ray model, the light
-// field (number of LF images, and hashes of calibration, encoding and names), and the choices for
-// rays. The folder of the light field is no input, because it may move. The contents of its image
-// files are not compared.
+// Returns the inputs that decide the rays of all frames: the versions of the ray model, the
+// settings with the role kRays, and the light field (number of LF images, and hashes of
+// calibration, encoding and names). The folder of the light field is no input, because it may move.
+// The contents of its image files are not compared.
 //   light_field  identity of the whole light field, even if a package is rendered
 RunInputs InputsOfRays(const LightFieldIdentity& light_field, const RadianceEncoding& encoding,
                        const RunChoices& choices);

@@ -65,8 +65,8 @@ TEST(RunInputs, EveryInputMakesADifferenceAndItsKeyNamesIt) {
       {"stop_when", [](Inputs& i) { i.choices.film.stop_when.samples = 9; }},
       {"stop_when", [](Inputs& i) { i.choices.film.stop_when.noise = 0.002; }},
       {"picture.format", [](Inputs& i) { i.choices.format = "png"; }},
-      {"picture.smooth_below", [](Inputs& i) { i.choices.film.smooth_below = 2; }},
-      {"picture.fill_radius", [](Inputs& i) { i.choices.film.fill_radius_px = 32; }},
+      {"smooth_below", [](Inputs& i) { i.choices.film.smooth_below = 2; }},
+      {"fill", [](Inputs& i) { i.choices.film.fill_radius_px = 32; }},
       {"light_field.images", [](Inputs& i) { i.field.cameras.pop_back(); }},
       {"light_field.names", [](Inputs& i) { i.field.image_names[3] += "x"; }},
       {"light_field.names", [](Inputs& i) { i.field.mask_names.assign(49, "m.png"); }},
@@ -123,12 +123,12 @@ TEST(RunInputs, OnlyStatesThatDependOnAReadingHaveItsVersion) {
     return std::count_if(inputs.begin(), inputs.end(),
                          [&](const auto& input) { return input.first == key; }) == 1;
   };
-  EXPECT_TRUE(has("law.mosaic", Estimator::kBilinear, PixelFilter::kMosaic));
-  EXPECT_FALSE(has("law.mosaic", Estimator::kBilinear, PixelFilter::kPrefiltered));
-  EXPECT_FALSE(has("law.mosaic", Estimator::kNearest, PixelFilter::kMosaic));
-  EXPECT_TRUE(has("law.bilinear", Estimator::kBilinear, PixelFilter::kMosaic));
-  EXPECT_TRUE(has("law.bilinear", Estimator::kBilinear, PixelFilter::kPrefiltered));
-  EXPECT_FALSE(has("law.bilinear", Estimator::kNearest, PixelFilter::kMosaic));
+  EXPECT_TRUE(has("ray_model.mosaic", Estimator::kBilinear, PixelFilter::kMosaic));
+  EXPECT_FALSE(has("ray_model.mosaic", Estimator::kBilinear, PixelFilter::kPrefiltered));
+  EXPECT_FALSE(has("ray_model.mosaic", Estimator::kNearest, PixelFilter::kMosaic));
+  EXPECT_TRUE(has("ray_model.bilinear", Estimator::kBilinear, PixelFilter::kMosaic));
+  EXPECT_TRUE(has("ray_model.bilinear", Estimator::kBilinear, PixelFilter::kPrefiltered));
+  EXPECT_FALSE(has("ray_model.bilinear", Estimator::kNearest, PixelFilter::kMosaic));
 }
 
 TEST(RunInputs, WhatOneSideLacksIsADifference) {

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kProgress = "progress.";
-constexpr const char* kPlacesDone = "progress.places_done";
+constexpr const char* kPlacesDone = "progress.ranks_done";
 constexpr const char* kNoise = "progress.noise";
 constexpr const char* kRaysExtension = ".rays";
 constexpr const char* kRaysFrames = "rays.frames";

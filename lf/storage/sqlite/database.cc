@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "lf/core/hash.h"
+#include "lf/core/version.h"
 
 namespace lf {
 namespace fs = std::filesystem;
@@ -305,8 +306,10 @@ Result<void> Database::CheckFormat(const DatabaseFormat& format) {
                     "knows version {}: use the newer one",
                     format.name, version, format.version));
   if (version < format.version)
-    return wrong(fmt::format("is a {} of version {}, which is too old: make it again", format.name,
-                             version));
+    return wrong(
+        fmt::format("is a {} of version {}, which {} read; this one knows version {}: use "
+                    "such a build, or make it again",
+                    format.name, version, kBuildsOfEarlierFiles, format.version));
   return {};
 }
 
