@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "tools/common/validators.h"
 
@@ -26,9 +27,31 @@ void AddRange(CLI::Option* option, const Setting& setting) {
 }  // namespace
 
 std::string OptionOf(std::string_view key, std::string_view value) {
+  if (key == "guard" && value == "off") return "--no-guard";
   std::string option = "--" + std::string(key == "max_angle_deg" ? "max-angle" : key);
   std::replace(option.begin(), option.end(), '_', '-');
   return value.empty() ? option : option + " " + std::string(value);
+}
+
+std::vector<std::string> WordsOf(const FilmSettings& film,
+                                 const std::function<bool(const Setting&)>& is_wanted) {
+  std::vector<std::string> words;
+  for (const Setting& setting : SettingTable()) {
+    const std::string value = setting.get(film);
+    if (value == setting.get(FilmSettings()) || !is_wanted(setting)) continue;
+    words.push_back(setting.key == "guard" ? OptionOf(setting.key, value) : OptionOf(setting.key));
+    if (setting.kind == SettingKind::kPoint)
+      for (const auto& number : CLI::detail::split(value, ' ')) words.push_back(number);
+    else if (setting.key != "guard")
+      words.push_back(value);
+  }
+  return words;
+}
+
+bool IsOfPackages(const Setting& setting) {
+  constexpr std::string_view kOfLaterRender[] = {"mode", "lens_weights", "guard", "estimator"};
+  return setting.is_in_packages || std::find(std::begin(kOfLaterRender), std::end(kOfLaterRender),
+                                             setting.key) != std::end(kOfLaterRender);
 }
 
 void SettingOptions::AddTo(OptionGroup& group, SettingGroup settings) {

@@ -2,6 +2,7 @@
 // The settings of a film (lf/render/settings/setting_table.h) as options of a program.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -16,7 +17,17 @@
 namespace lf {
 
 // Returns the option of a setting, such as "--max-images" of "max_images"; a value follows it.
+// {guard off} is the flag --no-guard.
 std::string OptionOf(std::string_view key, std::string_view value = "");
+
+// Returns the words of a command line that state the settings that differ from the defaults.
+//   is_wanted  returns false for settings that are left out
+std::vector<std::string> WordsOf(const FilmSettings& film,
+                                 const std::function<bool(const Setting&)>& is_wanted);
+
+// Returns true for the settings for which lfpreprocessor has an option: those that packages hold,
+// and those of the later render that decide what packages hold.
+bool IsOfPackages(const Setting& setting);
 
 class SettingOptions {
  public:

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tools/common/program.h"
+#include "tools/visualizer/film_commands.h"
 #include "tools/visualizer/page_answers.h"
 
 #include "lf/core/geometry.h"
@@ -107,22 +108,19 @@ std::string SceneJson(const PageScene& scene, const PathDraft& draft,
                       const PageAbilities& abilities) {
   const LightField& field = scene.light_field();
   const PageArguments& arguments = scene.arguments();
-  const FilmSettings& film = arguments.film;
+  const FilmCommands commands = CommandsOf(arguments);
   Json json = {{"version", Version()},
                {"light_field",
                 {{"name", arguments.light_field},
                  {"images", field.size()},
                  {"unit_m", field.unit_m},
-                 {"origin", OfVector(SceneOrigin(field))},
-                 {"options", arguments.light_field_options}}},
+                 {"origin", OfVector(SceneOrigin(field))}}},
                {"path", Json::parse(PathHeadJson(draft))},
                {"path_file", arguments.path.string()},
-               {"options",
-                {{"estimator", NameOf(film.reading.estimator)},
-                 {"lens_weights", NameOf(film.lens_weights)},
-                 {"max_angle_deg", DegreesFromRadians(film.max_angle_rad.value_or(0))},
-                 {"max_images", film.max_image_count.value_or(0)},
-                 {"seed", film.seed}}},
+               {"commands",
+                {{"forecast", commands.forecast},
+                 {"render", commands.render},
+                 {"packages", commands.packages}}},
                {"packages", OfPackages(scene)},
                {"packages_note", scene.packages_note()},
                {"watch", arguments.watch.string()},

@@ -2,7 +2,6 @@
 // The dialogs of the page: the commands that make this film, the list of keys, and a question to be confirmed.
 
 import { byId, element } from "./element";
-import { filmCommands, lightFieldOptions, preprocessorCommand } from "./path/commands";
 import type { State } from "./state";
 
 function open(...children: (HTMLElement | string)[]): HTMLDialogElement {
@@ -30,24 +29,11 @@ async function copyText(text: string, button: HTMLElement): Promise<void> {
 }
 
 export function showCommands(state: State): void {
-  const { scene } = state;
-  const options = {
-    ...lightFieldOptions(scene.light_field.options),
-    maxImages: scene.options.max_images,
-    maxAngle: scene.options.max_angle_deg,
-    seed: scene.options.seed,
-    lensWeights: scene.options.lens_weights as "auto",
-    estimator: (scene.options.estimator === "bilinear" ? "auto" : "nearest") as "auto",
-  };
-  const request = { lightField: scene.light_field.name, pathFile: scene.path_file, options };
-  const output = scene.watch || "frames";
+  const { commands } = state.scene;
   const blocks: [string, string][] = [
-    ["What it will take: images, bytes, rays, memory, time", preprocessorCommand(request)],
-    ["On this machine", filmCommands({ ...request, output }).join("\n")],
-    [
-      "In packages, for several machines (lfsubmit, Slurm)",
-      filmCommands({ ...request, output, packageFolder: "packages" }).join("\n"),
-    ],
+    ["What it will take: images, bytes, rays, memory, time", commands.forecast],
+    ["On this machine", commands.render],
+    ["In packages, for several machines (lfsubmit, Slurm)", commands.packages],
   ];
   open(
     element("h2", {}, "Commands that make this film"),

@@ -39,20 +39,13 @@ export interface SceneFacts {
     name: string;
     images: number;
     unit_m: number;
-    options: string[];
     origin: Vec3;
     depths?: [number, number];
     virtual_ranges?: [number, number][]; // ids of virtual LF images, as [begin, end]; missing: there are none
   };
   path: PathHead;
   path_file: string;
-  options: {
-    estimator: string;
-    lens_weights: string;
-    max_angle_deg: number;
-    max_images: number;
-    seed: number;
-  };
+  commands: { forecast: string; render: string; packages: string }; // of a POSIX shell, one a line
   packages: { name: string; frames: number[] }[];
   packages_note: string;
   watch: string;
