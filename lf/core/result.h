@@ -21,13 +21,13 @@ enum class ErrorKind {
   kUsage = 2,
   // Bad input: a file, or a value in it.
   kInput = 3,
-  // Output failed: disk, memory, or a program that we call.
+  // The machine failed: disk or memory does not suffice, or a program that we call failed.
   kOutput = 4,
-  // Interrupted; the work done is kept, and --resume continues it.
+  // Interrupted; the work done is kept, and the same call continues it if told to resume.
   kInterrupted = 5,
-  // Finished, but below what was asked for: LF images were left out because they are missing or
-  // broken, more than --allow-missing accepts, frames have less than --require asks for, or no
-  // element of a depth map has a depth. Everything is written; the last line has the count.
+  // Finished, but below what was asked for: more LF images were left out, because they are missing
+  // or broken, than the call accepts, frames have less than it requires, or no element of a depth
+  // map has a depth. Everything is written; the last line has the count.
   kBelowRequired = 6,
 };
 

@@ -55,13 +55,13 @@ Result<std::unique_ptr<FilmSetup>> FilmSetup::Make(Package package, const FilmSe
   LF_RETURN_IF_ERROR(CheckFilmSettings(package, resolved, frames));
   std::unique_ptr<FilmSetup> setup(
       new FilmSetup(std::move(package), resolved, work, std::move(frames), pool));
-  const bool is_guarded = resolved.guard;
   LF_ASSIGN_OR_RETURN(
       setup->store_,
       OpenStore(
           setup->light_field(),
           film.reading.estimator == Estimator::kBilinear ? Mosaics::kToRgb : Mosaics::kAsRecorded,
-          is_guarded ? StoreContent::kPixelsAndDepths : StoreContent::kPixels));
+          resolved.guard ? StoreContent::kPixelsAndDepths : StoreContent::kPixels));
+  setup->film_.guard = setup->store_->LoadsDepths();
   LF_RETURN_IF_ERROR(setup->CheckStore());
   LF_RETURN_IF_ERROR(setup->FindFootprint());
   LF_RETURN_IF_ERROR(setup->PlanMemory());

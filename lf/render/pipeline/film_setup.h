@@ -48,9 +48,8 @@ class FilmSetup {
   const ImageIndex& index() const { return index_; }
   const LfImageStore& store() const { return *store_; }
   const MemoryPlan& plan() const { return plan_; }
-  // True if the plates are guarded: FilmSettings::guard is set, and the light field is that of a
-  // densified store.
-  bool is_guarded() const { return store_->LoadsDepths(); }
+  // True if the plates are guarded, as a densified light field allows (Resolved()).
+  bool is_guarded() const { return film_.guard; }
   // The largest number of cells of rebinned rays; 0 if the mode has none.
   size_t max_cells() const { return max_cells_; }
   SelectOptions Select() const;
