@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "tools/common/program.h"
-#include "tools/common/progress.h"
 
+#include "lf/core/quantities.h"
 #include "lf/render/state/record_fields.h"
 
 namespace lf {

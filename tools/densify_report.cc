@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tools/common/progress.h"
+#include "lf/core/quantities.h"
 
 namespace lf {
 namespace {

@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/common/program.h"
-#include "tools/common/progress.h"
 #include "tools/forecast_advice.h"
 
+#include "lf/core/quantities.h"
 #include "lf/core/shell_word.h"
 
 namespace lf {

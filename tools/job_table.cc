@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "tools/common/progress.h"
+#include "lf/core/quantities.h"
 
 namespace lf {
 namespace {

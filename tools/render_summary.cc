@@ -12,10 +12,10 @@
 
 #include "tools/common/next_step.h"
 #include "tools/common/program.h"
-#include "tools/common/progress.h"
 #include "tools/render_end.h"
 
 #include "lf/core/log.h"
+#include "lf/core/quantities.h"
 
 namespace lf {
 namespace {

@@ -67,4 +67,18 @@ Result<double> ParseDuration(const std::string& text, const std::string& name) {
   return *value * unit_s;
 }
 
+std::string ShortNumber(double value) {
+  constexpr const char* kPrefixes[] = {"", "k", "M", "G", "T"};
+  int prefix = 0;
+  for (; value >= 1000 && prefix < 4; ++prefix) value /= 1000;
+  return fmt::format("{:.3g} {}", value, kPrefixes[prefix]);
+}
+
+std::string ShortDuration(double seconds) {
+  const auto whole = static_cast<int64_t>(std::llround(std::max(0.0, seconds)));
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {} s", whole / 60, whole % 60);
+  return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
+}
+
 }  // namespace lf

@@ -53,5 +53,15 @@ TEST(Count, ReadsNumbersOfThingsAsPeopleWriteThem) {
   }
 }
 
+TEST(ShortText, NumbersAndDurationsAreShort) {
+  EXPECT_EQ(ShortNumber(0), "0 ");
+  EXPECT_EQ(ShortNumber(1234), "1.23 k");
+  EXPECT_EQ(ShortNumber(4.56e9), "4.56 G");
+  EXPECT_EQ(ShortDuration(14.4), "14 s");
+  EXPECT_EQ(ShortDuration(125), "2 min 5 s");
+  EXPECT_EQ(ShortDuration(3 * 3600 + 20 * 60 + 59), "3 h 20 min");
+  EXPECT_EQ(ShortDuration(-1), "0 s");
+}
+
 }  // namespace
 }  // namespace lf

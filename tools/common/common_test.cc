@@ -105,16 +105,6 @@ TEST(ShellPackages, APatternMatchesThesePackagesAndNoOthers) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(Progress, NumbersAndDurationsAreShort) {
-  EXPECT_EQ(ShortNumber(0), "0 ");
-  EXPECT_EQ(ShortNumber(1234), "1.23 k");
-  EXPECT_EQ(ShortNumber(4.56e9), "4.56 G");
-  EXPECT_EQ(ShortDuration(14.4), "14 s");
-  EXPECT_EQ(ShortDuration(125), "2 min 5 s");
-  EXPECT_EQ(ShortDuration(3 * 3600 + 20 * 60 + 59), "3 h 20 min");
-  EXPECT_EQ(ShortDuration(-1), "0 s");
-}
-
 TEST(Progress, ABarHasRoomInTheTerminal) {
   EXPECT_EQ(ProgressLine(0.5, "half", 200), "[############............] half");
   EXPECT_EQ(ProgressLine(1, "all", 19), "[############] all");

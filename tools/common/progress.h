@@ -70,10 +70,4 @@ void TellFarmTheEnd(ProgressStyle style, const Result<void>& result);
 //   share  the share of the bar that is filled, from 0 to 1
 std::string ProgressLine(double share, const std::string& numbers, size_t width);
 
-// Returns a number with an SI prefix, such as "1.5 G", "320 M" or "12 k", to which a unit can be
-// appended. A number below 1000 ends in a blank instead: "12 ".
-std::string ShortNumber(double value);
-// Returns a time, such as "3 h 20 min", "2 min 5 s" or "14 s".
-std::string ShortDuration(double seconds);
-
 }  // namespace lf
