@@ -5,8 +5,6 @@
 
 #include <cmath>
 
-#include "tools/common/program.h"
-
 #include "lf/core/quantities.h"
 #include "lf/render/state/record_fields.h"
 
@@ -83,16 +81,13 @@ std::string CompressText(const CompressReport& report, const CompressOptions& op
   return text + next;
 }
 
-MissingImages MissingOf(const CompressReport& report, const CompressOptions& options) {
-  MissingImages missing{report.skipped.size(), report.image_count, "",
-                        "once they are mended, encode all LF images again with --overwrite"};
-  if (missing.count > 0)
-    missing.what = fmt::format(
-        "{}: {} of {} LF images are not in the store, because they are missing or broken; the "
-        "first: {}: {}",
-        options.store.string(), missing.count, missing.asked, report.skipped.front().name,
-        report.skipped.front().reason);
-  return missing;
+std::string MissingText(const CompressReport& report, const CompressOptions& options) {
+  if (report.skipped.empty()) return "";
+  return fmt::format(
+      "{}: {} of {} LF images are not in the store, because they are missing or broken; the first: "
+      "{}: {}",
+      options.store.string(), report.skipped.size(), report.image_count,
+      report.skipped.front().name, report.skipped.front().reason);
 }
 
 std::string CompressJson(const CompressReport& report, const CompressOptions& options) {

@@ -4,8 +4,6 @@
 
 #include <string>
 
-#include "tools/common/allow_missing.h"
-
 #include "lf/distribute/compress/compress.h"
 
 namespace lf {
@@ -20,7 +18,8 @@ std::string CompressText(const CompressReport& report, const CompressOptions& op
                          const std::string& next);
 std::string CompressJson(const CompressReport& report, const CompressOptions& options);
 
-// Returns the LF images to be encoded that are missing in the store.
-MissingImages MissingOf(const CompressReport& report, const CompressOptions& options);
+// Returns text such as "a.lfs: 3 of 25 LF images are not in the store, because they are missing or
+// broken; the first: ..."; "" if none is missing.
+std::string MissingText(const CompressReport& report, const CompressOptions& options);
 
 }  // namespace lf

@@ -90,16 +90,12 @@ std::string DensifyJson(const DensifyReport& report, const DensifyOptions& optio
   return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
-MissingImages MissingOf(const DensifyReport& report, const DensifyOptions& options) {
-  MissingImages missing{report.skipped.size(), report.skipped.size() + report.recorded_count, "",
-                        "once they are mended, densify again with --overwrite"};
-  if (missing.count > 0)
-    missing.what = fmt::format(
-        "{}: {} of {} LF images were not used, because they are missing or broken; the first: {}: "
-        "{}",
-        options.store.string(), missing.count, missing.asked, report.skipped.front().name,
-        report.skipped.front().reason);
-  return missing;
+std::string MissingText(const DensifyReport& report, const DensifyOptions& options) {
+  if (report.skipped.empty()) return "";
+  return fmt::format(
+      "{}: {} of {} LF images were not used, because they are missing or broken; the first: {}: {}",
+      options.store.string(), report.skipped.size(), report.asked_count(),
+      report.skipped.front().name, report.skipped.front().reason);
 }
 
 }  // namespace lf

@@ -4,8 +4,6 @@
 
 #include <string>
 
-#include "tools/common/allow_missing.h"
-
 #include "lf/densify/densify.h"
 
 namespace lf {
@@ -17,7 +15,8 @@ std::string DensifyText(const DensifyReport& report, const DensifyOptions& optio
                         const std::string& next);
 std::string DensifyJson(const DensifyReport& report, const DensifyOptions& options, double total_s);
 
-// Returns the LF images that are not used because they are missing or broken.
-MissingImages MissingOf(const DensifyReport& report, const DensifyOptions& options);
+// Returns text such as "a.lfs: 3 of 25 LF images were not used, because they are missing or broken;
+// the first: ..."; "" if all were used.
+std::string MissingText(const DensifyReport& report, const DensifyOptions& options);
 
 }  // namespace lf

@@ -7,11 +7,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tools/common/program.h"
 #include "tools/forecast_advice.h"
 
 #include "lf/core/quantities.h"
-#include "lf/core/shell_word.h"
 
 namespace lf {
 namespace {
@@ -113,20 +111,17 @@ std::string DepthsText(const ForecastFacts& facts) {
 
 }  // namespace
 
-MissingImages MissingOf(const PreprocessReport& report) {
-  MissingImages missing{report.missing_count, report.needed_count, "",
-                        "renders of these packages leave them out, unless they are mended before"};
-  if (missing.count > 0)
-    missing.what = fmt::format(
-        "{} of {} LF images that packages need do not exist, or are empty; the first: {}",
-        missing.count, missing.asked, report.first_missing);
-  return missing;
+std::string MissingText(const PreprocessReport& report) {
+  if (report.missing_count == 0) return "";
+  return fmt::format(
+      "{} of {} LF images that packages need do not exist, or are empty; the first: {}",
+      report.missing_count, report.needed_count, report.first_missing);
 }
 
 std::vector<std::string> DensityWarnings(const PreprocessReport& report, const CameraPath& path,
                                          const ForecastFacts& facts) {
   std::vector<std::string> warnings;
-  if (report.missing_count > 0) warnings.push_back(MissingOf(report).what);
+  if (report.missing_count > 0) warnings.push_back(MissingText(report));
   const ForecastAdvice advice = AdviceOf(report, path, !facts.depths_from.empty());
   const FrameForecast& sparse =
       Worst(report, [](const FrameForecast& frame) { return frame.density.MostDisplacement_px(); });

@@ -5,8 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "tools/common/allow_missing.h"
-
 #include "lf/camera/path/camera_path.h"
 #include "lf/distribute/preprocess/preprocess.h"
 
@@ -30,8 +28,9 @@ struct ForecastFacts {
 std::vector<std::string> DensityWarnings(const PreprocessReport& report, const CameraPath& path,
                                          const ForecastFacts& facts);
 
-// Returns the LF images that packages need and whose files do not exist or are empty.
-MissingImages MissingOf(const PreprocessReport& report);
+// Returns text such as "3 of 25 LF images that packages need do not exist, or are empty; the first:
+// ..."; "" if there are none.
+std::string MissingText(const PreprocessReport& report);
 
 // Returns the report as text: one line per fact, a table of packages, a table of some frames, and
 // the warnings.

@@ -258,7 +258,10 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
                       lf::Compress(source, options, pool, [&](const lf::CompressProgress& now) {
                         meter.Update(now.done, now.total, lf::ProgressDetail(now));
                       }));
-  const lf::Result<void> end = lf::EndWithMissing(lf::MissingOf(report, options), limit);
+  const lf::Result<void> end = lf::EndWithMissing(
+      {report.skipped.size(), report.image_count, lf::MissingText(report, options),
+       "once they are mended, encode all LF images again with --overwrite"},
+      limit);
   LF_RETURN_IF_ERROR(lf::PrintReport(common.json
                                          ? lf::CompressJson(report, options)
                                          : lf::CompressText(report, options, end ? next : "")));

@@ -197,7 +197,10 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
         "{}; render the light field as it is, or ask for a smaller --spacing", report.dense));
   const double total_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  const lf::Result<void> end = lf::EndWithMissing(lf::MissingOf(report, options), limit);
+  const lf::Result<void> end = lf::EndWithMissing(
+      {report.skipped.size(), report.asked_count(), lf::MissingText(report, options),
+       "once they are mended, densify again with --overwrite"},
+      limit);
   const std::string path = a.path.empty() ? "PATH.yaml" : lf::FileArgument(a.path);
   const std::string next =
       end ? lf::NextRender(lf::ShellCommand({lf::FileArgument(a.output), path})) : "";

@@ -243,7 +243,10 @@ lf::Result<void> Run(const Arguments& a, const lf::CommonOptions& common) {
   facts.read_s = read_s;
   facts.rebins = lf::Rebins(options.film.mode);
   facts.depths_from = depths_from;
-  const lf::Result<void> end = lf::EndWithMissing(lf::MissingOf(report), limit);
+  const lf::Result<void> end = lf::EndWithMissing(
+      {report.missing_count, report.needed_count, lf::MissingText(report),
+       "renders of these packages leave them out, unless they are mended before"},
+      limit);
   if (end && !a.output.empty()) facts.next = NextOf(a, report);
   LF_RETURN_IF_ERROR(lf::PrintReport(common.json ? lf::ForecastJson(report, path, facts)
                                                  : lf::ForecastText(report, path, facts)));

@@ -78,8 +78,8 @@ Result<DensifiedFilm> DensifyForFilm(LightField light_field, const CameraPath& p
   }
   Tell(report, densify);
   DensifiedFilm film;
-  film.missing = MissingOf(report, densify);
-  film.missing.advice = "once they are mended, render again with --overwrite";
+  film.missing = {report.skipped.size(), report.asked_count(), MissingText(report, densify),
+                  "once they are mended, render again with --overwrite"};
   LF_ASSIGN_OR_RETURN(film.light_field, OpenLightField(densify.store, OpenOptions{}));
   return film;
 }

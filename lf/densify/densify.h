@@ -58,6 +58,7 @@ struct DensifyReport {
   std::vector<Skipped> skipped;  // LF images that are not used because they cannot be read
   size_t recorded_count = 0;     // those that are used
   size_t virtual_count = 0;
+  size_t asked_count() const { return recorded_count + skipped.size(); }
   InverseDepths range;
   int planes = 0;         // number of inverse depths that were compared
   double shift_px = 0;    // DensifyPlan::ShiftPx()
