@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "tools/camera_table.h"
 #include "tools/common/program.h"
 #include "tools/common/programs.h"
 
+#include "lf/camera/path/camera_table.h"
 #include "lf/core/log.h"
 #include "lf/import/paths/open_path.h"
 

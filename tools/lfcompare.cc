@@ -17,11 +17,11 @@
 #include "tools/common/programs.h"
 #include "tools/common/progress.h"
 #include "tools/common/validators.h"
-#include "tools/compare_report.h"
 
 #include "lf/core/log.h"
 #include "lf/core/output_files.h"
 #include "lf/film/compare/compare_pictures.h"
+#include "lf/film/compare/compare_report.h"
 #include "lf/film/compare/difference_picture.h"
 #include "lf/film/compare/picture_light.h"
 #include "lf/film/compare/picture_pairs.h"

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "tools/codec_words.h"
 #include "tools/common/allow_missing.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/light_field_argument.h"
@@ -18,12 +17,13 @@
 #include "tools/common/progress.h"
 #include "tools/common/store_options.h"
 #include "tools/common/validators.h"
-#include "tools/compress_report.h"
 
 #include "lf/core/quantities.h"
 #include "lf/core/shell_word.h"
 #include "lf/core/version.h"
+#include "lf/distribute/compress/codec_words.h"
 #include "lf/distribute/compress/compress.h"
+#include "lf/distribute/compress/compress_report.h"
 #include "lf/render/package/package_file.h"
 #include "lf/render/pipeline/render_packages.h"
 #include "lf/storage/packed/packed_store_file.h"

@@ -15,13 +15,13 @@
 #include "tools/common/progress.h"
 #include "tools/common/store_options.h"
 #include "tools/common/validators.h"
-#include "tools/densify_report.h"
 
 #include "lf/core/log.h"
 #include "lf/core/quantities.h"
 #include "lf/core/shell_word.h"
 #include "lf/core/version.h"
 #include "lf/densify/densify.h"
+#include "lf/densify/densify_report.h"
 #include "lf/import/paths/open_path.h"
 #include "lf/storage/packed/packed_store_file.h"
 

@@ -11,12 +11,12 @@
 #include <utility>
 #include <vector>
 
-#include "tools/camera_table.h"
 #include "tools/common/program.h"
 #include "tools/common/programs.h"
 #include "tools/common/validators.h"
 
 #include "lf/analysis/focus_stack/focus_planes.h"
+#include "lf/camera/path/camera_table.h"
 #include "lf/camera/path/view_cameras.h"
 #include "lf/core/log.h"
 #include "lf/core/output_files.h"

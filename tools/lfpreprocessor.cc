@@ -17,11 +17,11 @@
 #include "tools/common/progress.h"
 #include "tools/common/setting_options.h"
 #include "tools/common/validators.h"
-#include "tools/forecast_report.h"
-#include "tools/known_depths.h"
 
 #include "lf/core/quantities.h"
 #include "lf/core/version.h"
+#include "lf/distribute/preprocess/forecast_report.h"
+#include "lf/distribute/preprocess/known_depths.h"
 #include "lf/distribute/preprocess/preprocess.h"
 #include "lf/import/paths/open_path.h"
 #include "lf/render/settings/setting_table.h"

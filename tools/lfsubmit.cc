@@ -12,7 +12,6 @@
 #include "tools/common/program.h"
 #include "tools/common/programs.h"
 #include "tools/common/progress.h"
-#include "tools/job_table.h"
 #include "tools/run_job.h"
 #include "tools/submit_arguments.h"
 
@@ -21,6 +20,7 @@
 #include "lf/core/parse_number.h"
 #include "lf/distribute/cluster/finish_frames.h"
 #include "lf/distribute/cluster/job_status.h"
+#include "lf/distribute/cluster/job_table.h"
 #include "lf/distribute/cluster/resume_job.h"
 #include "lf/distribute/cluster/run_locally.h"
 #include "lf/distribute/cluster/run_package.h"

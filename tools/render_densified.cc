@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "tools/common/progress.h"
-#include "tools/densify_report.h"
 
 #include "lf/core/file.h"
 #include "lf/core/log.h"
 #include "lf/core/output_files.h"
 #include "lf/densify/densify.h"
+#include "lf/densify/densify_report.h"
 #include "lf/render/pipeline/render.h"
 #include "lf/storage/packed/packed_store_file.h"
 #include "lf/storage/packed/packed_store_writer.h"

@@ -8,13 +8,13 @@
 
 #include "tools/common/interrupt.h"
 #include "tools/common/progress.h"
-#include "tools/job_table.h"
 
 #include "lf/core/byte_text.h"
 #include "lf/core/log.h"
 #include "lf/core/shell_word.h"
 #include "lf/distribute/cluster/farm_files.h"
 #include "lf/distribute/cluster/job_status.h"
+#include "lf/distribute/cluster/job_table.h"
 #include "lf/distribute/cluster/resume_job.h"
 #include "lf/distribute/cluster/run_locally.h"
 #include "lf/distribute/cluster/slurm.h"

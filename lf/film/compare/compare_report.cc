@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/compare_report.h"
+#include "lf/film/compare/compare_report.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/densify_report.h"
+#include "lf/densify/densify_report.h"
 
 #include <fmt/format.h>
 

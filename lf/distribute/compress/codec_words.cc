@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/codec_words.h"
+#include "lf/distribute/compress/codec_words.h"
 
 #include <fmt/format.h>
 

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/compress_report.h"
+#include "lf/distribute/compress/compress_report.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "lf/core/quantities.h"
-#include "lf/render/state/record_fields.h"
 
 namespace lf {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 double Ratio(uint64_t bytes, uint64_t of) {
   return of == 0 ? 0 : static_cast<double>(bytes) / static_cast<double>(of);
@@ -121,7 +123,7 @@ std::string CompressJson(const CompressReport& report, const CompressOptions& op
   json["skipped"] = Json::array();
   for (const CompressReport::Skipped& skipped : report.skipped)
     json["skipped"].push_back({{"name", skipped.name}, {"reason", skipped.reason}});
-  return RecordText(json);
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace lf

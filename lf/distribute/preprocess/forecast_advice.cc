@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/forecast_advice.h"
+#include "lf/distribute/preprocess/forecast_advice.h"
 
 #include <fmt/format.h>
 

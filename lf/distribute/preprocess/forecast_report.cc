@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/forecast_report.h"
+#include "lf/distribute/preprocess/forecast_report.h"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tools/forecast_advice.h"
-
 #include "lf/core/quantities.h"
+#include "lf/distribute/preprocess/forecast_advice.h"
 
 namespace lf {
 namespace {

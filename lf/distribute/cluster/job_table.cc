@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/job_table.h"
+#include "lf/distribute/cluster/job_table.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

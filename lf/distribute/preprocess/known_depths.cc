@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/known_depths.h"
+#include "lf/distribute/preprocess/known_depths.h"
 
 #include "lf/focus/swept_depths.h"
 #include "lf/storage/load/open_store.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/camera_table.h"
+#include "lf/camera/path/camera_table.h"
 
 #include <algorithm>
 #include <cmath>
