@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -24,6 +25,8 @@
 #include "lf/distribute/compress/codec_words.h"
 #include "lf/distribute/compress/compress.h"
 #include "lf/distribute/compress/compress_report.h"
+#include "lf/import/formats/light_field_words.h"
+#include "lf/import/formats/open_light_field.h"
 #include "lf/render/package/package_file.h"
 #include "lf/render/pipeline/render_packages.h"
 #include "lf/storage/packed/packed_store_file.h"
@@ -179,10 +182,11 @@ lf::Result<lf::CompressOptions> MakeOptions(const Arguments& a, const lf::Common
 // then. The store has all LF cameras, and a package has only some of them.
 lf::Result<lf::LightField> OpenSourceOf(const lf::Package& package, const std::string& path) {
   const auto open = [&]() -> lf::Result<lf::LightField> {
-    LF_ASSIGN_OR_RETURN(
-        const lf::LightFieldArgument argument,
-        lf::LightFieldArgument::Of(package.source.light_field.string(), package.source.options));
-    return argument.Open();
+    const std::filesystem::path& source = package.source.light_field;
+    LF_ASSIGN_OR_RETURN(const lf::LightFieldWords words,
+                        lf::LightFieldWords::Of(source.string(), package.source.options));
+    LF_ASSIGN_OR_RETURN(const lf::OpenOptions options, words.Options());
+    return lf::OpenLightField(source, options);
   };
   lf::Result<lf::LightField> opened = open();
   if (opened) return opened;

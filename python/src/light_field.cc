@@ -20,11 +20,11 @@
 #include "python/src/errors.h"
 #include "python/src/gil.h"
 #include "python/src/work.h"
-#include "tools/common/light_field_argument.h"
 
 #include "lf/camera/distortion_name.h"
 #include "lf/camera/ray_through.h"
 #include "lf/focus/example_path.h"
+#include "lf/import/formats/light_field_words.h"
 #include "lf/import/paths/focal_surface_file.h"
 #include "lf/light_field/model/capture_geometry.h"
 #include "lf/light_field/model/keep_images.h"
@@ -47,24 +47,23 @@ std::shared_ptr<OpenedField> Open(const std::string& path, double focal_px, doub
                                   const std::optional<std::array<double, 2>>& pitch,
                                   std::optional<double> plane_distance,
                                   const std::array<bool, 2>& flips) {
-  LightFieldArgument argument;
-  argument.path = path;
-  argument.focal_px = focal_px;
-  argument.fov_deg = fov_deg;
-  argument.images = images;
-  argument.image_scale = image_scale;
-  argument.image_alpha = image_alpha;
-  argument.background = background;
+  LightFieldWords words;
+  words.focal_px = focal_px;
+  words.fov_deg = fov_deg;
+  words.images = images;
+  words.image_scale = image_scale;
+  words.image_alpha = image_alpha;
+  words.background = background;
   return CallOrAbandon([=] {
     auto field = std::make_shared<OpenedField>();
-    OpenOptions options = Take(argument.Options());
+    OpenOptions options = Take(words.Options());
     if (pitch) options.pitch_w = Vec2((*pitch)[0], (*pitch)[1]);
     options.plane_distance_w = plane_distance;
     options.flip_x = flips[0];
     options.flip_y = flips[1];
     field->light_field = Take(OpenLightField(path, options));
     field->store = Take(OpenStore(field->light_field, Mosaics::kToRgb));
-    field->options = argument.WordsToKeep();
+    field->options = words.WordsToKeep();
     return field;
   });
 }

@@ -3,37 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <charconv>
-#include <filesystem>
-#include <utility>
-
 #include "tools/common/help.h"
 #include "tools/common/validators.h"
 
-#include "lf/core/shell_word.h"
-
 namespace lf {
 namespace {
-
-Result<std::array<double, 3>> ParseBackground(const std::string& text) {
-  if (text == "black" || text == kNoBackground) return std::array<double, 3>{0, 0, 0};
-  if (text == "white") return std::array<double, 3>{1, 1, 1};
-  std::array<double, 3> rgb = {};
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  for (size_t c = 0; c < 3; ++c) {
-    const auto [rest, error] = std::from_chars(at, end, rgb[c]);
-    const bool is_followed = c == 2 ? rest == end : rest != end && *rest == ',';
-    if (error != std::errc() || !is_followed || !(rgb[c] >= 0 && rgb[c] <= 1e6))
-      return UsageError(
-          fmt::format("--background {}: expected black, white, none, or R,G,B as three numbers "
-                      "from 0 to 1e6 in linear light, such as 0.2,0.2,0.3",
-                      text));
-    at = rest + 1;
-  }
-  return rgb;
-}
 
 void AddUnusualOptions(CLI::App& app, LightFieldArgument& argument) {
   OptionGroup unusual(app, "Unusual light fields");
@@ -101,20 +75,6 @@ void LightFieldArgument::AddOptionsTo(CLI::App& app) {
   AddUnusualOptions(app, *this);
 }
 
-Result<OpenOptions> LightFieldArgument::Options() const {
-  OpenOptions options;
-  options.alpha = AlphaMeaningOf(image_alpha);
-  if (!background.empty()) {
-    LF_ASSIGN_OR_RETURN(options.background, ParseBackground(background));
-    options.keeps_opacity = background == kNoBackground;
-  }
-  LF_ASSIGN_OR_RETURN(options.image_scale, ParseImageScale(image_scale));
-  if (focal_px > 0) options.focal_px = focal_px;
-  if (fov_deg > 0) options.fov_deg = fov_deg;
-  if (!images.empty()) options.images_folder = images;
-  return options;
-}
-
 Result<void> LightFieldArgument::CheckWithPackages() const {
   if (image_alpha != "auto" || !background.empty())
     return UsageError(
@@ -131,38 +91,6 @@ Result<void> LightFieldArgument::CheckWithPackages() const {
 Result<LightField> LightFieldArgument::Open() const {
   LF_ASSIGN_OR_RETURN(const OpenOptions options, Options());
   return OpenLightField(path, options);
-}
-
-std::vector<std::string> LightFieldArgument::Words() const {
-  std::vector<std::string> words;
-  if (focal_px > 0) words.insert(words.end(), {"--focal-px", fmt::format("{}", focal_px)});
-  if (fov_deg > 0) words.insert(words.end(), {"--fov-deg", fmt::format("{}", fov_deg)});
-  if (!images.empty()) words.insert(words.end(), {"--images", FileArgument(images)});
-  if (image_scale != "auto") words.insert(words.end(), {"--image-scale", image_scale});
-  if (image_alpha != "auto") words.insert(words.end(), {"--image-alpha", image_alpha});
-  if (!background.empty()) words.insert(words.end(), {"--background", background});
-  return words;
-}
-
-std::vector<std::string> LightFieldArgument::WordsToKeep() const {
-  LightFieldArgument kept = *this;
-  if (!images.empty()) kept.images = std::filesystem::absolute(images).lexically_normal().string();
-  return kept.Words();
-}
-
-Result<LightFieldArgument> LightFieldArgument::Of(std::string path,
-                                                  const std::vector<std::string>& words) {
-  LightFieldArgument argument;
-  CLI::App app;
-  argument.AddOptionsTo(app);
-  try {
-    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // the last word comes first
-  } catch (const CLI::Error& error) {
-    return InputError(
-        fmt::format("the options of {} cannot be read again: {}", path, error.what()));
-  }
-  argument.path = std::move(path);
-  return argument;
 }
 
 }  // namespace lf
