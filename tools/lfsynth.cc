@@ -6,7 +6,10 @@
 #include "tools/common/program.h"
 #include "tools/common/programs.h"
 #include "tools/common/progress.h"
-#include "tools/synthetic_field.h"
+
+#include "lf/import/formats/open_light_field.h"
+#include "lf/import/paths/open_path.h"
+#include "lf/light_field/synthetic/synthetic_field.h"
 
 namespace {
 
@@ -31,7 +34,13 @@ DIR/truth/frame_0001.exr ..., the frames that a real lens would film along the c
 unit is one metre.)",
 };
 
-void AddOutput(CLI::App& app, lf::SyntheticFieldOptions& a) {
+struct Arguments {
+  lf::SyntheticFieldOptions field;
+  std::string truth;
+};
+
+void AddOutput(CLI::App& app, Arguments& arguments) {
+  lf::SyntheticFieldOptions& a = arguments.field;
   lf::OptionGroup output(app, lf::kOutputGroup);
   output.Add("-o,--output DIR", a.output, "Folder of the light field")->required();
   output.AddChoice("--format", a.format, {"exr", "png", "png16"},
@@ -40,7 +49,7 @@ void AddOutput(CLI::App& app, lf::SyntheticFieldOptions& a) {
                    "png: 8-bit sRGB\n"
                    "png16: 16-bit, linear light");
   output.AddFlag("--calibration-only", a.calibration_only, "Write transforms.json without images");
-  output.Add("--truth PATH", a.truth,
+  output.Add("--truth PATH", arguments.truth,
              "Also write ground truth frames of this camera path\n"
              "DIR/truth gets the frames that a real thin lens would film of the scene itself, to "
              "compare them with frames that are rendered from the LF images. If the path has a "
@@ -130,35 +139,49 @@ void AddQuality(CLI::App& app, lf::SyntheticFieldOptions& a) {
       ->check(CLI::Range(1, 1'000'000));
 }
 
-void AddOptions(CLI::App& app, lf::SyntheticFieldOptions& a) {
+void AddOptions(CLI::App& app, Arguments& arguments) {
+  lf::SyntheticFieldOptions& a = arguments.field;
   lf::OptionGroup input(app, lf::kInputGroup);
   input
       .AddChoice("SCENE", a.scene, {"still-life", "lights", "chart", "foliage"},
                  "still-life, lights, chart or foliage")
       ->required();
-  AddOutput(app, a);
+  AddOutput(app, arguments);
   AddRig(app, a);
   AddLens(app, a);
   AddQuality(app, a);
+}
+
+lf::Result<void> Write(const Arguments& arguments, const lf::CommonOptions& common) {
+  const std::atomic<bool>& interrupted = lf::CatchInterrupts();
+  const lf::ProgressStyle style = lf::ParseProgressStyle(common.progress);
+  lf::ProgressMeter images(style, "images"), frames(style, "frames");
+  lf::SyntheticFieldOptions field = arguments.field;
+  field.seed = common.seed;
+  field.holds_light_field = lf::HoldsLightField;
+  if (!arguments.truth.empty()) {
+    LF_ASSIGN_OR_RETURN(
+        const lf::CameraPath path,
+        lf::OpenPath(arguments.truth,
+                     {.light_field_unit_m = 1.0, .surface = lf::PathOptions::Surface::kMake}));
+    field.truth_cameras.assign(path.AllInstants().begin(), path.AllInstants().end());
+    field.truth_instants = path.shutter.samples;
+    field.inputs = lf::FilesOfPath(arguments.truth);
+  }
+  lf::ThreadPool pool(common.threads);
+  return lf::WriteSyntheticField(field, pool, [&](size_t done, size_t total, bool is_truth) {
+    (is_truth ? frames : images).Update(done, total, is_truth ? "truth" : field.scene);
+    return !interrupted;
+  });
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   lf::Program program("lfsynth", kHelp);
-  lf::SyntheticFieldOptions a;
-  AddOptions(program.app(), a);
+  Arguments arguments;
+  AddOptions(program.app(), arguments);
   program.AddCommonOptions(
       {.threads = true, .seed = "Seed of --jitter and --noise", .progress = true, .quiet = true});
-  return program.Run(argc, argv, [&]() -> lf::Result<void> {
-    const std::atomic<bool>& interrupted = lf::CatchInterrupts();
-    const lf::ProgressStyle style = lf::ParseProgressStyle(program.common().progress);
-    lf::ProgressMeter images(style, "images"), frames(style, "frames");
-    a.seed = program.common().seed;
-    lf::ThreadPool pool(program.common().threads);
-    return lf::WriteSyntheticField(a, pool, [&](size_t done, size_t total, bool is_truth) {
-      (is_truth ? frames : images).Update(done, total, is_truth ? "truth" : a.scene);
-      return !interrupted;
-    });
-  });
+  return program.Run(argc, argv, [&] { return Write(arguments, program.common()); });
 }

@@ -268,7 +268,6 @@ class SyntheticFieldOptions:
     capture: str
     format: str
     alpha: str
-    truth: _Bytes
     truth_cameras: List[RenderCamera]
     truth_instants: int
     size: Optional[Tuple[int, int]]
@@ -288,4 +287,4 @@ class SyntheticFieldOptions:
     seed: int
     def __init__(self) -> None: ...
 
-def synth(arg0: SyntheticFieldOptions, arg1: int, arg2: _Tell) -> None: ...
+def synth(arg0: SyntheticFieldOptions, arg1: _Bytes, arg2: int, arg3: _Tell) -> None: ...

@@ -343,10 +343,9 @@ def synth(scene: str, folder: FilePath, *, capture: str = "planar", count: Optio
         words.truth_cameras = [camera._core for camera in truth]
         if truth._shutter is not None:
             _, words.truth_instants, words.truth_cameras = truth._shutter
-    elif truth is not None:
-        words.truth = arguments.file_name("truth", truth)
+    file = b"" if truth is None or isinstance(truth, Path) else arguments.file_name("truth", truth)
     with arguments.naming_arguments(), telling(checked(progress), "files") as tell:
-        _core.synth(words, arguments.thread_count(threads), tell)
+        _core.synth(words, file, arguments.thread_count(threads), tell)
     return opening.open(folder)
 
 

@@ -18,7 +18,6 @@
 #include "python/src/setting_words.h"
 #include "python/src/work.h"
 #include "tools/import_report.h"
-#include "tools/synthetic_field.h"
 
 #include "lf/core/quantities.h"
 #include "lf/core/shell_word.h"
@@ -27,6 +26,9 @@
 #include "lf/distribute/compress/compress_report.h"
 #include "lf/distribute/preprocess/forecast_report.h"
 #include "lf/distribute/preprocess/known_depths.h"
+#include "lf/import/formats/open_light_field.h"
+#include "lf/import/paths/open_path.h"
+#include "lf/light_field/synthetic/synthetic_field.h"
 #include "lf/storage/load/measure_footprint.h"
 #include "lf/storage/packed/packed_store_file.h"
 
@@ -173,11 +175,21 @@ std::string CompressField(const OpenedField& field, const std::string& name,
       &work.signals);
 }
 
-void Synthesise(const SyntheticFieldOptions& options, int threads, const Tell& tell) {
+//   truth  file of a path whose frames become the ground truth; "": that of the options
+void Synthesise(SyntheticFieldOptions options, const std::string& truth, int threads,
+                const Tell& tell) {
   ThreadPool& pool = PoolOf(threads);
   ToldWork work(tell);
+  options.holds_light_field = HoldsLightField;
   RunWithoutGil(
       [&] {
+        if (!truth.empty()) {
+          const CameraPath path = Take(
+              OpenPath(truth, {.light_field_unit_m = 1.0, .surface = PathOptions::Surface::kMake}));
+          options.truth_cameras.assign(path.AllInstants().begin(), path.AllInstants().end());
+          options.truth_instants = path.shutter.samples;
+          options.inputs = FilesOfPath(truth);
+        }
         Take(WriteSyntheticField(options, pool, [&](size_t done, size_t total, bool is_truth) {
           work.signals.SetProgress({done, total, is_truth ? 1 : 0});
           return !work.signals.interrupted;
@@ -224,7 +236,6 @@ void AddCaptures(py::module_& module) {
       .def_readwrite("capture", &SyntheticFieldOptions::capture)
       .def_readwrite("format", &SyntheticFieldOptions::format)
       .def_readwrite("alpha", &SyntheticFieldOptions::alpha)
-      .def_readwrite("truth", &SyntheticFieldOptions::truth)
       .def_readwrite("truth_cameras", &SyntheticFieldOptions::truth_cameras)
       .def_readwrite("truth_instants", &SyntheticFieldOptions::truth_instants)
       .def_readwrite("size", &SyntheticFieldOptions::size_px)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/synthetic_field.h"
+#include "lf/light_field/synthetic/synthetic_field.h"
 
 #include <fmt/format.h>
 
@@ -12,8 +12,6 @@
 
 #include "lf/core/log.h"
 #include "lf/core/output_files.h"
-#include "lf/import/formats/open_light_field.h"
-#include "lf/import/paths/open_path.h"
 #include "lf/light_field/synthetic/built_in_scenes.h"
 #include "lf/light_field/synthetic/write_light_field.h"
 #include "lf/light_field/synthetic/write_truth.h"
@@ -76,10 +74,13 @@ std::filesystem::path CalibrationIn(const SyntheticFieldOptions& a) {
 
 // kUsage if the folder holds a light field, and `overwrite` is false.
 Result<void> CheckMayReplace(const SyntheticFieldOptions& a) {
-  if (a.overwrite || !HoldsLightField(a.output)) return {};
+  if (a.overwrite) return {};
   std::error_code error;
+  const bool is_native = std::filesystem::exists(CalibrationIn(a), error);
+  const bool is_other = !is_native && a.holds_light_field && a.holds_light_field(a.output);
+  if (!is_native && !is_other) return {};
   return UsageError(
-      std::filesystem::exists(CalibrationIn(a), error)
+      is_native
           ? fmt::format("{}: exists already: give another folder, or replace this light field with "
                         "--overwrite",
                         CalibrationIn(a).string())
@@ -102,19 +103,19 @@ Result<std::vector<std::filesystem::path>> ImagesToReplace(const SyntheticFieldO
   return images;
 }
 
-// kUsage if an output, or an LF image that is removed, is a file of the path.
-Result<void> CheckKeepsPath(const SyntheticFieldOptions& a, const LightField& light_field,
-                            const std::vector<std::filesystem::path>& earlier, size_t frame_count) {
-  if (a.truth.empty()) return {};
-  const std::vector<std::filesystem::path> path = FilesOfPath(a.truth);
+// kUsage if an output, or an LF image that is removed, is one of the inputs.
+Result<void> CheckKeepsInputs(const SyntheticFieldOptions& a, const LightField& light_field,
+                              const std::vector<std::filesystem::path>& earlier,
+                              size_t frame_count) {
+  if (a.inputs.empty()) return {};
   std::vector<OutputFile> outputs = {{CalibrationIn(a), "the calibration"}};
   for (uint32_t i = 0; i < light_field.size() && !a.calibration_only; ++i)
     outputs.emplace_back(light_field.ImagePath({i}), "an LF image");
   for (size_t i = 1; i <= frame_count; ++i)
     outputs.emplace_back(TruthPath(light_field.folder / "truth", i), "a frame");
-  LF_RETURN_IF_ERROR(CheckOutputFiles(std::move(outputs), path));
+  LF_RETURN_IF_ERROR(CheckOutputFiles(std::move(outputs), a.inputs));
   // LF images that are removed are checked apart, because some are also outputs.
-  return CheckOutputFiles({earlier.begin(), earlier.end()}, path);
+  return CheckOutputFiles({earlier.begin(), earlier.end()}, a.inputs);
 }
 
 // Removes those LF images of an earlier light field that the new one does not replace.
@@ -142,15 +143,8 @@ Result<void> WriteSyntheticField(const SyntheticFieldOptions& options, ThreadPoo
   LF_ASSIGN_OR_RETURN(const LfImageFormat format, FormatOf(options));
   LF_ASSIGN_OR_RETURN(const RigOptions rig, RigOf(options, *built_in));
   LF_ASSIGN_OR_RETURN(const std::vector<RigidTransform> poses, MakeRig(rig));
-  std::vector<RenderCamera> truth = options.truth_cameras;
-  auto instants = static_cast<size_t>(options.truth_instants);
-  if (!options.truth.empty()) {
-    LF_ASSIGN_OR_RETURN(const CameraPath path,
-                        OpenPath(options.truth, {.light_field_unit_m = 1.0,
-                                                 .surface = PathOptions::Surface::kMake}));
-    truth.assign(path.AllInstants().begin(), path.AllInstants().end());
-    instants = static_cast<size_t>(path.shutter.samples);
-  }
+  const std::vector<RenderCamera>& truth = options.truth_cameras;
+  const auto instants = static_cast<size_t>(options.truth_instants);
   // The lock keeps two processes from mixing their scenes in one folder.
   LF_ASSIGN_OR_RETURN(const FileLock lock, LockOutputFolder(options.output));
   LF_RETURN_IF_ERROR(CheckMayReplace(options));
@@ -163,7 +157,7 @@ Result<void> WriteSyntheticField(const SyntheticFieldOptions& options, ThreadPoo
       DescribeLightField(poses, intrinsics, format, built_in->max_radiance, options.output);
   light_field.encoding.alpha = AlphaMeaningOf(options.alpha);
   const size_t frame_count = truth.size() / instants;
-  LF_RETURN_IF_ERROR(CheckKeepsPath(options, light_field, earlier, frame_count));
+  LF_RETURN_IF_ERROR(CheckKeepsInputs(options, light_field, earlier, frame_count));
   const Surroundings surroundings =
       light_field.encoding.AlphaIsLight() ? Surroundings::kTransparent : Surroundings::kShown;
   const Scene scene(built_in->describe());

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes a synthetic light field, in the words of lfsynth's options.
+// Writes a synthetic light field with its ground truth, in the words of lfsynth's options.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -17,12 +18,17 @@
 
 namespace lf {
 
-// Each member has the meaning and the default of the option of lfsynth with this name.
+// Members without a comment have the meaning and the default of the option of lfsynth with this
+// name.
 struct SyntheticFieldOptions {
-  // Frames of the ground truth, instead of the path file `truth`. Their world unit is one metre.
-  std::vector<RenderCamera> truth_cameras = {};
+  std::vector<RenderCamera> truth_cameras = {};  // of the ground truth; the world unit is one metre
   int truth_instants = 1;  // number of consecutive truth_cameras whose mean is one frame
-  std::string scene, output, capture = "planar", format = "exr", alpha = "none", truth;
+  // Files that are read, such as those of a camera path, and that no output may replace.
+  std::vector<std::filesystem::path> inputs = {};
+  // Returns true for a folder that holds a light field in any form (HoldsLightField(),
+  // import/formats/open_light_field.h). Unset: only a transforms.json counts.
+  std::function<bool(const std::filesystem::path&)> holds_light_field = {};
+  std::string scene, output, capture = "planar", format = "exr", alpha = "none";
   std::optional<std::pair<int, int>> size_px;
   uint32_t count = 0;
   std::optional<double> spacing, distance;
@@ -38,11 +44,11 @@ struct SyntheticFieldOptions {
 // ground truth (is_truth), by one thread at a time.
 using SyntheticProgress = std::function<bool(size_t done, size_t total, bool is_truth)>;
 
-// Writes the LF images, their calibration and, if a path is given, the ground truth. LF images of
-// an earlier light field of lfsynth in the folder are removed, unless calibration_only is true.
-// kUsage: options that do not exist or contradict each other; the folder holds a light field, in
-// any form, and `overwrite` is false; an output is a file of the path. kInput: the path cannot be
-// read. kOutput: the folder or the disk fails. kInterrupted: keep_going() returned false.
+// Writes the LF images, their calibration and, if there are truth_cameras, the ground truth. LF
+// images of an earlier light field of lfsynth in the folder are removed, unless calibration_only is
+// true. kUsage: options that do not exist or contradict each other; the folder holds a light field,
+// in any form, and `overwrite` is false; an output is one of the inputs. kOutput: the folder or the
+// disk fails. kInterrupted: keep_going() returned false.
 Result<void> WriteSyntheticField(const SyntheticFieldOptions& options, ThreadPool& pool,
                                  const SyntheticProgress& keep_going);
 
