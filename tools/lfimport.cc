@@ -15,8 +15,6 @@
 #include "tools/common/program.h"
 #include "tools/common/programs.h"
 #include "tools/common/progress.h"
-#include "tools/import_exposure.h"
-#include "tools/import_report.h"
 
 #include "lf/core/file.h"
 #include "lf/core/log.h"
@@ -27,6 +25,8 @@
 #include "lf/import/check/native_folder.h"
 #include "lf/import/check/similarity.h"
 #include "lf/import/check/unused_masks.h"
+#include "lf/import/report/exposure_steps.h"
+#include "lf/import/report/import_report.h"
 #include "lf/storage/load/measure_footprint.h"
 #include "lf/storage/load/open_store.h"
 #include "lf/storage/packed/packed_store_file.h"
@@ -64,7 +64,7 @@ struct Arguments {
   std::string repair;
   std::vector<std::string> exclude;
   lf::AllowMissing allow_missing;
-  lf::ExposureArguments exposure;
+  lf::ExposureSteps exposure;
   std::vector<std::string> call;  // all words of the command line
 };
 
@@ -145,6 +145,36 @@ void AddOutput(CLI::App& app, Arguments& a) {
       ->check(CLI::NonNegativeNumber);
 }
 
+void AddExposure(CLI::App& app, lf::ExposureSteps& steps) {
+  lf::OptionGroup picture(app, lf::kPictureGroup);
+  CLI::Option* const option = picture.AddFlag(
+      "--match-exposure", steps.match,
+      "Make the LF images equally bright\n"
+      "Estimates a brightness factor (lf_gain) for each image and colour channel, from parts of "
+      "the scene that neighbouring images both show. The factors replace lf_gain in the "
+      "transforms.json that -o writes; without -o only their range is reported. See "
+      "doc/inputs.md.");
+  picture
+      .AddFlag("--vignetting", steps.vignetting,
+               "Correct the darkening towards the corners\n"
+               "In addition to lf_gain, estimates lf_vignetting of each lens: how much darker it "
+               "images the corners than the centre.")
+      ->needs(option);
+  picture
+      .AddFlag("--gain-from-exif", steps.gain_from_exif,
+               "Take the exposure of each image from its file\n"
+               "Computes lf_gain of each image from the exposure time, f-number and ISO "
+               "sensitivity in its file (Exif data), relative to the image of median exposure. The "
+               "result replaces the lf_gain of LIGHTFIELD.")
+      ->excludes(option);
+  picture.AddFlag(
+      "--mask-clipped", steps.mask_clipped,
+      "Merge images of one pose with different exposures\n"
+      "Writes \"lf_clipped\": \"mask\" into transforms.json. Renders then take each pixel from the "
+      "brightest image of the pose in which it is not clipped (overexposed). Needs the exposures "
+      "(lf_gain) of the images, for example by --gain-from-exif.");
+}
+
 void AddNamedImages(CLI::App& app, Arguments& a) {
   lf::OptionGroup named(app, "Images named by row and column (doc/formats/stanford.md)");
   named.Add(
@@ -166,7 +196,7 @@ void AddNamedImages(CLI::App& app, Arguments& a) {
 void AddOptions(CLI::App& app, Arguments& a) {
   AddInput(app, a);
   AddOutput(app, a);
-  a.exposure.AddTo(app);
+  AddExposure(app, a.exposure);
   AddNamedImages(app, a);
 }
 
@@ -358,10 +388,14 @@ lf::Result<void> Import(const Arguments& a, const lf::CommonOptions& common) {
     return lf::Error{lf::ErrorKind::kInterrupted, "interrupted before anything was written"};
   const bool refuses = fault_count == light_field.size() || (common.strict && fault_count > 0);
   if (a.exposure.match && !refuses) {
-    LF_ASSIGN_OR_RETURN(report.exposure, lf::MatchAndApply(a.exposure, common, interrupted, pool,
+    lf::ProgressMeter meter(lf::ParseProgressStyle(common.progress), "images");
+    const auto progress = [&](size_t done, size_t total) {
+      meter.Update(done, total, "matching exposure");
+    };
+    LF_ASSIGN_OR_RETURN(report.exposure, lf::MatchAndApply(a.exposure, interrupted, progress, pool,
                                                            &light_field, &report.capture));
   }
-  lf::WarnOfBracketOptions(a.exposure, report.exif_gains, &light_field, &report.capture);
+  lf::WarnOfBrackets(a.exposure, report.exif_gains, &light_field, &report.capture);
   if (report.faults) report.profile = lf::FindProfile(light_field);
   if (report.faults && !refuses) {
     const auto repair_call = [&](const std::string& words) -> std::string {

@@ -17,7 +17,6 @@
 #include "python/src/light_field.h"
 #include "python/src/setting_words.h"
 #include "python/src/work.h"
-#include "tools/import_report.h"
 
 #include "lf/core/quantities.h"
 #include "lf/core/shell_word.h"
@@ -28,6 +27,7 @@
 #include "lf/distribute/preprocess/known_depths.h"
 #include "lf/import/formats/open_light_field.h"
 #include "lf/import/paths/open_path.h"
+#include "lf/import/report/import_report.h"
 #include "lf/light_field/synthetic/synthetic_field.h"
 #include "lf/storage/load/measure_footprint.h"
 #include "lf/storage/packed/packed_store_file.h"

@@ -30,12 +30,12 @@ struct ImportReport {
   std::string first_image;  // path of the first image's file, which shows where images were found
   CaptureReport capture;
   std::optional<ImageFaults> faults;  // nullopt: the files were not checked
-  size_t excluded_count = 0;          // number of LF images that --exclude removed
+  size_t excluded_count = 0;          // number of LF images that were left out on purpose
   // nullopt: the files were not checked, or faults of the files forbid that anything is written
   std::optional<FootprintFacts> pixels;
   std::optional<Agreement> agreement;       // nullopt as `pixels`
   std::optional<FoundProfile> profile;      // nullopt: the files were not checked, or have none
-  std::optional<ExifGains> exif_gains;      // nullopt without --gain-from-exif
+  std::optional<ExifGains> exif_gains;      // nullopt: gains were not taken from the files
   std::optional<MatchedExposure> exposure;  // nullopt: exposures were not matched
   std::string written;                      // path of the transforms.json; "": nothing was written
   std::string next;  // line with the command of the next step; "": the report ends with warnings

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/import_report.h"
+#include "lf/import/report/import_report.h"
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tools/import_exposure.h"
-
 #include "lf/camera/distortion_name.h"
 #include "lf/core/log.h"
+#include "lf/import/report/exposure_report.h"
 #include "lf/storage/load/open_store.h"
 
 namespace lf {
